@@ -1,0 +1,388 @@
+"""Exact and adaptive-precision arithmetic, and why the last printed digit is right.
+
+Every input is a rational number, taken exactly as typed. A quantity is first computed in exact
+fractions (`EXACT`); if its formula stays rational, one division, rounded once, gives the answer,
+ties included. Otherwise (an exponential, logarithm or root was asked for) it is computed in
+*enclosures*: pairs lo <= value <= hi of decimals. Sums, products and quotients round lo down and
+hi up; the standard library's `decimal` does both exactly as told, on every platform. So the true
+value lies in the enclosure whatever was lost to cancellation, which only makes it wider.
+
+Rounding is monotonic: if lo and hi round to the same double, or to the same N digits, so does
+everything between them, the true value too. If they differ, the precision is doubled and the
+quantity computed anew (Ziv's strategy). This ends because the width tends to zero and the true
+value is no tie: for rational inputs, what is not rational here is transcendental (e^q and ln q are,
+for rational q other than 0 and 1; so is e^{πq}, by Gelfond's theorem). A comparison, such as μφ
+against ln(T_h/T_l), is decided the same way: once the enclosure of the difference excludes zero.
+
+Few things are not plain arithmetic. `sqrt` is correctly rounded by `decimal`; one step outwards on
+each side encloses it. π and ln 10 are Machin-like sums in integers with 2^-w as unit: each term is
+cut off by less than one unit, there are fewer than w terms, the coefficients add up to at most 100,
+and 8 + 2 log2(w) further bits absorb it, so the constant is right to one unit.
+
+`expm1` works on integers too, unit 2^-w. The argument less n ln 10 is in [0, 2.4), off by at most
+n + 2 units. It is divided by 2^s, summed as e^r - 1 = r + r²/2 + ..., and doubled s times by
+e^{2r} - 1 = u (2 + u). A term inherits at most its predecessor's error and is cut off by less than
+one unit twice, so t terms are off by at most 3t units; a doubling multiplies the error by 2 (1 + u)
+and adds at most one unit. The product of those factors is 2^s e^{2.4} < 12 · 2^s. So the sum is off
+by fewer than 12 · 2^s (3t + s + n + 4) units, less than 2^(s + 8) (w + n), as t and s are below w.
+That is what is added and taken off. Cosine and sine, of an argument within ±π/4 after n quarter
+turns, have no doublings: 4 (w + n) units cover them. `log1p` needs no series: for a guess y0,
+ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
+Whatever the guess, that encloses; a good one encloses tightly.
+"""
+
+from collections.abc import Callable
+from decimal import (
+    ROUND_CEILING,
+    ROUND_FLOOR,
+    ROUND_HALF_EVEN,
+    Context,
+    Decimal,
+    Inexact,
+)
+from fractions import Fraction
+from functools import cached_property, lru_cache
+from math import inf, isqrt
+from typing import Protocol, TypeVar, Union
+
+from .physics import N
+
+A = TypeVar("A")
+T = TypeVar("T", bound=float | Decimal)
+Rounding = Callable[[Fraction | Decimal], T]
+
+# Far beyond any input (1e±1500), far within what `decimal` takes on a 32-bit machine.
+LARGEST_EXPONENT = 10**8
+# Far more than any valid input was found to need (about 6000): a bug must not become a hang.
+LARGEST_PRECISION = 50_000
+ZERO, ONE = Decimal(0), Decimal(1)
+LOG10_E = Decimal("0.434294481903")  # rounded down, so that what remains is not negative
+
+
+class Irrational(ArithmeticError):
+    """The quantity leaves the rational numbers: compute it in enclosures."""
+
+
+class Unsettled(ArithmeticError):
+    """The enclosure is too wide to go on: compute with more digits."""
+
+
+class Arithmetic(Protocol[N]):
+    """The number type that the equations run in, with its transcendental functions."""
+
+    def number(self, q: Fraction | int) -> N: ...
+    def is_zero(self, x: N) -> bool: ...
+    @property
+    def pi(self) -> N: ...
+    def expm1(self, x: N) -> N: ...
+    def log1p(self, x: N) -> N: ...
+    def sqrt(self, x: N) -> N: ...
+    def cos_sin(self, x: N) -> tuple[N, N]: ...
+
+
+class Rationals:
+    """Exact fractions; whatever would leave them raises `Irrational`."""
+
+    def number(self, q: Fraction | int) -> Fraction:
+        return Fraction(q)
+
+    def is_zero(self, x: Fraction) -> bool:
+        return x == 0
+
+    @property
+    def pi(self) -> Fraction:
+        raise Irrational
+
+    def expm1(self, x: Fraction) -> Fraction:
+        raise Irrational
+
+    log1p = sqrt = expm1
+
+    def cos_sin(self, x: Fraction) -> tuple[Fraction, Fraction]:
+        raise Irrational
+
+
+EXACT = Rationals()
+
+
+def _context(digits: int, rounding: str) -> Context:
+    limit = 2 * LARGEST_EXPONENT
+    return Context(prec=digits, rounding=rounding, Emin=-limit, Emax=limit, traps=[])
+
+
+class Enclosure:
+    """A pair lo <= value <= hi of decimals, with arithmetic that keeps it so."""
+
+    __slots__ = ("hi", "lo", "within")
+
+    def __init__(self, within: "Enclosures", lo: Decimal, hi: Decimal) -> None:
+        self.within, self.lo, self.hi = within, lo, hi
+
+    def _lift(self, other: Union["Enclosure", int]) -> "Enclosure":
+        return self.within.number(other) if isinstance(other, int) else other
+
+    def __add__(self, other: Union["Enclosure", int]) -> "Enclosure":
+        other, at = self._lift(other), self.within
+        return Enclosure(at, at.down.add(self.lo, other.lo), at.up.add(self.hi, other.hi))
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Union["Enclosure", int]) -> "Enclosure":
+        other, at = self._lift(other), self.within
+        return Enclosure(at, at.down.subtract(self.lo, other.hi), at.up.subtract(self.hi, other.lo))
+
+    def __mul__(self, other: Union["Enclosure", int]) -> "Enclosure":
+        other, at = self._lift(other), self.within
+        if self.lo >= 0 and other.lo >= 0:
+            lo, hi = at.down.multiply(self.lo, other.lo), at.up.multiply(self.hi, other.hi)
+        else:
+            pairs = [(a, b) for a in (self.lo, self.hi) for b in (other.lo, other.hi)]
+            lo = min(at.down.multiply(a, b) for a, b in pairs)
+            hi = max(at.up.multiply(a, b) for a, b in pairs)
+        return Enclosure(at, lo, hi)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Union["Enclosure", int]) -> "Enclosure":
+        """Every denominator of the equations is positive; one that may be zero is too wide."""
+        other, at = self._lift(other), self.within
+        if other.lo <= 0:
+            raise Unsettled
+        lo = at.down.divide(self.lo, other.hi if self.lo >= 0 else other.lo)
+        return Enclosure(at, lo, at.up.divide(self.hi, other.lo if self.hi >= 0 else other.hi))
+
+
+class Enclosures:
+    """Enclosures of about ``digits`` significant digits."""
+
+    def __init__(self, digits: int) -> None:
+        self.digits = digits
+        self.down, self.up = _context(digits, ROUND_FLOOR), _context(digits, ROUND_CEILING)
+
+    def number(self, q: Fraction | int) -> Enclosure:
+        n, d = Decimal(q.numerator), Decimal(q.denominator)
+        return Enclosure(self, self.down.divide(n, d), self.up.divide(n, d))
+
+    def is_zero(self, x: Enclosure) -> bool:
+        return x.lo == x.hi == 0
+
+    def _fixed(self, value: int, error: int, bits: int) -> Enclosure:
+        unit = Decimal(1 << bits)
+        lo, hi = Decimal(value - error), Decimal(value + error)
+        return Enclosure(self, self.down.divide(lo, unit), self.up.divide(hi, unit))
+
+    @cached_property
+    def pi(self) -> Enclosure:
+        bits = _bits(self.digits)
+        return self._fixed(_pi(bits), 1, bits)
+
+    def sqrt(self, x: Enclosure) -> Enclosure:
+        """Square root of x >= 0."""
+        lo = max(x.lo, ZERO)
+        return Enclosure(
+            self,
+            self.down.next_minus(self.down.sqrt(lo)) if lo else ZERO,
+            self.up.next_plus(self.up.sqrt(x.hi)),
+        )
+
+    def cos_sin(self, x: Enclosure) -> tuple[Enclosure, Enclosure]:
+        """Cosine and sine of x >= 0."""
+        n, d = x.lo.as_integer_ratio()
+        bits = _bits(self.digits)
+        w = bits + 2 * bits.bit_length() + (n // d).bit_length() + 8
+        angle, quarter = (n << w) // d, _pi(w) >> 1
+        turns = (angle + (quarter >> 1)) // quarter
+        c, s = _cos_sin_series(angle - turns * quarter, w)
+        c, s = ((c, s), (-s, c), (-c, -s), (s, -c))[turns % 4]
+        slack = Enclosure(self, ZERO, self.up.subtract(x.hi, x.lo))
+        error = 4 * (w + turns)
+        return self._fixed(c, error, w) + slack - slack, self._fixed(s, error, w) + slack - slack
+
+    def expm1(self, x: Enclosure) -> Enclosure:
+        """e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
+        lo = self._expm1(x.lo)
+        hi = lo if x.hi == x.lo else self._expm1(x.hi)
+        return Enclosure(self, lo.lo, hi.hi)
+
+    def _expm1(self, x: Decimal) -> Enclosure:
+        if x == 0:
+            return Enclosure(self, ZERO, ZERO)
+        if x > 3 * LARGEST_EXPONENT:
+            return Enclosure(self, Decimal(inf), Decimal(inf))
+        tens = int(self.down.multiply(x, LOG10_E)) if x > 2 else 0
+        bits = _bits(self.digits + max(0, -x.adjusted()))
+        halvings = isqrt(bits)
+        w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
+        n, d = x.as_integer_ratio()
+        u = _expm1_series((n << w) // d - tens * _ln10(w), halvings, w)
+        small = self._fixed(u, (w + tens) << (halvings + 8), w)
+        if not tens:
+            return small
+        k = small + 1
+        scaled = Enclosure(self, self.down.scaleb(k.lo, tens), self.up.scaleb(k.hi, tens))
+        return scaled - 1
+
+    def log1p(self, x: Enclosure) -> Enclosure:
+        """ln(1 + x) for x >= 0."""
+        lo = self._log1p(x.lo)
+        hi = lo if x.hi == x.lo else self._log1p(x.hi)
+        return Enclosure(self, lo.lo, hi.hi)
+
+    def _log1p(self, y: Decimal) -> Enclosure:
+        if y == 0:
+            return Enclosure(self, ZERO, ZERO)
+        guess = self._log1p_guess(y)
+        at_guess, exactly = self._expm1(guess), Enclosure(self, y, y)
+        delta = (exactly - at_guess) / (at_guess + 1)
+        inner = delta / (delta + 1)
+        middle = Enclosure(self, guess, guess)
+        return Enclosure(self, (middle + inner).lo, (middle + delta).hi)
+
+    def _log1p_guess(self, y: Decimal) -> Decimal:
+        """ln(1 + y) to about half the digits: each step of `_log1p` doubles them."""
+        if self.digits > 36:
+            return enclosures(self.digits // 2 + 2)._log1p(y).lo
+        at = self.down
+        if y.adjusted() < -9:
+            return at.multiply(y, at.subtract(ONE, at.divide(y, Decimal(2))))
+        return _context(self.digits // 2 + 12, ROUND_HALF_EVEN).ln(at.add(ONE, y))
+
+
+@lru_cache(maxsize=64)
+def enclosures(digits: int) -> Enclosures:
+    """The arithmetic of enclosures with that many digits; one object, so that π is kept."""
+    return Enclosures(digits)
+
+
+def _bits(digits: int) -> int:
+    return digits * 10 // 3 + 8
+
+
+def _expm1_series(x: int, halvings: int, w: int) -> int:
+    r = x >> halvings
+    total, term, n = 0, r, 1
+    while term:
+        total += term
+        n += 1
+        term = (term * r >> w) // n
+    for _ in range(halvings):
+        total = total * ((2 << w) + total) >> w
+    return total
+
+
+def _cos_sin_series(x: int, w: int) -> tuple[int, int]:
+    sums, term, n = [0, 0, 0, 0], 1 << w, 0
+    while term:
+        sums[n % 4] += term
+        n += 1
+        term = (term * x >> w) // n
+    return sums[0] - sums[2], sums[1] - sums[3]
+
+
+def _inverse(q: int, sign: int, w: int) -> int:
+    """atan(1/q) for sign -1, atanh(1/q) for sign 1, in units of 2^-w."""
+    power = (1 << w) // q
+    total, n = power, 1
+    while power:
+        power //= q * q
+        n += 2
+        total += power // n if sign > 0 or n % 4 == 1 else -(power // n)
+    return total
+
+
+@lru_cache(maxsize=64)
+def _pi(bits: int) -> int:
+    """π in units of 2^-bits (J. Machin, 1706)."""
+    guard = 2 * bits.bit_length() + 8
+    w = bits + guard
+    return (16 * _inverse(5, -1, w) - 4 * _inverse(239, -1, w)) >> guard
+
+
+@lru_cache(maxsize=64)
+def _ln10(bits: int) -> int:
+    """ln 10 in units of 2^-bits: 10 = (32/30)^23 (50/48)^17 (162/160)^10."""
+    guard = 2 * bits.bit_length() + 8
+    w = bits + guard
+    terms = 46 * _inverse(31, 1, w) + 34 * _inverse(49, 1, w) + 20 * _inverse(161, 1, w)
+    return terms >> guard
+
+
+def to_double(x: Fraction | Decimal) -> float:
+    """The nearest double, half to even; ±inf beyond the range, never -0."""
+    try:
+        return float(x) + 0.0
+    except OverflowError:
+        return inf if x > 0 else -inf
+
+
+def to_digits(digits: int) -> Rounding[Decimal]:
+    """Rounding to that many significant digits, half to even, trailing zeros kept, never -0."""
+    context = _context(digits, ROUND_HALF_EVEN)
+
+    def round_(x: Fraction | Decimal) -> Decimal:
+        if isinstance(x, Fraction):
+            value = context.divide(Decimal(x.numerator), Decimal(x.denominator))
+        else:
+            value = context.plus(x)
+        if not value or not value.is_finite():
+            return value if value else value.copy_abs()
+        return context.quantize(value, Decimal((0, (1,), value.adjusted() - digits + 1)))
+
+    return round_
+
+
+class Quantity(Protocol):
+    """A number that can be computed in any arithmetic."""
+
+    def __call__(self, arithmetic: Arithmetic[N], /) -> N: ...
+
+
+def settle(quantity: Quantity, round_: Rounding[T], digits: int) -> T:
+    """The correctly rounded value of a quantity; ``digits`` is about how many are wanted."""
+
+    def rounded(value: Enclosure) -> T | None:
+        lo, hi = round_(value.lo), round_(value.hi)
+        return lo if lo == hi else None
+
+    try:
+        return round_(quantity(EXACT))
+    except Irrational:
+        return _refine(quantity, rounded, digits + 8)
+
+
+def is_positive(quantity: Quantity) -> bool:
+    """The sign of a quantity that is known to be irrational, so not zero."""
+
+    def sign(value: Enclosure) -> bool | None:
+        return value.lo > 0 if value.lo > 0 or value.hi < 0 else None
+
+    return _refine(quantity, sign, 24)
+
+
+def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits: int) -> A:
+    """What ``answer`` says of the first enclosure of the quantity that is tight enough for it."""
+    while digits < LARGEST_PRECISION:
+        try:
+            if (found := answer(quantity(enclosures(digits)))) is not None:
+                return found
+        except Unsettled:
+            pass
+        digits *= 2
+    raise ArithmeticError(f"not settled within {LARGEST_PRECISION} digits")
+
+
+def as_typed(q: Fraction) -> str:
+    """The exact decimal of a rational number, or n/d where it has none."""
+    context = _context(5000, ROUND_HALF_EVEN)
+    value = context.divide(Decimal(q.numerator), Decimal(q.denominator))
+    if context.flags[Inexact]:
+        return str(q)
+    return text(context.normalize(value) if value.adjusted() >= 16 else value)
+
+
+def text(value: float | Decimal) -> str:
+    """The shortest text that reads back to the same double; all the digits of a decimal."""
+    mantissa, _, exponent = str(value).lower().partition("e")
+    if isinstance(value, float):
+        mantissa = mantissa.removesuffix(".0")
+    return f"{mantissa}e{int(exponent)}" if exponent else mantissa
