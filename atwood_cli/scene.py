@@ -1,0 +1,255 @@
+"""What is given: words and numbers in, an exact and valid `Scene` out. Nothing is computed."""
+
+import re
+from collections.abc import Iterable, Mapping
+from decimal import Decimal
+from fractions import Fraction
+from math import inf
+from numbers import Rational, Real
+from typing import Any, NamedTuple
+
+from .arithmetic import as_typed
+
+Given = str | int | float | Decimal | Fraction
+"""An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
+
+MASS = {
+    "kg": "1",
+    "g": "1e-3",
+    "mg": "1e-6",
+    "ug": "1e-9",
+    "t": "1e3",
+    "lb": "0.45359237",
+    "lbs": "0.45359237",
+    "oz": "0.028349523125",
+    "st": "6.35029318",
+}
+LENGTH = {
+    "m": "1",
+    "km": "1e3",
+    "dm": "1e-1",
+    "cm": "1e-2",
+    "mm": "1e-3",
+    "um": "1e-6",
+    "in": "0.0254",
+    "ft": "0.3048",
+    "yd": "0.9144",
+}
+DIMENSIONS = {"mass": MASS, "length": LENGTH}
+
+INERTIA_FACTORS = {"disk": "0.5", "hoop": "1"}
+
+STANDARD_GRAVITY = "9.80665"
+"""m/s², exact by definition: 3rd General Conference on Weights and Measures, 1901."""
+
+BODIES = {
+    "mercury": "3.70",
+    "venus": "8.87",
+    "earth": STANDARD_GRAVITY,
+    "moon": "1.62",
+    "mars": "3.71",
+    "jupiter": "24.79",
+    "saturn": "10.44",
+    "uranus": "8.87",
+    "neptune": "11.15",
+    "pluto": "0.62",
+}
+"""Gravity at the surface (m/s²; giants: at 1 bar) from NASA's planetary fact sheets; earth: standard."""
+
+MAX_DIGITS, MAX_EXPONENT = 1000, 500
+# No text within those limits is longer as a numerator or denominator.
+MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
+
+NUMBER = re.compile(r"([+-]?)(\d+(?:\.\d+)?|\.\d+)(?:e([+-]?\d+))?", re.ASCII)
+NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
+
+
+class SceneError(ValueError):
+    """An input that is not a valid scene: ``parameter``, its ``value`` as given, the ``rule``."""
+
+    def __init__(self, parameter: str, value: object, rule: str) -> None:
+        super().__init__(parameter, value, rule)
+        self.parameter, self.value, self.rule = parameter, value, rule
+
+    def __str__(self) -> str:
+        return self.describe(self.parameter)
+
+    def describe(self, name: str) -> str:
+        """The message, with the parameter called ``name`` (an option, a column)."""
+        if self.value is None:
+            return f"{name} {self.rule}"
+        shown = repr(self.value)
+        if len(shown) > 60:
+            shown = f"{shown[:40]}...{shown[-10:]}"
+        return f"{name} {shown} {self.rule}"
+
+
+class Parameter(NamedTuple):
+    """What an input may be."""
+
+    meaning: str
+    unit: str = ""
+    zero: bool = False
+    inf: bool = False
+    dimension: str | None = None
+    names: Mapping[str, str] = {}
+
+    @property
+    def domain(self) -> str:
+        bound = "0 or more" if self.zero else "above 0"
+        return f"must be {bound}{' (inf locks the pulley)' if self.inf else ', and finite'}"
+
+
+PARAMETERS = {
+    "m1": Parameter("mass on one end of the string", "kg", zero=True, dimension="mass"),
+    "m2": Parameter("mass on the other end", "kg", zero=True, dimension="mass"),
+    "M": Parameter("mass of the pulley", "kg", zero=True, inf=True, dimension="mass"),
+    "mu": Parameter("coefficient of static friction between string and pulley", zero=True),
+    "mu_k": Parameter("coefficient of kinetic friction, once the string slips", zero=True),
+    "g": Parameter("gravity", "m/s²", names=BODIES),
+    "inertia": Parameter("inertia factor β = I/(M R²)", names=INERTIA_FACTORS),
+    "I": Parameter("moment of inertia of the pulley", "kg m²"),
+    "R": Parameter("radius of the pulley", "m", dimension="length"),
+    "wrap": Parameter("angle over which the string touches the pulley", "°"),
+}
+
+
+class Scene(NamedTuple):
+    """A valid scene in SI units (``wrap`` in degrees), exact; None where not given.
+
+    ``M`` is a float only where it is infinite: a locked pulley.
+    """
+
+    m1: Fraction
+    m2: Fraction
+    M: Fraction | float | None
+    mu: Fraction | None
+    mu_k: Fraction | None
+    g: Fraction
+    inertia: Fraction | None
+    I: Fraction | None
+    R: Fraction | None
+    wrap: Fraction
+
+    @classmethod
+    def read(cls, given: Mapping[str, Given | None]) -> "Scene":
+        """The scene given, by parameter; absent or None is not given. Raises SceneError."""
+        values = {name: read_value(name, given.get(name)) for name in PARAMETERS}
+        for mass in ("m1", "m2"):
+            if values[mass] is None:
+                raise SceneError(mass, None, "is missing; give both masses, m1 and m2")
+        if values["inertia"] is None and values["I"] is None:
+            values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
+        elif values["inertia"] is not None and values["I"] is not None:
+            raise SceneError("I", given["I"], "and inertia both describe the pulley; give one of them")
+        scene = cls(**values)
+        scene._check_together(given)
+        return scene
+
+    def _check_together(self, given: Mapping[str, Given | None]) -> None:
+        if self.m1 == self.m2 == 0:
+            raise SceneError("m1", given["m1"], "and m2 are both 0; at least one mass must hang")
+        free = "m1" if self.m1 == 0 else "m2"
+        if self.mu is not None and 0 in (self.m1, self.m2):
+            raise SceneError(free, given[free], "is a free end, which friction cannot hold; leave mu out")
+        if self.mu_k is not None and self.mu is None:
+            raise SceneError("mu_k", given["mu_k"], "needs mu, the coefficient that decides whether it slips")
+        if self.mu_k is not None and self.mu is not None and self.mu_k > self.mu:
+            raise SceneError(
+                "mu_k",
+                given["mu_k"],
+                f"must not be above mu; exactly, {as_typed(self.mu_k)} > {as_typed(self.mu)}",
+            )
+        if self.I is not None and self.R is None:
+            raise SceneError("I", given["I"], "needs the radius R as well")
+        if self.I is not None and self.M is not None and not 0 < self.M < inf:
+            raise SceneError("I", given["I"], f"contradicts M = {given['M']}; leave one of them out")
+
+
+def read_value(name: str, given: Given | None) -> Any:
+    """The exact value of one parameter (None, Fraction or inf). Raises SceneError."""
+    default = {"g": STANDARD_GRAVITY, "wrap": "180"}
+    if given is None:
+        return Fraction(default[name]) if name in default else None
+    parameter = PARAMETERS[name]
+    value = _read_text(name, given) if isinstance(given, str) else _read_number(name, given)
+    if value < 0 or (value == 0 and not parameter.zero) or (value == inf and not parameter.inf):
+        raise SceneError(name, given, parameter.domain)
+    return value
+
+
+def _read_text(name: str, given: str) -> Fraction | float:
+    parameter = PARAMETERS[name]
+    if parameter.inf and given == "inf":
+        return inf
+    if given in parameter.names:
+        return Fraction(parameter.names[given])
+    match = NUMBER.match(given)
+    unit = given[match.end() :].lstrip(" ") if match else ""
+    if not match or (unit and not (unit.isascii() and unit.isalpha())):
+        raise SceneError(name, given, _not_a_number(parameter, given))
+    sign, mantissa, exponent = match.groups(default="")
+    digits = len(mantissa.replace(".", ""))
+    power = exponent.lstrip("+-").lstrip("0") or "0"
+    if digits > MAX_DIGITS:
+        raise SceneError(name, given, f"has {digits} digits; at most {MAX_DIGITS} are taken")
+    if len(power) > 3 or int(power) > MAX_EXPONENT:
+        raise SceneError(name, given, f"has an exponent beyond {MAX_EXPONENT} in magnitude")
+    value = Fraction(f"{sign}{mantissa}e{'-' * exponent.startswith('-')}{power}")
+    return value * _factor(name, given, unit) if unit else value
+
+
+def _not_a_number(parameter: Parameter, word: str) -> str:
+    if word.lower() in ("nan", "inf", "+inf", "-inf", "infinity"):
+        return parameter.domain
+    near = nearest(word, parameter.names)
+    return f"{NOT_A_NUMBER}{_or_one_of(parameter.names)}{near}"
+
+
+def _or_one_of(names: Mapping[str, str]) -> str:
+    return f", or one of {', '.join(names)}" if names else ""
+
+
+def nearest(word: str, words: Iterable[str]) -> str:
+    """The hint that a near word may have been meant, empty if none is near."""
+    from difflib import get_close_matches
+
+    near = get_close_matches(word.lower(), list(words), n=1)
+    return f"; did you mean {near[0]}?" if near else ""
+
+
+def _factor(name: str, given: str, unit: str) -> Fraction:
+    wanted = PARAMETERS[name].dimension
+    if wanted is None:
+        raise SceneError(name, given, f"must be a plain number, without the {unit!r}")
+    factors = DIMENSIONS[wanted]
+    if unit in factors:
+        return Fraction(factors[unit])
+    for dimension, others in DIMENSIONS.items():
+        if unit in others:
+            raise SceneError(name, given, f"is a {dimension}; a {wanted} is needed ({', '.join(factors)})")
+    raise SceneError(
+        name,
+        given,
+        f"has the unknown unit {unit!r}{nearest(unit, factors) or '; there are ' + ', '.join(factors)}",
+    )
+
+
+def _read_number(name: str, given: object) -> Fraction | float:
+    if isinstance(given, bool) or not isinstance(given, Real | Decimal):
+        raise SceneError(name, given, "must be text or a number (str, int, float, Decimal, Fraction)")
+    if given.is_nan() if isinstance(given, Decimal) else given != given:
+        raise SceneError(name, given, PARAMETERS[name].domain)
+    if given in (inf, -inf):
+        return float(given)
+    # A huge exponent is refused before it becomes a huge integer.
+    if not isinstance(given, Decimal) or not given or abs(given.adjusted()) <= MAX_MAGNITUDE:
+        if isinstance(given, Rational):  # NumPy's integers among them, whose parts are no ints
+            value = Fraction(int(given.numerator), int(given.denominator))
+        else:
+            value = Fraction(given if isinstance(given, Decimal) else float(given))
+        if max(abs(value.numerator), value.denominator) < 10**MAX_MAGNITUDE:
+            return value
+    raise SceneError(
+        name, given, f"is too long; at most {MAX_DIGITS} digits and exponents up to {MAX_EXPONENT}"
+    )
