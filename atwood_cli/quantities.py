@@ -1,0 +1,65 @@
+"""The registry: every quantity's name, symbol, unit, equation and meaning, once."""
+
+from dataclasses import dataclass, field, fields
+from decimal import Decimal
+from typing import Any, Generic, NamedTuple, TypeVar
+
+from .scene import Scene
+
+T = TypeVar("T", float, Decimal)
+
+REGIMES = ("no-slip", "verge", "slip")
+
+
+class About(NamedTuple):
+    """How a quantity is shown, and the paper's equation for it, if it has one."""
+
+    group: str
+    symbol: str
+    unit: str
+    equation: str
+    meaning: str
+    equation_in_slip: str | None = None
+
+
+def _is(*about: str) -> Any:
+    return field(default=None, metadata={"about": About(*about)})
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solution(Generic[T]):
+    """The state of a scene: floats, or Decimals if digits were asked for; None if undetermined.
+
+    ``scene`` is what was given, ``notes`` say why the regime is what it is and why a value is None.
+    Forces are on the pulley, x from the axle to where m1's string meets it, y up; accelerations,
+    torque and angles are positive the way m2 descends.
+    """
+
+    scene: Scene
+    notes: tuple[str, ...]
+    regime: str
+    # fmt: off
+    acceleration: T | None = _is("motion", "a", "m/s²", "(4)", "acceleration, positive when m2 descends", "(1), (26)")
+    tension_1: T | None = _is("motion", "T₁", "N", "(4)", "tension of the string at m1", "(1), (26)")
+    tension_2: T | None = _is("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)")
+    mu_verge: T | None = _is("friction", "μ*", "", "(27)", "friction coefficient below which the string slips")
+    friction_force: T | None = _is("friction", "F", "N", "(32)", "net friction force on the pulley")
+    friction_force_min: T | None = _is("friction", "F min", "N", "", "least net friction force of a string that grips")
+    friction_force_max: T | None = _is("friction", "F max", "N", "", "greatest net friction force of a string that grips")
+    friction_force_x: T | None = _is("friction", "Fx", "N", "(31)", "net friction force, towards m1's side")
+    friction_force_y: T | None = _is("friction", "Fy", "N", "(31)", "net friction force, upwards")
+    axle_force: T | None = _is("pulley", "A", "N", "(20)", "force on the axle, with the pulley's weight")
+    torque: T | None = _is("pulley", "τ", "N m", "(23)", "torque of the string on the pulley")
+    rim_acceleration: T | None = _is("pulley", "a rim", "m/s²", "(3)", "acceleration of the pulley's rim")
+    angular_acceleration: T | None = _is("pulley", "α", "rad/s²", "(2)", "angular acceleration of the pulley")
+    critical_pulley_mass: T | None = _is("limits", "M*", "kg", "(34)", "pulley mass above which the string slips")
+    critical_heavier_mass: T | None = _is("limits", "m*", "kg", "(35)", "heavier mass above which the string slips")
+    least_heavier_mass: T | None = _is("limits", "m min", "kg", "(36)", "what the heavier mass must exceed to slip")
+    least_pulley_mass: T | None = _is("limits", "M min", "kg", "(36)", "what the pulley's mass must exceed to slip")
+    # fmt: on
+
+
+QUANTITIES: dict[str, About] = {
+    f.name: f.metadata["about"] for f in fields(Solution) if "about" in f.metadata
+}
+NAMES = ("regime", *QUANTITIES)

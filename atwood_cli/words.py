@@ -1,0 +1,96 @@
+"""A solved scene in words: what the string does and why, and what is missing and why."""
+
+from fractions import Fraction
+from math import inf, isinf
+from typing import TYPE_CHECKING
+
+from .arithmetic import as_typed, text
+
+if TYPE_CHECKING:
+    from .solver import Answers
+
+
+def notes(answers: "Answers") -> list[str]:
+    """Sentences on the regime and why, on conditions (36), and on each value that is missing."""
+    return [_verdict(answers), *_remarks(answers), *reasons(answers)]
+
+
+def reasons(answers: "Answers") -> list[str]:
+    """Why values asked for so far are missing: a sentence a reason, naming them."""
+    names: dict[str, list[str]] = {}
+    for name, reason in answers.reasons.items():
+        names.setdefault(reason, []).append(name)
+    return [f"{', '.join(group)}: {reason}." for reason, group in names.items()]
+
+
+def _verdict(answers: "Answers") -> str:
+    case, scene = answers.case, answers.case.scene
+    heavy = as_typed(case.heavy)
+    if case.sign == 0:
+        return "At rest: the masses are equal, so no friction is needed."
+    if case.regime == "verge" and not scene.mu:
+        return "Slips on any pulley that has mass, for want of friction; the values are for one without."
+    if case.regime == "verge":
+        return (
+            "On the verge of slipping if the pulley has the critical mass,"
+            f" {_say(answers, 'critical_pulley_mass')} kg: on a heavier one the string slips."
+        )
+    if case.regime == "slip" and scene.mu is not None:
+        kinetic = "" if scene.mu_k is None else f", and slides with mu_k = {as_typed(scene.mu_k)}"
+        verge = _say(answers, "mu_verge")
+        return f"Slips: mu = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
+    if case.tensions_equal:
+        return "Holds: a pulley without mass needs no friction to turn, so both tensions are equal."
+    if not case.light:
+        return "Holds: the string's end is fixed to the pulley."
+    if scene.mu is None:
+        return f"Assumed to hold, without mu: it does if mu is at least {_say(answers, 'mu_verge')}."
+    if case.pulley_known:
+        return f"Holds: mu = {as_typed(scene.mu)}, and {_say(answers, 'mu_verge')} is enough."
+    least = _say(answers, "least_heavier_mass")
+    return f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {least} kg to slip."
+
+
+def _remarks(answers: "Answers") -> list[str]:
+    case, scene = answers.case, answers.case.scene
+    found = []
+    if case.beta is not None and case.beta > 1:
+        found.append(
+            f"The inertia factor I/(M R^2) is {as_typed(case.beta)}, above 1: the mass lies outside"
+            " the rim the string runs on. If that is not so, check inertia, I and R."
+        )
+    if scene.mu is not None and answers["least_heavier_mass"] is not None:
+        found.append(_conditions(answers))
+    if scene.mu is not None and case.regime == "no-slip" and answers["acceleration"] is None:
+        ends = [answers.with_pulley(mass) for mass in (Fraction(0), inf)]
+        ranges = (
+            f"{name} from {_say(ends[0], name)} to {_say(ends[1], name)}"
+            for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
+        )
+        found.append(f"From a massless to a locked pulley: {', '.join(ranges)}.")
+    return found
+
+
+def _conditions(answers: "Answers") -> str:
+    """Both conditions of (36), necessary for the verge: threshold, and whether it is met."""
+    case = answers.case
+    met = {True: "met", False: "not met"}
+    parts = [
+        f"heavier mass {as_typed(case.heavy)} kg > {_say(answers, 'least_heavier_mass')} kg,"
+        f" {met[case.can_slip]}"
+    ]
+    if answers["least_pulley_mass"] is not None:
+        least = f"{_say(answers, 'least_pulley_mass')} kg"
+        mass = case.scene.M
+        if mass is None:
+            parts.append(f"pulley's mass > {least}" + ", met by the critical one" * case.can_slip)
+        else:
+            shown = as_typed(mass) if isinstance(mass, Fraction) else "inf"
+            parts.append(f"pulley's mass {shown} kg > {least}, {met[case.can_be_made_slip]}")
+    return f"Conditions (36) for the verge: {'; '.join(parts)}."
+
+
+def _say(answers: "Answers", name: str) -> str:
+    """A value as the output shows it, for a sentence."""
+    value = answers[name]
+    return "more than any double" if isinf(value) else text(value)
