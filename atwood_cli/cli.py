@@ -1,0 +1,195 @@
+"""The command line: each command parses, calls one function, hands the result to `output`."""
+
+import inspect
+import io
+import os
+import sys
+from collections import Counter
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any
+
+import typer
+from typer.core import TyperCommand
+
+from . import __version__
+from .quantities import NAMES
+from .scene import PARAMETERS, Scene, SceneError, nearest
+
+DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
+
+app = typer.Typer(
+    name="atwood",
+    help="Atwood's machine with a massive pulley and a rough string, every digit right.",
+    no_args_is_help=True,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+
+class UsageError(typer.TyperException):
+    """Words that do not fit together."""
+
+    exit_code = WRONG_USAGE
+
+
+class Command(TyperCommand):
+    """A command that refuses a scalar option given twice, and is quiet when its reader leaves."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        _, _, order = self.make_parser(ctx).parse_args(args=list(args))
+        for option, times in Counter(order).items():
+            if times > 1 and not (getattr(option, "multiple", 0) or getattr(option, "is_flag", 0)):
+                raise UsageError(f"{option.opts[0]} is given {times} times; give it once")
+        return super().parse_args(ctx, args)
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            status = super().invoke(ctx)
+            sys.stdout.flush()
+            return status
+        except BrokenPipeError:
+            # What is still buffered must not fail again when Python closes stdout.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return DONE
+
+
+ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
+REMARKS = {
+    "m1": ', as 1.5, 250g or "2 lb"',
+    "M": "; inf locks it",
+    "mu_k": "; mu if not given",
+    "I": ", in place of inertia; needs R",
+    "R": ", as 0.1 or 5cm",
+}
+
+
+def _flag(name: str) -> str:
+    return f"--{name.replace('_', '-')}"
+
+
+def _scene_option(name: str) -> Any:
+    parameter = PARAMETERS[name]
+    flags = [_flag(name), *ALIASES.get(name, [])]
+    unit = f" ({parameter.unit})" if parameter.unit else ""
+    names = f", or {', '.join(parameter.names)}" if parameter.names else ""
+    text = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}{unit}{REMARKS.get(name, '')}{names}."
+    metavar = (parameter.dimension or "number").upper()
+    return typer.Option(*flags, help=text, metavar=metavar, rich_help_panel="Scene", show_default=False)
+
+
+def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command an option for every parameter of a scene, handed to it as ``given``."""
+
+    def with_scene(**options: Any) -> int:
+        given = {name: options.pop(name) for name in PARAMETERS}
+        return command(given=given, **options)
+
+    kind = inspect.Parameter.KEYWORD_ONLY
+    scene = [
+        inspect.Parameter(n, kind, default=None, annotation=Annotated[str | None, _scene_option(n)])
+        for n in PARAMETERS
+    ]
+    _, *own = inspect.signature(command).parameters.values()
+    signature = inspect.Signature([*scene, *own])
+    with_scene.__signature__ = signature  # type: ignore[attr-defined]
+    with_scene.__annotations__ = {p.name: p.annotation for p in signature.parameters.values()}
+    with_scene.__name__, with_scene.__doc__ = command.__name__, command.__doc__
+    return with_scene
+
+
+def _output(*flags: str, **more: Any) -> Any:
+    return typer.Option(*flags, rich_help_panel="Output", show_default=False, **more)
+
+
+Digits = Annotated[
+    int | None, _output(metavar="N", help="Significant digits, 1 to 1000 (otherwise doubles).")
+]
+AsJson = Annotated[bool, _output("--json", help="Print JSON: results, scene and notes.")]
+AsCsv = Annotated[bool, _output("--csv", help="Print CSV: a line of names, a line of values.")]
+Only = Annotated[list[str] | None, _output(metavar="NAME", help="Print only this quantity; repeatable.")]
+
+
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        print(f"atwood {__version__}")
+        raise typer.Exit
+
+
+Version = Annotated[
+    bool,
+    typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version."),
+]
+
+
+@app.callback()
+def root(version: Version = False) -> None: ...
+
+
+@app.command("solve", cls=Command)
+@takes_scene
+def solve(
+    given: Mapping[str, str | None],
+    *,
+    digits: Digits = None,
+    json: AsJson = False,
+    csv: AsCsv = False,
+    only: Only = None,
+) -> int:
+    """Solve one scene: acceleration, tensions, friction, critical masses.
+
+    \b
+    Examples:
+      atwood solve --m1 1 --m2 3 --mu 0.3
+      atwood solve --m1 250g --m2 300g --M 100g --R 5cm --digits 6
+      atwood solve --m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --json
+      atwood solve --m1 1 --m2 3 --M 10 --only acceleration --only mu_verge
+    """
+    from . import output
+    from .solver import Answers
+    from .words import reasons
+
+    if json and csv:
+        raise UsageError("--json and --csv exclude each other; give one of them")
+    names = only or []
+    for name in names:
+        if name not in NAMES:
+            hint = nearest(name, NAMES) or f"; there are {', '.join(NAMES)}"
+            raise UsageError(f"--only {name}: no such quantity{hint}")
+    answers = Answers(Scene.read(given), digits)
+    if json:
+        output.print_json(answers, names)
+    elif csv:
+        output.print_csv(answers, names)
+    elif names:
+        output.print_only(answers, names)
+    else:
+        output.print_table(answers)
+        return DONE
+    if csv or names:
+        for reason in reasons(answers):
+            _say(reason)
+    bare = names and not (json or csv)
+    return COULD_NOT if bare and answers.reasons else DONE
+
+
+def _say(message: str) -> None:
+    from .output import for_stream
+
+    print(for_stream(f"atwood: {message}", sys.stderr), file=sys.stderr)
+
+
+def run(arguments: list[str] | None = None) -> int:
+    """Run the command line; every error is a sentence on stderr and an exit status."""
+    if sys.stdout is None:  # closed by the caller: what is printed goes nowhere
+        sys.stdout = io.StringIO()
+    command = typer.main.get_command(app)
+    try:
+        return command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
+    except SceneError as error:
+        _say(error.describe(_flag(error.parameter)))
+        return WRONG_USAGE
+    except typer.TyperException as error:
+        _say(error.format_message())
+        return error.exit_code
+    except (OSError, ArithmeticError) as error:
+        _say(str(error))
+        return COULD_NOT
