@@ -29,6 +29,9 @@ That is what is added and taken off. Cosine and sine, of an argument within ±π
 turns, have no doublings: 4 (w + n) units cover them. `log1p` needs no series: for a guess y0,
 ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
 Whatever the guess, that encloses; a good one encloses tightly.
+
+A function is evaluated at the lower end only; over a width δ <= 1 of its argument ln(1 + y), cosine
+and sine change by at most δ, and e^x by at most 2δ e^x.
 """
 
 from collections.abc import Callable
@@ -171,6 +174,10 @@ class Enclosures:
         lo, hi = Decimal(value - error), Decimal(value + error)
         return Enclosure(self, self.down.divide(lo, unit), self.up.divide(hi, unit))
 
+    def _width(self, x: Enclosure) -> Enclosure:
+        """0 <= anything in x less its lower end."""
+        return Enclosure(self, ZERO, self.up.subtract(x.hi, x.lo))
+
     @cached_property
     def pi(self) -> Enclosure:
         bits = _bits(self.digits)
@@ -194,15 +201,16 @@ class Enclosures:
         turns = (angle + (quarter >> 1)) // quarter
         c, s = _cos_sin_series(angle - turns * quarter, w)
         c, s = ((c, s), (-s, c), (-c, -s), (s, -c))[turns % 4]
-        slack = Enclosure(self, ZERO, self.up.subtract(x.hi, x.lo))
+        slack = self._width(x)
         error = 4 * (w + turns)
         return self._fixed(c, error, w) + slack - slack, self._fixed(s, error, w) + slack - slack
 
     def expm1(self, x: Enclosure) -> Enclosure:
         """e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
-        lo = self._expm1(x.lo)
-        hi = lo if x.hi == x.lo else self._expm1(x.hi)
-        return Enclosure(self, lo.lo, hi.hi)
+        at_lo, width = self._expm1(x.lo), self._width(x)
+        if width.hi > 1:
+            return Enclosure(self, at_lo.lo, self._expm1(x.hi).hi)
+        return Enclosure(self, at_lo.lo, (at_lo + 2 * width * (at_lo + 1)).hi)
 
     def _expm1(self, x: Decimal) -> Enclosure:
         if x == 0:
@@ -213,6 +221,7 @@ class Enclosures:
         bits = _bits(self.digits + max(0, -x.adjusted()))
         halvings = isqrt(bits)
         w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
+        w += -w % 128  # so that ln 10 is often there already
         n, d = x.as_integer_ratio()
         u = _expm1_series((n << w) // d - tens * _ln10(w), halvings, w)
         small = self._fixed(u, (w + tens) << (halvings + 8), w)
@@ -224,9 +233,8 @@ class Enclosures:
 
     def log1p(self, x: Enclosure) -> Enclosure:
         """ln(1 + x) for x >= 0."""
-        lo = self._log1p(x.lo)
-        hi = lo if x.hi == x.lo else self._log1p(x.hi)
-        return Enclosure(self, lo.lo, hi.hi)
+        at_lo = self._log1p(x.lo)
+        return Enclosure(self, at_lo.lo, (at_lo + self._width(x)).hi)
 
     def _log1p(self, y: Decimal) -> Enclosure:
         if y == 0:
@@ -313,6 +321,11 @@ def to_double(x: Fraction | Decimal) -> float:
         return float(x) + 0.0
     except OverflowError:
         return inf if x > 0 else -inf
+
+
+def is_infinite(value: float | Decimal) -> bool:
+    """Whether a value is too large to be written (math.isinf makes a double of it first)."""
+    return value in (inf, -inf)
 
 
 def to_digits(digits: int) -> Rounding[Decimal]:

@@ -13,22 +13,20 @@ from typer.core import TyperCommand
 
 from . import __version__
 from .quantities import NAMES
-from .scene import PARAMETERS, Scene, SceneError, nearest
+from .scene import PARAMETERS, Scene, SceneError, nearest, read_digits
 
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 
 app = typer.Typer(
     name="atwood",
     help="Atwood's machine with a massive pulley and a rough string, every digit right.",
-    no_args_is_help=True,
+    invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
 
 
-class UsageError(typer.TyperException):
-    """Words that do not fit together."""
-
-    exit_code = WRONG_USAGE
+# The parent of all of typer's complaints about usage; typer exports only this child of it.
+UsageError: Any = typer.BadParameter.__mro__[1]
 
 
 class Command(TyperCommand):
@@ -38,7 +36,7 @@ class Command(TyperCommand):
         _, _, order = self.make_parser(ctx).parse_args(args=list(args))
         for option, times in Counter(order).items():
             if times > 1 and not (getattr(option, "multiple", 0) or getattr(option, "is_flag", 0)):
-                raise UsageError(f"{option.opts[0]} is given {times} times; give it once")
+                raise SceneError(str(option.name), None, f"is given {times} times; give it once")
         return super().parse_args(ctx, args)
 
     def invoke(self, ctx: Any) -> Any:
@@ -101,7 +99,7 @@ def _output(*flags: str, **more: Any) -> Any:
 
 
 Digits = Annotated[
-    int | None, _output(metavar="N", help="Significant digits, 1 to 1000 (otherwise doubles).")
+    str | None, _output(metavar="N", help="Significant digits, 1 to 1000 (otherwise doubles).")
 ]
 AsJson = Annotated[bool, _output("--json", help="Print JSON: results, scene and notes.")]
 AsCsv = Annotated[bool, _output("--csv", help="Print CSV: a line of names, a line of values.")]
@@ -121,7 +119,9 @@ Version = Annotated[
 
 
 @app.callback()
-def root(version: Version = False) -> None: ...
+def root(context: typer.Context, version: Version = False) -> None:
+    if context.invoked_subcommand is None:
+        print(context.get_help())
 
 
 @app.command("solve", cls=Command)
@@ -148,13 +148,13 @@ def solve(
     from .words import reasons
 
     if json and csv:
-        raise UsageError("--json and --csv exclude each other; give one of them")
+        raise SceneError("json", None, "and --csv exclude each other; give one of them")
     names = only or []
     for name in names:
         if name not in NAMES:
             hint = nearest(name, NAMES) or f"; there are {', '.join(NAMES)}"
-            raise UsageError(f"--only {name}: no such quantity{hint}")
-    answers = Answers(Scene.read(given), digits)
+            raise SceneError("only", name, f"is no quantity{hint}")
+    answers = Answers(Scene.read(given), read_digits(digits))
     if json:
         output.print_json(answers, names)
     elif csv:
@@ -187,9 +187,12 @@ def run(arguments: list[str] | None = None) -> int:
     except SceneError as error:
         _say(error.describe(_flag(error.parameter)))
         return WRONG_USAGE
-    except typer.TyperException as error:
-        _say(error.format_message())
-        return error.exit_code
+    except UsageError as error:
+        how = f"; {error.ctx.command_path} -h shows how" if error.ctx else ""
+        _say(f"{error.format_message().rstrip('.')}{how}")
+        return WRONG_USAGE
+    except typer.Abort:
+        raise KeyboardInterrupt from None
     except (OSError, ArithmeticError) as error:
         _say(str(error))
         return COULD_NOT

@@ -6,14 +6,16 @@ from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from itertools import chain
-from math import isfinite
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
-from .arithmetic import as_typed, text
+from .arithmetic import as_typed, is_infinite, text
 from .quantities import NAMES, QUANTITIES
 from .scene import PARAMETERS, Scene
 from .solver import Answers
 from .words import notes
+
+if TYPE_CHECKING:
+    from rich.console import Console
 
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 ASCII = str.maketrans(
@@ -33,6 +35,8 @@ def print_json(answers: Answers, only: Sequence[str]) -> None:
     results: dict[str, object] = {name: answers[name] for name in only or NAMES}
     if not only:
         scene = answers.case.scene._asdict()
+        if answers.case.locked:
+            scene["M"] = "inf"
         results = {"scene": scene, **results, "notes": notes(answers)}
     print(_json(results))
 
@@ -49,7 +53,7 @@ def _json(value: object, indent: str = "\n") -> str:
         case Fraction():
             return as_typed(value)
         case float() | Decimal():
-            return text(value) if isfinite(value) else "null"
+            return "null" if is_infinite(value) else text(value)
     return json.dumps(value)
 
 
@@ -65,7 +69,7 @@ def cell(value: str | float | Decimal | None) -> str:
     """A value as bare text, empty where it does not exist or no double can hold it."""
     if value is None or isinstance(value, str):
         return value or ""
-    return text(value) if isfinite(value) else ""
+    return "" if is_infinite(value) else text(value)
 
 
 def describe(scene: Scene) -> str:
@@ -79,12 +83,16 @@ def describe(scene: Scene) -> str:
     return ", ".join(parts)
 
 
-def print_table(answers: Answers) -> None:
+def print_table(answers: Answers, console: "Console | None" = None) -> None:
     """The scene, the verdict, a table of the quantities that exist, and the notes."""
     from rich.console import Console
     from rich.text import Text
 
-    console = Console(highlight=False)
+    class OurConsole(Console):
+        def on_broken_pipe(self) -> None:
+            raise BrokenPipeError  # rich would exit with status 1
+
+    console = console or OurConsole(highlight=False)
 
     def say(words: str, style: str = "") -> None:
         # Piped, a sentence is a line; on a terminal, lines break between words.
@@ -94,7 +102,7 @@ def print_table(answers: Answers) -> None:
     verdict, *others = notes(answers)
     say(describe(answers.case.scene))
     say(verdict, f"bold {REGIME_STYLES[answers.case.regime]}")
-    _print_groups(groups, console.width if console.is_terminal else None)
+    _print_groups(groups, console)
     for note in others:
         say(note)
 
@@ -128,25 +136,25 @@ def _width(groups: list[list[dict[str, str]]], columns: Sequence[str]) -> int:
     return 1 + sum(3 + max(len(row[c]) for row in cells) for c in columns)
 
 
-def _print_groups(groups: list[list[dict[str, str]]], available: int | None) -> None:
-    """The table with as many columns as fit; where not even two do, a plain line a quantity."""
+def _print_groups(groups: list[list[dict[str, str]]], console: "Console") -> None:
+    """The table with the columns that a terminal has room for, or else a plain line a quantity."""
     from rich import box
-    from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
     columns = list(COLUMNS)
-    while (width := _width(groups, columns)) > (available or width):
+    while (width := _width(groups, columns)) > console.width and console.is_terminal:
         columns.pop()
         if len(columns) < 2:
             for row in chain.from_iterable(groups):
-                print(f"{row['Quantity']} = {row['Value'].lstrip()} {row['Unit']}".rstrip())
+                console.out(f"{row['Quantity']} = {row['Value'].lstrip()} {row['Unit']}".rstrip())
             return
     table = Table(*columns, box=box.ROUNDED, show_lines=True)
     for group in groups:
         # One row a group, its lines joined: rich takes five times as long over a row a quantity.
         table.add_row(*(Text("\n".join(row[c] for row in group)) for c in columns))
-    Console(width=width).print(table)
+    console.width = max(console.width, width)
+    console.print(table)
 
 
 def _integer_part(value: str) -> int:

@@ -60,7 +60,7 @@ MAX_DIGITS, MAX_EXPONENT = 1000, 500
 # No text within those limits is longer as a numerator or denominator.
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 
-NUMBER = re.compile(r"([+-]?)(\d+(?:\.\d+)?|\.\d+)(?:e([+-]?\d+))?", re.ASCII)
+NUMBER = re.compile(r"([+-]?)(\d+(?:\.\d+)?|\.\d+)(?:e([+-]?\d+))?(?: *([A-Za-z]+))?", re.ASCII)
 NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
 
 
@@ -178,17 +178,26 @@ def read_value(name: str, given: Given | None) -> Any:
     return value
 
 
+def read_digits(given: int | str | None) -> int | None:
+    """How many significant digits are asked for. Raises SceneError."""
+    digits = given
+    if isinstance(given, str) and given.isascii() and given.isdigit() and len(given) <= 4:
+        digits = int(given)
+    if digits is None or (type(digits) is int and 1 <= digits <= MAX_DIGITS):
+        return digits
+    raise SceneError("digits", given, f"must be a whole number from 1 to {MAX_DIGITS}")
+
+
 def _read_text(name: str, given: str) -> Fraction | float:
     parameter = PARAMETERS[name]
     if parameter.inf and given == "inf":
         return inf
     if given in parameter.names:
         return Fraction(parameter.names[given])
-    match = NUMBER.match(given)
-    unit = given[match.end() :].lstrip(" ") if match else ""
-    if not match or (unit and not (unit.isascii() and unit.isalpha())):
+    match = NUMBER.fullmatch(given)
+    if not match:
         raise SceneError(name, given, _not_a_number(parameter, given))
-    sign, mantissa, exponent = match.groups(default="")
+    sign, mantissa, exponent, unit = match.groups(default="")
     digits = len(mantissa.replace(".", ""))
     power = exponent.lstrip("+-").lstrip("0") or "0"
     if digits > MAX_DIGITS:

@@ -8,7 +8,7 @@ quantity that the scene does not determine raises `Undetermined` with the reason
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
-from math import inf, isinf
+from math import inf
 from typing import TYPE_CHECKING, Any, Generic, Literal, overload
 
 from . import physics, words
@@ -16,6 +16,7 @@ from .arithmetic import (
     LARGEST_EXPONENT,
     Arithmetic,
     Rounding,
+    is_infinite,
     is_positive,
     settle,
     to_digits,
@@ -23,7 +24,7 @@ from .arithmetic import (
 )
 from .physics import N
 from .quantities import NAMES, Solution
-from .scene import Given, Scene, SceneError
+from .scene import Given, Scene, read_digits
 
 if TYPE_CHECKING:
     from typing import TypedDict, Unpack
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
 
 
 DOUBLE_DIGITS = 17
-MAX_DIGITS = 1000
 
 NEEDS_MU = "give mu, the friction coefficient"
 NEEDS_M = "give M, the pulley's mass, which decides here"
@@ -216,8 +216,9 @@ class Machine(Generic[N]):
     def _friction_bound(self) -> N:
         if self.case.regime != "no-slip":
             raise Undetermined(DEFINITE)
+        verge = self.mu_verge
         if self.case.tensions_equal:
-            return self.mu_verge
+            return verge
         raise Undetermined(NEEDS_MU)
 
     # The quantities
@@ -347,8 +348,6 @@ class Answers:
     """The quantities of a scene, settled when asked for: to doubles or to ``digits`` digits."""
 
     def __init__(self, scene: Scene, digits: int | None = None) -> None:
-        if digits is not None and not (isinstance(digits, int) and 1 <= digits <= MAX_DIGITS):
-            raise SceneError("digits", digits, f"must be a whole number from 1 to {MAX_DIGITS}")
         self.case = Case(scene)
         self.digits = digits
         self._round: Rounding[Any] = to_double if digits is None else to_digits(digits)
@@ -374,7 +373,7 @@ class Answers:
             return value
 
         value: float | Decimal = settle(quantity, self._round, self.digits or DOUBLE_DIGITS)
-        if isinf(value):
+        if is_infinite(value):
             self.reasons[name] = ABOVE_DOUBLES if self.digits is None else TOO_LARGE
         elif value == 0 and self.digits is None and settle(quantity, to_digits(1), 1):
             self.reasons[name] = BELOW_DOUBLES
@@ -388,7 +387,7 @@ class Answers:
 @overload
 def solve(*, digits: None = None, **given: "Unpack[Inputs]") -> Solution[float]: ...
 @overload
-def solve(*, digits: int, **given: "Unpack[Inputs]") -> Solution[Decimal]: ...
+def solve(*, digits: int | str, **given: "Unpack[Inputs]") -> Solution[Decimal]: ...
 def solve(
     *,
     m1: Given | None = None,
@@ -401,7 +400,7 @@ def solve(
     I: Given | None = None,
     R: Given | None = None,
     wrap: Given | None = None,
-    digits: int | None = None,
+    digits: int | str | None = None,
 ) -> Any:
     """The state of Atwood's machine: m1 and m2 on a rough string over a pulley.
 
@@ -414,6 +413,6 @@ def solve(
     correctly rounded to N significant digits. Raises SceneError (a ValueError) on bad input.
     """
     given = {key: value for key, value in locals().items() if key != "digits"}
-    answers = Answers(Scene.read(given), digits)
+    answers = Answers(Scene.read(given), read_digits(digits))
     values = {name: answers[name] for name in NAMES}
     return Solution(scene=answers.case.scene, notes=tuple(words.notes(answers)), **values)

@@ -1,10 +1,10 @@
 """A solved scene in words: what the string does and why, and what is missing and why."""
 
 from fractions import Fraction
-from math import inf, isinf
+from math import inf
 from typing import TYPE_CHECKING
 
-from .arithmetic import as_typed, text
+from .arithmetic import LARGEST_EXPONENT, as_typed, is_infinite, text
 
 if TYPE_CHECKING:
     from .solver import Answers
@@ -93,4 +93,6 @@ def _conditions(answers: "Answers") -> str:
 def _say(answers: "Answers", name: str) -> str:
     """A value as the output shows it, for a sentence."""
     value = answers[name]
-    return "more than any double" if isinf(value) else text(value)
+    if is_infinite(value):
+        return "1.8e308 and more" if answers.digits is None else f"10^{LARGEST_EXPONENT} and more"
+    return text(value)

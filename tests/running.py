@@ -1,0 +1,67 @@
+"""Running the command line: as a process, in a shell, on a terminal."""
+
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Callable
+from typing import NamedTuple
+
+import pytest
+
+PAPER = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.3"]
+
+
+class Ran(NamedTuple):
+    """What a run printed and how it ended."""
+
+    status: int
+    out: str
+    err: str
+
+
+Atwood = Callable[..., Ran]
+
+
+def process(*arguments: str, shell: str = "", **environment: str) -> Ran:
+    """Run it as a process; with ``shell``, a bash line in which `atwood` is the command."""
+    env = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "FORCE_COLOR", "NO_COLOR")}
+    env |= {"PYTHON": sys.executable, **environment}
+    words = [sys.executable, "-m", "atwood_cli", *arguments]
+    if shell:
+        words = ["bash", "-c", f'atwood() {{ "$PYTHON" -m atwood_cli "$@"; }}; {shell}']
+    done = subprocess.run(words, capture_output=True, env=env, check=False)
+    return Ran(
+        done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
+    )
+
+
+def on_terminal(*arguments: str, columns: int, **environment: str) -> str:
+    """What a terminal of that width gets to see."""
+    pty, fcntl = pytest.importorskip("pty"), pytest.importorskip("fcntl")
+    import struct
+    import termios
+
+    leader, follower = pty.openpty()
+    fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", 60, columns, 0, 0))
+    env = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "NO_COLOR")}
+    env |= {"TERM": "xterm-256color", **environment}
+    command = [sys.executable, "-m", "atwood_cli", *arguments]
+    child = subprocess.Popen(command, stdin=follower, stdout=follower, stderr=follower, env=env)
+    os.close(follower)
+    seen = b""
+    while True:
+        try:
+            piece = os.read(leader, 65536)
+        except OSError:
+            break
+        if not piece:
+            break
+        seen += piece
+    child.wait()
+    os.close(leader)
+    return seen.decode("utf-8").replace("\r\n", "\n")
+
+
+def plain(seen: str) -> str:
+    return re.sub(r"\x1b\[[0-9;]*m", "", seen)

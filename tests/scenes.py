@@ -1,0 +1,120 @@
+"""Seeded scenes of every stress family, as the texts that a user would type."""
+
+from collections.abc import Callable, Iterator
+from random import Random
+
+import flint
+
+Given = dict[str, str]
+
+
+def _log_uniform(rng: Random, low: float, high: float) -> float:
+    return 10 ** rng.uniform(low, high)
+
+
+def _text(rng: Random, x: float) -> str:
+    """Sometimes all seventeen digits, sometimes as few as people type."""
+    return rng.choice([repr, "{:.3g}".format, "{:.6e}".format])(x)
+
+
+def ordinary(rng: Random) -> Given:
+    m1 = _log_uniform(rng, -2, 2)
+    m2 = m1 * (1 + _log_uniform(rng, -2, 2))
+    scene = {"m1": _text(rng, m1), "m2": _text(rng, m2)}
+    given = rng.choice(["", "M", "mu", "M mu", "M mu", "M mu mu_k"])
+    if "M" in given:
+        scene["M"] = rng.choice([_text(rng, _log_uniform(rng, -2, 3))] * 9 + ["inf"])
+    if "mu" in given:
+        mu = _log_uniform(rng, -2, 0.3)
+        scene["mu"] = repr(mu)
+        if "mu_k" in given:
+            scene["mu_k"] = repr(mu * rng.random())
+    return scene
+
+
+def nearly_equal(rng: Random) -> Given:
+    m1 = _log_uniform(rng, -2, 2)
+    offset = _log_uniform(rng, -17, -2)
+    # Decimal text, so that the masses may differ in the 20th digit.
+    m2 = f"{m1!r}{'' if 'e' in repr(m1) else '0' * 4}" if offset < 1e-15 else repr(m1 * (1 + offset))
+    scene = {"m1": repr(m1), "m2": m2 if "e" in m2 else m2 + "1"}
+    scene["M"] = repr(_log_uniform(rng, -2, 3))
+    if rng.random() < 0.6:
+        scene["mu"] = repr(_log_uniform(rng, -18, -2))
+    return scene
+
+
+def light_pulley(rng: Random) -> Given:
+    scene = ordinary(rng) | {"M": repr(_log_uniform(rng, -300, -3))}
+    if rng.random() < 0.5:
+        scene["mu"] = repr(_log_uniform(rng, -300, -3))
+        scene.pop("mu_k", None)
+    return scene
+
+
+def near_critical(rng: Random) -> Given:
+    """Within 1e-15 to 1e-3 of the critical pulley mass, or of m2 = m1 k, on both sides."""
+    flint.ctx.prec = 400
+    m1 = _log_uniform(rng, -2, 2)
+    mu = _log_uniform(rng, -2, 0)
+    k = (flint.arb(mu) * flint.arb.pi()).exp()
+    off = flint.arb(rng.choice([-1, 1]) * _log_uniform(rng, -15, -3)) + 1
+    digits = rng.choice([17, 17, 40])
+    if rng.random() < 0.3:
+        m2 = (flint.arb(m1) * k * off).str(digits, radius=False)
+        scene = {"m1": repr(m1), "m2": m2, "mu": repr(mu)}
+        if rng.random() < 0.5:
+            scene["M"] = repr(_log_uniform(rng, 0, 17))
+        return scene
+    heavier = float(m1 * k.mid()) * (1 + _log_uniform(rng, -3, 1))
+    a, b = flint.arb(m1), flint.arb(heavier)
+    critical = 4 * a * b * (k - 1) / (b - a * k) * off
+    return {
+        "m1": repr(m1),
+        "m2": repr(heavier),
+        "mu": repr(mu),
+        "M": critical.str(digits, radius=False).replace("e+", "e"),
+    }
+
+
+def whole_range(rng: Random) -> Given:
+    def anything() -> str:
+        return f"{rng.randint(1, 9)}.{rng.randint(0, 10**16)}e{rng.randint(-323, 308)}"
+
+    scene = {"m1": anything(), "m2": anything(), "g": anything()}
+    if rng.random() < 0.8:
+        scene["M"] = anything()
+    if rng.random() < 0.8:
+        scene["mu"] = rng.choice([anything(), repr(_log_uniform(rng, -3, 3))])
+    return scene
+
+
+FAMILIES: dict[str, Callable[[Random], Given]] = {
+    f.__name__: f for f in (ordinary, nearly_equal, light_pulley, near_critical, whole_range)
+}
+
+
+def _vary(rng: Random, scene: Given) -> Given:
+    """What any family may have on top: mirrored, another gravity, pulley or wrap."""
+    if rng.random() < 0.5:
+        scene |= {"m1": scene["m2"], "m2": scene["m1"]}
+    if rng.random() < 0.3:
+        scene["R"] = repr(_log_uniform(rng, -3, 1))
+    if rng.random() < 0.2:
+        scene.setdefault("g", rng.choice(["moon", "9.81", "1.6e-300"]))
+    if rng.random() < 0.2:
+        if "R" in scene and scene.get("M") != "inf" and rng.random() < 0.5:
+            scene["I"] = repr(_log_uniform(rng, -4, 3))
+            if rng.random() < 0.5:
+                scene.pop("M", None)
+        else:
+            scene["inertia"] = rng.choice(["hoop", "0.4", repr(rng.random() + 0.01)])
+    if rng.random() < 0.15:
+        scene["wrap"] = rng.choice(["90", "360", "540", "720", "100", "270", "17.5"])
+    return scene
+
+
+def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
+    rng = Random(f"{family} {seed}")
+    for _ in range(count):
+        yield _vary(rng, FAMILIES[family](rng))

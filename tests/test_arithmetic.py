@@ -1,0 +1,202 @@
+"""Enclosures enclose, rounding rounds, and nothing depends on the caller's decimal context."""
+
+import decimal
+from decimal import Decimal
+from fractions import Fraction
+from math import inf, pi
+
+import mpmath
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from atwood_cli import arithmetic, solve
+from atwood_cli.arithmetic import EXACT, Enclosure, enclosures, to_digits, to_double
+from atwood_cli.physics import N
+
+precisions = st.sampled_from([20, 25, 50, 97, 200, 1000])
+rationals = st.fractions().filter(lambda q: abs(q) < 10**30)
+
+
+@st.composite
+def positive(draw: st.DrawFn, low: int = -400, high: int = 4) -> Fraction:
+    digits = draw(st.integers(1, 10**20))
+    return Fraction(digits) * Fraction(10) ** (draw(st.integers(low, high)) - 20)
+
+
+def contains(enclosure: Enclosure, exact: mpmath.mpf) -> bool:
+    lo, hi = (mpmath.mpf(str(x)) for x in (enclosure.lo, enclosure.hi))
+    return bool(lo <= exact <= hi)
+
+
+def tight(enclosure: Enclosure, digits: int) -> bool:
+    width = Fraction(enclosure.hi) - Fraction(enclosure.lo)
+    return width <= abs(Fraction(enclosure.lo)) * Fraction(10) ** (4 - digits)
+
+
+@given(precisions, rationals, rationals, st.integers(-9, 9))
+def test_field_operations_enclose(digits: int, p: Fraction, q: Fraction, n: int) -> None:
+    at = enclosures(digits)
+    a, b = at.number(p), at.number(q)
+    results = [(a + b, p + q), (a - b, p - q), (a * b, p * q), (n * a, n * p), (n + a, n + p), (a - n, p - n)]
+    if q > 0:
+        results.append((a / b, p / q))
+    for enclosure, exact in results:
+        assert Fraction(enclosure.lo) <= exact <= Fraction(enclosure.hi)
+
+
+@settings(deadline=None)
+@given(precisions, positive())
+def test_functions_enclose_tightly(digits: int, q: Fraction) -> None:
+    at = enclosures(digits)
+    x = at.number(q)
+    with mpmath.workdps(digits + 900):
+        exact = mpmath.mpf(q.numerator) / q.denominator
+        for name in ("expm1", "log1p", "sqrt"):
+            enclosure = getattr(at, name)(x)
+            assert contains(enclosure, getattr(mpmath, name)(exact)), name
+            # The argument's own width counts too, times the exponential's condition, |x|.
+            slack = max(0, x.hi.adjusted() + 1) if name == "expm1" else 0
+            assert tight(enclosure, digits - slack), name
+        for enclosure, value in zip(at.cos_sin(x), (mpmath.cos(exact), mpmath.sin(exact)), strict=True):
+            assert contains(enclosure, value)
+
+
+@given(precisions, st.integers(5, 8), st.integers(1, 9))
+@settings(deadline=None)
+def test_large_exponentials_enclose(digits: int, power: int, digit: int) -> None:
+    at, q = enclosures(digits), digit * 10**power // 10
+    with mpmath.workdps(digits + 50):
+        assert contains(at.expm1(at.number(q)), mpmath.expm1(q))
+
+
+def test_exponential_beyond_what_can_be_written_is_infinite() -> None:
+    at = enclosures(30)
+    assert at.expm1(at.number(10**9)).lo == inf
+
+
+@pytest.mark.parametrize("digits", [20, 50, 333, 2000])
+def test_pi_is_enclosed(digits: int) -> None:
+    with mpmath.workdps(digits + 20):
+        assert contains(enclosures(digits).pi, mpmath.pi())
+
+
+def test_zero_stays_exact() -> None:
+    at = enclosures(30)
+    zero = at.number(0)
+    for result in (at.expm1(zero), at.log1p(zero), at.sqrt(zero)):
+        assert result.lo == 0
+        assert result.hi <= Decimal("1e-20")
+
+
+def test_division_by_what_may_be_zero_asks_for_digits() -> None:
+    at = enclosures(20)
+    third = at.number(Fraction(1, 3))
+    with pytest.raises(arithmetic.Unsettled):
+        at.number(1) / (third - third)
+
+
+@pytest.mark.parametrize("call", ["expm1", "log1p", "sqrt", "cos_sin"])
+def test_exact_fractions_refuse_to_leave_the_rationals(call: str) -> None:
+    with pytest.raises(arithmetic.Irrational):
+        getattr(EXACT, call)(Fraction(1, 2))
+    with pytest.raises(arithmetic.Irrational):
+        _ = EXACT.pi
+
+
+def test_a_quantity_that_never_settles_is_an_error_and_no_hang() -> None:
+    def undecided(ar: arithmetic.Arithmetic[N]) -> N:
+        return ar.pi - ar.pi
+
+    with pytest.raises(ArithmeticError, match="not settled within 50000 digits"):
+        arithmetic.is_positive(undecided)
+
+
+@given(st.fractions())
+def test_to_double_is_pythons_exact_division(q: Fraction) -> None:
+    assert to_double(q) == q.numerator / q.denominator
+
+
+@pytest.mark.parametrize(
+    ("value", "double"),
+    [
+        (Fraction(10) ** 400, inf),
+        (-(Fraction(10) ** 400), -inf),
+        (Fraction(1, 10**400), 0.0),
+        (Decimal("1e400"), inf),
+        (Decimal("-1e-400"), 0.0),
+        (Decimal("4.9e-324"), 5e-324),
+    ],
+)
+def test_to_double_at_the_ends(value: Fraction | Decimal, double: float) -> None:
+    result = to_double(value)
+    assert result == double
+    assert str(result) != "-0.0"
+
+
+@pytest.mark.parametrize(
+    ("value", "digits", "text"),
+    [
+        (Fraction(5, 2), 1, "2"),  # ties go to the even digit
+        (Fraction(7, 2), 1, "4"),
+        (Fraction(3), 4, "3.000"),
+        (Fraction(0), 4, "0"),
+        (Decimal("-0"), 4, "0"),
+        (Fraction(2, 3), 5, "0.66667"),
+        (Fraction(-1, 10**9), 2, "-1.0e-9"),
+        (Fraction(99999), 3, "1.00e5"),
+        (Decimal("9.995"), 3, "10.0"),
+    ],
+)
+def test_to_digits(value: Fraction | Decimal, digits: int, text: str) -> None:
+    assert arithmetic.text(to_digits(digits)(value)) == text
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (1.0, "1"),
+        (0.1, "0.1"),
+        (1e16, "1e16"),
+        (1e22, "1e22"),
+        (5e-324, "5e-324"),
+        (0.0, "0"),
+        (1.5e-7, "1.5e-7"),
+    ],
+)
+def test_text_of_a_double_is_the_shortest(value: float, text: str) -> None:
+    assert arithmetic.text(value) == text
+    assert float(text) == value
+
+
+@given(st.floats(allow_nan=False, allow_infinity=False))
+def test_text_reads_back_to_the_same_double(value: float) -> None:
+    assert float(arithmetic.text(value)) == value
+    assert len(arithmetic.text(value)) <= len(repr(value))
+
+
+@pytest.mark.parametrize(
+    ("q", "text"),
+    [
+        (Fraction(3), "3"),
+        (Fraction(1, 3), "1/3"),
+        (Fraction(1, 8), "0.125"),
+        (Fraction(10) ** 400, "1e400"),
+        (Fraction(1, 10**9), "1e-9"),
+        (Fraction(100), "100"),
+    ],
+)
+def test_as_typed(q: Fraction, text: str) -> None:
+    assert arithmetic.as_typed(q) == text
+
+
+def test_the_callers_decimal_context_changes_nothing() -> None:
+    given = {"m1": "1.0000000001", "m2": "2.3", "M": "55", "mu": "0.25", "R": "0.1"}
+    plain = solve(**given, digits=60)
+    hostile = decimal.Context(prec=2, rounding=decimal.ROUND_UP, Emin=-3, Emax=3, traps=[decimal.Inexact])
+    with decimal.localcontext(hostile):
+        assert solve(**given, digits=60) == plain
+
+
+def test_pi_is_not_typed_in() -> None:
+    assert to_double(enclosures(30).pi.lo) == pi

@@ -1,0 +1,364 @@
+"""The command line as scripts and people meet it: in process where that suffices, else as a process."""
+
+import csv
+import io
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from atwood_cli import solve
+from atwood_cli.__main__ import main
+
+from . import oracle
+from .running import PAPER, Atwood, on_terminal, plain, process
+
+LOADED = "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
+
+
+# The table
+
+
+def test_the_main_job(atwood: Atwood) -> None:
+    ran = atwood(*PAPER)
+    assert (ran.status, ran.err) == (0, "")
+    lines = ran.out.splitlines()
+    assert lines[0] == "m1 = 1 kg, m2 = 3 kg, mu = 0.3, g = 9.80665 m/s², inertia = 0.5, wrap = 180°"
+    assert lines[1].startswith(
+        "On the verge of slipping if the pulley has the critical mass, 43.34192486321087 kg"
+    )
+    row = next(line for line in lines if "critical_pulley_mass" in line)
+    assert row.split("│")[1:-1] == [
+        " critical_pulley_mass ",
+        "  43.34192486321087   ",
+        " kg   ",
+        " M*     ",
+        " (34)     ",
+    ]
+    assert lines[-1] == "critical_heavier_mass: give M, the pulley's mass, which decides here."
+
+
+def test_the_table_shows_what_exists_and_the_notes_the_rest(atwood: Atwood) -> None:
+    solution = solve(m1="1", m2="3", mu="0.3")
+    table, notes = atwood(*PAPER).out.split("╰")
+    for name in oracle.NAMES[1:]:
+        exists = getattr(solution, name) is not None
+        assert bool(re.search(rf"│ {name} ", table)) == exists
+        assert exists or name in notes
+
+
+def test_equations_are_the_regimes(atwood: Atwood) -> None:
+    slipping = atwood("solve", "--m1", "1", "--m2", "3", "--M", "100", "--mu", "0.3").out
+    assert re.search(r"│ acceleration .*\(1\), \(26\)", slipping)
+    gripping = atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3").out
+    assert re.search(r"│ acceleration .*\(4\)", gripping)
+
+
+@pytest.mark.parametrize("digits", ["1", "40", "300"])
+@pytest.mark.parametrize("columns", [10, 40, 60, 80, 200])
+def test_no_width_cuts_a_number_off(columns: int, digits: str) -> None:
+    seen = on_terminal(*PAPER, "--digits", digits, columns=columns)
+    unwrapped = plain(seen).replace("\n", "")
+    solution = solve(m1="1", m2="3", mu="0.3", digits=int(digits))
+    for value in (solution.acceleration, solution.friction_force_y, solution.critical_pulley_mass):
+        assert str(value).lower().replace("e+", "e") in unwrapped
+    assert "…" not in seen
+
+
+def test_a_narrow_terminal_gives_up_columns_before_the_frame() -> None:
+    wide, middle, narrow, tiny = (plain(on_terminal(*PAPER, columns=n)) for n in (100, 70, 52, 30))
+    assert "Equation" in wide
+    assert "Equation" not in middle
+    assert "Unit" in middle
+    assert "Unit" not in narrow
+    assert "│ Value" in narrow
+    assert "acceleration = 0.764026672247107 m/s²" in tiny
+
+
+def test_piped_the_table_is_whole_whatever_the_width(atwood: Atwood, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "30")
+    out = atwood(*PAPER, "--digits", "300").out
+    assert str(solve(m1="1", m2="3", mu="0.3", digits=300).acceleration) in out
+    assert "Equation" in out
+
+
+def test_colour_only_on_a_terminal_that_wants_it(atwood: Atwood) -> None:
+    assert "\x1b" not in atwood(*PAPER).out
+    assert "\x1b[1;33mOn the verge" in on_terminal(*PAPER, columns=90)
+    assert "\x1b[1mOn the verge" in on_terminal(*PAPER, columns=90, NO_COLOR="1")
+    assert "\x1b" not in on_terminal(*PAPER, columns=90, TERM="dumb")
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "latin-1"])
+def test_symbols_are_spelled_out_where_stdout_is_not_unicode(encoding: str) -> None:
+    ran = process(*PAPER, "--R", "1", PYTHONIOENCODING=encoding)
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.isascii()
+    assert "mu*" in ran.out
+    assert "rad/s^2" in ran.out
+    assert "43.34192486321087" in ran.out
+    assert "?" not in ran.out
+
+
+def test_the_c_locale_is_no_trouble() -> None:
+    ran = process(*PAPER, LC_ALL="C")
+    assert (ran.status, ran.err) == (0, "")
+    assert "43.34192486321087" in ran.out
+
+
+# JSON
+
+
+def test_json_holds_every_name_the_scene_and_the_notes(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1", "--m2", "3", "--M", "inf", "--mu", "0.3", "--g", "moon", "--json")
+    assert (ran.status, ran.err) == (0, "")
+    result = json.loads(ran.out, parse_constant=lambda word: pytest.fail(word))
+    assert list(result) == ["scene", *oracle.NAMES, "notes"]
+    assert result["scene"] == {
+        **{"m1": 1, "m2": 3, "M": "inf", "mu": 0.3, "mu_k": None, "g": 1.62},
+        **{"inertia": 0.5, "I": None, "R": None, "wrap": 180},
+    }
+    solution = solve(m1="1", m2="3", M="inf", mu="0.3", g="moon")
+    assert {name: result[name] for name in oracle.NAMES} == {
+        name: getattr(solution, name) for name in oracle.NAMES
+    }
+    assert result["notes"] == list(solution.notes)
+    assert ran.out.isascii()
+
+
+def test_json_numbers_are_the_shortest_doubles_or_the_digits(atwood: Atwood) -> None:
+    assert '"acceleration": 0.764026672247107,' in atwood(*PAPER, "--json").out
+    assert '"acceleration": 0.7640,' in atwood(*PAPER, "--json", "--digits", "4").out
+    assert '"acceleration": 0,' in atwood("solve", "--m1", "2", "--m2", "2", "--json").out
+
+
+def test_json_with_only_has_only_those(atwood: Atwood) -> None:
+    ran = atwood(*PAPER, "--json", "--only", "mu_verge", "--only", "torque")
+    assert json.loads(ran.out) == {"mu_verge": 0.3, "torque": None}
+    assert (ran.status, ran.err) == (0, "atwood: torque: give R, the pulley's radius.\n")
+
+
+def test_json_never_says_infinity(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1e400", "--m2", "2e400", "--json")
+    result = json.loads(ran.out, parse_constant=lambda word: pytest.fail(word))
+    assert result["tension_1"] is None
+    assert any("tension_1" in note and "--digits" in note for note in result["notes"])
+    assert '"m1": 1e400,' in ran.out
+    wide = atwood("solve", "--m1", "1e400", "--m2", "2e400", "--json", "--digits", "5")
+    assert '"tension_1": 1.3076e401,' in wide.out
+
+
+# CSV
+
+
+def test_csv_is_a_line_of_names_and_a_line_of_values(atwood: Atwood) -> None:
+    ran = atwood(*PAPER, "--csv")
+    assert ran.status == 0
+    names, values = csv.reader(io.StringIO(ran.out))
+    assert names == list(oracle.NAMES)
+    row = dict(zip(names, values, strict=True))
+    assert row["regime"] == "verge"
+    assert row["critical_pulley_mass"] == "43.34192486321087"
+    assert row["torque"] == ""
+    assert "atwood: torque, angular_acceleration: give R, the pulley's radius.\n" in ran.err
+
+
+def test_csv_with_only_keeps_the_order_asked_for(atwood: Atwood) -> None:
+    ran = atwood(*PAPER, "--csv", "--only", "tension_2", "--only", "regime")
+    assert (ran.status, ran.out, ran.err) == (0, "tension_2,regime\n27.12786998325868,verge\n", "")
+
+
+# --only
+
+
+def test_only_prints_bare_values_one_a_line(atwood: Atwood) -> None:
+    ran = atwood(*PAPER, "--only", "regime", "--only", "tension_1", "--digits", "5")
+    assert (ran.status, ran.out, ran.err) == (0, "verge\n10.571\n", "")
+
+
+def test_only_of_a_value_that_does_not_exist_fails(atwood: Atwood) -> None:
+    ran = atwood(*PAPER, "--only", "torque", "--only", "mu_verge")
+    assert (ran.status, ran.out) == (1, "0.3\n")
+    assert ran.err == "atwood: torque: give R, the pulley's radius.\n"
+
+
+def test_only_in_a_shell_script() -> None:
+    ran = process(
+        shell="""
+        for M in 10 40 50; do
+            if [ "$(atwood solve --m1 1 --m2 3 --mu 0.3 --M $M --only regime)" = slip ]; then echo "$M slips"; fi
+        done
+        """
+    )
+    assert (ran.status, ran.out) == (0, "50 slips\n")
+
+
+# Errors
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("solve", "--m1 is missing; give both masses, m1 and m2"),
+        ("solve --m1 1", "--m2 is missing; give both masses, m1 and m2"),
+        ("solve --m1 1,5 --m2 2", "--m1 '1,5' is not a number; write it like 2, 0.5 or 1.5e-3"),
+        ("solve --m1 -1 --m2 2", "--m1 '-1' must be 0 or more, and finite"),
+        (
+            "solve --m1 1 --m2 2 --mu-k 1",
+            "--mu-k '1' needs mu, the coefficient that decides whether it slips",
+        ),
+        ("solve --m1 1 --m2 2 --digits 0", "--digits '0' must be a whole number from 1 to 1000"),
+        ("solve --m1 1 --m2 2 --digits 1.5", "--digits '1.5' must be a whole number from 1 to 1000"),
+        ("solve --m1 1 --m1 1 --m2 2", "--m1 is given 2 times; give it once"),
+        ("solve --m1 1 --m2 2 --M 1 --pulley-mass 2", "--M is given 2 times; give it once"),
+        ("solve --m1 1 --m2 2 --json --csv", "--json and --csv exclude each other; give one of them"),
+        (
+            "solve --m1 1 --m2 2 --only tention_1",
+            "--only 'tention_1' is no quantity; did you mean tension_1?",
+        ),
+        (
+            "solve --m1 1 --m2 2 --only zzz",
+            f"--only 'zzz' is no quantity; there are {', '.join(oracle.NAMES)}",
+        ),
+        (
+            "solve --m1 1 --m2 2 --radus 3",
+            "No such option: --radus (Possible options: --radius, --wrap); atwood solve -h shows how",
+        ),
+        ("solve --zzz", "No such option: --zzz; atwood solve -h shows how"),
+        ("solve --m1", "Option '--m1' requires an argument"),
+        ("solve 1 3", "Got unexpected extra arguments (1 3); atwood solve -h shows how"),
+        ("slove", "No such command 'slove'. Did you mean 'solve'?; atwood -h shows how"),
+    ],
+)
+def test_wrong_usage(atwood: Atwood, arguments: str, message: str) -> None:
+    ran = atwood(*arguments.split())
+    assert (ran.status, ran.out) == (2, "")
+    # typer words its own complaints a little differently from version to version.
+    assert ran.err.replace("argument(s)", "arguments") == f"atwood: {message}\n"
+
+
+def test_every_scene_error_reaches_the_command_line_as_an_option(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1", "--m2", "2", "--mu", "0.1", "--mu-k", "0.2")
+    assert ran.err == "atwood: --mu-k '0.2' must not be above mu; exactly, 0.2 > 0.1\n"
+
+
+def test_an_unprintable_argument_is_shown_escaped() -> None:
+    ran = process("solve", "--m1", "\x1b[31m", "--m2", "1", PYTHONIOENCODING="ascii")
+    assert ran.status == 2
+    assert ran.err == "atwood: --m1 '\\x1b[31m' is not a number; write it like 2, 0.5 or 1.5e-3\n"
+
+
+# How it begins and ends
+
+
+def test_version_and_help(atwood: Atwood) -> None:
+    assert re.fullmatch(r"atwood \d+\.\d+\.\d+\n", atwood("--version").out)
+    for arguments in (["-h"], ["--help"], []):
+        assert "solve" in atwood(*arguments).out
+    for flag in ("-h", "--help"):
+        ran = atwood("solve", flag)
+        assert ran.status == 0
+        assert "atwood solve --m1 1 --m2 3 --mu 0.3" in ran.out
+        for option in ("--m1", "--M,--pulley-mass", "--mu-k", "--R,--radius", "--only", "(kg m²)"):
+            assert option in ran.out.replace("--M, ", "--M,").replace("--R, ", "--R,")
+
+
+@pytest.mark.parametrize("output", ["--json", "--csv", "--only acceleration", ""])
+def test_only_what_is_needed_is_imported(output: str) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED, *PAPER, *output.split()], capture_output=True, text=True, check=True
+    )
+    loaded = set(done.stderr.split())
+    assert "atwood_cli.solver" in loaded
+    assert "numpy" not in loaded
+    assert ("rich" in loaded) == (output == "")
+
+
+@pytest.mark.parametrize("output", ["", "--json", "--digits 1000 --json", "--csv"])
+def test_a_reader_that_leaves_early_ends_it_quietly(output: str) -> None:
+    ran = process(shell=f"set -o pipefail; atwood {' '.join(PAPER)} {output} | head -1")
+    assert ran.status == 0
+    assert len(ran.out.splitlines()) == 1
+    # CSV has no place for notes on stdout.
+    assert ran.err == "" or (output == "--csv" and "give R" in ran.err)
+
+
+def test_a_reader_that_is_already_gone() -> None:
+    ran = process(shell=f"atwood {' '.join(PAPER)} --digits 1000 | true; echo ${{PIPESTATUS[0]}}")
+    assert (ran.out, ran.err) == ("0\n", "")
+
+
+def test_closed_stdout_is_quiet() -> None:
+    ran = process(shell=f"atwood {' '.join(PAPER)} --json >&-")
+    assert (ran.status, ran.out, ran.err) == (0, "", "")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_a_full_disk_is_an_error() -> None:
+    ran = process(shell=f"atwood {' '.join(PAPER)} --json > /dev/full")
+    assert ran.status == 1
+    assert "No space left on device" in ran.err
+    assert "Traceback" not in ran.err
+
+
+@pytest.mark.parametrize("where", ["atwood_cli.solver.Answers", "atwood_cli.cli.run"])
+def test_an_interrupt_ends_it_with_130(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], where: str
+) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(where, interrupt)
+    monkeypatch.setattr(sys, "argv", ["atwood", *PAPER])
+    assert main() == 130
+    assert capsys.readouterr() == ("", "")
+
+
+def test_an_interrupt_by_signal(tmp_path: Path) -> None:
+    """Ctrl-C while it waits for its reader: 130, and no word."""
+    fifo = tmp_path / "pipe"
+    try:
+        os.mkfifo(fifo)
+    except (AttributeError, OSError):
+        pytest.skip("needs named pipes")
+    reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)
+    code = (
+        "import sys; from atwood_cli.__main__ import main; sys.argv[0] = 'atwood';"
+        f"sys.stdout = open({str(fifo)!r}, 'w'); status = main(); sys.stdout.close(); sys.exit(status)"
+    )
+    code = f"import os, signal; os.write(2, b'');\n{code}"
+    child = subprocess.Popen(
+        [sys.executable, "-c", f"import atwood_cli.cli, atwood_cli.output\n{_SLOW}\n{code}", *PAPER],
+        stderr=subprocess.PIPE,
+    )
+    assert child.stderr is not None
+    assert child.stderr.readline() == b"started\n"
+    child.send_signal(signal.SIGINT)
+    _, err = child.communicate(timeout=20)
+    os.close(reader)
+    assert (child.returncode, err) == (130, b"")
+
+
+_SLOW = """
+import time, sys, atwood_cli.solver as s
+def slow(*_):
+    print("started", file=sys.stderr, flush=True)
+    time.sleep(20)
+s.Answers = slow
+"""
+
+
+def test_python_dash_m_and_the_command_are_one() -> None:
+    command = Path(sys.executable).with_name("atwood")
+    if not command.exists():
+        pytest.skip("not installed")
+    words = [str(command), *PAPER, "--json"]
+    assert (
+        subprocess.run(words, capture_output=True, text=True, check=True).stdout
+        == process(*PAPER, "--json").out
+    )

@@ -1,0 +1,358 @@
+"""What is given decides the scene: every line and corner of the contract, through `solve`."""
+
+import subprocess
+import sys
+from decimal import Decimal
+from fractions import Fraction
+from math import inf, pi
+from typing import Any
+
+import pytest
+
+from atwood_cli import REGIMES, SceneError, Solution, solve
+
+from . import oracle
+
+UNDECIDED = ("acceleration", "tension_1", "tension_2", "mu_verge", "friction_force", "rim_acceleration")
+
+
+def nulls(solution: Solution[Any]) -> set[str]:
+    return {name for name in oracle.NAMES if getattr(solution, name) is None}
+
+
+@pytest.mark.parametrize(
+    ("given", "regime", "values"),
+    [
+        (
+            {"mu": "0.3"},
+            "verge",
+            "0.764026672247106942 10.5706766722471069 27.1278699832586792 0.3 10.8325976703838104 43.3419248632108670",
+        ),
+        (
+            {"M": "10"},
+            "no-slip",
+            "2.17925555555555556 11.9859055555555556 22.8821833333333333 0.205827819270640686 7.02946524440111226 -",
+        ),
+        (
+            {"M": "100", "mu": "0.3", "mu_k": "0.25"},
+            "slip",
+            "1.52335712943225151 11.3300071294322515 24.8498786117032455 0.326109852384497038 8.77491120196940880"
+            " 43.3419248632108670",
+        ),
+        ({"M": "inf"}, "no-slip", "0 9.80665 29.41995 0.349699152566059778 12.9485994725957480 -"),
+    ],
+)
+def test_reference_values(given: dict[str, Any], regime: str, values: str) -> None:
+    solution = solve(m1="1", m2="3", digits=18, **given)
+    names = "acceleration tension_1 tension_2 mu_verge friction_force critical_pulley_mass".split()
+    assert solution.regime == regime
+    for name, value in zip(names, values.split(), strict=True):
+        expected = None if value == "-" else Decimal(value)
+        assert getattr(solution, name) == expected, name
+
+
+# The table, line by line
+
+
+def test_two_masses_hang_over_a_massless_pulley() -> None:
+    s = solve(m1=1, m2=3)
+    assert s.regime == "no-slip"
+    assert s.tension_1 == s.tension_2 == 14.709975
+    assert s.mu_verge == s.friction_force == s.friction_force_min == s.friction_force_max == 0
+
+
+def test_pulley_mass_assumes_grip() -> None:
+    s = solve(m1=1, m2=3, M=10)
+    assert s.regime == "no-slip"
+    assert s.mu_verge is not None
+    # (32) at mu_verge: what the verge of that very mu gives at that critical mass.
+    at_verge = solve(m1=1, m2=3, mu=s.mu_verge)
+    assert s.friction_force == pytest.approx(at_verge.friction_force, rel=1e-14)
+    assert at_verge.critical_pulley_mass == pytest.approx(10, rel=1e-14)
+    assert "Assumed to hold" in s.notes[0]
+
+
+def test_mu_alone_gives_the_verge_and_its_critical_mass() -> None:
+    s = solve(m1="1", m2="3", mu="0.3")
+    assert s.regime == "verge"
+    assert s.mu_verge == 0.3
+    at_critical = solve(m1="1", m2="3", M=solve(m1="1", m2="3", mu="0.3", digits=40).critical_pulley_mass)
+    assert s.acceleration == at_critical.acceleration
+    assert s.tension_1 == at_critical.tension_1
+
+
+def test_mu_alone_that_holds_any_pulley_leaves_the_motion_open() -> None:
+    s = solve(m1="1", m2="3", mu="0.35")
+    assert s.regime == "no-slip"
+    assert set(UNDECIDED) <= nulls(s)
+    assert s.critical_pulley_mass is None
+    text = " ".join(s.notes)
+    assert "acceleration from 4.903325 to 0" in text  # massless to locked
+    assert "tension_2 from 14.709975 to 29.41995" in text
+    assert "mu_verge from 0 to 0.34969915256605977" in text
+    assert "give M" in text
+
+
+@pytest.mark.parametrize(("M", "regime"), [("43.3419", "no-slip"), ("43.3420", "slip")])
+def test_pulley_and_mu_give_the_true_motion(M: str, regime: str) -> None:
+    s = solve(m1="1", m2="3", M=M, mu="0.3")
+    assert s.regime == regime
+    assert s.critical_pulley_mass == 43.34192486321087
+    assert s.critical_heavier_mass is not None
+    assert (s.friction_force is None) == (regime == "no-slip")
+
+
+@pytest.mark.parametrize("side", ["-1e-900", "1e-900"])
+def test_either_side_of_the_verge_is_decided_at_any_closeness(side: str) -> None:
+    critical = solve(m1="1", m2="3", mu="0.3", digits=1000).critical_pulley_mass
+    assert critical is not None
+    s = solve(m1=1, m2=3, mu="0.3", M=Fraction(critical) + Fraction(side))
+    assert s.regime == ("slip" if side == "1e-900" else "no-slip")
+    assert s.acceleration == solve(m1="1", m2="3", mu="0.3").acceleration
+
+
+# The corners
+
+
+@pytest.mark.parametrize("more", [{}, {"M": 5}, {"mu": 0.2}, {"mu": 0}, {"M": "inf"}, {"M": 5, "mu": 0}])
+def test_equal_masses_rest(more: dict[str, Any]) -> None:
+    s = solve(m1="0.7", m2="0.7", g=10, R=1, **more)
+    assert s.regime == "no-slip"
+    assert s.acceleration == s.mu_verge == s.friction_force == s.torque == s.rim_acceleration == 0
+    assert s.friction_force_min == s.friction_force_max == 0
+    assert s.tension_1 == s.tension_2 == 7
+    assert s.critical_pulley_mass is None
+    assert "At rest" in s.notes[0]
+
+
+def test_massless_pulley_with_mu_needs_no_friction() -> None:
+    s = solve(m1=1, m2=3, M=0, mu="0.3")
+    assert s.regime == "no-slip"
+    assert s.friction_force == s.friction_force_min == s.friction_force_max == s.mu_verge == 0
+    assert s.friction_force_x == s.friction_force_y == 0
+    assert s.critical_pulley_mass == 43.34192486321087
+
+
+def test_no_friction_and_no_pulley_mass_is_the_verge_at_zero() -> None:
+    s = solve(m1=1, m2=3, mu=0)
+    assert s.regime == "verge"
+    assert s.critical_pulley_mass == s.friction_force == s.mu_verge == 0
+    assert s.least_heavier_mass is None
+    assert s.least_pulley_mass is None
+    assert any("conditions (36) do not apply" in note for note in s.notes)
+
+
+@pytest.mark.parametrize("M", [10, "inf"])
+def test_no_friction_slips_on_any_pulley_with_mass(M: Any) -> None:
+    s = solve(m1=1, m2=3, M=M, mu=0)
+    assert s.regime == "slip"
+    assert s.friction_force == s.rim_acceleration == 0
+    assert s.acceleration == solve(m1=1, m2=3).acceleration
+
+
+@pytest.mark.parametrize(
+    ("mu", "regime"), [("0.34969915256605977", "slip"), ("0.34969915256605978", "no-slip")]
+)
+def test_locked_pulley_holds_or_slips_like_any_other(mu: str, regime: str) -> None:
+    s = solve(m1=1, m2=3, M="inf", mu=mu)
+    assert s.regime == regime
+    assert s.rim_acceleration == 0
+    assert s.axle_force is None
+    assert s.critical_heavier_mass == s.least_heavier_mass == pytest.approx(3)
+    assert (s.acceleration == 0) == (regime == "no-slip")
+
+
+@pytest.mark.parametrize(
+    ("M", "acceleration", "tension"), [(2, 7.3549875, 7.3549875), (0, 9.80665, 0), ("inf", 0, 29.41995)]
+)
+def test_free_end_is_a_string_fixed_to_the_pulley(M: Any, acceleration: float, tension: float) -> None:
+    s = solve(m1=0, m2=3, M=M)
+    assert (s.acceleration, s.tension_1, s.tension_2) == (acceleration, 0, tension)
+    for name in ("mu_verge", "friction_force", "friction_force_x", "friction_force_y", "friction_force_min"):
+        assert getattr(s, name) is None
+    assert solve(m1=3, m2=0, M=M).acceleration == -acceleration
+
+
+def test_free_end_with_nothing_else_falls_freely() -> None:
+    s = solve(m1=0, m2=3)
+    assert (s.acceleration, s.tension_2, s.mu_verge) == (9.80665, 0, None)
+
+
+def test_moment_of_inertia_with_mass_fixes_the_factor() -> None:
+    by_moment, by_factor = (
+        solve(m1=1, m2=3, M=10, I="0.4", R="0.2"),
+        solve(m1=1, m2=3, M=10, inertia=1, R="0.2"),
+    )
+    for name in oracle.NAMES:
+        assert getattr(by_moment, name) == getattr(by_factor, name), name
+
+
+def test_moment_of_inertia_without_mass_stands_for_it() -> None:
+    s = solve(m1=1, m2=3, I="0.2", R="0.2", mu="0.3")
+    like = solve(m1=1, m2=3, M=10, mu="0.3")
+    assert (s.regime, s.acceleration, s.critical_heavier_mass) == (
+        like.regime,
+        like.acceleration,
+        like.critical_heavier_mass,
+    )
+    assert s.axle_force is None
+    assert s.critical_pulley_mass is None
+    assert s.least_pulley_mass is None
+    assert any("give M, the pulley's mass, beside I" in note for note in s.notes)
+
+
+@pytest.mark.parametrize("given", [{"inertia": "1.2", "M": 1}, {"I": 5, "R": 1, "M": 1}])
+def test_inertia_factor_above_one_is_questioned(given: dict[str, Any]) -> None:
+    assert any("above 1" in note for note in solve(m1=1, m2=2, **given).notes)
+
+
+@pytest.mark.parametrize(
+    ("mu", "M", "met"),
+    [
+        (
+            "0.3",
+            None,
+            "3 kg > 2.566332395208135 kg, met; pulley's mass > 6.2653295808325415 kg, met by the critical one",
+        ),
+        ("0.3", "5", "3 kg > 2.566332395208135 kg, met; pulley's mass 5 kg > 6.2653295808325415 kg, not met"),
+        ("0.3", "inf", "3 kg > 2.566332395208135 kg, met; pulley's mass inf kg > 6.2653295808325415 kg, met"),
+        (
+            "0.4",
+            "100",
+            "3 kg > 3.5135856242857337 kg, not met; pulley's mass 100 kg > 10.054342497142935 kg, met",
+        ),
+    ],
+)
+def test_both_necessary_conditions_are_reported(mu: str, M: str | None, met: str) -> None:
+    notes = solve(m1=1, m2=3, mu=mu, M=M).notes
+    assert f"Conditions (36) for the verge: heavier mass {met}." in notes
+
+
+def test_critical_heavier_mass_is_where_the_regime_changes() -> None:
+    critical = solve(m1=1, m2=3, M=100, mu="0.3", digits=30).critical_heavier_mass
+    assert critical is not None
+    for offset, regime in ((Decimal("-1e-25"), "no-slip"), (Decimal("1e-25"), "slip")):
+        assert solve(m1=1, m2=Fraction(critical) + Fraction(offset), M=100, mu="0.3").regime == regime
+    assert solve(m1=1, m2=3, M=6, mu="0.3").critical_heavier_mass is None
+
+
+def test_slip_runs_on_kinetic_friction_alone() -> None:
+    s, heavier_pulley = (solve(m1=1, m2=3, M=M, mu="0.3", mu_k="0.1", digits=30) for M in (100, 1000))
+    assert s.acceleration == heavier_pulley.acceleration
+    assert s.acceleration is not None
+    assert s.rim_acceleration is not None
+    assert s.rim_acceleration < s.acceleration
+    assert s.tension_1 is not None
+    assert float(s.tension_2 / s.tension_1) == pytest.approx(2.718281828459045 ** (0.1 * pi))  # type: ignore[operator]
+
+
+# What every solution has
+
+
+def test_every_quantity_mirrors() -> None:
+    for more in (
+        {"mu": "0.3"},
+        {"M": "10"},
+        {"M": "100", "mu": "0.3"},
+        {"M": "5", "mu": "0.3"},
+        {"wrap": "100", "M": 3},
+    ):
+        s, t = solve(m1=1, m2=3, R=2, **more), solve(m1=3, m2=1, R=2, **more)
+        assert (s.tension_1, s.tension_2) == (t.tension_2, t.tension_1)
+        for name in ("acceleration", "rim_acceleration", "angular_acceleration", "torque"):
+            assert getattr(t, name) == (None if getattr(s, name) is None else -getattr(s, name))
+        for name in (
+            "mu_verge",
+            "friction_force",
+            "critical_pulley_mass",
+            "critical_heavier_mass",
+            "axle_force",
+        ):
+            assert getattr(s, name) == getattr(t, name)
+        if s.friction_force_x is not None and "wrap" not in more:
+            assert s.friction_force_x == -t.friction_force_x  # type: ignore[operator]
+            assert s.friction_force_y == t.friction_force_y
+
+
+def test_every_missing_value_has_a_note() -> None:
+    scenes: list[dict[str, Any]] = [
+        {},
+        {"M": 10},
+        {"mu": "0.3"},
+        {"mu": 2},
+        {"M": "inf", "mu": "0.3"},
+        {"wrap": 90, "M": 1},
+    ]
+    for more in scenes:
+        s = solve(m1=1, m2=3, **more)
+        for name in nulls(s):
+            assert any(name in note for note in s.notes), (more, name)
+
+
+def test_scene_is_as_understood() -> None:
+    s = solve(m1="250g", m2="2 lb", R="5cm", g="moon", inertia="hoop")
+    assert s.scene.m1 == Fraction(1, 4)
+    assert s.scene.m2 == Fraction("0.90718474")
+    assert s.scene.R == Fraction(1, 20)
+    assert s.scene.g == Fraction("1.62")
+    assert s.scene.inertia == 1
+    assert s.scene.wrap == 180
+    assert s.scene.M is s.scene.mu is None
+
+
+def test_floats_mean_their_binary_value() -> None:
+    exact = solve(m1=0.1, m2=3, M=1, digits=30)
+    assert exact == solve(m1=Fraction(0.1), m2=3, M=1, digits=30)
+    assert exact.acceleration != solve(m1="0.1", m2=3, M=1, digits=30).acceleration
+
+
+@pytest.mark.parametrize("digits", [1, 6, 17, 1000])
+def test_digits_are_exactly_as_many(digits: int) -> None:
+    s = solve(m1=1, m2=3, M=10, digits=digits)
+    for value in (s.acceleration, s.mu_verge, s.axle_force):
+        assert isinstance(value, Decimal)
+        assert len(value.as_tuple().digits) == digits
+
+
+@pytest.mark.parametrize("digits", [0, -1, 1001, 2.5, "", "six", "99999", True])
+def test_digits_out_of_range_are_refused(digits: Any) -> None:
+    with pytest.raises(SceneError, match=r"digits .* must be a whole number from 1 to 1000"):
+        solve(m1=1, m2=3, digits=digits)
+
+
+def test_values_beyond_the_doubles_are_infinite_and_said() -> None:
+    s = solve(m1="1e400", m2="2e400")
+    assert s.tension_1 == inf
+    assert s.acceleration == pytest.approx(9.80665 / 3)
+    assert any("beyond the range of doubles" in note and "--digits" in note for note in s.notes)
+    assert solve(m1="1e400", m2="2e400", digits=5).tension_1 == Decimal("1.3076e401")
+
+
+def test_values_below_the_doubles_are_zero_and_said() -> None:
+    s = solve(m1="1e-400", m2="2e-400")
+    assert s.tension_1 == 0
+    assert any("below the range of doubles" in note for note in s.notes)
+
+
+@pytest.mark.parametrize("mu", ["1e6", "1e400"])
+def test_a_huge_mu_is_answered_by_logic(mu: str) -> None:
+    s = solve(m1=1, m2=3, mu=mu, digits=5)
+    assert s.regime == "no-slip"
+    assert s.least_heavier_mass == (Decimal("2.2586e1364376") if mu == "1e6" else Decimal("Infinity"))
+    assert any("beyond 10^100000000" in note for note in s.notes) == (mu == "1e400")
+
+
+def test_solution_is_a_record() -> None:
+    s = solve(m1=1, m2=3)
+    assert s == solve(m1="1.0", m2="3")
+    with pytest.raises(AttributeError):
+        s.regime = "slip"  # type: ignore[misc]
+    assert set(REGIMES) == {"no-slip", "verge", "slip"}
+
+
+def test_the_python_door_needs_neither_typer_nor_rich_nor_numpy() -> None:
+    code = (
+        "import sys; from atwood_cli import solve; solve(m1=1, m2=3, mu=0.3);"
+        "sys.exit(bool({'typer', 'rich', 'numpy'} & set(sys.modules)))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0

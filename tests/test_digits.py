@@ -1,0 +1,47 @@
+"""Every digit right: 10,000 scenes of all families and regimes against the oracle."""
+
+from collections import Counter
+from math import isinf
+
+import pytest
+
+from atwood_cli import solve
+from atwood_cli.scene import Scene
+
+from . import oracle
+from .scenes import FAMILIES, scenes
+
+DIGITS = (None, 1, 6, 17, 40, 200)
+SLICES = 8
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("part", range(SLICES))
+def test_every_digit(family: str, part: int) -> None:
+    wrong = []
+    regimes: Counter[str] = Counter()
+    for number, given in enumerate(scenes(family, 2000)):
+        if number % SLICES != part:
+            continue
+        expected = oracle.expected(Scene.read(given))
+        regimes[expected["regime"]] += 1
+        for digits in DIGITS:
+            solution = solve(**given, digits=digits)
+            assert solution.regime == expected["regime"], given
+            for name in oracle.NAMES[1:]:
+                got, want = getattr(solution, name), expected[name]
+                if name in ("friction_force_min", "friction_force_max"):
+                    continue  # no closed form; test_contact checks them
+                if (got is None) != (want is None):
+                    wrong.append((given, digits, name, got, want))
+                elif got is not None:
+                    rounded = oracle.correctly_rounded(want, digits)
+                    if got != rounded:
+                        wrong.append((given, digits, name, got, rounded))
+                    if digits is not None and got and not isinf(got):
+                        assert len(got.as_tuple().digits) == digits
+    assert not wrong, f"{len(wrong)} wrong, such as {wrong[0]}"
+    assert regimes.total() == 2000 // SLICES
+    # Each family reaches slip and no-slip in every slice, so that none is tested by name only.
+    assert regimes["slip"] > 10
+    assert regimes["no-slip"] > 10

@@ -1,0 +1,143 @@
+"""The equations against what they come from: Newton's laws, exactly, and SymPy on the closed forms."""
+
+from collections.abc import Callable
+from fractions import Fraction
+
+import pytest
+import sympy as sp
+from hypothesis import given
+from hypothesis import strategies as st
+
+from atwood_cli import physics
+
+masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
+l, h, c, g, mu, phi, t1, t2, beta = sp.symbols("l h c g mu phi T1 T2 beta", positive=True)
+k = sp.exp(mu * phi)
+k1 = k - 1
+
+
+@given(masses, masses, st.fractions(min_value=0, max_value=10**6), masses)
+def test_newtons_equations_hold_exactly_without_slip(
+    a: Fraction, b: Fraction, c: Fraction, g: Fraction
+) -> None:
+    l, h = sorted((a, b))
+    w, v = physics.shares(h, c)
+    z, d = v * (h - l), w * (h - l)
+    x = l + z
+    acceleration = physics.acceleration(h, x, d, g)
+    t_l, t_h = physics.light_tension(l, h, x, g), physics.heavy_tension(h, x, g)
+    assert w + v == 1
+    assert t_l - l * g == l * acceleration  # (1a)
+    assert h * g - t_h == h * acceleration  # (1b)
+    assert t_h - t_l == c * acceleration  # (3), M/2 = c
+    assert physics.tension_difference(h, x, z, g) == t_h - t_l
+
+
+@given(masses, masses, st.fractions(min_value=1, max_value=10), masses)
+def test_newtons_equations_hold_exactly_in_slip(
+    a: Fraction, b: Fraction, ratio: Fraction, g: Fraction
+) -> None:
+    l, h = sorted((a, b))
+    z = physics.transfer_at_limit(l, ratio - 1)
+    x, d = l + z, h - l - z
+    acceleration = physics.acceleration(h, x, d, g)
+    t_l, t_h = physics.light_tension(l, h, x, g), physics.heavy_tension(h, x, g)
+    assert t_l - l * g == l * acceleration
+    assert h * g - t_h == h * acceleration
+    assert t_h == ratio * t_l
+    assert physics.tension_difference(h, x, z, g) == t_h - t_l
+
+
+def _no_slip() -> tuple[sp.Expr, sp.Expr, sp.Expr]:
+    w, v = physics.shares(h, c)
+    z, d = v * (h - l), w * (h - l)
+    return z, d, l + z
+
+
+def test_state_is_equation_4() -> None:
+    _, d, x = _no_slip()
+    total = l + h + c
+    assert sp.simplify(physics.acceleration(h, x, d, g) - (h - l) * g / total) == 0
+    assert sp.simplify(physics.light_tension(l, h, x, g) - (2 * h + c) * l * g / total) == 0
+    assert sp.simplify(physics.heavy_tension(h, x, g) - (2 * l + c) * h * g / total) == 0
+
+
+def test_verge_coefficient_solves_26() -> None:
+    ratio = sp.Symbol("r", positive=True)
+    verge = physics.verge_coefficient(sp.log(ratio), phi)
+    assert sp.simplify(sp.exp(verge * phi) - ratio) == 0
+
+
+def test_critical_pulley_mass_solves_33() -> None:
+    mass = physics.critical_pulley_mass(l, h, k1, h - l * k, beta)
+    ratio = ((2 * l + c) * h / ((2 * h + c) * l)).subs(c, beta * mass)
+    assert sp.simplify(ratio - k) == 0
+    paper = 4 * l * h * (sp.exp(mu * sp.pi) - 1) / (h - l * sp.exp(mu * sp.pi))
+    assert sp.simplify((mass - paper).subs({beta: sp.Rational(1, 2), phi: sp.pi})) == 0
+
+
+def test_critical_heavier_mass_solves_33() -> None:
+    heavy = physics.critical_heavier_mass(l, c, k1)
+    ratio = ((2 * l + c) * h / ((2 * h + c) * l)).subs(h, heavy)
+    assert sp.simplify(ratio - k) == 0
+
+
+def test_conditions_36_are_where_34_and_35_diverge() -> None:
+    least = physics.least_heavier_mass(l, k1)
+    assert (
+        sp.simplify(1 / physics.critical_pulley_mass(l, h, k1, h - l * k, beta)).subs(h, least).simplify()
+        == 0
+    )
+    pulley = physics.least_pulley_mass(l, k1, beta)
+    assert sp.simplify((1 / physics.critical_heavier_mass(l, c, k1)).subs(c, beta * pulley)) == 0
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_friction_vector_is_the_integral_28(sign: int) -> None:
+    theta = sp.Symbol("theta", positive=True)
+    nu = sign * mu
+    tension = t1 * sp.exp(nu * theta)
+    # Force on the pulley per radian: dT/dtheta along the unit tangent (-sin, cos), (6), (12).
+    x = sp.integrate(-nu * tension * sp.sin(theta), (theta, 0, phi))
+    y = sp.integrate(nu * tension * sp.cos(theta), (theta, 0, phi))
+    end = tension.subs(theta, phi)
+    fx, fy = physics.friction_vector(nu, t1, end, sp.cos(phi), sp.sin(phi))
+    assert sp.simplify(fx - x) == 0
+    assert sp.simplify(fy - y) == 0
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+def test_friction_over_half_a_turn_is_31_and_32(sign: int) -> None:
+    fx, fy = physics.friction_vector(sign * mu, t1, t2, sp.Integer(-1), sp.Integer(0))
+    assert sp.simplify(fx + sign * mu / (1 + mu**2) * (t1 + t2)) == 0
+    assert sp.simplify(fy + mu**2 / (1 + mu**2) * (t1 + t2)) == 0
+    force = physics.friction_magnitude(mu, physics.resultant(t1, t2, sp.Integer(-1), sp.sqrt), sp.sqrt)
+    assert sp.simplify(force**2 - fx**2 - fy**2) == 0
+
+
+def test_magnitude_is_that_of_the_vector_at_any_wrap() -> None:
+    fx, fy = physics.friction_vector(mu, t1, t2, sp.cos(phi), sp.sin(phi))
+    resultant = physics.resultant(t1, t2, sp.cos(phi), sp.sqrt)
+    assert sp.simplify(physics.friction_magnitude(mu, resultant, sp.sqrt) ** 2 - fx**2 - fy**2) == 0
+
+
+def test_axle_carries_tensions_and_pulley() -> None:
+    assert physics.axle_force(t1, t2, c, g) == t1 + t2 + c * g
+
+
+def test_locked_pulley_is_the_limit() -> None:
+    z, d, x = _no_slip()
+    limits: list[tuple[sp.Expr, sp.Expr]] = [
+        (physics.acceleration(h, x, d, g), sp.Integer(0)),
+        (physics.light_tension(l, h, x, g), l * g),
+        (physics.heavy_tension(h, x, g), h * g),
+        (physics.tension_difference(h, x, z, g), (h - l) * g),
+    ]
+    for value, limit in limits:
+        assert sp.simplify(sp.limit(value, c, sp.oo) - limit) == 0
+
+
+def test_equations_run_in_floats_too() -> None:
+    functions: list[Callable[..., float]] = [physics.light_tension, physics.least_pulley_mass]
+    assert functions[0](1.0, 3.0, 2.0, 10.0) == 12.0
+    assert functions[1](1.0, 0.5, 0.5) == 2.0

@@ -1,0 +1,180 @@
+"""Bad input: one clear sentence that names the parameter, the value and the rule."""
+
+import re
+from decimal import Decimal
+from fractions import Fraction
+from math import inf, nan
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from atwood_cli import Scene, SceneError, solve
+from atwood_cli.scene import BODIES, LENGTH, MASS
+
+NUMBER = re.compile(r"[+-]?(\d+(\.\d+)?|\.\d+)(e[+-]?\d+)?", re.ASCII)
+
+
+def error(**given: Any) -> str:
+    with pytest.raises(SceneError) as caught:
+        Scene.read({"m1": "1", "m2": "3", **given})
+    return str(caught.value)
+
+
+NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
+BODY_NAMES = "mercury, venus, earth, moon, mars, jupiter, saturn, uranus, neptune, pluto"
+MASSES = "kg, g, mg, ug, t, lb, lbs, oz, st"
+LENGTHS = "m, km, dm, cm, mm, um, in, ft, yd"
+
+ERRORS: list[tuple[dict[str, Any], str]] = [
+    ({"m1": None}, "m1 is missing; give both masses, m1 and m2"),
+    ({"m2": None}, "m2 is missing; give both masses, m1 and m2"),
+    ({"m1": "0", "m2": "0"}, "m1 '0' and m2 are both 0; at least one mass must hang"),
+    ({"m1": "0", "mu": "1"}, "m1 '0' is a free end, which friction cannot hold; leave mu out"),
+    ({"m2": "0", "mu": "0"}, "m2 '0' is a free end, which friction cannot hold; leave mu out"),
+    ({"m1": "-1"}, "m1 '-1' must be 0 or more, and finite"),
+    ({"m1": -1.5}, "m1 -1.5 must be 0 or more, and finite"),
+    ({"m1": "nan"}, "m1 'nan' must be 0 or more, and finite"),
+    ({"m1": nan}, "m1 nan must be 0 or more, and finite"),
+    ({"m1": Decimal("sNaN")}, "m1 Decimal('sNaN') must be 0 or more, and finite"),
+    ({"m2": "inf"}, "m2 'inf' must be 0 or more, and finite"),
+    ({"m2": inf}, "m2 inf must be 0 or more, and finite"),
+    ({"M": "-1"}, "M '-1' must be 0 or more (inf locks the pulley)"),
+    ({"M": "-inf"}, "M '-inf' must be 0 or more (inf locks the pulley)"),
+    ({"M": "Infinity"}, "M 'Infinity' must be 0 or more (inf locks the pulley)"),
+    ({"mu": "inf"}, "mu 'inf' must be 0 or more, and finite"),
+    ({"g": "0"}, "g '0' must be above 0, and finite"),
+    ({"R": "0"}, "R '0' must be above 0, and finite"),
+    ({"inertia": "0"}, "inertia '0' must be above 0, and finite"),
+    ({"wrap": "-180"}, "wrap '-180' must be above 0, and finite"),
+    *(
+        ({"m1": bad}, f"m1 {bad!r} {NOT_A_NUMBER}")
+        for bad in ("1,5", "1_000", "abc", "", " 1", "1.", "1E3", "0x1F")
+    ),
+    ({"m1": "१"}, f"m1 '१' {NOT_A_NUMBER}"),
+    ({"m1": "１"}, f"m1 '１' {NOT_A_NUMBER}"),
+    ({"m1": "1e501"}, "m1 '1e501' has an exponent beyond 500 in magnitude"),
+    ({"m1": "1e-501"}, "m1 '1e-501' has an exponent beyond 500 in magnitude"),
+    ({"m1": "1e99999"}, "m1 '1e99999' has an exponent beyond 500 in magnitude"),
+    (
+        {"m1": "1" * 1001},
+        f"m1 '{'1' * 39}...{'1' * 9}' has 1001 digits; at most 1000 are taken",
+    ),
+    (
+        {"m1": Decimal("1e9999999")},
+        "m1 Decimal('1E+9999999') is too long; at most 1000 digits and exponents up to 500",
+    ),
+    ({"m1": True}, "m1 True must be text or a number (str, int, float, Decimal, Fraction)"),
+    ({"m1": b"1"}, "m1 b'1' must be text or a number (str, int, float, Decimal, Fraction)"),
+    ({"m1": 1j}, "m1 1j must be text or a number (str, int, float, Decimal, Fraction)"),
+    ({"m1": "1kgs"}, "m1 '1kgs' has the unknown unit 'kgs'; did you mean kg?"),
+    ({"m1": "1 furlong"}, f"m1 '1 furlong' has the unknown unit 'furlong'; there are {MASSES}"),
+    ({"m1": "5cm"}, f"m1 '5cm' is a length; a mass is needed ({MASSES})"),
+    ({"R": "5kg"}, f"R '5kg' is a mass; a length is needed ({LENGTHS})"),
+    ({"mu": "0.3kg"}, "mu '0.3kg' must be a plain number, without the 'kg'"),
+    ({"g": "moo"}, f"g 'moo' {NOT_A_NUMBER}, or one of {BODY_NAMES}; did you mean moon?"),
+    ({"inertia": "disc"}, f"inertia 'disc' {NOT_A_NUMBER}, or one of disk, hoop; did you mean disk?"),
+    ({"mu_k": "0.1"}, "mu_k '0.1' needs mu, the coefficient that decides whether it slips"),
+    ({"mu": "0.1", "mu_k": "0.2"}, "mu_k '0.2' must not be above mu; exactly, 0.2 > 0.1"),
+    (
+        {"mu": 0.3, "mu_k": "0.3"},
+        "mu_k '0.3' must not be above mu; exactly, 0.3 > "
+        "0.299999999999999988897769753748434595763683319091796875",
+    ),
+    ({"I": "1"}, "I '1' needs the radius R as well"),
+    ({"I": "1", "R": "1", "inertia": "1"}, "I '1' and inertia both describe the pulley; give one of them"),
+    ({"I": "1", "R": "1", "M": "0"}, "I '1' contradicts M = 0; leave one of them out"),
+    ({"I": "1", "R": "1", "M": "inf"}, "I '1' contradicts M = inf; leave one of them out"),
+]
+
+
+@pytest.mark.parametrize(("given", "message"), ERRORS)
+def test_error(given: dict[str, Any], message: str) -> None:
+    assert error(**given) == message
+
+
+def test_error_carries_its_parts() -> None:
+    with pytest.raises(ValueError, match="mu_k") as caught:
+        solve(m1=1, m2=3, mu_k=1)
+    assert isinstance(caught.value, SceneError)
+    assert (caught.value.parameter, caught.value.value) == ("mu_k", 1)
+    assert "needs mu" in caught.value.rule
+
+
+@given(st.text(alphabet="0123456789.+-e ", max_size=12) | st.text(max_size=6))
+def test_the_grammar_of_numbers(text: str) -> None:
+    match = NUMBER.fullmatch(text)
+    if match and abs(int((match[3] or "e0")[1:])) <= 500 and not text.startswith("-"):
+        assert Scene.read({"m1": text, "m2": 1}).m1 == Fraction(text)
+    elif match is None or text.startswith("-"):
+        try:
+            value = Scene.read({"m1": text, "m2": 1}).m1
+        except SceneError:
+            return
+        # Only a unit, or minus nothing, makes a mass of what is no plain number.
+        assert value == 0 or any(text.endswith(unit) for unit in MASS)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("+1", 1),
+        (".5", "1/2"),
+        ("1.5e-3", "3/2000"),
+        ("1e+2", 100),
+        ("-0", 0),
+        ("1e500", 10**500),
+        ("1e0000000000000003", 1000),
+        ("9" * 1000, int("9" * 1000)),
+        ("250g", "1/4"),
+        ("250 g", "1/4"),
+        ("2 lb", "0.90718474"),
+        ("1e3mg", "1/1000"),
+    ],
+)
+def test_text_means_exactly_itself(text: str, value: Any) -> None:
+    assert Scene.read({"m1": text, "m2": 1}).m1 == Fraction(value)
+
+
+@pytest.mark.parametrize(
+    "number",
+    [
+        3,
+        0.1,
+        Decimal("0.1"),
+        Fraction(1, 3),
+        np.float64(0.1),
+        np.float32(0.1),
+        np.int64(3),
+        Decimal("0e99999"),
+    ],
+)
+def test_numbers_mean_exactly_themselves(number: Any) -> None:
+    exact = (
+        number
+        if isinstance(number, Fraction | Decimal)
+        else number.item()
+        if hasattr(number, "item")
+        else number
+    )
+    assert Scene.read({"m1": number, "m2": 1}).m1 == Fraction(exact)
+
+
+def test_units_are_consistent() -> None:
+    grams = {unit: Fraction(factor) * 1000 for unit, factor in MASS.items()}
+    assert grams["lb"] == 16 * grams["oz"] == grams["st"] / 14 == Fraction("453.59237")
+    assert (
+        grams["t"] == 1000 * grams["kg"] == 10**6 * grams["g"] == 10**9 * grams["mg"] == 10**12 * grams["ug"]
+    )
+    metres = {unit: Fraction(factor) for unit, factor in LENGTH.items()}
+    assert metres["yd"] == 3 * metres["ft"] == 36 * metres["in"] == Fraction("0.9144")
+    assert metres["km"] == 1000 * metres["m"] == 10**4 * metres["dm"] == 10**5 * metres["cm"]
+    assert metres["m"] == 1000 * metres["mm"] == 10**6 * metres["um"]
+
+
+def test_bodies_and_shapes_have_names() -> None:
+    for name, value in BODIES.items():
+        assert Scene.read({"m1": 1, "m2": 1, "g": name}).g == Fraction(value)
+    assert Scene.read({"m1": 1, "m2": 1, "inertia": "disk"}).inertia == Fraction(1, 2)
