@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -319,38 +320,26 @@ def test_an_interrupt_ends_it_with_130(
     assert capsys.readouterr() == ("", "")
 
 
-def test_an_interrupt_by_signal(tmp_path: Path) -> None:
-    """Ctrl-C while it waits for its reader: 130, and no word."""
-    fifo = tmp_path / "pipe"
-    try:
-        os.mkfifo(fifo)
-    except (AttributeError, OSError):
-        pytest.skip("needs named pipes")
-    reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)
-    code = (
-        "import sys; from atwood_cli.__main__ import main; sys.argv[0] = 'atwood';"
-        f"sys.stdout = open({str(fifo)!r}, 'w'); status = main(); sys.stdout.close(); sys.exit(status)"
-    )
-    code = f"import os, signal; os.write(2, b'');\n{code}"
-    child = subprocess.Popen(
-        [sys.executable, "-c", f"import atwood_cli.cli, atwood_cli.output\n{_SLOW}\n{code}", *PAPER],
-        stderr=subprocess.PIPE,
-    )
+SLOW = """
+import sys, time
+import atwood_cli.cli, atwood_cli.output, atwood_cli.solver
+from atwood_cli.__main__ import main
+def slow(*_):
+    print("started", file=sys.stderr, flush=True)
+    time.sleep(60)
+atwood_cli.solver.Answers = slow
+sys.exit(main())
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
+def test_an_interrupt_by_signal() -> None:
+    child = subprocess.Popen([sys.executable, "-c", SLOW, *PAPER], stderr=subprocess.PIPE)
     assert child.stderr is not None
     assert child.stderr.readline() == b"started\n"
     child.send_signal(signal.SIGINT)
     _, err = child.communicate(timeout=20)
-    os.close(reader)
     assert (child.returncode, err) == (130, b"")
-
-
-_SLOW = """
-import time, sys, atwood_cli.solver as s
-def slow(*_):
-    print("started", file=sys.stderr, flush=True)
-    time.sleep(20)
-s.Answers = slow
-"""
 
 
 def test_python_dash_m_and_the_command_are_one() -> None:
@@ -362,3 +351,20 @@ def test_python_dash_m_and_the_command_are_one() -> None:
         subprocess.run(words, capture_output=True, text=True, check=True).stdout
         == process(*PAPER, "--json").out
     )
+
+
+def test_the_yardstick_of_start_up_has_the_same_commands_and_options() -> None:
+    import typer
+
+    from atwood_cli import cli
+
+    from . import startup_baseline
+
+    def surface(app: typer.Typer) -> dict[str, set[str]]:
+        command: Any = typer.main.get_command(app)
+        return {
+            name: {flag for option in sub.params for flag in option.opts}
+            for name, sub in command.commands.items()
+        }
+
+    assert surface(cli.app) == surface(startup_baseline.app)

@@ -1,0 +1,73 @@
+"""What README and examples show is run, and must come out as shown."""
+
+import doctest
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from .running import process
+
+TOP = Path(__file__).parent.parent
+README = (TOP / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"```console\n(.*?)```", README, re.DOTALL)
+EXAMPLES = sorted((TOP / "examples").glob("*.sh"))
+
+
+def transcript(block: str) -> str:
+    """The block as running its commands gives it, stderr where a terminal would show it."""
+    shown = []
+    for command in re.findall(r"^\$ (.*)", block, re.MULTILINE):
+        ran = process(shell=f"{{ {command}\n}} 2>&1")
+        shown.append(f"$ {command}\n{ran.out}")
+    return "".join(shown)
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: block.splitlines()[0])
+def test_the_readme_shows_what_happens(block: str) -> None:
+    assert transcript(block) == block
+
+
+def test_the_readmes_python_runs() -> None:
+    python = "\n".join(re.findall(r"```python\n(.*?)```", README, re.DOTALL))
+    examples = doctest.DocTestParser().get_doctest(python, {}, "README.md", "README.md", 0)
+    assert len(examples.examples) >= 4
+    report: list[str] = []
+    result = doctest.DocTestRunner().run(examples, out=report.append)
+    assert result.failed == 0, "".join(report)
+
+
+def test_both_setup_commands_are_there() -> None:
+    commands = re.findall(r"```sh\n(.*)\n```", README)
+    assert [command.split()[-1] for command in commands] == ["0.3", "pytest"]
+    assert all(command.startswith("python3 -m venv .venv && .venv/bin/pip install") for command in commands)
+
+
+@pytest.mark.parametrize("script", EXAMPLES, ids=lambda script: script.name)
+def test_examples_print_what_is_kept_beside_them(script: Path) -> None:
+    # The scripts call `atwood` and `python3`; both are this interpreter here.
+    ran = process(shell=f'python3() {{ "$PYTHON" "$@"; }}; . "{script}"')
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out == script.with_suffix(".txt").read_text(encoding="utf-8")
+
+
+def test_the_picture_shows_todays_table() -> None:
+    fresh = subprocess.run(
+        [sys.executable, "-c", "from examples.picture import picture; print(picture())"],
+        capture_output=True,
+        cwd=TOP,
+        check=True,
+        env={"PYTHONIOENCODING": "utf-8", "PATH": ""},
+    ).stdout.decode()
+
+    def words(svg: str) -> list[str]:
+        return re.findall(r"<text[^>]*>([^<]*)</text>", svg)
+
+    assert words(fresh) == words((TOP / "examples" / "solve.svg").read_text(encoding="utf-8"))
+
+
+def test_every_example_is_tested() -> None:
+    assert [script.name for script in EXAMPLES] == ["ci-smoke.sh", "paper.sh", "scripts.sh"]
+    assert all(script.with_suffix(".txt").exists() for script in EXAMPLES)
