@@ -16,15 +16,15 @@ against ln(T_h/T_l), is decided the same way: once the enclosure of the differen
 
 Few things are not plain arithmetic. `sqrt` is correctly rounded by `decimal`; one step outwards on
 each side encloses it. π and ln 10 are Machin-like sums in integers with 2^-w as unit: each term is
-cut off by less than one unit, there are fewer than w terms, the coefficients add up to at most 100,
-and 8 + 2 log2(w) further bits absorb it, so the constant is right to one unit.
+cut off by less than two units, there are fewer than w terms, the coefficients add up to at most 100,
+and 40 further bits absorb that up to w = 2^32, so what is cut to w bits is right to two units.
 
 `expm1` works on integers too, unit 2^-w. The argument less n ln 10 is in [0, 2.4), off by at most
-n + 2 units. It is divided by 2^s, summed as e^r - 1 = r + r²/2 + ..., and doubled s times by
+2n + 2 units. It is divided by 2^s, summed as e^r - 1 = r + r²/2 + ..., and doubled s times by
 e^{2r} - 1 = u (2 + u). A term inherits at most its predecessor's error and is cut off by less than
 one unit twice, so t terms are off by at most 3t units; a doubling multiplies the error by 2 (1 + u)
 and adds at most one unit. The product of those factors is 2^s e^{2.4} < 12 · 2^s. So the sum is off
-by fewer than 12 · 2^s (3t + s + n + 4) units, less than 2^(s + 8) (w + n), as t and s are below w.
+by fewer than 12 · 2^s (3t + s + 2n + 4) units, less than 2^(s + 8) (w + n), as t and s are below w.
 That is what is added and taken off. Cosine and sine, of an argument within ±π/4 after n quarter
 turns, have no doublings: 4 (w + n) units cover them. `log1p` needs no series: for a guess y0,
 ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
@@ -58,7 +58,7 @@ Rounding = Callable[[Fraction | Decimal], T]
 LARGEST_EXPONENT = 10**8
 # Far more than any valid input was found to need (about 6000): a bug must not become a hang.
 LARGEST_PRECISION = 50_000
-ZERO, ONE = Decimal(0), Decimal(1)
+ZERO, ONE, TWO = Decimal(0), Decimal(1), Decimal(2)
 LOG10_E = Decimal("0.434294481903")  # rounded down, so that what remains is not negative
 
 
@@ -67,7 +67,11 @@ class Irrational(ArithmeticError):
 
 
 class Unsettled(ArithmeticError):
-    """The enclosure is too wide to go on: compute with more digits."""
+    """The enclosure is too wide to go on: compute with more digits, ``digits`` if that is known."""
+
+    def __init__(self, digits: int = 0) -> None:
+        super().__init__(digits)
+        self.digits = digits
 
 
 class Arithmetic(Protocol[N]):
@@ -81,6 +85,7 @@ class Arithmetic(Protocol[N]):
     def log1p(self, x: N) -> N: ...
     def sqrt(self, x: N) -> N: ...
     def cos_sin(self, x: N) -> tuple[N, N]: ...
+    def root(self, f: Callable[[N], N], end: N) -> N: ...
 
 
 class Rationals:
@@ -102,6 +107,9 @@ class Rationals:
     log1p = sqrt = expm1
 
     def cos_sin(self, x: Fraction) -> tuple[Fraction, Fraction]:
+        raise Irrational
+
+    def root(self, f: Callable[[Fraction], Fraction], end: Fraction) -> Fraction:
         raise Irrational
 
 
@@ -154,6 +162,9 @@ class Enclosure:
         lo = at.down.divide(self.lo, other.hi if self.lo >= 0 else other.lo)
         return Enclosure(at, lo, at.up.divide(self.hi, other.lo if self.hi >= 0 else other.hi))
 
+    def __rtruediv__(self, other: int) -> "Enclosure":
+        return self._lift(other) / self
+
 
 class Enclosures:
     """Enclosures of about ``digits`` significant digits."""
@@ -174,6 +185,10 @@ class Enclosures:
         lo, hi = Decimal(value - error), Decimal(value + error)
         return Enclosure(self, self.down.divide(lo, unit), self.up.divide(hi, unit))
 
+    def _from_zero(self, x: Enclosure) -> Enclosure:
+        """What is left of the enclosure of a value known not to be negative."""
+        return x if x.lo >= 0 else Enclosure(self, ZERO, x.hi)
+
     def _width(self, x: Enclosure) -> Enclosure:
         """0 <= anything in x less its lower end."""
         return Enclosure(self, ZERO, self.up.subtract(x.hi, x.lo))
@@ -181,11 +196,11 @@ class Enclosures:
     @cached_property
     def pi(self) -> Enclosure:
         bits = _bits(self.digits)
-        return self._fixed(_pi(bits), 1, bits)
+        return self._fixed(_pi(bits), 2, bits)
 
     def sqrt(self, x: Enclosure) -> Enclosure:
         """Square root of x >= 0."""
-        lo = max(x.lo, ZERO)
+        lo = self._from_zero(x).lo
         return Enclosure(
             self,
             self.down.next_minus(self.down.sqrt(lo)) if lo else ZERO,
@@ -194,6 +209,7 @@ class Enclosures:
 
     def cos_sin(self, x: Enclosure) -> tuple[Enclosure, Enclosure]:
         """Cosine and sine of x >= 0."""
+        x = self._from_zero(x)
         n, d = x.lo.as_integer_ratio()
         bits = _bits(self.digits)
         w = bits + 2 * bits.bit_length() + (n // d).bit_length() + 8
@@ -205,8 +221,45 @@ class Enclosures:
         error = 4 * (w + turns)
         return self._fixed(c, error, w) + slack - slack, self._fixed(s, error, w) + slack - slack
 
+    def root(self, f: Callable[[Enclosure], Enclosure], end: Enclosure) -> Enclosure:
+        """The root of f between 0 and ``end``, where f grows from negative to positive.
+
+        Regula falsi (Illinois) finds it; that f has opposite signs at the ends of what is returned
+        is checked, so the search itself need not be trusted.
+        """
+
+        def at(x: Decimal) -> Enclosure:
+            return f(Enclosure(self, x, x))
+
+        # A root at 10^-n of the scale of f's terms is lost without 2n digits more.
+        wanted = self.digits + 2 * max(0, -end.lo.adjusted())
+        a, b = ZERO, end.lo
+        f_a, f_b = at(a).hi, at(b).lo
+        if not f_a < 0 < f_b:
+            raise Unsettled(wanted)
+        near, side = _context(self.digits, ROUND_HALF_EVEN), 0
+        for _ in range(4 * self.digits):
+            c = near.divide(
+                near.subtract(near.multiply(a, f_b), near.multiply(b, f_a)), near.subtract(f_b, f_a)
+            )
+            f_c = at(c)
+            if f_c.lo > 0:
+                b, f_b, f_a, side = c, f_c.lo, near.divide(f_a, TWO) if side > 0 else f_a, 1
+            elif f_c.hi < 0:
+                a, f_a, f_b, side = c, f_c.hi, near.divide(f_b, TWO) if side < 0 else f_b, -1
+            else:
+                break
+        error = near.scaleb(b, 4 - self.digits)
+        while error < b:
+            lo, hi = self.down.subtract(c, error), self.up.add(c, error)
+            if lo > 0 and at(lo).hi < 0 < at(hi).lo:
+                return Enclosure(self, lo, hi)
+            error = near.scaleb(error, self.digits // 8)
+        raise Unsettled(wanted)
+
     def expm1(self, x: Enclosure) -> Enclosure:
         """e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
+        x = self._from_zero(x)
         at_lo, width = self._expm1(x.lo), self._width(x)
         if width.hi > 1:
             return Enclosure(self, at_lo.lo, self._expm1(x.hi).hi)
@@ -221,7 +274,6 @@ class Enclosures:
         bits = _bits(self.digits + max(0, -x.adjusted()))
         halvings = isqrt(bits)
         w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
-        w += -w % 128  # so that ln 10 is often there already
         n, d = x.as_integer_ratio()
         u = _expm1_series((n << w) // d - tens * _ln10(w), halvings, w)
         small = self._fixed(u, (w + tens) << (halvings + 8), w)
@@ -233,6 +285,7 @@ class Enclosures:
 
     def log1p(self, x: Enclosure) -> Enclosure:
         """ln(1 + x) for x >= 0."""
+        x = self._from_zero(x)
         at_lo = self._log1p(x.lo)
         return Enclosure(self, at_lo.lo, (at_lo + self._width(x)).hi)
 
@@ -252,7 +305,7 @@ class Enclosures:
             return enclosures(self.digits // 2 + 2)._log1p(y).lo
         at = self.down
         if y.adjusted() < -9:
-            return at.multiply(y, at.subtract(ONE, at.divide(y, Decimal(2))))
+            return at.multiply(y, at.subtract(ONE, at.divide(y, TWO)))
         return _context(self.digits // 2 + 12, ROUND_HALF_EVEN).ln(at.add(ONE, y))
 
 
@@ -298,21 +351,29 @@ def _inverse(q: int, sign: int, w: int) -> int:
     return total
 
 
-@lru_cache(maxsize=64)
+GUARD = 40
+# Constants are kept in steps of this many bits, so that nearby precisions share them.
+STEP = 1024
+
+
 def _pi(bits: int) -> int:
     """π in units of 2^-bits (J. Machin, 1706)."""
-    guard = 2 * bits.bit_length() + 8
-    w = bits + guard
-    return (16 * _inverse(5, -1, w) - 4 * _inverse(239, -1, w)) >> guard
+    return _constant((16, 5, -1), (-4, 239, -1), bits=bits)
+
+
+def _ln10(bits: int) -> int:
+    """ln 10 in units of 2^-bits: 10 = (32/30)^23 (50/48)^17 (162/160)^10."""
+    return _constant((46, 31, 1), (34, 49, 1), (20, 161, 1), bits=bits)
+
+
+def _constant(*terms: tuple[int, int, int], bits: int) -> int:
+    return _wide_constant(terms, bits // STEP) >> (STEP - bits % STEP + GUARD)
 
 
 @lru_cache(maxsize=64)
-def _ln10(bits: int) -> int:
-    """ln 10 in units of 2^-bits: 10 = (32/30)^23 (50/48)^17 (162/160)^10."""
-    guard = 2 * bits.bit_length() + 8
-    w = bits + guard
-    terms = 46 * _inverse(31, 1, w) + 34 * _inverse(49, 1, w) + 20 * _inverse(161, 1, w)
-    return terms >> guard
+def _wide_constant(terms: tuple[tuple[int, int, int], ...], steps: int) -> int:
+    w = (steps + 1) * STEP + GUARD
+    return sum(factor * _inverse(q, sign, w) for factor, q, sign in terms)
 
 
 def to_double(x: Fraction | Decimal) -> float:
@@ -363,6 +424,16 @@ def settle(quantity: Quantity, round_: Rounding[T], digits: int) -> T:
         return _refine(quantity, rounded, digits + 8)
 
 
+def middle(quantity: Quantity, digits: int) -> Fraction:
+    """About the value of a quantity, right to about so many digits."""
+
+    def tight(value: Enclosure) -> Fraction | None:
+        lo, hi = Fraction(value.lo), Fraction(value.hi)
+        return (lo + hi) / 2 if (hi - lo) * 10**digits <= abs(lo) else None
+
+    return _refine(quantity, tight, digits + 8)
+
+
 def is_positive(quantity: Quantity) -> bool:
     """The sign of a quantity that is known to be irrational, so not zero."""
 
@@ -375,12 +446,13 @@ def is_positive(quantity: Quantity) -> bool:
 def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits: int) -> A:
     """What ``answer`` says of the first enclosure of the quantity that is tight enough for it."""
     while digits < LARGEST_PRECISION:
+        needed = 0
         try:
             if (found := answer(quantity(enclosures(digits)))) is not None:
                 return found
-        except Unsettled:
-            pass
-        digits *= 2
+        except Unsettled as unsettled:
+            needed = unsettled.digits
+        digits = max(2 * digits, needed)
     raise ArithmeticError(f"not settled within {LARGEST_PRECISION} digits")
 
 

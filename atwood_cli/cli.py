@@ -55,8 +55,11 @@ REMARKS = {
     "m1": ', as 1.5, 250g or "2 lb"',
     "M": "; inf locks it",
     "mu_k": "; mu if not given",
+    "g": "; 9.80665 if not given",
+    "inertia": "; 0.5 if not given",
     "I": ", in place of inertia; needs R",
     "R": ", as 0.1 or 5cm",
+    "wrap": ", as 180, 1.5turn or 3rad; 180 if not given",
 }
 
 

@@ -6,11 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from itertools import chain
+from math import inf
 from typing import TYPE_CHECKING, TextIO
 
 from .arithmetic import as_typed, is_infinite, text
 from .quantities import NAMES, QUANTITIES
-from .scene import PARAMETERS, Scene
+from .scene import PARAMETERS, Radians, Scene
 from .solver import Answers
 from .words import notes
 
@@ -34,11 +35,18 @@ def print_json(answers: Answers, only: Sequence[str]) -> None:
     """All quantities with scene and notes, or only those named."""
     results: dict[str, object] = {name: answers[name] for name in only or NAMES}
     if not only:
-        scene = answers.case.scene._asdict()
-        if answers.case.locked:
-            scene["M"] = "inf"
-        results = {"scene": scene, **results, "notes": notes(answers)}
+        results = {"scene": _scene(answers.case.scene), **results, "notes": notes(answers)}
     print(_json(results))
+
+
+def _scene(scene: Scene) -> dict[str, object]:
+    """The inputs as JSON has them: numbers in SI units and degrees, or text where JSON has no number."""
+    given: dict[str, object] = scene._asdict()
+    if scene.M == inf:
+        given["M"] = "inf"
+    if isinstance(scene.wrap, Radians):
+        given["wrap"] = f"{as_typed(scene.wrap)}rad"
+    return given
 
 
 def _json(value: object, indent: str = "\n") -> str:
@@ -75,11 +83,11 @@ def cell(value: str | float | Decimal | None) -> str:
 def describe(scene: Scene) -> str:
     """The scene in one line, as understood."""
     parts = []
-    for name, value in scene._asdict().items():
+    for name, value in _scene(scene).items():
         if value is not None:
-            shown = as_typed(value) if isinstance(value, Fraction) else "inf"
-            unit = PARAMETERS[name].unit
-            parts.append(f"{name} = {shown}{' ' * (unit != '°' and bool(unit))}{unit}")
+            unit = PARAMETERS[name].unit if isinstance(value, Fraction) else ""
+            shown = as_typed(value) if isinstance(value, Fraction) else value
+            parts.append(f"{name} = {shown}{' ' * (unit not in ('', '°'))}{unit}")
     return ", ".join(parts)
 
 

@@ -31,6 +31,7 @@ class Number(Protocol):
     def __mul__(self, other: Any, /) -> Self: ...
     def __rmul__(self, other: Any, /) -> Self: ...
     def __truediv__(self, other: Any, /) -> Self: ...
+    def __rtruediv__(self, other: Any, /) -> Self: ...
 
 
 N = TypeVar("N", bound=Number)
@@ -105,15 +106,47 @@ def friction_magnitude(mu: N, resultant: N, sqrt: Callable[[N], N]) -> N:
     return mu * resultant / sqrt(mu * mu + 1)
 
 
-def friction_vector(mu: N, t1: N, t2: N, cos_phi: N, sin_phi: N) -> tuple[N, N]:
-    """Net friction force on the pulley (N), (x, y), where T = T1 e^{μθ}; (31) over half a turn.
+def friction_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
+    """Friction force on the pulley (N), (x, y), of an arc where T grows as e^{μθ}; (31).
 
-    ``mu`` carries a sign: positive if the tension grows towards m2 (m2 heavier), else negative.
-    It is μ(1 + iμ)/(1 + μ²) (T2 e^{iφ} - T1) in the complex plane, from the integrals (28)-(29).
+    ``dx + i dy`` is T e^{iθ} at the arc's end less that at its start; θ grows with the tension, and μ
+    is 0 where the string is stuck without friction. The integrals (28)-(29) give
+    μ (1 + iμ)/(1 + μ²) times that difference.
     """
-    along, across = t2 * cos_phi - t1, t2 * sin_phi
     factor = mu / (mu * mu + 1)
-    return factor * (along - mu * across), factor * (across + mu * along)
+    return factor * (dx - mu * dy), factor * (dy + mu * dx)
+
+
+def normal_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
+    """Normal force on the pulley (N), (x, y), of the same arc: -∫ T e^{iθ} dθ, from (18)."""
+    factor = 1 / (mu * mu + 1)
+    return factor * (-1 * mu * dx - dy), factor * (dx - mu * dy)
+
+
+def resultant_vector(dx: N, dy: N) -> tuple[N, N]:
+    """The force on the pulley (N), (x, y), that friction and normal force add up to; (19)-(20)."""
+    return -1 * dy, dx
+
+
+def mirrored(x: N, y: N, cos_phi: N, sin_phi: N) -> tuple[N, N]:
+    """A vector of the machine seen from behind: θ there is φ - θ here."""
+    return x * cos_phi + y * sin_phi, x * sin_phi - y * cos_phi
+
+
+def limiting_arc(log_ratio: N, mu: N) -> N:
+    """Arc (rad) over which friction at its limit makes up ln(T_h/T_l), from (26)."""
+    return log_ratio / mu
+
+
+def least_friction_slope(mu: N, chord: N, growth: N, cos: N, sin: N, dx: N, dy: N) -> N:
+    """What vanishes where moving friction from one end of the arc to the other no longer pays.
+
+    A string that grips with friction at its limit on arcs s and α - s at the ends, and stuck over
+    δ = φ - α between, has the net friction μ/√(1 + μ²) |T_l e^{(μ+i)s} (1 - e^{iδ}) + dx + i dy|.
+    This is the derivative of its square with respect to s, up to a positive factor: ``chord`` =
+    2 T_l sin(δ/2), ``growth`` = e^{μs}, ``cos`` and ``sin`` of s + δ/2, dx + i dy = T_h e^{iφ} - T_l.
+    """
+    return mu * chord * growth + (mu * dx + dy) * sin + (dx - mu * dy) * cos
 
 
 def axle_force(t1: N, t2: N, pulley_mass: N, g: N) -> N:

@@ -35,7 +35,8 @@ LENGTH = {
     "ft": "0.3048",
     "yd": "0.9144",
 }
-DIMENSIONS = {"mass": MASS, "length": LENGTH}
+ANGLE = {"deg": "1", "turn": "360", "rad": "1"}
+DIMENSIONS = {"mass": MASS, "length": LENGTH, "angle": ANGLE}
 
 INERTIA_FACTORS = {"disk": "0.5", "hoop": "1"}
 
@@ -110,14 +111,18 @@ PARAMETERS = {
     "inertia": Parameter("inertia factor β = I/(M R²)", names=INERTIA_FACTORS),
     "I": Parameter("moment of inertia of the pulley", "kg m²"),
     "R": Parameter("radius of the pulley", "m", dimension="length"),
-    "wrap": Parameter("angle over which the string touches the pulley", "°"),
+    "wrap": Parameter("angle over which the string touches the pulley", "°", dimension="angle"),
 }
 
 
-class Scene(NamedTuple):
-    """A valid scene in SI units (``wrap`` in degrees), exact; None where not given.
+class Radians(Fraction):
+    """An angle in radians; a plain Fraction is one in degrees, and no rational is both."""
 
-    ``M`` is a float only where it is infinite: a locked pulley.
+
+class Scene(NamedTuple):
+    """A valid scene in SI units, exact; None where not given.
+
+    ``M`` is a float only where it is infinite: a locked pulley. ``wrap`` is in degrees or `Radians`.
     """
 
     m1: Fraction
@@ -205,7 +210,9 @@ def _read_text(name: str, given: str) -> Fraction | float:
     if len(power) > 3 or int(power) > MAX_EXPONENT:
         raise SceneError(name, given, f"has an exponent beyond {MAX_EXPONENT} in magnitude")
     value = Fraction(f"{sign}{mantissa}e{'-' * exponent.startswith('-')}{power}")
-    return value * _factor(name, given, unit) if unit else value
+    if unit:
+        value *= _factor(name, given, unit)
+    return Radians(value) if unit == "rad" else value
 
 
 def _not_a_number(parameter: Parameter, word: str) -> str:
@@ -236,7 +243,8 @@ def _factor(name: str, given: str, unit: str) -> Fraction:
         return Fraction(factors[unit])
     for dimension, others in DIMENSIONS.items():
         if unit in others:
-            raise SceneError(name, given, f"is a {dimension}; a {wanted} is needed ({', '.join(factors)})")
+            units = f"{wanted} ({', '.join(factors)})"
+            raise SceneError(name, given, f"has a unit of {dimension}; it takes one of {units}")
     raise SceneError(
         name,
         given,

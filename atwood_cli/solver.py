@@ -5,26 +5,30 @@ is the model, written once for every number type; it computes nothing that is no
 quantity that the scene does not determine raises `Undetermined` with the reason. `Answers` rounds.
 """
 
+from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 from math import inf
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, Generic, Literal, overload
 
-from . import physics, words
+from . import physics, profile, words
 from .arithmetic import (
     LARGEST_EXPONENT,
     Arithmetic,
+    Quantity,
     Rounding,
     is_infinite,
     is_positive,
+    middle,
     settle,
     to_digits,
     to_double,
 )
 from .physics import N
 from .quantities import NAMES, Solution
-from .scene import Given, Scene, read_digits
+from .scene import Given, Radians, Scene, read_digits
 
 if TYPE_CHECKING:
     from typing import TypedDict, Unpack
@@ -51,11 +55,16 @@ UNKNOWN_SHAPE = "give M, the pulley's mass, beside I"
 FREE_END = "not defined for a free end: the string is fixed to the pulley and no friction holds it"
 NO_CRITICAL_MASS = "does not exist, as the string holds on any pulley, however heavy"
 NO_CRITICAL_HEAVIER_MASS = "does not exist, as the string holds under any heavier mass"
-NOT_DEFINITE = "not one number while the string grips with friction to spare; see its bounds"
+NOT_DEFINITE = (
+    "not one number while the string grips with friction to spare: between friction_force_min and"
+    " friction_force_max if friction nowhere opposes the rest; tension locked in on laying the string"
+    " widens that range"
+)
 DEFINITE = "bounds are for a string that grips with friction to spare; here friction_force is definite"
 NOT_APPLICABLE = "conditions (36) do not apply without friction"
 LOCKED_AXLE = "not defined for a locked pulley: M = inf is not its weight"
 ONE_SIDED = "defined for half a turn of wrap (and whole turns more), where both ends pull downwards"
+LONG_WRAP = "bounds are known for up to half a turn of wrap (180 degrees)"
 TOO_LARGE = f"beyond 10^{LARGEST_EXPONENT}, the largest number written out"
 ABOVE_DOUBLES = "beyond the range of doubles; ask for digits (--digits 17) to see it"
 BELOW_DOUBLES = "not 0 but below the range of doubles; ask for digits (--digits 17) to see it"
@@ -131,7 +140,20 @@ class Case:
 
 def wrap_angle(ar: Arithmetic[N], scene: Scene) -> N:
     """The angle of wrap φ in radians."""
+    if isinstance(scene.wrap, Radians):
+        return ar.number(scene.wrap)
     return ar.pi * ar.number(scene.wrap / 180)
+
+
+def exceeds_half_a_turn(scene: Scene) -> bool:
+    """Whether the wrap is beyond 180°."""
+    if not isinstance(scene.wrap, Radians):
+        return scene.wrap > 180
+
+    def excess(ar: Arithmetic[N]) -> N:
+        return wrap_angle(ar, scene) - ar.pi
+
+    return is_positive(excess)
 
 
 class Machine(Generic[N]):
@@ -139,6 +161,7 @@ class Machine(Generic[N]):
 
     def __init__(self, case: Case, ar: Arithmetic[N]) -> None:
         self.case, self.scene, self.ar = case, case.scene, ar
+        self._arcs: dict[profile.Kind, list[profile.Arc[N]]] = {}
         self.l, self.h, self.g = map(ar.number, (case.light, case.heavy, case.scene.g))
 
     # What the quantities are made of
@@ -194,32 +217,82 @@ class Machine(Generic[N]):
         return mu
 
     @cached_property
-    def _friction_vector(self) -> tuple[N, N]:
-        mu = self._friction_mu * self.case.sign
+    def friction_vector(self) -> tuple[N, N]:
+        return self.seen_from_m1(profile.friction(self.arcs("exponential")))
+
+    def seen_from_m1(self, vector: tuple[N, N]) -> tuple[N, N]:
+        """A vector as it is where m1, not the lighter mass, is at the start of the arc."""
+        return vector if self.case.sign >= 0 else physics.mirrored(*vector, *self._direction)
+
+    @cached_property
+    def alpha(self) -> N:
+        """The arc (rad) that friction at its limit needs, where the string grips with some to spare."""
+        if self.scene.mu is None:
+            raise Undetermined(NEEDS_MU)
+        log_ratio = self.mu_verge * wrap_angle(self.ar, self.scene)
+        return physics.limiting_arc(log_ratio, self.ar.number(self.scene.mu))
+
+    def arcs(self, kind: profile.Kind) -> list[profile.Arc[N]]:
+        """The arc of contact from the light end, in pieces: limiting, stuck or both (see `profile`)."""
+        if kind not in self._arcs:
+            self._arcs[kind] = self._arrange(kind)
+        return self._arcs[kind]
+
+    def _arrange(self, kind: profile.Kind) -> list[profile.Arc[N]]:
+        ar, mu, light = self.ar, self.arc_mu(kind), self.light_tension
+        if ar.is_zero(mu):  # the tension is the same everywhere: no angle is needed, so no π either
+            nowhere = ar.number(0)
+            return profile.arcs(ar, kind, mu, [nowhere], light, self._end(nowhere))
+        phi = wrap_angle(ar, self.scene)
+        end = self._end(phi)
+        if kind == "exponential":
+            return profile.arcs(ar, kind, mu, [phi], light, end)
+        stuck = phi - self.alpha
+        if kind == "creep":
+            return profile.arcs(ar, kind, mu, [stuck, self.alpha], light, end)
+        lead = profile.least_lead(ar, mu, self.alpha, stuck, light, end)
+        return profile.arcs(ar, kind, mu, [lead, stuck, self.alpha - lead], light, end)
+
+    def arc_mu(self, kind: profile.Kind) -> N:
+        """The coefficient that the friction of a profile is at, where it is at its limit."""
+        return self._friction_mu if kind == "exponential" else self._given(self.scene.mu, NEEDS_MU)
+
+    def _end(self, angle: N) -> profile.Knot[N]:
+        return profile.Knot(angle, *self._direction, self.heavy_tension)
+
+    @cached_property
+    def resultant_vector(self) -> tuple[N, N]:
+        """The force (N) that T1 and T2 would exert on the pulley, x and y."""
         cos, sin = self._direction
-        return physics.friction_vector(mu, self.tension_1, self.tension_2, cos, sin)
+        dx, dy = self.heavy_tension * cos - self.light_tension, self.heavy_tension * sin
+        return self.seen_from_m1(physics.resultant_vector(dx, dy))
 
     @cached_property
     def _direction(self) -> tuple[N, N]:
         """Cosine and sine of the angle of wrap; exact at multiples of 90°."""
         quarters = self.scene.wrap / 90
-        if quarters.denominator > 1:
+        if isinstance(self.scene.wrap, Radians) or quarters.denominator > 1:
             return self.ar.cos_sin(wrap_angle(self.ar, self.scene))
         cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters.numerator % 4]
         return self.ar.number(cos), self.ar.number(sin)
 
     @cached_property
-    def _tension_difference(self) -> N:
+    def tension_difference(self) -> N:
         z, _, x = self._state
         return physics.tension_difference(self.h, x, z, self.g) * self.case.sign
 
-    def _friction_bound(self) -> N:
+    def _bounded(self) -> bool:
+        """Whether the friction force is bounded by more than 0; raises where it has no bounds."""
         if self.case.regime != "no-slip":
             raise Undetermined(DEFINITE)
-        verge = self.mu_verge
+        _ = self.mu_verge
         if self.case.tensions_equal:
-            return verge
-        raise Undetermined(NEEDS_MU)
+            return False
+        if self.scene.mu is None:
+            raise Undetermined(NEEDS_MU)
+        if exceeds_half_a_turn(self.scene):
+            raise Undetermined(LONG_WRAP)
+        return True
 
     # The quantities
 
@@ -229,19 +302,22 @@ class Machine(Generic[N]):
         return physics.acceleration(self.h, x, d, self.g) * self.case.sign
 
     @cached_property
-    def tension_1(self) -> N:
-        return self._tensions[0]
-
-    @cached_property
-    def tension_2(self) -> N:
-        return self._tensions[1]
-
-    @cached_property
-    def _tensions(self) -> tuple[N, N]:
+    def light_tension(self) -> N:
         _, _, x = self._state
-        light = physics.light_tension(self.l, self.h, x, self.g)
-        heavy = physics.heavy_tension(self.h, x, self.g)
-        return (light, heavy) if self.case.sign >= 0 else (heavy, light)
+        return physics.light_tension(self.l, self.h, x, self.g)
+
+    @cached_property
+    def heavy_tension(self) -> N:
+        _, _, x = self._state
+        return physics.heavy_tension(self.h, x, self.g)
+
+    @property
+    def tension_1(self) -> N:
+        return self.light_tension if self.case.sign >= 0 else self.heavy_tension
+
+    @property
+    def tension_2(self) -> N:
+        return self.heavy_tension if self.case.sign >= 0 else self.light_tension
 
     @cached_property
     def mu_verge(self) -> N:
@@ -268,15 +344,15 @@ class Machine(Generic[N]):
 
     @cached_property
     def friction_force_x(self) -> N:
-        return self._friction_vector[0]
+        return self.friction_vector[0]
 
     @cached_property
     def friction_force_y(self) -> N:
-        return self._friction_vector[1]
+        return self.friction_vector[1]
 
     @cached_property
     def axle_force(self) -> N:
-        if (self.scene.wrap - 180) % 360:
+        if isinstance(self.scene.wrap, Radians) or (self.scene.wrap - 180) % 360:
             raise Undetermined(ONE_SIDED)
         if self.case.locked:
             raise Undetermined(LOCKED_AXLE)
@@ -288,7 +364,7 @@ class Machine(Generic[N]):
 
     @cached_property
     def torque(self) -> N:
-        return self._tension_difference * self._given(self.scene.R, NEEDS_R)
+        return self.tension_difference * self._given(self.scene.R, NEEDS_R)
 
     @cached_property
     def rim_acceleration(self) -> N:
@@ -296,7 +372,7 @@ class Machine(Generic[N]):
             return self.acceleration
         if self.case.rim_mass is None:
             return self.ar.number(0)
-        return self._tension_difference / self.ar.number(self.case.rim_mass)
+        return self.tension_difference / self.ar.number(self.case.rim_mass)
 
     @cached_property
     def angular_acceleration(self) -> N:
@@ -337,11 +413,21 @@ class Machine(Generic[N]):
 
     @cached_property
     def friction_force_min(self) -> N:
-        return self._friction_bound()
+        if not self._bounded():
+            return self.ar.number(0)
+        x, y = profile.friction(self.arcs("least"))
+        return self.ar.sqrt(x * x + y * y)
 
     @cached_property
     def friction_force_max(self) -> N:
-        return self._friction_bound()
+        if not self._bounded():
+            return self.ar.number(0)
+        cos, _ = self.ar.cos_sin(self.alpha)
+        force = physics.resultant(self.light_tension, self.heavy_tension, cos, self.ar.sqrt)
+        return physics.friction_magnitude(self.ar.number(self.scene.mu or 0), force, self.ar.sqrt)
+
+
+OnMachine = Callable[[Machine[Any]], Any]
 
 
 class Answers:
@@ -350,7 +436,7 @@ class Answers:
     def __init__(self, scene: Scene, digits: int | None = None) -> None:
         self.case = Case(scene)
         self.digits = digits
-        self._round: Rounding[Any] = to_double if digits is None else to_digits(digits)
+        self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._values: dict[str, Any] = {"regime": self.case.regime}
         self.reasons: dict[str, str] = {}
@@ -359,25 +445,46 @@ class Answers:
         """The value of a quantity by its name, None where ``reasons`` says why there is none."""
         if name not in self._values:
             try:
-                self._values[name] = self._settle(name)
+                value = self._values[name] = self.settle(attrgetter(name))
+                if is_infinite(value):
+                    self.reasons[name] = ABOVE_DOUBLES if self.digits is None else TOO_LARGE
+                elif value == 0 and self.digits is None and self._settle(attrgetter(name), to_digits(1)):
+                    self.reasons[name] = BELOW_DOUBLES
             except Undetermined as reason:
                 self._values[name] = None
                 self.reasons[name] = str(reason)
         return self._values[name]
 
-    def _settle(self, name: str) -> float | Decimal:
-        def quantity(ar: Arithmetic[N]) -> N:
+    def settle(self, quantity: OnMachine) -> float | Decimal:
+        """Anything that a machine has, correctly rounded. Raises Undetermined."""
+        return self._settle(quantity, self.round)
+
+    def _settle(self, quantity: OnMachine, round_: Rounding[Any]) -> float | Decimal:
+        digits = self.digits or DOUBLE_DIGITS
+        value: float | Decimal = settle(self._on_machines(quantity), round_, digits)
+        return value
+
+    def nearly(self, quantity: OnMachine) -> float | Decimal:
+        """The same for what is rational though its formula is not, so that a tie would never settle.
+
+        The middle of an enclosure with digits to spare is rounded instead.
+        """
+        digits = 2 * (self.digits or DOUBLE_DIGITS)
+        value: float | Decimal = self.round(middle(self._on_machines(quantity), digits))
+        return value
+
+    def is_positive(self, quantity: OnMachine) -> bool:
+        """The sign of anything that a machine has and that is known to be irrational."""
+        return is_positive(self._on_machines(quantity))
+
+    def _on_machines(self, quantity: OnMachine) -> Quantity:
+        def of(ar: Arithmetic[N]) -> N:
             if ar not in self._machines:
                 self._machines[ar] = Machine(self.case, ar)
-            value: N = getattr(self._machines[ar], name)
+            value: N = quantity(self._machines[ar])
             return value
 
-        value: float | Decimal = settle(quantity, self._round, self.digits or DOUBLE_DIGITS)
-        if is_infinite(value):
-            self.reasons[name] = ABOVE_DOUBLES if self.digits is None else TOO_LARGE
-        elif value == 0 and self.digits is None and settle(quantity, to_digits(1), 1):
-            self.reasons[name] = BELOW_DOUBLES
-        return value
+        return of
 
     def with_pulley(self, mass: Fraction | float) -> "Answers":
         """The same scene on a pulley of that mass (inf: locked), with a string that grips."""

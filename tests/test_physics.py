@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from fractions import Fraction
 
-import pytest
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
@@ -92,33 +91,80 @@ def test_conditions_36_are_where_34_and_35_diverge() -> None:
     assert sp.simplify((1 / physics.critical_heavier_mass(l, c, k1)).subs(c, beta * pulley)) == 0
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-def test_friction_vector_is_the_integral_28(sign: int) -> None:
-    theta = sp.Symbol("theta", positive=True)
-    nu = sign * mu
-    tension = t1 * sp.exp(nu * theta)
+theta = sp.Symbol("theta", positive=True)
+tension = t1 * sp.exp(mu * theta)
+ends = (
+    (tension * sp.cos(theta)).subs(theta, phi) - t1,
+    (tension * sp.sin(theta)).subs(theta, phi),
+)
+
+
+def test_friction_vector_is_the_integral_28() -> None:
     # Force on the pulley per radian: dT/dtheta along the unit tangent (-sin, cos), (6), (12).
-    x = sp.integrate(-nu * tension * sp.sin(theta), (theta, 0, phi))
-    y = sp.integrate(nu * tension * sp.cos(theta), (theta, 0, phi))
-    end = tension.subs(theta, phi)
-    fx, fy = physics.friction_vector(nu, t1, end, sp.cos(phi), sp.sin(phi))
+    x = sp.integrate(-mu * tension * sp.sin(theta), (theta, 0, phi))
+    y = sp.integrate(mu * tension * sp.cos(theta), (theta, 0, phi))
+    fx, fy = physics.friction_vector(mu, *ends)
     assert sp.simplify(fx - x) == 0
     assert sp.simplify(fy - y) == 0
 
 
-@pytest.mark.parametrize("sign", [1, -1])
-def test_friction_over_half_a_turn_is_31_and_32(sign: int) -> None:
-    fx, fy = physics.friction_vector(sign * mu, t1, t2, sp.Integer(-1), sp.Integer(0))
-    assert sp.simplify(fx + sign * mu / (1 + mu**2) * (t1 + t2)) == 0
+def test_normal_vector_is_the_integral_18() -> None:
+    # Force on the pulley per radian: T inwards (13), on a stuck arc too.
+    for coefficient in (mu, sp.Integer(0)):
+        there = tension.subs(mu, coefficient)
+        differences = [e.subs(mu, coefficient) for e in ends]
+        nx, ny = physics.normal_vector(coefficient, *differences)
+        assert sp.simplify(nx + sp.integrate(there * sp.cos(theta), (theta, 0, phi))) == 0
+        assert sp.simplify(ny + sp.integrate(there * sp.sin(theta), (theta, 0, phi))) == 0
+
+
+def test_friction_and_normal_force_make_the_resultant_19() -> None:
+    fx, fy = physics.friction_vector(mu, *ends)
+    nx, ny = physics.normal_vector(mu, *ends)
+    rx, ry = physics.resultant_vector(*ends)
+    assert sp.simplify(fx + nx - rx) == 0
+    assert sp.simplify(fy + ny - ry) == 0
+    over_half_a_turn = [e.subs(phi, sp.pi) for e in ends]
+    assert physics.resultant_vector(*over_half_a_turn) == (0, -t1 - t1 * sp.exp(mu * sp.pi))  # (20)
+
+
+def test_friction_over_half_a_turn_is_31_and_32() -> None:
+    fx, fy = physics.friction_vector(mu, -t2 - t1, sp.Integer(0))
+    assert sp.simplify(fx + mu / (1 + mu**2) * (t1 + t2)) == 0
     assert sp.simplify(fy + mu**2 / (1 + mu**2) * (t1 + t2)) == 0
     force = physics.friction_magnitude(mu, physics.resultant(t1, t2, sp.Integer(-1), sp.sqrt), sp.sqrt)
     assert sp.simplify(force**2 - fx**2 - fy**2) == 0
 
 
 def test_magnitude_is_that_of_the_vector_at_any_wrap() -> None:
-    fx, fy = physics.friction_vector(mu, t1, t2, sp.cos(phi), sp.sin(phi))
+    fx, fy = physics.friction_vector(mu, t2 * sp.cos(phi) - t1, t2 * sp.sin(phi))
     resultant = physics.resultant(t1, t2, sp.cos(phi), sp.sqrt)
     assert sp.simplify(physics.friction_magnitude(mu, resultant, sp.sqrt) ** 2 - fx**2 - fy**2) == 0
+
+
+def test_mirrored_vector_is_the_one_seen_from_behind() -> None:
+    x, y, angle = sp.symbols("x y theta", real=True)
+    # A point at theta goes to phi - theta, and back.
+    mx, my = physics.mirrored(sp.cos(angle), sp.sin(angle), sp.cos(phi), sp.sin(phi))
+    assert sp.simplify(mx - sp.cos(phi - angle)) == 0
+    assert sp.simplify(my - sp.sin(phi - angle)) == 0
+    twice = physics.mirrored(*physics.mirrored(x, y, sp.cos(phi), sp.sin(phi)), sp.cos(phi), sp.sin(phi))
+    assert [sp.simplify(v) for v in twice] == [x, y]
+
+
+def test_least_friction_slope_is_the_derivative_of_the_friction() -> None:
+    s, stuck = sp.symbols("s delta", positive=True)
+    dx, dy = t2 * sp.cos(phi) - t1, t2 * sp.sin(phi)
+    bridge = t1 * sp.exp((mu + sp.I) * s) * (1 - sp.exp(sp.I * stuck))
+    x, y = sp.re(sp.expand_complex(bridge)) + dx, sp.im(sp.expand_complex(bridge)) + dy
+    slope = physics.least_friction_slope(
+        mu, 2 * t1 * sp.sin(stuck / 2), sp.exp(mu * s), sp.cos(s + stuck / 2), sp.sin(s + stuck / 2), dx, dy
+    )
+    # Up to the positive factor chord e^{mu s}.
+    square = sp.diff(x**2 + y**2, s) / 2
+    values = {t1: 2, t2: 7, mu: sp.Rational(3, 10), s: sp.Rational(4, 5), stuck: sp.Rational(1, 3), phi: 3}
+    factor = 2 * t1 * sp.sin(stuck / 2) * sp.exp(mu * s)
+    assert abs(sp.N((square - slope * factor).subs(values), 60)) < 1e-50
 
 
 def test_axle_carries_tensions_and_pulley() -> None:

@@ -1,0 +1,181 @@
+"""What acts along the arc of contact, and that it adds up: the paper's sections 2 to 4 for a scene.
+
+The string acts on the pulley only along the arc: with the normal force nR = T (13) and the friction
+fR = dT/dθ (12), both per radian. Integrated, they are what T1 and T2 would be if they acted on the
+pulley themselves: a force (20) and a torque (23). Here both sides are computed, each rounded
+correctly, and the residuals are exact differences of the printed numbers.
+"""
+
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from . import profile
+from .profile import Kind
+from .scene import Radians, SceneError
+from .solver import FREE_END, NEEDS_M, Answers, Machine, exceeds_half_a_turn, wrap_angle
+
+Number = float | Decimal
+
+COLUMNS = {
+    "angle": "°",
+    "tension": "N",
+    "normal_per_radian": "N/rad",
+    "friction_per_radian": "N/rad",
+    "normal_per_metre": "N/m",
+    "friction_per_metre": "N/m",
+}
+MAX_POINTS = 100_000
+
+ABOUT_KIND = {
+    "creep": (
+        "The tension is not unique while friction is to spare. Shown is that of a slightly elastic"
+        " string: it creeps, with friction at its limit, only where it leaves the pulley."
+    ),
+    "least": (
+        "The tension is not unique while friction is to spare. Shown is that with the least net"
+        " friction: at its limit at both ends of the arc, none between."
+    ),
+    "exponential": "Friction is at its limit all along the arc.",
+}
+WITHOUT_MU = "Without mu, shown is the string on the verge, with the least mu that holds it."
+WITHOUT_FRICTION = "Both tensions are equal: there is no friction."
+
+
+class Contact(NamedTuple):
+    """The arc of contact: the profile, its points by column, and the balance."""
+
+    kind: Kind
+    points: list[dict[str, Number]]
+    balance: dict[str, dict[str, Number]]
+    notes: list[str]
+
+
+def contact(answers: Answers, points: int = 13, kind: Kind | None = None) -> Contact:
+    """The arc of contact of a scene at so many equally spaced angles.
+
+    ``kind`` is "creep" (the default) or "least" and matters only where friction is to spare.
+    Raises SceneError where the scene does not determine the arc.
+    """
+    case = answers.case
+    if not case.light:
+        raise SceneError("m1" if case.scene.m1 == 0 else "m2", 0, f"leaves no arc: {FREE_END}")
+    if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
+        raise SceneError("M", None, f"is missing: {NEEDS_M}")
+    spare = case.regime == "no-slip" and case.scene.mu is not None and not case.tensions_equal
+    if not spare:
+        kind = "exponential"
+    elif kind == "least" and exceeds_half_a_turn(case.scene):
+        raise SceneError("profile", kind, "is known for up to half a turn of wrap (180 degrees)")
+    kind = kind or "creep"
+    if not (type(points) is int and 2 <= points <= MAX_POINTS):
+        raise SceneError("points", points, f"must be a whole number from 2 to {MAX_POINTS}")
+    fractions = [Fraction(j, points - 1) for j in range(points)]
+    return Contact(
+        kind, [_point(answers, kind, q) for q in fractions], _balance(answers, kind), _notes(answers, kind)
+    )
+
+
+def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
+    """The columns at the fraction q of the arc, counted from m1's end."""
+    scene, sign = answers.case.scene, answers.case.sign
+    from_light = q if sign >= 0 else 1 - q
+    piece = _piece(answers, kind, from_light)
+
+    stuck = profile.STUCK[kind][piece] or answers.case.tensions_equal
+
+    def tension(machine: Machine[Any]) -> Any:
+        # Both ends are exact, and so is the string stuck to the pulley from the light end on.
+        if from_light == 0 or (piece == 0 and stuck):
+            return machine.light_tension
+        if from_light == 1:
+            return machine.heavy_tension
+        angle = machine.ar.number(from_light) * wrap_angle(machine.ar, scene)
+        return profile.tension(machine.ar, machine.arcs(kind)[piece], angle)
+
+    def friction(machine: Machine[Any]) -> Any:
+        return machine.ar.number(0) if stuck else machine.arc_mu(kind) * tension(machine) * sign
+
+    def per_metre(of: Callable[[Machine[Any]], Any]) -> Number:
+        return answers.settle(lambda machine: of(machine) / _radius(machine))
+
+    found = {
+        "angle": answers.settle(lambda machine: _degrees(machine, q)),
+        "tension": answers.settle(tension),
+        "normal_per_radian": answers.settle(tension),
+        "friction_per_radian": answers.settle(friction),
+    }
+    if scene.R is not None:
+        found |= {"normal_per_metre": per_metre(tension), "friction_per_metre": per_metre(friction)}
+    return found
+
+
+def _piece(answers: Answers, kind: Kind, from_light: Fraction) -> int:
+    """Which piece of the profile holds the point at that fraction of the arc from the light end."""
+    last = len(profile.STUCK[kind]) - 1
+    for piece in range(last):
+
+        def beyond(machine: Machine[Any], piece: int = piece) -> Any:
+            angle = machine.ar.number(from_light) * wrap_angle(machine.ar, answers.case.scene)
+            return angle - machine.arcs(kind)[piece].end.angle
+
+        if from_light == 0 or (from_light < 1 and not answers.is_positive(beyond)):
+            return piece
+    return last
+
+
+def _degrees(machine: Machine[Any], q: Fraction) -> Any:
+    wrap = machine.scene.wrap
+    degrees = machine.ar.number(q * wrap)
+    return degrees * 180 / machine.ar.pi if isinstance(wrap, Radians) and q else degrees
+
+
+def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Number]]:
+    """Forces on the pulley (N), (x, y), and torques (N m, or N per unit radius), both ways."""
+
+    def vector(of: Callable[[Any], tuple[Any, Any]]) -> dict[str, Number]:
+        return {"x": answers.settle(lambda m: of(m)[0]), "y": answers.settle(lambda m: of(m)[1])}
+
+    friction = vector(lambda m: m.seen_from_m1(profile.friction(m.arcs(kind))))
+    normal = vector(lambda m: m.seen_from_m1(profile.normal(m.arcs(kind))))
+    ends = vector(lambda m: m.resultant_vector)
+    together = {axis: _difference(answers, friction[axis], normal[axis], plus=True) for axis in "xy"}
+    if answers.case.tensions_equal:
+        by_contact = answers.settle(lambda m: m.ar.number(0))
+    else:
+        by_contact = answers.nearly(
+            lambda m: profile.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.case.sign
+        )
+    by_ends = answers.settle(lambda m: m.tension_difference * _radius(m))
+    return {
+        "friction": friction,
+        "normal": normal,
+        "sum": together,
+        "resultant": ends,
+        "residual": {axis: _difference(answers, together[axis], ends[axis]) for axis in "xy"},
+        "torque": {
+            "contact": by_contact,
+            "ends": by_ends,
+            "residual": _difference(answers, by_contact, by_ends),
+        },
+    }
+
+
+def _radius(machine: Machine[Any]) -> Any:
+    return machine.ar.number(machine.scene.R or Fraction(1))
+
+
+def _difference(answers: Answers, a: Number, b: Number, plus: bool = False) -> Number:
+    """The difference (or sum) of two printed numbers, exact but for its own rounding."""
+    value: Number = answers.round(Fraction(a) + (Fraction(b) if plus else -Fraction(b)))
+    return value
+
+
+def _notes(answers: Answers, kind: Kind) -> list[str]:
+    case = answers.case
+    if case.tensions_equal:
+        return [WITHOUT_FRICTION]
+    if case.regime == "no-slip" and case.scene.mu is None:
+        return [WITHOUT_MU]
+    return [ABOUT_KIND[kind]]
