@@ -109,6 +109,32 @@ AsCsv = Annotated[bool, _output("--csv", help="Print CSV: a line of names, a lin
 Only = Annotated[list[str] | None, _output(metavar="NAME", help="Print only this quantity; repeatable.")]
 
 
+Points = Annotated[
+    str,
+    _output(
+        metavar="N", help="How many angles along the arc to show, both ends among them; 13 if not given."
+    ),
+]
+Profile = Annotated[
+    str | None,
+    _output(
+        metavar="creep|least",
+        help="Which tension, where friction to spare leaves it open: that of a slightly elastic string"
+        " (creep, if not given), or that with the least net friction.",
+    ),
+]
+Elements = Annotated[
+    str | None,
+    _output(
+        metavar="N",
+        help="Instead, solve the arc by N elements of string, in doubles, beside the exact values.",
+    ),
+]
+Extrapolate = Annotated[
+    bool, _output("--extrapolate", help="Extrapolate from N/2 and N elements (Richardson).")
+]
+
+
 def _print_version(wanted: bool) -> None:
     if wanted:
         print(f"atwood {__version__}")
@@ -150,8 +176,7 @@ def solve(
     from .solver import Answers
     from .words import reasons
 
-    if json and csv:
-        raise SceneError("json", None, "and --csv exclude each other; give one of them")
+    _exclude_each_other(json, csv)
     names = only or []
     for name in names:
         if name not in NAMES:
@@ -172,6 +197,64 @@ def solve(
             _say(reason)
     bare = names and not (json or csv)
     return COULD_NOT if bare and answers.reasons else DONE
+
+
+@app.command("contact", cls=Command)
+@takes_scene
+def contact(
+    given: Mapping[str, str | None],
+    *,
+    points: Points = "13",
+    profile: Profile = None,
+    elements: Elements = None,
+    extrapolate: Extrapolate = False,
+    digits: Digits = None,
+    json: AsJson = False,
+    csv: AsCsv = False,
+) -> int:
+    """Show what acts along the arc of contact, and that it adds up.
+
+    \b
+    Examples:
+      atwood contact --m1 1 --m2 3 --mu 0.3 --digits 6
+      atwood contact --m1 1 --m2 3 --M 10 --mu 0.3 --profile least
+      atwood contact --m1 1 --m2 3 --mu 0.3 --elements 1000 --extrapolate
+      atwood contact --m1 1 --m2 200 --M inf --mu 0.2 --wrap 2.5turn --csv
+    """
+    from . import output
+    from .contact import contact as solve_contact
+    from .solver import Answers
+
+    _exclude_each_other(json, csv)
+    answers = Answers(Scene.read(given), read_digits(digits))
+    if elements is not None:
+        from .elements import elements as march_elements
+
+        rows = march_elements(answers, elements, extrapolate)
+        if json:
+            output.print_elements_json(answers, rows)
+        elif csv:
+            output.print_records_csv([row._asdict() for row in rows])
+        else:
+            output.print_elements(answers, rows)
+        return DONE
+    if extrapolate:
+        raise SceneError("extrapolate", None, "needs --elements")
+    arc = solve_contact(answers, points, profile)
+    if json:
+        output.print_arc_json(answers, arc)
+    elif csv:
+        output.print_records_csv(arc.points)
+        for note in arc.notes:
+            _say(note)
+    else:
+        output.print_arc(answers, arc)
+    return DONE
+
+
+def _exclude_each_other(json: bool, csv: bool) -> None:
+    if json and csv:
+        raise SceneError("json", None, "and --csv exclude each other; give one of them")
 
 
 def _say(message: str) -> None:

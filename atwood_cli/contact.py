@@ -13,19 +13,11 @@ from typing import Any, NamedTuple
 
 from . import profile
 from .profile import Kind
-from .scene import Radians, SceneError
+from .scene import Radians, SceneError, read_whole
 from .solver import FREE_END, NEEDS_M, Answers, Machine, exceeds_half_a_turn, wrap_angle
 
 Number = float | Decimal
 
-COLUMNS = {
-    "angle": "°",
-    "tension": "N",
-    "normal_per_radian": "N/rad",
-    "friction_per_radian": "N/rad",
-    "normal_per_metre": "N/m",
-    "friction_per_metre": "N/m",
-}
 MAX_POINTS = 100_000
 
 ABOUT_KIND = {
@@ -52,7 +44,7 @@ class Contact(NamedTuple):
     notes: list[str]
 
 
-def contact(answers: Answers, points: int = 13, kind: Kind | None = None) -> Contact:
+def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -> Contact:
     """The arc of contact of a scene at so many equally spaced angles.
 
     ``kind`` is "creep" (the default) or "least" and matters only where friction is to spare.
@@ -63,17 +55,19 @@ def contact(answers: Answers, points: int = 13, kind: Kind | None = None) -> Con
         raise SceneError("m1" if case.scene.m1 == 0 else "m2", 0, f"leaves no arc: {FREE_END}")
     if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
         raise SceneError("M", None, f"is missing: {NEEDS_M}")
+    if kind not in (None, "creep", "least"):
+        raise SceneError("profile", kind, "must be creep or least")
     spare = case.regime == "no-slip" and case.scene.mu is not None and not case.tensions_equal
-    if not spare:
-        kind = "exponential"
-    elif kind == "least" and exceeds_half_a_turn(case.scene):
+    shown: Kind = "exponential" if not spare else "least" if kind == "least" else "creep"
+    if shown == "least" and exceeds_half_a_turn(case.scene):
         raise SceneError("profile", kind, "is known for up to half a turn of wrap (180 degrees)")
-    kind = kind or "creep"
-    if not (type(points) is int and 2 <= points <= MAX_POINTS):
-        raise SceneError("points", points, f"must be a whole number from 2 to {MAX_POINTS}")
-    fractions = [Fraction(j, points - 1) for j in range(points)]
+    last = read_whole("points", points, 2, MAX_POINTS) - 1
+    fractions = [Fraction(j, last) for j in range(last + 1)]
     return Contact(
-        kind, [_point(answers, kind, q) for q in fractions], _balance(answers, kind), _notes(answers, kind)
+        shown,
+        [_point(answers, shown, q) for q in fractions],
+        _balance(answers, shown),
+        _notes(answers, shown),
     )
 
 

@@ -13,11 +13,22 @@ from .arithmetic import as_typed, is_infinite, text
 from .quantities import NAMES, QUANTITIES
 from .scene import PARAMETERS, Radians, Scene
 from .solver import Answers
-from .words import notes
+from .words import notes, verdict
 
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from .contact import Contact
+    from .elements import Row
+
+COLUMN_UNITS = {
+    "angle": "°",
+    "tension": "N",
+    "normal_per_radian": "N/rad",
+    "friction_per_radian": "N/rad",
+    "normal_per_metre": "N/m",
+    "friction_per_metre": "N/m",
+}
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 ASCII = str.maketrans(
     {"μ": "mu", "φ": "phi", "β": "beta", "π": "pi", "τ": "tau", "α": "alpha", "θ": "theta"}
@@ -67,17 +78,14 @@ def _json(value: object, indent: str = "\n") -> str:
 
 def print_csv(answers: Answers, only: Sequence[str]) -> None:
     """A line of names and a line of values; a value that does not exist is empty."""
-    from csv import writer
-
-    names = only or NAMES
-    writer(sys.stdout, lineterminator="\n").writerows([names, [cell(answers[name]) for name in names]])
+    print_records_csv([{name: answers[name] for name in only or NAMES}])
 
 
-def cell(value: str | float | Decimal | None) -> str:
+def cell(value: object) -> str:
     """A value as bare text, empty where it does not exist or no double can hold it."""
-    if value is None or isinstance(value, str):
-        return value or ""
-    return "" if is_infinite(value) else text(value)
+    if isinstance(value, float | Decimal):
+        return "" if is_infinite(value) else text(value)
+    return str(value or "")
 
 
 def describe(scene: Scene) -> str:
@@ -91,78 +99,164 @@ def describe(scene: Scene) -> str:
     return ", ".join(parts)
 
 
+class Page:
+    """Where tables and sentences go: the terminal, or a pipe that takes any width."""
+
+    def __init__(self, console: "Console | None" = None) -> None:
+        from rich.console import Console
+
+        class OurConsole(Console):
+            def on_broken_pipe(self) -> None:
+                raise BrokenPipeError  # rich would exit with status 1
+
+        self.console = console or OurConsole(highlight=False)
+        self.room = self.console.width if self.console.is_terminal else None
+
+    def say(self, words: str, style: str = "") -> None:
+        """A sentence: piped it is a line, on a terminal its lines break between words."""
+        from rich.text import Text
+
+        self.console.print(Text(for_stream(words, sys.stdout), style), soft_wrap=self.room is None)
+
+    def head(self, answers: Answers) -> None:
+        """The scene and the verdict."""
+        self.say(describe(answers.case.scene))
+        self.say(verdict(answers), f"bold {REGIME_STYLES[answers.case.regime]}")
+
+    def table(self, columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]]) -> None:
+        """A table, with a line between groups of rows, and as wide as its numbers ask."""
+        from rich import box
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table(*columns, box=box.ROUNDED, show_lines=True)
+        for group in groups:
+            # One row a group, its lines joined: rich takes five times as long over a row a line.
+            table.add_row(*(Text("\n".join(column)) for column in zip(*group, strict=True)))
+        room = self.console.width
+        self.console.width = max(room, _width(columns, groups))
+        self.console.print(table)
+        self.console.width = room
+
+
 def print_table(answers: Answers, console: "Console | None" = None) -> None:
     """The scene, the verdict, a table of the quantities that exist, and the notes."""
-    from rich.console import Console
-    from rich.text import Text
-
-    class OurConsole(Console):
-        def on_broken_pipe(self) -> None:
-            raise BrokenPipeError  # rich would exit with status 1
-
-    console = console or OurConsole(highlight=False)
-
-    def say(words: str, style: str = "") -> None:
-        # Piped, a sentence is a line; on a terminal, lines break between words.
-        console.print(Text(for_stream(words, sys.stdout), style), soft_wrap=not console.is_terminal)
-
+    page = Page(console)
     groups = _rows(answers)
-    verdict, *others = notes(answers)
-    say(describe(answers.case.scene))
-    say(verdict, f"bold {REGIME_STYLES[answers.case.regime]}")
-    _print_groups(groups, console)
+    _, *others = notes(answers)
+    page.head(answers)
+    columns = list(COLUMNS)
+    while page.room and _width(columns, groups) > page.room:
+        columns.pop()
+        groups = [[row[: len(columns)] for row in group] for group in groups]
+    if len(columns) > 1:
+        page.table(columns, groups)
+    else:  # not even two columns fit: a plain line a quantity
+        for name, value, unit, *_ in chain.from_iterable(_rows(answers)):
+            page.console.out(f"{name} = {value.lstrip()} {unit}".rstrip())
     for note in others:
-        say(note)
+        page.say(note)
 
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
 
-def _rows(answers: Answers) -> list[list[dict[str, str]]]:
-    """The cells of the table by column, a row for each quantity that exists, by group."""
+def _rows(answers: Answers) -> list[list[list[str]]]:
+    """The cells of the table, a row for each quantity that exists, by group."""
     values = {name: shown for name in QUANTITIES if (shown := cell(answers[name]))}
-    point = max(map(_integer_part, values.values()))
-    groups: dict[str, list[dict[str, str]]] = {}
-    for name, value in values.items():
+    groups: dict[str, list[list[str]]] = {}
+    for name, value in zip(values, _aligned(values.values()), strict=True):
         about = QUANTITIES[name]
-        in_slip = answers.case.regime == "slip" and about.equation_in_slip is not None
-        row = (
-            name,
-            " " * (point - _integer_part(value)) + value,
-            about.unit,
-            about.symbol,
-            about.equation_in_slip if in_slip else about.equation,
-        )
-        words = (for_stream(word or "", sys.stdout) for word in row)
-        groups.setdefault(about.group, []).append(dict(zip(COLUMNS, words, strict=True)))
+        equation = about.equation
+        if answers.case.regime == "slip" and about.equation_in_slip is not None:
+            equation = about.equation_in_slip
+        row = [name, value, about.unit, about.symbol, equation]
+        groups.setdefault(about.group, []).append([for_stream(word, sys.stdout) for word in row])
     return list(groups.values())
 
 
-def _width(groups: list[list[dict[str, str]]], columns: Sequence[str]) -> int:
+def _aligned(numbers: Iterable[str]) -> list[str]:
+    """The numbers with their decimal points below each other."""
+    numbers = list(numbers)
+    point = max(map(_integer_part, numbers), default=0)
+    return [" " * (point - _integer_part(number)) + number for number in numbers]
+
+
+def _width(columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]]) -> int:
     """The width of the table with those columns, told ten times as fast as by rich."""
-    cells = [{c: c for c in columns}, *chain.from_iterable(groups)]
-    return 1 + sum(3 + max(len(row[c]) for row in cells) for c in columns)
+    rows = [columns, *chain.from_iterable(groups)]
+    return 1 + sum(3 + max(len(row[i]) for row in rows) for i in range(len(columns)))
 
 
-def _print_groups(groups: list[list[dict[str, str]]], console: "Console") -> None:
-    """The table with the columns that a terminal has room for, or else a plain line a quantity."""
-    from rich import box
-    from rich.table import Table
-    from rich.text import Text
+def print_arc(answers: Answers, arc: "Contact") -> None:
+    """The scene, the verdict, the points along the arc, the balance of forces, and the notes."""
+    page = Page()
+    page.head(answers)
+    heads = [f"{name.partition('_per_')[0]} ({COLUMN_UNITS[name]})" for name in arc.points[0]]
+    columns = [_aligned(cell(point[name]) for point in arc.points) for name in arc.points[0]]
+    page.table([for_stream(head, sys.stdout) for head in heads], [list(zip(*columns, strict=True))])
+    names, forces = zip(*((name, row) for name, row in arc.balance.items() if "x" in row), strict=True)
+    xs, ys = (_aligned(cell(force[axis]) for force in forces) for axis in "xy")
+    force_rows = list(zip(names, xs, ys, strict=True))
+    page.table(["Force on the pulley", "x (N)", "y (N)"], [force_rows[:2], force_rows[2:]])
+    unit = "N m" if answers.case.scene.R is not None else "N, per unit radius"
+    torques = _aligned(map(cell, arc.balance["torque"].values()))
+    kinds = ("friction along the arc", "R (T2 - T1)", "residual")
+    page.table([f"Torque on the pulley ({unit})", ""], [list(zip(kinds, torques, strict=True))])
+    for note in arc.notes:
+        page.say(note)
 
-    columns = list(COLUMNS)
-    while (width := _width(groups, columns)) > console.width and console.is_terminal:
-        columns.pop()
-        if len(columns) < 2:
-            for row in chain.from_iterable(groups):
-                console.out(f"{row['Quantity']} = {row['Value'].lstrip()} {row['Unit']}".rstrip())
-            return
-    table = Table(*columns, box=box.ROUNDED, show_lines=True)
-    for group in groups:
-        # One row a group, its lines joined: rich takes five times as long over a row a quantity.
-        table.add_row(*(Text("\n".join(row[c] for row in group)) for c in columns))
-    console.width = max(console.width, width)
-    console.print(table)
+
+def print_arc_json(answers: Answers, arc: "Contact") -> None:
+    """Scene, regime, profile, points, balance and notes."""
+    print(
+        _json(
+            {
+                "scene": _scene(answers.case.scene),
+                "regime": answers.case.regime,
+                "profile": arc.kind,
+                "points": arc.points,
+                "balance": arc.balance,
+                "notes": [verdict(answers), *arc.notes],
+            }
+        )
+    )
+
+
+def print_records_csv(records: Sequence[Mapping[str, object]]) -> None:
+    """A line of names and a line for each record."""
+    from csv import writer
+
+    rows = [[cell(value) for value in record.values()] for record in records]
+    writer(sys.stdout, lineterminator="\n").writerows([list(records[0]), *rows])
+
+
+def print_elements(answers: Answers, rows: "Sequence[Row]") -> None:
+    """What the elements give beside the exact values."""
+    page = Page()
+    page.head(answers)
+    values, exact = (_aligned(cell(row[i]) for row in rows) for i in (1, 2))
+    errors = [f"{row.error:.2e}" for row in rows]
+    names = [row.name for row in rows]
+    page.table(
+        ["Quantity", "Elements", "Exact", "Relative error"],
+        [list(zip(names, values, exact, errors, strict=True))],
+    )
+
+
+def print_elements_json(answers: Answers, rows: "Sequence[Row]") -> None:
+    """Scene, regime and the rows by name."""
+    print(
+        _json(
+            {
+                "scene": _scene(answers.case.scene),
+                "regime": answers.case.regime,
+                "elements": {
+                    row.name: {"value": row.value, "exact": row.exact, "error": row.error} for row in rows
+                },
+            }
+        )
+    )
 
 
 def _integer_part(value: str) -> int:

@@ -183,14 +183,19 @@ def read_value(name: str, given: Given | None) -> Any:
     return value
 
 
+def read_whole(name: str, given: int | str, least: int, most: int) -> int:
+    """A whole number within bounds. Raises SceneError."""
+    whole = given
+    if isinstance(given, str) and given.isascii() and given.isdigit() and len(given) <= len(str(most)):
+        whole = int(given)
+    if type(whole) is not int or not least <= whole <= most:
+        raise SceneError(name, given, f"must be a whole number from {least} to {most}")
+    return whole
+
+
 def read_digits(given: int | str | None) -> int | None:
     """How many significant digits are asked for. Raises SceneError."""
-    digits = given
-    if isinstance(given, str) and given.isascii() and given.isdigit() and len(given) <= 4:
-        digits = int(given)
-    if digits is None or (type(digits) is int and 1 <= digits <= MAX_DIGITS):
-        return digits
-    raise SceneError("digits", given, f"must be a whole number from 1 to {MAX_DIGITS}")
+    return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
 
 
 def _read_text(name: str, given: str) -> Fraction | float:

@@ -257,6 +257,16 @@ class Machine(Generic[N]):
         """The coefficient that the friction of a profile is at, where it is at its limit."""
         return self._friction_mu if kind == "exponential" else self._given(self.scene.mu, NEEDS_MU)
 
+    @property
+    def reference_mu(self) -> N:
+        """Static friction, or where it is not given the least that holds."""
+        return self.mu_verge if self.scene.mu is None else self.ar.number(self.scene.mu)
+
+    @property
+    def capstan_ratio(self) -> N:
+        """e^{μφ} at that coefficient; the tension ratio itself where that is what holds."""
+        return self.heavy_tension / self.light_tension if self.scene.mu is None else self._k1 + 1
+
     def _end(self, angle: N) -> profile.Knot[N]:
         return profile.Knot(angle, *self._direction, self.heavy_tension)
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 def notes(answers: "Answers") -> list[str]:
     """Sentences on the regime and why, on conditions (36), and on each value that is missing."""
-    return [_verdict(answers), *_remarks(answers), *reasons(answers)]
+    return [verdict(answers), *_remarks(answers), *reasons(answers)]
 
 
 def reasons(answers: "Answers") -> list[str]:
@@ -23,7 +23,8 @@ def reasons(answers: "Answers") -> list[str]:
     return [f"{', '.join(group)}: {reason}." for reason, group in names.items()]
 
 
-def _verdict(answers: "Answers") -> str:
+def verdict(answers: "Answers") -> str:
+    """What the string does, and why, in a sentence."""
     case, scene = answers.case, answers.case.scene
     heavy = as_typed(case.heavy)
     if case.sign == 0:
