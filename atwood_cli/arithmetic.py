@@ -398,8 +398,10 @@ def to_digits(digits: int) -> Rounding[Decimal]:
             value = context.divide(Decimal(x.numerator), Decimal(x.denominator))
         else:
             value = context.plus(x)
-        if not value or not value.is_finite():
-            return value if value else value.copy_abs()
+        if not value:
+            return ZERO
+        if not value.is_finite():
+            return value
         return context.quantize(value, Decimal((0, (1,), value.adjusted() - digits + 1)))
 
     return round_

@@ -16,6 +16,7 @@ from .quantities import NAMES
 from .scene import PARAMETERS, Scene, SceneError, nearest, read_digits
 
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
+EXTRAS = {"matplotlib": "figure"}
 
 app = typer.Typer(
     name="atwood",
@@ -135,6 +136,11 @@ Extrapolate = Annotated[
 ]
 
 
+FigureFile = Annotated[
+    str | None, _output(metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure).")
+]
+
+
 def _print_version(wanted: bool) -> None:
     if wanted:
         print(f"atwood {__version__}")
@@ -208,6 +214,7 @@ def contact(
     profile: Profile = None,
     elements: Elements = None,
     extrapolate: Extrapolate = False,
+    figure: FigureFile = None,
     digits: Digits = None,
     json: AsJson = False,
     csv: AsCsv = False,
@@ -241,6 +248,10 @@ def contact(
     if extrapolate:
         raise SceneError("extrapolate", None, "needs --elements")
     arc = solve_contact(answers, points, profile)
+    if figure is not None:
+        from .figure import save
+
+        save(answers, profile, figure)
     if json:
         output.print_arc_json(answers, arc)
     elif csv:
@@ -279,6 +290,11 @@ def run(arguments: list[str] | None = None) -> int:
         return WRONG_USAGE
     except typer.Abort:
         raise KeyboardInterrupt from None
+    except ModuleNotFoundError as error:
+        if error.name not in EXTRAS:
+            raise
+        _say(f"this needs {error.name}; install it with: pip install 'atwood-cli[{EXTRAS[error.name]}]'")
+        return COULD_NOT
     except (OSError, ArithmeticError) as error:
         _say(str(error))
         return COULD_NOT

@@ -142,6 +142,7 @@ def test_to_double_at_the_ends(value: Fraction | Decimal, double: float) -> None
         (Fraction(3), 4, "3.000"),
         (Fraction(0), 4, "0"),
         (Decimal("-0"), 4, "0"),
+        (Decimal("0e-12"), 4, "0"),
         (Fraction(2, 3), 5, "0.66667"),
         (Fraction(-1, 10**9), 2, "-1.0e-9"),
         (Fraction(99999), 3, "1.00e5"),

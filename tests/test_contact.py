@@ -1,0 +1,487 @@
+"""The arc of contact: identities, bounds against a linear programme, elements, output, figure."""
+
+import csv
+import io
+import json
+import re
+import subprocess
+import sys
+from decimal import Decimal
+from fractions import Fraction
+from itertools import pairwise
+from math import log2, pi
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import linprog, minimize_scalar
+from scipy.sparse import diags_array, vstack
+
+from atwood_cli import Scene, SceneError, solve
+from atwood_cli.contact import Contact, contact
+from atwood_cli.elements import elements
+from atwood_cli.solver import Answers
+
+from . import oracle
+from .running import Atwood, process
+
+PAPER = ["contact", "--m1", "1", "--m2", "3", "--mu", "0.3"]
+TOP = Path(__file__).parent.parent
+
+
+def arc(kind: str | None = None, points: int = 13, digits: int | None = None, **given: Any) -> Contact:
+    return contact(Answers(Scene.read(given), digits), points, kind)
+
+
+@st.composite
+def scenes(draw: st.DrawFn) -> dict[str, str]:
+    """Scenes of every regime whose arc is determined, either mass heavier, wraps up to 180°."""
+    number = st.decimals(Decimal("0.01"), Decimal("50"), allow_nan=False, places=4).map(str)
+    scene = {"m1": draw(number), "m2": draw(number), "M": draw(number)}
+    if draw(st.booleans()):
+        scene["mu"] = draw(st.decimals(Decimal("0.001"), 3, places=3).map(str))
+    if draw(st.booleans()):
+        scene["wrap"] = draw(st.sampled_from(["30", "90", "123.4", "180", "2rad"]))
+    if draw(st.booleans()):
+        scene["R"] = draw(number)
+    return scene
+
+
+@settings(deadline=None)
+@given(scenes(), st.sampled_from(["creep", "least"]))
+def test_contact_forces_add_up_to_what_the_tensions_would_do(scene: dict[str, str], kind: str) -> None:
+    """(20) and (23), to the last digits, for every profile, regime and mirrored scene."""
+    digits = 30
+    balance = arc(kind, points=2, digits=digits, **scene).balance
+    largest = max(abs(Fraction(v)) for name in ("friction", "normal") for v in balance[name].values())
+    for axis in "xy":
+        # Three roundings to 30 digits, half a unit each, of numbers no larger than that.
+        assert abs(Fraction(balance["residual"][axis])) <= 2 * largest * Fraction(10) ** (1 - digits)
+    torque = balance["torque"]
+    assert abs(Fraction(torque["residual"])) <= abs(Fraction(torque["ends"])) * Fraction(10) ** (1 - digits)
+    solution, radius = solve(**scene, digits=digits), Fraction(scene.get("R", 1))
+    t1, t2 = Fraction(solution.tension_1 or 0), Fraction(solution.tension_2 or 0)
+    rounding = max(t1, t2) * radius * Fraction(10) ** (1 - digits)
+    assert abs(Fraction(torque["ends"]) - (t2 - t1) * radius) <= 2 * rounding
+
+
+@settings(deadline=None, max_examples=30)
+@given(scenes(), st.sampled_from(["creep", "least"]))
+def test_profiles_run_from_t1_to_t2_within_the_limits_of_friction(scene: dict[str, str], kind: str) -> None:
+    solution = solve(**scene)
+    points = contact(Answers(Scene.read(scene)), 25, kind).points
+    assert points[0]["tension"] == solution.tension_1
+    assert points[-1]["tension"] == solution.tension_2
+    assert points[0]["angle"] == 0
+    tensions = [float(p["tension"]) for p in points]
+    assert tensions in (sorted(tensions), sorted(tensions, reverse=True))
+    mu = float(scene.get("mu", solution.mu_verge or 0))
+    for p in points:
+        assert p["normal_per_radian"] == p["tension"]
+        assert abs(float(p["friction_per_radian"])) <= mu * float(p["tension"]) * (1 + 1e-12)
+        if "R" in scene:
+            assert float(p["normal_per_metre"]) == pytest.approx(float(p["tension"]) / float(scene["R"]))
+
+
+def test_the_exponential_profile_against_mpmath() -> None:
+    with mpmath.workdps(60):
+        t1 = mpmath.mpf(str(solve(m1=1, m2=3, mu="0.3", digits=50).tension_1))
+        for point in arc(points=7, digits=40, m1=1, m2=3, mu="0.3").points:
+            theta = mpmath.radians(mpmath.mpf(str(point["angle"])))
+            expected = t1 * mpmath.exp(mpmath.mpf("0.3") * theta)
+            assert abs(mpmath.mpf(str(point["tension"])) / expected - 1) < mpmath.mpf(10) ** -39
+            friction = mpmath.mpf(str(point["friction_per_radian"]))
+            assert abs(friction / (expected * mpmath.mpf("0.3")) - 1) < mpmath.mpf(10) ** -39
+
+
+def test_creep_is_where_the_string_leaves_the_pulley() -> None:
+    for m1, m2, quiet, busy in ((1, 3, 0, -1), (3, 1, -1, 0)):
+        points = arc("creep", m1=m1, m2=m2, M=10, mu="0.3").points
+        assert points[quiet]["friction_per_radian"] == 0
+        assert abs(float(points[busy]["friction_per_radian"])) == pytest.approx(0.3 * 22.8821833333)
+
+
+# The bounds of the friction force
+
+
+@pytest.mark.parametrize(
+    ("M", "mu", "least", "greatest"),
+    [(10, "0.3", "5.4057", "8.9493"), (40, "0.3", "10.617", "10.801"), (10, "1", "1.7757", "10.711")],
+)
+def test_bounds_of_the_design_page(M: int, mu: str, least: str, greatest: str) -> None:
+    s = solve(m1=1, m2=3, M=M, mu=mu, digits=5)
+    assert (s.friction_force_min, s.friction_force_max) == (Decimal(least), Decimal(greatest))
+    assert s.friction_force is None
+
+
+def gripping_scenes(count: int, seed: int) -> list[dict[str, Any]]:
+    rng = Random(seed)
+    found: list[dict[str, Any]] = []
+    while len(found) < count:
+        scene: dict[str, Any] = {
+            "m1": round(rng.uniform(0.1, 5), 3),
+            "m2": round(rng.uniform(0.1, 5), 3),
+            "M": round(10 ** rng.uniform(-1, 2), 3),
+            "mu": round(10 ** rng.uniform(-1, 0.5), 3),
+            "wrap": rng.choice([180, 180, 90, 60, 150, 30]),
+        }
+        if solve(**scene).regime == "no-slip":
+            found.append(scene)
+    return found
+
+
+@pytest.mark.parametrize("scene", gripping_scenes(50, seed=33), ids=str)
+def test_bounds_against_a_linear_programme(scene: dict[str, Any]) -> None:
+    """All profiles on elements with T_j <= T_{j+1} <= e^{μΔ} T_j, friction at each one's middle.
+
+    The force in a direction is linear in T, so a linear programme finds its extremes; the greatest
+    force is the greatest of those over all directions, the least (the distance of a convex set from
+    the origin) the greatest of their minima.
+    """
+    solution = solve(**scene)
+    low, high = sorted((float(solution.tension_1 or 0), float(solution.tension_2 or 0)))
+    count = 150
+    # Elements shrink towards the ends, where the limiting arcs of the least force lie.
+    nodes = scene["wrap"] * pi / 360 * (1 - np.cos(pi * np.arange(count + 1) / count))
+    steps, middle = np.diff(nodes), (nodes[1:] + nodes[:-1]) / 2
+    unit = np.stack([-np.sin(middle), np.cos(middle)])
+    growth = np.exp(scene["mu"] * steps)
+    ones = np.ones(count)
+    no_fall = diags_array([ones, -ones], offsets=[0, 1], shape=(count, count + 1))
+    no_slip = diags_array([-growth, ones], offsets=[0, 1], shape=(count, count + 1))
+    bounds = [(low, low), *[(low, high)] * (count - 1), (high, high)]
+
+    def extreme(angle: float, sign: int) -> float:
+        along = np.array([np.cos(angle), np.sin(angle)]) @ unit
+        costs = sign * (np.concatenate([[0], along]) - np.concatenate([along, [0]]))
+        result = linprog(costs, A_ub=vstack([no_fall, no_slip]), b_ub=np.zeros(2 * count), bounds=bounds)
+        assert result.status == 0
+        return sign * float(result.fun)
+
+    def best(sign: int, around: float) -> float:
+        search = minimize_scalar(
+            lambda angle: -extreme(angle, sign),
+            bounds=(around - 1, around + 1),
+            method="bounded",
+            options={"xatol": 1e-3},
+        )
+        return -float(search.fun)
+
+    forces = {k: arc(k, points=2, **scene).balance["friction"] for k in ("creep", "least")}
+    angle = {k: float(np.arctan2(float(f["y"]), float(f["x"]))) for k, f in forces.items()}
+    if scene["m1"] > scene["m2"]:  # the programme's angle starts at the light end
+        angle = {k: scene["wrap"] * pi / 180 - a for k, a in angle.items()}
+    # What elements misplace is of second order in their size, what the direction's search misses too.
+    tolerance = (high - low) * (steps.max() ** 2 + 1e-5)
+    assert solution.friction_force_min == pytest.approx(best(1, angle["least"]), abs=tolerance)
+    # Any place of the arc gives the greatest force; the programme finds the best of them.
+    greatest = max(best(-1, a) for a in (angle["creep"], scene["wrap"] * pi / 360 + pi / 2))
+    assert solution.friction_force_max == pytest.approx(greatest, abs=tolerance)
+
+
+HARDLY_LOADED = {"m1": 1, "m2": 3, "M": "1e-30", "mu": 1, "wrap": 180}
+
+
+@pytest.mark.parametrize("scene", [HARDLY_LOADED, *gripping_scenes(12, seed=5)], ids=str)
+@pytest.mark.parametrize("digits", [None, 40])
+def test_bounds_to_the_last_digit(scene: dict[str, Any], digits: int | None) -> None:
+    """Both bounds from their definitions, the least one by minimising it, at 300 digits."""
+    scene = {name: str(value) for name, value in scene.items()}
+    with mpmath.workdps(300):
+        s = solve(**scene, digits=300)
+        low, high = sorted((mpmath.mpf(str(s.tension_1)), mpmath.mpf(str(s.tension_2))))
+        mu, phi = mpmath.mpf(scene["mu"]), mpmath.radians(mpmath.mpf(scene["wrap"]))
+        alpha = mpmath.log(high / low) / mu
+        share = mu / mpmath.sqrt(1 + mu**2)
+
+        def squared(lead: Any) -> Any:
+            bridge = low * mpmath.exp(mpmath.mpc(mu, 1) * lead) * (1 - mpmath.expj(phi - alpha))
+            return abs(bridge + high * mpmath.expj(phi) - low) ** 2
+
+        # The square's derivative, from its definition; a root of it is found by bisection.
+        def falls(lead: Any) -> bool:
+            h = alpha * mpmath.mpf(10) ** -100
+            return bool(squared(lead + h) < squared(lead - h))
+
+        assert falls(alpha / 10**9)
+        assert not falls(alpha)
+        low_lead, high_lead = mpmath.mpf(0), alpha
+        for _ in range(230):
+            lead = (low_lead + high_lead) / 2
+            low_lead, high_lead = (lead, high_lead) if falls(lead) else (low_lead, lead)
+        least = share * mpmath.sqrt(squared(lead))
+        greatest = share * abs(high * mpmath.expj(alpha) - low)
+        t = solve(**scene, digits=digits)
+        for got, want in ((t.friction_force_min, least), (t.friction_force_max, greatest)):
+            # (mpmath's own nstr would round a near tie the wrong way, at M = 1e-30.)
+            mantissa, exponent = want.man_exp
+            assert got == oracle.round_exact(Fraction(mantissa) * Fraction(2) ** exponent, digits)
+
+
+def test_bounds_meet_32_as_mu_falls_to_the_verge() -> None:
+    verge = solve(m1=1, m2=3, M=10, digits=60)
+    assert verge.mu_verge is not None
+    assert verge.friction_force is not None
+    for power in (5, 20, 40):
+        mu = Fraction(verge.mu_verge) * (1 + Fraction(1, 10**power))
+        s = solve(m1=1, m2=3, M=10, mu=mu, digits=60)
+        assert s.friction_force_min is not None
+        assert s.friction_force_max is not None
+        assert s.friction_force_min < s.friction_force_max
+        for bound in (s.friction_force_min, s.friction_force_max):
+            assert abs(bound / verge.friction_force - 1) < Decimal(10) ** (1 - power)
+
+
+def test_bounds_end_at_half_a_turn_and_the_notes_say_what_they_assume() -> None:
+    s = solve(m1=1, m2=3, M=10, mu=1, wrap="181")
+    assert s.friction_force_min is s.friction_force_max is None
+    assert any("up to half a turn of wrap (180 degrees)" in note for note in s.notes)
+    assert solve(m1=1, m2=3, M=10, mu=1, wrap="3.15rad").friction_force_min is None
+    assert solve(m1=1, m2=3, M=10, mu=1, wrap="3.14rad").friction_force_min is not None
+    inside = solve(m1=1, m2=3, M=10, mu=1)
+    assert any("tension locked in" in note for note in inside.notes)
+
+
+def test_least_friction_of_a_hardly_loaded_string_is_found() -> None:
+    """The least force is of second order in the load: 600 digits cancel here."""
+    heavier, lighter = (
+        solve(m1=1, m2=3, M=M, mu=1, digits=17).friction_force_min for M in ("1e-30", "1e-300")
+    )
+    assert heavier is not None
+    assert lighter == heavier.scaleb(-540)
+    assert solve(m1=1, m2=3, M="1e-300", mu=1).friction_force_min == 0
+
+
+# Wrap
+
+
+@pytest.mark.parametrize(("wrap", "same"), [("1.5turn", "540"), ("90deg", "90"), ("0.5turn", "180")])
+def test_wrap_has_units(wrap: str, same: str) -> None:
+    assert solve(m1=1, m2=3, M=1, wrap=wrap) == solve(m1=1, m2=3, M=1, wrap=same)
+
+
+def test_wrap_in_radians_is_exact() -> None:
+    with mpmath.workdps(60):
+        mu = mpmath.log(mpmath.mpf(3)) / 2
+        s = solve(m1=1, m2=3, M="inf", wrap="2rad", digits=50)
+        assert s.mu_verge == Decimal(mpmath.nstr(mu, 50, strip_zeros=False))
+    assert s.axle_force is None
+
+
+def test_turns_multiply_the_grip() -> None:
+    """A capstan: each further turn multiplies what can be held by e^{2πμ}."""
+    least = [solve(m1=1, m2=2, mu="0.2", wrap=f"{n}.5turn").least_heavier_mass for n in range(3)]
+    assert least[1] == pytest.approx(least[0] * np.exp(0.4 * pi))
+    assert least[2] == pytest.approx(least[0] * np.exp(0.8 * pi))
+
+
+# String elements
+
+
+@pytest.mark.parametrize("given", [{"mu": "0.3"}, {"M": "10"}, {"M": "100", "mu": "0.3", "mu_k": "0.25"}])
+@pytest.mark.parametrize(
+    ("extrapolate", "order", "counts"), [(False, 2, (200, 400, 800)), (True, 4, (60, 120, 240))]
+)
+def test_order_of_the_elements(
+    given: dict[str, str], extrapolate: bool, order: int, counts: tuple[int, ...]
+) -> None:
+    answers = Answers(Scene.read({"m1": 1, "m2": 3, **given}))
+    errors = [{row.name: float(row.error) for row in elements(answers, n, extrapolate)} for n in counts]
+    for name in errors[0]:
+        for coarse, fine in pairwise(errors):
+            assert log2(coarse[name] / fine[name]) == pytest.approx(order, abs=0.02), name
+
+
+def test_elements_are_an_independent_march() -> None:
+    """The same march, an element at a time, in exact fractions."""
+    ratio = {
+        row.name: row.value for row in elements(Answers(Scene.read({"m1": 1, "m2": 3, "mu": "0.3"})), 10)
+    }
+    grip = Fraction(0.3 * float(np.tan(pi / 20)))
+    assert ratio["capstan_ratio"] == pytest.approx(float(((1 + grip) / (1 - grip)) ** 10), rel=1e-14)
+    k = ratio["capstan_ratio"]
+    assert ratio["critical_pulley_mass"] == pytest.approx(4 * 3 * (k - 1) / (3 - k), rel=1e-13)
+    assert ratio["tension_ratio"] == k
+
+
+def test_ten_million_elements_lose_digits_to_rounding() -> None:
+    answers = Answers(Scene.read({"m1": 1, "m2": 3, "mu": "0.3"}))
+    (best, *_), (worn, *_) = elements(answers, 100_000), elements(answers, 10_000_000)
+    assert abs(best.error) < 1e-9
+    assert abs(best.error) < abs(worn.error) < 1e-7
+
+
+def test_elements_mirror() -> None:
+    light, heavy = (
+        {row.name: row for row in elements(Answers(Scene.read({"m1": a, "m2": b, "mu": "0.3"})), 50)}
+        for a, b in ((1, 3), (3, 1))
+    )
+    assert heavy["tension_ratio"].value == pytest.approx(1 / light["tension_ratio"].value)
+    assert heavy["friction_force"] == light["friction_force"]
+
+
+def test_elements_say_only_what_friction_at_its_limit_decides() -> None:
+    rows = elements(Answers(Scene.read({"m1": 1, "m2": 3, "M": 10, "mu": "0.3"})), 50)
+    assert [row.name for row in rows] == ["capstan_ratio", "critical_pulley_mass"]
+    # Four elements overrate friction so much that they find no pulley heavy enough.
+    coarse = elements(Answers(Scene.read({"m1": 1, "m2": "2.6", "mu": "0.3"})), 4)
+    assert [row.name for row in coarse] == ["capstan_ratio", "tension_ratio", "friction_force"]
+
+
+# The command
+
+
+def test_contact_prints_points_balance_and_note(atwood: Atwood) -> None:
+    ran = atwood(*PAPER, "--points", "3", "--digits", "6", "--R", "10cm")
+    assert (ran.status, ran.err) == (0, "")
+    assert re.search(r"│ 180\.000 +│ 27\.1279 +│ 27\.1279 +│ 8\.13836 +│ 271\.279 +│ 81\.3836 +│", ran.out)
+    assert re.search(r"│ resultant +│ +0 +│ -37\.6985 +│", ran.out)
+    assert re.search(r"│ friction along the arc +│ 1\.65572 │", ran.out)
+    assert "Friction is at its limit all along the arc." in ran.out
+
+
+def test_contact_json(atwood: Atwood) -> None:
+    ran = atwood(
+        "contact", "--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3", "--json", "--profile", "least"
+    )
+    result = json.loads(ran.out)
+    assert list(result) == ["scene", "regime", "profile", "points", "balance", "notes"]
+    assert (result["regime"], result["profile"], len(result["points"])) == ("no-slip", "least", 13)
+    assert list(result["points"][0]) == ["angle", "tension", "normal_per_radian", "friction_per_radian"]
+    friction = result["balance"]["friction"]
+    least = solve(m1=1, m2=3, M=10, mu="0.3").friction_force_min
+    assert np.hypot(friction["x"], friction["y"]) == pytest.approx(least)
+    assert any("not unique" in note for note in result["notes"])
+
+
+def test_contact_csv(atwood: Atwood) -> None:
+    ran = atwood(*PAPER, "--csv", "--points", "5", "--R", "2")
+    names, *rows = csv.reader(io.StringIO(ran.out))
+    assert names[:2] == ["angle", "tension"]
+    assert names[-1] == "friction_per_metre"
+    assert [row[0] for row in rows] == ["0", "45", "90", "135", "180"]
+    assert ran.err == "atwood: Friction is at its limit all along the arc.\n"
+
+
+def test_elements_in_every_output(atwood: Atwood) -> None:
+    words = [*PAPER, "--elements", "100", "--extrapolate"]
+    assert re.search(
+        r"│ friction_force +│ 10\.8325975\d+ +│ 10\.832597670383810401 +│ -1\.01e-8 ", atwood(*words).out
+    )
+    result = json.loads(atwood(*words, "--json").out)["elements"]
+    assert set(result["capstan_ratio"]) == {"value", "exact", "error"}
+    names, *rows = csv.reader(io.StringIO(atwood(*words, "--csv").out))
+    assert (names, len(rows)) == (["name", "value", "exact", "error"], 4)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ("--m1 1 --m2 3 --mu 2", "--M is missing: give M, the pulley's mass, which decides here"),
+        (
+            "--m1 0 --m2 3",
+            "--m1 0 leaves no arc: not defined for a free end: the string is fixed to the pulley and no friction holds it",
+        ),
+        ("--m1 1 --m2 3 --points 1", "--points '1' must be a whole number from 2 to 100000"),
+        ("--m1 1 --m2 3 --profile exponential", "--profile 'exponential' must be creep or least"),
+        (
+            "--m1 1 --m2 3 --M 1 --mu 1 --wrap 270 --profile least",
+            "--profile 'least' is known for up to half a turn of wrap (180 degrees)",
+        ),
+        ("--m1 1 --m2 3 --mu 0.3 --elements 0", "--elements '0' must be a whole number from 1 to 10000000"),
+        (
+            "--m1 1 --m2 3 --mu 0.3 --elements 5 --extrapolate",
+            "--elements 5 must be even, to extrapolate from half as many",
+        ),
+        ("--m1 1 --m2 3 --mu 0.3 --extrapolate", "--extrapolate needs --elements"),
+        (
+            "--m1 1 --m2 3 --mu 50 --elements 10",
+            "--elements 10 are too few for this mu and wrap, which take at least 79",
+        ),
+        (
+            "--m1 1e400 --m2 3e400 --mu 0.3 --elements 10",
+            "--elements 10 run in doubles, which this scene is too large for",
+        ),
+        ("--m1 1 --m2 3 --json --csv", "--json and --csv exclude each other; give one of them"),
+        ("--m1 1 --m2 3 --figure x.gif", "--figure 'x.gif' must end in one of .svg, .png, .pdf"),
+        (
+            "--m1 1e200 --m2 3e200 --figure x.svg",
+            "--figure 'x.svg' draws forces between 1e-100 and 1e+100 N only",
+        ),
+    ],
+)
+def test_contact_errors(atwood: Atwood, arguments: str, message: str) -> None:
+    ran = atwood("contact", *arguments.split())
+    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
+
+
+def test_least_number_of_elements_is_the_least() -> None:
+    answers = Answers(Scene.read({"m1": 1, "m2": 3, "mu": 50}))
+    assert elements(answers, 79)[0].value > 0
+    with pytest.raises(SceneError):
+        elements(answers, 78)
+
+
+def test_solving_needs_no_numpy_for_the_arc() -> None:
+    code = "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); sys.exit('numpy' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", code, *PAPER, "--csv"], capture_output=True, check=False)
+    assert done.returncode == 0
+
+
+# The figure
+
+
+def labels(svg: str) -> list[str]:
+    """The texts that matplotlib writes beside their outlines."""
+    return re.findall(r"<!-- (.*?) -->", svg, re.DOTALL)
+
+
+def test_figure_is_the_one_in_the_readme_and_the_same_to_the_byte(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    files = [tmp_path / "a.svg", tmp_path / "b.svg"]
+    for file in files:
+        assert process("contact", *FIGURE, "--figure", str(file)).status == 0
+    first, second = (file.read_bytes() for file in files)
+    assert first == second
+    kept = (TOP / "examples" / "contact.svg").read_text(encoding="utf-8")
+    assert labels(first.decode()) == labels(kept)
+    assert {"$T_1$ = 11.99 N", "$W_2$ = 29.42 N", "$nR$", "$fR$", "$m_1$"} <= set(labels(kept))
+
+
+FIGURE = ["--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3"]
+
+
+@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
+@pytest.mark.parametrize(
+    "words", [FIGURE, [*FIGURE, "--profile", "least", "--wrap", "100"], ["--m1", "2", "--m2", "2"]]
+)
+def test_figures_of_every_kind(atwood: Atwood, tmp_path: Path, suffix: str, words: list[str]) -> None:
+    pytest.importorskip("matplotlib")
+    file = tmp_path / f"arc.{suffix}"
+    assert atwood("contact", *words, "--figure", str(file)).status == 0
+    starts = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
+    assert file.read_bytes().startswith(starts[suffix])
+
+
+def test_figure_that_cannot_be_written(atwood: Atwood, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    ran = atwood("contact", *FIGURE, "--figure", str(tmp_path / "nowhere" / "arc.svg"))
+    assert (ran.status, ran.out) == (1, "")
+    assert "No such file or directory" in ran.err
+
+
+def test_figure_without_its_extra_names_the_pip_command() -> None:
+    code = "import sys; sys.modules['matplotlib'] = None; from atwood_cli.cli import run; sys.exit(run(sys.argv[1:]))"
+    done = subprocess.run(
+        [sys.executable, "-c", code, "contact", *FIGURE, "--figure", "x.svg"],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == "atwood: this needs matplotlib; install it with: pip install 'atwood-cli[figure]'\n"
