@@ -6,11 +6,13 @@ shows what finite elements cost in accuracy beside the limit Δθ → 0 that the
 takes. The error falls as N^-2, with Richardson's extrapolation as N^-4, until rounding takes over.
 """
 
-from decimal import Decimal, localcontext
+from decimal import Decimal
+from fractions import Fraction
 from math import atan2, cos, floor, hypot, inf, isfinite, tan
 from typing import NamedTuple
 
 from . import physics
+from .arithmetic import to_digits
 from .scene import SceneError, read_whole
 from .solver import Answers, OnMachine, wrap_angle
 
@@ -20,11 +22,11 @@ EXACT_DIGITS = 20
 
 
 class Row(NamedTuple):
-    """A quantity from the elements, its exact value, and the relative error."""
+    """A quantity from the elements, its exact value, and the relative error (absolute if that is 0)."""
 
     name: str
-    value: float
-    exact: Decimal
+    value: float | Decimal
+    exact: float | Decimal
     error: Decimal
 
 
@@ -66,7 +68,7 @@ def _least(mu: float, phi: float) -> int:
     return max(1, least)
 
 
-def elements(scene_answers: Answers, count: int | str, extrapolate: bool = False) -> list[Row]:
+def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> list[Row]:
     """What friction at its limit decides, from ``count`` elements, beside the exact values.
 
     With ``extrapolate``, Richardson's, from half as many elements too. Raises SceneError.
@@ -74,22 +76,18 @@ def elements(scene_answers: Answers, count: int | str, extrapolate: bool = False
     count = read_whole("elements", count, 1, MAX_ELEMENTS)
     if extrapolate and count % 2:
         raise SceneError("elements", count, "must be even, to extrapolate from half as many")
-    scene = scene_answers.case.scene
-    doubles, exact = Answers(scene), Answers(scene, EXACT_DIGITS)
+    doubles, exact = Answers(answers.case.scene), Answers(answers.case.scene, EXACT_DIGITS)
     values = _by_elements(doubles, count)
     if extrapolate:
         coarse = _by_elements(doubles, count // 2)
         values = {name: (4 * value - coarse[name]) / 3 for name, value in values.items()}
-    finite = {name: value for name, value in values.items() if isfinite(value)}
-    return [Row(name, value, *_error(exact, name, value)) for name, value in finite.items()]
-
-
-def _error(exact: Answers, name: str, value: float) -> tuple[Decimal, Decimal]:
-    """The exact value and the relative error (absolute where the value is 0)."""
-    right = exact.settle(EXACT[name])
-    assert isinstance(right, Decimal)
-    with localcontext(prec=2 * EXACT_DIGITS):
-        return right, (Decimal(value) - right) / (right or Decimal(1))
+    rows = []
+    for name, value in values.items():
+        if isfinite(value):
+            right, shown = Fraction(exact.settle(EXACT[name])), Fraction(value)
+            error = to_digits(3)((shown - right) / right if right else shown)
+            rows.append(Row(name, answers.round(shown), answers.settle(EXACT[name]), error))
+    return rows
 
 
 EXACT: dict[str, OnMachine] = {

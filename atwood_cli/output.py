@@ -236,7 +236,7 @@ def print_elements(answers: Answers, rows: "Sequence[Row]") -> None:
     page = Page()
     page.head(answers)
     values, exact = (_aligned(cell(row[i]) for row in rows) for i in (1, 2))
-    errors = [f"{row.error:.2e}" for row in rows]
+    errors = [cell(row.error) for row in rows]
     names = [row.name for row in rows]
     page.table(
         ["Quantity", "Elements", "Exact", "Relative error"],

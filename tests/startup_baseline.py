@@ -52,5 +52,28 @@ def solve(
     Console().print(table)
 
 
+@app.command()
+def contact(
+    m1: Annotated[str | None, option("--m1")] = None,
+    m2: Annotated[str | None, option("--m2")] = None,
+    M: Annotated[str | None, option("--M", "--pulley-mass")] = None,
+    mu: Annotated[str | None, option("--mu")] = None,
+    mu_k: Annotated[str | None, option("--mu-k")] = None,
+    g: Annotated[str | None, option("--g")] = None,
+    inertia: Annotated[str | None, option("--inertia")] = None,
+    I: Annotated[str | None, option("--I")] = None,
+    R: Annotated[str | None, option("--R", "--radius")] = None,
+    wrap: Annotated[str | None, option("--wrap")] = None,
+    points: Annotated[str, option("--points")] = "13",
+    profile: Annotated[str | None, option("--profile")] = None,
+    elements: Annotated[str | None, option("--elements")] = None,
+    extrapolate: Annotated[bool, option("--extrapolate")] = False,
+    figure: Annotated[str | None, option("--figure")] = None,
+    digits: Annotated[str | None, option("--digits")] = None,
+    as_json: Annotated[bool, option("--json")] = False,
+    csv: Annotated[bool, option("--csv")] = False,
+) -> None: ...
+
+
 if __name__ == "__main__":
     sys.exit(app())

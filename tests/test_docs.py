@@ -69,5 +69,11 @@ def test_the_picture_shows_todays_table() -> None:
 
 
 def test_every_example_is_tested() -> None:
-    assert [script.name for script in EXAMPLES] == ["ci-smoke.sh", "paper.sh", "scripts.sh"]
+    assert [script.name for script in EXAMPLES] == [
+        "capstan.sh",
+        "ci-smoke.sh",
+        "lift.sh",
+        "paper.sh",
+        "scripts.sh",
+    ]
     assert all(script.with_suffix(".txt").exists() for script in EXAMPLES)
