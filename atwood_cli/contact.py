@@ -12,9 +12,10 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from . import profile
+from .machine import FREE_END, NEEDS_M, Machine, exceeds_half_a_turn, wrap_angle
 from .profile import Kind
 from .scene import Radians, SceneError, read_whole
-from .solver import FREE_END, NEEDS_M, Answers, Machine, exceeds_half_a_turn, wrap_angle
+from .solver import Answers
 
 Number = float | Decimal
 

@@ -12,9 +12,10 @@ from math import atan2, cos, floor, hypot, inf, isfinite, tan
 from typing import NamedTuple
 
 from . import physics
-from .arithmetic import to_digits
+from .machine import wrap_angle
+from .rounding import to_digits
 from .scene import SceneError, read_whole
-from .solver import Answers, OnMachine, wrap_angle
+from .solver import Answers, OnMachine
 
 BLOCK = 1 << 16  # elements at a time: arrays of half a megabyte, which stay in the cache
 MAX_ELEMENTS = 10_000_000

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .contact import Contact, contact
+from .machine import wrap_angle
 from .output import describe
 from .scene import SceneError
-from .solver import Answers, wrap_angle
+from .solver import Answers
 from .words import verdict
 
 if TYPE_CHECKING:

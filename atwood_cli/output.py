@@ -9,8 +9,8 @@ from itertools import chain
 from math import inf
 from typing import TYPE_CHECKING, TextIO
 
-from .arithmetic import as_typed, is_infinite, text
 from .quantities import NAMES, QUANTITIES
+from .rounding import as_typed, is_infinite, text
 from .scene import PARAMETERS, Radians, Scene
 from .solver import Answers
 from .words import notes, verdict

@@ -8,7 +8,7 @@ from math import inf
 from numbers import Rational, Real
 from typing import Any, NamedTuple
 
-from .arithmetic import as_typed
+from .rounding import as_typed
 
 Given = str | int | float | Decimal | Fraction
 """An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""

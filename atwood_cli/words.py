@@ -2,20 +2,18 @@
 
 from fractions import Fraction
 from math import inf
-from typing import TYPE_CHECKING
 
-from .arithmetic import LARGEST_EXPONENT, as_typed, is_infinite, text
-
-if TYPE_CHECKING:
-    from .solver import Answers
+from .arithmetic import LARGEST_EXPONENT
+from .rounding import as_typed, is_infinite, text
+from .solver import Answers
 
 
-def notes(answers: "Answers") -> list[str]:
+def notes(answers: Answers) -> list[str]:
     """Sentences on the regime and why, on conditions (36), and on each value that is missing."""
     return [verdict(answers), *_remarks(answers), *reasons(answers)]
 
 
-def reasons(answers: "Answers") -> list[str]:
+def reasons(answers: Answers) -> list[str]:
     """Why values asked for so far are missing: a sentence a reason, naming them."""
     names: dict[str, list[str]] = {}
     for name, reason in answers.reasons.items():
@@ -23,7 +21,7 @@ def reasons(answers: "Answers") -> list[str]:
     return [f"{', '.join(group)}: {reason}." for reason, group in names.items()]
 
 
-def verdict(answers: "Answers") -> str:
+def verdict(answers: Answers) -> str:
     """What the string does, and why, in a sentence."""
     case, scene = answers.case, answers.case.scene
     heavy = as_typed(case.heavy)
@@ -52,7 +50,7 @@ def verdict(answers: "Answers") -> str:
     return f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {least} kg to slip."
 
 
-def _remarks(answers: "Answers") -> list[str]:
+def _remarks(answers: Answers) -> list[str]:
     case, scene = answers.case, answers.case.scene
     found = []
     if case.beta is not None and case.beta > 1:
@@ -72,7 +70,7 @@ def _remarks(answers: "Answers") -> list[str]:
     return found
 
 
-def _conditions(answers: "Answers") -> str:
+def _conditions(answers: Answers) -> str:
     """Both conditions of (36), necessary for the verge: threshold, and whether it is met."""
     case = answers.case
     met = {True: "met", False: "not met"}
@@ -91,7 +89,7 @@ def _conditions(answers: "Answers") -> str:
     return f"Conditions (36) for the verge: {'; '.join(parts)}."
 
 
-def _say(answers: "Answers", name: str) -> str:
+def _say(answers: Answers, name: str) -> str:
     """A value as the output shows it, for a sentence."""
     value = answers[name]
     if is_infinite(value):

@@ -10,9 +10,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atwood_cli import arithmetic, solve
-from atwood_cli.arithmetic import EXACT, Enclosure, enclosures, to_digits, to_double
+from atwood_cli import arithmetic, rounding, solve
+from atwood_cli.arithmetic import EXACT, Enclosure, enclosures
 from atwood_cli.physics import N
+from atwood_cli.rounding import to_digits, to_double
 
 precisions = st.sampled_from([20, 25, 50, 97, 200, 1000])
 rationals = st.fractions().filter(lambda q: abs(q) < 10**30)
@@ -109,7 +110,7 @@ def test_a_quantity_that_never_settles_is_an_error_and_no_hang() -> None:
         return ar.pi - ar.pi
 
     with pytest.raises(ArithmeticError, match="not settled within 50000 digits"):
-        arithmetic.is_positive(undecided)
+        rounding.is_positive(undecided)
 
 
 @given(st.fractions())
@@ -150,7 +151,7 @@ def test_to_double_at_the_ends(value: Fraction | Decimal, double: float) -> None
     ],
 )
 def test_to_digits(value: Fraction | Decimal, digits: int, text: str) -> None:
-    assert arithmetic.text(to_digits(digits)(value)) == text
+    assert rounding.text(to_digits(digits)(value)) == text
 
 
 @pytest.mark.parametrize(
@@ -166,14 +167,14 @@ def test_to_digits(value: Fraction | Decimal, digits: int, text: str) -> None:
     ],
 )
 def test_text_of_a_double_is_the_shortest(value: float, text: str) -> None:
-    assert arithmetic.text(value) == text
+    assert rounding.text(value) == text
     assert float(text) == value
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_text_reads_back_to_the_same_double(value: float) -> None:
-    assert float(arithmetic.text(value)) == value
-    assert len(arithmetic.text(value)) <= len(repr(value))
+    assert float(rounding.text(value)) == value
+    assert len(rounding.text(value)) <= len(repr(value))
 
 
 @pytest.mark.parametrize(
@@ -188,7 +189,7 @@ def test_text_reads_back_to_the_same_double(value: float) -> None:
     ],
 )
 def test_as_typed(q: Fraction, text: str) -> None:
-    assert arithmetic.as_typed(q) == text
+    assert rounding.as_typed(q) == text
 
 
 def test_the_callers_decimal_context_changes_nothing() -> None:

@@ -1,0 +1,58 @@
+"""The door for Python: `solve`."""
+
+from decimal import Decimal
+from typing import TYPE_CHECKING, Any, overload
+
+from .quantities import NAMES, Solution
+from .scene import Given, Scene, read_digits
+from .solver import Answers
+from .words import notes
+
+if TYPE_CHECKING:
+    from typing import TypedDict, Unpack
+
+    class Inputs(TypedDict, total=False):
+        m1: Given
+        m2: Given
+        M: Given | None
+        mu: Given | None
+        mu_k: Given | None
+        g: Given
+        inertia: Given | None
+        I: Given | None
+        R: Given | None
+        wrap: Given
+
+
+@overload
+def solve(*, digits: None = None, **given: "Unpack[Inputs]") -> Solution[float]: ...
+@overload
+def solve(*, digits: int | str, **given: "Unpack[Inputs]") -> Solution[Decimal]: ...
+def solve(
+    *,
+    m1: Given | None = None,
+    m2: Given | None = None,
+    M: Given | None = None,
+    mu: Given | None = None,
+    mu_k: Given | None = None,
+    g: Given | None = None,
+    inertia: Given | None = None,
+    I: Given | None = None,
+    R: Given | None = None,
+    wrap: Given | None = None,
+    digits: int | str | None = None,
+) -> Any:
+    """The state of Atwood's machine: m1 and m2 on a rough string over a pulley.
+
+    Masses in kg, R in m, I in kg m², g in m/s², wrap in degrees; text may carry a unit ("250g",
+    "5cm") or name a body or shape (g="moon", inertia="hoop"). What is given decides the model:
+    no M, a massless pulley, or with mu the one that brings the string to the verge of slipping.
+    Defaults: g standard gravity, inertia that of a disk (1/2), wrap 180, mu_k = mu.
+
+    Floats come back, each the double nearest to the exact value; with ``digits=N`` Decimals, each
+    correctly rounded to N significant digits. Raises SceneError (a ValueError) on bad input.
+    """
+    given = {key: value for key, value in locals().items() if key != "digits"}
+    answers = Answers(Scene.read(given), read_digits(digits))
+    values = {name: answers[name] for name in NAMES}
+    return Solution(scene=answers.case.scene, notes=tuple(notes(answers)), **values)
