@@ -74,6 +74,7 @@ class Arithmetic(Protocol[N]):
     def is_zero(self, x: N) -> bool: ...
     @property
     def pi(self) -> N: ...
+    def exp(self, x: N) -> N: ...
     def expm1(self, x: N) -> N: ...
     def log1p(self, x: N) -> N: ...
     def sqrt(self, x: N) -> N: ...
@@ -97,7 +98,7 @@ class Rationals:
     def expm1(self, x: Fraction) -> Fraction:
         raise Irrational
 
-    log1p = sqrt = expm1
+    exp = log1p = sqrt = expm1
 
     def cos_sin(self, x: Fraction) -> tuple[Fraction, Fraction]:
         raise Irrational
@@ -204,7 +205,7 @@ class Enclosures:
         """Cosine and sine of x >= 0."""
         x = self._from_zero(x)
         n, d = x.lo.as_integer_ratio()
-        bits = _bits(self.digits)
+        bits = _bits(self.digits + max(0, -x.lo.adjusted()))
         w = bits + 2 * bits.bit_length() + (n // d).bit_length() + 8
         angle, quarter = (n << w) // d, _pi(w) >> 1
         turns = (angle + (quarter >> 1)) // quarter
@@ -231,6 +232,7 @@ class Enclosures:
         if not f_a < 0 < f_b:
             raise Unsettled(wanted)
         near, side = decimal_context(self.digits, ROUND_HALF_EVEN), 0
+        rise = near.divide(near.subtract(f_b, f_a), b)
         for _ in range(4 * self.digits):
             c = near.divide(
                 near.subtract(near.multiply(a, f_b), near.multiply(b, f_a)), near.subtract(f_b, f_a)
@@ -242,13 +244,22 @@ class Enclosures:
                 a, f_a, f_b, side = c, f_c.hi, near.divide(f_b, TWO) if side < 0 else f_b, -1
             else:
                 break
-        error = near.scaleb(b, 4 - self.digits)
-        while error < b:
+        # How far from c the sign of f can be told if f is about straight, and then further.
+        error = near.scaleb(near.add(near.divide(self._width(f_c).hi, rise), near.scaleb(c, -self.digits)), 1)
+        while error < end.lo:
             lo, hi = self.down.subtract(c, error), self.up.add(c, error)
             if lo > 0 and at(lo).hi < 0 < at(hi).lo:
                 return Enclosure(self, lo, hi)
             error = near.scaleb(error, self.digits // 8)
         raise Unsettled(wanted)
+
+    def exp(self, x: Enclosure) -> Enclosure:
+        """e^x for x >= 0, without the digits that e^x - 1 takes if x is tiny."""
+        x = self._from_zero(x)
+        at_lo, width = self._expm1(x.lo, ONE) + 1, self._width(x)
+        if width.hi > 1:
+            return Enclosure(self, at_lo.lo, (self._expm1(x.hi, ONE) + 1).hi)
+        return Enclosure(self, at_lo.lo, (at_lo + 2 * width * at_lo).hi)
 
     def expm1(self, x: Enclosure) -> Enclosure:
         """e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
@@ -258,13 +269,14 @@ class Enclosures:
             return Enclosure(self, at_lo.lo, self._expm1(x.hi).hi)
         return Enclosure(self, at_lo.lo, (at_lo + 2 * width * (at_lo + 1)).hi)
 
-    def _expm1(self, x: Decimal) -> Enclosure:
+    def _expm1(self, x: Decimal, scale: Decimal | None = None) -> Enclosure:
+        """e^x - 1 to all the digits of itself, or of what is of that scale."""
         if x == 0:
             return Enclosure(self, ZERO, ZERO)
         if x > 3 * LARGEST_EXPONENT:
             return Enclosure(self, Decimal(inf), Decimal(inf))
         tens = int(self.down.multiply(x, LOG10_E)) if x > 2 else 0
-        bits = _bits(self.digits + max(0, -x.adjusted()))
+        bits = _bits(self.digits + max(0, -(scale or x).adjusted()))
         halvings = isqrt(bits)
         w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
         n, d = x.as_integer_ratio()
@@ -345,8 +357,8 @@ def _inverse(q: int, sign: int, w: int) -> int:
 
 
 GUARD = 40
-# Constants are kept in steps of this many bits, so that nearby precisions share them.
-STEP = 1024
+# Constants are kept to a power of two of bits, at least twice this, so that precisions share them.
+LEAST_BITS = 256
 
 
 def _pi(bits: int) -> int:
@@ -360,10 +372,10 @@ def _ln10(bits: int) -> int:
 
 
 def _constant(*terms: tuple[int, int, int], bits: int) -> int:
-    return _wide_constant(terms, bits // STEP) >> (STEP - bits % STEP + GUARD)
+    wide = 1 << max(LEAST_BITS, bits).bit_length()
+    return _wide_constant(terms, wide + GUARD) >> (wide + GUARD - bits)
 
 
-@lru_cache(maxsize=64)
-def _wide_constant(terms: tuple[tuple[int, int, int], ...], steps: int) -> int:
-    w = (steps + 1) * STEP + GUARD
+@lru_cache
+def _wide_constant(terms: tuple[tuple[int, int, int], ...], w: int) -> int:
     return sum(factor * _inverse(q, sign, w) for factor, q, sign in terms)

@@ -313,8 +313,17 @@ class Machine(Generic[N]):
         mu = self._friction_mu
         if self.ar.is_zero(mu):
             return self.ar.number(0)
-        cos, _ = self._direction
-        force = physics.resultant(self.tension_1, self.tension_2, cos, self.ar.sqrt)
+        halves = self.scene.wrap / 360
+        if isinstance(self.scene.wrap, Radians) or halves.denominator > 2:
+            _, sin_half = self.ar.cos_sin(wrap_angle(self.ar, self.scene) / 2)
+        else:
+            sin_half = self.ar.number(halves.denominator - 1)
+        return self._limiting_friction(mu, sin_half)
+
+    def _limiting_friction(self, mu: N, sin_half: N) -> N:
+        """The friction force (N) of one arc over which it is at its limit, by the sine of its half."""
+        light, heavy, difference = self.light_tension, self.heavy_tension, self.tension_difference
+        force = physics.resultant(light, heavy, difference, sin_half, self.ar.sqrt)
         return physics.friction_magnitude(mu, force, self.ar.sqrt)
 
     @cached_property
@@ -397,6 +406,5 @@ class Machine(Generic[N]):
     def friction_force_max(self) -> N:
         if not self._bounded():
             return self.ar.number(0)
-        cos, _ = self.ar.cos_sin(self.alpha)
-        force = physics.resultant(self.light_tension, self.heavy_tension, cos, self.ar.sqrt)
-        return physics.friction_magnitude(self.ar.number(self.scene.mu or 0), force, self.ar.sqrt)
+        _, sin_half = self.ar.cos_sin(self.alpha / 2)
+        return self._limiting_friction(self.arc_mu("creep"), sin_half)

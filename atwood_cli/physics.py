@@ -95,9 +95,13 @@ def least_pulley_mass(l: N, k1: N, beta: N) -> N:
     return 2 * l * k1 / beta
 
 
-def resultant(t1: N, t2: N, cos_phi: N, sqrt: Callable[[N], N]) -> N:
-    """Magnitude (N) of the force of T1 and T2 on the string's arc; T1 + T2 over half a turn (20)."""
-    squared: N = t1 * t1 + t2 * t2 - 2 * t1 * t2 * cos_phi
+def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Callable[[N], N]) -> N:
+    """Magnitude (N) of the force of T1 and T2 on an arc of contact; T1 + T2 over half a turn (20).
+
+    ``difference`` = T2 - T1 and ``sin_half``, the sine of half the arc, keep what is nearly equal
+    from cancelling in T1² + T2² - 2 T1 T2 cos φ.
+    """
+    squared: N = difference * difference + 4 * t1 * t2 * sin_half * sin_half
     return sqrt(squared)
 
 

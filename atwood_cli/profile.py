@@ -50,7 +50,7 @@ def arcs(ar: Arithmetic[N], kind: Kind, mu: N, lengths: Sequence[N], light: N, e
     for length, stuck in list(zip(lengths, STUCK[kind], strict=True))[:-1]:
         last = knots[-1]
         angle = last.angle + length
-        tension = last.tension if stuck else last.tension * (ar.expm1(mu * length) + 1)
+        tension = last.tension if stuck else last.tension * ar.exp(mu * length)
         knots.append(Knot(angle, *ar.cos_sin(angle), tension))
     knots.append(end)
     return [
@@ -67,7 +67,7 @@ def least_lead(ar: Arithmetic[N], mu: N, alpha: N, stuck: N, light: N, end: Knot
 
     def slope(s: N) -> N:
         cos, sin = ar.cos_sin(s + stuck / 2)
-        return physics.least_friction_slope(mu, chord, ar.expm1(mu * s) + 1, cos, sin, dx, dy)
+        return physics.least_friction_slope(mu, chord, ar.exp(mu * s), cos, sin, dx, dy)
 
     return ar.root(slope, alpha)
 
@@ -110,4 +110,4 @@ def tension(ar: Arithmetic[N], arc: Arc[N], angle: N) -> N:
     """T (N) at an angle within the arc; also nR, the normal force per radian (13)."""
     if arc.stuck:
         return arc.start.tension
-    return arc.start.tension * (ar.expm1(arc.mu * (angle - arc.start.angle)) + 1)
+    return arc.start.tension * ar.exp(arc.mu * (angle - arc.start.angle))

@@ -132,13 +132,16 @@ def test_friction_over_half_a_turn_is_31_and_32() -> None:
     fx, fy = physics.friction_vector(mu, -t2 - t1, sp.Integer(0))
     assert sp.simplify(fx + mu / (1 + mu**2) * (t1 + t2)) == 0
     assert sp.simplify(fy + mu**2 / (1 + mu**2) * (t1 + t2)) == 0
-    force = physics.friction_magnitude(mu, physics.resultant(t1, t2, sp.Integer(-1), sp.sqrt), sp.sqrt)
+    force = physics.friction_magnitude(
+        mu, physics.resultant(t1, t2, t2 - t1, sp.Integer(1), sp.sqrt), sp.sqrt
+    )
     assert sp.simplify(force**2 - fx**2 - fy**2) == 0
 
 
 def test_magnitude_is_that_of_the_vector_at_any_wrap() -> None:
     fx, fy = physics.friction_vector(mu, t2 * sp.cos(phi) - t1, t2 * sp.sin(phi))
-    resultant = physics.resultant(t1, t2, sp.cos(phi), sp.sqrt)
+    resultant = physics.resultant(t1, t2, t2 - t1, sp.sin(phi / 2), sp.sqrt)
+    assert sp.simplify(sp.expand_trig(resultant**2 - t1**2 - t2**2 + 2 * t1 * t2 * sp.cos(phi))) == 0
     assert sp.simplify(physics.friction_magnitude(mu, resultant, sp.sqrt) ** 2 - fx**2 - fy**2) == 0
 
 
