@@ -51,6 +51,7 @@ from .physics import N
 
 # Far beyond any input (1e±1500), far within what `decimal` takes on a 32-bit machine.
 LARGEST_EXPONENT = 10**8
+LARGEST_ARGUMENT = LARGEST_EXPONENT * 2_302_585_092 // 10**9  # of an exponential: times ln 10
 ZERO, ONE, TWO = Decimal(0), Decimal(1), Decimal(2)
 LOG10_E = Decimal("0.434294481903")  # rounded down, so that what remains is not negative
 
@@ -216,36 +217,39 @@ class Enclosures:
         return self._fixed(c, error, w) + slack - slack, self._fixed(s, error, w) + slack - slack
 
     def root(self, f: Callable[[Enclosure], Enclosure], end: Enclosure) -> Enclosure:
-        """The root of f between 0 and ``end``, where f grows from negative to positive.
+        """The root of f between 0 and ``end``, where f is negative before it and positive after.
 
-        Regula falsi (Illinois) finds it; that f has opposite signs at the ends of what is returned
-        is checked, so the search itself need not be trusted.
+        Secants find it, and bisection where they lead astray (T. J. Dekker, 1969). That f has opposite
+        signs at the ends of what is returned is checked, so the search need not be trusted.
         """
 
         def at(x: Decimal) -> Enclosure:
             return f(Enclosure(self, x, x))
 
+        near = decimal_context(self.digits, ROUND_HALF_EVEN)
         # A root at 10^-n of the scale of f's terms is lost without 2n digits more.
         wanted = self.digits + 2 * max(0, -end.lo.adjusted())
         a, b = ZERO, end.lo
-        f_a, f_b = at(a).hi, at(b).lo
-        if not f_a < 0 < f_b:
+        f_a, f_b = at(a), at(b)
+        if not f_a.hi < 0 < f_b.lo:
             raise Unsettled(wanted)
-        near, side = decimal_context(self.digits, ROUND_HALF_EVEN), 0
-        rise = near.divide(near.subtract(f_b, f_a), b)
-        for _ in range(4 * self.digits):
-            c = near.divide(
-                near.subtract(near.multiply(a, f_b), near.multiply(b, f_a)), near.subtract(f_b, f_a)
-            )
+        x, f_x, y, f_y = a, f_a.hi, b, f_b.lo
+        slope = near.divide(near.subtract(f_y, f_x), b)
+        for _ in range(8 * self.digits):
+            c, rise = near.divide(near.add(a, b), TWO), near.subtract(f_y, f_x)
+            if rise:
+                secant = near.subtract(y, near.divide(near.multiply(f_y, near.subtract(y, x)), rise))
+                c = secant if a < secant < b else c
             f_c = at(c)
-            if f_c.lo > 0:
-                b, f_b, f_a, side = c, f_c.lo, near.divide(f_a, TWO) if side > 0 else f_a, 1
-            elif f_c.hi < 0:
-                a, f_a, f_b, side = c, f_c.hi, near.divide(f_b, TWO) if side < 0 else f_b, -1
-            else:
+            step = near.subtract(c, y).copy_abs()
+            if f_c.lo <= 0 <= f_c.hi or step < near.scaleb(c, 2 - self.digits):
                 break
+            a, b = (c, b) if f_c.hi < 0 else (a, c)
+            x, f_x, y, f_y = y, f_y, c, f_c.lo
         # How far from c the sign of f can be told if f is about straight, and then further.
-        error = near.scaleb(near.add(near.divide(self._width(f_c).hi, rise), near.scaleb(c, -self.digits)), 1)
+        error = near.scaleb(
+            near.add(near.divide(self._width(f_c).hi, slope), near.scaleb(c, -self.digits)), 1
+        )
         while error < end.lo:
             lo, hi = self.down.subtract(c, error), self.up.add(c, error)
             if lo > 0 and at(lo).hi < 0 < at(hi).lo:
@@ -273,7 +277,7 @@ class Enclosures:
         """e^x - 1 to all the digits of itself, or of what is of that scale."""
         if x == 0:
             return Enclosure(self, ZERO, ZERO)
-        if x > 3 * LARGEST_EXPONENT:
+        if x > LARGEST_ARGUMENT:
             return Enclosure(self, Decimal(inf), Decimal(inf))
         tens = int(self.down.multiply(x, LOG10_E)) if x > 2 else 0
         bits = _bits(self.digits + max(0, -(scale or x).adjusted()))

@@ -23,8 +23,9 @@ UNKNOWN_SHAPE = "give M, the pulley's mass, beside I"
 FREE_END = "not defined for a free end: the string is fixed to the pulley and no friction holds it"
 NO_CRITICAL_MASS = "does not exist, as the string holds on any pulley, however heavy"
 NO_CRITICAL_HEAVIER_MASS = "does not exist, as the string holds under any heavier mass"
+NOT_BOUNDED = "not one number while the string grips with friction to spare"
 NOT_DEFINITE = (
-    "not one number while the string grips with friction to spare: between friction_force_min and"
+    f"{NOT_BOUNDED}: between friction_force_min and"
     " friction_force_max if friction nowhere opposes the rest; tension locked in on laying the string"
     " widens that range"
 )
@@ -178,7 +179,7 @@ class Machine(Generic[N]):
             return self.ar.number(self._limiting_mu)
         mu = self.mu_verge
         if self.scene.mu is not None and not self.case.tensions_equal:
-            raise Undetermined(NOT_DEFINITE)
+            raise Undetermined(NOT_BOUNDED if exceeds_half_a_turn(self.scene) else NOT_DEFINITE)
         return mu
 
     @cached_property

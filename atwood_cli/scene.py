@@ -79,7 +79,10 @@ class SceneError(ValueError):
         """The message, with the parameter called ``name`` (an option, a column)."""
         if self.value is None:
             return f"{name} {self.rule}"
-        shown = repr(self.value)
+        try:
+            shown = repr(self.value)
+        except ValueError:  # an int too long for Python to write out
+            shown = f"<{type(self.value).__name__}>"
         if len(shown) > 60:
             shown = f"{shown[:40]}...{shown[-10:]}"
         return f"{name} {shown} {self.rule}"
@@ -153,7 +156,7 @@ class Scene(NamedTuple):
 
     def _check_together(self, given: Mapping[str, Given | None]) -> None:
         if self.m1 == self.m2 == 0:
-            raise SceneError("m1", given["m1"], "and m2 are both 0; at least one mass must hang")
+            raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
         free = "m1" if self.m1 == 0 else "m2"
         if self.mu is not None and 0 in (self.m1, self.m2):
             raise SceneError(free, given[free], "is a free end, which friction cannot hold; leave mu out")
@@ -235,7 +238,8 @@ def nearest(word: str, words: Iterable[str]) -> str:
     """The hint that a near word may have been meant, empty if none is near."""
     from difflib import get_close_matches
 
-    near = get_close_matches(word.lower(), list(words), n=1)
+    words = list(words)
+    near = get_close_matches(word.lower(), words, n=1) or [w for w in words if w.startswith(word.lower())]
     return f"; did you mean {near[0]}?" if near else ""
 
 
@@ -272,6 +276,4 @@ def _read_number(name: str, given: object) -> Fraction | float:
             value = Fraction(given if isinstance(given, Decimal) else float(given))
         if max(abs(value.numerator), value.denominator) < 10**MAX_MAGNITUDE:
             return value
-    raise SceneError(
-        name, given, f"is too long; at most {MAX_DIGITS} digits and exponents up to {MAX_EXPONENT}"
-    )
+    raise SceneError(name, given, f"is too long; numerator and denominator may have {MAX_MAGNITUDE} digits")

@@ -4,8 +4,9 @@ from fractions import Fraction
 from math import inf
 
 from .arithmetic import LARGEST_EXPONENT
-from .rounding import as_typed, is_infinite, text
-from .solver import Answers
+from .rounding import as_typed, is_infinite, text, to_double
+from .scene import MAX_DIGITS
+from .solver import DOUBLE_DIGITS, Answers
 
 
 def notes(answers: Answers) -> list[str]:
@@ -36,7 +37,7 @@ def verdict(answers: Answers) -> str:
         )
     if case.regime == "slip" and scene.mu is not None:
         kinetic = "" if scene.mu_k is None else f", and slides with mu_k = {as_typed(scene.mu_k)}"
-        verge = _say(answers, "mu_verge")
+        verge = _apart(answers, "mu_verge", scene.mu, above=True)
         return f"Slips: mu = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
     if case.tensions_equal:
         return "Holds: a pulley without mass needs no friction to turn, so both tensions are equal."
@@ -45,8 +46,9 @@ def verdict(answers: Answers) -> str:
     if scene.mu is None:
         return f"Assumed to hold, without mu: it does if mu is at least {_say(answers, 'mu_verge')}."
     if case.pulley_known:
-        return f"Holds: mu = {as_typed(scene.mu)}, and {_say(answers, 'mu_verge')} is enough."
-    least = _say(answers, "least_heavier_mass")
+        verge = _apart(answers, "mu_verge", scene.mu, above=False)
+        return f"Holds: mu = {as_typed(scene.mu)}, and {verge} is enough."
+    least = _apart(answers, "least_heavier_mass", case.heavy, above=True)
     return f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {least} kg to slip."
 
 
@@ -55,7 +57,7 @@ def _remarks(answers: Answers) -> list[str]:
     found = []
     if case.beta is not None and case.beta > 1:
         found.append(
-            f"The inertia factor I/(M R^2) is {as_typed(case.beta)}, above 1: the mass lies outside"
+            f"The inertia factor I/(M R^2) is {to_double(case.beta):.6g}, above 1: the mass lies outside"
             " the rim the string runs on. If that is not so, check inertia, I and R."
         )
     if scene.mu is not None and answers["least_heavier_mass"] is not None:
@@ -72,26 +74,40 @@ def _remarks(answers: Answers) -> list[str]:
 
 def _conditions(answers: Answers) -> str:
     """Both conditions of (36), necessary for the verge: threshold, and whether it is met."""
-    case = answers.case
+    case, mass = answers.case, answers.case.scene.M
     met = {True: "met", False: "not met"}
-    parts = [
-        f"heavier mass {as_typed(case.heavy)} kg > {_say(answers, 'least_heavier_mass')} kg,"
-        f" {met[case.can_slip]}"
-    ]
-    if answers["least_pulley_mass"] is not None:
-        least = f"{_say(answers, 'least_pulley_mass')} kg"
-        mass = case.scene.M
-        if mass is None:
-            parts.append(f"pulley's mass > {least}" + ", met by the critical one" * case.can_slip)
-        else:
-            shown = as_typed(mass) if isinstance(mass, Fraction) else "inf"
-            parts.append(f"pulley's mass {shown} kg > {least}, {met[case.can_be_made_slip]}")
+    least = _apart(answers, "least_heavier_mass", case.heavy, above=not case.can_slip)
+    parts = [f"heavier mass {as_typed(case.heavy)} kg > {least} kg, {met[case.can_slip]}"]
+    if answers["least_pulley_mass"] is None:
+        pass  # the pulley's shape is not known
+    elif mass is None:
+        answer = "met by the critical one" if case.can_slip else "open without M"
+        parts.append(f"pulley's mass > {_say(answers, 'least_pulley_mass')} kg, {answer}")
+    elif isinstance(mass, Fraction):
+        least = _apart(answers, "least_pulley_mass", mass, above=not case.can_be_made_slip)
+        parts.append(f"pulley's mass {as_typed(mass)} kg > {least} kg, {met[case.can_be_made_slip]}")
+    else:
+        parts.append(f"pulley's mass, infinite, > {_say(answers, 'least_pulley_mass')} kg, met")
     return f"Conditions (36) for the verge: {'; '.join(parts)}."
+
+
+def _apart(answers: Answers, name: str, other: Fraction, above: bool) -> str:
+    """A value with as many digits as show that it is above another one, or below it."""
+    finer, digits = answers, answers.digits or DOUBLE_DIGITS
+    while not is_infinite(value := finer[name]):
+        shown = text(value)
+        if Fraction(shown) != other and (Fraction(shown) > other) == above:
+            return shown
+        if digits == MAX_DIGITS:  # the same number, or as good as
+            break
+        digits = min(2 * digits, MAX_DIGITS)
+        finer = Answers(answers.case.scene, digits)
+    return _say(answers, name)
 
 
 def _say(answers: Answers, name: str) -> str:
     """A value as the output shows it, for a sentence."""
     value = answers[name]
     if is_infinite(value):
-        return "1.8e308 and more" if answers.digits is None else f"10^{LARGEST_EXPONENT} and more"
+        return "over 1.8e308" if answers.digits is None else f"over 10^{LARGEST_EXPONENT}"
     return text(value)
