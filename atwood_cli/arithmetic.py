@@ -233,25 +233,25 @@ class Enclosures:
         f_a, f_b = at(a), at(b)
         if not f_a.hi < 0 < f_b.lo:
             raise Unsettled(wanted)
-        x, f_x, y, f_y = a, f_a.hi, b, f_b.lo
+        x, f_x, y, f_y, blur = a, f_a.hi, b, f_b.lo, self._width(f_b).hi
         slope = near.divide(near.subtract(f_y, f_x), b)
         for _ in range(8 * self.digits):
             c, rise = near.divide(near.add(a, b), TWO), near.subtract(f_y, f_x)
             if rise:
-                secant = near.subtract(y, near.divide(near.multiply(f_y, near.subtract(y, x)), rise))
+                step = near.divide(near.multiply(f_y, near.subtract(y, x)), rise)
+                if step.copy_abs() < near.scaleb(y, 2 - self.digits):
+                    break
+                secant = near.subtract(y, step)
                 c = secant if a < secant < b else c
             f_c = at(c)
-            step = near.subtract(c, y).copy_abs()
-            if f_c.lo <= 0 <= f_c.hi or step < near.scaleb(c, 2 - self.digits):
+            x, f_x, y, f_y, blur = y, f_y, c, f_c.lo, self._width(f_c).hi
+            if f_c.lo <= 0 <= f_c.hi:
                 break
             a, b = (c, b) if f_c.hi < 0 else (a, c)
-            x, f_x, y, f_y = y, f_y, c, f_c.lo
-        # How far from c the sign of f can be told if f is about straight, and then further.
-        error = near.scaleb(
-            near.add(near.divide(self._width(f_c).hi, slope), near.scaleb(c, -self.digits)), 1
-        )
+        # How far from y the sign of f can be told if f is about straight, and then further.
+        error = near.scaleb(near.add(near.divide(blur, slope), near.scaleb(y, -self.digits)), 1)
         while error < end.lo:
-            lo, hi = self.down.subtract(c, error), self.up.add(c, error)
+            lo, hi = self.down.subtract(y, error), self.up.add(y, error)
             if lo > 0 and at(lo).hi < 0 < at(hi).lo:
                 return Enclosure(self, lo, hi)
             error = near.scaleb(error, self.digits // 8)
@@ -284,7 +284,8 @@ class Enclosures:
         halvings = isqrt(bits)
         w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
         n, d = x.as_integer_ratio()
-        u = _expm1_series((n << w) // d - tens * _ln10(w), halvings, w)
+        rest = (n << w) // d - (tens * _ln10(w) if tens else 0)
+        u = _expm1_series(rest, halvings, w)
         small = self._fixed(u, (w + tens) << (halvings + 8), w)
         if not tens:
             return small

@@ -6,12 +6,14 @@ import os
 import sys
 from collections import Counter
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand
 
 from . import __version__
+from .output import for_stream
 from .quantities import NAMES
 from .scene import PARAMETERS, Scene, SceneError, nearest, read_digits
 
@@ -20,7 +22,14 @@ EXTRAS = {"matplotlib": "figure"}
 
 app = typer.Typer(
     name="atwood",
-    help="Atwood's machine with a massive pulley and a rough string, every digit right.",
+    help="""Atwood's machine with a massive pulley and a rough string, every digit right.
+
+    \b
+    Examples:
+      atwood solve --m1 1 --m2 3 --mu 0.3
+      atwood solve --m1 250g --m2 300g --M 100g --only acceleration
+      atwood contact --m1 1 --m2 3 --M 10 --mu 0.3
+    """,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -31,7 +40,7 @@ UsageError: Any = typer.BadParameter.__mro__[1]
 
 
 class Command(TyperCommand):
-    """A command that refuses a scalar option given twice, and is quiet when its reader leaves."""
+    """A command that refuses a scalar option given twice, rather than take the last."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         _, _, order = self.make_parser(ctx).parse_args(args=list(args))
@@ -40,27 +49,17 @@ class Command(TyperCommand):
                 raise SceneError(str(option.name), None, f"is given {times} times; give it once")
         return super().parse_args(ctx, args)
 
-    def invoke(self, ctx: Any) -> Any:
-        try:
-            status = super().invoke(ctx)
-            sys.stdout.flush()
-            return status
-        except BrokenPipeError:
-            # What is still buffered must not fail again when Python closes stdout.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return DONE
-
 
 ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
 REMARKS = {
     "m1": ', as 1.5, 250g or "2 lb"',
     "M": "; inf locks it",
     "mu_k": "; mu if not given",
-    "g": "; 9.80665 if not given",
+    "g": " by NASA's fact sheets; 9.80665 if not given",
     "inertia": "; 0.5 if not given",
     "I": ", in place of inertia; needs R",
     "R": ", as 0.1 or 5cm",
-    "wrap": ", as 180, 1.5turn or 3rad; 180 if not given",
+    "wrap": ", in degrees, or as 1.5turn or 3rad; 180 if not given",
 }
 
 
@@ -71,9 +70,10 @@ def _flag(name: str) -> str:
 def _scene_option(name: str) -> Any:
     parameter = PARAMETERS[name]
     flags = [_flag(name), *ALIASES.get(name, [])]
-    unit = f" ({parameter.unit})" if parameter.unit else ""
+    unit = f" ({parameter.unit})" if parameter.unit not in ("", "°") else ""
     names = f", or {', '.join(parameter.names)}" if parameter.names else ""
-    text = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}{unit}{REMARKS.get(name, '')}{names}."
+    meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
+    text = for_stream(f"{meaning}{unit}{names}{REMARKS.get(name, '')}.", sys.stdout)
     metavar = (parameter.dimension or "number").upper()
     return typer.Option(*flags, help=text, metavar=metavar, rich_help_panel="Scene", show_default=False)
 
@@ -201,8 +201,8 @@ def solve(
     if csv or names:
         for reason in reasons(answers):
             _say(reason)
-    bare = names and not (json or csv)
-    return COULD_NOT if bare and answers.reasons else DONE
+    bare = not (json or csv)
+    return COULD_NOT if bare and not all(output.cell(answers[name]) for name in names) else DONE
 
 
 @app.command("contact", cls=Command)
@@ -269,18 +269,23 @@ def _exclude_each_other(json: bool, csv: bool) -> None:
 
 
 def _say(message: str) -> None:
-    from .output import for_stream
-
-    print(for_stream(f"atwood: {message}", sys.stderr), file=sys.stderr)
+    with suppress(OSError):  # there is nobody else to tell
+        print(for_stream(f"atwood: {message}", sys.stderr), file=sys.stderr)
 
 
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line; every error is a sentence on stderr and an exit status."""
-    if sys.stdout is None:  # closed by the caller: what is printed goes nowhere
-        sys.stdout = io.StringIO()
+    # A stream closed by the caller is None: what is printed goes nowhere.
+    sys.stdout, sys.stderr = sys.stdout or io.StringIO(), sys.stderr or io.StringIO()
     command = typer.main.get_command(app)
     try:
-        return command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
+        status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
+        sys.stdout.flush()
+        return status
+    except (BrokenPipeError, SystemExit):  # typer and rich exit where the reader of stdout has left
+        # What is still buffered must not fail again when Python closes stdout.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return DONE
     except SceneError as error:
         _say(error.describe(_flag(error.parameter)))
         return WRONG_USAGE

@@ -36,9 +36,10 @@ ASCII = str.maketrans(
 )
 
 
-def for_stream(words: str, stream: TextIO) -> str:
+def for_stream(words: str, stream: TextIO | None) -> str:
     """The words as the stream can take them: symbols are spelled out where it is not Unicode."""
-    unicode = (stream.encoding or "ascii").lower().startswith("utf")
+    encoding = getattr(stream, "encoding", None) or "ascii"
+    unicode = encoding.lower().startswith("utf")
     return words if unicode else words.translate(ASCII).encode("ascii", "replace").decode()
 
 
@@ -105,11 +106,7 @@ class Page:
     def __init__(self, console: "Console | None" = None) -> None:
         from rich.console import Console
 
-        class OurConsole(Console):
-            def on_broken_pipe(self) -> None:
-                raise BrokenPipeError  # rich would exit with status 1
-
-        self.console = console or OurConsole(highlight=False)
+        self.console = console or Console(highlight=False)
         self.room = self.console.width if self.console.is_terminal else None
 
     def say(self, words: str, style: str = "") -> None:
@@ -149,7 +146,7 @@ def print_table(answers: Answers, console: "Console | None" = None) -> None:
     while page.room and _width(columns, groups) > page.room:
         columns.pop()
         groups = [[row[: len(columns)] for row in group] for group in groups]
-    if len(columns) > 1:
+    if groups and len(columns) > 1:
         page.table(columns, groups)
     else:  # not even two columns fit: a plain line a quantity
         for name, value, unit, *_ in chain.from_iterable(_rows(answers)):

@@ -105,6 +105,23 @@ def test_exact_fractions_refuse_to_leave_the_rationals(call: str) -> None:
         _ = EXACT.pi
 
 
+@pytest.mark.parametrize("rate", [1, 2000])
+def test_a_root_is_found_in_few_steps_where_the_function_is_far_from_straight(rate: int) -> None:
+    """Regula falsi took 4080 evaluations of such a function, 7 s of one solve."""
+    at, calls = enclosures(400), 0
+
+    def f(s: Enclosure) -> Enclosure:
+        nonlocal calls
+        calls += 1
+        return at.exp(rate * s) - at.exp(at.number(rate)) / 2
+
+    root = at.root(f, at.number(1))
+    assert calls < 60
+    with mpmath.workdps(420):
+        assert contains(root, 1 - mpmath.log(2) / rate)
+    assert tight(root, 390)
+
+
 def test_a_quantity_that_never_settles_is_an_error_and_no_hang() -> None:
     def undecided(ar: arithmetic.Arithmetic[N]) -> N:
         return ar.pi - ar.pi

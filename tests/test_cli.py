@@ -199,6 +199,20 @@ def test_only_in_a_shell_script() -> None:
     assert (ran.status, ran.out) == (0, "50 slips\n")
 
 
+def test_only_of_a_value_below_the_doubles_is_its_double_with_a_note(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1e-400", "--m2", "3e-400", "--only", "tension_1")
+    assert (ran.status, ran.out) == (0, "0\n")
+    assert "not 0 but below the range of doubles" in ran.err
+    beyond = atwood("solve", "--m1", "1e400", "--m2", "3e400", "--only", "tension_1")
+    assert (beyond.status, beyond.out) == (1, "")
+
+
+def test_a_table_without_rows_is_no_table(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1", "--m2", "3", "--mu", "1e9")
+    assert ran.status == 0
+    assert "│" not in ran.out
+
+
 # Errors
 
 
@@ -222,6 +236,7 @@ def test_only_in_a_shell_script() -> None:
             "solve --m1 1 --m2 2 --only tention_1",
             "--only 'tention_1' is no quantity; did you mean tension_1?",
         ),
+        ("solve --m1 1 --m2 2 --only accel", "--only 'accel' is no quantity; did you mean acceleration?"),
         (
             "solve --m1 1 --m2 2 --only zzz",
             f"--only 'zzz' is no quantity; there are {', '.join(oracle.NAMES)}",
@@ -292,6 +307,37 @@ def test_a_reader_that_leaves_early_ends_it_quietly(output: str) -> None:
 def test_a_reader_that_is_already_gone() -> None:
     ran = process(shell=f"atwood {' '.join(PAPER)} --digits 1000 | true; echo ${{PIPESTATUS[0]}}")
     assert (ran.out, ran.err) == ("0\n", "")
+
+
+@pytest.mark.parametrize("words", ["", "-h", "--version", "solve -h", "contact -h"])
+def test_help_to_a_reader_that_is_already_gone(words: str) -> None:
+    ran = process(shell=f"atwood {words} | true; echo ${{PIPESTATUS[0]}}")
+    assert (ran.out, ran.err) == ("0\n", "")
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+@pytest.mark.parametrize("command", ["solve", "contact"])
+def test_help_where_stdout_is_not_unicode(command: str, encoding: str) -> None:
+    ran = process(command, "-h", PYTHONIOENCODING=encoding)
+    assert (ran.status, ran.err) == (0, "")
+    assert "(kg m^2)" in ran.out
+
+
+@pytest.mark.parametrize(("words", "status"), [("--csv", 0), ("--m3 1", 2), ("--mu x", 2)])
+def test_closed_or_full_stderr_changes_no_status(words: str, status: int) -> None:
+    for stderr in ("2>&-", "2>/dev/full"):
+        ran = process(shell=f"atwood solve --m1 1 --m2 3 {words} {stderr} > /dev/null")
+        assert ran.status == status
+
+
+def test_the_door_opens_before_anything_is_loaded() -> None:
+    """So that Ctrl-C while the rest loads finds the handler in place."""
+    code = "import sys, atwood_cli.__main__; print(*sys.modules)"
+    loaded = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    ).stdout.split()
+    assert "atwood_cli.__main__" in loaded
+    assert not {"atwood_cli.cli", "atwood_cli.solver", "atwood_cli.scene", "typer"} & set(loaded)
 
 
 def test_closed_stdout_is_quiet() -> None:

@@ -215,7 +215,7 @@ def test_inertia_factor_above_one_is_questioned(given: dict[str, Any]) -> None:
             "3 kg > 2.566332395208135 kg, met; pulley's mass > 6.2653295808325415 kg, met by the critical one",
         ),
         ("0.3", "5", "3 kg > 2.566332395208135 kg, met; pulley's mass 5 kg > 6.2653295808325415 kg, not met"),
-        ("0.3", "inf", "3 kg > 2.566332395208135 kg, met; pulley's mass inf kg > 6.2653295808325415 kg, met"),
+        ("0.3", "inf", "3 kg > 2.566332395208135 kg, met; pulley's mass, infinite, > 6.2653295808325415 kg, met"),
         (
             "0.4",
             "100",
@@ -340,6 +340,31 @@ def test_a_huge_mu_is_answered_by_logic(mu: str) -> None:
     assert s.regime == "no-slip"
     assert s.least_heavier_mass == (Decimal("2.2586e1364376") if mu == "1e6" else Decimal("Infinity"))
     assert any("beyond 10^100000000" in note for note in s.notes) == (mu == "1e400")
+
+
+@pytest.mark.parametrize(
+    ("given", "verdict"),
+    [
+        (
+            {"M": "43.34192486321087"},
+            "Slips: mu = 0.3 is below the 0.3000000000000000029366308929282753 that would hold it.",
+        ),
+        ({"M": 43, "digits": 2}, "Holds: mu = 0.3, and 0.2997 is enough."),
+        ({"M": "43.5", "digits": 2}, "Slips: mu = 0.3 is below the 0.3002 that would hold it."),
+        (
+            {"m2": "2.566332395208135"},
+            "Holds on any pulley: the heavier mass, 2.566332395208135 kg, would have to exceed"
+            " 2.566332395208135320935260009096947 kg to slip.",
+        ),
+    ],
+)
+def test_a_verdict_tells_near_numbers_apart(given: dict[str, Any], verdict: str) -> None:
+    assert solve(**{"m1": 1, "m2": 3, "mu": "0.3", **given}).notes[0] == verdict
+
+
+def test_an_inertia_factor_of_thousands_of_digits_is_written_shortly() -> None:
+    notes = solve(m1=1, m2=3, I=Fraction(7**1700), R=Fraction(1, 3**3000), M=Fraction(1, 11**1300)).notes
+    assert any("The inertia factor I/(M R^2) is inf, above 1" in note for note in notes)
 
 
 def test_solution_is_a_record() -> None:
