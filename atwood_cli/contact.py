@@ -77,8 +77,7 @@ def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
     scene, sign = answers.case.scene, answers.case.sign
     from_light = q if sign >= 0 else 1 - q
     piece = _piece(answers, kind, from_light)
-
-    stuck = profile.STUCK[kind][piece] or answers.case.tensions_equal
+    stuck = profile.STUCK[kind][piece] or answers.case.frictionless
 
     def tension(machine: Machine[Any]) -> Any:
         # Both ends are exact, and so is the string stuck to the pulley from the light end on.
@@ -136,12 +135,9 @@ def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Number]]:
     normal = vector(lambda m: m.seen_from_m1(profile.normal(m.arcs(kind))))
     ends = vector(lambda m: m.resultant_vector)
     together = {axis: _difference(answers, friction[axis], normal[axis], plus=True) for axis in "xy"}
-    if answers.case.tensions_equal:
-        by_contact = answers.settle(lambda m: m.ar.number(0))
-    else:
-        by_contact = answers.nearly(
-            lambda m: profile.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.case.sign
-        )
+    by_contact = answers.nearly(
+        lambda m: profile.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.case.sign
+    )
     by_ends = answers.settle(lambda m: m.tension_difference * _radius(m))
     return {
         "friction": friction,
@@ -169,7 +165,7 @@ def _difference(answers: Answers, a: Number, b: Number, plus: bool = False) -> N
 
 def _notes(answers: Answers, kind: Kind) -> list[str]:
     case = answers.case
-    if case.tensions_equal:
+    if case.frictionless:
         return [WITHOUT_FRICTION]
     if case.regime == "no-slip" and case.scene.mu is None:
         return [WITHOUT_MU]

@@ -77,6 +77,17 @@ class Case:
             return "verge" if self.can_slip else "no-slip"
         return "slip" if self._beats_friction(self.excess_ratio(self.rim_mass)) else "no-slip"
 
+    @property
+    def limiting_mu(self) -> Fraction:
+        """The coefficient that friction is at on the verge (static) and in slip (kinetic)."""
+        mu, mu_k = self.scene.mu, self.scene.mu_k
+        return (mu if self.regime == "verge" or mu_k is None else mu_k) or Fraction(0)
+
+    @property
+    def frictionless(self) -> bool:
+        """Whether the string moves, or rests, without friction."""
+        return self.tensions_equal or (self.regime != "no-slip" and not self.limiting_mu)
+
     @cached_property
     def can_slip(self) -> bool:
         """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
@@ -151,18 +162,11 @@ class Machine(Generic[N]):
         return self._capstan_excess(self.scene.mu)
 
     @cached_property
-    def _limiting_mu(self) -> Fraction:
-        """The coefficient that the friction is at: static on the verge, kinetic in slip."""
-        scene = self.scene
-        mu = scene.mu if self.case.regime == "verge" or scene.mu_k is None else scene.mu_k
-        return mu or Fraction(0)
-
-    @cached_property
     def _state(self) -> tuple[N, N, N]:
         """Transfer z, surplus d and effective mass x; see `physics`."""
         case, difference = self.case, self.h - self.l
         if case.regime != "no-slip":
-            z = physics.transfer_at_limit(self.l, self._capstan_excess(self._limiting_mu))
+            z = physics.transfer_at_limit(self.l, self._capstan_excess(self.case.limiting_mu))
             return z, difference - z, self.l + z
         if case.sign == 0:
             w, v = self.ar.number(1), self.ar.number(0)
@@ -176,7 +180,7 @@ class Machine(Generic[N]):
     def _friction_mu(self) -> N:
         """The μ with which T(θ) = T1 e^{±μθ}, where that is so."""
         if self.case.regime != "no-slip":
-            return self.ar.number(self._limiting_mu)
+            return self.ar.number(self.case.limiting_mu)
         mu = self.mu_verge
         if self.scene.mu is not None and not self.case.tensions_equal:
             raise Undetermined(NOT_BOUNDED if exceeds_half_a_turn(self.scene) else NOT_DEFINITE)
@@ -303,7 +307,7 @@ class Machine(Generic[N]):
         if case.tensions_equal:
             return self.ar.number(0)
         if case.regime == "verge":
-            return self.ar.number(self._limiting_mu)
+            return self.ar.number(self.case.limiting_mu)
         if not case.pulley_known:
             raise Undetermined(NEEDS_M)
         ratio = self.ar.number(case.excess_ratio(case.rim_mass))

@@ -99,6 +99,19 @@ def test_the_exponential_profile_against_mpmath() -> None:
             assert abs(friction / (expected * mpmath.mpf("0.3")) - 1) < mpmath.mpf(10) ** -39
 
 
+@pytest.mark.parametrize(
+    "given", [{"mu": 0, "M": 1}, {"mu": 0}, {"M": 0}, {"mu": 1, "mu_k": 0, "M": 10**6, "m2": 300}]
+)
+def test_without_friction_the_tension_is_exact_even_at_a_tie(given: dict[str, Any]) -> None:
+    """14.709975 N to 7 digits is a tie, which no enclosure would settle."""
+    seen = arc(points=4, digits=7, **{"m1": 1, "m2": 3, **given})
+    if "m2" not in given:
+        assert {point["tension"] for point in seen.points} == {Decimal("14.70998")}
+    assert {point["friction_per_radian"] for point in seen.points} == {0}
+    assert seen.balance["torque"]["contact"] == seen.balance["torque"]["ends"] == 0
+    assert seen.notes == ["Both tensions are equal: there is no friction."]
+
+
 def test_creep_is_where_the_string_leaves_the_pulley() -> None:
     for m1, m2, quiet, busy in ((1, 3, 0, -1), (3, 1, -1, 0)):
         points = arc("creep", m1=m1, m2=m2, M=10, mu="0.3").points

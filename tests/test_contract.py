@@ -215,7 +215,11 @@ def test_inertia_factor_above_one_is_questioned(given: dict[str, Any]) -> None:
             "3 kg > 2.566332395208135 kg, met; pulley's mass > 6.2653295808325415 kg, met by the critical one",
         ),
         ("0.3", "5", "3 kg > 2.566332395208135 kg, met; pulley's mass 5 kg > 6.2653295808325415 kg, not met"),
-        ("0.3", "inf", "3 kg > 2.566332395208135 kg, met; pulley's mass, infinite, > 6.2653295808325415 kg, met"),
+        (
+            "0.3",
+            "inf",
+            "3 kg > 2.566332395208135 kg, met; pulley's mass, infinite, > 6.2653295808325415 kg, met",
+        ),
         (
             "0.4",
             "100",
