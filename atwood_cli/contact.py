@@ -9,11 +9,13 @@ correctly, and the residuals are exact differences of the printed numbers.
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
+from math import inf
 from typing import Any, NamedTuple
 
 from . import profile
 from .machine import FREE_END, NEEDS_M, Machine, exceeds_half_a_turn, wrap_angle
 from .profile import Kind
+from .rounding import is_infinite
 from .scene import Radians, SceneError, read_whole
 from .solver import Answers
 
@@ -33,6 +35,7 @@ ABOUT_KIND = {
     "exponential": "Friction is at its limit all along the arc.",
 }
 WITHOUT_MU = "Without mu, shown is the string on the verge, with the least mu that holds it."
+TOO_LARGE = "Forces are beyond the range of doubles; ask for digits (--digits 17) to see them."
 WITHOUT_FRICTION = "Both tensions are equal: there is no friction."
 
 
@@ -158,7 +161,12 @@ def _radius(machine: Machine[Any]) -> Any:
 
 
 def _difference(answers: Answers, a: Number, b: Number, plus: bool = False) -> Number:
-    """The difference (or sum) of two printed numbers, exact but for its own rounding."""
+    """The difference (or sum) of two printed numbers, exact but for its own rounding.
+
+    Infinite, so not shown, where one of them is.
+    """
+    if is_infinite(a) or is_infinite(b):
+        return inf
     value: Number = answers.round(Fraction(a) + (Fraction(b) if plus else -Fraction(b)))
     return value
 
@@ -166,7 +174,10 @@ def _difference(answers: Answers, a: Number, b: Number, plus: bool = False) -> N
 def _notes(answers: Answers, kind: Kind) -> list[str]:
     case = answers.case
     if case.frictionless:
-        return [WITHOUT_FRICTION]
-    if case.regime == "no-slip" and case.scene.mu is None:
-        return [WITHOUT_MU]
-    return [ABOUT_KIND[kind]]
+        about = WITHOUT_FRICTION
+    elif case.regime == "no-slip" and case.scene.mu is None:
+        about = WITHOUT_MU
+    else:
+        about = ABOUT_KIND[kind]
+    tensions = (answers["tension_1"], answers["tension_2"])
+    return [about, TOO_LARGE] if any(map(is_infinite, tensions)) else [about]

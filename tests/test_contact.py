@@ -373,6 +373,16 @@ def test_contact_json(atwood: Atwood) -> None:
     assert any("not unique" in note for note in result["notes"])
 
 
+def test_contact_beyond_the_doubles_says_so(atwood: Atwood) -> None:
+    words = ["contact", "--m1", "1e400", "--m2", "3e400", "--mu", "0.3", "--points", "2", "--json"]
+    result = json.loads(atwood(*words).out, parse_constant=lambda word: pytest.fail(word))
+    assert result["points"][0]["tension"] is None
+    assert result["balance"]["residual"] == {"x": None, "y": None}
+    assert "--digits" in result["notes"][-1]
+    result = json.loads(atwood(*words, "--digits", "6").out, parse_float=Decimal)
+    assert result["points"][0]["tension"] == Decimal("1.05707e401")
+
+
 def test_contact_csv(atwood: Atwood) -> None:
     ran = atwood(*PAPER, "--csv", "--points", "5", "--R", "2")
     names, *rows = csv.reader(io.StringIO(ran.out))
