@@ -261,7 +261,7 @@ class Enclosures:
         """e^x for x >= 0, without the digits that e^x - 1 takes if x is tiny."""
         x = self._from_zero(x)
         at_lo, width = self._expm1(x.lo, ONE) + 1, self._width(x)
-        if width.hi > 1:
+        if width.hi > 1 or at_lo.lo == inf:
             return Enclosure(self, at_lo.lo, (self._expm1(x.hi, ONE) + 1).hi)
         return Enclosure(self, at_lo.lo, (at_lo + 2 * width * at_lo).hi)
 
@@ -269,7 +269,7 @@ class Enclosures:
         """e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
         x = self._from_zero(x)
         at_lo, width = self._expm1(x.lo), self._width(x)
-        if width.hi > 1:
+        if width.hi > 1 or at_lo.lo == inf:
             return Enclosure(self, at_lo.lo, self._expm1(x.hi).hi)
         return Enclosure(self, at_lo.lo, (at_lo + 2 * width * (at_lo + 1)).hi)
 

@@ -106,12 +106,13 @@ Digits = Annotated[
     str | None, _output(metavar="N", help="Significant digits, 1 to 1000 (otherwise doubles).")
 ]
 AsJson = Annotated[bool, _output("--json", help="Print JSON: results, scene and notes.")]
-AsCsv = Annotated[bool, _output("--csv", help="Print CSV: a line of names, a line of values.")]
+AsCsv = Annotated[bool, _output("--csv", help="Print CSV, with a line of names first.")]
 Only = Annotated[list[str] | None, _output(metavar="NAME", help="Print only this quantity; repeatable.")]
 
 
+DEFAULT_POINTS = 13
 Points = Annotated[
-    str,
+    str | None,
     _output(
         metavar="N", help="How many angles along the arc to show, both ends among them; 13 if not given."
     ),
@@ -210,7 +211,7 @@ def solve(
 def contact(
     given: Mapping[str, str | None],
     *,
-    points: Points = "13",
+    points: Points = None,
     profile: Profile = None,
     elements: Elements = None,
     extrapolate: Extrapolate = False,
@@ -237,17 +238,22 @@ def contact(
     if elements is not None:
         from .elements import elements as march_elements
 
-        rows = march_elements(answers, elements, extrapolate)
+        for name, value in (("points", points), ("profile", profile), ("figure", figure)):
+            if value is not None:
+                raise SceneError(name, value, "has no say beside --elements; leave one of them out")
+        found = march_elements(answers, elements, extrapolate)
         if json:
-            output.print_elements_json(answers, rows)
+            output.print_elements_json(answers, found)
         elif csv:
-            output.print_records_csv([row._asdict() for row in rows])
+            output.print_records_csv([row._asdict() for row in found.rows])
+            for note in found.notes:
+                _say(note)
         else:
-            output.print_elements(answers, rows)
+            output.print_elements(answers, found)
         return DONE
     if extrapolate:
         raise SceneError("extrapolate", None, "needs --elements")
-    arc = solve_contact(answers, points, profile)
+    arc = solve_contact(answers, points or DEFAULT_POINTS, profile)
     if figure is not None:
         from .figure import save
 
@@ -300,6 +306,9 @@ def run(arguments: list[str] | None = None) -> int:
             raise
         _say(f"this needs {error.name}; install it with: pip install 'atwood-cli[{EXTRAS[error.name]}]'")
         return COULD_NOT
-    except (OSError, ArithmeticError) as error:
+    except OSError as error:
+        _say(f"cannot write {error.filename or 'the output'}: {error.strerror}")
+        return COULD_NOT
+    except ArithmeticError as error:
         _say(str(error))
         return COULD_NOT

@@ -26,7 +26,7 @@ MAX_POINTS = 100_000
 ABOUT_KIND = {
     "creep": (
         "The tension is not unique while friction is to spare. Shown is that of a slightly elastic"
-        " string: it creeps, with friction at its limit, only where it leaves the pulley."
+        " string: it creeps, with friction at its limit, only at the heavier mass's end of the arc."
     ),
     "least": (
         "The tension is not unique while friction is to spare. Shown is that with the least net"
@@ -35,7 +35,8 @@ ABOUT_KIND = {
     "exponential": "Friction is at its limit all along the arc.",
 }
 WITHOUT_MU = "Without mu, shown is the string on the verge, with the least mu that holds it."
-TOO_LARGE = "Forces are beyond the range of doubles; ask for digits (--digits 17) to see them."
+ROUNDING = "Residuals are differences of the rounded numbers shown."
+RESIDUALS = (("residual", "x"), ("residual", "y"), ("torque", "residual"))
 WITHOUT_FRICTION = "Both tensions are equal: there is no friction."
 
 
@@ -67,11 +68,9 @@ def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -
         raise SceneError("profile", kind, "is known for up to half a turn of wrap (180 degrees)")
     last = read_whole("points", points, 2, MAX_POINTS) - 1
     fractions = [Fraction(j, last) for j in range(last + 1)]
+    balance = _balance(answers, shown)
     return Contact(
-        shown,
-        [_point(answers, shown, q) for q in fractions],
-        _balance(answers, shown),
-        _notes(answers, shown),
+        shown, [_point(answers, shown, q) for q in fractions], balance, _notes(answers, shown, balance)
     )
 
 
@@ -171,7 +170,7 @@ def _difference(answers: Answers, a: Number, b: Number, plus: bool = False) -> N
     return value
 
 
-def _notes(answers: Answers, kind: Kind) -> list[str]:
+def _notes(answers: Answers, kind: Kind, balance: dict[str, dict[str, Number]]) -> list[str]:
     case = answers.case
     if case.frictionless:
         about = WITHOUT_FRICTION
@@ -179,5 +178,10 @@ def _notes(answers: Answers, kind: Kind) -> list[str]:
         about = WITHOUT_MU
     else:
         about = ABOUT_KIND[kind]
-    tensions = (answers["tension_1"], answers["tension_2"])
-    return [about, TOO_LARGE] if any(map(is_infinite, tensions)) else [about]
+    found = [about]
+    for name in ("tension_1", "tension_2"):
+        if answers[name] is not None and name in answers.reasons:
+            found.append(f"{name}: {answers.reasons[name]}.")
+    if any(balance[name][part] for name, part in RESIDUALS):
+        found.append(ROUNDING)
+    return found

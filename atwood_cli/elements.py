@@ -31,23 +31,36 @@ class Row(NamedTuple):
     error: Decimal
 
 
+class Elements(NamedTuple):
+    """What the elements give, and why something is missing."""
+
+    rows: list[Row]
+    notes: list[str]
+
+
+TOO_LARGE = "run in doubles, which this scene is too large for"
+TOO_SMALL = "run in doubles, which this scene is too small for"
+NOT_LIMITING = "tension_ratio, friction_force: not decided by mu while friction is to spare."
+NO_MASS = "critical_pulley_mass: so few elements overrate friction, and find no pulley heavy enough."
+
+
 def march(mu: float, phi: float, count: int) -> tuple[float, float, float]:
     """k_N, the tension ratio over ``count`` elements, and the net friction (x, y) over T_l.
 
-    Raises SceneError where the elements are too few for friction to hold one in balance.
+    Elements must be so many that μ tan(Δθ/2) < 1. Raises SceneError where k_N is no double.
     """
     import numpy as np
 
-    if not _balanced(mu, phi, count):
-        rule = f"are too few for this mu and wrap, which take at least {_least(mu, phi)}"
-        raise SceneError("elements", count, rule)
     step = phi / count
     grip = mu * tan(step / 2)
     tension, x, y = 1.0, 0.0, 0.0
     for first in range(0, count, BLOCK):
         ends = np.full(min(BLOCK, count - first), (1 + grip) / (1 - grip))
         ends[0] *= tension
-        np.multiply.accumulate(ends, out=ends)
+        with np.errstate(over="ignore"):
+            np.multiply.accumulate(ends, out=ends)
+        if not isfinite(ends[-1]):
+            raise SceneError("elements", count, TOO_LARGE)
         # (8a): the friction of an element is (F2 - F1) cos(Δθ/2), tangential at its middle.
         friction = np.diff(ends, prepend=tension) * cos(step / 2)
         middle = (np.arange(first, first + len(ends)) + 0.5) * step
@@ -62,14 +75,22 @@ def _balanced(mu: float, phi: float, count: int) -> bool:
     return phi / (2 * count) < atan2(1, mu)
 
 
-def _least(mu: float, phi: float) -> int:
-    least = floor(phi / (2 * atan2(1, mu)))
-    while not _balanced(mu, phi, max(1, least)):
-        least += 1
-    return max(1, least)
+def _check_count(mu: float, phi: float, count: int, halved: bool) -> None:
+    """Raise SceneError, with the least number that will do, where elements are too few to be in balance."""
+    times = 2 if halved else 1
+    if _balanced(mu, phi, count // times):
+        return
+    most = MAX_ELEMENTS // times
+    rule = f"are too few for this mu and wrap, and so are {MAX_ELEMENTS}, the most"
+    if _balanced(mu, phi, most):
+        least = max(1, floor(phi / (2 * atan2(1, mu))))
+        while not _balanced(mu, phi, least):
+            least += 1
+        rule = f"are too few for this mu and wrap, which take at least {times * least}"
+    raise SceneError("elements", count, rule)
 
 
-def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> list[Row]:
+def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> Elements:
     """What friction at its limit decides, from ``count`` elements, beside the exact values.
 
     With ``extrapolate``, Richardson's, from half as many elements too. Raises SceneError.
@@ -78,17 +99,25 @@ def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> l
     if extrapolate and count % 2:
         raise SceneError("elements", count, "must be even, to extrapolate from half as many")
     doubles, exact = Answers(answers.case.scene), Answers(answers.case.scene, EXACT_DIGITS)
-    values = _by_elements(doubles, count)
+    machine = _Doubles(doubles, count)
+    _check_count(machine.mu, machine.phi, count, extrapolate)
+    values = machine.solve(count)
     if extrapolate:
-        coarse = _by_elements(doubles, count // 2)
+        coarse = machine.solve(count // 2)
         values = {name: (4 * value - coarse[name]) / 3 for name, value in values.items()}
-    rows = []
+    rows, notes = [], []
     for name, value in values.items():
-        if isfinite(value):
-            right, shown = Fraction(exact.settle(EXACT[name])), Fraction(value)
-            error = to_digits(3)((shown - right) / right if right else shown)
-            rows.append(Row(name, answers.round(shown), answers.settle(EXACT[name]), error))
-    return rows
+        if not isfinite(value):
+            notes.append(NO_MASS)
+            continue
+        right, shown = Fraction(exact.settle(EXACT[name])), Fraction(value)
+        if right and not shown:
+            raise SceneError("elements", count, TOO_SMALL)
+        error = to_digits(3)((shown - right) / right if right else shown)
+        rows.append(Row(name, answers.round(shown), answers.settle(EXACT[name]), error))
+    if "friction_force" not in values:
+        notes.append(NOT_LIMITING)
+    return Elements(rows, notes)
 
 
 EXACT: dict[str, OnMachine] = {
@@ -99,34 +128,40 @@ EXACT: dict[str, OnMachine] = {
 }
 
 
-def _by_elements(answers: Answers, count: int) -> dict[str, float]:
-    case, scene = answers.case, answers.case.scene
+class _Doubles:
+    """A scene in doubles, solved by elements."""
 
-    def double(of: OnMachine) -> float:
-        value = float(answers.settle(of))
+    def __init__(self, answers: Answers, count: int) -> None:
+        self.answers, self.case, self.count = answers, answers.case, count
+        scene = answers.case.scene
+        self.phi = self._double(lambda machine: wrap_angle(machine.ar, scene))
+        self.mu = self._double(lambda machine: machine.reference_mu)
+
+    def _double(self, of: OnMachine) -> float:
+        value = float(self.answers.settle(of))
         if not isfinite(value):
-            raise SceneError("elements", count, "run in doubles, which this scene is too large for")
+            raise SceneError("elements", self.count, TOO_LARGE)
         return value
 
-    phi = double(lambda machine: wrap_angle(machine.ar, scene))
-    mu = double(lambda machine: machine.reference_mu)
-    k, x, y = march(mu, phi, count)
-    found = {"capstan_ratio": k}
-    l, h = (double(lambda machine: machine.l), double(lambda machine: machine.h))
-    if answers["critical_pulley_mass"] is not None:
-        beta = double(lambda machine: machine.ar.number(case.beta or 0))
-        surplus = h - l - physics.transfer_at_limit(l, k - 1)
-        # Few elements overrate friction, and may find no pulley heavy enough.
-        mass = physics.critical_pulley_mass(l, h, k - 1, surplus, beta) if surplus > 0 else inf
-        found["critical_pulley_mass"] = mass
-    if answers["friction_force"] is None:
+    def solve(self, count: int) -> dict[str, float]:
+        case, answers = self.case, self.answers
+        k, x, y = march(self.mu, self.phi, count)
+        found = {"capstan_ratio": k}
+        l, h = self._double(lambda machine: machine.l), self._double(lambda machine: machine.h)
+        if answers["critical_pulley_mass"] is not None:
+            beta = self._double(lambda machine: machine.ar.number(case.beta or 0))
+            surplus = h - l - physics.transfer_at_limit(l, k - 1)
+            mass = physics.critical_pulley_mass(l, h, k - 1, surplus, beta) if surplus > 0 else inf
+            found["critical_pulley_mass"] = mass
+        if answers["friction_force"] is None:
+            return found
+        if case.regime == "slip" and case.scene.mu_k is not None:
+            kinetic = self._double(lambda machine: machine.arc_mu("exponential"))
+            k, x, y = march(kinetic, self.phi, count)
+        light = self._double(lambda machine: machine.light_tension)
+        if case.regime != "no-slip":
+            effective = l + physics.transfer_at_limit(l, k - 1)
+            light = physics.light_tension(l, h, effective, self._double(lambda machine: machine.g))
+        found["tension_ratio"] = k if case.sign >= 0 else 1 / k
+        found["friction_force"] = light * hypot(x, y)
         return found
-    if case.regime == "slip" and scene.mu_k is not None:
-        k, x, y = march(double(lambda machine: machine.arc_mu("exponential")), phi, count)
-    light = double(lambda machine: machine.light_tension)
-    if case.regime != "no-slip":
-        effective = l + physics.transfer_at_limit(l, k - 1)
-        light = physics.light_tension(l, h, effective, double(lambda machine: machine.g))
-    found["tension_ratio"] = k if case.sign >= 0 else 1 / k
-    found["friction_force"] = light * hypot(x, y)
-    return found

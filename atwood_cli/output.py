@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from .contact import Contact
-    from .elements import Row
+    from .elements import Elements
 
 COLUMN_UNITS = {
     "angle": "°",
@@ -32,7 +32,7 @@ COLUMN_UNITS = {
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 ASCII = str.maketrans(
     {"μ": "mu", "φ": "phi", "β": "beta", "π": "pi", "τ": "tau", "α": "alpha", "θ": "theta"}
-    | {"₁": "1", "₂": "2", "²": "^2", "°": " deg", "·": "*", "±": "+/-", "≤": "<=", "≥": ">="}
+    | {"₁": "1", "₂": "2", "²": "^2", "°": "deg", "·": "*", "±": "+/-", "≤": "<=", "≥": ">="}
 )
 
 
@@ -228,32 +228,25 @@ def print_records_csv(records: Sequence[Mapping[str, object]]) -> None:
     writer(sys.stdout, lineterminator="\n").writerows([list(records[0]), *rows])
 
 
-def print_elements(answers: Answers, rows: "Sequence[Row]") -> None:
-    """What the elements give beside the exact values."""
+def print_elements(answers: Answers, found: "Elements") -> None:
+    """What the elements give beside the exact values, and the notes."""
     page = Page()
     page.head(answers)
-    values, exact = (_aligned(cell(row[i]) for row in rows) for i in (1, 2))
-    errors = [cell(row.error) for row in rows]
-    names = [row.name for row in rows]
+    names, errors = [row.name for row in found.rows], [cell(row.error) for row in found.rows]
+    values, exact = (_aligned(cell(row[i]) for row in found.rows) for i in (1, 2))
     page.table(
         ["Quantity", "Elements", "Exact", "Relative error"],
         [list(zip(names, values, exact, errors, strict=True))],
     )
+    for note in found.notes:
+        page.say(note)
 
 
-def print_elements_json(answers: Answers, rows: "Sequence[Row]") -> None:
-    """Scene, regime and the rows by name."""
-    print(
-        _json(
-            {
-                "scene": _scene(answers.case.scene),
-                "regime": answers.case.regime,
-                "elements": {
-                    row.name: {"value": row.value, "exact": row.exact, "error": row.error} for row in rows
-                },
-            }
-        )
-    )
+def print_elements_json(answers: Answers, found: "Elements") -> None:
+    """Scene, regime, the rows by name, and the notes."""
+    rows = {row.name: {"value": row.value, "exact": row.exact, "error": row.error} for row in found.rows}
+    scene, notes = _scene(answers.case.scene), [verdict(answers), *found.notes]
+    print(_json({"scene": scene, "regime": answers.case.regime, "elements": rows, "notes": notes}))
 
 
 def _integer_part(value: str) -> int:

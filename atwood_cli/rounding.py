@@ -74,6 +74,8 @@ def middle(quantity: Quantity, digits: int) -> Fraction:
     """About the value of a quantity, right to about so many digits."""
 
     def tight(value: Enclosure) -> Fraction | None:
+        if is_infinite(value.hi):
+            return None
         lo, hi = Fraction(value.lo), Fraction(value.hi)
         return (lo + hi) / 2 if (hi - lo) * 10**digits <= abs(lo) else None
 

@@ -35,7 +35,7 @@ LENGTH = {
     "ft": "0.3048",
     "yd": "0.9144",
 }
-ANGLE = {"deg": "1", "turn": "360", "rad": "1"}
+ANGLE = {"deg": "1", "°": "1", "turn": "360", "rad": "1"}
 DIMENSIONS = {"mass": MASS, "length": LENGTH, "angle": ANGLE}
 
 INERTIA_FACTORS = {"disk": "0.5", "hoop": "1"}
@@ -61,7 +61,7 @@ MAX_DIGITS, MAX_EXPONENT = 1000, 500
 # No text within those limits is longer as a numerator or denominator.
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 
-NUMBER = re.compile(r"([+-]?)(\d+(?:\.\d+)?|\.\d+)(?:e([+-]?\d+))?(?: *([A-Za-z]+))?", re.ASCII)
+NUMBER = re.compile(r"([+-]?)(\d+(?:\.\d+)?|\.\d+)(?:e([+-]?\d+))?(?: *([A-Za-z]+|°))?", re.ASCII)
 NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
 
 

@@ -1,11 +1,12 @@
 """A solved scene in words: what the string does and why, and what is missing and why."""
 
+from decimal import Decimal
 from fractions import Fraction
 from math import inf
 
 from .arithmetic import LARGEST_EXPONENT
 from .rounding import as_typed, is_infinite, text, to_double
-from .scene import MAX_DIGITS
+from .scene import MAX_DIGITS, MAX_MAGNITUDE
 from .solver import DOUBLE_DIGITS, Answers
 
 
@@ -96,7 +97,9 @@ def _apart(answers: Answers, name: str, other: Fraction, above: bool) -> str:
     finer, digits = answers, answers.digits or DOUBLE_DIGITS
     while not is_infinite(value := finer[name]):
         shown = text(value)
-        if Fraction(shown) != other and (Fraction(shown) > other) == above:
+        # Beyond any input it is above; a fraction of it might have millions of digits.
+        huge = Decimal(shown).adjusted() > MAX_MAGNITUDE
+        if huge or (Fraction(shown) != other and (Fraction(shown) > other) == above):
             return shown
         if digits == MAX_DIGITS:  # the same number, or as good as
             break

@@ -24,7 +24,7 @@ from scipy.sparse import diags_array, vstack
 
 from atwood_cli import Scene, SceneError, solve
 from atwood_cli.contact import Contact, contact
-from atwood_cli.elements import elements
+from atwood_cli.elements import Row, elements
 from atwood_cli.solver import Answers
 
 from . import oracle
@@ -273,7 +273,9 @@ def test_least_friction_of_a_hardly_loaded_string_is_found() -> None:
 # Wrap
 
 
-@pytest.mark.parametrize(("wrap", "same"), [("1.5turn", "540"), ("90deg", "90"), ("0.5turn", "180")])
+@pytest.mark.parametrize(
+    ("wrap", "same"), [("1.5turn", "540"), ("90deg", "90"), ("90°", "90"), ("0.5turn", "180")]
+)
 def test_wrap_has_units(wrap: str, same: str) -> None:
     assert solve(m1=1, m2=3, M=1, wrap=wrap) == solve(m1=1, m2=3, M=1, wrap=same)
 
@@ -296,6 +298,10 @@ def test_turns_multiply_the_grip() -> None:
 # String elements
 
 
+def rows_of(answers: Answers, count: int, extrapolate: bool = False) -> list[Row]:
+    return elements(answers, count, extrapolate).rows
+
+
 @pytest.mark.parametrize("given", [{"mu": "0.3"}, {"M": "10"}, {"M": "100", "mu": "0.3", "mu_k": "0.25"}])
 @pytest.mark.parametrize(
     ("extrapolate", "order", "counts"), [(False, 2, (200, 400, 800)), (True, 4, (60, 120, 240))]
@@ -304,7 +310,7 @@ def test_order_of_the_elements(
     given: dict[str, str], extrapolate: bool, order: int, counts: tuple[int, ...]
 ) -> None:
     answers = Answers(Scene.read({"m1": 1, "m2": 3, **given}))
-    errors = [{row.name: float(row.error) for row in elements(answers, n, extrapolate)} for n in counts]
+    errors = [{row.name: float(row.error) for row in rows_of(answers, n, extrapolate)} for n in counts]
     for name in errors[0]:
         for coarse, fine in pairwise(errors):
             assert log2(coarse[name] / fine[name]) == pytest.approx(order, abs=0.02), name
@@ -314,7 +320,7 @@ def test_elements_are_an_independent_march() -> None:
     """The same march, an element at a time, in exact fractions."""
     ratio = {
         row.name: float(row.value)
-        for row in elements(Answers(Scene.read({"m1": 1, "m2": 3, "mu": "0.3"})), 10)
+        for row in rows_of(Answers(Scene.read({"m1": 1, "m2": 3, "mu": "0.3"})), 10)
     }
     grip = Fraction(0.3 * float(np.tan(pi / 20)))
     assert ratio["capstan_ratio"] == pytest.approx(float(((1 + grip) / (1 - grip)) ** 10), rel=1e-14)
@@ -325,14 +331,14 @@ def test_elements_are_an_independent_march() -> None:
 
 def test_ten_million_elements_lose_digits_to_rounding() -> None:
     answers = Answers(Scene.read({"m1": 1, "m2": 3, "mu": "0.3"}))
-    (best, *_), (worn, *_) = elements(answers, 100_000), elements(answers, 10_000_000)
+    (best, *_), (worn, *_) = rows_of(answers, 100_000), rows_of(answers, 10_000_000)
     assert abs(best.error) < 1e-9
     assert abs(best.error) < abs(worn.error) < 1e-7
 
 
 def test_elements_mirror() -> None:
     light, heavy = (
-        {row.name: row for row in elements(Answers(Scene.read({"m1": a, "m2": b, "mu": "0.3"})), 50)}
+        {row.name: row for row in rows_of(Answers(Scene.read({"m1": a, "m2": b, "mu": "0.3"})), 50)}
         for a, b in ((1, 3), (3, 1))
     )
     assert heavy["tension_ratio"].value == pytest.approx(1 / light["tension_ratio"].value)
@@ -340,11 +346,21 @@ def test_elements_mirror() -> None:
 
 
 def test_elements_say_only_what_friction_at_its_limit_decides() -> None:
-    rows = elements(Answers(Scene.read({"m1": 1, "m2": 3, "M": 10, "mu": "0.3"})), 50)
+    rows = rows_of(Answers(Scene.read({"m1": 1, "m2": 3, "M": 10, "mu": "0.3"})), 50)
     assert [row.name for row in rows] == ["capstan_ratio", "critical_pulley_mass"]
     # Four elements overrate friction so much that they find no pulley heavy enough.
-    coarse = elements(Answers(Scene.read({"m1": 1, "m2": "2.6", "mu": "0.3"})), 4)
+    coarse = rows_of(Answers(Scene.read({"m1": 1, "m2": "2.6", "mu": "0.3"})), 4)
     assert [row.name for row in coarse] == ["capstan_ratio", "tension_ratio", "friction_force"]
+
+
+def test_elements_say_why_something_is_missing(atwood: Atwood) -> None:
+    words = ["contact", "--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3", "--elements", "10"]
+    why = "tension_ratio, friction_force: not decided by mu while friction is to spare."
+    assert atwood(*words).out.endswith(why + "\n")
+    assert json.loads(atwood(*words, "--json").out)["notes"][-1] == why
+    assert atwood(*words, "--csv").err == f"atwood: {why}\n"
+    few = ["contact", "--m1", "1", "--m2", "2.57", "--mu", "0.3", "--elements", "2"]
+    assert "critical_pulley_mass: so few elements overrate friction" in atwood(*few).out
 
 
 # The command
@@ -373,12 +389,40 @@ def test_contact_json(atwood: Atwood) -> None:
     assert any("not unique" in note for note in result["notes"])
 
 
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"mu": "1e300", "M": 10},
+        {"mu": "0.3", "M": 10, "wrap": "1e100"},
+        {"m1": "1e-300", "m2": "1e300", "M": 1, "mu": 1000},
+        {"m1": "1e307", "m2": "3e308", "M": "1e308", "mu": 4},
+        {"mu": "0.3", "M": 10, "wrap": "1e400rad"},
+    ],
+)
+def test_contact_where_few_digits_overflow(given: dict[str, Any]) -> None:
+    """The width of an enclosure, times a huge mu, is an infinite e^x until there are digits enough."""
+    for digits in (None, 10):
+        seen = arc(points=3, digits=digits, **{"m1": 1, "m2": 3, **given})
+        assert seen.balance["torque"]["contact"] == seen.balance["torque"]["ends"]
+
+
+def test_contact_below_the_doubles_says_so() -> None:
+    notes = arc(points=2, m1="1e-400", m2="3e-400", M="1e-400", mu=4).notes
+    assert any("tension_1: not 0 but below the range of doubles" in note for note in notes)
+
+
+def test_residuals_of_rounding_are_explained() -> None:
+    assert (
+        "Residuals are differences of the rounded numbers shown." in arc(digits=1, m1=1, m2=3, mu="0.3").notes
+    )
+
+
 def test_contact_beyond_the_doubles_says_so(atwood: Atwood) -> None:
     words = ["contact", "--m1", "1e400", "--m2", "3e400", "--mu", "0.3", "--points", "2", "--json"]
     result = json.loads(atwood(*words).out, parse_constant=lambda word: pytest.fail(word))
     assert result["points"][0]["tension"] is None
     assert result["balance"]["residual"] == {"x": None, "y": None}
-    assert "--digits" in result["notes"][-1]
+    assert any("tension_1: beyond" in note and "--digits" in note for note in result["notes"])
     result = json.loads(atwood(*words, "--digits", "6").out, parse_float=Decimal)
     assert result["points"][0]["tension"] == Decimal("1.05707e401")
 
@@ -431,6 +475,32 @@ def test_elements_in_every_output(atwood: Atwood) -> None:
             "--m1 1e400 --m2 3e400 --mu 0.3 --elements 10",
             "--elements 10 run in doubles, which this scene is too large for",
         ),
+        (
+            "--m1 1 --m2 3 --mu 5 --M inf --elements 10 --extrapolate",
+            "--elements 10 are too few for this mu and wrap, which take at least 16",
+        ),
+        *(
+            (
+                f"--m1 1 --m2 3 --M 10 {huge} --elements 10",
+                "--elements 10 are too few for this mu and wrap, and so are 10000000, the most",
+            )
+            for huge in ("--mu 1e12", "--mu 1e30", "--mu 1e300", "--mu 0.3 --wrap 1e30")
+        ),
+        (
+            "--m1 1 --m2 3 --M 10 --mu 250 --elements 10000",
+            "--elements 10000 run in doubles, which this scene is too large for",
+        ),
+        (
+            "--m1 1e-320 --m2 3e-320 --mu 0.3 --elements 100",
+            "--elements 100 run in doubles, which this scene is too small for",
+        ),
+        *(
+            (
+                f"--m1 1 --m2 3 --mu 0.3 --elements 10 {option} {value}",
+                f"{option} {value!r} has no say beside --elements; leave one of them out",
+            )
+            for option, value in (("--figure", "e.svg"), ("--points", "5"), ("--profile", "creep"))
+        ),
         ("--m1 1 --m2 3 --json --csv", "--json and --csv exclude each other; give one of them"),
         ("--m1 1 --m2 3 --figure x.gif", "--figure 'x.gif' must end in one of .svg, .png, .pdf"),
         (
@@ -446,9 +516,9 @@ def test_contact_errors(atwood: Atwood, arguments: str, message: str) -> None:
 
 def test_least_number_of_elements_is_the_least() -> None:
     answers = Answers(Scene.read({"m1": 1, "m2": 3, "mu": 50}))
-    assert elements(answers, 79)[0].value > 0
+    assert rows_of(answers, 79)[0].value > 0
     with pytest.raises(SceneError):
-        elements(answers, 78)
+        rows_of(answers, 78)
 
 
 def test_solving_needs_no_numpy_for_the_arc() -> None:
@@ -496,7 +566,7 @@ def test_figure_that_cannot_be_written(atwood: Atwood, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     ran = atwood("contact", *FIGURE, "--figure", str(tmp_path / "nowhere" / "arc.svg"))
     assert (ran.status, ran.out) == (1, "")
-    assert "No such file or directory" in ran.err
+    assert ran.err == f"atwood: cannot write {tmp_path / 'nowhere' / 'arc.svg'}: No such file or directory\n"
 
 
 def test_figure_without_its_extra_names_the_pip_command() -> None:

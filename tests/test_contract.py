@@ -366,6 +366,20 @@ def test_a_verdict_tells_near_numbers_apart(given: dict[str, Any], verdict: str)
     assert solve(**{"m1": 1, "m2": 3, "mu": "0.3", **given}).notes[0] == verdict
 
 
+def test_a_verdict_on_a_number_of_millions_of_digits_makes_no_fraction_of_it() -> None:
+    """It took 25 s to compare 10^11824595 with 1.5 as fractions."""
+    s = solve(m1=1, m2="1.5", M=10, mu="2.6e7", wrap=60, digits=40)
+    assert s.least_heavier_mass is not None
+    assert s.least_heavier_mass.adjusted() == 11824595
+    assert "e11824595 kg, not met" in s.notes[1]
+
+
+def test_a_huge_wrap_in_radians_settles() -> None:
+    s = solve(m1=1, m2=3, M=10, mu="0.3", wrap="1e499rad", digits=200)
+    assert s.regime == "no-slip"
+    assert s.least_heavier_mass == Decimal("Infinity")
+
+
 def test_an_inertia_factor_of_thousands_of_digits_is_written_shortly() -> None:
     notes = solve(m1=1, m2=3, I=Fraction(7**1700), R=Fraction(1, 3**3000), M=Fraction(1, 11**1300)).notes
     assert any("The inertia factor I/(M R^2) is inf, above 1" in note for note in notes)

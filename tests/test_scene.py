@@ -72,7 +72,7 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
     ({"m1": "1kgs"}, "m1 '1kgs' has the unknown unit 'kgs'; did you mean kg?"),
     ({"m1": "1 furlong"}, f"m1 '1 furlong' has the unknown unit 'furlong'; there are {MASSES}"),
     ({"m1": "5cm"}, f"m1 '5cm' has a unit of length; it takes one of mass ({MASSES})"),
-    ({"wrap": "5cm"}, "wrap '5cm' has a unit of length; it takes one of angle (deg, turn, rad)"),
+    ({"wrap": "5cm"}, "wrap '5cm' has a unit of length; it takes one of angle (deg, °, turn, rad)"),
     ({"wrap": "2 turns"}, "wrap '2 turns' has the unknown unit 'turns'; did you mean turn?"),
     ({"wrap": "0rad"}, "wrap '0rad' must be above 0, and finite"),
     ({"R": "5kg"}, f"R '5kg' has a unit of mass; it takes one of length ({LENGTHS})"),
