@@ -121,11 +121,22 @@ class Page:
         self.say(verdict(answers), f"bold {REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]]) -> None:
-        """A table, with a line between groups of rows, and as wide as its numbers ask."""
+        """A table, with a line between groups of rows, and as wide as its numbers ask.
+
+        Columns that a terminal has no room for go into a table below, beside the first column again.
+        """
         from rich import box
         from rich.table import Table
         from rich.text import Text
 
+        fit = len(columns)
+        while self.room and fit > 2 and _width(columns[:fit], groups) > self.room:
+            fit -= 1
+        if fit < len(columns):
+            for part in (slice(1, fit), slice(fit, None)):
+                rows = [[[row[0], *row[part]] for row in group] for group in groups]
+                self.table([columns[0], *columns[part]], rows)
+            return
         table = Table(*columns, box=box.ROUNDED, show_lines=True)
         for group in groups:
             # One row a group, its lines joined: rich takes five times as long over a row a line.

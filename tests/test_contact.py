@@ -25,10 +25,11 @@ from scipy.sparse import diags_array, vstack
 from atwood_cli import Scene, SceneError, solve
 from atwood_cli.contact import Contact, contact
 from atwood_cli.elements import Row, elements
+from atwood_cli.rounding import text
 from atwood_cli.solver import Answers
 
 from . import oracle
-from .running import Atwood, process
+from .running import Atwood, on_terminal, plain, process
 
 PAPER = ["contact", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 TOP = Path(__file__).parent.parent
@@ -373,6 +374,16 @@ def test_contact_prints_points_balance_and_note(atwood: Atwood) -> None:
     assert re.search(r"│ resultant +│ +0 +│ -37\.6985 +│", ran.out)
     assert re.search(r"│ friction along the arc +│ 1\.65572 │", ran.out)
     assert "Friction is at its limit all along the arc." in ran.out
+
+
+@pytest.mark.parametrize("columns", [60, 80])
+def test_on_a_narrow_terminal_columns_go_into_a_table_below(columns: int) -> None:
+    seen = plain(on_terminal(*PAPER, "--points", "3", "--R", "0.1", columns=columns))
+    assert seen.count("angle (°)") > 1
+    assert all(len(line) <= columns for line in seen.splitlines())
+    for point in arc(points=3, m1="1", m2="3", mu="0.3", R="0.1").points:
+        for value in point.values():
+            assert text(value) in seen
 
 
 def test_contact_json(atwood: Atwood) -> None:
