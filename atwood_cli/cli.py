@@ -92,7 +92,7 @@ def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
     ]
     _, *own = inspect.signature(command).parameters.values()
     signature = inspect.Signature([*scene, *own])
-    with_scene.__signature__ = signature  # type: ignore[attr-defined]
+    with_scene.__dict__["__signature__"] = signature
     with_scene.__annotations__ = {p.name: p.annotation for p in signature.parameters.values()}
     with_scene.__name__, with_scene.__doc__ = command.__name__, command.__doc__
     return with_scene
