@@ -48,14 +48,10 @@ BODIES = {
     "venus": "8.87",
     "earth": STANDARD_GRAVITY,
     "moon": "1.62",
-    "mars": "3.71",
-    "jupiter": "24.79",
-    "saturn": "10.44",
-    "uranus": "8.87",
-    "neptune": "11.15",
+    "mars": "3.73",
     "pluto": "0.62",
 }
-"""Gravity at the surface (m/s²; giants: at 1 bar) from NASA's planetary fact sheets; earth: standard."""
+"""Mean gravity at the surface of bodies that have one (m/s²): NASA's planetary fact sheets; earth: standard."""
 
 MAX_DIGITS, MAX_EXPONENT = 1000, 500
 # No text within those limits is longer as a numerator or denominator.

@@ -24,7 +24,7 @@ def error(**given: Any) -> str:
 
 
 NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
-BODY_NAMES = "mercury, venus, earth, moon, mars, jupiter, saturn, uranus, neptune, pluto"
+BODY_NAMES = "mercury, venus, earth, moon, mars, pluto"
 MASSES = "kg, g, mg, ug, t, lb, lbs, oz, st"
 LENGTHS = "m, km, dm, cm, mm, um, in, ft, yd"
 
