@@ -51,7 +51,7 @@ BODIES = {
     "mars": "3.73",
     "pluto": "0.62",
 }
-"""Mean surface gravity of bodies that have a surface (m/s²): NASA's planetary fact sheets; earth, standard."""
+"""Mean surface gravity of bodies with a surface (m/s²): NASA planetary fact sheets; earth, standard."""
 
 MAX_DIGITS, MAX_EXPONENT = 1000, 500
 # No text within those limits is longer as a numerator or denominator.
