@@ -114,7 +114,7 @@ DEFAULT_POINTS = 13
 Points = Annotated[
     str | None,
     _output(
-        metavar="N", help="How many angles along the arc to show, both ends among them; 13 if not given."
+        metavar="N", help=f"Angles along the arc to show, with both ends; {DEFAULT_POINTS} if not given."
     ),
 ]
 Profile = Annotated[

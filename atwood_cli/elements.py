@@ -150,7 +150,7 @@ class _Doubles:
         l, h = self._double(lambda machine: machine.l), self._double(lambda machine: machine.h)
         if answers["critical_pulley_mass"] is not None:
             beta = self._double(lambda machine: machine.ar.number(case.beta or 0))
-            surplus = h - l - physics.transfer_at_limit(l, k - 1)
+            surplus = physics.surplus_at_limit(l, h, k - 1)
             mass = physics.critical_pulley_mass(l, h, k - 1, surplus, beta) if surplus > 0 else inf
             found["critical_pulley_mass"] = mass
         if answers["friction_force"] is None:

@@ -166,8 +166,9 @@ class Machine(Generic[N]):
         """Transfer z, surplus d and effective mass x; see `physics`."""
         case, difference = self.case, self.h - self.l
         if case.regime != "no-slip":
-            z = physics.transfer_at_limit(self.l, self._capstan_excess(self.case.limiting_mu))
-            return z, difference - z, self.l + z
+            k1 = self._capstan_excess(case.limiting_mu)
+            z = physics.transfer_at_limit(self.l, k1)
+            return z, physics.surplus_at_limit(self.l, self.h, k1), self.l + z
         if case.sign == 0:
             w, v = self.ar.number(1), self.ar.number(0)
         elif case.locked:
@@ -373,7 +374,7 @@ class Machine(Generic[N]):
         if not self.case.can_slip:
             raise Undetermined(NO_CRITICAL_MASS)
         beta = self._given(self.case.beta, UNKNOWN_SHAPE)
-        surplus = self.h - self.l - physics.transfer_at_limit(self.l, k1)
+        surplus = physics.surplus_at_limit(self.l, self.h, k1)
         return physics.critical_pulley_mass(self.l, self.h, k1, surplus, beta)
 
     @cached_property

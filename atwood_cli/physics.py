@@ -50,6 +50,11 @@ def transfer_at_limit(l: N, k1: N) -> N:
     return l * k1
 
 
+def surplus_at_limit(l: N, h: N, k1: N) -> N:
+    """Surplus d = h - l k (kg) of the same string; positive where a heavy enough pulley makes it slip."""
+    return h - l - transfer_at_limit(l, k1)
+
+
 def acceleration(h: N, x: N, d: N, g: N) -> N:
     """Magnitude of the masses' acceleration (m/s²); (4) when the string grips."""
     return g * d / (h + x)

@@ -38,7 +38,7 @@ def test_newtons_equations_hold_exactly_in_slip(
 ) -> None:
     l, h = sorted((a, b))
     z = physics.transfer_at_limit(l, ratio - 1)
-    x, d = l + z, h - l - z
+    x, d = l + z, physics.surplus_at_limit(l, h, ratio - 1)
     acceleration = physics.acceleration(h, x, d, g)
     t_l, t_h = physics.light_tension(l, h, x, g), physics.heavy_tension(h, x, g)
     assert t_l - l * g == l * acceleration
