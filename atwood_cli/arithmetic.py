@@ -79,7 +79,9 @@ class Arithmetic(Protocol[N]):
     def expm1(self, x: N) -> N: ...
     def log1p(self, x: N) -> N: ...
     def sqrt(self, x: N) -> N: ...
+    def hypot(self, x: N, y: N | int) -> N: ...
     def cos_sin(self, x: N) -> tuple[N, N]: ...
+    def cos_sin_of_degrees(self, x: Fraction) -> tuple[N, N]: ...
     def root(self, f: Callable[[N], N], end: N) -> N: ...
 
 
@@ -101,8 +103,17 @@ class Rationals:
 
     exp = log1p = sqrt = expm1
 
+    def hypot(self, x: Fraction, y: Fraction | int) -> Fraction:
+        raise Irrational
+
     def cos_sin(self, x: Fraction) -> tuple[Fraction, Fraction]:
         raise Irrational
+
+    def cos_sin_of_degrees(self, x: Fraction) -> tuple[Fraction, Fraction]:
+        if (x / 90).denominator > 1:
+            raise Irrational
+        cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[x // 90 % 4]
+        return Fraction(cos), Fraction(sin)
 
     def root(self, f: Callable[[Fraction], Fraction], end: Fraction) -> Fraction:
         raise Irrational
@@ -202,6 +213,10 @@ class Enclosures:
             self.up.next_plus(self.up.sqrt(x.hi)),
         )
 
+    def hypot(self, x: Enclosure, y: Enclosure | int) -> Enclosure:
+        """√(x² + y²)."""
+        return self.sqrt(x * x + y * y)
+
     def cos_sin(self, x: Enclosure) -> tuple[Enclosure, Enclosure]:
         """Cosine and sine of x >= 0."""
         x = self._from_zero(x)
@@ -215,6 +230,14 @@ class Enclosures:
         slack = self._width(x)
         error = 4 * (w + turns)
         return self._fixed(c, error, w) + slack - slack, self._fixed(s, error, w) + slack - slack
+
+    def cos_sin_of_degrees(self, x: Fraction) -> tuple[Enclosure, Enclosure]:
+        """Cosine and sine of x >= 0, exact at multiples of 90°."""
+        try:
+            cos, sin = EXACT.cos_sin_of_degrees(x)
+        except Irrational:
+            return self.cos_sin(self.pi * self.number(x / 180))
+        return self.number(cos), self.number(sin)
 
     def root(self, f: Callable[[Enclosure], Enclosure], end: Enclosure) -> Enclosure:
         """The root of f between 0 and ``end``, where f is negative before it and positive after.

@@ -13,7 +13,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from . import profile
-from .machine import FREE_END, NEEDS_M, Machine, exceeds_half_a_turn, wrap_angle
+from .machine import FREE_END, NEEDS_M, Machine, wrap_angle
 from .profile import Kind
 from .rounding import is_infinite
 from .scene import Radians, SceneError, read_whole
@@ -64,7 +64,7 @@ def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -
         raise SceneError("profile", kind, "must be creep or least")
     spare = case.regime == "no-slip" and case.scene.mu is not None and not case.tensions_equal
     shown: Kind = "exponential" if not spare else "least" if kind == "least" else "creep"
-    if shown == "least" and exceeds_half_a_turn(case.scene):
+    if shown == "least" and case.long_wrap:
         raise SceneError("profile", kind, "is known for up to half a turn of wrap (180 degrees)")
     last = read_whole("points", points, 2, MAX_POINTS) - 1
     fractions = [Fraction(j, last) for j in range(last + 1)]

@@ -150,8 +150,9 @@ class _Doubles:
         l, h = self._double(lambda machine: machine.l), self._double(lambda machine: machine.h)
         if answers["critical_pulley_mass"] is not None:
             beta = self._double(lambda machine: machine.ar.number(case.beta or 0))
-            surplus = physics.surplus_at_limit(l, h, k - 1)
-            mass = physics.critical_pulley_mass(l, h, k - 1, surplus, beta) if surplus > 0 else inf
+            transfer = physics.transfer_at_limit(l, k - 1)
+            drive = physics.drive_at_limit(l, h, transfer)
+            mass = physics.critical_pulley_mass(h, transfer, drive, beta) if drive > 0 else inf
             found["critical_pulley_mass"] = mass
         if answers["friction_force"] is None:
             return found
@@ -160,8 +161,9 @@ class _Doubles:
             k, x, y = march(kinetic, self.phi, count)
         light = self._double(lambda machine: machine.light_tension)
         if case.regime != "no-slip":
-            effective = l + physics.transfer_at_limit(l, k - 1)
-            light = physics.light_tension(l, h, effective, self._double(lambda machine: machine.g))
+            transfer, g = physics.transfer_at_limit(l, k - 1), self._double(lambda machine: machine.g)
+            drive, load = physics.drive_at_limit(l, h, transfer), physics.load(l, h, transfer)
+            light = physics.light_tension(l, physics.acceleration(drive, load, g), g)
         found["tension_ratio"] = k if case.sign >= 0 else 1 / k
         found["friction_force"] = light * hypot(x, y)
         return found

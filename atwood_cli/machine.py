@@ -7,13 +7,12 @@ does not determine raises `Undetermined` with the reason.
 
 from fractions import Fraction
 from functools import cached_property
-from math import inf
 from typing import Generic, Literal
 
 from . import physics, profile
-from .arithmetic import Arithmetic
+from .arithmetic import EXACT, Arithmetic
 from .physics import N
-from .rounding import is_positive
+from .rounding import Quantity, is_positive
 from .scene import Radians, Scene
 
 NEEDS_MU = "give mu, the friction coefficient"
@@ -40,15 +39,20 @@ class Undetermined(Exception):
     """The scene does not determine the quantity; the message says why and what to give."""
 
 
+def is_zero(value: object) -> bool:
+    """Whether an input is exactly 0. Columns are not: rows with a zero are solved apart."""
+    return isinstance(value, Fraction) and not value
+
+
 class Case:
     """What is decided about a scene before anything is computed, exactly."""
 
-    def __init__(self, scene: Scene) -> None:
+    def __init__(self, scene: Scene, sign: int | None = None) -> None:
         self.scene = scene
-        self.light, self.heavy = sorted((scene.m1, scene.m2))
-        self.sign = (scene.m2 > scene.m1) - (scene.m2 < scene.m1)
-        self.locked = scene.M == inf
-        self.pulley_mass = scene.M if isinstance(scene.M, Fraction) else None
+        self.sign = (scene.m2 > scene.m1) - (scene.m2 < scene.m1) if sign is None else sign
+        self.light, self.heavy = self.by_side(scene.m1, scene.m2)
+        self.locked = isinstance(scene.M, float)
+        self.pulley_mass = None if isinstance(scene.M, float) else scene.M
         self.beta = scene.inertia
         self.rim_mass: Fraction | None = None  # c = βM
         if scene.I is not None and scene.R is not None:
@@ -59,6 +63,10 @@ class Case:
         elif scene.mu is None and not self.locked:
             self.pulley_mass = self.rim_mass = Fraction(0)
 
+    def by_side(self, one: N, other: N) -> tuple[N, N]:
+        """What belongs to the lighter and the heavier mass from what belongs to m1 and m2, or back."""
+        return (one, other) if self.sign >= 0 else (other, one)
+
     @property
     def pulley_known(self) -> bool:
         """Whether the pulley is known enough for the motion of a string that grips."""
@@ -67,50 +75,73 @@ class Case:
     @property
     def tensions_equal(self) -> bool:
         """Whether a string that grips needs no friction."""
-        return self.sign == 0 or self.rim_mass == 0
+        return self.sign == 0 or is_zero(self.rim_mass)
 
     @cached_property
     def regime(self) -> Literal["no-slip", "verge", "slip"]:
-        if self.scene.mu is None or self.tensions_equal:
+        if self.scene.mu is None or self.tensions_equal or not self.can_slip:
             return "no-slip"
         if not self.pulley_known:
-            return "verge" if self.can_slip else "no-slip"
-        return "slip" if self._beats_friction(self.excess_ratio(self.rim_mass)) else "no-slip"
+            return "verge"
+        return "slip" if self.locked or self.beats_friction(self.excess_ratio) else "no-slip"
 
     @property
     def limiting_mu(self) -> Fraction:
         """The coefficient that friction is at on the verge (static) and in slip (kinetic)."""
         mu, mu_k = self.scene.mu, self.scene.mu_k
-        return (mu if self.regime == "verge" or mu_k is None else mu_k) or Fraction(0)
+        limit = mu if mu_k is None or self.regime == "verge" else mu_k
+        return Fraction(0) if limit is None else limit
 
     @property
     def frictionless(self) -> bool:
         """Whether the string moves, or rests, without friction."""
-        return self.tensions_equal or (self.regime != "no-slip" and not self.limiting_mu)
+        return self.tensions_equal or (self.regime != "no-slip" and is_zero(self.limiting_mu))
 
     @cached_property
     def can_slip(self) -> bool:
         """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
-        return self._beats_friction(self.excess_ratio(None))
+        return self.sign != 0 and self.beats_friction(self.locked_excess)
 
     @cached_property
     def can_be_made_slip(self) -> bool:
         """Whether it slips under a heavier mass that is heavy enough: second condition of (36)."""
-        return self.rim_mass is None or self._beats_friction(self.rim_mass / (2 * self.light))
+        return self.rim_mass is None or self.beats_friction(self.heaviest_excess)
 
-    def excess_ratio(self, c: Fraction | None) -> Fraction:
-        """T_h/T_l - 1 of a string that grips a pulley with c = βM; None is a locked one."""
-        share = Fraction(1) if c is None else physics.shares(self.heavy, c)[1]
-        return share * (self.heavy - self.light) / self.light
+    @cached_property
+    def long_wrap(self) -> bool:
+        """Whether the wrap is beyond half a turn."""
+        wrap = self.scene.wrap
+        if not isinstance(wrap, Radians):
+            return wrap > 180
+        return is_positive(lambda ar: wrap_angle(ar, self.scene) - ar.pi)
 
-    def _beats_friction(self, excess: Fraction) -> bool:
+    @cached_property
+    def ends_hang_down(self) -> bool:
+        """Whether both ends of the string leave the pulley downwards."""
+        return not isinstance(self.scene.wrap, Radians) and (self.scene.wrap - 180) % 360 == 0
+
+    def excess_ratio(self, ar: Arithmetic[N]) -> N:
+        """T_h/T_l - 1 of a string that grips."""
+        if self.locked:
+            return self.locked_excess(ar)
+        return physics.excess_ratio(*map(ar.number, (self.light, self.heavy, self.rim_mass or Fraction(0))))
+
+    def locked_excess(self, ar: Arithmetic[N]) -> N:
+        """The same on a locked pulley."""
+        return physics.locked_excess(ar.number(self.light), ar.number(self.heavy))
+
+    def heaviest_excess(self, ar: Arithmetic[N]) -> N:
+        """The same under a heavier mass beyond all bounds."""
+        return physics.heaviest_excess(ar.number(self.light), ar.number(self.rim_mass or Fraction(0)))
+
+    def beats_friction(self, excess: Quantity) -> bool:
         """Whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed."""
-        mu = self.scene.mu
-        if not mu or not excess:
-            return excess > 0
+        mu, exactly = self.scene.mu, excess(EXACT)
+        if not mu or not exactly:
+            return exactly > 0
 
         def margin(ar: Arithmetic[N]) -> N:
-            return ar.log1p(ar.number(excess)) - ar.number(mu) * wrap_angle(ar, self.scene)
+            return ar.log1p(excess(ar)) - ar.number(mu) * wrap_angle(ar, self.scene)
 
         return is_positive(margin)
 
@@ -120,17 +151,6 @@ def wrap_angle(ar: Arithmetic[N], scene: Scene) -> N:
     if isinstance(scene.wrap, Radians):
         return ar.number(scene.wrap)
     return ar.pi * ar.number(scene.wrap / 180)
-
-
-def exceeds_half_a_turn(scene: Scene) -> bool:
-    """Whether the wrap is beyond 180°."""
-    if not isinstance(scene.wrap, Radians):
-        return scene.wrap > 180
-
-    def excess(ar: Arithmetic[N]) -> N:
-        return wrap_angle(ar, scene) - ar.pi
-
-    return is_positive(excess)
 
 
 class Machine(Generic[N]):
@@ -150,7 +170,7 @@ class Machine(Generic[N]):
 
     def _capstan_excess(self, mu: Fraction) -> N:
         """e^{μφ} - 1; without friction no exponential is asked for."""
-        if not mu:
+        if is_zero(mu):
             return self.ar.number(0)
         return self.ar.expm1(self.ar.number(mu) * wrap_angle(self.ar, self.scene))
 
@@ -162,30 +182,37 @@ class Machine(Generic[N]):
         return self._capstan_excess(self.scene.mu)
 
     @cached_property
-    def _state(self) -> tuple[N, N, N]:
-        """Transfer z, surplus d and effective mass x; see `physics`."""
-        case, difference = self.case, self.h - self.l
+    def _transfer(self) -> N:
+        """The transfer z at the limit of static friction; see `physics`."""
+        return physics.transfer_at_limit(self.l, self._k1)
+
+    @cached_property
+    def _limiting_k1(self) -> N:
+        """The excess of the tension ratio in a regime where friction is at its limit."""
+        mu = self.case.limiting_mu
+        return self._k1 if mu is self.scene.mu else self._capstan_excess(mu)
+
+    @cached_property
+    def _magnitude(self) -> N:
+        """The magnitude of the acceleration."""
+        l, h, case = self.l, self.h, self.case
         if case.regime != "no-slip":
-            k1 = self._capstan_excess(case.limiting_mu)
-            z = physics.transfer_at_limit(self.l, k1)
-            return z, physics.surplus_at_limit(self.l, self.h, k1), self.l + z
-        if case.sign == 0:
-            w, v = self.ar.number(1), self.ar.number(0)
-        elif case.locked:
-            w, v = self.ar.number(0), self.ar.number(1)
+            transfer = physics.transfer_at_limit(l, self._limiting_k1)
+            drive, load = physics.drive_at_limit(l, h, transfer), physics.load(l, h, transfer)
+        elif case.sign == 0 or case.locked:
+            return self.ar.number(0)
         else:
-            w, v = physics.shares(self.h, self._given(case.rim_mass, NEEDS_M))
-        return v * difference, w * difference, self.l + v * difference
+            drive, load = h - l, physics.load(l, h, self._given(case.rim_mass, NEEDS_M))
+        return physics.acceleration(drive, load, self.g)
 
     @cached_property
     def _friction_mu(self) -> N:
         """The μ with which T(θ) = T1 e^{±μθ}, where that is so."""
         if self.case.regime != "no-slip":
             return self.ar.number(self.case.limiting_mu)
-        mu = self.mu_verge
-        if self.scene.mu is not None and not self.case.tensions_equal:
-            raise Undetermined(NOT_BOUNDED if exceeds_half_a_turn(self.scene) else NOT_DEFINITE)
-        return mu
+        if self.scene.mu is None or self.case.tensions_equal or not self.case.pulley_known:
+            return self.mu_verge
+        raise Undetermined(NOT_BOUNDED if self.case.long_wrap else NOT_DEFINITE)
 
     @cached_property
     def friction_vector(self) -> tuple[N, N]:
@@ -250,17 +277,31 @@ class Machine(Generic[N]):
 
     @cached_property
     def _direction(self) -> tuple[N, N]:
-        """Cosine and sine of the angle of wrap; exact at multiples of 90°."""
-        quarters = self.scene.wrap / 90
-        if isinstance(self.scene.wrap, Radians) or quarters.denominator > 1:
-            return self.ar.cos_sin(wrap_angle(self.ar, self.scene))
-        cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[quarters.numerator % 4]
-        return self.ar.number(cos), self.ar.number(sin)
+        """Cosine and sine of the angle of wrap."""
+        return self._cos_sin(1)
+
+    def _cos_sin(self, parts: int) -> tuple[N, N]:
+        """Cosine and sine of an equal part of the angle of wrap; exact at multiples of 90°."""
+        wrap = self.scene.wrap
+        if isinstance(wrap, Radians):
+            return self.ar.cos_sin(self.ar.number(wrap) / parts)
+        return self.ar.cos_sin_of_degrees(wrap / parts)
 
     @cached_property
+    def _difference(self) -> N:
+        """The magnitude of T2 - T1."""
+        case = self.case
+        if case.regime != "no-slip":
+            return physics.difference_of_friction(self.light_tension, self._limiting_k1)
+        if case.tensions_equal:
+            return self.ar.number(0)
+        if case.locked:
+            return physics.difference_of_a_locked_pulley(self.l, self.h, self.g)
+        return physics.difference_of_a_pulley(self._given(case.rim_mass, NEEDS_M), self._magnitude)
+
+    @property
     def tension_difference(self) -> N:
-        z, _, x = self._state
-        return physics.tension_difference(self.h, x, z, self.g) * self.case.sign
+        return self._difference * self.case.sign
 
     def _bounded(self) -> bool:
         """Whether the friction force is bounded by more than 0; raises where it has no bounds."""
@@ -271,66 +312,59 @@ class Machine(Generic[N]):
             return False
         if self.scene.mu is None:
             raise Undetermined(NEEDS_MU)
-        if exceeds_half_a_turn(self.scene):
+        if self.case.long_wrap:
             raise Undetermined(LONG_WRAP)
         return True
 
     # The quantities
 
-    @cached_property
+    @property
     def acceleration(self) -> N:
-        _, d, x = self._state
-        return physics.acceleration(self.h, x, d, self.g) * self.case.sign
+        return self._magnitude * self.case.sign
 
     @cached_property
     def light_tension(self) -> N:
-        _, _, x = self._state
-        return physics.light_tension(self.l, self.h, x, self.g)
+        return physics.light_tension(self.l, self._magnitude, self.g)
 
     @cached_property
     def heavy_tension(self) -> N:
-        _, _, x = self._state
-        return physics.heavy_tension(self.h, x, self.g)
+        return self.light_tension + self._difference
 
     @property
     def tension_1(self) -> N:
-        return self.light_tension if self.case.sign >= 0 else self.heavy_tension
+        return self.case.by_side(self.light_tension, self.heavy_tension)[0]
 
     @property
     def tension_2(self) -> N:
-        return self.heavy_tension if self.case.sign >= 0 else self.light_tension
+        return self.case.by_side(self.light_tension, self.heavy_tension)[1]
 
     @cached_property
     def mu_verge(self) -> N:
         case = self.case
-        if not case.light:
+        if is_zero(case.light):
             raise Undetermined(FREE_END)
         if case.tensions_equal:
             return self.ar.number(0)
-        if case.regime == "verge":
-            return self.ar.number(self.case.limiting_mu)
         if not case.pulley_known:
+            if case.regime == "verge":
+                return self.ar.number(case.limiting_mu)
             raise Undetermined(NEEDS_M)
-        ratio = self.ar.number(case.excess_ratio(case.rim_mass))
-        return physics.verge_coefficient(self.ar.log1p(ratio), wrap_angle(self.ar, self.scene))
+        log_ratio = self.ar.log1p(case.excess_ratio(self.ar))
+        return physics.verge_coefficient(log_ratio, wrap_angle(self.ar, self.scene))
 
     @cached_property
     def friction_force(self) -> N:
         mu = self._friction_mu
         if self.ar.is_zero(mu):
             return self.ar.number(0)
-        halves = self.scene.wrap / 360
-        if isinstance(self.scene.wrap, Radians) or halves.denominator > 2:
-            _, sin_half = self.ar.cos_sin(wrap_angle(self.ar, self.scene) / 2)
-        else:
-            sin_half = self.ar.number(halves.denominator - 1)
+        _, sin_half = self._cos_sin(2)
         return self._limiting_friction(mu, sin_half)
 
     def _limiting_friction(self, mu: N, sin_half: N) -> N:
         """The friction force (N) of one arc over which it is at its limit, by the sine of its half."""
-        light, heavy, difference = self.light_tension, self.heavy_tension, self.tension_difference
-        force = physics.resultant(light, heavy, difference, sin_half, self.ar.sqrt)
-        return physics.friction_magnitude(mu, force, self.ar.sqrt)
+        ar, light, heavy = self.ar, self.light_tension, self.heavy_tension
+        force = physics.resultant(light, heavy, self._difference, sin_half, ar.sqrt, ar.hypot)
+        return physics.friction_magnitude(mu, force, ar.hypot)
 
     @cached_property
     def friction_force_x(self) -> N:
@@ -342,7 +376,7 @@ class Machine(Generic[N]):
 
     @cached_property
     def axle_force(self) -> N:
-        if isinstance(self.scene.wrap, Radians) or (self.scene.wrap - 180) % 360:
+        if not self.case.ends_hang_down:
             raise Undetermined(ONE_SIDED)
         if self.case.locked:
             raise Undetermined(LOCKED_AXLE)
@@ -370,36 +404,36 @@ class Machine(Generic[N]):
 
     @cached_property
     def critical_pulley_mass(self) -> N:
-        k1 = self._k1
+        transfer = self._transfer
         if not self.case.can_slip:
             raise Undetermined(NO_CRITICAL_MASS)
         beta = self._given(self.case.beta, UNKNOWN_SHAPE)
-        surplus = physics.surplus_at_limit(self.l, self.h, k1)
-        return physics.critical_pulley_mass(self.l, self.h, k1, surplus, beta)
+        drive = physics.drive_at_limit(self.l, self.h, transfer)
+        return physics.critical_pulley_mass(self.h, transfer, drive, beta)
 
     @cached_property
     def critical_heavier_mass(self) -> N:
-        k1 = self._k1
+        transfer = self._transfer
         if self.case.locked:
             return self.least_heavier_mass
         c = self._given(self.case.rim_mass, NEEDS_M)
         if not self.case.can_be_made_slip:
             raise Undetermined(NO_CRITICAL_HEAVIER_MASS)
-        return physics.critical_heavier_mass(self.l, c, k1)
+        return physics.critical_heavier_mass(self.l, c, transfer)
 
     @cached_property
     def least_heavier_mass(self) -> N:
-        k1 = self._k1
-        if not (self.scene.mu or self.case.pulley_known):
+        transfer = self._transfer
+        if is_zero(self.scene.mu) and not self.case.pulley_known:
             raise Undetermined(NOT_APPLICABLE)
-        return physics.least_heavier_mass(self.l, k1)
+        return physics.least_heavier_mass(self.l, transfer)
 
     @cached_property
     def least_pulley_mass(self) -> N:
-        k1 = self._k1
-        if not (self.scene.mu or self.case.pulley_known):
+        transfer = self._transfer
+        if is_zero(self.scene.mu) and not self.case.pulley_known:
             raise Undetermined(NOT_APPLICABLE)
-        return physics.least_pulley_mass(self.l, k1, self._given(self.case.beta, UNKNOWN_SHAPE))
+        return physics.least_pulley_mass(transfer, self._given(self.case.beta, UNKNOWN_SHAPE))
 
     @cached_property
     def friction_force_min(self) -> N:

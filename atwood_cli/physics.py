@@ -2,20 +2,22 @@
 
 Numbers in parentheses are equations of T. R. de Oliveira and N. A. Lemos, "Force and torque of a
 string on a pulley". Every function is plain arithmetic on whatever number type comes in (float,
-Fraction, enclosure, NumPy array, mpmath, SymPy); exp, log and sqrt are handed in by the arithmetic.
+Fraction, enclosure, column, mpmath, SymPy); exp, log and roots are handed in by the arithmetic.
 
 Symbols: ``l`` and ``h`` are the lighter and the heavier mass (kg), ``c`` = βM is the pulley's
 inertia as a mass at the rim (kg; half the pulley's mass in the paper), ``g`` the gravity (m/s²),
 ``phi`` the angle of wrap (rad; π in the paper), ``k`` = e^{μφ} the capstan ratio, which always
 comes in as its excess ``k1`` = k - 1, so that weak friction loses no digits.
 
-One form of the state serves every regime. Let r = T_h/T_l and x = l r, the *effective mass*: the
-heavy side moves as if it hung against x over a massless pulley. What differs between regimes is
-only the *transfer* z = x - l, the mass that friction adds to the light side, and with it the
-*surplus* d = h - x that is left to accelerate:
+One form of the motion serves every regime, Newton's: a *drive* d (kg) sets a *load* s (kg) moving,
+a = g d/s, the light side hangs in its weight and what accelerates it, and the heavy side in the light
+side's tension and what friction makes up. What differs between regimes is only where d and s come from:
 
-- no slip, from (1) and (3): z = v (h - l) and d = w (h - l), with the shares v + w = 1 below;
-- verge (33) and slip: z = l (k - 1) and d = (h - l) - z.
+- no slip (4): d = h - l and s = h + l + c; friction turns the pulley, T_h - T_l = c a (3);
+- verge (33) and slip: friction at its limit lets l count k-fold, d = h - l k and s = h + l k, and
+  T_h - T_l = (k - 1) T_l (26). The *transfer* z = l (k - 1) is the mass that friction adds.
+
+Divisions come before products where a product could leave the range of doubles and the result not.
 """
 
 from collections.abc import Callable
@@ -35,44 +37,63 @@ class Number(Protocol):
 
 
 N = TypeVar("N", bound=Number)
-
-
-def shares(h: N, c: N) -> tuple[N, N]:
-    """Shares (w, v) of the mass difference that accelerate the masses and turn the pulley.
-
-    Dimensionless, w + v = 1, from (4). A massless pulley has (1, 0), a locked one (0, 1).
-    """
-    return 2 * h / (2 * h + c), c / (2 * h + c)
+Function = Callable[[N], N]
+Hypot = Callable[[N, N | int], N]
 
 
 def transfer_at_limit(l: N, k1: N) -> N:
-    """Transfer z (kg) of a string whose friction is at its limit all along the arc, from (26)."""
+    """Transfer z = l (k - 1) (kg) of a string whose friction is at its limit all along, from (26)."""
     return l * k1
 
 
-def surplus_at_limit(l: N, h: N, k1: N) -> N:
-    """Surplus d = h - l k (kg) of the same string; positive where a heavy enough pulley makes it slip."""
-    return h - l - transfer_at_limit(l, k1)
+def drive_at_limit(l: N, h: N, transfer: N) -> N:
+    """Drive d = h - l k (kg) of the same string; positive where a heavy enough pulley makes it slip."""
+    return h - l - transfer
 
 
-def acceleration(h: N, x: N, d: N, g: N) -> N:
-    """Magnitude of the masses' acceleration (m/s²); (4) when the string grips."""
-    return g * d / (h + x)
+def load(l: N, h: N, added: N) -> N:
+    """Load s (kg) that the drive sets moving; friction adds the pulley's c, or at its limit the transfer."""
+    return l + h + added
 
 
-def light_tension(l: N, h: N, x: N, g: N) -> N:
-    """Tension on the lighter mass (N); (4) when the string grips."""
-    return 2 * l * h * g / (h + x)
+def acceleration(drive: N, load: N, g: N) -> N:
+    """Magnitude of the masses' acceleration (m/s²): (4), and (1) with (26)."""
+    return g * (drive / load)
 
 
-def heavy_tension(h: N, x: N, g: N) -> N:
-    """Tension on the heavier mass (N); (4) when the string grips."""
-    return 2 * x * h * g / (h + x)
+def light_tension(l: N, a: N, g: N) -> N:
+    """Tension on the lighter mass (N), from (1): its weight and what accelerates it."""
+    return l * g + l * a
 
 
-def tension_difference(h: N, x: N, z: N, g: N) -> N:
-    """T_h - T_l (N), the pulley's torque per unit radius (23), without cancellation."""
-    return 2 * h * z * g / (h + x)
+def difference_of_a_pulley(c: N, a: N) -> N:
+    """T_h - T_l (N) that turns a pulley whose rim has the acceleration a (3)."""
+    return c * a
+
+
+def difference_of_a_locked_pulley(l: N, h: N, g: N) -> N:
+    """T_h - T_l (N) of masses at rest: that of their weights."""
+    return g * (h - l)
+
+
+def difference_of_friction(light: N, k1: N) -> N:
+    """T_h - T_l (N) where friction is at its limit (26); ``light`` = T_l."""
+    return light * k1
+
+
+def excess_ratio(l: N, h: N, c: N) -> N:
+    """T_h/T_l - 1 of a string that grips, from (4); without cancellation."""
+    return c / (2 * h + c) * ((h - l) / l)
+
+
+def locked_excess(l: N, h: N) -> N:
+    """The same on a locked pulley, c = ∞."""
+    return (h - l) / l
+
+
+def heaviest_excess(l: N, c: N) -> N:
+    """The same under a heavier mass beyond all bounds, h = ∞."""
+    return c / (2 * l)
 
 
 def verge_coefficient(log_ratio: N, phi: N) -> N:
@@ -80,39 +101,38 @@ def verge_coefficient(log_ratio: N, phi: N) -> N:
     return log_ratio / phi
 
 
-def critical_pulley_mass(l: N, h: N, k1: N, surplus: N, beta: N) -> N:
-    """Pulley mass (kg) above which the string slips (34); surplus = h - l k > 0."""
-    return 2 * l * h * k1 / (beta * surplus)
+def critical_pulley_mass(h: N, transfer: N, drive: N, beta: N) -> N:
+    """Pulley mass (kg) above which the string slips (34); transfer and drive at the limit of friction."""
+    return 2 * (transfer / drive) / beta * h
 
 
-def critical_heavier_mass(l: N, c: N, k1: N) -> N:
+def critical_heavier_mass(l: N, c: N, transfer: N) -> N:
     """Heavier mass (kg) at which the string is on the verge (35); needs c > 2 l (k - 1)."""
-    return c * least_heavier_mass(l, k1) / (c - 2 * l * k1)
+    return c / (c - 2 * transfer) * least_heavier_mass(l, transfer)
 
 
-def least_heavier_mass(l: N, k1: N) -> N:
-    """What the heavier mass (kg) must exceed for any pulley to slip: first condition of (36)."""
-    return l + l * k1
+def least_heavier_mass(l: N, transfer: N) -> N:
+    """What the heavier mass (kg) must exceed for any pulley to slip, l k: first condition of (36)."""
+    return l + transfer
 
 
-def least_pulley_mass(l: N, k1: N, beta: N) -> N:
+def least_pulley_mass(transfer: N, beta: N) -> N:
     """What the pulley's mass (kg) must exceed for any mass to slip: second condition of (36)."""
-    return 2 * l * k1 / beta
+    return 2 * transfer / beta
 
 
-def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Callable[[N], N]) -> N:
+def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N], hypot: Hypot[N]) -> N:
     """Magnitude (N) of the force of T1 and T2 on an arc of contact; T1 + T2 over half a turn (20).
 
     ``difference`` = T2 - T1 and ``sin_half``, the sine of half the arc, keep what is nearly equal
     from cancelling in T1² + T2² - 2 T1 T2 cos φ.
     """
-    squared: N = difference * difference + 4 * t1 * t2 * sin_half * sin_half
-    return sqrt(squared)
+    return hypot(difference, 2 * sin_half * sqrt(t1) * sqrt(t2))
 
 
-def friction_magnitude(mu: N, resultant: N, sqrt: Callable[[N], N]) -> N:
+def friction_magnitude(mu: N, resultant: N, hypot: Hypot[N]) -> N:
     """Net friction force (N) where T grows as e^{μθ} all along the arc (32)."""
-    return mu * resultant / sqrt(mu * mu + 1)
+    return mu / hypot(mu, 1) * resultant
 
 
 def friction_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:

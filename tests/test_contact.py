@@ -502,7 +502,7 @@ def test_elements_in_every_output(atwood: Atwood) -> None:
             "--elements 10000 run in doubles, which this scene is too large for",
         ),
         (
-            "--m1 1e-320 --m2 3e-320 --mu 0.3 --elements 100",
+            "--m1 1e-323 --m2 3e-323 --g 0.001 --mu 0.3 --elements 100",
             "--elements 100 run in doubles, which this scene is too small for",
         ),
         *(

@@ -20,16 +20,13 @@ def test_newtons_equations_hold_exactly_without_slip(
     a: Fraction, b: Fraction, c: Fraction, g: Fraction
 ) -> None:
     l, h = sorted((a, b))
-    w, v = physics.shares(h, c)
-    z, d = v * (h - l), w * (h - l)
-    x = l + z
-    acceleration = physics.acceleration(h, x, d, g)
-    t_l, t_h = physics.light_tension(l, h, x, g), physics.heavy_tension(h, x, g)
-    assert w + v == 1
+    acceleration = physics.acceleration(h - l, physics.load(l, h, c), g)
+    t_l = physics.light_tension(l, acceleration, g)
+    t_h = t_l + physics.difference_of_a_pulley(c, acceleration)
     assert t_l - l * g == l * acceleration  # (1a)
     assert h * g - t_h == h * acceleration  # (1b)
     assert t_h - t_l == c * acceleration  # (3), M/2 = c
-    assert physics.tension_difference(h, x, z, g) == t_h - t_l
+    assert t_l * (1 + physics.excess_ratio(l, h, c)) == t_h
 
 
 @given(masses, masses, st.fractions(min_value=1, max_value=10), masses)
@@ -38,27 +35,26 @@ def test_newtons_equations_hold_exactly_in_slip(
 ) -> None:
     l, h = sorted((a, b))
     z = physics.transfer_at_limit(l, ratio - 1)
-    x, d = l + z, physics.surplus_at_limit(l, h, ratio - 1)
-    acceleration = physics.acceleration(h, x, d, g)
-    t_l, t_h = physics.light_tension(l, h, x, g), physics.heavy_tension(h, x, g)
+    acceleration = physics.acceleration(physics.drive_at_limit(l, h, z), physics.load(l, h, z), g)
+    t_l = physics.light_tension(l, acceleration, g)
+    t_h = t_l + physics.difference_of_friction(t_l, ratio - 1)
     assert t_l - l * g == l * acceleration
     assert h * g - t_h == h * acceleration
     assert t_h == ratio * t_l
-    assert physics.tension_difference(h, x, z, g) == t_h - t_l
 
 
 def _no_slip() -> tuple[sp.Expr, sp.Expr, sp.Expr]:
-    w, v = physics.shares(h, c)
-    z, d = v * (h - l), w * (h - l)
-    return z, d, l + z
+    a = physics.acceleration(h - l, physics.load(l, h, c), g)
+    t_l = physics.light_tension(l, a, g)
+    return a, t_l, t_l + physics.difference_of_a_pulley(c, a)
 
 
-def test_state_is_equation_4() -> None:
-    _, d, x = _no_slip()
+def test_motion_is_equation_4() -> None:
+    a, t_l, t_h = _no_slip()
     total = l + h + c
-    assert sp.simplify(physics.acceleration(h, x, d, g) - (h - l) * g / total) == 0
-    assert sp.simplify(physics.light_tension(l, h, x, g) - (2 * h + c) * l * g / total) == 0
-    assert sp.simplify(physics.heavy_tension(h, x, g) - (2 * l + c) * h * g / total) == 0
+    assert sp.simplify(a - (h - l) * g / total) == 0
+    assert sp.simplify(t_l - (2 * h + c) * l * g / total) == 0
+    assert sp.simplify(t_h - (2 * l + c) * h * g / total) == 0
 
 
 def test_verge_coefficient_solves_26() -> None:
@@ -67,8 +63,12 @@ def test_verge_coefficient_solves_26() -> None:
     assert sp.simplify(sp.exp(verge * phi) - ratio) == 0
 
 
+def _critical_pulley_mass() -> sp.Expr:
+    return physics.critical_pulley_mass(h, l * k1, physics.drive_at_limit(l, h, l * k1), beta)
+
+
 def test_critical_pulley_mass_solves_33() -> None:
-    mass = physics.critical_pulley_mass(l, h, k1, h - l * k, beta)
+    mass = _critical_pulley_mass()
     ratio = ((2 * l + c) * h / ((2 * h + c) * l)).subs(c, beta * mass)
     assert sp.simplify(ratio - k) == 0
     paper = 4 * l * h * (sp.exp(mu * sp.pi) - 1) / (h - l * sp.exp(mu * sp.pi))
@@ -76,19 +76,16 @@ def test_critical_pulley_mass_solves_33() -> None:
 
 
 def test_critical_heavier_mass_solves_33() -> None:
-    heavy = physics.critical_heavier_mass(l, c, k1)
+    heavy = physics.critical_heavier_mass(l, c, l * k1)
     ratio = ((2 * l + c) * h / ((2 * h + c) * l)).subs(h, heavy)
     assert sp.simplify(ratio - k) == 0
 
 
 def test_conditions_36_are_where_34_and_35_diverge() -> None:
-    least = physics.least_heavier_mass(l, k1)
-    assert (
-        sp.simplify(1 / physics.critical_pulley_mass(l, h, k1, h - l * k, beta)).subs(h, least).simplify()
-        == 0
-    )
-    pulley = physics.least_pulley_mass(l, k1, beta)
-    assert sp.simplify((1 / physics.critical_heavier_mass(l, c, k1)).subs(c, beta * pulley)) == 0
+    least = physics.least_heavier_mass(l, l * k1)
+    assert sp.simplify(1 / _critical_pulley_mass()).subs(h, least).simplify() == 0
+    pulley = physics.least_pulley_mass(l * k1, beta)
+    assert sp.simplify((1 / physics.critical_heavier_mass(l, c, l * k1)).subs(c, beta * pulley)) == 0
 
 
 theta = sp.Symbol("theta", positive=True)
@@ -128,21 +125,24 @@ def test_friction_and_normal_force_make_the_resultant_19() -> None:
     assert physics.resultant_vector(*over_half_a_turn) == (0, -t1 - t1 * sp.exp(mu * sp.pi))  # (20)
 
 
+def _hypot(x: sp.Expr, y: sp.Expr | int) -> sp.Expr:
+    return sp.sqrt(x**2 + y**2)
+
+
 def test_friction_over_half_a_turn_is_31_and_32() -> None:
     fx, fy = physics.friction_vector(mu, -t2 - t1, sp.Integer(0))
     assert sp.simplify(fx + mu / (1 + mu**2) * (t1 + t2)) == 0
     assert sp.simplify(fy + mu**2 / (1 + mu**2) * (t1 + t2)) == 0
-    force = physics.friction_magnitude(
-        mu, physics.resultant(t1, t2, t2 - t1, sp.Integer(1), sp.sqrt), sp.sqrt
-    )
+    resultant = physics.resultant(t1, t2, t2 - t1, sp.Integer(1), sp.sqrt, _hypot)
+    force = physics.friction_magnitude(mu, resultant, _hypot)
     assert sp.simplify(force**2 - fx**2 - fy**2) == 0
 
 
 def test_magnitude_is_that_of_the_vector_at_any_wrap() -> None:
     fx, fy = physics.friction_vector(mu, t2 * sp.cos(phi) - t1, t2 * sp.sin(phi))
-    resultant = physics.resultant(t1, t2, t2 - t1, sp.sin(phi / 2), sp.sqrt)
+    resultant = physics.resultant(t1, t2, t2 - t1, sp.sin(phi / 2), sp.sqrt, _hypot)
     assert sp.simplify(sp.expand_trig(resultant**2 - t1**2 - t2**2 + 2 * t1 * t2 * sp.cos(phi))) == 0
-    assert sp.simplify(physics.friction_magnitude(mu, resultant, sp.sqrt) ** 2 - fx**2 - fy**2) == 0
+    assert sp.simplify(physics.friction_magnitude(mu, resultant, _hypot) ** 2 - fx**2 - fy**2) == 0
 
 
 def test_mirrored_vector_is_the_one_seen_from_behind() -> None:
@@ -175,18 +175,24 @@ def test_axle_carries_tensions_and_pulley() -> None:
 
 
 def test_locked_pulley_is_the_limit() -> None:
-    z, d, x = _no_slip()
+    a, t_l, t_h = _no_slip()
     limits: list[tuple[sp.Expr, sp.Expr]] = [
-        (physics.acceleration(h, x, d, g), sp.Integer(0)),
-        (physics.light_tension(l, h, x, g), l * g),
-        (physics.heavy_tension(h, x, g), h * g),
-        (physics.tension_difference(h, x, z, g), (h - l) * g),
+        (a, sp.Integer(0)),
+        (t_l, l * g),
+        (t_h, h * g),
+        (t_h - t_l, physics.difference_of_a_locked_pulley(l, h, g)),
+        (physics.excess_ratio(l, h, c), physics.locked_excess(l, h)),
     ]
     for value, limit in limits:
         assert sp.simplify(sp.limit(value, c, sp.oo) - limit) == 0
 
 
+def test_heaviest_mass_is_the_limit() -> None:
+    ratio = sp.limit(physics.excess_ratio(l, h, c), h, sp.oo)
+    assert sp.simplify(ratio - physics.heaviest_excess(l, c)) == 0
+
+
 def test_equations_run_in_floats_too() -> None:
     functions: list[Callable[..., float]] = [physics.light_tension, physics.least_pulley_mass]
-    assert functions[0](1.0, 3.0, 2.0, 10.0) == 12.0
-    assert functions[1](1.0, 0.5, 0.5) == 2.0
+    assert functions[0](1.0, 3.0, 10.0) == 13.0
+    assert functions[1](0.5, 0.5) == 2.0
