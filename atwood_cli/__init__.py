@@ -4,13 +4,14 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .api import solve
+    from .arrays import solve_arrays
     from .quantities import REGIMES, Solution
     from .scene import Scene, SceneError
 
-__all__ = ["REGIMES", "Scene", "SceneError", "Solution", "solve"]
+__all__ = ["REGIMES", "Scene", "SceneError", "Solution", "solve", "solve_arrays"]
 __version__ = "0.1.0"
 
-_HOMES = {"solve": "api", "REGIMES": "quantities", "Solution": "quantities"}
+_HOMES = {"solve": "api", "solve_arrays": "arrays", "REGIMES": "quantities", "Solution": "quantities"}
 
 
 def __getattr__(name: str) -> Any:

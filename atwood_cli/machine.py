@@ -39,6 +39,9 @@ class Undetermined(Exception):
     """The scene does not determine the quantity; the message says why and what to give."""
 
 
+Excess = Literal["excess_ratio", "locked_excess", "heaviest_excess"]
+
+
 def is_zero(value: object) -> bool:
     """Whether an input is exactly 0. Columns are not: rows with a zero are solved apart."""
     return isinstance(value, Fraction) and not value
@@ -59,7 +62,8 @@ class Case:
             self.rim_mass = scene.I / scene.R**2
             self.beta = self.rim_mass / self.pulley_mass if self.pulley_mass else None
         elif self.pulley_mass is not None and scene.inertia is not None:
-            self.rim_mass = scene.inertia * self.pulley_mass
+            massless = is_zero(self.pulley_mass)
+            self.rim_mass = self.pulley_mass if massless else scene.inertia * self.pulley_mass
         elif scene.mu is None and not self.locked:
             self.pulley_mass = self.rim_mass = Fraction(0)
 
@@ -83,7 +87,7 @@ class Case:
             return "no-slip"
         if not self.pulley_known:
             return "verge"
-        return "slip" if self.locked or self.beats_friction(self.excess_ratio) else "no-slip"
+        return "slip" if self.locked or self.beats_friction("excess_ratio") else "no-slip"
 
     @property
     def limiting_mu(self) -> Fraction:
@@ -100,12 +104,12 @@ class Case:
     @cached_property
     def can_slip(self) -> bool:
         """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
-        return self.sign != 0 and self.beats_friction(self.locked_excess)
+        return self.sign != 0 and self.beats_friction("locked_excess")
 
     @cached_property
     def can_be_made_slip(self) -> bool:
         """Whether it slips under a heavier mass that is heavy enough: second condition of (36)."""
-        return self.rim_mass is None or self.beats_friction(self.heaviest_excess)
+        return self.rim_mass is None or self.beats_friction("heaviest_excess")
 
     @cached_property
     def long_wrap(self) -> bool:
@@ -122,20 +126,22 @@ class Case:
 
     def excess_ratio(self, ar: Arithmetic[N]) -> N:
         """T_h/T_l - 1 of a string that grips."""
-        if self.locked:
+        if self.rim_mass is None:
             return self.locked_excess(ar)
-        return physics.excess_ratio(*map(ar.number, (self.light, self.heavy, self.rim_mass or Fraction(0))))
+        return physics.excess_ratio(*map(ar.number, (self.light, self.heavy, self.rim_mass)))
 
     def locked_excess(self, ar: Arithmetic[N]) -> N:
         """The same on a locked pulley."""
         return physics.locked_excess(ar.number(self.light), ar.number(self.heavy))
 
     def heaviest_excess(self, ar: Arithmetic[N]) -> N:
-        """The same under a heavier mass beyond all bounds."""
-        return physics.heaviest_excess(ar.number(self.light), ar.number(self.rim_mass or Fraction(0)))
+        """The same under a heavier mass beyond all bounds, on a pulley that is not locked."""
+        assert self.rim_mass is not None
+        return physics.heaviest_excess(ar.number(self.light), ar.number(self.rim_mass))
 
-    def beats_friction(self, excess: Quantity) -> bool:
+    def beats_friction(self, which: Excess) -> bool:
         """Whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed."""
+        excess: Quantity = getattr(self, which)
         mu, exactly = self.scene.mu, excess(EXACT)
         if not mu or not exactly:
             return exactly > 0
@@ -175,7 +181,7 @@ class Machine(Generic[N]):
         return self.ar.expm1(self.ar.number(mu) * wrap_angle(self.ar, self.scene))
 
     @cached_property
-    def _k1(self) -> N:
+    def k1(self) -> N:
         """The excess of the capstan ratio of static friction."""
         if self.scene.mu is None:
             raise Undetermined(NEEDS_MU)
@@ -184,13 +190,13 @@ class Machine(Generic[N]):
     @cached_property
     def _transfer(self) -> N:
         """The transfer z at the limit of static friction; see `physics`."""
-        return physics.transfer_at_limit(self.l, self._k1)
+        return physics.transfer_at_limit(self.l, self.k1)
 
     @cached_property
     def _limiting_k1(self) -> N:
         """The excess of the tension ratio in a regime where friction is at its limit."""
         mu = self.case.limiting_mu
-        return self._k1 if mu is self.scene.mu else self._capstan_excess(mu)
+        return self.k1 if mu is self.scene.mu else self._capstan_excess(mu)
 
     @cached_property
     def _magnitude(self) -> N:
@@ -263,7 +269,7 @@ class Machine(Generic[N]):
     @property
     def capstan_ratio(self) -> N:
         """e^{μφ} at that coefficient; the tension ratio itself where that is what holds."""
-        return self.heavy_tension / self.light_tension if self.scene.mu is None else self._k1 + 1
+        return self.heavy_tension / self.light_tension if self.scene.mu is None else self.k1 + 1
 
     def _end(self, angle: N) -> profile.Knot[N]:
         return profile.Knot(angle, *self._direction, self.heavy_tension)

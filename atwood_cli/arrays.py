@@ -1,0 +1,432 @@
+"""Many scenes at once: the equations of one scene, run on columns by block.
+
+A block of rows is divided, as far as the quantities asked for need it, into rows that agree: on
+what is given, on which mass is heavier, on whether the string slips. Each such part is one `Case`
+and one `Machine`, those of a single scene, in which every number is a column (see `columns`).
+
+What the accuracies promise, and why they keep it:
+
+- ``fast``: doubles as they come. Whether a string slips is read off doubles too.
+- ``certified``: a value is within 4 units in the last place (ulp) of the exact one for the given
+  doubles, and every regime is right. A row goes up a ladder until an arithmetic vouches for it: quick
+  pairs, thorough pairs, and at the end the exact arithmetic of a single scene. A pair vouches where
+  its bound is at most 3.49 · 2^-53 of the value: that is at most 3.49 ulp, and rounding value + rest
+  to a double costs half an ulp more. A question (does it slip?) is answered by doubles where the two
+  sides differ by a 2^-40 of them, far more than the few roundings they take can amount to; else by the
+  sign of a thorough difference, if its bound is below 1; else by the exact comparison.
+- ``exact``: the double nearest to the exact value. A thorough pair vouches where rounding gives the
+  same double at both ends of its bound (Ziv's test), or where it is exact.
+
+Rows with an input beyond `columns.WINDOW` (and not 0), or `FAST_WINDOW`, start at the top of the ladder:
+what could overflow on the way is solved one by one, at about a millisecond a row. So is the
+friction_force_min of all rows but fast ones.
+"""
+
+import os
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from fractions import Fraction
+from functools import cached_property
+from math import inf, nan, prod
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from .columns import FLOATS, WINDOW, Column, Floats, Pair, Pairs, Unvouched
+from .machine import Case, Excess, Machine, Undetermined
+from .quantities import NAMES, REGIMES, STANDARD
+from .scene import PARAMETERS, Scene, SceneError, nearest
+from .solver import Answers
+
+Accuracy = Literal["fast", "certified", "exact"]
+ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
+BLOCK = 32_768
+FAST_WINDOW = 2.0**-500, 2.0**500  # beyond it, what comes in between may overflow though results do not
+CERTIFIED = 3.49 * 2.0**-53
+ROUNDED, QUICK, THOROUGH = Pairs(0), Pairs(1), Pairs(2)
+LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
+    "fast": (FLOATS,),
+    "certified": (ROUNDED, QUICK, THOROUGH),
+    "exact": (THOROUGH,),
+}
+# What cancels on the way, or takes too many roundings: the lowest rung never vouches for it.
+TAKES_EXACT_PRODUCTS = {"mu_verge", "critical_pulley_mass", "critical_heavier_mass"}
+COLUMNS = tuple(name for name in PARAMETERS if name != "I")
+MAY_BE_ABSENT = ("M", "mu", "mu_k", "R")
+STATUSES = ("valid", *COLUMNS, "no mass", "friction at a free end", "mu_k without mu", "mu_k above mu")
+"""What the codes in ``status`` mean: the parameter outside its domain, or what does not go together."""
+
+
+def solve_arrays(
+    m1: ArrayLike,
+    m2: ArrayLike,
+    M: ArrayLike | None = None,
+    mu: ArrayLike | None = None,
+    mu_k: ArrayLike | None = None,
+    *,
+    g: ArrayLike = 9.80665,
+    inertia: ArrayLike = 0.5,
+    R: ArrayLike | None = None,
+    wrap: ArrayLike = 180.0,
+    accuracy: Accuracy = "certified",
+    quantities: Sequence[str] | None = None,
+) -> dict[str, NDArray[Any]]:
+    """`solve` for arrays of scenes, broadcast against each other; all numbers are doubles.
+
+    Masses in kg, g in m/s², R in m, wrap in degrees; M = inf locks the pulley. NaN in M, mu, mu_k or R
+    means not given for that row. ``accuracy`` is "fast" (doubles), "certified" (every value within 4
+    units in the last place of the exact one, every regime right), or "exact" (the nearest double).
+
+    Returns arrays by name, of the inputs' common shape: the ``quantities`` asked for (those of
+    `quantities.STANDARD` if None), NaN where undetermined, ±inf beyond the doubles; ``regime`` is an
+    int8 index into `REGIMES`, -1 where the row is invalid; and always ``status``, an int8 index into
+    `STATUSES`, 0 where it is valid. An invalid row never stops the others. Raises SceneError for an
+    unknown accuracy or quantity, ValueError for shapes that do not broadcast.
+    """
+    names = list(STANDARD if quantities is None else dict.fromkeys(quantities))
+    for name in names:
+        if name not in NAMES:
+            raise SceneError("quantities", name, f"is no quantity{nearest(str(name), NAMES)}")
+    if accuracy not in ACCURACIES:
+        raise SceneError("accuracy", accuracy, f"must be one of {', '.join(ACCURACIES)}")
+    inputs = {
+        name: np.asarray(value, dtype=np.float64)
+        for name, value in zip(COLUMNS, (m1, m2, M, mu, mu_k, g, inertia, R, wrap), strict=True)
+        if value is not None
+    }
+    shape = np.broadcast_shapes(*(column.shape for column in inputs.values()))
+    kinds = {"regime": np.int8, "status": np.int8}
+    found = {name: np.empty(shape, kinds.get(name, np.float64)) for name in (*names, "status")}
+    flat = {name: column.reshape(-1) for name, column in found.items()}
+
+    def solve_block(start: int) -> None:
+        stop = min(start + BLOCK, prod(shape))
+        given = {name: _cut(column, shape, start, stop) for name, column in inputs.items()}
+        with np.errstate(all="ignore"):
+            _solve_block(given, {name: column[start:stop] for name, column in flat.items()}, names, accuracy)
+
+    _on_threads(solve_block, range(0, prod(shape), BLOCK))
+    return found
+
+
+def _cut(column: Column, shape: tuple[int, ...], start: int, stop: int) -> Column:
+    """Rows of a column as if it were broadcast and flat; a single number stays single."""
+    if column.size == 1:
+        return column.reshape(1)
+    if column.shape == shape and column.flags.c_contiguous:
+        return column.reshape(-1)[start:stop]
+    return np.broadcast_to(column, shape).flat[start:stop]
+
+
+def _on_threads(work: Callable[[int], None], starts: Sequence[int]) -> None:
+    """NumPy lets go of the interpreter while it computes, so threads share the blocks."""
+    if len(starts) < 2:
+        for start in starts:
+            work(start)
+        return
+    pool = ThreadPoolExecutor(os.cpu_count())
+    try:
+        for _ in pool.map(work, starts):
+            pass
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _solve_block(
+    columns: Mapping[str, Column], out: dict[str, NDArray[Any]], names: Sequence[str], accuracy: Accuracy
+) -> None:
+    given = {name: _Given.of(name, column, accuracy) for name, column in columns.items()}
+    out["status"][:] = status = _status(given, len(out["status"]))
+    for rows in _agreeing(given, status, accuracy):
+        if rows.invalid:
+            for name in names:
+                rows.write(out[name], -1 if name == "regime" else nan)
+            continue
+        for name in names:
+            rows.solve(name, out[name])
+
+
+class Divided(Exception):
+    """The rows do not agree on the answer to a question: ask its parts, which do."""
+
+    def __init__(self, parts: list["Rows"]) -> None:
+        super().__init__(parts)
+        self.parts = parts
+
+
+class Rows:
+    """Rows that agree on all that was asked of them so far.
+
+    ``fields`` are the inputs: a Fraction, None or inf where all rows share it, else a column.
+    """
+
+    def __init__(
+        self,
+        fields: Mapping[str, Any],
+        sign: int,
+        index: NDArray[np.intp] | None,
+        size: int,
+        accuracy: Accuracy,
+        far: bool = False,
+        invalid: bool = False,
+        answers: Mapping[str, bool] | None = None,
+    ) -> None:
+        self.fields, self.sign, self.index, self.size = fields, sign, index, size
+        self.accuracy, self.far, self.invalid = accuracy, far, invalid
+        self.answers = dict(answers or {})
+        self._parts: dict[str, list[Rows]] = {}
+        self._machines: dict[Any, Machine[Any]] = {}
+        self._singles: dict[int, Answers] = {}
+
+    def part(self, index: NDArray[np.intp], answers: Mapping[str, bool] | None = None) -> "Rows":
+        """Some of these rows."""
+        fields = {name: _take(field, index) for name, field in self.fields.items()}
+        within = index if self.index is None else self.index[index]
+        known = self.answers | dict(answers or {})
+        return Rows(fields, self.sign, within, len(index), self.accuracy, self.far, answers=known)
+
+    def write(self, out: NDArray[Any], values: Any) -> None:
+        out[slice(None) if self.index is None else self.index] = values
+
+    # Solving
+
+    def solve(self, name: str, out: NDArray[Any], rung: int = 0) -> None:
+        """Write a quantity of all rows, in the arithmetic on that rung of the ladder or higher."""
+        ladder = LADDERS[self.accuracy]
+        try:
+            if name in TAKES_EXACT_PRODUCTS or self.machine(FLOATS).case.regime != "no-slip":
+                rung = max(rung, len(ladder) - 2)
+            if name == "regime":
+                self.write(out, REGIMES.index(self.machine(FLOATS).case.regime))
+            elif self.far or rung == len(ladder):
+                self.write(out, [self._single(row, name) for row in range(self.size)])
+            else:
+                value = getattr(self.machine(ladder[rung]), name)
+                self._write_vouched(name, out, rung, value)
+        except Undetermined:
+            self.write(out, nan)
+        except Unvouched:
+            self.solve(name, out, rung + 1)
+        except Divided as divided:
+            for rows in divided.parts:
+                rows.solve(name, out, rung)
+
+    def _write_vouched(self, name: str, out: NDArray[Any], rung: int, value: Any) -> None:
+        if not isinstance(value, Pair):
+            self.write(out, value + 0.0)  # no -0
+            return
+        rounded, vouched = _certify(value) if self.accuracy == "certified" else _nearest(value)
+        self.write(out, rounded)
+        if not vouched.all():
+            index = np.flatnonzero(np.broadcast_to(~vouched, self.size))
+            self.part(index).solve(name, out, rung + 1)
+
+    def machine(self, arithmetic: Any) -> Machine[Any]:
+        if arithmetic not in self._machines:
+            self._machines[arithmetic] = Machine(_RowsCase(self, arithmetic), arithmetic)
+        return self._machines[arithmetic]
+
+    def scene(self, row: int) -> Scene:
+        """One row as a scene of its own."""
+        fields = {
+            name: Fraction(float(field[row])) if isinstance(field, np.ndarray) else field
+            for name, field in self.fields.items()
+        }
+        return Scene(**fields, I=None)
+
+    def _single(self, row: int, name: str) -> float:
+        if row not in self._singles:
+            self._singles[row] = Answers(self.scene(row))
+        value = self._singles[row][name]
+        return nan if value is None else float(value)
+
+    # Questions
+
+    def answer(self, question: str) -> bool:
+        """The answer of all rows; raises Divided if they differ."""
+        if question not in self.answers and question not in self._parts:
+            ask: Any = QUESTIONS.get(question, Rows._beats_friction)
+            answers = np.broadcast_to(ask(self, question), self.size)
+            if answers.any() == answers.all():
+                self.answers[question] = bool(answers[0])
+            else:
+                self._parts[question] = [
+                    self.part(np.flatnonzero(answers == answer), {question: answer})
+                    for answer in (True, False)
+                ]
+        if question in self._parts:
+            raise Divided(self._parts[question])
+        return self.answers[question]
+
+    def _beats_friction(self, question: Any) -> Any:
+        """Whether the excess of the tension ratio is beyond what friction holds, e^{μφ} - 1."""
+        if self.far:
+            return np.array([self._settled(row, question) for row in range(self.size)])
+        machine = self.machine(FLOATS)
+        excess, held = getattr(machine.case, question)(FLOATS), machine.k1
+        if self.accuracy == "fast":
+            return excess > held
+        beaten = np.broadcast_to(excess > held * (1 + 2.0**-40), self.size)
+        open_ = np.flatnonzero(~beaten & (excess >= held * (1 - 2.0**-40)))
+        if not open_.size:
+            return beaten
+        beaten = beaten.copy()
+        beaten[open_] = self.part(open_)._beats_friction_thoroughly(question)
+        return beaten
+
+    def _beats_friction_thoroughly(self, question: Excess) -> Any:
+        machine = self.machine(THOROUGH)
+        margin = getattr(machine.case, question)(THOROUGH) - machine.k1
+        beaten = np.broadcast_to(margin.value > 0, self.size).copy()
+        for row in np.flatnonzero(~(np.broadcast_to(margin.bound, self.size) < 0.5)):
+            beaten[row] = self._settled(int(row), question)
+        return beaten
+
+    def _settled(self, row: int, question: Excess) -> bool:
+        case = Case(self.scene(row))
+        return case.beats_friction(question)
+
+    def long_wrap(self, _: str) -> Any:
+        return self.fields["wrap"] > 180
+
+    def ends_hang_down(self, _: str) -> Any:
+        return np.fmod(np.asarray(self.fields["wrap"], dtype=np.float64), 360) == 180
+
+
+QUESTIONS: dict[str, Callable[[Rows, str], Any]] = {
+    "long_wrap": Rows.long_wrap,
+    "ends_hang_down": Rows.ends_hang_down,
+}
+
+
+class _RowsCase(Case):
+    """What is decided about rows that agree on it, their inputs as columns of one arithmetic."""
+
+    def __init__(self, rows: Rows, arithmetic: Any) -> None:
+        self._rows = rows
+        fields = {
+            name: arithmetic.number(field) if isinstance(field, np.ndarray) else field
+            for name, field in rows.fields.items()
+        }
+        if isinstance(rows.fields["M"], np.ndarray):
+            fields["inertia"] = arithmetic.number(fields["inertia"])
+        super().__init__(Scene(**fields, I=None), rows.sign)
+
+    @cached_property
+    def long_wrap(self) -> bool:
+        return self._rows.answer("long_wrap")
+
+    @cached_property
+    def ends_hang_down(self) -> bool:
+        return self._rows.answer("ends_hang_down")
+
+    def beats_friction(self, which: Excess) -> bool:
+        return self._rows.answer(which)
+
+
+def _take(field: Any, index: NDArray[np.intp]) -> Any:
+    return field.take(index) if isinstance(field, np.ndarray) else field
+
+
+def _certify(pair: Pair) -> tuple[Column, NDArray[np.bool_]]:
+    """The doubles, and which are within 4 ulp."""
+    rounded = pair.rounded()
+    return rounded, np.asarray(pair.bound <= CERTIFIED) & np.isfinite(rounded)
+
+
+def _nearest(pair: Pair) -> tuple[Column, NDArray[np.bool_]]:
+    """The doubles, and which are the nearest."""
+    rounded = pair.rounded()
+    if pair.rest is None:
+        return rounded, np.asarray(pair.bound == 0) & np.isfinite(rounded)
+    error = np.abs(pair.value) * (pair.bound + 2.0**-104)
+    same = (pair.value + (pair.rest - error) == rounded) & (pair.value + (pair.rest + error) == rounded)
+    return rounded, (same | (np.asarray(pair.bound) == 0)) & np.isfinite(rounded)
+
+
+# What is given in each row: who agrees with whom before any question is asked
+
+USUAL, ABSENT, ZERO, INFINITE, FAR = range(5)
+
+
+class _Given(NamedTuple):
+    """A parameter's column, and of which kind each number is: just USUAL if all are."""
+
+    name: str
+    column: Column
+    kinds: Any
+
+    @classmethod
+    def of(cls, name: str, column: Column, accuracy: Accuracy) -> "_Given":
+        low, high = FAST_WINDOW if accuracy == "fast" else WINDOW
+        if low < column.min() and column.max() < high:
+            return cls(name, column, USUAL)
+        far = ((column > 0) & (column <= low)) | ((column >= high) & (column < inf))
+        kinds = ABSENT * np.isnan(column) + ZERO * (column == 0) + INFINITE * (column == inf) + FAR * far
+        return cls(name, column, kinds)
+
+    @property
+    def faults(self) -> Any:
+        """Which rows are outside the parameter's domain."""
+        parameter, may_be = PARAMETERS[self.name], [USUAL, FAR]
+        may_be += (
+            [ZERO] * parameter.zero + [INFINITE] * parameter.inf + [ABSENT] * (self.name in MAY_BE_ABSENT)
+        )
+        return ~np.isin(self.kinds, may_be) | (self.column < 0)
+
+    def field(self, row: int, index: NDArray[np.intp] | None) -> Any:
+        """The parameter for the rows at the index, which are of the same kind as the row."""
+        single = self.column.size == 1
+        kind = self.kinds if self.kinds is USUAL else self.kinds[0 if single else row]
+        if kind == ABSENT:
+            return None
+        if kind == INFINITE:
+            return inf
+        if single or kind == ZERO:
+            return Fraction(float(self.column[0 if single else row]))
+        return self.column if index is None else self.column.take(index)
+
+
+def _status(given: Mapping[str, _Given], size: int) -> NDArray[np.int8]:
+    """Row by row, whether the inputs are in their domains and go together; see STATUSES."""
+    faults = [(name, one.faults) for name, one in given.items() if one.kinds is not USUAL]
+    absent = np.array([nan])
+    m1, m2, mu, mu_k = (given[n].column if n in given else absent for n in ("m1", "m2", "mu", "mu_k"))
+    if given["m1"].kinds is not USUAL or given["m2"].kinds is not USUAL:
+        faults.append(("no mass", (m1 == 0) & (m2 == 0)))
+        faults.append(("friction at a free end", ((m1 == 0) | (m2 == 0)) & ~np.isnan(mu)))
+    if "mu_k" in given:
+        faults.append(("mu_k without mu", ~np.isnan(mu_k) & np.isnan(mu)))
+        faults.append(("mu_k above mu", mu_k > mu))
+    status = np.zeros(size, np.int8)
+    for fault, rows in reversed(faults):  # the first one found stands
+        status[np.broadcast_to(rows, size)] = STATUSES.index(fault)
+    return status
+
+
+def _agreeing(given: Mapping[str, _Given], status: NDArray[np.int8], accuracy: Accuracy) -> Iterator[Rows]:
+    """The rows of a block in parts that agree on what is given and of which kind, and who is heavier."""
+    size, (m1, m2) = len(status), (given["m1"].column, given["m2"].column)
+    digits = [(2, status != 0), (3, 1 * (m1 > m2) + 2 * (m1 == m2))]
+    digits += [(5, one.kinds) for one in given.values() if one.kinds is not USUAL]
+    digits = [(base, digit) for base, digit in digits if np.any(digit)]
+    key, place = np.zeros(1, np.int64), 1
+    for base, digit in digits:
+        key, place = key + place * digit, place * base
+    key = np.broadcast_to(key, size)
+    for one in np.unique(key) if digits else key[:1]:
+        index = np.flatnonzero(key == one) if digits else None
+        index = None if index is not None and len(index) == size else index
+        row = 0 if index is None else int(index[0])
+        if status[row]:
+            yield Rows({}, 0, index, 0, accuracy, invalid=True)
+            continue
+        fields = dict.fromkeys(COLUMNS) | {name: of.field(row, index) for name, of in given.items()}
+        far = any(
+            of.kinds is not USUAL and np.broadcast_to(of.kinds, size)[row] == FAR for of in given.values()
+        )
+        light, heavy = (float(np.broadcast_to(mass, size)[row]) for mass in (m1, m2))
+        sign = (heavy > light) - (heavy < light)
+        many = size if index is None else len(index)
+        yield Rows(fields, sign, index, many, accuracy, far)

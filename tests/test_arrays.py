@@ -1,0 +1,262 @@
+"""Many scenes at once: against the oracle, against one scene at a time, and on odd rows."""
+
+import tracemalloc
+from collections import Counter
+from fractions import Fraction
+from math import inf, isfinite, isinf, isnan, nan, ulp
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
+from atwood_cli.arrays import ACCURACIES, COLUMNS, STATUSES
+from atwood_cli.quantities import NAMES, STANDARD
+from atwood_cli.scene import Scene
+
+from . import oracle
+from .scenes import FAMILIES, scenes
+
+Row = dict[str, float]
+solve_any: Any = solve  # with inputs that are put together here
+SLICES = 4
+DEFAULTS = {"g": 9.80665, "inertia": 0.5, "wrap": 180.0}
+
+
+def row_of(given: dict[str, str]) -> Row | None:
+    """A scene's inputs as the doubles nearest to them, None if it takes more than those."""
+    scene = Scene.read(given)
+    if scene.I is not None:
+        return None
+    values = {name: getattr(scene, name) for name in COLUMNS}
+    try:
+        row = {name: nan if value is None else float(value) for name, value in values.items()}
+    except OverflowError:
+        return None
+    return row if row["m1"] and row["m2"] and row["g"] else None
+
+
+def rows(family: str, count: int) -> list[Row]:
+    found = (row_of(given) for given in scenes(family, 2 * count))
+    return [row for row in found if row is not None][:count]
+
+
+def columns(of: list[Row]) -> dict[str, Any]:
+    return {name: np.array([row[name] for row in of]) for name in COLUMNS}
+
+
+def exact_scene(row: Row) -> Scene:
+    """The scene that the doubles are, exactly."""
+    return Scene.read({name: value for name, value in row.items() if not isnan(value)})
+
+
+def within_4_ulp(got: float, want: oracle.Value) -> bool:
+    nearest = oracle.correctly_rounded(want, None)
+    assert isinstance(nearest, float)
+    if isinf(nearest) or abs(got - nearest) <= 3 * ulp(nearest):
+        return got == nearest or not isinf(nearest)
+    exact = oracle.correctly_rounded(want, 40)
+    return isfinite(got) and abs(Fraction(got) - Fraction(exact)) <= 4 * Fraction(ulp(nearest))
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("part", range(SLICES))
+def test_certified_and_exact_values(family: str, part: int) -> None:
+    given = rows(family, 4000)[part::SLICES]
+    assert len(given) == 1000
+    certified = solve_arrays(**columns(given))
+    exact = solve_arrays(**columns(given), accuracy="exact")
+    regimes: Counter[str] = Counter()
+    for i, row in enumerate(given):
+        want = oracle.expected(exact_scene(row))
+        regimes[want["regime"]] += 1
+        for found in (certified, exact):
+            assert found["status"][i] == 0
+            assert REGIMES[found["regime"][i]] == want["regime"], row
+        for name in STANDARD[1:]:
+            value = want[name]
+            assert isnan(certified[name][i]) == isnan(exact[name][i]) == (value is None), (row, name)
+            if value is not None:
+                assert within_4_ulp(certified[name][i], value), (row, name, certified[name][i])
+                assert exact[name][i] == oracle.correctly_rounded(value, None), (row, name)
+    assert min(regimes["slip"], regimes["no-slip"]) > 50
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_exact_is_solve_to_the_bit(family: str) -> None:
+    given = rows(family, 150)
+    found = solve_arrays(**columns(given), accuracy="exact", quantities=NAMES)
+    certified = solve_arrays(**columns(given), quantities=NAMES)
+    for i, row in enumerate(given):
+        one = solve_any(**{name: value for name, value in row.items() if not isnan(value)})
+        assert REGIMES[found["regime"][i]] == one.regime
+        for name in NAMES[1:]:
+            want = getattr(one, name)
+            assert repr(float(found[name][i])) == repr(nan if want is None else want), (row, name)
+            if want is not None and isfinite(want):
+                assert abs(certified[name][i] - want) <= 4 * ulp(want), (row, name)
+            else:
+                assert repr(float(certified[name][i])) == repr(nan if want is None else want), (row, name)
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_fast_is_stable(family: str) -> None:
+    given = rows(family, 1000)
+    fast, exact = (solve_arrays(**columns(given), accuracy=a) for a in ("fast", "exact"))
+    same = fast["regime"] == exact["regime"]
+    assert same.mean() > {"near_critical": 0.8, "whole_range": 0.95}.get(family, 0.999)
+    for name in STANDARD[1:]:
+        here, there = fast[name][same], exact[name][same]
+        assert not (np.isinf(here) & np.isfinite(there)).any(), name  # no avoidable overflow
+        if family in ("ordinary", "nearly_equal") and name != "critical_pulley_mass":
+            both = ~np.isnan(here) & ~np.isnan(there)
+            np.testing.assert_allclose(here[both], there[both], rtol=3e-14)
+
+
+def test_the_papers_scene() -> None:
+    found = solve_arrays(1, 3, mu=0.3, accuracy="exact")
+    one = solve(m1=1.0, m2=3.0, mu=0.3, g=9.80665)  # 0.3 is a double here, not three tenths
+    assert REGIMES[found["regime"]] == one.regime == "verge"
+    assert [found[name].item() for name in STANDARD[1:]] == [getattr(one, name) for name in STANDARD[1:]]
+    assert found["critical_pulley_mass"] == pytest.approx(43.34192486321087, rel=1e-15)
+    assert found["status"] == 0
+    assert {name: column.shape for name, column in found.items()} == dict.fromkeys([*STANDARD, "status"], ())
+
+
+ODD = [nan, -1.0, -0.0, 0.0, 5e-324, 1e-200, 0.3, 0.5, 1.0, 3.0, 10.0, 1e200, 1.7e308, inf, -inf]
+odd_rows = st.fixed_dictionaries(
+    {"m1": st.sampled_from(ODD), "m2": st.sampled_from(ODD)},
+    optional={name: st.sampled_from(ODD) for name in COLUMNS[2:]},
+)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.lists(odd_rows, min_size=1, max_size=30))
+def test_bad_rows_get_a_code_and_stop_nobody(some: list[dict[str, float]]) -> None:
+    full = [dict.fromkeys(COLUMNS, nan) | DEFAULTS | row for row in some]
+    for accuracy in ACCURACIES:
+        found = solve_arrays(**columns(full), accuracy=accuracy)
+        for i, row in enumerate(full):
+            given_ = {
+                name: value
+                for name, value in row.items()
+                if not (isnan(value) and name in ("M", "mu", "mu_k", "R"))
+            }
+            one, error = _solved(given_)
+            if one is None:
+                assert error is not None
+                assert (
+                    FAULTS.get(error.rule)
+                    or error.parameter + " above mu" * error.rule.startswith("must not")
+                ) == STATUSES[found["status"][i]], (row, error)
+                assert found["regime"][i] == -1
+                assert all(isnan(found[name][i]) for name in STANDARD[1:])
+                continue
+            assert found["status"][i] == 0, row
+            if accuracy == "exact":
+                assert REGIMES[found["regime"][i]] == one.regime
+                for name in STANDARD[1:]:
+                    value = getattr(one, name)
+                    assert repr(float(found[name][i])) == repr(nan if value is None else value), (row, name)
+
+
+FAULTS = {
+    "and m2 are both 0; at least one mass must hang": "no mass",
+    "is a free end, which friction cannot hold; leave mu out": "friction at a free end",
+    "needs mu, the coefficient that decides whether it slips": "mu_k without mu",
+}
+
+
+def _solved(row: Row) -> tuple[Any, SceneError | None]:
+    try:
+        return solve_any(**row), None
+    except SceneError as error:
+        return None, error
+
+
+numbers = st.floats(1e-3, 1e3)
+
+
+@settings(max_examples=30, deadline=None)
+@given(
+    st.lists(numbers, min_size=3, max_size=3),
+    st.lists(numbers, min_size=4, max_size=4),
+    numbers | st.none(),
+    st.lists(st.floats(0, 2) | st.just(nan), min_size=12, max_size=12),
+)
+def test_inputs_are_broadcast(m1: list[float], m2: list[float], M: float | None, mu: list[float]) -> None:
+    grid = np.array(mu).reshape(3, 4)
+    found = solve_arrays(np.array(m1)[:, None], m2, M, grid)
+    for i in range(3):
+        for j in range(4):
+            one = solve_arrays(m1[i], m2[j], M, grid[i, j])
+            for name, column in found.items():
+                assert column.shape == (3, 4)
+                np.testing.assert_array_equal(column[i, j], one[name])
+
+
+@pytest.mark.parametrize("accuracy", ACCURACIES)
+def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+    given = columns(rows("ordinary", 100) + rows("near_critical", 100))
+    whole = solve_arrays(**given, accuracy=accuracy)
+    every_other: dict[str, Any] = {name: np.repeat(c, 2)[::2] for name, c in given.items()}
+    strided = solve_arrays(**every_other, accuracy=accuracy)
+    monkeypatch.setattr(arrays, "BLOCK", 7)
+    in_blocks = solve_arrays(**given, accuracy=accuracy)
+    for name in whole:
+        np.testing.assert_array_equal(whole[name], in_blocks[name])
+        np.testing.assert_array_equal(whole[name], strided[name])
+
+
+def test_inputs_are_left_alone() -> None:
+    given = columns(rows("ordinary", 100))
+    before = {name: column.copy() for name, column in given.items()}
+    for column in given.values():
+        column.flags.writeable = False
+    for accuracy in ACCURACIES:
+        solve_arrays(**given, accuracy=accuracy, quantities=NAMES)
+    for name, column in given.items():
+        np.testing.assert_array_equal(column, before[name])
+
+
+def test_no_rows() -> None:
+    found = solve_arrays([], [], mu=0.3)
+    assert {column.shape for column in found.values()} == {(0,)}
+
+
+def test_only_what_is_asked_for() -> None:
+    found = solve_arrays([1, 3], [3, 1], 10, quantities=["torque", "acceleration"], R=[0.1, nan])
+    assert list(found) == ["torque", "acceleration", "status"]
+    assert found["torque"][0] == pytest.approx(1.0896277777777778, rel=1e-15)
+    assert isnan(found["torque"][1])
+
+
+def test_temporaries_are_bounded() -> None:
+    n = 1_000_000
+    given: dict[str, Any] = {
+        name: np.full(n, value) for name, value in (("m1", 1.0), ("m2", 3.0), ("M", 10.0), ("mu", 0.3))
+    }
+    tracemalloc.start()
+    found = solve_arrays(**given)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak - sum(column.nbytes for column in found.values()) < 200e6
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"accuracy": "best"}, "accuracy 'best' must be one of fast, certified, exact"),
+        ({"quantities": ["tension"]}, "quantities 'tension' is no quantity; did you mean tension_2?"),
+    ],
+)
+def test_errors(arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError, match="^" + message.replace("?", "[?]") + "$"):
+        solve_arrays(1, 3, **arguments)
+
+
+def test_shapes_that_do_not_broadcast() -> None:
+    with pytest.raises(ValueError, match="broadcast"):
+        solve_arrays([1, 2, 3], [1, 2])
