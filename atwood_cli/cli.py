@@ -325,6 +325,8 @@ def sweep(
     from .sweep import check_drawable, picture, read_sweep, solve_rows
 
     _exclude_each_other(json, csv)
+    if force and output is None:
+        raise SceneError("force", None, "needs --output")
     if output is not None and not (json or csv):
         json, csv = (output.lower().endswith(suffix) for suffix in (".json", ".csv"))
     names = list(dict.fromkeys(only or STANDARD))

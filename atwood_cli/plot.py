@@ -14,8 +14,11 @@ from .output import Page, for_stream, sweep_head, sweep_notes, takes_unicode
 from .rounding import as_typed
 from .sweep import Curve, Picture, Row, Sweep, picture
 
-PIPE_WIDTH, HEIGHT, LEAST_WIDTH = 80, 20, 10
-COLOURS = ("cyan", "magenta", "green", "blue", "red", "white")
+PIPE_WIDTH, HEIGHT = 80, 20
+LEAST_WIDTH, LEAST_HEIGHT = 10, 5
+LEAST_TICKS = 3  # asking for fewer may give none
+AROUND = 9  # lines above and below the curves, with the prompt
+COLOURS = ("cyan", "magenta", "green", "blue", "red", "bright_cyan")
 MARK = "yellow"
 LETTERS = "abcdef"
 DOTS = range(0x2800, 0x2900)
@@ -29,7 +32,7 @@ class Axis:
     def __init__(self, values: list[float], dots: int, ticks: int, log: bool = False) -> None:
         self.dots, self.log = dots, log
         low, high = min(values), max(values)
-        if low == high:
+        if self._place(low) == self._place(high):
             low, high = low - (abs(low) or 1) / 2, high + (abs(high) or 1) / 2
         self.low, self.high = self._place(low), self._place(high)
         self.ticks = _decades(low, high, ticks) if log else _steps(Decimal(low), Decimal(high), ticks)
@@ -63,7 +66,8 @@ def print_plot(sweep: Sweep, rows: Sequence[Row], name: str, plain: bool) -> Non
 
     page, drawn = Page(plain=plain), picture(sweep, rows, "plot", name)
     page.say(sweep_head(sweep))
-    for line in _lines(drawn, page.room or PIPE_WIDTH):
+    height = min(HEIGHT, max(page.console.height - AROUND, LEAST_HEIGHT)) if page.room else HEIGHT
+    for line in _lines(drawn, page.room or PIPE_WIDTH, height):
         shown = line.translate(PLAIN) if takes_unicode(sys.stdout) else for_stream(_ascii(line), sys.stdout)
         page.console.print(Text.from_ansi(shown.rstrip()), soft_wrap=True)
     for note in [*_legend(drawn), *sweep_notes(rows, [name])]:
@@ -79,14 +83,14 @@ def _ascii(line: str) -> str:
     return line.translate(FRAME).translate(dots)
 
 
-def _lines(drawn: Picture, room: int) -> list[str]:
+def _lines(drawn: Picture, room: int, height: int) -> list[str]:
     ys = [y for curve in drawn.curves for y in curve.ys if y is not None]
-    y_axis = Axis(ys, 4 * HEIGHT, 5)
+    y_axis = Axis(ys, 4 * height, max(height // 4, LEAST_TICKS))
     labels = {y_axis.dot(float(tick)) // 4: _label(tick) for tick in y_axis.ticks}
-    margin = max(map(len, labels.values()))
+    margin = max(map(len, labels.values()), default=0)
     width = max(room - margin - 3, LEAST_WIDTH)
-    x_axis = Axis(drawn.curves[0].xs, 2 * width, max(width // 12, 2), drawn.log)
-    canvas = Canvas(width, HEIGHT, 0, 0, 2 * width, 4 * HEIGHT)
+    x_axis = Axis(drawn.curves[0].xs, 2 * width, max(width // 12, LEAST_TICKS), drawn.log)
+    canvas = Canvas(width, height, 0, 0, 2 * width, 4 * height)
     several = len(drawn.curves) > 1
     for curve in drawn.curves:
         for i in curve.changes:
@@ -97,15 +101,12 @@ def _lines(drawn: Picture, room: int) -> list[str]:
     for number, curve in enumerate(drawn.curves):
         _draw_curve(canvas, curve, x_axis, y_axis, number, several)
     rows = canvas.plot("\n").split("\n")
-    left = [
-        f" {labels.get(HEIGHT - 1 - i, ''):>{margin}} {'┤' if HEIGHT - 1 - i in labels else '│'}"
-        for i in range(HEIGHT)
-    ]
+    left = [f" {labels.get(i, ''):>{margin}} {'┤' if i in labels else '│'}" for i in range(height)]
     ticks = {x_axis.dot(float(tick)) // 2: _label(tick) for tick in x_axis.ticks}
     bottom = "".join("┬" if i in ticks else "─" for i in range(width))
     return [
         f" {drawn.y}",
-        *(start + row for start, row in zip(left, rows, strict=True)),
+        *(start + row for start, row in zip(reversed(left), rows, strict=True)),
         f" {'':>{margin}} └{bottom}",
         f" {'':>{margin}}  {_under(ticks, width)}",
         f" {'':>{margin}}  {drawn.x:>{width}}",

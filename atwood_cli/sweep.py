@@ -188,11 +188,9 @@ def _tidy(value: Decimal) -> Decimal:
     """The same number without trailing zeros, and without an exponent where it is readable without."""
     context = decimal_context(MAX_MAGNITUDE, ROUND_HALF_EVEN)
     short = context.normalize(value)
-    return (
-        context.quantize(short, Decimal(1))
-        if len(short.as_tuple().digits) <= short.adjusted() < 16
-        else short
-    )
+    if len(short.as_tuple().digits) <= short.adjusted() < 16:
+        return context.quantize(short, Decimal(1))
+    return short
 
 
 def point_text(point: Point) -> str:

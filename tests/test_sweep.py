@@ -336,6 +336,13 @@ def test_help_shows_ranges_as_they_are_typed(atwood: Atwood) -> None:
     assert all(f" {example} " in out for example in examples)
 
 
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+def test_help_where_stdout_is_not_unicode(encoding: str) -> None:
+    ran = process("sweep", "-h", PYTHONIOENCODING=encoding)
+    assert (ran.status, ran.err) == (0, "")
+    assert "--figure" in ran.out
+
+
 # Waiting
 
 
@@ -491,7 +498,14 @@ def test_more_points_lie_along_the_axis(atwood: Atwood) -> None:
 
 @pytest.mark.parametrize(
     "words",
-    ["--M 1:2:5 --m2 1", "--M 0:1e-300:5 --m2 3", "--g 1:1.000001:3 --m2 3", "--M 2:3:9:log --m2 1.0001"],
+    [
+        "--M 1:2:5 --m2 1",
+        "--M 0:1e-300:5 --m2 3",
+        "--g 1:1.000001:3 --m2 3",
+        "--M 2:3:9:log --m2 1.0001",
+        "--M 1e10:10000000000.000002:3:log --m2 3",
+        "--M 1:1.00000000000000000001:3 --m2 3",
+    ],
 )
 def test_plots_of_next_to_nothing(atwood: Atwood, words: str) -> None:
     pytest.importorskip("plotille")
@@ -521,6 +535,15 @@ def test_plot_on_a_terminal() -> None:
     assert "\x1b[3" not in on_terminal(*words, columns=50, NO_COLOR="1")
     assert "\x1b[3" not in on_terminal(*words, columns=50, TERM="dumb")
     assert max(map(len, plain(on_terminal(*words, columns=12)).splitlines())) <= len(" acceleration (m/s²)")
+
+
+def test_a_plot_fits_a_low_terminal() -> None:
+    pytest.importorskip("plotille")
+    words = [*SWEEP, "--M", "0:100:101", "--plot", "acceleration"]
+    seen = plain(on_terminal(*words, columns=100, rows=20))
+    assert seen.count("\n") < 20
+    assert " 2 ┤" in seen
+    assert plain(on_terminal(*words, columns=100, rows=5)).count("│") >= 3
 
 
 def test_plot_into_a_file(atwood: Atwood, tmp_path: Path) -> None:
@@ -646,6 +669,7 @@ FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
         ),
         ("--M 1:2:3 --json --csv", "--json and --csv exclude each other; give one of them"),
         ("--M 1:2:3 --digits 0", "--digits '0' must be a whole number from 1 to 1000"),
+        ("--M 1:2:3 --force", "--force needs --output"),
         ("--M 1:2:3 -o a --output b", "--output is given 2 times; give it once"),
     ],
 )
