@@ -18,7 +18,7 @@ from .quantities import NAMES
 from .scene import PARAMETERS, Scene, SceneError, nearest, read_digits
 
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
-EXTRAS = {"matplotlib": "figure"}
+EXTRAS = {"matplotlib": "figure", "plotille": "plot"}
 
 app = typer.Typer(
     name="atwood",
@@ -28,6 +28,7 @@ app = typer.Typer(
     Examples:
       atwood solve --m1 1 --m2 3 --mu 0.3
       atwood solve --m1 250g --m2 300g --M 100g --only acceleration
+      atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3
       atwood contact --m1 1 --m2 3 --M 10 --mu 0.3
     """,
     invoke_without_command=True,
@@ -141,6 +142,34 @@ FigureFile = Annotated[
     str | None, _output(metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure).")
 ]
 
+Columns = Annotated[
+    list[str] | None,
+    _output(
+        "--only", metavar="NAME", help="A column for this quantity, not for the usual seven; repeatable."
+    ),
+]
+Plot = Annotated[
+    str | None,
+    _output(metavar="NAME", help="Draw this quantity's curve in place of the table (extra: plot)."),
+]
+SweepFigure = Annotated[
+    tuple[str, str] | None,
+    _output(
+        metavar="FILE NAME",
+        help="Also draw this quantity's curve to FILE.svg, .png or .pdf (extra: figure).",
+    ),
+]
+OutputFile = Annotated[
+    str | None,
+    _output(
+        "--output",
+        "-o",
+        metavar="FILE",
+        help="Write to FILE, whole or not at all; .json and .csv there choose the format.",
+    ),
+]
+Force = Annotated[bool, _output("--force", help="Replace the FILE of --output, if it exists.")]
+
 
 def _print_version(wanted: bool) -> None:
     if wanted:
@@ -185,10 +214,7 @@ def solve(
 
     _exclude_each_other(json, csv)
     names = only or []
-    for name in names:
-        if name not in NAMES:
-            hint = nearest(name, NAMES) or f"; there are {', '.join(NAMES)}"
-            raise SceneError("only", name, f"is no quantity{hint}")
+    _check_names("only", *names)
     answers = Answers(Scene.read(given), read_digits(digits))
     if json:
         output.print_json(answers, names)
@@ -267,6 +293,88 @@ def contact(
     else:
         output.print_arc(answers, arc)
     return DONE
+
+
+@app.command("sweep", cls=Command)
+@takes_scene
+def sweep(
+    given: Mapping[str, str | None],
+    *,
+    plot: Plot = None,
+    figure: SweepFigure = None,
+    output: OutputFile = None,
+    force: Force = False,
+    digits: Digits = None,
+    json: AsJson = False,
+    csv: AsCsv = False,
+    only: Columns = None,
+) -> int:
+    """Solve a range of scenes: one or two options carry start:stop:count or start:stop:count:log.
+
+    \b
+    Examples:
+      atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3 --digits 6
+      atwood sweep --m1 1 --m2 3 --M 1:1000:4:log --mu 0.2:0.4:3 --only regime
+      atwood sweep --m1 100g:500g:5 --m2 300g --M 50g --csv
+      atwood sweep --m1 1 --m2 3 --M 0:60:61 --mu 0.3 --plot acceleration
+      atwood sweep --m1 1 --m2 3 --M 0:60:61 --figure a.svg mu_verge -o a.csv
+    """
+    from . import output as out
+    from .files import stdout_into
+    from .quantities import STANDARD
+    from .sweep import check_drawable, picture, read_sweep, solve_rows
+
+    _exclude_each_other(json, csv)
+    if force and output is None:
+        raise SceneError("force", None, "needs --output")
+    if output is not None and not (json or csv):
+        json, csv = (output.lower().endswith(suffix) for suffix in (".json", ".csv"))
+    names = list(dict.fromkeys(only or STANDARD))
+    _check_names("only", *names)
+    found, precision = read_sweep(given), read_digits(digits)
+    drawn = {"plot": plot, "figure": figure and figure[1]}
+    for option, name in drawn.items():
+        if name is not None:
+            _check_names(option, name)
+            check_drawable(found, option, name)
+    if plot is not None:
+        if json or csv:
+            raise SceneError(
+                "plot", plot, f"draws text, not {'JSON' if json else 'CSV'}; leave one of them out"
+            )
+        if only:
+            raise SceneError("only", only[0], "has no say beside --plot; leave one of them out")
+        from .plot import print_plot
+
+        names = [plot]
+    if figure is not None:
+        from .figure import check_format, save_sweep
+
+        check_format(figure[0])
+    wanted = dict.fromkeys([*names, *(name for name in drawn.values() if name)])
+    with stdout_into(output, force):
+        rows = list(out.watched(solve_rows(found, list(wanted), precision), found.total))
+        if figure is not None:
+            save_sweep(picture(found, rows, "figure", figure[1]), out.sweep_head(found), figure[0])
+        if plot is not None:
+            print_plot(found, rows, plot, plain=output is not None)
+        elif json:
+            out.print_sweep_json(found, rows, names)
+        elif csv:
+            out.print_sweep_csv(found, rows, names)
+        else:
+            out.print_sweep(found, rows, names, plain=output is not None)
+    if csv:
+        for note in out.sweep_notes(rows, names):
+            _say(note)
+    return DONE
+
+
+def _check_names(option: str, *names: str) -> None:
+    for name in names:
+        if name not in NAMES:
+            hint = nearest(name, NAMES) or f"; there are {', '.join(NAMES)}"
+            raise SceneError(option, name, f"is no quantity{hint}")
 
 
 def _exclude_each_other(json: bool, csv: bool) -> None:

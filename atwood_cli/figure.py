@@ -1,9 +1,11 @@
-"""The arc of contact as a picture, for a slide: needs matplotlib (extra ``figure``).
+"""The arc of contact and sweeps as pictures, for a slide: needs matplotlib (extra ``figure``).
 
 No pyplot, no display; the same scene gives the same SVG to the byte.
 """
 
-from math import cos, degrees, hypot, radians, sin
+from collections.abc import Iterator
+from contextlib import contextmanager
+from math import cos, degrees, hypot, nan, radians, sin
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,12 +18,16 @@ from .words import verdict
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from .sweep import Curve, Picture
 
 FORMATS = (".svg", ".png", ".pdf")
 NORMAL, FRICTION, STRING, WEIGHT = "#1f5fa8", "#c23b22", "#222222", "#5a7d2a"
 LONGEST = 0.75  # radii: the arrow of the greatest force
 DRAWABLE = (1e-100, 1e100)
 CURVE_POINTS, ARROWS, TITLE_DIGITS = 361, 13, 6
+MARKED = 60  # points: of more, only the line is drawn
 STYLE: Any = {
     "svg.hashsalt": "atwood",  # else the SVG's ids are random
     "font.family": "DejaVu Sans",
@@ -32,22 +38,62 @@ STYLE: Any = {
 
 def save(answers: Answers, kind: str | None, path: str) -> None:
     """Draw the arc to a file, whose suffix is its format. Raises SceneError, OSError."""
-    if Path(path).suffix.lower() not in FORMATS:
-        raise SceneError("figure", path, f"must end in one of {', '.join(FORMATS)}")
-    from matplotlib import rc_context
-    from matplotlib.figure import Figure
-
+    check_format(path)
     doubles = Answers(answers.case.scene)
     forces = [float(doubles[name] or 0) for name in ("tension_1", "tension_2")]
     if not DRAWABLE[0] < max(forces) < DRAWABLE[1]:
         raise SceneError("figure", path, f"draws forces between {DRAWABLE[0]} and {DRAWABLE[1]} N only")
-    with rc_context(STYLE):
-        figure = Figure(figsize=(11, 6), layout="constrained")
+    with _page(path) as figure:
         machine, curve = figure.subplots(1, 2, width_ratios=[1.1, 1])
         _draw_machine(machine, doubles, contact(doubles, ARROWS, kind))
         _draw_tension(curve, contact(doubles, CURVE_POINTS, kind))
         shown = Answers(answers.case.scene, answers.digits or TITLE_DIGITS)
         figure.suptitle(f"{describe(shown.case.scene)}\n{verdict(shown)}", fontsize=10)
+
+
+def save_sweep(picture: "Picture", title: str, path: str) -> None:
+    """Draw the curves of a sweep to a file, whose suffix is its format. Raises SceneError, OSError."""
+    check_format(path)
+    with _page(path) as figure:
+        axes = figure.subplots()
+        axes.set_xlabel(picture.x)
+        axes.set_ylabel(picture.y)
+        axes.set_xscale("log" if picture.log else "linear")
+        axes.spines[["top", "right"]].set_visible(False)
+        for curve in picture.curves:
+            _draw_curve(axes, curve)
+        axes.set_xlim(min(curve.xs), max(curve.xs))  # where the curve has gaps, too
+        if len(picture.curves) > 1:
+            axes.legend(frameon=False)
+        figure.suptitle(title, fontsize=10)
+
+
+def _draw_curve(axes: "Axes", curve: "Curve") -> None:
+    ys = [nan if y is None else y for y in curve.ys]
+    (line,) = axes.plot(curve.xs, ys, marker="." if len(ys) <= MARKED else "", label=curve.label)
+    for i, words in zip(curve.changes, curve.regimes[1:], strict=True):
+        axes.axvline(curve.xs[i], color=line.get_color(), lw=1, ls="--")
+        label = f"{words}, {curve.label}" if curve.label else words
+        place = axes.get_xaxis_transform()  # the height is a share of the axes'
+        axes.text(curve.xs[i], 0.98, f" {label}", transform=place, rotation=90, ha="right", va="top", size=9)
+
+
+def check_format(path: str) -> None:
+    """Raises SceneError where the suffix is no format of a figure, and misses matplotlib in time."""
+    if Path(path).suffix.lower() not in FORMATS:
+        raise SceneError("figure", path, f"must end in one of {', '.join(FORMATS)}")
+    import matplotlib  # noqa: F401
+
+
+@contextmanager
+def _page(path: str) -> Iterator["Figure"]:
+    """A figure to draw on, which is then saved."""
+    from matplotlib import rc_context
+    from matplotlib.figure import Figure
+
+    with rc_context(STYLE):
+        figure = Figure(figsize=(11, 6), layout="constrained")
+        yield figure
         figure.savefig(path, dpi=200, metadata={"Date": None} if path.lower().endswith(".svg") else None)
 
 

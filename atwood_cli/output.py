@@ -2,24 +2,28 @@
 
 import json
 import sys
-from collections.abc import Iterable, Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from itertools import chain
+from itertools import chain, groupby, product
 from math import inf
-from typing import TYPE_CHECKING, TextIO
+from operator import itemgetter
+from time import monotonic
+from typing import TYPE_CHECKING, Any, TextIO
 
 from .quantities import NAMES, QUANTITIES
 from .rounding import as_typed, is_infinite, text
-from .scene import PARAMETERS, Radians, Scene
+from .scene import Radians, Scene, stated
 from .solver import Answers
-from .words import notes, verdict
+from .words import notes, reasons_at, verdict
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from .contact import Contact
     from .elements import Elements
+    from .sweep import Row, Sweep
 
 COLUMN_UNITS = {
     "angle": "°",
@@ -38,9 +42,12 @@ ASCII = str.maketrans(
 
 def for_stream(words: str, stream: TextIO | None) -> str:
     """The words as the stream can take them: symbols are spelled out where it is not Unicode."""
+    return words if takes_unicode(stream) else words.translate(ASCII).encode("ascii", "replace").decode()
+
+
+def takes_unicode(stream: TextIO | None) -> bool:
     encoding = getattr(stream, "encoding", None) or "ascii"
-    unicode = encoding.lower().startswith("utf")
-    return words if unicode else words.translate(ASCII).encode("ascii", "replace").decode()
+    return encoding.lower().startswith("utf")
 
 
 def print_json(answers: Answers, only: Sequence[str]) -> None:
@@ -67,6 +74,8 @@ def _json(value: object, indent: str = "\n") -> str:
         case Mapping():
             items = (f"{json.dumps(key)}: {_json(item, inner)}" for key, item in value.items())
             return f"{{{inner}{f',{inner}'.join(items)}{indent}}}"
+        case []:
+            return "[]"
         case list():
             items = (_json(item, inner) for item in value)
             return f"[{inner}{f',{inner}'.join(items)}{indent}]"
@@ -89,24 +98,24 @@ def cell(value: object) -> str:
     return str(value or "")
 
 
-def describe(scene: Scene) -> str:
-    """The scene in one line, as understood."""
+def describe(scene: Scene, ranges: Mapping[str, object] = {}) -> str:
+    """The scene in one line, as understood, with ranges as typed in place of values."""
     parts = []
-    for name, value in _scene(scene).items():
-        if value is not None:
-            unit = PARAMETERS[name].unit if isinstance(value, Fraction) else ""
-            shown = as_typed(value) if isinstance(value, Fraction) else value
-            parts.append(f"{name} = {shown}{' ' * (unit not in ('', '°'))}{unit}")
+    for name, value in {**_scene(scene), **ranges}.items():
+        if isinstance(value, Fraction):
+            parts.append(stated(name, as_typed(value)))
+        elif value is not None:
+            parts.append(f"{name} = {value}")
     return ", ".join(parts)
 
 
 class Page:
     """Where tables and sentences go: the terminal, or a pipe that takes any width."""
 
-    def __init__(self, console: "Console | None" = None) -> None:
+    def __init__(self, console: "Console | None" = None, plain: bool = False) -> None:
         from rich.console import Console
 
-        self.console = console or Console(highlight=False)
+        self.console = console or Console(highlight=False, force_terminal=False if plain else None)
         self.room = self.console.width if self.console.is_terminal else None
 
     def say(self, words: str, style: str = "") -> None:
@@ -120,22 +129,22 @@ class Page:
         self.say(describe(answers.case.scene))
         self.say(verdict(answers), f"bold {REGIME_STYLES[answers.case.regime]}")
 
-    def table(self, columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]]) -> None:
+    def table(self, columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]], keys: int = 1) -> None:
         """A table, with a line between groups of rows, and as wide as its numbers ask.
 
-        Columns that a terminal has no room for go into a table below, beside the first column again.
+        Columns that a terminal has no room for go into a table below, beside the first ``keys`` again.
         """
         from rich import box
         from rich.table import Table
         from rich.text import Text
 
         fit = len(columns)
-        while self.room and fit > 2 and _width(columns[:fit], groups) > self.room:
+        while self.room and fit > keys + 1 and _width(columns[:fit], groups) > self.room:
             fit -= 1
         if fit < len(columns):
-            for part in (slice(1, fit), slice(fit, None)):
-                rows = [[[row[0], *row[part]] for row in group] for group in groups]
-                self.table([columns[0], *columns[part]], rows)
+            for part in (slice(keys, fit), slice(fit, None)):
+                rows = [[[*row[:keys], *row[part]] for row in group] for group in groups]
+                self.table([*columns[:keys], *columns[part]], rows, keys)
             return
         table = Table(*columns, box=box.ROUNDED, show_lines=True)
         for group in groups:
@@ -258,6 +267,109 @@ def print_elements_json(answers: Answers, found: "Elements") -> None:
     rows = {row.name: {"value": row.value, "exact": row.exact, "error": row.error} for row in found.rows}
     scene, notes = _scene(answers.case.scene), [verdict(answers), *found.notes]
     print(_json({"scene": scene, "regime": answers.case.regime, "elements": rows, "notes": notes}))
+
+
+def print_sweep(sweep: "Sweep", rows: "Sequence[Row]", names: Sequence[str], plain: bool) -> None:
+    """The scene, a table with a row a point, and the notes; columns without a value are left out."""
+    from .sweep import groups, heads, regimes
+
+    page, scene, others = Page(plain=plain), sweep_head(sweep), sweep_notes(rows, names)
+    shown = [name for name in names if any(cell(row.values[name]) for row in rows)]
+    columns = [_aligned(map(text, points)) for points in _swept(sweep)]
+    columns += [_column(name, rows) for name in shown]
+    lines = zip(*columns, strict=True)
+    parts = [[next(lines) for _ in group] for group in groups(sweep, rows)]
+    left_out = 0
+    if page.room and sys.stdout.isatty():  # a person reads: the table's frame and all else take lines too
+        sentences = sum(1 + len(line) // page.room for line in (scene, *others))
+        parts, left_out = _trimmed(parts, page.console.height - sentences - FRAME)
+    page.say(scene)
+    if not sweep.ranges[1:]:
+        page.say(f"Regimes: {', '.join(regimes(rows, sweep.ranges[0].name))}.")
+    page.table([for_stream(head, sys.stdout) for head in heads(sweep, shown)], parts, len(sweep.ranges))
+    if left_out:
+        page.say(f"{left_out} rows in the middle are left out; a pipe or -o FILE has them all.")
+    for note in others:
+        page.say(note)
+
+
+FRAME = 7  # lines: the table's frame and head, regimes, the sentence on what is left out, the prompt
+
+
+def _swept(sweep: "Sweep") -> list[list[Decimal]]:
+    """The swept parameters as columns."""
+    return [list(column) for column in zip(*product(*(r.bare() for r in sweep.ranges)), strict=True)]
+
+
+def sweep_head(sweep: "Sweep") -> str:
+    """The scene in one line, with ranges as typed."""
+    return describe(sweep.scene, _typed_ranges(sweep))
+
+
+def _typed_ranges(sweep: "Sweep") -> dict[str, str]:
+    return {range_.name: range_.typed for range_ in sweep.ranges}
+
+
+def _column(name: str, rows: "Sequence[Row]") -> list[str]:
+    cells = [cell(row.values[name]) for row in rows]
+    return cells if name == "regime" else _aligned(cells)
+
+
+def _trimmed(groups: list[list[Any]], room: int) -> tuple[list[list[Any]], int]:
+    """The first and the last rows, as many as fit with the lines between groups, and how many do not."""
+    rows = [(i, row) for i, group in enumerate(groups) for row in group]
+    if len(rows) + len(groups) - 1 <= room:
+        return groups, 0
+    # At least one row is kept at each end, and a row of dots takes three lines.
+    for kept in range(max(2, min(room, len(rows) - 1)), 1, -1):
+        halves = rows[: (kept + 1) // 2], rows[-(kept // 2) :]
+        ends = [[[row for _, row in g] for _, g in groupby(half, itemgetter(0))] for half in halves]
+        if kept == 2 or kept + len(ends[0]) + len(ends[1]) + 1 <= room:
+            break
+    dots = ["..."] * len(rows[0][1])
+    return [*ends[0], [dots], *ends[1]], len(rows) - kept
+
+
+def sweep_notes(rows: "Sequence[Row]", names: Sequence[str]) -> list[str]:
+    """Why values are missing, and at how many points."""
+    found = Counter(item for row in rows for item in row.reasons.items() if item[0] in names)
+    return reasons_at(found, len(rows))
+
+
+def print_sweep_csv(sweep: "Sweep", rows: "Sequence[Row]", names: Sequence[str]) -> None:
+    """A line of names and a line a point."""
+    print_records_csv(_records(sweep, rows, names))
+
+
+def _records(sweep: "Sweep", rows: "Sequence[Row]", names: Sequence[str]) -> list[dict[str, object]]:
+    return [{**row.at, **{name: row.values[name] for name in names}} for row in rows]
+
+
+def print_sweep_json(sweep: "Sweep", rows: "Sequence[Row]", names: Sequence[str]) -> None:
+    """The scene, with ranges as typed, a record a point, and the notes."""
+    scene = _scene(sweep.scene) | _typed_ranges(sweep)
+    records = _records(sweep, rows, names)
+    print(_json({"scene": scene, "rows": records, "notes": sweep_notes(rows, names)}))
+
+
+def watched(rows: "Iterator[Row]", count: int) -> "Iterator[Row]":
+    """The rows, with a bar on a terminal's stderr once they take longer than a second."""
+    start = monotonic()
+    for done, row in enumerate(rows, 1):
+        yield row
+        if monotonic() - start > 1 and sys.stderr.isatty():
+            yield from _with_bar(rows, done, count)
+
+
+def _with_bar(rows: "Iterator[Row]", done: int, count: int) -> "Iterator[Row]":
+    from rich.console import Console
+    from rich.progress import Progress
+
+    with Progress(console=Console(stderr=True), transient=True, redirect_stdout=False) as bar:
+        task = bar.add_task("", total=count, completed=done)
+        for row in rows:
+            yield row
+            bar.advance(task)
 
 
 def _integer_part(value: str) -> int:

@@ -63,5 +63,13 @@ QUANTITIES: dict[str, About] = {
     f.name: f.metadata["about"] for f in fields(Solution) if "about" in f.metadata
 }
 NAMES = ("regime", *QUANTITIES)
-STANDARD = "regime acceleration tension_1 tension_2 mu_verge friction_force critical_pulley_mass".split()
-"""What tables of many scenes hold unless told otherwise."""
+STANDARD = (
+    "regime",
+    "acceleration",
+    "tension_1",
+    "tension_2",
+    "mu_verge",
+    "friction_force",
+    "critical_pulley_mass",
+)
+"""The quantities of many scenes in a table, unless others are named."""

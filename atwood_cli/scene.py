@@ -114,6 +114,12 @@ PARAMETERS = {
 }
 
 
+def stated(name: str, value: str) -> str:
+    """A parameter with its value and unit, for a sentence."""
+    unit = PARAMETERS[name].unit
+    return f"{name} = {value}{' ' * (unit not in ('', '°'))}{unit}"
+
+
 class Radians(Fraction):
     """An angle in radians; a plain Fraction is one in degrees, and no rational is both."""
 

@@ -1,5 +1,7 @@
 """A solved scene in words: what the string does and why, and what is missing and why."""
 
+from collections import Counter
+from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
@@ -17,10 +19,18 @@ def notes(answers: Answers) -> list[str]:
 
 def reasons(answers: Answers) -> list[str]:
     """Why values asked for so far are missing: a sentence a reason, naming them."""
-    names: dict[str, list[str]] = {}
-    for name, reason in answers.reasons.items():
-        names.setdefault(reason, []).append(name)
-    return [f"{', '.join(group)}: {reason}." for reason, group in names.items()]
+    return reasons_at(Counter(answers.reasons.items()), 1)
+
+
+def reasons_at(found: Mapping[tuple[str, str], int], points: int) -> list[str]:
+    """The same for many points: names with reasons, and at how many points."""
+    names: dict[tuple[str, int], list[str]] = {}
+    for (name, reason), times in found.items():
+        names.setdefault((reason, times), []).append(name)
+    return [
+        f"{', '.join(group)}: {reason}{'' if times == points else f' (at {times} of {points} points)'}."
+        for (reason, times), group in names.items()
+    ]
 
 
 def verdict(answers: Answers) -> str:

@@ -36,15 +36,15 @@ def process(*arguments: str, shell: str = "", **environment: str) -> Ran:
     )
 
 
-def on_terminal(*arguments: str, columns: int, **environment: str) -> str:
-    """What a terminal of that width gets to see."""
+def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: str) -> str:
+    """What a terminal of that size gets to see."""
     pty, fcntl = pytest.importorskip("pty"), pytest.importorskip("fcntl")
     import struct
     import termios
 
     leader, follower = pty.openpty()
-    fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", 60, columns, 0, 0))
-    env = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "NO_COLOR")}
+    fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+    env = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "LINES", "NO_COLOR")}
     env |= {"TERM": "xterm-256color", **environment}
     command = [sys.executable, "-m", "atwood_cli", *arguments]
     child = subprocess.Popen(command, stdin=follower, stdout=follower, stderr=follower, env=env)

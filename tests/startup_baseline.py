@@ -53,6 +53,29 @@ def solve(
 
 
 @app.command()
+def sweep(
+    m1: Annotated[str | None, option("--m1")] = None,
+    m2: Annotated[str | None, option("--m2")] = None,
+    M: Annotated[str | None, option("--M", "--pulley-mass")] = None,
+    mu: Annotated[str | None, option("--mu")] = None,
+    mu_k: Annotated[str | None, option("--mu-k")] = None,
+    g: Annotated[str | None, option("--g")] = None,
+    inertia: Annotated[str | None, option("--inertia")] = None,
+    I: Annotated[str | None, option("--I")] = None,
+    R: Annotated[str | None, option("--R", "--radius")] = None,
+    wrap: Annotated[str | None, option("--wrap")] = None,
+    plot: Annotated[str | None, option("--plot")] = None,
+    figure: Annotated[tuple[str, str] | None, option("--figure")] = None,
+    output: Annotated[str | None, option("--output", "-o")] = None,
+    force: Annotated[bool, option("--force")] = False,
+    digits: Annotated[str | None, option("--digits")] = None,
+    as_json: Annotated[bool, option("--json")] = False,
+    csv: Annotated[bool, option("--csv")] = False,
+    only: Annotated[list[str] | None, option("--only")] = None,
+) -> None: ...
+
+
+@app.command()
 def contact(
     m1: Annotated[str | None, option("--m1")] = None,
     m2: Annotated[str | None, option("--m2")] = None,

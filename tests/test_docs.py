@@ -75,5 +75,6 @@ def test_every_example_is_tested() -> None:
         "lift.sh",
         "paper.sh",
         "scripts.sh",
+        "sweep.sh",
     ]
     assert all(script.with_suffix(".txt").exists() for script in EXAMPLES)

@@ -1,0 +1,731 @@
+"""`atwood sweep`: ranges, rows that `solve` repeats, output, files, curves."""
+
+import csv
+import io
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from decimal import Decimal
+from fractions import Fraction
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from atwood_cli.arithmetic import LARGEST_EXPONENT
+from atwood_cli.cli import sweep
+from atwood_cli.output import watched
+from atwood_cli.quantities import NAMES, STANDARD
+from atwood_cli.scene import PARAMETERS, SceneError
+from atwood_cli.sweep import Row, point_text, read_range, read_sweep, solve_rows
+
+from .running import Atwood, on_terminal, plain, process
+from .test_contact import labels
+
+SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
+HELD = ["sweep", "--m1", "1", "--m2", "3"]
+
+
+def points(typed_range: str, name: str = "M") -> list[str]:
+    return [point_text(point) for point in read_range(name, typed_range).points]
+
+
+# Ranges
+
+
+@pytest.mark.parametrize(
+    ("range_", "expected"),
+    [
+        ("0:1:11", "0 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1"),
+        ("1:0:3", "1 0.5 0"),
+        ("0:1:4", "0 0.33333333333333333 0.66666666666666667 1"),
+        ("100g:500g:5", "0.1 0.2 0.3 0.4 0.5"),
+        ("0:500g:2", "0 0.5"),
+        ("1lb:2lb:2", "0.45359237 0.90718474"),
+        ("1e-400:3e-400:3", "1e-400 2e-400 3e-400"),
+        ("1:1000:4:log", "1 10 100 1000"),
+        ("1000:1:4:log", "1000 100 10 1"),
+        ("1e-500:1e500:3:log", "1e-500 1 1e500"),
+        ("2:512:5:log", "2 8 32 128 512"),
+        ("1:10:3:log", "1 3.1622776601683793 10"),
+        (
+            "1:1.00000000000000000003:4",
+            "1 1.00000000000000000001 1.00000000000000000002 1.00000000000000000003",
+        ),
+    ],
+)
+def test_points(range_: str, expected: str) -> None:
+    assert points(range_) == expected.split()
+
+
+def test_points_of_an_angle_keep_what_makes_them_exact() -> None:
+    assert points("90:360:4", "wrap") == ["90", "180", "270", "360"]
+    assert points("90deg:1turn:4", "wrap") == ["90", "180", "270", "360"]
+    assert points("1rad:2rad:3", "wrap") == ["1rad", "1.5rad", "2rad"]
+
+
+decimals = st.decimals(min_value=0, max_value=10**6, allow_nan=False, places=6)
+
+
+@given(decimals, decimals.filter(bool), st.integers(2, 40), st.booleans())
+def test_decimal_steps_are_exact(start: Decimal, step: Decimal, count: int, down: bool) -> None:
+    expected = [Fraction(start) + i * Fraction(step) for i in range(count)]
+    if down:
+        expected.reverse()
+    ends = (str(Decimal(q.numerator) / Decimal(q.denominator)).lower() for q in (expected[0], expected[-1]))
+    found = points(f"{':'.join(ends)}:{count}")
+    assert list(map(Fraction, found)) == expected
+    assert max(map(len, found)) < 20
+
+
+@given(decimals, decimals, st.integers(2, 50), st.booleans())
+def test_ends_are_hit_and_points_advance(start: Decimal, stop: Decimal, count: int, log: bool) -> None:
+    if start == stop or (log and 0 in (start, stop)):
+        return
+    found = list(map(Fraction, points(f"{start:f}:{stop:f}:{count}{':log' * log}")))
+    assert (found[0], found[-1], len(found)) == (Fraction(start), Fraction(stop), count)
+    assert all((a < b) == (start < stop) and a != b for a, b in pairwise(found))
+
+
+@given(st.integers(-30, 30), st.integers(1, 20), st.integers(1, 9))
+def test_powers_are_whole_on_a_log_range(first: int, steps: int, factor: int) -> None:
+    found = points(f"{factor}e{first}:{factor}e{first + steps}:{steps + 1}:log")
+    assert list(map(Fraction, found)) == [factor * Fraction(10) ** (first + i) for i in range(steps + 1)]
+
+
+@given(st.integers(1, 10**6), st.integers(1, 10**6), st.integers(3, 200))
+def test_points_at_equal_ratios_are_the_decimals_next_to_them(start: int, stop: int, count: int) -> None:
+    if start == stop:
+        return
+    with mpmath.workdps(60):
+        ratio = mpmath.mpf(stop) / start
+        for i, point in enumerate(points(f"{start}:{stop}:{count}:log")):
+            exact = start * ratio ** (mpmath.mpf(i) / (count - 1))
+            assert abs(mpmath.mpf(point) - exact) <= exact * mpmath.mpf("5.000001e-17")
+
+
+def test_points_that_no_double_tells_apart_differ() -> None:
+    for kind in ("", ":log"):
+        found = points(f"1:1.{'0' * 60}1:7{kind}")
+        assert len(set(found)) == 7
+
+
+def test_the_first_range_varies_slowest(atwood: Atwood) -> None:
+    ran = atwood("sweep", "--M", "1:2:2", "--m2", "3", "--m1", "1:2:2", "--only", "regime", "--csv")
+    assert ran.out.splitlines() == ["m1,M,regime", *(f"{m1},{M},no-slip" for m1 in (1, 2) for M in (1, 2))]
+
+
+# Rows
+
+
+GRIDS = [
+    {"m1": "1", "m2": "3", "mu": "0.3", "M": "0:100:7"},
+    {"m1": "0.5:4:8", "m2": "2", "M": "5", "mu": "0.1:0.4:4"},
+    {"m1": "100g:300g:3", "m2": "200g", "M": "1:1000:5:log", "R": "5cm"},
+    {"m1": "1", "m2": "3", "mu": "0.3", "mu_k": "0:0.3:4", "M": "50", "wrap": "1rad:7rad:4"},
+    {"m1": "1", "m2": "3", "mu": "0.1:0.35:6"},
+    {"m1": "1e-400:3e-400:3", "m2": "2", "g": "1:25:4"},
+]
+
+
+@pytest.mark.parametrize("digits", [None, "30"])
+@pytest.mark.parametrize("grid", GRIDS, ids=str)
+def test_every_row_is_what_solve_prints_for_its_values(
+    atwood: Atwood, grid: dict[str, str], digits: str | None
+) -> None:
+    options = [f"--digits={digits}"] if digits else []
+    words = {name: f"--{name.replace('_', '-')}" for name in grid}
+    ran = atwood("sweep", *(f"{words[n]}={grid[n]}" for n in grid), *options, "--csv")
+    assert ran.status == 0
+    rows = list(csv.DictReader(io.StringIO(ran.out)))
+    swept = [name for name in PARAMETERS if ":" in grid.get(name, "")]
+    assert list(rows[0]) == [*swept, *STANDARD]
+    for row in rows:
+        scene = grid | {name: row[name] for name in swept}
+        only = [f"--only={name}" for name in STANDARD]
+        one = atwood("solve", *(f"{words[n]}={scene[n]}" for n in grid), *options, *only, "--csv")
+        assert next(csv.DictReader(io.StringIO(one.out))) == {name: row[name] for name in STANDARD}
+
+
+def test_only_names_the_columns_in_the_order_asked_for(atwood: Atwood) -> None:
+    ran = atwood(
+        *HELD, "--M", "1:2:2", "--csv", "--only", "tension_2", "--only", "regime", "--only", "tension_2"
+    )
+    assert ran.out.splitlines()[0] == "M,tension_2,regime"
+
+
+def test_only_what_is_asked_for_is_computed() -> None:
+    (row, _) = solve_rows(read_sweep({"m1": "1", "m2": "3", "M": "1:2:2"}), ["tension_1"], None)
+    assert list(row.values) == ["tension_1"]
+
+
+def test_the_standard_seven_are_quantities() -> None:
+    assert set(STANDARD) <= set(NAMES)
+    assert len(set(STANDARD)) == 7
+
+
+# Output
+
+
+def test_the_table(atwood: Atwood) -> None:
+    ran = atwood(*SWEEP, "--M", "0:50:6", "--digits", "5", "--only", "regime", "--only", "acceleration")
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.splitlines() == [
+        "m1 = 1 kg, m2 = 3 kg, M = 0:50:6, mu = 0.3, g = 9.80665 m/s², inertia = 0.5, wrap = 180°",
+        "Regimes: no-slip, slip from M = 50 kg.",
+        "╭────────┬─────────┬─────────────────────╮",
+        "│ M (kg) │ regime  │ acceleration (m/s²) │",
+        "├────────┼─────────┼─────────────────────┤",
+        "│  0     │ no-slip │ 4.9033              │",
+        "│ 10     │ no-slip │ 2.1793              │",
+        "│ 20     │ no-slip │ 1.4010              │",
+        "│ 30     │ no-slip │ 1.0323              │",
+        "│ 40     │ no-slip │ 0.81722             │",
+        "├────────┼─────────┼─────────────────────┤",
+        "│ 50     │ slip    │ 0.76403             │",
+        "╰────────┴─────────┴─────────────────────╯",
+    ]
+
+
+def test_two_ranges_make_a_group_for_each_value_of_the_slow_one(atwood: Atwood) -> None:
+    out = atwood(*HELD, "--M", "1:100:3:log", "--mu", "0.2:0.3:2", "--only", "regime").out
+    assert out.count("├") == 3
+    assert "│ 10     │" not in out
+    assert "│  10    │ 0.2 │ slip    │\n│  10    │ 0.3 │ no-slip │" in out
+    assert " from " not in out
+
+
+def test_a_column_without_values_is_left_out_of_the_table_only(atwood: Atwood) -> None:
+    words = ["sweep", "--m1", "1:2:2", "--m2", "3", "--M", "1", "--only", "torque", "--only", "tension_1"]
+    table = atwood(*words)
+    assert "torque (N m)" not in table.out
+    assert table.out.endswith("torque: give R, the pulley's radius.\n")
+    ran = atwood(*words, "--csv")
+    assert ran.out.splitlines()[0] == "m1,torque,tension_1"
+    assert ran.out.splitlines()[1].startswith("1,,")
+    assert ran.err == "atwood: torque: give R, the pulley's radius.\n"
+    result = json.loads(atwood(*words, "--json").out)
+    assert [row["torque"] for row in result["rows"]] == [None, None]
+    assert result["notes"] == ["torque: give R, the pulley's radius."]
+
+
+def test_a_note_says_at_how_many_points(atwood: Atwood) -> None:
+    ran = atwood(*HELD, "--mu", "0.1:0.35:6", "--only", "critical_pulley_mass", "--csv")
+    assert ran.out.splitlines()[-1] == "0.35,"
+    assert ran.err == (
+        "atwood: critical_pulley_mass: does not exist, as the string holds on any pulley, however heavy"
+        " (at 1 of 6 points).\n"
+    )
+
+
+def test_json(atwood: Atwood) -> None:
+    ran = atwood(*SWEEP, "--M", "0:0.2:3", "--wrap", "1rad:2rad:2", "--only", "regime", "--json")
+    result = json.loads(ran.out, parse_constant=lambda word: pytest.fail(word))
+    assert list(result) == ["scene", "rows", "notes"]
+    assert result["scene"] == {
+        **{"m1": 1, "m2": 3, "M": "0:0.2:3", "mu": 0.3, "mu_k": None, "g": 9.80665},
+        **{"inertia": 0.5, "I": None, "R": None, "wrap": "1rad:2rad:2"},
+    }
+    assert result["rows"][3] == {"M": 0.1, "wrap": "2rad", "regime": "no-slip"}
+    assert '"M": 0.1,' in ran.out
+    assert '"notes": []' in ran.out
+    assert ran.err == ""
+
+
+def test_json_and_csv_have_the_digits_asked_for(atwood: Atwood) -> None:
+    words = [*SWEEP, "--M", "1:2:2", "--only", "tension_1", "--digits", "4"]
+    assert '"tension_1": 14.17' in atwood(*words, "--json").out
+    assert "1,14.17\n" in atwood(*words, "--csv").out
+
+
+def test_an_angle_in_radians_is_headed_so(atwood: Atwood) -> None:
+    words = [*SWEEP, "--M", "10", "--wrap", "1rad:4rad:4", "--only", "regime"]
+    out = atwood(*words).out
+    assert "│ wrap (rad) │" in out
+    assert "│ 3          │ no-slip │" in out
+    assert "Regimes: slip, no-slip from wrap = 3rad." in out
+    assert "3rad,no-slip\n" in atwood(*words, "--csv").out
+
+
+def test_a_long_table_is_trimmed_in_the_middle_on_a_terminal() -> None:
+    words = [*SWEEP, "--M", "0:100:101", "--digits", "5"]
+    seen = plain(on_terminal(*words, columns=150, rows=24))
+    assert seen.count("\n") <= 23
+    shown = re.findall(r"^│ +(\d+) ", seen, re.MULTILINE)
+    assert shown[0] == "0"
+    assert shown[-1] == "100"
+    assert "│ ...    │ ... " in seen
+    assert f"{101 - len(shown)} rows in the middle are left out; a pipe or -o FILE has them all." in seen
+    assert "Regimes: no-slip, slip from M = 44 kg." in seen
+
+
+def test_a_table_that_fits_is_whole() -> None:
+    seen = plain(on_terminal(*SWEEP, "--M", "0:10:11", "--only", "regime", columns=100, rows=24))
+    assert "..." not in seen
+    assert len(re.findall(r"^│ +\d+ ", seen, re.MULTILINE)) == 11
+
+
+def test_many_groups_are_trimmed_too() -> None:
+    words = [*HELD, "--M", "1:20:20", "--mu", "0.1:0.2:2", "--only", "regime"]
+    seen = plain(on_terminal(*words, columns=100, rows=24))
+    assert seen.count("\n") <= 23
+    assert "│  1     │ 0.1 │" in seen
+    assert "│ 20     │ 0.2 │" in seen
+
+
+def test_the_smallest_terminal_shows_both_ends() -> None:
+    seen = plain(on_terminal(*SWEEP, "--M", "0:100:101", "--only", "regime", columns=100, rows=2))
+    assert re.findall(r"^│ +(\d+) ", seen, re.MULTILINE) == ["0", "100"]
+
+
+def test_a_narrow_terminal_repeats_every_swept_column() -> None:
+    words = ["sweep", "--m1", "1:2:2", "--m2", "3", "--M", "1:2:2", "--digits", "4"]
+    seen = plain(on_terminal(*words, columns=60))
+    assert seen.count("│ m1 (kg) │ M (kg) │") >= 2
+    assert all(len(line) <= 60 for line in seen.splitlines() if line.startswith("│"))
+
+
+@pytest.mark.parametrize("environment", [{}, {"FORCE_COLOR": "1"}, {"COLUMNS": "40", "LINES": "5"}])
+def test_a_pipe_gets_every_row(environment: dict[str, str]) -> None:
+    ran = process(*SWEEP, "--M", "0:100:101", "--only", "regime", **environment)
+    assert len(re.findall(r"^│ +\d+ ", ran.out, re.MULTILINE)) == 101
+    assert "..." not in ran.out
+
+
+def test_where_stdout_is_not_unicode() -> None:
+    ran = process(*SWEEP, "--M", "0:50:6", "--only", "acceleration", PYTHONIOENCODING="ascii")
+    assert (ran.status, ran.err) == (0, "")
+    assert "acceleration (m/s^2)" in ran.out
+    assert "?" not in ran.out
+
+
+@pytest.mark.parametrize("output", ["", "--json", "--csv", "--plot acceleration"])
+def test_a_reader_that_leaves_early_ends_it_quietly(output: str) -> None:
+    if "--plot" in output:
+        pytest.importorskip("plotille")
+    ran = process(
+        shell=f"set -o pipefail; atwood {' '.join(HELD)} --M 1:500:500 --mu 0.3 {output} --digits 5 | head -1"
+    )
+    assert ran.status == 0
+    assert len(ran.out.splitlines()) == 1
+    assert "Traceback" not in ran.err
+
+
+def test_only_what_is_needed_is_imported() -> None:
+    code = (
+        "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
+    )
+    words = [*HELD, "--M", "1:2:2", "--only", "tension_1", "--csv"]
+    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)
+    assert not {"rich", "numpy", "plotille", "matplotlib"} & set(done.stderr.split())
+
+
+def test_help_shows_ranges_as_they_are_typed(atwood: Atwood) -> None:
+    """rich takes some words between colons for emoji."""
+    out = atwood("sweep", "-h").out
+    examples = re.findall(r"atwood sweep .*", sweep.__doc__ or "")
+    assert len(examples) >= 5
+    assert all(f" {example} " in out for example in examples)
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
+def test_help_where_stdout_is_not_unicode(encoding: str) -> None:
+    ran = process("sweep", "-h", PYTHONIOENCODING=encoding)
+    assert (ran.status, ran.err) == (0, "")
+    assert "--figure" in ran.out
+
+
+# Waiting
+
+
+def test_a_long_run_shows_a_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [Row({"M": "1"}, "slip", {}, {}) for _ in range(5)]
+    clock = iter([0.0, 0.5, 2.0])
+    shown: list[tuple[float, float]] = []
+
+    class Bar:
+        def __init__(self, **_: Any) -> None: ...
+        def __enter__(self) -> "Bar":
+            return self
+
+        def __exit__(self, *_: object) -> None: ...
+        def add_task(self, _: str, total: float, completed: float) -> int:
+            shown.append((completed, total))
+            return 0
+
+        def advance(self, _: int) -> None:
+            shown.append((shown[-1][0] + 1, 5))
+
+    monkeypatch.setattr("rich.progress.Progress", Bar)
+    monkeypatch.setattr("atwood_cli.output.monotonic", lambda: next(clock))
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
+    assert list(watched(iter(rows), 5)) == rows
+    assert shown == [(2, 5), (3, 5), (4, 5), (5, 5)]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
+def test_an_interrupt_leaves_no_file(tmp_path: Path) -> None:
+    file = tmp_path / "out.csv"
+    words = [*SWEEP, "--M", "1:2:100000", "-o", str(file)]
+    child = subprocess.Popen([sys.executable, "-m", "atwood_cli", *words], stderr=subprocess.PIPE)
+    while not list(tmp_path.iterdir()):
+        time.sleep(0.01)
+    assert not file.exists()
+    child.send_signal(signal.SIGINT)
+    _, err = child.communicate(timeout=20)
+    assert (child.returncode, err) == (130, b"")
+    assert list(tmp_path.iterdir()) == []
+
+
+# Files
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "printed_by"),
+    [
+        ("a.txt", "", ""),
+        ("a", "", ""),
+        ("a.csv", "", "--csv"),
+        ("a.CSV", "", "--csv"),
+        ("a.json", "", "--json"),
+        ("a.txt", "--json", "--json"),
+        ("a.json", "--csv", "--csv"),
+    ],
+)
+def test_a_file_gets_what_stdout_would(
+    atwood: Atwood, tmp_path: Path, name: str, options: str, printed_by: str
+) -> None:
+    words = [*HELD, "--M", "1:2:3", "--only", "tension_1", "--only", "torque"]
+    expected = atwood(*words, *printed_by.split())
+    ran = atwood(*words, *options.split(), "-o", str(tmp_path / name))
+    assert (ran.status, ran.out, ran.err) == (0, "", expected.err)
+    assert (tmp_path / name).read_bytes().decode() == expected.out
+    assert list(tmp_path.iterdir()) == [tmp_path / name]
+
+
+def test_the_table_in_a_file_is_whole_and_uncoloured(tmp_path: Path) -> None:
+    words = [*SWEEP, "--M", "0:100:101", "-o", str(tmp_path / "a.txt")]
+    assert on_terminal(*words, columns=40, rows=5, FORCE_COLOR="1") == ""
+    text = (tmp_path / "a.txt").read_text(encoding="utf-8")
+    assert "\x1b" not in text
+    assert text.count("\n│ ") == 102
+    assert "│ critical_pulley_mass (kg) │" in text
+
+
+def test_an_existing_file_is_replaced_only_by_force(atwood: Atwood, tmp_path: Path) -> None:
+    file = tmp_path / "a.csv"
+    file.write_text("kept")
+    words = [*HELD, "--M", "1:2:3", "--only", "regime", "-o", str(file)]
+    ran = atwood(*words)
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err == f"atwood: cannot write {file}: it exists already; --force replaces it\n"
+    assert file.read_text() == "kept"
+    assert atwood(*words, "--force").status == 0
+    assert file.read_text().startswith("M,regime\n")
+
+
+def test_a_file_that_cannot_be_written(atwood: Atwood, tmp_path: Path) -> None:
+    for file, reason in (
+        (tmp_path / "no" / "a.csv", "No such file or directory"),
+        (tmp_path, "Is a directory"),
+    ):
+        ran = atwood(*HELD, "--M", "1:2:3", "--output", str(file))
+        assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: cannot write {file}: {reason}\n")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+def test_a_device_is_written_to_as_it_is(atwood: Atwood) -> None:
+    ran = atwood(*HELD, "--M", "1:2:3", "-o", "/dev/full")
+    assert (ran.status, ran.err) == (1, "atwood: cannot write the output: No space left on device\n")
+    assert not Path("/dev/full").is_file()
+
+
+# Curves
+
+
+def test_a_plot(atwood: Atwood) -> None:
+    pytest.importorskip("plotille")
+    ran = atwood(*SWEEP, "--M", "0:100:101", "--plot", "acceleration")
+    lines = ran.out.splitlines()
+    assert (ran.status, ran.err) == (0, "")
+    assert lines[0].startswith("m1 = 1 kg, m2 = 3 kg, M = 0:100:101")
+    assert lines[1] == " acceleration (m/s²)"
+    assert [line[:3].strip() for line in lines if "┤" in line] == ["4", "3", "2", "1"]
+    assert lines[-4].startswith("   └┬")
+    assert lines[-3].split() == ["0", "20", "40", "60", "80", "100"]
+    assert lines[-2].endswith("M (kg)")
+    assert lines[-1] == "Regimes: no-slip, slip from M = 44 kg."
+    assert max(map(len, lines[1:])) == 80
+    # The dotted line stands where 44 is: above the curve there is nothing else.
+    assert {line.rstrip().rfind(" ") + 1 for line in lines[2:12]} == {4 + round(0.44 * 76)}
+    assert not re.search(r"\x1b", ran.out)
+
+
+def test_a_plot_with_gaps_and_letters(atwood: Atwood) -> None:
+    pytest.importorskip("plotille")
+    ran = atwood(
+        *HELD, "--M", "1:1000:61:log", "--mu", "0.2:0.4:3", "--plot", "friction_force", "--digits", "30"
+    )
+    lines = ran.out.splitlines()
+    curves = "".join(lines[2:22])
+    assert (curves.count("a"), curves.count("b"), curves.count("c")) == (1, 1, 0)
+    assert lines[-4:-1] == [
+        "a: mu = 0.2: no-slip, slip from M = 10 kg",
+        "b: mu = 0.3: no-slip, slip from M = 44.668359215096312 kg",
+        "c: mu = 0.4: no-slip",
+    ]
+    assert lines[-1].startswith("friction_force: not one number")
+    assert lines[-1].endswith("points).")
+    assert lines[-6].split() == ["1", "10", "100", "1000"]
+    # Nothing is drawn over the left of the axis, where no pulley makes it slip.
+    assert all(not line[5:24].strip() for line in lines[2:22])
+
+
+def test_more_points_lie_along_the_axis(atwood: Atwood) -> None:
+    pytest.importorskip("plotille")
+    out = atwood("sweep", "--m1", "1:3:5", "--m2", "4", "--M", "1:2:2", "--plot", "tension_1").out
+    assert out.splitlines()[-3].endswith("m1 (kg)")
+    assert out.splitlines()[-2:] == ["a: M = 1 kg: no-slip", "b: M = 2 kg: no-slip"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "--M 1:2:5 --m2 1",
+        "--M 0:1e-300:5 --m2 3",
+        "--g 1:1.000001:3 --m2 3",
+        "--M 2:3:9:log --m2 1.0001",
+        "--M 1e10:10000000000.000002:3:log --m2 3",
+        "--M 1:1.00000000000000000001:3 --m2 3",
+    ],
+)
+def test_plots_of_next_to_nothing(atwood: Atwood, words: str) -> None:
+    pytest.importorskip("plotille")
+    ran = atwood("sweep", "--m1", "1", *words.split(), "--plot", "tension_2")
+    assert (ran.status, ran.err) == (0, "")
+    assert len(ran.out.splitlines()) == 26
+
+
+def test_plot_where_stdout_is_not_unicode() -> None:
+    pytest.importorskip("plotille")
+    ran = process(*SWEEP, "--M", "0:100:101", "--plot", "acceleration", PYTHONIOENCODING="cp1252")
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.isascii()
+    assert "?" not in ran.out
+    assert " 4 |" in ran.out
+    assert "'" in ran.out
+
+
+def test_plot_on_a_terminal() -> None:
+    pytest.importorskip("plotille")
+    words = [*SWEEP, "--M", "0:100:101", "--plot", "acceleration"]
+    seen = on_terminal(*words, columns=50)
+    assert "\x1b[36m" in seen
+    assert "\x1b[33m" in seen
+    assert max(map(len, plain(seen).splitlines())) <= 50
+    assert plain(seen).splitlines()[-3].split()[-1] == "100"
+    assert "\x1b[3" not in on_terminal(*words, columns=50, NO_COLOR="1")
+    assert "\x1b[3" not in on_terminal(*words, columns=50, TERM="dumb")
+    assert max(map(len, plain(on_terminal(*words, columns=12)).splitlines())) <= len(" acceleration (m/s²)")
+
+
+def test_a_plot_fits_a_low_terminal() -> None:
+    pytest.importorskip("plotille")
+    words = [*SWEEP, "--M", "0:100:101", "--plot", "acceleration"]
+    seen = plain(on_terminal(*words, columns=100, rows=20))
+    assert seen.count("\n") < 20
+    assert " 2 ┤" in seen
+    assert plain(on_terminal(*words, columns=100, rows=5)).count("│") >= 3
+
+
+def test_plot_into_a_file(atwood: Atwood, tmp_path: Path) -> None:
+    pytest.importorskip("plotille")
+    words = [*SWEEP, "--M", "0:100:11", "--plot", "acceleration"]
+    expected = atwood(*words).out
+    assert atwood(*words, "-o", str(tmp_path / "a.txt")).out == ""
+    assert (tmp_path / "a.txt").read_text(encoding="utf-8") == expected
+
+
+def test_a_figure(atwood: Atwood, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    files = [tmp_path / "a.svg", tmp_path / "b.svg"]
+    words = [*HELD, "--M", "1:100:34", "--mu", "0.2:0.3:2", "--only", "regime", "--csv"]
+    for file in files:
+        ran = atwood(*words, "--figure", str(file), "friction_force")
+        assert (ran.status, ran.out) == (0, atwood(*words).out)
+    first, second = (file.read_bytes() for file in files)
+    assert first == second
+    shown = {label.strip() for label in labels(first.decode())}
+    assert {"M (kg)", "friction_force (N)", "mu = 0.2", "mu = 0.3"} <= shown
+    assert {"slip from M = 10 kg, mu = 0.2", "slip from M = 46 kg, mu = 0.3"} <= shown
+    assert any(label.startswith("m1 = 1 kg, m2 = 3 kg, M = 1:100:34") for label in shown)
+
+
+@pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
+def test_a_figure_of_every_kind(atwood: Atwood, tmp_path: Path, suffix: str) -> None:
+    pytest.importorskip("matplotlib")
+    file = tmp_path / f"a.{suffix}"
+    assert atwood(*SWEEP, "--M", "1:1000:90:log", "--figure", str(file), "acceleration").status == 0
+    assert file.read_bytes().startswith({"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}[suffix])
+
+
+@pytest.mark.parametrize(
+    ("missing", "options", "extra"),
+    [("plotille", "--plot acceleration", "plot"), ("matplotlib", "--figure x.svg acceleration", "figure")],
+)
+def test_without_its_extra_it_names_the_pip_command(missing: str, options: str, extra: str) -> None:
+    code = f"import sys; sys.modules['{missing}'] = None; from atwood_cli.cli import run; sys.exit(run(sys.argv[1:]))"
+    # So many points that it must be told before they are solved.
+    words = [*SWEEP, "--M", "1:2:100000", *options.split()]
+    done = subprocess.run(
+        [sys.executable, "-c", code, *words], capture_output=True, text=True, check=False, timeout=60
+    )
+    assert (done.returncode, done.stdout) == (1, "")
+    assert (
+        done.stderr == f"atwood: this needs {missing}; install it with: pip install 'atwood-cli[{extra}]'\n"
+    )
+
+
+# Errors
+
+
+FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("", f"--M or another option of the scene must carry a range: {FORM}"),
+        ("--M 1", f"--M or another option of the scene must carry a range: {FORM}"),
+        ("--M 1:2:3 --mu 1:2:3 --g 1:2:3", "--g '1:2:3' is a third range, after M and mu; give two"),
+        ("--M 1:2", f"--M '1:2' is no range; write {FORM}"),
+        ("--M 1:2:3:ln", f"--M '1:2:3:ln' is no range; write {FORM}"),
+        ("--M 1:2:3:log:5", f"--M '1:2:3:log:5' is no range; write {FORM}"),
+        ("--M 1:2:1", "--M '1:2:1' has the count '1', which must be a whole number from 2 to 1000000"),
+        (
+            "--M 1:2:1000001",
+            "--M '1:2:1000001' has the count '1000001', which must be a whole number from 2 to 1000000",
+        ),
+        ("--M 1:2:log", "--M '1:2:log' has the count 'log', which must be a whole number from 2 to 1000000"),
+        ("--M 0:inf:3", "--M '0:inf:3' has the end 'inf'; a range runs between finite numbers"),
+        (
+            "--inertia disk:hoop:3",
+            "--inertia 'disk:hoop:3' has the end 'disk'; a range runs between finite numbers",
+        ),
+        ("--M 2:2000g:3", "--M '2:2000g:3' has a unit at one end only; write it at both"),
+        ("--M 2kg:2000g:3", "--M '2kg:2000g:3' has equal ends; a range runs from one value to another"),
+        ("--wrap 90deg:3rad:3", "--wrap '90deg:3rad:3' has one end in radians; write both in the same unit"),
+        ("--M 0:2:3:log", "--M '0:2:3:log' has no equal ratios from or to 0; both ends must be above 0"),
+        ("--M 1:2x:3", "--M '2x' has the unknown unit 'x'; there are kg, g, mg, ug, t, lb, lbs, oz, st"),
+        ("--M :2:3", "--M '' is not a number; write it like 2, 0.5 or 1.5e-3"),
+        ("--M -1:2:4", "--M '-1' must be 0 or more (inf locks the pulley)"),
+        (
+            "--M 1:2:2000 --mu 1:2:2000",
+            "--mu '1:2:2000' makes 4000000 points with M; at most 1000000 are taken",
+        ),
+        ("--mu 0.3 --mu-k 0.2:0.4:3", "--mu-k '0.4' must not be above mu; exactly, 0.4 > 0.3"),
+        ("--mu 0.2:0.4:3 --mu-k 0.3", "--mu-k '0.3' must not be above mu; exactly, 0.3 > 0.2 (at mu = 0.2)"),
+        ("--I 1 --R 1 --M 0:1:3", "--I '1' contradicts M = 0; leave one of them out (at M = 0 kg)"),
+        (
+            "--M 1:2:3 --g x",
+            "--g 'x' is not a number; write it like 2, 0.5 or 1.5e-3, or one of mercury, venus, earth, moon, mars, pluto",
+        ),
+        ("--M 1:2:3 --only accel", "--only 'accel' is no quantity; did you mean acceleration?"),
+        ("--M 1:2:3 --plot accel", "--plot 'accel' is no quantity; did you mean acceleration?"),
+        ("--M 1:2:3 --figure a.svg accel", "--figure 'accel' is no quantity; did you mean acceleration?"),
+        ("--M 1:2:3 --plot regime", "--plot 'regime' is not a number to draw; name another quantity"),
+        (
+            "--M 1:2:7 --g 1:2:7 --plot acceleration",
+            "--plot 'acceleration' would be more than 6 curves; give one of the ranges at most 6 points",
+        ),
+        ("--M 1:2:3 --figure a.gif acceleration", "--figure 'a.gif' must end in one of .svg, .png, .pdf"),
+        (
+            "--M 1e200:2e200:3 --plot least_heavier_mass --mu 1",
+            "--plot 'least_heavier_mass' draws numbers between 1e-100 and 1e+100 in magnitude only",
+        ),
+        (
+            "--M 1e-200:2:3:log --figure a.svg acceleration",
+            "--figure 'acceleration' draws numbers between 1e-100 and 1e+100 in magnitude only",
+        ),
+        (
+            "--M 1:2:3 --plot acceleration --csv",
+            "--plot 'acceleration' draws text, not CSV; leave one of them out",
+        ),
+        (
+            "--M 1:2:3 --plot acceleration -o a.json",
+            "--plot 'acceleration' draws text, not JSON; leave one of them out",
+        ),
+        (
+            "--M 1:2:3 --plot acceleration --only regime",
+            "--only 'regime' has no say beside --plot; leave one of them out",
+        ),
+        ("--M 1:2:3 --json --csv", "--json and --csv exclude each other; give one of them"),
+        ("--M 1:2:3 --digits 0", "--digits '0' must be a whole number from 1 to 1000"),
+        ("--M 1:2:3 --force", "--force needs --output"),
+        ("--M 1:2:3 -o a --output b", "--output is given 2 times; give it once"),
+    ],
+)
+def test_errors(atwood: Atwood, words: str, message: str) -> None:
+    ran = atwood(*HELD, *words.split())
+    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
+
+
+def test_masses_are_missing_here_too(atwood: Atwood) -> None:
+    ran = atwood("sweep", "--m1", "1:2:3")
+    assert (ran.status, ran.err) == (2, "atwood: --m2 is missing; give both masses, m1 and m2\n")
+
+
+@pytest.mark.parametrize("option", ["--plot torque", "--figure a.svg torque"])
+def test_a_curve_that_does_not_exist(atwood: Atwood, option: str) -> None:
+    pytest.importorskip("plotille")
+    pytest.importorskip("matplotlib")
+    ran = atwood(*HELD, "--M", "1:2:3", *option.split())
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err == (
+        "atwood: torque exists at no point, so there is nothing to draw: give R, the pulley's radius\n"
+    )
+
+
+def test_an_invalid_corner_is_found_wherever_it_is() -> None:
+    """Only corners are read before all is solved; no scene within may be invalid where they are not."""
+    for words in ({"mu": "0.2:0.4:3", "mu_k": "0.1:0.3:3"}, {"mu": "0.4:0.2:3", "mu_k": "0.1:0.3:3"}):
+        with pytest.raises(SceneError, match="must not be above mu"):
+            read_sweep({"m1": "1", "m2": "3", "M": "1", **words})
+    with pytest.raises(SceneError, match="both 0"):
+        read_sweep({"m1": "1:0:3", "m2": "3:0:3"})
+
+
+def test_wrong_usage_of_figure(atwood: Atwood) -> None:
+    ran = atwood(*HELD, "--M", "1:2:3", "--figure", "a.svg")
+    assert (ran.status, ran.out) == (2, "")
+    assert "requires 2 arguments" in ran.err
+
+
+def test_huge_numbers_are_drawn_nowhere_but_printed(atwood: Atwood) -> None:
+    ran = atwood("sweep", "--m1", "1e400", "--m2", "3e400", "--M", "1:2:2", "--only", "tension_1", "--csv")
+    assert ran.out == "M,tension_1\n1,\n2,\n"
+    assert "ask for digits" in ran.err
+    assert LARGEST_EXPONENT > 400
+    exact = atwood(
+        "sweep",
+        "--m1",
+        "1e400",
+        "--m2",
+        "3e400",
+        "--M",
+        "1:2:2",
+        "--only",
+        "tension_1",
+        "--csv",
+        "--digits",
+        "3",
+    )
+    assert exact.out == "M,tension_1\n1,1.47e401\n2,1.47e401\n"
