@@ -33,7 +33,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .columns import FLOATS, WINDOW, Column, Floats, Pair, Pairs, Unvouched
+from .columns import FLOATS, QUICK, ROUNDED, THOROUGH, WINDOW, Column, Floats, Pair, Pairs, Unvouched
 from .machine import Case, Excess, Machine, Undetermined
 from .quantities import NAMES, REGIMES, STANDARD
 from .scene import PARAMETERS, Scene, SceneError, nearest
@@ -41,10 +41,11 @@ from .solver import Answers
 
 Accuracy = Literal["fast", "certified", "exact"]
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
-BLOCK = 32_768
+BLOCK = 65_536
+ALONG = 3  # times as many rows as the others: to take the others along costs less than to part
+FEW = 3  # rows: quicker one by one, at 0.2 ms each, than as columns of pairs
 FAST_WINDOW = 2.0**-500, 2.0**500  # beyond it, what comes in between may overflow though results do not
 CERTIFIED = 3.49 * 2.0**-53
-ROUNDED, QUICK, THOROUGH = Pairs(0), Pairs(1), Pairs(2)
 LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
     "fast": (FLOATS,),
     "certified": (ROUNDED, QUICK, THOROUGH),
@@ -139,12 +140,11 @@ def _solve_block(
     given = {name: _Given.of(name, column, accuracy) for name, column in columns.items()}
     out["status"][:] = status = _status(given, len(out["status"]))
     for rows in _agreeing(given, status, accuracy):
-        if rows.invalid:
-            for name in names:
-                rows.write(out[name], -1 if name == "regime" else nan)
-            continue
         for name in names:
             rows.solve(name, out[name])
+    if status.any():
+        for name in names:
+            out[name][status != 0] = -1 if name == "regime" else nan
 
 
 class Divided(Exception):
@@ -158,33 +158,42 @@ class Divided(Exception):
 class Rows:
     """Rows that agree on all that was asked of them so far.
 
-    ``fields`` are the inputs: a Fraction, None or inf where all rows share it, else a column.
+    ``fields`` are the inputs: a Fraction, None or inf where all rows share it, else a column. ``others``
+    are rows that came along because to leave them out would cost more; what they get is overwritten.
     """
 
     def __init__(
         self,
         fields: Mapping[str, Any],
         sign: int,
-        index: NDArray[np.intp] | None,
         size: int,
         accuracy: Accuracy,
+        index: NDArray[np.intp] | None = None,
         far: bool = False,
-        invalid: bool = False,
-        answers: Mapping[str, bool] | None = None,
     ) -> None:
-        self.fields, self.sign, self.index, self.size = fields, sign, index, size
-        self.accuracy, self.far, self.invalid = accuracy, far, invalid
-        self.answers = dict(answers or {})
+        self.fields, self.sign, self.size, self.accuracy = fields, sign, size, accuracy
+        self.index, self.far = index, far
+        self.others: NDArray[np.intp] | None = None
+        self._answers: dict[str, bool] = {}
         self._parts: dict[str, list[Rows]] = {}
         self._machines: dict[Any, Machine[Any]] = {}
         self._singles: dict[int, Answers] = {}
 
-    def part(self, index: NDArray[np.intp], answers: Mapping[str, bool] | None = None) -> "Rows":
-        """Some of these rows."""
-        fields = {name: _take(field, index) for name, field in self.fields.items()}
-        within = index if self.index is None else self.index[index]
-        known = self.answers | dict(answers or {})
-        return Rows(fields, self.sign, within, len(index), self.accuracy, self.far, answers=known)
+    def part(self, index: NDArray[np.intp] | None = None) -> "Rows":
+        """Some of these rows, or all for another answer."""
+        if index is None:
+            rows = Rows(self.fields, self.sign, self.size, self.accuracy, self.index, self.far)
+        else:
+            fields = {name: _take(field, index, self.size) for name, field in self.fields.items()}
+            within = index if self.index is None else self.index[index]
+            rows = Rows(fields, self.sign, len(index), self.accuracy, within, self.far)
+        rows._answers = dict(self._answers)
+        for arithmetic, machine in self._machines.items():
+            # The exponential costs too much to compute it twice.
+            if "k1" in vars(machine):
+                k1 = machine.k1 if index is None else _take(machine.k1, index, self.size)
+                rows.machine(arithmetic).k1 = k1
+        return rows
 
     def write(self, out: NDArray[Any], values: Any) -> None:
         out[slice(None) if self.index is None else self.index] = values
@@ -195,14 +204,12 @@ class Rows:
         """Write a quantity of all rows, in the arithmetic on that rung of the ladder or higher."""
         ladder = LADDERS[self.accuracy]
         try:
-            if name in TAKES_EXACT_PRODUCTS or self.machine(FLOATS).case.regime != "no-slip":
-                rung = max(rung, len(ladder) - 2)
             if name == "regime":
                 self.write(out, REGIMES.index(self.machine(FLOATS).case.regime))
             elif self.far or rung == len(ladder):
                 self.write(out, [self._single(row, name) for row in range(self.size)])
             else:
-                value = getattr(self.machine(ladder[rung]), name)
+                value = getattr(self.machine(ladder[self._first_rung(name, rung)]), name)
                 self._write_vouched(name, out, rung, value)
         except Undetermined:
             self.write(out, nan)
@@ -212,15 +219,29 @@ class Rows:
             for rows in divided.parts:
                 rows.solve(name, out, rung)
 
+    def _first_rung(self, name: str, rung: int) -> int:
+        """Higher up where something cancels, or takes too many roundings for doubles to be vouched for."""
+        if self.accuracy != "certified":
+            return rung
+        if name in TAKES_EXACT_PRODUCTS or self.machine(FLOATS).case.regime != "no-slip":
+            return max(rung, 1)
+        return rung
+
     def _write_vouched(self, name: str, out: NDArray[Any], rung: int, value: Any) -> None:
         if not isinstance(value, Pair):
             self.write(out, value + 0.0)  # no -0
             return
         rounded, vouched = _certify(value) if self.accuracy == "certified" else _nearest(value)
         self.write(out, rounded)
-        if not vouched.all():
-            index = np.flatnonzero(np.broadcast_to(~vouched, self.size))
-            self.part(index).solve(name, out, rung + 1)
+        if vouched.all():
+            return
+        doubtful = np.broadcast_to(~vouched, self.size).copy()
+        if self.others is not None:
+            doubtful[self.others] = False
+        index = np.flatnonzero(doubtful)
+        if index.size:
+            rung = self._first_rung(name, rung) + 1 if index.size > FEW else len(LADDERS[self.accuracy])
+            self.part(index).solve(name, out, rung)
 
     def machine(self, arithmetic: Any) -> Machine[Any]:
         if arithmetic not in self._machines:
@@ -245,19 +266,30 @@ class Rows:
 
     def answer(self, question: str) -> bool:
         """The answer of all rows; raises Divided if they differ."""
-        if question not in self.answers and question not in self._parts:
+        if question not in self._answers and question not in self._parts:
             ask: Any = QUESTIONS.get(question, Rows._beats_friction)
-            answers = np.broadcast_to(ask(self, question), self.size)
-            if answers.any() == answers.all():
-                self.answers[question] = bool(answers[0])
-            else:
-                self._parts[question] = [
-                    self.part(np.flatnonzero(answers == answer), {question: answer})
-                    for answer in (True, False)
-                ]
+            self._keep(question, np.broadcast_to(ask(self, question), self.size))
         if question in self._parts:
             raise Divided(self._parts[question])
-        return self.answers[question]
+        return self._answers[question]
+
+    def _keep(self, question: str, answers: NDArray[np.bool_]) -> None:
+        others = np.empty(0, np.intp) if self.others is None else self.others
+        yes = int(np.count_nonzero(answers) - np.count_nonzero(answers[others]))
+        if yes in (0, self.size - others.size):
+            self._answers[question] = yes > 0
+            return
+        rarer = 2 * yes < self.size - others.size
+        found = answers == rarer
+        found[others] = False
+        index = np.flatnonzero(found)
+        few, most = (
+            self.part(index),
+            self.part(None if ALONG * index.size < self.size else np.flatnonzero(~found)),
+        )
+        few._answers[question], most._answers[question] = rarer, not rarer
+        most.others = np.concatenate([others, index]) if most.size == self.size else None
+        self._parts[question] = [most, few]  # in this order: the second overwrites what comes along
 
     def _beats_friction(self, question: Any) -> Any:
         """Whether the excess of the tension ratio is beyond what friction holds, e^{μφ} - 1."""
@@ -284,8 +316,7 @@ class Rows:
         return beaten
 
     def _settled(self, row: int, question: Excess) -> bool:
-        case = Case(self.scene(row))
-        return case.beats_friction(question)
+        return Case(self.scene(row)).beats_friction(question)
 
     def long_wrap(self, _: str) -> Any:
         return self.fields["wrap"] > 180
@@ -325,8 +356,10 @@ class _RowsCase(Case):
         return self._rows.answer(which)
 
 
-def _take(field: Any, index: NDArray[np.intp]) -> Any:
-    return field.take(index) if isinstance(field, np.ndarray) else field
+def _take(column: Any, index: NDArray[np.intp], size: int) -> Any:
+    """Some rows of a column of that size; what is the same in all rows stays."""
+    many = getattr(column, "value", column)
+    return column.take(index) if isinstance(many, np.ndarray) and many.size == size else column
 
 
 def _certify(pair: Pair) -> tuple[Column, NDArray[np.bool_]]:
@@ -420,7 +453,6 @@ def _agreeing(given: Mapping[str, _Given], status: NDArray[np.int8], accuracy: A
         index = None if index is not None and len(index) == size else index
         row = 0 if index is None else int(index[0])
         if status[row]:
-            yield Rows({}, 0, index, 0, accuracy, invalid=True)
             continue
         fields = dict.fromkeys(COLUMNS) | {name: of.field(row, index) for name, of in given.items()}
         far = any(
@@ -428,5 +460,4 @@ def _agreeing(given: Mapping[str, _Given], status: NDArray[np.int8], accuracy: A
         )
         light, heavy = (float(np.broadcast_to(mass, size)[row]) for mass in (m1, m2))
         sign = (heavy > light) - (heavy < light)
-        many = size if index is None else len(index)
-        yield Rows(fields, sign, index, many, accuracy, far)
+        yield Rows(fields, sign, size if index is None else len(index), accuracy, index, far)

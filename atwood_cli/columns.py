@@ -23,16 +23,16 @@ difference, they count as much as the terms weigh beside what is left, row by ro
 cancels is told from its neighbours, and only such rows pay for more digits.
 
 e^x - 1 is put together from (1 + a)(1 + b) - 1 = a + b + ab, in which nothing cancels for x >= 0:
-factors 2^(i/256) (and 2^(i/65536) if thorough) from tables, and the Taylor series of what is left,
-r < 0.0028 (1.1e-5), cut off where the next term is below 2^-63 r (2^-110 r). The first term is a
-pair, the others, at most r²/2 <= 2^-9 r, are plain doubles with errors of some 6u: 2^-59 r in all.
+factors 2^(i/4096) (and 2^(i/65536) if thorough) from tables, and the Taylor series of what is left,
+r < 0.00017 (1.1e-5), cut off where the next term is below 2^-71 r (2^-110 r). The first term is a
+pair, the others, at most r²/2 <= 2^-13 r, are plain doubles with errors of some 6u: 2^-62 r in all.
 If thorough, the terms up to r³/6 are pairs, the others below 2^-53 r, 2^-102 r in all. A multiple n
-of ln 2/256 (ln 2/65536) comes off x in parts, of 32 bits (24) each as n has at most 18 (27), so that
-only the product with the last part is rounded: x 2^-85 (x 2^-125) is lost, and u² x for each time that
+of ln 2/4096 (ln 2/65536) comes off x in parts, of 30 bits (24) each as n has at most 23 (27), so that
+only the product with the last part is rounded: x 2^-83 (x 2^-125) is lost, and u² x for each time that
 a part adds to what x has as rest. An error of x counts x + 1 times, as x e^x < (x + 1)(e^x - 1).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from functools import cache
 from math import frexp, ldexp, pi
@@ -42,7 +42,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic import EXACT, Irrational, enclosures
-from .rounding import to_double
 
 Column = NDArray[np.float64]
 
@@ -50,6 +49,9 @@ UNIT = 2.0**-53
 LIBRARY = 2 * UNIT
 WINDOW = 2.0**-120, 2.0**120
 LARGEST = 700.0  # argument of an exponential
+PIECE = 16_384  # rows of a column that are worked on at a time
+COARSE, FINER = 4096, 16  # steps of its tables to a factor of 2, and to a coarse step
+FINE = COARSE * FINER
 
 
 class Unvouched(ArithmeticError):
@@ -98,7 +100,7 @@ class Pair:
     Columns have the shape (n,), single numbers (1,). ``positive`` says that no row is negative.
     """
 
-    __slots__ = ("_halves", "bound", "positive", "power", "rest", "value", "within")
+    __slots__ = ("bound", "positive", "power", "rest", "value", "within")
 
     def __init__(
         self,
@@ -110,20 +112,9 @@ class Pair:
     ) -> None:
         self.within, self.value, self.rest, self.bound, self.positive = within, value, rest, bound, positive
         self.power = 0.0  # the value, where it is a single power of two: a factor that rounds nothing
-        self._halves: tuple[Column, Column] | None = None
 
     def _lift(self, other: Union["Pair", Fraction, int]) -> "Pair":
         return other if isinstance(other, Pair) else self.within.number(other)
-
-    @property
-    def halves(self) -> tuple[Column, Column]:
-        """Two doubles of 26 bits that add up to the value."""
-        if self._halves is None:
-            far = np.multiply(self.value, 2.0**27 + 1, out=_room(self.value))
-            high = np.subtract(far, self.value, out=_room(self.value))
-            np.subtract(far, high, out=high)
-            self._halves = high, np.subtract(self.value, high, out=far)
-        return self._halves
 
     def __add__(self, other: Union["Pair", int]) -> "Pair":
         return self._plus(self._lift(other), np.add)
@@ -141,16 +132,16 @@ class Pair:
             rest += self.rest
         if other.rest is not None:
             add(rest, other.rest, out=rest)
-        sum_ = Pair(self.within, value, rest)
-        sum_.positive = self.positive and other.positive and add is np.add
-        if self._exact and other._exact:
-            return sum_
-        epsilon = self.within.epsilon
-        if sum_.positive:
-            sum_.bound = _greater(self.bound, other.bound) + epsilon
+        sum_, epsilon = Pair(self.within, value, rest), self.within.epsilon
+        together = self.positive and other.positive and add is np.add
+        if together and isinstance(self.bound, float) and isinstance(other.bound, float):
+            sum_.bound = max(self.bound, other.bound) + epsilon
             return sum_.normal() if self.within.thorough else sum_
         sum_.normal()
-        sum_.bound = (self._weighed(epsilon) + other._weighed(epsilon)) / np.abs(sum_.value)
+        sum_.positive = together or bool(sum_.value.min() >= 0)
+        if not (self._exact and other._exact):
+            size = sum_.value if sum_.positive else np.abs(sum_.value)
+            sum_.bound = (self._weighed(epsilon) + other._weighed(epsilon)) / size
         return sum_
 
     def _weighed(self, epsilon: float) -> Any:
@@ -167,7 +158,7 @@ class Pair:
         value = np.add(self.value, self.rest, out=_room(self.value))
         rest = np.subtract(value, self.value, out=self.value)
         np.subtract(self.rest, rest, out=self.rest)
-        self.value, self._halves = value, None
+        self.value = value
         return self
 
     def _scaled(self, factor: float) -> "Pair":
@@ -181,9 +172,8 @@ class Pair:
             if factor.power:
                 return one._scaled(factor.power)
         x, y = self.value, other.value
-        value = np.multiply(x, y, out=_room(x, y))
+        value, rest = self.within.product(x, y)
         terms = [(a, b) for a, b in ((x, other.rest), (y, self.rest)) if b is not None]
-        rest = _error_of_product(self, other, value) if self.within.exact_products else None
         for a, b in terms:
             term = np.multiply(a, b, out=_room(value))
             rest = term if rest is None else np.add(rest, term, out=rest)
@@ -196,13 +186,11 @@ class Pair:
         x, y = self.value, other.value
         if other.power:
             return self._scaled(1 / other.power)
-        quotient = Pair(self.within, np.divide(x, y, out=_room(x, y)))
-        value = quotient.value
-        rest = None if self.rest is None else self.rest
+        value = np.divide(x, y, out=_room(x, y))
+        rest = self.rest
         if self.within.exact_products:
-            nearly = np.multiply(value, y, out=_room(value))
-            error = _error_of_product(quotient, other, nearly)
-            remainder = np.subtract(x, nearly, out=nearly)
+            product, error = _product(value, y)
+            remainder = np.subtract(x, product, out=product)
             remainder -= error
             rest = remainder if rest is None else np.add(remainder, rest, out=remainder)
         if other.rest is not None:
@@ -221,6 +209,12 @@ class Pair:
 
     def __rtruediv__(self, other: int) -> "Pair":
         return self._lift(other) / self
+
+    def take(self, index: NDArray[np.intp]) -> "Pair":
+        """Some of the rows."""
+        rest = None if self.rest is None else self.rest.take(index)
+        bound = self.bound if isinstance(self.bound, float) else self.bound.take(index)
+        return Pair(self.within, self.value.take(index), rest, bound, self.positive)
 
     def rounded(self) -> Column:
         """The double that value + rest round to."""
@@ -256,6 +250,10 @@ class Pairs:
         number.power = value if abs(frexp(value)[0]) == 0.5 else 0.0
         return number
 
+    def product(self, x: Column, y: Column) -> tuple[Column, Column | None]:
+        """x y, and the error of that, as far as this level has it."""
+        return _product(x, y) if self.exact_products else (np.multiply(x, y, out=_room(x, y)), None)
+
     def is_zero(self, x: Pair) -> bool:
         return x.value.size == 1 and x._exact and x.value[0] == 0
 
@@ -264,14 +262,14 @@ class Pairs:
         return self._single(_pi())
 
     def sqrt(self, x: Pair) -> Pair:
-        root = Pair(self, np.sqrt(x.value, out=_room(x.value)))
-        product = root.value * root.value
-        rest = x.value - product
-        rest -= _error_of_product(root, root, product)
+        value = np.sqrt(x.value, out=_room(x.value))
+        product, error = _product(value, value)
+        rest = np.subtract(x.value, product, out=product)
+        rest -= error
         if x.rest is not None:
             rest += x.rest
-        rest /= 2 * root.value
-        root.rest, root.bound = rest, x.bound + self.epsilon
+        rest /= 2 * value
+        root = Pair(self, value, rest, x.bound + self.epsilon)
         return root.normal() if self.thorough else root
 
     def hypot(self, x: Pair, y: Pair | int) -> Pair:
@@ -282,7 +280,7 @@ class Pairs:
 
     def expm1(self, x: Pair) -> Pair:
         """e^x - 1 for x >= 0; unvouched beyond e^700."""
-        value, steps = np.minimum(x.value, LARGEST), 65536 if self.thorough else 256
+        value, steps = np.minimum(x.value, LARGEST), FINE if self.thorough else COARSE
         count = np.floor(value * (steps / np.log(2)))
         first, *parts = _ln2_in_parts(steps)
         left = value - count * first  # exact: the two are near each other
@@ -293,10 +291,10 @@ class Pairs:
         k = self._small_expm1(Pair(self, left, rest).normal())
         number = count.astype(np.int64)
         if self.thorough:
-            k, number = self._compound(k, 65536, number & 255), number >> 8
-        k, number = self._compound(k, 256, number & 255), number >> 8
+            k, number = self._compound(k, FINE, number % FINER), number // FINER
+        k, number = self._compound(k, COARSE, number % COARSE), number // COARSE
         if number.max() > 0:
-            power = np.ldexp(1.0, number)
+            power = np.ldexp(1.0, np.arange(1024)).take(number, mode="clip")
             assert k.rest is not None
             # Exact: k times a power of two, and that power less one.
             scaled = Pair(self, k.value * power, k.rest * power, k.bound)
@@ -319,10 +317,10 @@ class Pairs:
             k.rest += rest
             k.bound += self.epsilon
             return k.normal()
-        rest = x * x * (1 / 2 + x * (1 / 6 + x * (1 / 24 + x * (1 / 120 + x / 720))))
+        rest = x * x * (1 / 2 + x * (1 / 6 + x * (1 / 24 + x / 120)))
         if r.rest is not None:
             rest += r.rest
-        return Pair(self, x, rest, 2.0**-59).normal()
+        return Pair(self, x, rest, 2.0**-62).normal()
 
     def _compound(self, k: Pair, steps: int, index: NDArray[np.int64]) -> Pair:
         """(1 + k) 2^(index/steps) - 1."""
@@ -330,7 +328,7 @@ class Pairs:
         factor = Pair(self, values.take(index, mode="clip"), rests.take(index, mode="clip"), UNIT**2)
         if self.thorough:
             return factor + k + factor * k
-        # k < 2^-8: rounding the product loses 2^-61 of the whole.
+        # k < 2^-12: rounding the product loses 2^-65 of the whole.
         assert k.rest is not None
         product = factor.value * k.value
         sum_ = _sum(factor.value, k.value)
@@ -345,7 +343,8 @@ class Pairs:
         value = np.log1p(x.value, out=_room(x.value))
         if not self.thorough:
             rest = None if x.rest is None else x.rest / (1 + x.value)
-            return Pair(self, value, rest, LIBRARY + x.bound)
+            # With no more digits than a double has: exact products from here on gain nothing.
+            return Pair(ROUNDED, value, rest, LIBRARY + x.bound)
         guess = self.expm1(Pair(self, value))
         off = (x - guess) / (guess + 1)
         found = Pair(self, value) + off - off * off / 2
@@ -384,6 +383,9 @@ class Pairs:
         raise Unvouched
 
 
+ROUNDED, QUICK, THOROUGH = Pairs(0), Pairs(1), Pairs(2)
+
+
 def _room(like: Column, or_like: Column | None = None) -> Column:
     """Where to put a result, at a multiple of 64 bytes: SIMD is twice as fast there."""
     size = like.size if or_like is None else max(like.size, or_like.size)
@@ -392,36 +394,55 @@ def _room(like: Column, or_like: Column | None = None) -> Column:
     return room[ahead : ahead + size]
 
 
+def _slices(*columns: Column) -> Iterator[tuple[Column, ...]]:
+    """The columns, a piece that the processor keeps at hand after the other; single numbers stay."""
+    size = max(column.size for column in columns)
+    for start in range(0, size, PIECE):
+        yield tuple(c if c.size == 1 else c[start : start + PIECE] for c in columns)
+
+
 def _sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:
     """x + y, or x - y if ``add`` is np.subtract, rounded, and the error of that, exactly."""
-    total = add(x, y, out=_room(x, y))
-    added = np.subtract(total, x, out=_room(total))
-    error = np.subtract(total, added, out=_room(total))
-    np.subtract(x, error, out=error)
-    if add is np.add:
-        np.subtract(y, added, out=added)
-        error += added
-    else:
-        added += y
-        error -= added
+    total, error = _room(x, y), _room(x, y)
+    scratch = _room(total[:PIECE])
+    for a, b, t, e in _slices(x, y, total, error):
+        added = scratch[: t.size]
+        add(a, b, out=t)
+        np.subtract(t, a, out=added)
+        np.subtract(t, added, out=e)
+        np.subtract(a, e, out=e)
+        if add is np.add:
+            np.subtract(b, added, out=added)
+            np.add(e, added, out=e)
+        else:
+            np.add(b, added, out=added)
+            np.subtract(e, added, out=e)
     return total, error
 
 
-def _error_of_product(x: Pair, y: Pair, product: Column) -> Column:
-    """x.value y.value - product, exactly."""
-    (x_high, x_low), (y_high, y_low) = x.halves, y.halves
-    error = np.multiply(x_high, y_high, out=_room(product))
-    error -= product
-    part = _room(product)
-    for a, b in ((x_low, y_high), (x_high, y_low), (x_low, y_low)):
-        error += np.multiply(a, b, out=part)
-    return error
+def _product(x: Column, y: Column) -> tuple[Column, Column]:
+    """x y, rounded, and the error of that, exactly."""
+    product, error = _room(x, y), _room(x, y)
+    rooms = [_room(product[:PIECE]) for _ in range(5)]
+    for a, b, p, e in _slices(x, y, product, error):
+        a_high, a_low, b_high, b_low, part = (room[: p.size] for room in rooms)
+        np.multiply(a, b, out=p)
+        a_high, a_low = _halves(a, a_high[: a.size], a_low[: a.size])
+        b_high, b_low = _halves(b, b_high[: b.size], b_low[: b.size])
+        np.multiply(a_high, b_high, out=e)
+        np.subtract(e, p, out=e)
+        np.add(e, np.multiply(a_low, b_high, out=part), out=e)
+        np.add(e, np.multiply(a_high, b_low, out=part), out=e)
+        np.add(e, np.multiply(a_low, b_low, out=part), out=e)
+    return product, error
 
 
-def _greater(a: Any, b: Any) -> Any:
-    if isinstance(a, float) and isinstance(b, float):
-        return max(a, b)
-    return np.maximum(a, b)
+def _halves(x: Column, high: Column, low: Column) -> tuple[Column, Column]:
+    """Two columns of 26 bits that add up to this one, put where told."""
+    np.multiply(x, 2.0**27 + 1, out=low)
+    np.subtract(low, x, out=high)
+    np.subtract(low, high, out=high)
+    return high, np.subtract(x, high, out=low)
 
 
 def _fold(degrees: Column) -> tuple[Column, Callable[[Any, Any], tuple[Any, Any]]]:
@@ -461,9 +482,9 @@ def _cos_sin_of_degrees(x: Fraction) -> tuple[Fraction, Fraction]:
 
 @cache
 def _ln2_in_parts(steps: int) -> tuple[float, ...]:
-    """ln 2 / steps as a sum: 32 bits and a rest, or thrice 24 and a rest; see the docstring above."""
+    """ln 2 / steps as a sum: 30 bits and a rest, or thrice 24 and a rest; see the docstring above."""
     rest, parts = _ln2() / steps, []
-    for bits in (32,) if steps == 256 else (24, 24, 24):
+    for bits in (30,) if steps == COARSE else (24, 24, 24):
         mantissa, exponent = frexp(float(rest))
         parts.append(ldexp(round(ldexp(mantissa, bits)), exponent - bits))
         rest -= Fraction(parts[-1])
@@ -472,8 +493,12 @@ def _ln2_in_parts(steps: int) -> tuple[float, ...]:
 
 @cache
 def _powers(steps: int) -> tuple[Column, Column]:
-    """2^(i/steps) - 1 for i below 256, as pairs."""
-    exact = [Fraction(ENOUGH.expm1(ENOUGH.number(_ln2() * i / steps)).lo) for i in range(256)]
-    values = [to_double(q) for q in exact]
-    rests = [to_double(q - Fraction(value)) for q, value in zip(exact, values, strict=True)]
-    return np.array(values), np.array(rests)
+    """2^(i/steps) - 1 from i = 0 up to the next coarser table's step, as pairs."""
+    bits, exact = 200, [0]
+    count = COARSE if steps == COARSE else FINER
+    step = int(Fraction(ENOUGH.expm1(ENOUGH.number(_ln2() / steps)).lo) * 2**bits)
+    for _ in range(count - 1):
+        exact.append(exact[-1] + step + (exact[-1] * step >> bits))
+    values = [Fraction(power, 2**bits) for power in exact]
+    heads = [float(value) for value in values]
+    return np.array(heads), np.array([float(v - Fraction(h)) for v, h in zip(values, heads, strict=True)])

@@ -83,11 +83,12 @@ class Case:
 
     @cached_property
     def regime(self) -> Literal["no-slip", "verge", "slip"]:
-        if self.scene.mu is None or self.tensions_equal or not self.can_slip:
+        if self.scene.mu is None or self.tensions_equal:
             return "no-slip"
         if not self.pulley_known:
-            return "verge"
-        return "slip" if self.locked or self.beats_friction("excess_ratio") else "no-slip"
+            return "verge" if self.can_slip else "no-slip"
+        slips = self.can_slip if self.locked else self.beats_friction("excess_ratio")
+        return "slip" if slips else "no-slip"
 
     @property
     def limiting_mu(self) -> Fraction:
@@ -363,14 +364,16 @@ class Machine(Generic[N]):
         mu = self._friction_mu
         if self.ar.is_zero(mu):
             return self.ar.number(0)
-        _, sin_half = self._cos_sin(2)
-        return self._limiting_friction(mu, sin_half)
+        if self.case.ends_hang_down:
+            force = physics.half_turn_resultant(self.light_tension, self.heavy_tension)
+        else:
+            force = self._resultant(self._cos_sin(2)[1])
+        return physics.friction_magnitude(mu, force, self.ar.hypot)
 
-    def _limiting_friction(self, mu: N, sin_half: N) -> N:
-        """The friction force (N) of one arc over which it is at its limit, by the sine of its half."""
-        ar, light, heavy = self.ar, self.light_tension, self.heavy_tension
-        force = physics.resultant(light, heavy, self._difference, sin_half, ar.sqrt, ar.hypot)
-        return physics.friction_magnitude(mu, force, ar.hypot)
+    def _resultant(self, sin_half: N) -> N:
+        """The force (N) of both tensions on an arc, by the sine of its half."""
+        light, heavy, ar = self.light_tension, self.heavy_tension, self.ar
+        return physics.resultant(light, heavy, self._difference, sin_half, ar.sqrt, ar.hypot)
 
     @cached_property
     def friction_force_x(self) -> N:
@@ -410,9 +413,11 @@ class Machine(Generic[N]):
 
     @cached_property
     def critical_pulley_mass(self) -> N:
-        transfer = self._transfer
+        if self.scene.mu is None:
+            raise Undetermined(NEEDS_MU)
         if not self.case.can_slip:
             raise Undetermined(NO_CRITICAL_MASS)
+        transfer = self._transfer
         beta = self._given(self.case.beta, UNKNOWN_SHAPE)
         drive = physics.drive_at_limit(self.l, self.h, transfer)
         return physics.critical_pulley_mass(self.h, transfer, drive, beta)
@@ -453,4 +458,4 @@ class Machine(Generic[N]):
         if not self._bounded():
             return self.ar.number(0)
         _, sin_half = self.ar.cos_sin(self.alpha / 2)
-        return self._limiting_friction(self.arc_mu("creep"), sin_half)
+        return physics.friction_magnitude(self.arc_mu("creep"), self._resultant(sin_half), self.ar.hypot)

@@ -83,7 +83,7 @@ def difference_of_friction(light: N, k1: N) -> N:
 
 def excess_ratio(l: N, h: N, c: N) -> N:
     """T_h/T_l - 1 of a string that grips, from (4); without cancellation."""
-    return c / (2 * h + c) * ((h - l) / l)
+    return c * (h - l) / (l * (2 * h + c))
 
 
 def locked_excess(l: N, h: N) -> N:
@@ -121,8 +121,13 @@ def least_pulley_mass(transfer: N, beta: N) -> N:
     return 2 * transfer / beta
 
 
+def half_turn_resultant(t1: N, t2: N) -> N:
+    """Magnitude (N) of the force of T1 and T2 where both pull the same way (20)."""
+    return t1 + t2
+
+
 def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N], hypot: Hypot[N]) -> N:
-    """Magnitude (N) of the force of T1 and T2 on an arc of contact; T1 + T2 over half a turn (20).
+    """Magnitude (N) of the force of T1 and T2 on any arc of contact.
 
     ``difference`` = T2 - T1 and ``sin_half``, the sine of half the arc, keep what is nearly equal
     from cancelling in T1² + T2² - 2 T1 T2 cos φ.
@@ -180,4 +185,4 @@ def least_friction_slope(mu: N, chord: N, growth: N, cos: N, sin: N, dx: N, dy: 
 
 def axle_force(t1: N, t2: N, pulley_mass: N, g: N) -> N:
     """Force (N) on the axle of a pulley with half a turn of wrap: (20) and the pulley's weight."""
-    return t1 + t2 + pulley_mass * g
+    return half_turn_resultant(t1, t2) + pulley_mass * g

@@ -1,0 +1,129 @@
+"""The arithmetic of columns: every bound holds, and what is assumed of NumPy does."""
+
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import flint
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from atwood_cli.columns import FLOATS, QUICK, ROUNDED, THOROUGH, UNIT, Pairs
+
+LEVELS = {"rounded": ROUNDED, "quick": QUICK, "thorough": THOROUGH}
+rng = np.random.default_rng(2026)
+X, Y = 10 ** rng.uniform(-9, 9, (2, 400))
+SMALL = 10 ** rng.uniform(-30, 0.8, 400)
+DEGREES = np.concatenate([rng.uniform(0, 800, 395), [90.0, 180.0, 270.0, 360.0, 1e-9]])
+
+
+def arb(x: float | Fraction) -> flint.arb:
+    q = Fraction(x)
+    return flint.arb(flint.fmpq(q.numerator, q.denominator))
+
+
+def off(pair: Any, exact: Callable[..., flint.arb], *columns: Any) -> None:
+    """Assert that each row is within its bound, and the bound no wider than what it is for."""
+    flint.ctx.prec = 400
+    bounds = np.broadcast_to(pair.bound, pair.value.shape)
+    rests = np.zeros_like(pair.value) if pair.rest is None else pair.rest
+    for value, rest, bound, *row in zip(pair.value, rests, bounds, *columns, strict=True):
+        want = exact(*(arb(float(x)) for x in row))
+        error = abs(arb(Fraction(value) + Fraction(rest)) - want)
+        assert error <= arb(float(bound)) * abs(want), row
+
+
+OPERATIONS: dict[str, tuple[Callable[[Any, Any, Any], Any], Callable[..., flint.arb]]] = {
+    "sum": (lambda ar, x, y: x / y + y, lambda x, y: x / y + y),
+    "difference": (lambda ar, x, y: x / y - y, lambda x, y: x / y - y),
+    "cancelling": (lambda ar, x, y: (x + y) - x, lambda x, y: y),
+    "product": (lambda ar, x, y: x * y * (x / y), lambda x, y: x * x),
+    "quotient": (lambda ar, x, y: x / (x + y) / (x * y), lambda x, y: x / (x + y) / (x * y)),
+    "scaled": (lambda ar, x, y: -1 * (2 * x / 8) - y / 4, lambda x, y: -x / 4 - y / 4),
+    "root": (lambda ar, x, y: ar.sqrt(x / y), lambda x, y: (x / y).sqrt()),
+    "hypotenuse": (lambda ar, x, y: ar.hypot(x, y), lambda x, y: (x * x + y * y).sqrt()),
+    "log1p": (lambda ar, x, y: ar.log1p(x / y), lambda x, y: (x / y).log1p()),
+    "pi": (lambda ar, x, y: ar.pi * x + y, lambda x, y: flint.arb.pi() * x + y),
+}
+
+
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("operation", OPERATIONS)
+def test_bounds_hold(level: str, operation: str) -> None:
+    ar = LEVELS[level]
+    ours, exact = OPERATIONS[operation]
+    off(ours(ar, ar.number(X), ar.number(Y)), exact, X, Y)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_bounds_of_exponentials_hold(level: str) -> None:
+    ar = LEVELS[level]
+    large = rng.uniform(0, 220, 400)  # π times which is below 700
+    for x in (SMALL, large):
+        off(ar.expm1(ar.number(x) * ar.pi), lambda x: (x * flint.arb.pi()).expm1(), x)
+        off(ar.exp(ar.number(x)), lambda x: x.exp(), x)
+    off(ar.log1p(ar.number(SMALL)), lambda x: x.log1p(), SMALL)
+    assert np.isinf(ar.expm1(ar.number(np.array([1.0, 800.0]))).bound).tolist() == [False, True]
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_bounds_of_angles_hold(level: str) -> None:
+    ar = LEVELS[level]
+    cos, sin = ar.cos_sin_of_degrees(ar.number(DEGREES))
+    radians = [lambda x: (x * flint.arb.pi() / 180).cos(), lambda x: (x * flint.arb.pi() / 180).sin()]
+    keep = DEGREES % 90 != 0
+    for part, exact in zip((cos, sin), radians, strict=True):
+        off(part.take(np.flatnonzero(keep)), exact, DEGREES[keep])
+    turns = np.array([90.0, 180.0, 270.0, 360.0, 450.0])
+    cos, sin = ar.cos_sin_of_degrees(ar.number(turns))
+    assert sin.rounded()[[1, 3]].tolist() == [0, 0]
+    assert cos.rounded()[[1, 3]].tolist() == [-1, 1]
+
+
+def test_bounds_are_as_tight_as_they_need_be() -> None:
+    x = QUICK.number(X) * QUICK.number(Y)
+    assert x.bound < 2.0**-90
+    assert QUICK.expm1(QUICK.number(SMALL)).bound.max() < 2.0**-60
+    assert THOROUGH.expm1(THOROUGH.number(SMALL) * THOROUGH.pi).bound.max() < 2.0**-94
+    assert ROUNDED.number(X).value is X  # nothing is copied before it must be
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.floats(2.0**-120, 2.0**120), st.floats(2.0**-120, 2.0**120), st.sampled_from([QUICK, THOROUGH]))
+def test_sums_and_products_of_doubles_are_exact(x: float, y: float, ar: Pairs) -> None:
+    a, b = ar.number(np.array([x])), ar.number(np.array([y]))
+    for pair, exact in (
+        (a + b, Fraction(x) + Fraction(y)),
+        (a - b, Fraction(x) - Fraction(y)),
+        (a * b, Fraction(x) * Fraction(y)),
+    ):
+        assert pair.rest is not None
+        assert Fraction(pair.value[0]) + Fraction(pair.rest[0]) == exact
+
+
+def test_the_library_is_within_its_assumed_bound() -> None:
+    """log1p, cos and sin of NumPy, on this machine, within one unit in the last place."""
+    flint.ctx.prec = 200
+    angles = rng.uniform(-4, 4, 20_000)
+    functions: list[tuple[Any, Callable[[flint.arb], flint.arb], Any]] = [
+        (np.log1p, lambda x: x.log1p(), 10 ** rng.uniform(-300, 300, 20_000)),
+        (np.cos, lambda x: x.cos(), angles),
+        (np.sin, lambda x: x.sin(), angles),
+    ]
+    for ours, exact, columns in functions:
+        worst = max(
+            float(abs(arb(got) - exact(arb(x))) / np.spacing(abs(got)))
+            for x, got in zip(columns.tolist(), ours(columns).tolist(), strict=True)
+        )
+        assert worst <= 1
+
+
+def test_doubles_have_the_same_names() -> None:
+    cos, sin = FLOATS.cos_sin_of_degrees(DEGREES)
+    np.testing.assert_allclose(cos, np.cos(np.radians(DEGREES)), atol=1e-14)
+    np.testing.assert_allclose(sin, np.sin(np.radians(DEGREES)), atol=1e-14)
+    assert FLOATS.cos_sin_of_degrees(Fraction(180)) == (-1, 0)
+    assert FLOATS.root(lambda x: x * x - 2, np.array([2.0]))[0] == pytest.approx(2**0.5, rel=1e-15)
+    assert UNIT == np.finfo(float).eps / 2
