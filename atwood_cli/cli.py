@@ -18,7 +18,7 @@ from .quantities import NAMES
 from .scene import PARAMETERS, Scene, SceneError, nearest, read_digits
 
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
-EXTRAS = {"matplotlib": "figure", "plotille": "plot"}
+EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
 
 app = typer.Typer(
     name="atwood",
@@ -30,6 +30,7 @@ app = typer.Typer(
       atwood solve --m1 250g --m2 300g --M 100g --only acceleration
       atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3
       atwood contact --m1 1 --m2 3 --M 10 --mu 0.3
+      atwood batch scenes.csv -o results.csv
     """,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
@@ -168,7 +169,35 @@ OutputFile = Annotated[
         help="Write to FILE, whole or not at all; .json and .csv there choose the format.",
     ),
 ]
-Force = Annotated[bool, _output("--force", help="Replace the FILE of --output, if it exists.")]
+Force = Annotated[bool, _output("--force", help="Replace the file of --output, if it is there.")]
+
+
+Table = Annotated[
+    str,
+    typer.Argument(
+        metavar="IN",
+        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl or .parquet; - for stdin.",
+        show_default=False,
+    ),
+]
+OutTable = Annotated[
+    str, _output("--output", "-o", metavar="OUT", help="Write to this file; - for stdout, if not given.")
+]
+FromFormat = Annotated[
+    str | None,
+    _output("--from", metavar="FORMAT", help="Format of IN: csv, tsv, ndjson, parquet; else its suffix."),
+]
+ToFormat = Annotated[
+    str | None, _output("--to", metavar="FORMAT", help="Format of OUT; else its suffix; for stdout csv.")
+]
+Accuracy = Annotated[
+    str,
+    _output(
+        metavar="fast|certified|exact",
+        help="How accurate results are; certified, within 4 units in the last place, if not given.",
+    ),
+]
+AllowErrors = Annotated[bool, _output("--allow-errors", help="Exit 0 though rows have errors.")]
 
 
 def _print_version(wanted: bool) -> None:
@@ -370,6 +399,48 @@ def sweep(
     return DONE
 
 
+@app.command("batch", cls=Command)
+def batch(
+    table: Table,
+    *,
+    output: OutTable = "-",
+    from_: FromFormat = None,
+    to: ToFormat = None,
+    only: Columns = None,
+    accuracy: Accuracy = "certified",
+    allow_errors: AllowErrors = False,
+    force: Force = False,
+) -> int:
+    """Solve a table of scenes: the same table with results appended, and the error of each bad row.
+
+    \b
+    Columns m1, m2, M, mu, mu_k, g, inertia, R, wrap are the options of solve,
+    in SI units; an empty cell is not given. Other columns stay as they are.
+
+    \b
+    Examples:
+      atwood batch scenes.csv -o results.csv
+      atwood batch scenes.parquet -o results.parquet --accuracy exact
+      atwood batch scenes.csv --only regime --only acceleration | head
+      generate | atwood batch - --from ndjson --to ndjson --allow-errors
+    """
+    from .arrays import ACCURACIES
+    from .batch import Job, run_batch
+    from .quantities import STANDARD
+    from .tables import read_format
+
+    names = list(dict.fromkeys(only or STANDARD))
+    _check_names("only", *names)
+    if accuracy not in ACCURACIES:
+        hint = nearest(accuracy, ACCURACIES) or f"; there are {', '.join(ACCURACIES)}"
+        raise SceneError("accuracy", accuracy, f"is no accuracy{hint}")
+    formats = read_format("from", from_, table), read_format("to", to, output)
+    tally = run_batch(Job(table, formats[0], output, formats[1], names, accuracy, force))
+    for line in tally.lines():
+        _say(line)
+    return COULD_NOT if tally.errors and not allow_errors else DONE
+
+
 def _check_names(option: str, *names: str) -> None:
     for name in names:
         if name not in NAMES:
@@ -415,7 +486,8 @@ def run(arguments: list[str] | None = None) -> int:
         _say(f"this needs {error.name}; install it with: pip install 'atwood-cli[{EXTRAS[error.name]}]'")
         return COULD_NOT
     except OSError as error:
-        _say(f"cannot write {error.filename or 'the output'}: {error.strerror}")
+        known = error.errno is None  # a sentence of ours
+        _say(str(error) if known else f"cannot write {error.filename or 'the output'}: {error.strerror}")
         return COULD_NOT
     except ArithmeticError as error:
         _say(str(error))

@@ -3,14 +3,14 @@
 import json
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from itertools import chain, groupby, product
 from math import inf
 from operator import itemgetter
 from time import monotonic
-from typing import TYPE_CHECKING, Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from .quantities import NAMES, QUANTITIES
 from .rounding import as_typed, is_infinite, text
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from .contact import Contact
     from .elements import Elements
     from .sweep import Row, Sweep
+
+T = TypeVar("T")
 
 COLUMN_UNITS = {
     "angle": "°",
@@ -352,24 +354,25 @@ def print_sweep_json(sweep: "Sweep", rows: "Sequence[Row]", names: Sequence[str]
     print(_json({"scene": scene, "rows": records, "notes": sweep_notes(rows, names)}))
 
 
-def watched(rows: "Iterator[Row]", count: int) -> "Iterator[Row]":
-    """The rows, with a bar on a terminal's stderr once they take longer than a second."""
-    start = monotonic()
-    for done, row in enumerate(rows, 1):
-        yield row
+def watched(parts: Iterator[T], total: int | None, size: Callable[[T], int] = lambda _: 1) -> Iterator[T]:
+    """The parts, with a bar on a terminal's stderr once they take longer than a second."""
+    start, done = monotonic(), 0
+    for part in parts:
+        yield part
+        done += size(part)
         if monotonic() - start > 1 and sys.stderr.isatty():
-            yield from _with_bar(rows, done, count)
+            yield from _with_bar(parts, done, total, size)
 
 
-def _with_bar(rows: "Iterator[Row]", done: int, count: int) -> "Iterator[Row]":
+def _with_bar(parts: Iterator[T], done: int, total: int | None, size: Callable[[T], int]) -> Iterator[T]:
     from rich.console import Console
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True, redirect_stdout=False) as bar:
-        task = bar.add_task("", total=count, completed=done)
-        for row in rows:
-            yield row
-            bar.advance(task)
+        task = bar.add_task("", total=total, completed=done)
+        for part in parts:
+            yield part
+            bar.advance(task, size(part))
 
 
 def _integer_part(value: str) -> int:

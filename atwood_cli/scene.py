@@ -182,10 +182,15 @@ def read_value(name: str, given: Given | None) -> Any:
     if given is None:
         return Fraction(default[name]) if name in default else None
     parameter = PARAMETERS[name]
-    value = _read_text(name, given) if isinstance(given, str) else _read_number(name, given)
+    value = _read_text(name, given, parameter) if isinstance(given, str) else _read_number(name, given)
     if value < 0 or (value == 0 and not parameter.zero) or (value == inf and not parameter.inf):
         raise SceneError(name, given, parameter.domain)
     return value
+
+
+def read_plain(name: str, given: str) -> Fraction | float:
+    """The value of a number without unit or name, as a table has it. Raises SceneError."""
+    return _read_text(name, given, PARAMETERS[name]._replace(dimension=None, names={}))
 
 
 def read_whole(name: str, given: int | str, least: int, most: int) -> int:
@@ -203,8 +208,7 @@ def read_digits(given: int | str | None) -> int | None:
     return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
 
 
-def _read_text(name: str, given: str) -> Fraction | float:
-    parameter = PARAMETERS[name]
+def _read_text(name: str, given: str, parameter: Parameter) -> Fraction | float:
     if parameter.inf and given == "inf":
         return inf
     if given in parameter.names:
@@ -221,7 +225,7 @@ def _read_text(name: str, given: str) -> Fraction | float:
         raise SceneError(name, given, f"has an exponent beyond {MAX_EXPONENT} in magnitude")
     value = Fraction(f"{sign}{mantissa}e{'-' * exponent.startswith('-')}{power}")
     if unit:
-        value *= _factor(name, given, unit)
+        value *= _factor(name, given, unit, parameter.dimension)
     return Radians(value) if unit == "rad" else value
 
 
@@ -245,8 +249,7 @@ def nearest(word: str, words: Iterable[str]) -> str:
     return f"; did you mean {near[0]}?" if near else ""
 
 
-def _factor(name: str, given: str, unit: str) -> Fraction:
-    wanted = PARAMETERS[name].dimension
+def _factor(name: str, given: str, unit: str, wanted: str | None) -> Fraction:
     if wanted is None:
         raise SceneError(name, given, f"must be a plain number, without the {unit!r}")
     factors = DIMENSIONS[wanted]

@@ -98,5 +98,18 @@ def contact(
 ) -> None: ...
 
 
+@app.command()
+def batch(
+    table: str,
+    output: Annotated[str, option("--output", "-o")] = "-",
+    from_: Annotated[str | None, option("--from")] = None,
+    to: Annotated[str | None, option("--to")] = None,
+    only: Annotated[list[str] | None, option("--only")] = None,
+    accuracy: Annotated[str, option("--accuracy")] = "certified",
+    allow_errors: Annotated[bool, option("--allow-errors")] = False,
+    force: Annotated[bool, option("--force")] = False,
+) -> None: ...
+
+
 if __name__ == "__main__":
     sys.exit(app())

@@ -361,8 +361,8 @@ def test_a_long_run_shows_a_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -
             shown.append((completed, total))
             return 0
 
-        def advance(self, _: int) -> None:
-            shown.append((shown[-1][0] + 1, 5))
+        def advance(self, _: int, by: int) -> None:
+            shown.append((shown[-1][0] + by, 5))
 
     monkeypatch.setattr("rich.progress.Progress", Bar)
     monkeypatch.setattr("atwood_cli.output.monotonic", lambda: next(clock))

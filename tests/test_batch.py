@@ -1,0 +1,745 @@
+"""Tables of scenes: every format, nothing lost, nothing changed, every error said."""
+
+import csv
+import functools
+import io
+import json
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import polars as pl
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from atwood_cli import solve, tables
+from atwood_cli.arrays import COLUMNS, solve_arrays
+from atwood_cli.quantities import NAMES, STANDARD
+from atwood_cli.tables import FORMATS
+
+from .running import Atwood, Ran, on_terminal, plain, process
+
+SCENES = [
+    {"m1": "1", "m2": "3", "mu": "0.3"},
+    {"m1": "1", "m2": "3", "M": "10"},
+    {"m1": "1", "m2": "3", "M": "100", "mu": "0.3", "mu_k": "0.25"},
+    {"m1": "1", "m2": "3", "M": "inf"},
+    {"m1": "2", "m2": "2"},
+    {
+        "m1": "0.25",
+        "m2": ".5e0",
+        "M": "0.1",
+        "mu": "1",
+        "g": "1.62",
+        "inertia": "1",
+        "R": "0.1",
+        "wrap": "90",
+    },
+]
+REGIMES = ["verge", "no-slip", "slip", "no-slip", "no-slip", "no-slip"]
+SUMMARY = "atwood: 6 rows: 4 no-slip, 1 verge, 1 slip; no errors.\n"
+
+Table = Callable[..., str]
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> Table:
+    """A file of that name with those bytes; its path."""
+
+    def write(content: bytes | str, name: str = "in.csv") -> str:
+        path = tmp_path / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return str(path)
+
+    return write
+
+
+def as_csv(rows: list[dict[str, str]], columns: tuple[str, ...] = COLUMNS) -> str:
+    out = io.StringIO()
+    writer = csv.DictWriter(out, columns, restval="", lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
+    return out.getvalue()
+
+
+def records(ran_or_text: Ran | str) -> list[dict[str, str]]:
+    text = ran_or_text if isinstance(ran_or_text, str) else ran_or_text.out
+    return list(csv.DictReader(io.StringIO(text, newline="")))
+
+
+def near(found: float, exact: float) -> bool:
+    """Within 4 units in the last place."""
+    return abs(found - exact) <= 4 * math.ulp(exact)
+
+
+def doubles(scene: dict[str, str]) -> dict[str, Any]:
+    return {name: float(text) for name, text in scene.items() if text and name in COLUMNS}
+
+
+# Results
+
+
+def test_results_are_those_of_solve(atwood: Atwood, table: Table) -> None:
+    only = [word for name in NAMES for word in ("--only", name)]
+    ran = atwood("batch", table(as_csv(SCENES)), *only)
+    assert (ran.status, ran.err) == (0, SUMMARY)
+    for scene, row in zip(SCENES, records(ran), strict=True):
+        solution = solve(**doubles(scene))
+        assert row["regime"] == solution.regime
+        for name in NAMES[1:]:
+            exact = getattr(solution, name)
+            assert (row[name] == "") == (exact is None), name
+            assert exact is None or near(float(row[name]), exact), name
+
+
+def test_the_seven_standard_results_and_the_error_are_appended(atwood: Atwood, table: Table) -> None:
+    ran = atwood("batch", table(as_csv(SCENES)))
+    assert list(records(ran)[0]) == [*COLUMNS, *STANDARD, "error"]
+    assert [row["regime"] for row in records(ran)] == REGIMES
+    assert [row["error"] for row in records(ran)] == [""] * 6
+
+
+def test_only_picks_and_orders_results(atwood: Atwood, table: Table) -> None:
+    words = ["--only", "tension_2", "--only", "regime", "--only", "tension_2"]
+    ran = atwood("batch", table("m1,m2\n1,1\n"), *words)
+    assert ran.out == "m1,m2,tension_2,regime,error\n1,1,9.80665,no-slip,\n"
+
+
+@pytest.mark.parametrize("accuracy", ["fast", "certified", "exact"])
+def test_every_accuracy_is_handed_on(
+    atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch, accuracy: str
+) -> None:
+    asked = []
+
+    @functools.wraps(solve_arrays)
+    def spy(*args: Any, accuracy: Any, **more: Any) -> Any:
+        asked.append(accuracy)
+        return solve_arrays(*args, accuracy=accuracy, **more)
+
+    monkeypatch.setattr("atwood_cli.batch.solve_arrays", spy)
+    assert atwood("batch", table(as_csv(SCENES)), "--accuracy", accuracy).status == 0
+    assert set(asked) == {accuracy}
+
+
+def test_values_beyond_the_doubles_are_empty_and_counted(atwood: Atwood, table: Table) -> None:
+    scene = table("m1,m2\n1e308,1e308\n1,1\n")
+    ran = atwood("batch", scene, "--only", "tension_1", "--only", "tension_2")
+    assert ran.out == "m1,m2,tension_1,tension_2,error\n1e308,1e308,,,\n1,1,9.80665,9.80665,\n"
+    assert "; 2 values beyond the range of doubles left empty." in ran.err
+    assert '"tension_1":null' in atwood("batch", scene, "--to", "ndjson").out
+
+
+def test_empty_cells_are_not_given(atwood: Atwood, table: Table) -> None:
+    ran = atwood(
+        "batch", table('m1,m2,M,g,wrap,inertia\n1,3,10,,,""\n1,3,10\n1,3, ,,,\n'), "--only", "acceleration"
+    )
+    given, short, without = (float(row["acceleration"]) for row in records(ran))
+    assert given == short
+    assert near(given, 2.1792555555555555)
+    assert near(without, 4.903325)
+
+
+# Formats
+
+
+@pytest.mark.parametrize("target", FORMATS)
+@pytest.mark.parametrize("source", FORMATS)
+def test_every_format_into_every_format(
+    atwood: Atwood, tmp_path: Path, table: Table, source: str, target: str
+) -> None:
+    frame = pl.read_csv(as_csv(SCENES).encode(), infer_schema=False)
+    start, out = tmp_path / f"in.{source}", tmp_path / f"out.{target}"
+    {
+        "csv": lambda: frame.write_csv(start),
+        "tsv": lambda: frame.write_csv(start, separator="\t"),
+        "ndjson": lambda: frame.write_ndjson(start),
+        "parquet": lambda: frame.cast(pl.Float64).write_parquet(start),
+    }[source]()
+    ran = atwood("batch", str(start), "-o", str(out), "--only", "regime")
+    assert (ran.status, ran.out, ran.err) == (0, "", SUMMARY)
+    result = {
+        "csv": lambda: pl.read_csv(out),
+        "tsv": lambda: pl.read_csv(out, separator="\t"),
+        "ndjson": lambda: pl.read_ndjson(out, infer_schema_length=None),
+        "parquet": lambda: pl.read_parquet(out),
+    }[target]()
+    assert result.columns == [*COLUMNS, "regime", "error"]
+    assert result["regime"].to_list() == REGIMES
+    assert result["error"].null_count() == 6
+    assert result["m1"].cast(pl.Float64).to_list() == [1, 1, 1, 1, 2, 0.25]
+    assert list(tmp_path.glob(".*")) == []
+
+
+@pytest.mark.parametrize("source", FORMATS)
+def test_streams(tmp_path: Path, source: str) -> None:
+    frame = pl.DataFrame({"m1": [1.0], "m2": [3.0]})
+    path = tmp_path / "in"
+    {
+        "csv": lambda: frame.write_csv(path),
+        "tsv": lambda: frame.write_csv(path, separator="\t"),
+        "ndjson": lambda: frame.write_ndjson(path),
+        "parquet": lambda: frame.write_parquet(path),
+    }[source]()
+    given = f"--from {source} --to {source}" if source != "csv" else ""
+    ran = process(shell=f"cat {path} | atwood batch - {given} --only regime > {tmp_path}/out")
+    assert (ran.status, ran.err) == (0, "atwood: 1 row: 1 no-slip; no errors.\n")
+    out = tmp_path / "out"
+    result = {
+        "csv": lambda: pl.read_csv(out),
+        "tsv": lambda: pl.read_csv(out, separator="\t"),
+        "ndjson": lambda: pl.read_ndjson(out, schema_overrides={"error": pl.String}),
+        "parquet": lambda: pl.read_parquet(out),
+    }[source]()
+    assert result.rows() == [(1.0, 3.0, "no-slip", None)]
+
+
+def test_jsonl_is_ndjson(atwood: Atwood, table: Table) -> None:
+    ran = atwood("batch", table('{"m1":1,"m2":3}', "in.jsonl"), "--only", "regime")
+    assert ran.out == "m1,m2,regime,error\n1,3,no-slip,\n"
+
+
+def test_bom_crlf_and_blank_lines_at_the_ends(atwood: Atwood, table: Table) -> None:
+    ran = atwood("batch", table("\ufeffm1,m2\r\n1,3\r\n\r\n\r\n"), "--only", "regime")
+    assert (ran.out, ran.status) == ("m1,m2,regime,error\n1,3,no-slip,\n", 0)
+
+
+def test_a_header_alone_is_an_empty_table(atwood: Atwood, table: Table) -> None:
+    for text in ("m1,m2\n", "m1,m2"):
+        ran = atwood("batch", table(text), "--only", "regime")
+        assert (ran.status, ran.out, ran.err) == (0, "m1,m2,regime,error\n", "atwood: 0 rows: no errors.\n")
+
+
+def test_parquet_keeps_its_types(atwood: Atwood, tmp_path: Path) -> None:
+    frame = pl.DataFrame(
+        {
+            "m1": [1, 2],
+            "m2": [3.0, None],
+            "M": [math.inf, math.nan],
+            "list": [[1], None],
+            "struct": [{"a": 1, "b": "x"}, None],
+            "when": [None, None],
+        },
+        schema_overrides={"m1": pl.Int32, "when": pl.Date},
+    )
+    frame.write_parquet(tmp_path / "in.parquet")
+    ran = atwood("batch", str(tmp_path / "in.parquet"), "-o", str(tmp_path / "out.parquet"))
+    assert ran.status == 1
+    result = pl.read_parquet(tmp_path / "out.parquet")
+    assert result.select(frame.columns).equals(frame)
+    assert result.select(frame.columns).schema == frame.schema
+    assert result["regime"].to_list() == ["no-slip", None]
+    assert result["error"].to_list() == [None, "M nan must be 0 or more (inf locks the pulley)"]
+
+
+# Nothing is changed
+
+ODD_TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=8) | st.text(
+    ",\"\n\t ;'\\x", max_size=6
+)
+
+
+@pytest.mark.parametrize("kind", ["csv", "tsv"])
+@given(cells=st.lists(st.tuples(ODD_TEXT, ODD_TEXT), max_size=12), size=st.sampled_from([16, 64, 1 << 20]))
+@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_other_columns_pass_through(
+    atwood: Atwood, table: Table, kind: str, cells: list[tuple[str, str]], size: int
+) -> None:
+    separator = {"csv": ",", "tsv": "\t"}[kind]
+    out = io.StringIO(newline="")
+    # With this line end, Python quotes a lone \r too, which is one at the end of a row otherwise.
+    writer = csv.writer(out, delimiter=separator, lineterminator="\r\n")
+    writer.writerows([["one", "m1", "m2", "two"], *((a, "1.0", "003", b) for a, b in cells)])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tables, "PIECE_BYTES", size)
+        path = table(out.getvalue(), f"in.{kind}")
+        ran = atwood("batch", path, "--to", kind, "--only", "regime")
+    assert ran.err == f"atwood: {len(cells)} row{'s' * (len(cells) != 1)}: " + (
+        f"{len(cells)} no-slip; no errors.\n" if cells else "no errors.\n"
+    )
+    found = list(csv.reader(io.StringIO(ran.out, newline=""), delimiter=separator))
+    assert found == [
+        ["one", "m1", "m2", "two", "regime", "error"],
+        *([a, "1.0", "003", b, "no-slip", ""] for a, b in cells),
+    ]
+
+
+def test_plain_cells_come_out_byte_for_byte(atwood: Atwood, table: Table) -> None:
+    lines = ["id,m1,m2,note", "007,1.10,+3e0,", '1e5, 1 ,3,""', '"a,b",.5,1E0,"say ""hi"""', "é,1,3,x y"]
+    ran = atwood("batch", table("\n".join(lines)), "--only", "regime")
+    assert ran.out.splitlines() == [f"{lines[0]},regime,error", *(f"{line},no-slip," for line in lines[1:])]
+
+
+def test_ndjson_lines_come_out_byte_for_byte(atwood: Atwood, table: Table) -> None:
+    lines = [
+        '{"id": 1, "m1": 1.0, "m2": 3e0, "tags": [1, "x", {"q": 1.10}], "s": "\\u00e9 \u2028"}',
+        '{"m2":"3","big":123456789012345678901234567890,"m1":1, "lone": "\\ud800"}',
+    ]
+    ran = atwood("batch", table("\n\n".join(lines), "in.ndjson"), "--to", "ndjson", "--only", "regime")
+    assert ran.out.split("\n") == [*(f'{line[:-1]},"regime":"no-slip","error":null}}' for line in lines), ""]
+
+
+def test_ndjson_as_csv_keeps_the_text_of_numbers(atwood: Atwood, table: Table) -> None:
+    rows = '{"m1":1.0,"m2":3,"tags":[1,{"q":"é"}]}\n{"m2":3,"m1":1,"new":true}\n'
+    ran = atwood("batch", table(rows, "in.ndjson"), "--only", "regime")
+    assert [*csv.reader(io.StringIO(ran.out))] == [
+        ["m1", "m2", "tags", "new", "regime", "error"],
+        ["1.0", "3", '[1, {"q": "é"}]', "", "no-slip", ""],
+        ["1", "3", "", "true", "no-slip", ""],
+    ]
+
+
+# Bad rows
+
+NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
+BEYOND = "is beyond the range of doubles, 4.9e-324 to 1.8e308"
+
+
+@pytest.mark.parametrize(
+    ("row", "error"),
+    [
+        ({"m1": "abc"}, f"m1 'abc' {NOT_A_NUMBER}"),
+        ({"m1": "1,5"}, f"m1 '1,5' {NOT_A_NUMBER}"),
+        ({"m1": "0x10"}, f"m1 '0x10' {NOT_A_NUMBER}"),
+        ({"m1": "1_000"}, f"m1 '1_000' {NOT_A_NUMBER}"),
+        ({"g": "moon"}, f"g 'moon' {NOT_A_NUMBER}"),
+        ({"inertia": "disk"}, f"inertia 'disk' {NOT_A_NUMBER}"),
+        ({"m2": "250g"}, "m2 '250g' must be a plain number, without the 'g'"),
+        ({"R": "5 cm"}, "R '5 cm' must be a plain number, without the 'cm'"),
+        ({"wrap": "3rad"}, "wrap '3rad' must be a plain number, without the 'rad'"),
+        ({"m1": ""}, "m1 is missing; give both masses, m1 and m2"),
+        ({"m2": "  "}, "m2 is missing; give both masses, m1 and m2"),
+        ({"m1": "-1"}, "m1 '-1' must be 0 or more, and finite"),
+        ({"m1": "nan"}, "m1 'nan' must be 0 or more, and finite"),
+        ({"m1": "inf"}, "m1 'inf' must be 0 or more, and finite"),
+        ({"M": "-inf"}, "M '-inf' must be 0 or more (inf locks the pulley)"),
+        ({"M": "Infinity"}, "M 'Infinity' must be 0 or more (inf locks the pulley)"),
+        ({"m1": "1e400"}, f"m1 '1e400' {BEYOND}"),
+        ({"M": "1e309"}, f"M '1e309' {BEYOND}"),
+        ({"m1": "1e-400"}, f"m1 '1e-400' {BEYOND}"),
+        ({"mu": "-0.1"}, "mu '-0.1' must be 0 or more, and finite"),
+        ({"g": "0"}, "g '0' must be above 0, and finite"),
+        ({"inertia": "0"}, "inertia '0' must be above 0, and finite"),
+        ({"R": "-1"}, "R '-1' must be above 0, and finite"),
+        ({"wrap": "0"}, "wrap '0' must be above 0, and finite"),
+        ({"mu_k": "0.1"}, "mu_k '0.1' needs mu, the coefficient that decides whether it slips"),
+        ({"mu": "0.1", "mu_k": "0.2"}, "mu_k '0.2' must not be above mu; exactly, 0.2 > 0.1"),
+        ({"m1": "0", "m2": "0"}, "m1 and m2 are both 0; at least one mass must hang"),
+        ({"m1": "0", "mu": "1"}, "m1 '0' is a free end, which friction cannot hold; leave mu out"),
+        ({"m1": "x", "m2": "y"}, f"m1 'x' {NOT_A_NUMBER}"),
+    ],
+)
+def test_a_bad_row_says_what_is_wrong(atwood: Atwood, table: Table, row: dict[str, str], error: str) -> None:
+    rows = [{"m1": "1", "m2": "3"}, {"m1": "1", "m2": "3"} | row, {"m1": "3", "m2": "1"}]
+    ran = atwood("batch", table(as_csv(rows)))
+    assert ran.status == 1
+    assert ran.err == f"atwood: 3 rows: 2 no-slip; 1 error.\natwood: first error, in row 2: {error}\n"
+    before, bad, after = records(ran)
+    assert bad == dict.fromkeys((*COLUMNS, *STANDARD), "") | rows[1] | {"error": error}
+    assert (before["error"], after["error"]) == ("", "")
+    assert float(before["acceleration"]) == -float(after["acceleration"]) != 0
+
+
+@pytest.mark.parametrize("value", ["true", "[1, 2]", '{"kg": 1}', '"250 g"'])
+def test_a_bad_value_in_ndjson_is_a_bad_row(atwood: Atwood, table: Table, value: str) -> None:
+    ran = atwood("batch", table(f'{{"m1": {value}, "m2": 3}}\n', "in.ndjson"), "--to", "ndjson")
+    result = json.loads(ran.out)
+    assert (ran.status, result["m1"], result["regime"]) == (1, json.loads(value), None)
+    shown = json.loads(value) if value.startswith('"') else value
+    assert result["error"].startswith(f"m1 {shown!r} ")
+
+
+GOOD = st.sampled_from(["1", "3", "0.5", " 2 ", "1e3", "+4"])
+BAD = {
+    **{name: ["abc", "-1", "nan", "250g", "1e999", "inf", "1,5", "\u0663"] for name in COLUMNS},
+    "M": ["abc", "-1", "nan", "-inf", "1e999"],
+}
+
+
+@st.composite
+def mixed_rows(draw: st.DrawFn) -> tuple[dict[str, str], str | None]:
+    """A row, and the column that is wrong, if one is."""
+    row = {"m1": draw(GOOD), "m2": draw(GOOD), "M": draw(st.sampled_from(["", "10", "inf", "0"]))}
+    row["mu"] = draw(st.sampled_from(["", "0.3", "0", "nan"]))
+    if row["mu"] == "nan":
+        return row, "mu"
+    wrong = draw(st.sampled_from([None, None, *COLUMNS]))
+    if wrong is not None:
+        row[wrong] = draw(st.sampled_from(BAD[wrong]))
+    return row, wrong
+
+
+@given(
+    rows=st.lists(mixed_rows(), max_size=15),
+    size=st.sampled_from([32, 1 << 20]),
+    kind=st.sampled_from(FORMATS[:3]),
+)
+@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_nothing_is_lost_among_bad_rows(
+    atwood: Atwood, table: Table, rows: list[tuple[dict[str, str], str | None]], size: int, kind: str
+) -> None:
+    numbered = [{"id": str(i), **row} for i, (row, _) in enumerate(rows)]
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(tables, "PIECE_BYTES", size)
+        ran = atwood("batch", table(as_csv(numbered, ("id", *COLUMNS))), "--to", kind)
+    failed = sum(wrong is not None for _, wrong in rows)
+    assert ran.status == (1 if failed else 0)
+    if kind == "ndjson":
+        found = [
+            {k: "" if v is None else v for k, v in json.loads(line).items()} for line in ran.out.splitlines()
+        ]
+    else:
+        found = list(csv.DictReader(io.StringIO(ran.out), delimiter={"csv": ",", "tsv": "\t"}[kind]))
+    assert len(found) == len(rows)
+    for given_row, (_, wrong), row in zip(numbered, rows, found, strict=True):
+        assert {name: row[name] for name in given_row} == given_row
+        if wrong is None:
+            assert row["error"] == ""
+            assert row["regime"] in ("no-slip", "verge", "slip")
+        else:
+            assert row["error"].startswith(f"{wrong} {given_row[wrong].strip()!r} ")
+            assert {row[name] for name in STANDARD} == {""}
+
+
+@given(
+    st.lists(
+        st.tuples(*(st.sampled_from([1.0, 2.0, 0.3, math.nan, math.inf, None]) for _ in range(4))),
+        max_size=20,
+    )
+)
+@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+def test_nan_in_parquet_is_bad_and_null_is_not_given(
+    atwood: Atwood, tmp_path: Path, rows: list[tuple[float | None, ...]]
+) -> None:
+    columns = ("m1", "m2", "M", "mu")
+    frame = pl.DataFrame(rows, schema=dict.fromkeys(columns, pl.Float64), orient="row")
+    frame.write_parquet(tmp_path / "in.parquet")
+    atwood("batch", str(tmp_path / "in.parquet"), "-o", str(tmp_path / "out.parquet"), "--force")
+    found = pl.read_parquet(tmp_path / "out.parquet")
+    assert found.select(columns).equals(frame)
+    for values, error, regime in zip(rows, found["error"], found["regime"], strict=True):
+        row = dict(zip(columns, values, strict=True))
+        wrong = [
+            name
+            for name, x in row.items()
+            if x is not None and not (x < math.inf or (name, x) == ("M", math.inf))
+        ]
+        missing = [name for name in ("m1", "m2") if row[name] is None]
+        assert (error is None) == (not wrong and not missing) == (regime is not None)
+        if wrong:
+            assert error.startswith(f"{wrong[0]} {row[wrong[0]]} must be") or missing
+
+
+def test_exit_status_with_allow_errors(atwood: Atwood, table: Table) -> None:
+    path = table("m1,m2\n1,x\n")
+    assert atwood("batch", path).status == 1
+    ran = atwood("batch", path, "--allow-errors")
+    assert ran.status == 0
+    assert "1 row: 1 error." in ran.err
+
+
+# Tables that are none
+
+
+@pytest.mark.parametrize(
+    ("content", "why"),
+    [
+        (b"", "it is empty"),
+        (b"\n\r\n", "it is empty"),
+        (b"a,b\n1,2\n", "column m1 is missing; there are 'a', 'b'"),
+        (b"m1, m2\n1,2\n", "column m2 is missing; there are 'm1', ' m2'"),
+        (b"m1,m2,m1\n1,2,3\n", "column 'm1' is there 2 times"),
+        (b"m1,m2,x,x\n1,2,3,4\n", "column 'x' is there 2 times"),
+        (
+            b"m1,m2,regime\n1,2,3\n",
+            "column 'regime' would be there twice, as a result is named so; rename it, or name other results by --only",
+        ),
+        (b"m1,m2,error\n1,2,3\n", "column 'error' would be there twice, as a result is named so; rename it"),
+        (b"m1,m2\n1,2\n1,5,2\n", "row 2 has 3 cells, and the header 2"),
+        (
+            b"m1,m2,M\n1,2,3\n1,2",
+            "row 2, the last, stops after 2 of 3 cells, without a line end: it is truncated",
+        ),
+        (b"m1,m2,n\n1,2,3\n1,2,\xe9\n", "row 2 is not UTF-8: byte 0xe9; save it as UTF-8"),
+        (b"m1,m2,\xe9\n1,2,3\n", "the header is not UTF-8: byte 0xe9; save it as UTF-8"),
+        (b'm1,m2,n\n1,2,"x\ny', "it ends within quotation marks: it is truncated, or one is left open"),
+        (
+            b'm1,m2,n\n1,2,3\n1,2,5" wide\n1,2,"p"q\n',
+            'row 2 has a quotation mark out of place; write it "like ""this"""',
+        ),
+        (b'm1,m2,n\n1,2,"p"q\n', 'row 1 has a quotation mark out of place; write it "like ""this"""'),
+    ],
+)
+def test_unreadable_csv(atwood: Atwood, table: Table, tmp_path: Path, content: bytes, why: str) -> None:
+    path = table(content)
+    ran = atwood("batch", path, "-o", str(tmp_path / "out.csv"))
+    assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: cannot read {path}: {why}\n")
+    assert list(tmp_path.iterdir()) == [Path(path)]
+
+
+@pytest.mark.parametrize(
+    ("content", "why"),
+    [
+        (b"", "it is empty"),
+        (b'{"m1":1}\n', "column m2 is missing; there are 'm1'"),
+        (
+            b'{"m1":1,"m2":2}\n{"m1":1,"m',
+            "row 2 is not a line of NDJSON: Unterminated string starting at character 9",
+        ),
+        (b'{"m1":1,"m2":2}\n\n[1]\n', "row 2 is not a line of NDJSON: it is no object"),
+        (b'{"m1":1,"m2":2,"m1":3}\n', "row 1 is not a line of NDJSON: 'm1' is there twice"),
+        (b'{"m1":NaN,"m2":2}\n', "row 1 is not a line of NDJSON: NaN is no number in JSON"),
+        (b"[" * 100_000, "row 1 is not a line of NDJSON: it is nested too deeply"),
+        (b'{"m1":1,"m2":2}\n{"m1":1,"m2":"\xff"}\n', "row 2 is not UTF-8: byte 0xff; save it as UTF-8"),
+        (
+            b'{"m1":1,"m2":2}\n{"m1":1,"m2":2,"error":0}\n',
+            "column 'error' would be there twice, as a result is named so; rename it",
+        ),
+    ],
+)
+def test_unreadable_ndjson(atwood: Atwood, table: Table, tmp_path: Path, content: bytes, why: str) -> None:
+    path = table(content, "in.ndjson")
+    ran = atwood("batch", path, "-o", str(tmp_path / "out.ndjson"))
+    assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: cannot read {path}: {why}\n")
+    assert list(tmp_path.iterdir()) == [Path(path)]
+
+
+def test_a_key_that_comes_too_late_for_a_column(
+    atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tables, "PIECE_BYTES", 20)
+    path = table('{"m1":1,"m2":2}\n{"m1":1,"m2":2}\n{"m1":1,"m2":2,"x":3}\n', "in.ndjson")
+    ran = atwood("batch", path)
+    why = "row 3 has 'x', for which there is no column by now; give --to ndjson"
+    assert (ran.status, ran.err) == (1, f"atwood: cannot read {path}: {why}\n")
+    assert atwood("batch", path, "--to", "ndjson").status == 0
+
+
+def test_unreadable_parquet(atwood: Atwood, table: Table, tmp_path: Path) -> None:
+    pl.DataFrame({"m1": [True], "m2": [1]}).write_parquet(tmp_path / "bool.parquet")
+    whole = (tmp_path / "bool.parquet").read_bytes()
+    ran = atwood("batch", str(tmp_path / "bool.parquet"))
+    assert ran.err.endswith("bool.parquet: column m1 holds Boolean, not numbers\n")
+    for content in (whole[:-20], b"m1,m2\n1,2\n", b""):
+        path = table(content, "cut.parquet")
+        ran = atwood("batch", path)
+        assert (ran.status, ran.out) == (1, "")
+        assert ran.err.startswith(f"atwood: cannot read {path}: it is not Parquet, or truncated: ")
+        assert ran.err.count("\n") == 1
+
+
+def test_a_quotation_mark_left_open_does_not_fill_the_memory(
+    atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tables, "PIECE_BYTES", 1 << 16)
+    monkeypatch.setattr(tables, "LONGEST_RECORD", 1 << 20)
+    ran = atwood("batch", table('m1,m2\n"1,2\n' + "1,2\n" * 300_000))
+    assert ran.status == 1
+    assert ran.err.endswith(": a row is longer than 1 MB; is a quotation mark left open?\n")
+
+
+def test_nested_columns_do_not_go_into_csv(atwood: Atwood, tmp_path: Path) -> None:
+    pl.DataFrame({"m1": [1], "m2": [1], "n": [[1]]}).write_parquet(tmp_path / "in.parquet")
+    ran = atwood("batch", str(tmp_path / "in.parquet"))
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err == "atwood: cannot write csv: CSV format does not support nested data\n"
+
+
+def test_columns_that_may_have_been_meant_are_remarked_on(atwood: Atwood, table: Table) -> None:
+    ran = atwood("batch", table("m1,m2,MU,I, g\n1,2,,,\n"))
+    assert ran.status == 0
+    assert ran.err.splitlines()[:3] == [
+        "atwood: column 'I' is not used; give inertia, I/(M R^2)",
+        "atwood: column 'MU' is not used; did you mean mu?",
+        "atwood: column ' g' is not used; did you mean g?",
+    ]
+
+
+# Usage and files
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ("x.txt", "--from is needed: 'x.txt' ends in none of .csv, .tsv, .ndjson, .parquet, .jsonl"),
+        ("x.csv -o y", "--to is needed: 'y' ends in none of .csv, .tsv, .ndjson, .parquet, .jsonl"),
+        ("x --from xml", "--from 'xml' is no format; there are csv, tsv, ndjson, parquet"),
+        ("x.csv --to CSV", "--to 'CSV' is no format; there are csv, tsv, ndjson, parquet"),
+        ("x.csv --accuracy certifed", "--accuracy 'certifed' is no accuracy; did you mean certified?"),
+        ("x.csv --accuracy best", "--accuracy 'best' is no accuracy; there are fast, certified, exact"),
+        ("x.csv --only accel", "--only 'accel' is no quantity; did you mean acceleration?"),
+        ("", "Missing argument 'IN'; atwood batch -h shows how"),
+        ("x.csv -o a.csv -o b.csv", "--output is given 2 times; give it once"),
+    ],
+)
+def test_wrong_usage(atwood: Atwood, words: str, message: str) -> None:
+    ran = atwood("batch", *words.split())
+    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
+
+
+def test_files_that_cannot_be_read_or_written(atwood: Atwood, table: Table, tmp_path: Path) -> None:
+    path = table("m1,m2\n1,2\n")
+    for words, message in [
+        ([f"{tmp_path}/no.csv"], f"cannot read {tmp_path}/no.csv: No such file or directory"),
+        ([str(tmp_path), "--from", "csv"], f"cannot read {tmp_path}: Is a directory"),
+        (
+            [path, "-o", f"{tmp_path}/no/out.csv"],
+            f"cannot write {tmp_path}/no/out.csv: No such file or directory",
+        ),
+    ]:
+        ran = atwood("batch", *words)
+        assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: {message}\n")
+
+
+def test_an_existing_file_is_replaced_only_by_force(atwood: Atwood, table: Table, tmp_path: Path) -> None:
+    path, out = table("m1,m2\n1,2\n"), tmp_path / "out.csv"
+    out.write_text("precious")
+    ran = atwood("batch", path, "-o", str(out))
+    assert (ran.status, ran.err) == (
+        1,
+        f"atwood: cannot write {out}: it exists already; --force replaces it\n",
+    )
+    assert out.read_text() == "precious"
+    assert atwood("batch", path, "-o", str(out), "--force").status == 0
+    assert out.read_text().startswith("m1,m2,regime")
+
+
+@pytest.mark.parametrize("link", ["in.csv", "hard.csv", "soft.csv"])
+def test_the_input_is_never_overwritten(atwood: Atwood, table: Table, tmp_path: Path, link: str) -> None:
+    path = table("m1,m2\n1,2\n")
+    (tmp_path / "hard.csv").hardlink_to(path)
+    (tmp_path / "soft.csv").symlink_to(path)
+    out = str(tmp_path / link)
+    ran = atwood("batch", path, "-o", out, "--force")
+    message = f"--output {out!r} is the input, which is never overwritten; name another\n"
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err.startswith("atwood: --output ")
+    assert ran.err.endswith(message[-55:])
+    assert Path(path).read_text() == "m1,m2\n1,2\n"
+
+
+def test_without_polars_one_line_says_what_to_install(
+    atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, "polars", None)
+    ran = atwood("batch", table("m1,m2\n1,2\n"))
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err == "atwood: this needs polars; install it with: pip install 'atwood-cli[batch]'\n"
+
+
+# How it ends
+
+
+def lots(path: Path, rows: int) -> str:
+    path.write_text("m1,m2,M\n" + "1,3,10\n" * rows)
+    return str(path)
+
+
+def waiting(*words: str) -> "subprocess.Popen[bytes]":
+    """A run in the middle of its input: some pieces are done, more are awaited."""
+    command = [sys.executable, "-m", "atwood_cli", "batch", "-", *words]
+    child = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert child.stdin is not None
+    child.stdin.write(b"m1,m2,M\n" + b"1,3,10\n" * 1_000_000)
+    child.stdin.flush()
+    return child
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
+@pytest.mark.parametrize("blow", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
+def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blow: signal.Signals) -> None:
+    out = tmp_path / "out.csv"
+    child = waiting("-o", str(out))
+    while not any(path.stat().st_size for path in tmp_path.iterdir()):
+        assert child.poll() is None
+        time.sleep(0.01)
+    child.send_signal(blow)
+    _, err = child.communicate(timeout=20)
+    assert child.returncode == (130 if blow == signal.SIGINT else -blow)
+    assert b"Traceback" not in err
+    assert not out.exists()
+    if blow == signal.SIGINT:
+        assert list(tmp_path.iterdir()) == []
+
+
+def test_a_reader_that_leaves_early_ends_it_quietly(tmp_path: Path) -> None:
+    path = lots(tmp_path / "in.csv", 300_000)
+    ran = process(shell=f"set -o pipefail; atwood batch {path} --only regime | head -1")
+    assert (ran.status, ran.out, ran.err) == (0, "m1,m2,M,regime,error\n", "")
+
+
+def test_a_full_disk_is_an_error(table: Table) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("needs a device that is always full")
+    ran = process("batch", table("m1,m2\n1,2\n"), "-o", "/dev/full", "--to", "csv")
+    assert ran.status == 1
+    assert ran.err.endswith("No space left on device\n")
+
+
+def test_closed_streams(table: Table) -> None:
+    path = table("m1,m2\n1,x\n")
+    for streams in (">&-", "2>&-", ">&- 2>&-"):
+        ran = process(shell=f"atwood batch {path} {streams}")
+        assert (ran.status, "Traceback" in ran.err) == (1, False)
+    ran = process(shell="atwood batch - <&-")
+    assert (ran.status, ran.err) == (1, "atwood: cannot read stdin: it is closed\n")
+
+
+BAR = """
+import sys
+from atwood_cli import output, tables
+tables.PIECE_BYTES = 64
+clock = iter(range(10**6))
+output.monotonic = lambda: next(clock)
+sys.argv[0] = "atwood"
+from atwood_cli.__main__ import main
+sys.exit(main())
+"""
+
+
+def test_a_bar_on_a_terminal_after_a_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "atwood_slow.py").write_text(BAR)
+    path = lots(tmp_path / "in.csv", 100)
+    command = ["batch", path, "-o", str(tmp_path / "out.csv")]
+    seen = slow_on_terminal(tmp_path / "atwood_slow.py", command)
+    assert "━" in seen
+    assert "%" in seen
+    assert "100 rows: 100 no-slip; no errors." in plain(seen)
+    quick = on_terminal("batch", path, "-o", str(tmp_path / "quick.csv"), columns=80)
+    assert quick == "atwood: 100 rows: 100 no-slip; no errors.\n"
+
+
+def slow_on_terminal(script: Path, words: list[str]) -> str:
+    """What a terminal sees of a run whose clock goes by seconds."""
+    pty = pytest.importorskip("pty")
+    leader, follower = pty.openpty()
+    child = subprocess.Popen(
+        [sys.executable, str(script), *words], stdin=follower, stdout=follower, stderr=follower
+    )
+    os.close(follower)
+    seen = b""
+    try:
+        while piece := os.read(leader, 65536):
+            seen += piece
+    except OSError:
+        pass
+    assert child.wait() == 0
+    os.close(leader)
+    return seen.decode()
+
+
+def test_help_shows_the_columns_and_examples(atwood: Atwood) -> None:
+    ran = atwood("batch", "-h")
+    assert ran.status == 0
+    for words in (
+        "m1, m2, M, mu, mu_k, g, inertia, R",
+        "atwood batch scenes.csv -o results.csv",
+        "--allow-errors",
+    ):
+        assert words in ran.out
