@@ -42,7 +42,8 @@ from .solver import Answers
 Accuracy = Literal["fast", "certified", "exact"]
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
 BLOCK = 65_536
-ALONG = 3  # times as many rows as the others: to take the others along costs less than to part
+ALONG = {"fast": 1, "certified": 3, "exact": 3}
+"""How many times the others' number rows must be for taking the others along to cost less than parting."""
 FEW = 3  # rows: quicker one by one, at 0.2 ms each, than as columns of pairs
 FAST_WINDOW = 2.0**-500, 2.0**500  # beyond it, what comes in between may overflow though results do not
 CERTIFIED = 3.49 * 2.0**-53
@@ -158,8 +159,9 @@ class Divided(Exception):
 class Rows:
     """Rows that agree on all that was asked of them so far.
 
-    ``fields`` are the inputs: a Fraction, None or inf where all rows share it, else a column. ``others``
-    are rows that came along because to leave them out would cost more; what they get is overwritten.
+    ``fields`` are the inputs: a Fraction, None or inf where all rows share it, else a column. A part of
+    other rows takes them from ``whole``, at its index there. ``others`` are rows that came along because
+    to leave them out would cost more; what they get is overwritten.
     """
 
     def __init__(
@@ -170,9 +172,10 @@ class Rows:
         accuracy: Accuracy,
         index: NDArray[np.intp] | None = None,
         far: bool = False,
+        whole: "tuple[Rows, NDArray[np.intp]] | None" = None,
     ) -> None:
-        self.fields, self.sign, self.size, self.accuracy = fields, sign, size, accuracy
-        self.index, self.far = index, far
+        self._fields, self.sign, self.size, self.accuracy = dict(fields), sign, size, accuracy
+        self.index, self.far, self._whole = index, far, whole
         self.others: NDArray[np.intp] | None = None
         self._answers: dict[str, bool] = {}
         self._parts: dict[str, list[Rows]] = {}
@@ -182,11 +185,11 @@ class Rows:
     def part(self, index: NDArray[np.intp] | None = None) -> "Rows":
         """Some of these rows, or all for another answer."""
         if index is None:
-            rows = Rows(self.fields, self.sign, self.size, self.accuracy, self.index, self.far)
+            whole = self._whole
+            rows = Rows(self._fields, self.sign, self.size, self.accuracy, self.index, self.far, whole)
         else:
-            fields = {name: _take(field, index, self.size) for name, field in self.fields.items()}
             within = index if self.index is None else self.index[index]
-            rows = Rows(fields, self.sign, len(index), self.accuracy, within, self.far)
+            rows = Rows({}, self.sign, len(index), self.accuracy, within, self.far, (self, index))
         rows._answers = dict(self._answers)
         for arithmetic, machine in self._machines.items():
             # The exponential costs too much to compute it twice.
@@ -194,6 +197,14 @@ class Rows:
                 k1 = machine.k1 if index is None else _take(machine.k1, index, self.size)
                 rows.machine(arithmetic).k1 = k1
         return rows
+
+    def field(self, name: str) -> Any:
+        """An input of these rows."""
+        if name not in self._fields:
+            assert self._whole is not None
+            whole, index = self._whole
+            self._fields[name] = _take(whole.field(name), index, whole.size)
+        return self._fields[name]
 
     def write(self, out: NDArray[Any], values: Any) -> None:
         out[slice(None) if self.index is None else self.index] = values
@@ -233,9 +244,9 @@ class Rows:
             return
         rounded, vouched = _certify(value) if self.accuracy == "certified" else _nearest(value)
         self.write(out, rounded)
-        if vouched.all():
+        if np.all(vouched):
             return
-        doubtful = np.broadcast_to(~vouched, self.size).copy()
+        doubtful = np.broadcast_to(np.logical_not(vouched), self.size).copy()
         if self.others is not None:
             doubtful[self.others] = False
         index = np.flatnonzero(doubtful)
@@ -250,10 +261,10 @@ class Rows:
 
     def scene(self, row: int) -> Scene:
         """One row as a scene of its own."""
-        fields = {
-            name: Fraction(float(field[row])) if isinstance(field, np.ndarray) else field
-            for name, field in self.fields.items()
-        }
+        fields = {name: self.field(name) for name in COLUMNS}
+        for name, field in fields.items():
+            if isinstance(field, np.ndarray):
+                fields[name] = Fraction(float(field[row]))
         return Scene(**fields, I=None)
 
     def _single(self, row: int, name: str) -> float:
@@ -283,10 +294,8 @@ class Rows:
         found = answers == rarer
         found[others] = False
         index = np.flatnonzero(found)
-        few, most = (
-            self.part(index),
-            self.part(None if ALONG * index.size < self.size else np.flatnonzero(~found)),
-        )
+        together = ALONG[self.accuracy] * index.size < self.size
+        few, most = self.part(index), self.part(None if together else np.flatnonzero(~found))
         few._answers[question], most._answers[question] = rarer, not rarer
         most.others = np.concatenate([others, index]) if most.size == self.size else None
         self._parts[question] = [most, few]  # in this order: the second overwrites what comes along
@@ -296,7 +305,8 @@ class Rows:
         if self.far:
             return np.array([self._settled(row, question) for row in range(self.size)])
         machine = self.machine(FLOATS)
-        excess, held = getattr(machine.case, question)(FLOATS), machine.k1
+        excess = machine.excess if question == "excess_ratio" else getattr(machine.case, question)(FLOATS)
+        held = machine.k1
         if self.accuracy == "fast":
             return excess > held
         beaten = np.broadcast_to(excess > held * (1 + 2.0**-40), self.size)
@@ -319,10 +329,10 @@ class Rows:
         return Case(self.scene(row)).beats_friction(question)
 
     def long_wrap(self, _: str) -> Any:
-        return self.fields["wrap"] > 180
+        return self.field("wrap") > 180
 
     def ends_hang_down(self, _: str) -> Any:
-        return np.fmod(np.asarray(self.fields["wrap"], dtype=np.float64), 360) == 180
+        return np.fmod(np.asarray(self.field("wrap"), dtype=np.float64), 360) == 180
 
 
 QUESTIONS: dict[str, Callable[[Rows, str], Any]] = {
@@ -331,18 +341,29 @@ QUESTIONS: dict[str, Callable[[Rows, str], Any]] = {
 }
 
 
-class _RowsCase(Case):
-    """What is decided about rows that agree on it, their inputs as columns of one arithmetic."""
+class _Inputs:
+    """A scene whose inputs are columns of one arithmetic, each fetched when it is first used."""
+
+    I = None
 
     def __init__(self, rows: Rows, arithmetic: Any) -> None:
-        self._rows = rows
-        fields = {
-            name: arithmetic.number(field) if isinstance(field, np.ndarray) else field
-            for name, field in rows.fields.items()
-        }
-        if isinstance(rows.fields["M"], np.ndarray):
-            fields["inertia"] = arithmetic.number(fields["inertia"])
-        super().__init__(Scene(**fields, I=None), rows.sign)
+        self._rows, self._number = rows, arithmetic.number
+
+    def __getattr__(self, name: str) -> Any:
+        field = self._rows.field(name)
+        if isinstance(field, np.ndarray) or (name == "inertia" and isinstance(self.M, type(self.m1))):
+            field = self._number(field)
+        setattr(self, name, field)
+        return field
+
+
+class _RowsCase(Case):
+    """What is decided about rows that agree on it."""
+
+    def __init__(self, rows: Rows, arithmetic: Any) -> None:
+        inputs: Any = _Inputs(rows, arithmetic)
+        super().__init__(inputs)
+        self._rows, self.sign = rows, rows.sign
 
     @cached_property
     def long_wrap(self) -> bool:
@@ -362,9 +383,11 @@ def _take(column: Any, index: NDArray[np.intp], size: int) -> Any:
     return column.take(index) if isinstance(many, np.ndarray) and many.size == size else column
 
 
-def _certify(pair: Pair) -> tuple[Column, NDArray[np.bool_]]:
+def _certify(pair: Pair) -> tuple[Column, Any]:
     """The doubles, and which are within 4 ulp."""
     rounded = pair.rounded()
+    if isinstance(pair.bound, float) and np.isfinite(rounded.sum()):
+        return rounded, pair.bound <= CERTIFIED
     return rounded, np.asarray(pair.bound <= CERTIFIED) & np.isfinite(rounded)
 
 
@@ -441,9 +464,11 @@ def _status(given: Mapping[str, _Given], size: int) -> NDArray[np.int8]:
 def _agreeing(given: Mapping[str, _Given], status: NDArray[np.int8], accuracy: Accuracy) -> Iterator[Rows]:
     """The rows of a block in parts that agree on what is given and of which kind, and who is heavier."""
     size, (m1, m2) = len(status), (given["m1"].column, given["m2"].column)
-    digits = [(2, status != 0), (3, 1 * (m1 > m2) + 2 * (m1 == m2))]
-    digits += [(5, one.kinds) for one in given.values() if one.kinds is not USUAL]
-    digits = [(base, digit) for base, digit in digits if np.any(digit)]
+    digits = [(5, one.kinds) for one in given.values() if one.kinds is not USUAL]
+    if not (m2 > m1).all():
+        digits.append((3, 1 * (m1 > m2) + 2 * (m1 == m2)))
+    if status.any():
+        digits.append((2, status != 0))
     key, place = np.zeros(1, np.int64), 1
     for base, digit in digits:
         key, place = key + place * digit, place * base

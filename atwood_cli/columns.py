@@ -12,11 +12,17 @@ that do not matter beside what they are added to. Whoever calls sees to the last
 
 The error of a sum of two doubles is a double, found by six more additions (D. E. Knuth); that of a
 product, by splitting each factor into halves of 26 bits (T. J. Dekker); that of a quotient from its
-remainder. So value + rest of a sum, product or quotient of exact doubles is exact, but for the
-rounding of rest itself. What else is lost is of second order: the rounding of what is added up into
-rest, and the product of two rests. With |rest| <= 4u |value|, as after `normal`, each loss is below
-u², and there are at most 16: `EPSILON` = 2^-102 covers them. Without it, |rest| grows by u per
-operation on the way; no quantity takes more than 60, so 2^14 u² = 2^-92 covers the losses.
+remainder. What is lost is of second order: the rounding of what is added up into rest, and the product
+of two rests. If |rest| <= u |value|, as after `normal`, that is in units of u² of the result
+
+- sum: two additions into rest, to at most 2u each: 4 (of both terms, in a difference);
+- product: two products, 1 each, their additions, to at most 2u and 3u, and the rests': 8; with only one
+  rest 1 + 2; without, nothing is lost;
+- quotient: what is added to the remainder, 2 + 1 + 3, its division, 3, and that by the value alone, 3: 12.
+  A root has fewer.
+
+One more each covers what is of third order. Without `normal`, |rest| grows by u per operation on the
+way; no quantity takes more than 60, so `LOOSE` = 2^14 covers the losses.
 
 Bounds add up in products and quotients. A sum of what is not negative inherits the larger one. In a
 difference, they count as much as the terms weigh beside what is left, row by row: a row that
@@ -32,10 +38,11 @@ only the product with the last part is rounded: x 2^-83 (x 2^-125) is lost, and 
 a part adds to what x has as rest. An error of x counts x + 1 times, as x e^x < (x + 1)(e^x - 1).
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from fractions import Fraction
 from functools import cache
 from math import frexp, ldexp, pi
+from threading import local
 from typing import Any, Literal, Union
 
 import numpy as np
@@ -47,9 +54,9 @@ Column = NDArray[np.float64]
 
 UNIT = 2.0**-53
 LIBRARY = 2 * UNIT
+LOOSE = 2**14  # losses in u² where rests are not kept normal
 WINDOW = 2.0**-120, 2.0**120
 LARGEST = 700.0  # argument of an exponential
-PIECE = 16_384  # rows of a column that are worked on at a time
 COARSE, FINER = 4096, 16  # steps of its tables to a factor of 2, and to a coarse step
 FINE = COARSE * FINER
 
@@ -132,21 +139,22 @@ class Pair:
             rest += self.rest
         if other.rest is not None:
             add(rest, other.rest, out=rest)
-        sum_, epsilon = Pair(self.within, value, rest), self.within.epsilon
+        sum_, loss = Pair(self.within, value, rest), self.within.sum_loss
         together = self.positive and other.positive and add is np.add
-        if together and isinstance(self.bound, float) and isinstance(other.bound, float):
-            sum_.bound = max(self.bound, other.bound) + epsilon
-            return sum_.normal() if self.within.thorough else sum_
+        plain = isinstance(self.bound, float) and isinstance(other.bound, float)
+        if together and plain and not self.within.thorough:
+            sum_.bound = max(self.bound, other.bound) + loss
+            return sum_
         sum_.normal()
         sum_.positive = together or bool(sum_.value.min() >= 0)
         if not (self._exact and other._exact):
             size = sum_.value if sum_.positive else np.abs(sum_.value)
-            sum_.bound = (self._weighed(epsilon) + other._weighed(epsilon)) / size
+            sum_.bound = (self._weighed(loss) + other._weighed(loss)) / size
         return sum_
 
-    def _weighed(self, epsilon: float) -> Any:
+    def _weighed(self, loss: float) -> Any:
         """How far this may be off, and what adding it may lose."""
-        return (self.value if self.positive else np.abs(self.value)) * (self.bound + epsilon)
+        return (self.value if self.positive else np.abs(self.value)) * (self.bound + loss)
 
     @property
     def _exact(self) -> bool:
@@ -174,10 +182,11 @@ class Pair:
         x, y = self.value, other.value
         value, rest = self.within.product(x, y)
         terms = [(a, b) for a, b in ((x, other.rest), (y, self.rest)) if b is not None]
+        loss = self.within.product_loss[len(terms)]
         for a, b in terms:
             term = np.multiply(a, b, out=_room(value))
             rest = term if rest is None else np.add(rest, term, out=rest)
-        return self._of_factors(other, value, rest)
+        return self._of_factors(other, value, rest, loss)
 
     __rmul__ = __mul__
 
@@ -198,12 +207,12 @@ class Pair:
             rest = np.subtract(0.0 if rest is None else rest, term, out=term)
         if rest is not None:
             rest = np.divide(rest, y, out=_room(value))
-        return self._of_factors(other, value, rest)
+        return self._of_factors(other, value, rest, self.within.quotient_loss)
 
-    def _of_factors(self, other: "Pair", value: Column, rest: Column | None) -> "Pair":
-        """The product or quotient of two pairs."""
+    def _of_factors(self, other: "Pair", value: Column, rest: Column | None, loss: float) -> "Pair":
+        """The product or quotient of two pairs, in which so much is lost."""
         within = self.within
-        bound = self.bound + other.bound + within.product_epsilon
+        bound = self.bound + other.bound + loss
         found = Pair(within, value, rest, bound, self.positive and other.positive)
         return found.normal() if within.thorough else found
 
@@ -230,8 +239,12 @@ class Pairs:
 
     def __init__(self, level: Literal[0, 1, 2]) -> None:
         self.exact_products, self.thorough = level > 0, level > 1
-        self.epsilon = 2.0**-102 if self.thorough else 2.0**-92
-        self.product_epsilon = self.epsilon if self.exact_products else UNIT + self.epsilon
+        rounding = 0.0 if self.exact_products else UNIT
+        # By the number of factors that have a rest: a product of exact doubles is exact.
+        losses = (0, 4, 9) if self.thorough else (0, LOOSE, LOOSE)
+        self.product_loss = [rounding + loss * UNIT**2 for loss in losses]
+        self.quotient_loss = rounding + (13 if self.thorough else LOOSE) * UNIT**2
+        self.sum_loss = (5 if self.thorough else LOOSE) * UNIT**2
 
     def number(self, q: Any) -> Any:
         """A number, or a column of exact doubles."""
@@ -245,7 +258,8 @@ class Pairs:
         value = float(q)
         rest = float(q - Fraction(value))
         if rest:
-            return Pair(self, np.array([value]), np.array([rest]), UNIT**2, value >= 0)
+            left = abs(float((q - Fraction(value) - Fraction(rest)) / q)) * 1.001
+            return Pair(self, np.array([value]), np.array([rest]), left, value >= 0)
         number = Pair(self, np.array([value]), positive=value >= 0)
         number.power = value if abs(frexp(value)[0]) == 0.5 else 0.0
         return number
@@ -269,7 +283,7 @@ class Pairs:
         if x.rest is not None:
             rest += x.rest
         rest /= 2 * value
-        root = Pair(self, value, rest, x.bound + self.epsilon)
+        root = Pair(self, value, rest, x.bound + self.quotient_loss)
         return root.normal() if self.thorough else root
 
     def hypot(self, x: Pair, y: Pair | int) -> Pair:
@@ -299,7 +313,7 @@ class Pairs:
             # Exact: k times a power of two, and that power less one.
             scaled = Pair(self, k.value * power, k.rest * power, k.bound)
             k = scaled + Pair(self, *_sum(power, np.array([-1.0])))
-        k.bound = k.bound + (x.bound + self.epsilon / 4) * (1 + x.value)
+        k.bound = k.bound + (x.bound + 4 * UNIT**2) * (1 + x.value)
         return k if np.max(x.value) < LARGEST else self._unvouched(k, x.value >= LARGEST)
 
     def _unvouched(self, x: Pair, where: Any) -> Pair:
@@ -315,7 +329,7 @@ class Pairs:
             k = r + square + square * r / 3
             assert k.rest is not None
             k.rest += rest
-            k.bound += self.epsilon
+            k.bound += self.sum_loss
             return k.normal()
         rest = x * x * (1 / 2 + x * (1 / 6 + x * (1 / 24 + x / 120)))
         if r.rest is not None:
@@ -325,7 +339,7 @@ class Pairs:
     def _compound(self, k: Pair, steps: int, index: NDArray[np.int64]) -> Pair:
         """(1 + k) 2^(index/steps) - 1."""
         values, rests = _powers(steps)
-        factor = Pair(self, values.take(index, mode="clip"), rests.take(index, mode="clip"), UNIT**2)
+        factor = Pair(self, values.take(index, mode="clip"), rests.take(index, mode="clip"), UNIT**2 / 2)
         if self.thorough:
             return factor + k + factor * k
         # k < 2^-12: rounding the product loses 2^-65 of the whole.
@@ -354,7 +368,7 @@ class Pairs:
     def cos_sin(self, x: Pair) -> tuple[Pair, Pair]:
         """Cosine and sine, |x| <= 4."""
         cos, sin = np.cos(x.value), np.sin(x.value)
-        error = np.abs(x.value) * (x.bound + self.epsilon)
+        error = np.abs(x.value) * (x.bound + self.sum_loss)
         rest = 0.0 if x.rest is None else x.rest
         return (
             Pair(self, cos, -sin * rest, LIBRARY + error / np.abs(cos), positive=False),
@@ -394,51 +408,54 @@ def _room(like: Column, or_like: Column | None = None) -> Column:
     return room[ahead : ahead + size]
 
 
-def _slices(*columns: Column) -> Iterator[tuple[Column, ...]]:
-    """The columns, a piece that the processor keeps at hand after the other; single numbers stay."""
-    size = max(column.size for column in columns)
-    for start in range(0, size, PIECE):
-        yield tuple(c if c.size == 1 else c[start : start + PIECE] for c in columns)
+_scratch = local()
+
+
+def _aside(count: int, size: int) -> list[Column]:
+    """Rooms for what is soon forgotten: each thread has its own, which the processor has at hand."""
+    rooms: list[Column] = getattr(_scratch, "rooms", [])
+    if not rooms or rooms[0].size < size:
+        _scratch.rooms = rooms = [_room(np.empty(size)) for _ in range(5)]
+    return [room[:size] for room in rooms[:count]]
 
 
 def _sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:
     """x + y, or x - y if ``add`` is np.subtract, rounded, and the error of that, exactly."""
-    total, error = _room(x, y), _room(x, y)
-    scratch = _room(total[:PIECE])
-    for a, b, t, e in _slices(x, y, total, error):
-        added = scratch[: t.size]
-        add(a, b, out=t)
-        np.subtract(t, a, out=added)
-        np.subtract(t, added, out=e)
-        np.subtract(a, e, out=e)
-        if add is np.add:
-            np.subtract(b, added, out=added)
-            np.add(e, added, out=e)
-        else:
-            np.add(b, added, out=added)
-            np.subtract(e, added, out=e)
+    total = add(x, y, out=_room(x, y))
+    error = _room(total)
+    if (y <= x).all():  # then two operations do (T. J. Dekker)
+        np.subtract(x, total, out=error)
+        return total, add(error, y, out=error)
+    (added,) = _aside(1, total.size)
+    np.subtract(total, x, out=added)
+    np.subtract(total, added, out=error)
+    np.subtract(x, error, out=error)
+    if add is np.add:
+        np.subtract(y, added, out=added)
+        error += added
+    else:
+        added += y
+        error -= added
     return total, error
 
 
 def _product(x: Column, y: Column) -> tuple[Column, Column]:
     """x y, rounded, and the error of that, exactly."""
-    product, error = _room(x, y), _room(x, y)
-    rooms = [_room(product[:PIECE]) for _ in range(5)]
-    for a, b, p, e in _slices(x, y, product, error):
-        a_high, a_low, b_high, b_low, part = (room[: p.size] for room in rooms)
-        np.multiply(a, b, out=p)
-        a_high, a_low = _halves(a, a_high[: a.size], a_low[: a.size])
-        b_high, b_low = _halves(b, b_high[: b.size], b_low[: b.size])
-        np.multiply(a_high, b_high, out=e)
-        np.subtract(e, p, out=e)
-        np.add(e, np.multiply(a_low, b_high, out=part), out=e)
-        np.add(e, np.multiply(a_high, b_low, out=part), out=e)
-        np.add(e, np.multiply(a_low, b_low, out=part), out=e)
+    product = np.multiply(x, y, out=_room(x, y))
+    part, *rooms = _aside(5, product.size)
+    x_high, x_low = _halves(x, *rooms[:2])
+    y_high, y_low = _halves(y, *rooms[2:])
+    error = np.multiply(x_high, y_high, out=_room(product))
+    error -= product
+    error += np.multiply(x_low, y_high, out=part)
+    error += np.multiply(x_high, y_low, out=part)
+    error += np.multiply(x_low, y_low, out=part)
     return product, error
 
 
 def _halves(x: Column, high: Column, low: Column) -> tuple[Column, Column]:
-    """Two columns of 26 bits that add up to this one, put where told."""
+    """Two columns of 26 bits that add up to this one, in the rooms given."""
+    high, low = high[: x.size], low[: x.size]
     np.multiply(x, 2.0**27 + 1, out=low)
     np.subtract(low, x, out=high)
     np.subtract(low, high, out=high)

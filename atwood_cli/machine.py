@@ -50,22 +50,50 @@ def is_zero(value: object) -> bool:
 class Case:
     """What is decided about a scene before anything is computed, exactly."""
 
-    def __init__(self, scene: Scene, sign: int | None = None) -> None:
+    def __init__(self, scene: Scene) -> None:
         self.scene = scene
-        self.sign = (scene.m2 > scene.m1) - (scene.m2 < scene.m1) if sign is None else sign
-        self.light, self.heavy = self.by_side(scene.m1, scene.m2)
-        self.locked = isinstance(scene.M, float)
-        self.pulley_mass = None if isinstance(scene.M, float) else scene.M
-        self.beta = scene.inertia
-        self.rim_mass: Fraction | None = None  # c = βM
+
+    @cached_property
+    def sign(self) -> int:
+        """1 if m2 is the heavier mass, -1 if m1 is, else 0."""
+        return (self.scene.m2 > self.scene.m1) - (self.scene.m2 < self.scene.m1)
+
+    @cached_property
+    def light(self) -> Fraction:
+        return self.by_side(self.scene.m1, self.scene.m2)[0]
+
+    @cached_property
+    def heavy(self) -> Fraction:
+        return self.by_side(self.scene.m1, self.scene.m2)[1]
+
+    @cached_property
+    def locked(self) -> bool:
+        return isinstance(self.scene.M, float)
+
+    @cached_property
+    def pulley_mass(self) -> Fraction | None:
+        """The pulley's mass; none where it is locked, and 0 where nothing is said of the pulley."""
+        M, scene = self.scene.M, self.scene
+        if M is None and scene.mu is None and scene.I is None:
+            return Fraction(0)
+        return None if isinstance(M, float) else M
+
+    @cached_property
+    def rim_mass(self) -> Fraction | None:
+        """The pulley's inertia as a mass at the rim, c = βM; none where it is locked or not known."""
+        scene, mass = self.scene, self.pulley_mass
         if scene.I is not None and scene.R is not None:
-            self.rim_mass = scene.I / scene.R**2
-            self.beta = self.rim_mass / self.pulley_mass if self.pulley_mass else None
-        elif self.pulley_mass is not None and scene.inertia is not None:
-            massless = is_zero(self.pulley_mass)
-            self.rim_mass = self.pulley_mass if massless else scene.inertia * self.pulley_mass
-        elif scene.mu is None and not self.locked:
-            self.pulley_mass = self.rim_mass = Fraction(0)
+            return scene.I / scene.R**2
+        if mass is None or scene.inertia is None or is_zero(mass):
+            return mass
+        return scene.inertia * mass
+
+    @cached_property
+    def beta(self) -> Fraction | None:
+        """The inertia factor; none where I is given and M is not."""
+        if self.scene.I is None:
+            return self.scene.inertia
+        return self.rim_mass / self.pulley_mass if self.rim_mass and self.pulley_mass else None
 
     def by_side(self, one: N, other: N) -> tuple[N, N]:
         """What belongs to the lighter and the heavier mass from what belongs to m1 and m2, or back."""
@@ -166,7 +194,18 @@ class Machine(Generic[N]):
     def __init__(self, case: Case, ar: Arithmetic[N]) -> None:
         self.case, self.scene, self.ar = case, case.scene, ar
         self._arcs: dict[profile.Kind, list[profile.Arc[N]]] = {}
-        self.l, self.h, self.g = map(ar.number, (case.light, case.heavy, case.scene.g))
+
+    @cached_property
+    def l(self) -> N:
+        return self.ar.number(self.case.light)
+
+    @cached_property
+    def h(self) -> N:
+        return self.ar.number(self.case.heavy)
+
+    @cached_property
+    def g(self) -> N:
+        return self.ar.number(self.scene.g)
 
     # What the quantities are made of
 
@@ -187,6 +226,11 @@ class Machine(Generic[N]):
         if self.scene.mu is None:
             raise Undetermined(NEEDS_MU)
         return self._capstan_excess(self.scene.mu)
+
+    @cached_property
+    def excess(self) -> N:
+        """T_h/T_l - 1 of a string that grips."""
+        return self.case.excess_ratio(self.ar)
 
     @cached_property
     def _transfer(self) -> N:
@@ -356,8 +400,7 @@ class Machine(Generic[N]):
             if case.regime == "verge":
                 return self.ar.number(case.limiting_mu)
             raise Undetermined(NEEDS_M)
-        log_ratio = self.ar.log1p(case.excess_ratio(self.ar))
-        return physics.verge_coefficient(log_ratio, wrap_angle(self.ar, self.scene))
+        return physics.verge_coefficient(self.ar.log1p(self.excess), wrap_angle(self.ar, self.scene))
 
     @cached_property
     def friction_force(self) -> N:

@@ -103,7 +103,7 @@ def verge_coefficient(log_ratio: N, phi: N) -> N:
 
 def critical_pulley_mass(h: N, transfer: N, drive: N, beta: N) -> N:
     """Pulley mass (kg) above which the string slips (34); transfer and drive at the limit of friction."""
-    return 2 * (transfer / drive) / beta * h
+    return transfer / drive * (2 * h / beta)
 
 
 def critical_heavier_mass(l: N, c: N, transfer: N) -> N:
