@@ -29,6 +29,7 @@ from fractions import Fraction
 from functools import cached_property
 from math import inf, nan, prod
 from typing import Any, Literal, NamedTuple
+from weakref import proxy
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,7 +46,7 @@ BLOCK = 65_536
 ALONG = {"fast": 1, "certified": 3, "exact": 3}
 """How many times the others' number rows must be for taking the others along to cost less than parting."""
 FEW = 3  # rows: quicker one by one, at 0.2 ms each, than as columns of pairs
-FAST_WINDOW = 2.0**-500, 2.0**500  # beyond it, what comes in between may overflow though results do not
+FAST_WINDOW = 2.0**-250, 2.0**250  # beyond it, what comes in between may overflow though results do not
 CERTIFIED = 3.49 * 2.0**-53
 LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
     "fast": (FLOATS,),
@@ -141,11 +142,15 @@ def _solve_block(
     given = {name: _Given.of(name, column, accuracy) for name, column in columns.items()}
     out["status"][:] = status = _status(given, len(out["status"]))
     for rows in _agreeing(given, status, accuracy):
-        for name in names:
-            rows.solve(name, out[name])
+        rows.solve(sorted(names, key=_turn), out)
     if status.any():
         for name in names:
             out[name][status != 0] = -1 if name == "regime" else nan
+
+
+def _turn(name: str) -> int:
+    """First what is the same for all rows, last what divides them in its own way."""
+    return 0 if name == "mu_verge" else 2 if name.startswith("critical") else 1
 
 
 class Divided(Exception):
@@ -178,7 +183,6 @@ class Rows:
         self.index, self.far, self._whole = index, far, whole
         self.others: NDArray[np.intp] | None = None
         self._answers: dict[str, bool] = {}
-        self._parts: dict[str, list[Rows]] = {}
         self._machines: dict[Any, Machine[Any]] = {}
         self._singles: dict[int, Answers] = {}
 
@@ -206,29 +210,41 @@ class Rows:
             self._fields[name] = _take(whole.field(name), index, whole.size)
         return self._fields[name]
 
-    def write(self, out: NDArray[Any], values: Any) -> None:
-        out[slice(None) if self.index is None else self.index] = values
+    def write(self, out: NDArray[Any], values: Any, rests: Any = None) -> None:
+        """Write values, or sums of values and rests; 0.0 is what -0 takes to be 0."""
+        if rests is None:
+            out[slice(None) if self.index is None else self.index] = values
+        elif self.index is None:
+            np.add(values, rests, out=out)
+        else:
+            out[self.index] = values + rests
 
     # Solving
 
-    def solve(self, name: str, out: NDArray[Any], rung: int = 0) -> None:
-        """Write a quantity of all rows, in the arithmetic on that rung of the ladder or higher."""
+    def solve(self, names: Sequence[str], out: Mapping[str, NDArray[Any]], rung: int = 0) -> None:
+        """Write quantities of all rows, in the arithmetic on that rung of the ladder or higher."""
+        for i, name in enumerate(names):
+            try:
+                self._solve(name, out, rung)
+            except Divided as divided:
+                while divided.parts:  # which let go of their columns one by one
+                    divided.parts.pop(0).solve(names[i:], out, rung)
+                return
+
+    def _solve(self, name: str, out: Mapping[str, NDArray[Any]], rung: int) -> None:
         ladder = LADDERS[self.accuracy]
         try:
             if name == "regime":
-                self.write(out, REGIMES.index(self.machine(FLOATS).case.regime))
+                self.write(out[name], REGIMES.index(self.machine(FLOATS).case.regime))
             elif self.far or rung == len(ladder):
-                self.write(out, [self._single(row, name) for row in range(self.size)])
+                self.write(out[name], [self._single(row, name) for row in range(self.size)])
             else:
-                value = getattr(self.machine(ladder[self._first_rung(name, rung)]), name)
-                self._write_vouched(name, out, rung, value)
+                rung = self._first_rung(name, rung)
+                self._write_vouched(name, out, rung, getattr(self.machine(ladder[rung]), name))
         except Undetermined:
-            self.write(out, nan)
+            self.write(out[name], nan)
         except Unvouched:
-            self.solve(name, out, rung + 1)
-        except Divided as divided:
-            for rows in divided.parts:
-                rows.solve(name, out, rung)
+            self._solve(name, out, rung + 1)
 
     def _first_rung(self, name: str, rung: int) -> int:
         """Higher up where something cancels, or takes too many roundings for doubles to be vouched for."""
@@ -238,12 +254,12 @@ class Rows:
             return max(rung, 1)
         return rung
 
-    def _write_vouched(self, name: str, out: NDArray[Any], rung: int, value: Any) -> None:
+    def _write_vouched(self, name: str, out: Mapping[str, NDArray[Any]], rung: int, value: Any) -> None:
         if not isinstance(value, Pair):
-            self.write(out, value + 0.0)  # no -0
+            self.write(out[name], value, 0.0)
             return
         rounded, vouched = _certify(value) if self.accuracy == "certified" else _nearest(value)
-        self.write(out, rounded)
+        self.write(out[name], rounded)
         if np.all(vouched):
             return
         doubtful = np.broadcast_to(np.logical_not(vouched), self.size).copy()
@@ -251,8 +267,7 @@ class Rows:
             doubtful[self.others] = False
         index = np.flatnonzero(doubtful)
         if index.size:
-            rung = self._first_rung(name, rung) + 1 if index.size > FEW else len(LADDERS[self.accuracy])
-            self.part(index).solve(name, out, rung)
+            self.part(index).solve([name], out, rung + 1 if index.size > FEW else len(LADDERS[self.accuracy]))
 
     def machine(self, arithmetic: Any) -> Machine[Any]:
         if arithmetic not in self._machines:
@@ -277,14 +292,12 @@ class Rows:
 
     def answer(self, question: str) -> bool:
         """The answer of all rows; raises Divided if they differ."""
-        if question not in self._answers and question not in self._parts:
+        if question not in self._answers:
             ask: Any = QUESTIONS.get(question, Rows._beats_friction)
-            self._keep(question, np.broadcast_to(ask(self, question), self.size))
-        if question in self._parts:
-            raise Divided(self._parts[question])
+            self._agree(question, np.broadcast_to(ask(self, question), self.size))
         return self._answers[question]
 
-    def _keep(self, question: str, answers: NDArray[np.bool_]) -> None:
+    def _agree(self, question: str, answers: NDArray[np.bool_]) -> None:
         others = np.empty(0, np.intp) if self.others is None else self.others
         yes = int(np.count_nonzero(answers) - np.count_nonzero(answers[others]))
         if yes in (0, self.size - others.size):
@@ -294,11 +307,15 @@ class Rows:
         found = answers == rarer
         found[others] = False
         index = np.flatnonzero(found)
-        together = ALONG[self.accuracy] * index.size < self.size
-        few, most = self.part(index), self.part(None if together else np.flatnonzero(~found))
+        if ALONG[self.accuracy] * index.size < self.size:
+            most = self.part()
+            most.others = np.concatenate([others, index])
+        else:
+            found[others] = True
+            most = self.part(np.flatnonzero(~found))
+        few = self.part(index)
         few._answers[question], most._answers[question] = rarer, not rarer
-        most.others = np.concatenate([others, index]) if most.size == self.size else None
-        self._parts[question] = [most, few]  # in this order: the second overwrites what comes along
+        raise Divided([most, few])  # in this order: the second overwrites what comes along
 
     def _beats_friction(self, question: Any) -> Any:
         """Whether the excess of the tension ratio is beyond what friction holds, e^{μφ} - 1."""
@@ -347,7 +364,7 @@ class _Inputs:
     I = None
 
     def __init__(self, rows: Rows, arithmetic: Any) -> None:
-        self._rows, self._number = rows, arithmetic.number
+        self._rows, self._number = proxy(rows), arithmetic.number
 
     def __getattr__(self, name: str) -> Any:
         field = self._rows.field(name)
@@ -363,7 +380,9 @@ class _RowsCase(Case):
     def __init__(self, rows: Rows, arithmetic: Any) -> None:
         inputs: Any = _Inputs(rows, arithmetic)
         super().__init__(inputs)
-        self._rows, self.sign = rows, rows.sign
+        # The rows own their machines: they must not own them in turn, or columns would outlive their block.
+        self._rows: Rows = proxy(rows)
+        self.sign = rows.sign
 
     @cached_property
     def long_wrap(self) -> bool:

@@ -371,7 +371,7 @@ class Machine(Generic[N]):
 
     @property
     def acceleration(self) -> N:
-        return self._magnitude * self.case.sign
+        return self._magnitude if self.case.sign > 0 else self._magnitude * self.case.sign
 
     @cached_property
     def light_tension(self) -> N:
