@@ -42,7 +42,7 @@ from .solver import Answers
 
 Accuracy = Literal["fast", "certified", "exact"]
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
-BLOCK = 65_536
+BLOCK = 81_920
 ALONG = {"fast": 1, "certified": 3, "exact": 3}
 """How many times the others' number rows must be for taking the others along to cost less than parting."""
 FEW = 3  # rows: quicker one by one, at 0.2 ms each, than as columns of pairs

@@ -40,7 +40,7 @@ a part adds to what x has as rest. An error of x counts x + 1 times, as x e^x < 
 
 from collections.abc import Callable
 from fractions import Fraction
-from functools import cache
+from functools import cache, cached_property
 from math import frexp, ldexp, pi
 from threading import local
 from typing import Any, Literal, Union
@@ -54,6 +54,7 @@ Column = NDArray[np.float64]
 
 UNIT = 2.0**-53
 LIBRARY = 2 * UNIT
+MANY = 256  # single numbers kept
 LOOSE = 2**14  # losses in u² where rests are not kept normal
 WINDOW = 2.0**-120, 2.0**120
 LARGEST = 700.0  # argument of an exponential
@@ -242,6 +243,7 @@ class Pairs:
 
     def __init__(self, level: Literal[0, 1, 2]) -> None:
         self.exact_products, self.thorough = level > 0, level > 1
+        self._singles: dict[Fraction, Pair] = {}
         rounding = 0.0 if self.exact_products else UNIT
         # By the number of factors that have a rest: a product of exact doubles is exact.
         losses = (0, 4, 9) if self.thorough else (0, LOOSE, LOOSE)
@@ -255,7 +257,12 @@ class Pairs:
             return q
         if isinstance(q, np.ndarray):
             return Pair(self, q)
-        return self._single(Fraction(q))
+        q = Fraction(q)
+        if len(self._singles) > MANY:
+            self._singles.clear()
+        if q not in self._singles:
+            self._singles[q] = self._single(q)
+        return self._singles[q]
 
     def _single(self, q: Fraction) -> Pair:
         value = float(q)
@@ -274,7 +281,7 @@ class Pairs:
     def is_zero(self, x: Pair) -> bool:
         return x.value.size == 1 and x._exact and x.value[0] == 0
 
-    @property
+    @cached_property
     def pi(self) -> Pair:
         return self._single(_pi())
 
