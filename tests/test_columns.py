@@ -71,13 +71,15 @@ def test_bounds_of_exponentials_hold(level: str) -> None:
 @pytest.mark.parametrize("level", LEVELS)
 def test_bounds_of_angles_hold(level: str) -> None:
     ar = LEVELS[level]
-    cos, sin = ar.cos_sin_of_degrees(ar.number(DEGREES))
+    with np.errstate(all="ignore"):  # a sine of 0 has no relative error
+        cos, sin = ar.cos_sin_of_degrees(ar.number(DEGREES))
     radians = [lambda x: (x * flint.arb.pi() / 180).cos(), lambda x: (x * flint.arb.pi() / 180).sin()]
     keep = DEGREES % 90 != 0
     for part, exact in zip((cos, sin), radians, strict=True):
         off(part.take(np.flatnonzero(keep)), exact, DEGREES[keep])
     turns = np.array([90.0, 180.0, 270.0, 360.0, 450.0])
-    cos, sin = ar.cos_sin_of_degrees(ar.number(turns))
+    with np.errstate(all="ignore"):
+        cos, sin = ar.cos_sin_of_degrees(ar.number(turns))
     assert sin.rounded()[[1, 3]].tolist() == [0, 0]
     assert cos.rounded()[[1, 3]].tolist() == [-1, 1]
 

@@ -14,6 +14,7 @@ TOP = Path(__file__).parent.parent
 README = (TOP / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"```console\n(.*?)```", README, re.DOTALL)
 EXAMPLES = sorted((TOP / "examples").glob("*.sh"))
+ENGINES = [TOP / "examples" / name for name in ("dask_blocks.py", "polars_lazy.py")]
 
 
 def transcript(block: str) -> str:
@@ -51,6 +52,12 @@ def test_examples_print_what_is_kept_beside_them(script: Path) -> None:
     ran = process(shell=f'python3() {{ "$PYTHON" "$@"; }}; . "{script}"')
     assert (ran.status, ran.err) == (0, "")
     assert ran.out == script.with_suffix(".txt").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("script", ENGINES, ids=lambda script: script.name)
+def test_engines_print_what_is_kept_beside_them(script: Path) -> None:
+    ran = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True)
+    assert ran.stdout == script.with_suffix(".txt").read_text(encoding="utf-8")
 
 
 def test_the_picture_shows_todays_table() -> None:

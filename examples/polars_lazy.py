@@ -1,0 +1,34 @@
+"""Scenes inside a polars lazy query: solve_arrays is a function of arrays, so a query maps it.
+
+The query streams: polars feeds batches of rows, and never holds more than some of them.
+"""
+
+import numpy as np
+import polars as pl
+
+from atwood_cli import REGIMES, solve_arrays
+
+NAMES = ("regime", "acceleration")
+
+
+def solve(scenes: pl.DataFrame) -> pl.DataFrame:
+    """A batch of rows with the results as columns."""
+    found = solve_arrays(*(scenes[name].to_numpy() for name in ("m1", "m2", "M", "mu")), quantities=NAMES)
+    return scenes.with_columns(
+        regime=pl.Series(REGIMES).gather(found["regime"].astype(np.uint32)),
+        acceleration=found["acceleration"],
+    )
+
+
+schema = dict.fromkeys(("m1", "m2", "M", "mu"), pl.Float64)
+result = {**schema, "regime": pl.String, "acceleration": pl.Float64}
+scenes = pl.LazyFrame(
+    {"m1": 1.0, "m2": 3.0, "M": [i / 1000 for i in range(100_000)], "mu": 0.3}, schema=schema
+)
+query = (
+    scenes.map_batches(solve, schema=result, streamable=True)
+    .group_by("regime")
+    .agg(pl.len(), pl.col("M").min().alias("from M"), pl.col("acceleration").min().round(6))
+    .sort("from M")
+)
+print(query.collect(engine="streaming").write_csv(), end="")
