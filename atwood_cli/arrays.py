@@ -35,7 +35,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .columns import FLOATS, QUICK, ROUNDED, THOROUGH, WINDOW, Column, Floats, Pair, Pairs, Unvouched
-from .machine import Case, Excess, Machine, Undetermined
+from .machine import Case, Excess, Machine, Undetermined, is_zero
 from .quantities import NAMES, REGIMES, STANDARD
 from .scene import PARAMETERS, Scene, SceneError, nearest
 from .solver import Answers
@@ -43,6 +43,7 @@ from .solver import Answers
 Accuracy = Literal["fast", "certified", "exact"]
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
 BLOCK = 81_920
+THREADS = 4  # more would wait for the interpreter, and hold 30 MB of columns each
 ALONG = {"fast": 1, "certified": 3, "exact": 3}
 """How many times the others' number rows must be for taking the others along to cost less than parting."""
 FEW = 3  # rows: quicker one by one, at 0.2 ms each, than as columns of pairs
@@ -128,7 +129,7 @@ def _on_threads(work: Callable[[int], None], starts: Sequence[int]) -> None:
         for start in starts:
             work(start)
         return
-    pool = ThreadPoolExecutor(os.cpu_count())
+    pool = ThreadPoolExecutor(min(THREADS, os.cpu_count() or 1))
     try:
         for _ in pool.map(work, starts):
             pass
@@ -368,7 +369,7 @@ class _Inputs:
 
     def __getattr__(self, name: str) -> Any:
         field = self._rows.field(name)
-        if isinstance(field, np.ndarray) or (name == "inertia" and isinstance(self.M, type(self.m1))):
+        if isinstance(field, np.ndarray):
             field = self._number(field)
         setattr(self, name, field)
         return field
@@ -382,7 +383,14 @@ class _RowsCase(Case):
         super().__init__(inputs)
         # The rows own their machines: they must not own them in turn, or columns would outlive their block.
         self._rows: Rows = proxy(rows)
-        self.sign = rows.sign
+        self.sign, self._number = rows.sign, arithmetic.number
+
+    @cached_property
+    def rim_mass(self) -> Any:
+        mass = self.pulley_mass
+        if mass is None or is_zero(mass):
+            return mass
+        return self._number(self.scene.inertia) * self._number(mass)
 
     @cached_property
     def long_wrap(self) -> bool:

@@ -258,11 +258,12 @@ class Pairs:
         if isinstance(q, np.ndarray):
             return Pair(self, q)
         q = Fraction(q)
-        if len(self._singles) > MANY:
-            self._singles.clear()
-        if q not in self._singles:
-            self._singles[q] = self._single(q)
-        return self._singles[q]
+        single = self._singles.get(q)
+        if single is None:
+            if len(self._singles) > MANY:
+                self._singles.clear()
+            single = self._singles[q] = self._single(q)
+        return single
 
     def _single(self, q: Fraction) -> Pair:
         value = float(q)

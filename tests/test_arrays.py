@@ -198,6 +198,26 @@ def test_inputs_are_broadcast(m1: list[float], m2: list[float], M: float | None,
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)
+def test_a_number_is_a_column_of_it(accuracy: Any) -> None:
+    row = {
+        "m1": 1.25,
+        "m2": 3.7,
+        "M": 40.0,
+        "mu": 0.31,
+        "mu_k": 0.2,
+        "g": 9.81,
+        "inertia": 0.4,
+        "wrap": 170.0,
+    }
+    whole = solve_arrays(**{k: np.full(5, v) for k, v in row.items()}, accuracy=accuracy, quantities=NAMES)
+    for name in row:
+        mixed: dict[str, Any] = row | {name: np.full(5, row[name])}
+        found = solve_arrays(**mixed, accuracy=accuracy, quantities=NAMES)
+        for quantity in NAMES:
+            np.testing.assert_allclose(found[quantity], whole[quantity], rtol=1e-14, atol=0)
+
+
+@pytest.mark.parametrize("accuracy", ACCURACIES)
 def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     given = columns(rows("ordinary", 100) + rows("near_critical", 100))
     whole = solve_arrays(**given, accuracy=accuracy)
