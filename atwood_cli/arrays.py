@@ -6,7 +6,8 @@ and one `Machine`, those of a single scene, in which every number is a column (s
 
 What the accuracies promise, and why they keep it:
 
-- ``fast``: doubles as they come. Whether a string slips is read off doubles too.
+- ``fast``: doubles as they come. Whether a string slips is read off doubles too, and what comes of an
+  e^{μφ} beyond the doubles is infinite, even where a tiny mass would bring it back.
 - ``certified``: a value is within 4 units in the last place (ulp) of the exact one for the given
   doubles, and every regime is right. A row goes up a ladder until an arithmetic vouches for it: quick
   pairs, thorough pairs, and at the end the exact arithmetic of a single scene. A pair vouches where
