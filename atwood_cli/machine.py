@@ -238,6 +238,11 @@ class Machine(Generic[N]):
         return physics.transfer_at_limit(self.l, self.k1)
 
     @cached_property
+    def _drive(self) -> N:
+        """The drive d at the limit of static friction."""
+        return physics.drive_at_limit(self.l, self.h, self._transfer)
+
+    @cached_property
     def _limiting_k1(self) -> N:
         """The excess of the tension ratio in a regime where friction is at its limit."""
         mu = self.case.limiting_mu
@@ -248,8 +253,12 @@ class Machine(Generic[N]):
         """The magnitude of the acceleration."""
         l, h, case = self.l, self.h, self.case
         if case.regime != "no-slip":
-            transfer = physics.transfer_at_limit(l, self._limiting_k1)
-            drive, load = physics.drive_at_limit(l, h, transfer), physics.load(l, h, transfer)
+            if case.limiting_mu is self.scene.mu:
+                transfer, drive = self._transfer, self._drive
+            else:
+                transfer = physics.transfer_at_limit(l, self._limiting_k1)
+                drive = physics.drive_at_limit(l, h, transfer)
+            load = physics.load(l, h, transfer)
         elif case.sign == 0 or case.locked:
             return self.ar.number(0)
         else:
@@ -462,8 +471,7 @@ class Machine(Generic[N]):
             raise Undetermined(NO_CRITICAL_MASS)
         transfer = self._transfer
         beta = self._given(self.case.beta, UNKNOWN_SHAPE)
-        drive = physics.drive_at_limit(self.l, self.h, transfer)
-        return physics.critical_pulley_mass(self.h, transfer, drive, beta)
+        return physics.critical_pulley_mass(self.h, transfer, self._drive, beta)
 
     @cached_property
     def critical_heavier_mass(self) -> N:
