@@ -19,8 +19,8 @@ What the accuracies promise, and why they keep it:
   same double at both ends of its bound (Ziv's test), or where it is exact.
 
 Rows with an input beyond `columns.WINDOW` (and not 0), or `FAST_WINDOW`, start at the top of the ladder:
-what could overflow on the way is solved one by one, at about a millisecond a row. So is the
-friction_force_min of all rows but fast ones.
+what could overflow on the way is solved one by one, at about a millisecond a row. So, but when fast,
+is what comes of an e^{μφ} above e^700, and the friction_force_min of all rows.
 """
 
 import os

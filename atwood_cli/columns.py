@@ -434,7 +434,7 @@ def _sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:
     """x + y, or x - y if ``add`` is np.subtract, rounded, and the error of that, exactly."""
     total = add(x, y, out=_room(x, y))
     error = _room(total)
-    if (y <= x).all():  # then two operations do (T. J. Dekker)
+    if y.min() >= 0 and (y <= x).all():  # then two operations do (T. J. Dekker)
         np.subtract(x, total, out=error)
         return total, add(error, y, out=error)
     (added,) = _aside(1, total.size)

@@ -255,6 +255,16 @@ def test_inputs_are_left_alone() -> None:
         np.testing.assert_array_equal(column, before[name])
 
 
+def test_sums_of_negative_forces() -> None:
+    """The smaller in size, not in value, must come second where two operations give a sum's error."""
+    row = {"m1": 1.7564649058808377, "m2": 865.29649231545, "mu": 0.7514867515890271, "wrap": 270.0}
+    for accuracy in ACCURACIES[1:]:
+        found = solve_arrays(**row, accuracy=accuracy, quantities=NAMES)
+        one = solve_any(**row, g=9.80665)
+        for name in ("friction_force_x", "friction_force_y"):
+            assert abs(found[name].item() - getattr(one, name)) <= (0 if accuracy == "exact" else 1e-12)
+
+
 def test_no_rows() -> None:
     found = solve_arrays([], [], mu=0.3)
     assert {column.shape for column in found.values()} == {(0,)}

@@ -38,6 +38,10 @@ def off(pair: Any, exact: Callable[..., flint.arb], *columns: Any) -> None:
 OPERATIONS: dict[str, tuple[Callable[[Any, Any, Any], Any], Callable[..., flint.arb]]] = {
     "sum": (lambda ar, x, y: x / y + y, lambda x, y: x / y + y),
     "difference": (lambda ar, x, y: x / y - y, lambda x, y: x / y - y),
+    "of both signs": (
+        lambda ar, x, y: (y - x) + (x - 2 * y) / 3 - x,
+        lambda x, y: y - x + (x - 2 * y) / 3 - x,
+    ),
     "cancelling": (lambda ar, x, y: (x + y) - x, lambda x, y: y),
     "product": (lambda ar, x, y: x * y * (x / y), lambda x, y: x * x),
     "quotient": (lambda ar, x, y: x / (x + y) / (x * y), lambda x, y: x / (x + y) / (x * y)),
