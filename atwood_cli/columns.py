@@ -153,7 +153,10 @@ class Pair:
         sum_.positive = together or bool(sum_.value.min() >= 0)
         if not (self._exact and other._exact):
             size = sum_.value if sum_.positive else np.abs(sum_.value)
-            sum_.bound = (self._weighed(loss) + other._weighed(loss)) / size
+            weighed = self._weighed(loss) + other._weighed(loss)
+            sum_.bound = weighed / size
+            if np.isnan(sum_.bound.min()):  # 0 plus or minus 0 is 0
+                sum_.bound = np.where(weighed == 0, 0.0, sum_.bound)
         return sum_
 
     def _weighed(self, loss: float) -> Any:
@@ -294,7 +297,7 @@ class Pairs:
         if x.rest is not None:
             rest += x.rest
         rest /= 2 * value
-        root = Pair(self, value, rest, x.bound + self.quotient_loss)
+        root = Pair(self, value, rest, x.bound / 2 + self.quotient_loss)
         return root.normal() if self.thorough else root
 
     def hypot(self, x: Pair, y: Pair | int) -> Pair:
