@@ -108,7 +108,8 @@ def _target(job: Job, stack: ExitStack) -> IO[bytes]:
         stream: IO[bytes] | None = getattr(sys.stdout, "buffer", None)
         return stream or stack.enter_context(open(os.devnull, "wb"))
     with suppress(OSError):
-        if job.source != STREAM and os.path.samefile(job.source, job.target):
+        source = os.fstat(sys.stdin.fileno()) if job.source == STREAM else os.stat(job.source)
+        if os.path.isfile(job.target) and os.path.samestat(source, os.stat(job.target)):
             raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
     return stack.enter_context(open(stack.enter_context(written_beside(Path(job.target), job.force)), "wb"))
 
@@ -160,7 +161,7 @@ def _remarks(columns: Sequence[str]) -> list[str]:
     meant = {name.lower(): name for name in COLUMNS}
     found = [f"column {'I'!r} is not used; give inertia, I/(M R^2)"] if "I" in columns else []
     for column in columns:
-        name = meant.get(column.strip().lower())
+        name = meant.get(column.strip().partition(" ")[0].lower().replace("-", "_"))
         if name and column not in COLUMNS and name not in columns:
             found.append(f"column {column!r} is not used; did you mean {name}?")
     return found

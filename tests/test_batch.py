@@ -743,3 +743,19 @@ def test_help_shows_the_columns_and_examples(atwood: Atwood) -> None:
         "--allow-errors",
     ):
         assert words in ran.out
+
+
+def test_a_redirected_input_is_not_overwritten_either(tmp_path: Path) -> None:
+    scenes = tmp_path / "in.csv"
+    scenes.write_text("m1,m2\n1,3\n")
+    ran = process(shell=f'cd "{tmp_path}"; atwood batch - -o in.csv --force < in.csv')
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err == "atwood: --output 'in.csv' is the input, which is never overwritten; name another\n"
+    assert scenes.read_text() == "m1,m2\n1,3\n"
+
+
+@pytest.mark.parametrize(("column", "meant"), [("mu-k", "mu_k"), ("M (kg)", "M")])
+def test_a_column_that_may_have_been_meant_is_told(column: str, meant: str, tmp_path: Path) -> None:
+    (tmp_path / "in.csv").write_text(f"m1,m2,mu,{column}\n1,3,0.2,0.1\n")
+    ran = process("batch", str(tmp_path / "in.csv"))
+    assert f"atwood: column {column!r} is not used; did you mean {meant}?\n" in ran.err
