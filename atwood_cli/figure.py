@@ -5,6 +5,7 @@ No pyplot, no display; the same scene gives the same SVG to the byte.
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib import import_module
 from math import cos, degrees, hypot, nan, radians, sin
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -82,7 +83,7 @@ def check_format(path: str) -> None:
     """Raises SceneError where the suffix is no format of a figure, and misses matplotlib in time."""
     if Path(path).suffix.lower() not in FORMATS:
         raise SceneError("figure", path, f"must end in one of {', '.join(FORMATS)}")
-    import matplotlib  # noqa: F401
+    import_module("matplotlib")
 
 
 @contextmanager

@@ -115,6 +115,10 @@ def _read_csv(file: IO[bytes], separator: str) -> Iterator[Piece]:
         if not header:
             rows = text.removeprefix(b"\xef\xbb\xbf").lstrip(b"\r\n")
             end = _first_end(rows)
+            if rows.count(b'"', 0, end) % 2:
+                raise Unreadable("the header ends within quotation marks: one is left open")
+            if b"\r" in rows[:end].rstrip(b"\r\n"):
+                raise Unreadable("its lines end in carriage returns alone; save it with line feeds")
             header = next(_cells(_decode(rows[:end], lambda _: "the header"), separator))
             # Stand-ins, as polars renames what is there twice and drops what is empty.
             names = separator.join(map(str, range(len(header)))).encode() + b"\n"

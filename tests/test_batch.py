@@ -759,3 +759,17 @@ def test_a_column_that_may_have_been_meant_is_told(column: str, meant: str, tmp_
     (tmp_path / "in.csv").write_text(f"m1,m2,mu,{column}\n1,3,0.2,0.1\n")
     ran = process("batch", str(tmp_path / "in.csv"))
     assert f"atwood: column {column!r} is not used; did you mean {meant}?\n" in ran.err
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("m1,m2\r1,3\r", "its lines end in carriage returns alone; save it with line feeds"),
+        ('m1,"m2\n1,3\n', "the header ends within quotation marks: one is left open"),
+    ],
+)
+def test_a_header_never_swallows_the_rows(text: str, why: str, tmp_path: Path) -> None:
+    scenes = tmp_path / "in.csv"
+    scenes.write_bytes(text.encode())
+    ran = process("batch", str(scenes))
+    assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: cannot read {scenes}: {why}\n")
