@@ -278,6 +278,7 @@ def write(kind: str, file: IO[bytes], solved: Iterable[tuple[Piece, "pl.DataFram
     if kind == "parquet":
         _write_parquet(file, (piece.frame.hstack(results) for piece, results in solved))
         return
+    solved = _checked(kind, solved)
     if kind == "ndjson":
         for piece, results in solved:
             file.write(_as_ndjson(piece, results))
@@ -291,6 +292,21 @@ def write(kind: str, file: IO[bytes], solved: Iterable[tuple[Piece, "pl.DataFram
                 file.write(ready.result())
         if last:
             file.write(last.result())
+
+
+def _checked(
+    kind: str, solved: Iterable[tuple[Piece, "pl.DataFrame"]]
+) -> Iterator[tuple[Piece, "pl.DataFrame"]]:
+    """The same, all of whose columns the format has a place for. Raises OSError."""
+    import polars as pl
+
+    for piece, results in solved:
+        for name, dtype in piece.frame.schema.items():
+            if dtype == pl.Binary or (kind != "ndjson" and dtype.is_nested()):
+                raise OSError(
+                    f"cannot write column {name!r}, which holds {dtype}, as {kind}; give --to parquet"
+                )
+        yield piece, results
 
 
 def _as_csv(separator: str, piece: Piece, results: "pl.DataFrame", first: bool) -> memoryview:

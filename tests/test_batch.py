@@ -548,7 +548,7 @@ def test_nested_columns_do_not_go_into_csv(atwood: Atwood, tmp_path: Path) -> No
     pl.DataFrame({"m1": [1], "m2": [1], "n": [[1]]}).write_parquet(tmp_path / "in.parquet")
     ran = atwood("batch", str(tmp_path / "in.parquet"))
     assert (ran.status, ran.out) == (1, "")
-    assert ran.err == "atwood: cannot write csv: CSV format does not support nested data\n"
+    assert ran.err == "atwood: cannot write column 'n', which holds List(Int64), as csv; give --to parquet\n"
 
 
 def test_columns_that_may_have_been_meant_are_remarked_on(atwood: Atwood, table: Table) -> None:
@@ -773,3 +773,14 @@ def test_a_header_never_swallows_the_rows(text: str, why: str, tmp_path: Path) -
     scenes.write_bytes(text.encode())
     ran = process("batch", str(scenes))
     assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: cannot read {scenes}: {why}\n")
+
+
+@pytest.mark.parametrize(
+    ("kind", "column", "holds"),
+    [("ndjson", [b"x"], "Binary"), ("csv", [b"x"], "Binary"), ("tsv", [[1]], "List(Int64)")],
+)
+def test_what_a_format_has_no_place_for(kind: str, column: list[Any], holds: str, tmp_path: Path) -> None:
+    pl.DataFrame({"m1": [1.0], "m2": [3.0], "b": column}).write_parquet(tmp_path / "in.parquet")
+    ran = process("batch", str(tmp_path / "in.parquet"), "--to", kind)
+    message = f"atwood: cannot write column 'b', which holds {holds}, as {kind}; give --to parquet\n"
+    assert (ran.status, ran.out, ran.err) == (1, "", message)
