@@ -1,63 +1,28 @@
-"""Many scenes at once: the equations of one scene, run on columns by block.
+"""Many scenes at once: arrays in, arrays out, by block, on threads.
 
-A block of rows is divided, as far as the quantities asked for need it, into rows that agree: on
-what is given, on which mass is heavier, on whether the string slips. Each such part is one `Case`
-and one `Machine`, those of a single scene, in which every number is a column (see `columns`).
-
-What the accuracies promise, and why they keep it:
-
-- ``fast``: doubles as they come. Whether a string slips is read off doubles too, and what comes of an
-  e^{μφ} beyond the doubles is infinite, even where a tiny mass would bring it back.
-- ``certified``: a value is within 4 units in the last place (ulp) of the exact one for the given
-  doubles, and every regime is right. A row goes up a ladder until an arithmetic vouches for it: quick
-  pairs, thorough pairs, and at the end the exact arithmetic of a single scene. A pair vouches where
-  its bound is at most 3.49 · 2^-53 of the value: that is at most 3.49 ulp, and rounding value + rest
-  to a double costs half an ulp more. A question (does it slip?) is answered by doubles where the two
-  sides differ by a 2^-40 of them, far more than the few roundings they take can amount to; else by the
-  sign of a thorough difference, if its bound is below 1; else by the exact comparison.
-- ``exact``: the double nearest to the exact value. A thorough pair vouches where rounding gives the
-  same double at both ends of its bound (Ziv's test), or where it is exact.
-
-Rows with an input beyond `columns.WINDOW` (and not 0), or `FAST_WINDOW`, start at the top of the ladder:
-what could overflow on the way is solved one by one, at about a millisecond a row. So, but when fast,
-is what comes of an e^{μφ} above e^700, and the friction_force_min of all rows.
+Here is the door, and what is given row by row: whether it is a scene, and of which kind its inputs
+are. Rows of the same kind are solved together in `rows`, which argues what the accuracies promise.
 """
 
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
-from functools import cached_property
 from math import inf, nan, prod
-from typing import Any, Literal, NamedTuple
-from weakref import proxy
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .columns import FLOATS, QUICK, ROUNDED, THOROUGH, WINDOW, Column, Floats, Pair, Pairs, Unvouched
-from .machine import Case, Excess, Machine, Undetermined, is_zero
-from .quantities import NAMES, REGIMES, STANDARD
-from .scene import PARAMETERS, Scene, SceneError, nearest
-from .solver import Answers
+from .columns import WINDOW, Column
+from .quantities import NAMES, STANDARD
+from .rows import COLUMNS, Accuracy, Rows
+from .scene import PARAMETERS, SceneError, nearest
 
-Accuracy = Literal["fast", "certified", "exact"]
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
 BLOCK = 81_920
 THREADS = 4  # more would wait for the interpreter, and hold 30 MB of columns each
-ALONG = {"fast": 1, "certified": 3, "exact": 3}
-"""How many times the others' number rows must be for taking the others along to cost less than parting."""
-FEW = 3  # rows: quicker one by one, at 0.2 ms each, than as columns of pairs
 FAST_WINDOW = 2.0**-250, 2.0**250  # beyond it, what comes in between may overflow though results do not
-CERTIFIED = 3.49 * 2.0**-53
-LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
-    "fast": (FLOATS,),
-    "certified": (ROUNDED, QUICK, THOROUGH),
-    "exact": (THOROUGH,),
-}
-# What cancels on the way, or takes too many roundings: the lowest rung never vouches for it.
-TAKES_EXACT_PRODUCTS = {"mu_verge", "critical_pulley_mass", "critical_heavier_mass"}
-COLUMNS = tuple(name for name in PARAMETERS if name != "I")
 MAY_BE_ABSENT = ("M", "mu", "mu_k", "R")
 STATUSES = ("valid", *COLUMNS, "no mass", "friction at a free end", "mu_k without mu", "mu_k above mu")
 """What the codes in ``status`` mean: the parameter outside its domain, or what does not go together."""
@@ -153,280 +118,6 @@ def _solve_block(
 def _turn(name: str) -> int:
     """First what is the same for all rows, last what divides them in its own way."""
     return 0 if name == "mu_verge" else 2 if name.startswith("critical") else 1
-
-
-class Divided(Exception):
-    """The rows do not agree on the answer to a question: ask its parts, which do."""
-
-    def __init__(self, parts: list["Rows"]) -> None:
-        super().__init__(parts)
-        self.parts = parts
-
-
-class Rows:
-    """Rows that agree on all that was asked of them so far.
-
-    ``fields`` are the inputs: a Fraction, None or inf where all rows share it, else a column. A part of
-    other rows takes them from ``whole``, at its index there. ``others`` are rows that came along because
-    to leave them out would cost more; what they get is overwritten.
-    """
-
-    def __init__(
-        self,
-        fields: Mapping[str, Any],
-        sign: int,
-        size: int,
-        accuracy: Accuracy,
-        index: NDArray[np.intp] | None = None,
-        far: bool = False,
-        whole: "tuple[Rows, NDArray[np.intp]] | None" = None,
-    ) -> None:
-        self._fields, self.sign, self.size, self.accuracy = dict(fields), sign, size, accuracy
-        self.index, self.far, self._whole = index, far, whole
-        self.others: NDArray[np.intp] | None = None
-        self._answers: dict[str, bool] = {}
-        self._machines: dict[Any, Machine[Any]] = {}
-        self._singles: dict[int, Answers] = {}
-
-    def part(self, index: NDArray[np.intp] | None = None) -> "Rows":
-        """Some of these rows, or all for another answer."""
-        if index is None:
-            whole = self._whole
-            rows = Rows(self._fields, self.sign, self.size, self.accuracy, self.index, self.far, whole)
-        else:
-            within = index if self.index is None else self.index[index]
-            rows = Rows({}, self.sign, len(index), self.accuracy, within, self.far, (self, index))
-        rows._answers = dict(self._answers)
-        for arithmetic, machine in self._machines.items():
-            # The exponential costs too much to compute it twice.
-            if "k1" in vars(machine):
-                k1 = machine.k1 if index is None else _take(machine.k1, index, self.size)
-                rows.machine(arithmetic).k1 = k1
-        return rows
-
-    def field(self, name: str) -> Any:
-        """An input of these rows."""
-        if name not in self._fields:
-            assert self._whole is not None
-            whole, index = self._whole
-            self._fields[name] = _take(whole.field(name), index, whole.size)
-        return self._fields[name]
-
-    def write(self, out: NDArray[Any], values: Any, rests: Any = None) -> None:
-        """Write values, or sums of values and rests; 0.0 is what -0 takes to be 0."""
-        if rests is None:
-            out[slice(None) if self.index is None else self.index] = values
-        elif self.index is None:
-            np.add(values, rests, out=out)
-        else:
-            out[self.index] = values + rests
-
-    # Solving
-
-    def solve(self, names: Sequence[str], out: Mapping[str, NDArray[Any]], rung: int = 0) -> None:
-        """Write quantities of all rows, in the arithmetic on that rung of the ladder or higher."""
-        for i, name in enumerate(names):
-            try:
-                self._solve(name, out, rung)
-            except Divided as divided:
-                while divided.parts:  # which let go of their columns one by one
-                    divided.parts.pop(0).solve(names[i:], out, rung)
-                return
-
-    def _solve(self, name: str, out: Mapping[str, NDArray[Any]], rung: int) -> None:
-        ladder = LADDERS[self.accuracy]
-        try:
-            if name == "regime":
-                self.write(out[name], REGIMES.index(self.machine(FLOATS).case.regime))
-            elif self.far or rung == len(ladder):
-                self.write(out[name], [self._single(row, name) for row in range(self.size)])
-            else:
-                rung = self._first_rung(name, rung)
-                self._write_vouched(name, out, rung, getattr(self.machine(ladder[rung]), name))
-        except Undetermined:
-            self.write(out[name], nan)
-        except Unvouched:
-            self._solve(name, out, rung + 1)
-
-    def _first_rung(self, name: str, rung: int) -> int:
-        """Higher up where something cancels, or takes too many roundings for doubles to be vouched for."""
-        if self.accuracy != "certified":
-            return rung
-        if name in TAKES_EXACT_PRODUCTS or self.machine(FLOATS).case.regime != "no-slip":
-            return max(rung, 1)
-        return rung
-
-    def _write_vouched(self, name: str, out: Mapping[str, NDArray[Any]], rung: int, value: Any) -> None:
-        if not isinstance(value, Pair):
-            self.write(out[name], value, 0.0)
-            return
-        rounded, vouched = _certify(value) if self.accuracy == "certified" else _nearest(value)
-        self.write(out[name], rounded)
-        if np.all(vouched):
-            return
-        doubtful = np.broadcast_to(np.logical_not(vouched), self.size).copy()
-        if self.others is not None:
-            doubtful[self.others] = False
-        index = np.flatnonzero(doubtful)
-        if index.size:
-            self.part(index).solve([name], out, rung + 1 if index.size > FEW else len(LADDERS[self.accuracy]))
-
-    def machine(self, arithmetic: Any) -> Machine[Any]:
-        if arithmetic not in self._machines:
-            self._machines[arithmetic] = Machine(_RowsCase(self, arithmetic), arithmetic)
-        return self._machines[arithmetic]
-
-    def scene(self, row: int) -> Scene:
-        """One row as a scene of its own."""
-        fields = {name: self.field(name) for name in COLUMNS}
-        for name, field in fields.items():
-            if isinstance(field, np.ndarray):
-                fields[name] = Fraction(float(field[row]))
-        return Scene(**fields, I=None)
-
-    def _single(self, row: int, name: str) -> float:
-        if row not in self._singles:
-            self._singles[row] = Answers(self.scene(row))
-        value = self._singles[row][name]
-        return nan if value is None else float(value)
-
-    # Questions
-
-    def answer(self, question: str) -> bool:
-        """The answer of all rows; raises Divided if they differ."""
-        if question not in self._answers:
-            ask: Any = QUESTIONS.get(question, Rows._beats_friction)
-            self._agree(question, np.broadcast_to(ask(self, question), self.size))
-        return self._answers[question]
-
-    def _agree(self, question: str, answers: NDArray[np.bool_]) -> None:
-        others = np.empty(0, np.intp) if self.others is None else self.others
-        yes = int(np.count_nonzero(answers) - np.count_nonzero(answers[others]))
-        if yes in (0, self.size - others.size):
-            self._answers[question] = yes > 0
-            return
-        rarer = 2 * yes < self.size - others.size
-        found = answers == rarer
-        found[others] = False
-        index = np.flatnonzero(found)
-        if ALONG[self.accuracy] * index.size < self.size:
-            most = self.part()
-            most.others = np.concatenate([others, index])
-        else:
-            found[others] = True
-            most = self.part(np.flatnonzero(~found))
-        few = self.part(index)
-        few._answers[question], most._answers[question] = rarer, not rarer
-        raise Divided([most, few])  # in this order: the second overwrites what comes along
-
-    def _beats_friction(self, question: Any) -> Any:
-        """Whether the excess of the tension ratio is beyond what friction holds, e^{μφ} - 1."""
-        if self.far:
-            return np.array([self._settled(row, question) for row in range(self.size)])
-        machine = self.machine(FLOATS)
-        excess = machine.excess if question == "excess_ratio" else getattr(machine.case, question)(FLOATS)
-        held = machine.k1
-        if self.accuracy == "fast":
-            return excess > held
-        beaten = np.broadcast_to(excess > held * (1 + 2.0**-40), self.size)
-        open_ = np.flatnonzero(~beaten & (excess >= held * (1 - 2.0**-40)))
-        if not open_.size:
-            return beaten
-        beaten = beaten.copy()
-        beaten[open_] = self.part(open_)._beats_friction_thoroughly(question)
-        return beaten
-
-    def _beats_friction_thoroughly(self, question: Excess) -> Any:
-        machine = self.machine(THOROUGH)
-        margin = getattr(machine.case, question)(THOROUGH) - machine.k1
-        beaten = np.broadcast_to(margin.value > 0, self.size).copy()
-        for row in np.flatnonzero(~(np.broadcast_to(margin.bound, self.size) < 0.5)):
-            beaten[row] = self._settled(int(row), question)
-        return beaten
-
-    def _settled(self, row: int, question: Excess) -> bool:
-        return Case(self.scene(row)).beats_friction(question)
-
-    def long_wrap(self, _: str) -> Any:
-        return self.field("wrap") > 180
-
-    def ends_hang_down(self, _: str) -> Any:
-        return np.fmod(np.asarray(self.field("wrap"), dtype=np.float64), 360) == 180
-
-
-QUESTIONS: dict[str, Callable[[Rows, str], Any]] = {
-    "long_wrap": Rows.long_wrap,
-    "ends_hang_down": Rows.ends_hang_down,
-}
-
-
-class _Inputs:
-    """A scene whose inputs are columns of one arithmetic, each fetched when it is first used."""
-
-    I = None
-
-    def __init__(self, rows: Rows, arithmetic: Any) -> None:
-        self._rows, self._number = proxy(rows), arithmetic.number
-
-    def __getattr__(self, name: str) -> Any:
-        field = self._rows.field(name)
-        if isinstance(field, np.ndarray):
-            field = self._number(field)
-        setattr(self, name, field)
-        return field
-
-
-class _RowsCase(Case):
-    """What is decided about rows that agree on it."""
-
-    def __init__(self, rows: Rows, arithmetic: Any) -> None:
-        inputs: Any = _Inputs(rows, arithmetic)
-        super().__init__(inputs)
-        # The rows own their machines: they must not own them in turn, or columns would outlive their block.
-        self._rows: Rows = proxy(rows)
-        self.sign, self._number = rows.sign, arithmetic.number
-
-    @cached_property
-    def rim_mass(self) -> Any:
-        mass = self.pulley_mass
-        if mass is None or is_zero(mass):
-            return mass
-        return self._number(self.scene.inertia) * self._number(mass)
-
-    @cached_property
-    def long_wrap(self) -> bool:
-        return self._rows.answer("long_wrap")
-
-    @cached_property
-    def ends_hang_down(self) -> bool:
-        return self._rows.answer("ends_hang_down")
-
-    def beats_friction(self, which: Excess) -> bool:
-        return self._rows.answer(which)
-
-
-def _take(column: Any, index: NDArray[np.intp], size: int) -> Any:
-    """Some rows of a column of that size; what is the same in all rows stays."""
-    many = getattr(column, "value", column)
-    return column.take(index) if isinstance(many, np.ndarray) and many.size == size else column
-
-
-def _certify(pair: Pair) -> tuple[Column, Any]:
-    """The doubles, and which are within 4 ulp."""
-    rounded = pair.rounded()
-    if isinstance(pair.bound, float) and np.isfinite(rounded.sum()):
-        return rounded, pair.bound <= CERTIFIED
-    return rounded, np.asarray(pair.bound <= CERTIFIED) & np.isfinite(rounded)
-
-
-def _nearest(pair: Pair) -> tuple[Column, NDArray[np.bool_]]:
-    """The doubles, and which are the nearest."""
-    rounded = pair.rounded()
-    if pair.rest is None:
-        return rounded, np.asarray(pair.bound == 0) & np.isfinite(rounded)
-    error = np.abs(pair.value) * (pair.bound + 2.0**-104)
-    same = (pair.value + (pair.rest - error) == rounded) & (pair.value + (pair.rest + error) == rounded)
-    return rounded, (same | (np.asarray(pair.bound) == 0)) & np.isfinite(rounded)
 
 
 # What is given in each row: who agrees with whom before any question is asked

@@ -14,9 +14,10 @@ from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import IO, TYPE_CHECKING, Any
 
-from .arrays import COLUMNS, Accuracy, solve_arrays
+from .arrays import solve_arrays
 from .files import written_beside
 from .quantities import REGIMES
+from .rows import COLUMNS, Accuracy
 from .scene import NUMBER, PARAMETERS, Given, Scene, SceneError, read_plain, read_value
 from .tables import STREAM, Piece, Unreadable, read, write
 

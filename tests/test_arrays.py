@@ -12,8 +12,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
-from atwood_cli.arrays import ACCURACIES, COLUMNS, STATUSES
+from atwood_cli.arrays import ACCURACIES, STATUSES
 from atwood_cli.quantities import NAMES, STANDARD
+from atwood_cli.rows import COLUMNS
 from atwood_cli.scene import Scene
 
 from . import oracle

@@ -20,8 +20,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from atwood_cli import solve, tables
-from atwood_cli.arrays import COLUMNS, solve_arrays
+from atwood_cli.arrays import solve_arrays
 from atwood_cli.quantities import NAMES, STANDARD
+from atwood_cli.rows import COLUMNS
 from atwood_cli.tables import FORMATS
 
 from .running import Atwood, Ran, on_terminal, plain, process
