@@ -15,7 +15,7 @@ from typer.core import TyperCommand
 from . import __version__
 from .output import for_stream
 from .quantities import NAMES
-from .scene import PARAMETERS, Scene, SceneError, nearest, read_digits
+from .scene import PARAMETERS, Scene, SceneError, nearest, read_digits, read_whole
 
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
@@ -198,6 +198,24 @@ Accuracy = Annotated[
     ),
 ]
 AllowErrors = Annotated[bool, _output("--allow-errors", help="Exit 0 though rows have errors.")]
+
+
+Families = Annotated[
+    list[str] | None,
+    _output("--family", metavar="NAME", help="Measure this family of scenes only; repeatable."),
+]
+DEFAULT_SCENES, DEFAULT_SEED, MOST_SEED = 500, 1, 10**9
+Scenes = Annotated[
+    str | None,
+    _output(metavar="N", help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given."),
+]
+Seed = Annotated[
+    str | None,
+    _output(metavar="N", help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given."),
+]
+PlotErrors = Annotated[
+    bool, _output("--plot", help="Draw error against time in place of the tables (extra: plot).")
+]
 
 
 def _print_version(wanted: bool) -> None:
@@ -396,6 +414,75 @@ def sweep(
     if csv:
         for note in out.sweep_notes(rows, names):
             _say(note)
+    return DONE
+
+
+@app.command("tradeoff", cls=Command)
+@takes_scene
+def tradeoff(
+    given: Mapping[str, str | None],
+    *,
+    family: Families = None,
+    scenes: Scenes = None,
+    seed: Seed = None,
+    plot: PlotErrors = False,
+    figure: FigureFile = None,
+    json: AsJson = False,
+    csv: AsCsv = False,
+) -> int:
+    """Measure what accuracy costs on this machine: time beside error, for families of scenes or for one.
+
+    \b
+    Examples:
+      atwood tradeoff
+      atwood tradeoff --family near-critical --scenes 2000 --plot
+      atwood tradeoff --m1 1 --m2 3 --M 10 --mu 0.3
+      atwood tradeoff --json > measured.json
+    """
+    from . import output as out
+    from .tradeoff import FAMILIES, MOST_SCENES
+    from .tradeoff import tradeoff as measure
+
+    _exclude_each_other(json, csv)
+    scene = None
+    if any(value is not None for value in given.values()):
+        scene = Scene.read(given)
+        for name, value in (("family", family and family[0]), ("scenes", scenes), ("seed", seed)):
+            if value is not None:
+                raise SceneError(name, value, "has no say where a scene is given; leave one of them out")
+    for name in family or ():
+        if name not in FAMILIES:
+            hint = nearest(name, FAMILIES) or f"; there are {', '.join(FAMILIES)}"
+            raise SceneError("family", name, f"is no family of scenes{hint}")
+    if plot:
+        if json or csv:
+            raise SceneError(
+                "plot", None, f"draws text, not {'JSON' if json else 'CSV'}; leave one of them out"
+            )
+        from .plot import print_tradeoff_plot
+    if figure is not None:
+        from .figure import check_format, save_tradeoff
+
+        check_format(figure)
+    found = measure(
+        list(dict.fromkeys(family or FAMILIES)),
+        read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES),
+        read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED),
+        scene,
+        out.watched,
+    )
+    if figure is not None:
+        save_tradeoff(found, figure)
+    if plot:
+        print_tradeoff_plot(found)
+    elif json:
+        out.print_tradeoff_json(found)
+    elif csv:
+        out.print_tradeoff_csv(found)
+        for note in (*found.notes, found.advice):
+            _say(note)
+    else:
+        out.print_tradeoff(found)
     return DONE
 
 

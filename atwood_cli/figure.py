@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
     from .sweep import Curve, Picture
+    from .tradeoff import Tradeoff
 
 FORMATS = (".svg", ".png", ".pdf")
 NORMAL, FRICTION, STRING, WEIGHT = "#1f5fa8", "#c23b22", "#222222", "#5a7d2a"
@@ -67,6 +68,41 @@ def save_sweep(picture: "Picture", title: str, path: str) -> None:
         if len(picture.curves) > 1:
             axes.legend(frameon=False)
         figure.suptitle(title, fontsize=10)
+
+
+def save_tradeoff(found: "Tradeoff", path: str) -> None:
+    """Draw error against time to a file, whose suffix is its format. Raises SceneError, OSError."""
+    from .tradeoff import EDGES, MARGIN, drawable
+
+    with _page(path) as figure:
+        arithmetic, elements = figure.subplots(1, 2)
+        families = list(dict.fromkeys(one.family for one in found.measured))
+        settings = list(dict.fromkeys(one.setting for one in found.measured))
+        for family, colour in zip(families, FAMILY_COLOURS, strict=False):
+            points = [one for one in found.measured if one.family == family]
+            xs, ys = [one.seconds for one in points], [drawable(one.worst_ulp) for one in points]
+            arithmetic.plot(xs, ys, color=colour, lw=0.6, alpha=0.5, label=family)
+            for x, y, one in zip(xs, ys, points, strict=True):
+                arithmetic.plot([x], [y], MARKERS[settings.index(one.setting)], color=colour)
+        for setting, marker in zip(settings, MARKERS, strict=False):
+            arithmetic.plot([], [], marker, color="#444444", label=setting)
+        arithmetic.axhline(MARGIN, color="#999999", lw=0.8, ls=":", label=f"{MARGIN} ulp")
+        arithmetic.set_ylabel("worst error (ulp)")
+        for extrapolated, label, colour in ((False, "elements", NORMAL), (True, "extrapolated", FRICTION)):
+            way = [one for one in found.marches if one.extrapolated == extrapolated and one.elements]
+            xs, ys = [one.seconds for one in way], [one.relative_error for one in way]
+            elements.plot(xs, ys, color=colour, marker=".", label=label)
+        elements.set_ylabel("relative error of $e^{\\mu\\varphi}$")
+        for axes in (arithmetic, elements):
+            axes.loglog()
+            axes.set_xlabel("time (s)")
+            axes.spines[["top", "right"]].set_visible(False)
+            axes.legend(frameon=False, fontsize=8)
+        figure.suptitle(EDGES, fontsize=10)
+
+
+FAMILY_COLOURS = (NORMAL, FRICTION, WEIGHT, "#8a5a9e", STRING)
+MARKERS = "xPs^Do*v"
 
 
 def _draw_curve(axes: "Axes", curve: "Curve") -> None:

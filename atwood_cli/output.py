@@ -8,7 +8,7 @@ from decimal import Decimal
 from fractions import Fraction
 from itertools import chain, groupby, product
 from math import inf
-from operator import itemgetter
+from operator import attrgetter, itemgetter
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from .contact import Contact
     from .elements import Elements
     from .sweep import Row, Sweep
+    from .tradeoff import March, Measured, Tradeoff
 
 T = TypeVar("T")
 
@@ -37,7 +38,7 @@ COLUMN_UNITS = {
 }
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 ASCII = str.maketrans(
-    {"μ": "mu", "φ": "phi", "β": "beta", "π": "pi", "τ": "tau", "α": "alpha", "θ": "theta"}
+    {"μ": "mu", "µ": "u", "φ": "phi", "β": "beta", "π": "pi", "τ": "tau", "α": "alpha", "θ": "theta"}
     | {"₁": "1", "₂": "2", "²": "^2", "°": "deg", "·": "*", "±": "+/-", "≤": "<=", "≥": ">="}
 )
 
@@ -95,8 +96,11 @@ def print_csv(answers: Answers, only: Sequence[str]) -> None:
 
 def cell(value: object) -> str:
     """A value as bare text, empty where it does not exist or no double can hold it."""
-    if isinstance(value, float | Decimal):
-        return "" if is_infinite(value) else text(value)
+    match value:
+        case float() | Decimal():
+            return "" if is_infinite(value) else text(value)
+        case bool():
+            return str(value).lower()
     return str(value or "")
 
 
@@ -352,6 +356,89 @@ def print_sweep_json(sweep: "Sweep", rows: "Sequence[Row]", names: Sequence[str]
     scene = _scene(sweep.scene) | _typed_ranges(sweep)
     records = _records(sweep, rows, names)
     print(_json({"scene": scene, "rows": records, "notes": sweep_notes(rows, names)}))
+
+
+def print_tradeoff(found: "Tradeoff") -> None:
+    """A table of the settings for each family of scenes, one of string elements, and what follows."""
+    from .tradeoff import ELEMENTS_LEGEND, FAMILIES, LEGEND
+
+    page = Page()
+    for family, measured in groupby(found.measured, attrgetter("family")):
+        meaning = FAMILIES[family].meaning if family in FAMILIES else describe(found.scene)
+        page.say(f"{family}: {meaning}", "bold")
+        _print_measured(page, list(measured))
+    page.say(LEGEND)
+    if found.marches:
+        page.say(f"String elements: e^(μφ) of {describe(found.scene)}", "bold")
+        _print_marches(page, found.marches)
+        page.say(ELEMENTS_LEGEND)
+    for note in found.notes:
+        page.say(note)
+    page.say(found.advice, "bold")
+
+
+def _print_measured(page: Page, measured: "Sequence[Measured]") -> None:
+    from .tradeoff import in_seconds, percent, short
+
+    columns = {
+        "  Setting": [f"{'*' if one.best else ' '} {one.setting}" for one in measured],
+        "Time": [in_seconds(one.seconds) for one in measured],
+        "±": [percent(one.spread) for one in measured],
+        "Worst": [short(one.worst_ulp) for one in measured],
+        "99 %": [short(one.percentile_99_ulp) for one in measured],
+        "Over 4 ulp": [percent(one.share_over_4_ulp) for one in measured],
+        "Regime": [percent(one.share_wrong_regime) for one in measured],
+    }
+    _print_columns(page, list(columns), list(columns.values()))
+
+
+def _print_marches(page: Page, marches: "Sequence[March]") -> None:
+    from .tradeoff import in_seconds, scientific
+
+    by_count: dict[int | None, dict[bool, March]] = {}
+    for one in marches:
+        by_count.setdefault(one.elements, {})[one.extrapolated] = one
+    columns = [[str(count or "closed form") for count in by_count]]
+    for extrapolated in (False, True):
+        found = [both.get(extrapolated) for both in by_count.values()]
+        columns += [
+            [f"{'*' if one.best else ' '} {scientific(one.relative_error)}" if one else "" for one in found],
+            [f"{one.order:.2f}" if one and one.order is not None else "" for one in found],
+            [in_seconds(one.seconds) if one else "" for one in found],
+        ]
+    heads = ["Elements", "Error", "Order", "Time", "Extrapolated", "Order", "Time"]
+    _print_columns(page, heads, columns)
+
+
+def _print_columns(page: Page, heads: Sequence[str], columns: Sequence[Sequence[str]]) -> None:
+    """A table whose columns but the first are flush right."""
+    words = [
+        [for_stream(word, sys.stdout) for word in column]
+        for column in ([head, *rows] for head, rows in zip(heads, columns, strict=True))
+    ]
+    flush = [words[0], *([word.rjust(max(map(len, column))) for word in column] for column in words[1:])]
+    lines = list(zip(*flush, strict=True))
+    page.table(lines[0], [lines[1:]])
+
+
+def print_tradeoff_json(found: "Tradeoff") -> None:
+    """What was measured, the seed or the scene, the notes and the advice."""
+    about: dict[str, object] = {"scene": _scene(found.scene)}
+    if found.seed is not None:
+        about = {"seed": found.seed, "scenes": found.scenes}
+    arithmetic = [one._asdict() for one in found.measured]
+    elements = [one._asdict() for one in found.marches]
+    parts = {"arithmetic": arithmetic, "elements": elements, "notes": found.notes, "advice": found.advice}
+    print(_json(about | parts))
+
+
+def print_tradeoff_csv(found: "Tradeoff") -> None:
+    """A line for each setting and family, and for each number of elements."""
+    records = [one._asdict() for one in found.measured]
+    for one in found.marches:
+        records.append({"setting": "elements" if one.elements else "closed form"} | one._asdict())
+    names = dict.fromkeys(name for record in records for name in record)
+    print_records_csv([{name: record.get(name) for name in names} for record in records])
 
 
 def watched(parts: Iterator[T], total: int | None, size: Callable[[T], int] = lambda _: 1) -> Iterator[T]:

@@ -1,11 +1,12 @@
 """Curves in the terminal: needs plotille (extra ``plot``), which sets the dots; the axes are drawn here."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from itertools import pairwise
+from itertools import groupby, pairwise
 from math import ceil, floor, log10
+from operator import attrgetter
 from typing import Any
 
 from plotille import Canvas
@@ -13,14 +14,16 @@ from plotille import Canvas
 from .output import Page, for_stream, sweep_head, sweep_notes, takes_unicode
 from .rounding import as_typed
 from .sweep import Curve, Picture, Row, Sweep, picture
+from .tradeoff import EDGES, Tradeoff, drawable
 
-PIPE_WIDTH, HEIGHT = 80, 20
+PIPE_WIDTH, HEIGHT, SMALL_HEIGHT = 80, 20, 12
 LEAST_WIDTH, LEAST_HEIGHT = 10, 5
 LEAST_TICKS = 3  # asking for fewer may give none
+LONGEST_POWER = 4  # of ten, written out
 AROUND = 9  # lines above and below the curves, with the prompt
 COLOURS = ("cyan", "magenta", "green", "blue", "red", "bright_cyan")
 MARK = "yellow"
-LETTERS = "abcdef"
+LETTERS = "abcdefgh"
 DOTS = range(0x2800, 0x2900)
 UPPER, LOWER = 0x1B, 0xE4  # the bits of the dots in the upper and the lower half of a braille character
 FRAME = str.maketrans("┤│└┬─", "||++-")
@@ -62,16 +65,65 @@ def _decades(low: float, high: float, most: int) -> list[Decimal]:
 
 def print_plot(sweep: Sweep, rows: Sequence[Row], name: str, plain: bool) -> None:
     """The scene, the curves with their regimes and dotted lines where those change, and the notes."""
-    from rich.text import Text
-
     page, drawn = Page(plain=plain), picture(sweep, rows, "plot", name)
     page.say(sweep_head(sweep))
     height = min(HEIGHT, max(page.console.height - AROUND, LEAST_HEIGHT)) if page.room else HEIGHT
-    for line in _lines(drawn, page.room or PIPE_WIDTH, height):
-        shown = line.translate(PLAIN) if takes_unicode(sys.stdout) else for_stream(_ascii(line), sys.stdout)
-        page.console.print(Text.from_ansi(shown.rstrip()), soft_wrap=True)
+    _show(page, _lines(drawn, page.room or PIPE_WIDTH, height))
     for note in [*_legend(drawn), *sweep_notes(rows, [name])]:
         page.say(note)
+
+
+def _show(page: Page, lines: list[str]) -> None:
+    from rich.text import Text
+
+    for line in lines:
+        shown = line.translate(PLAIN) if takes_unicode(sys.stdout) else for_stream(_ascii(line), sys.stdout)
+        page.console.print(Text.from_ansi(shown.rstrip()), soft_wrap=True)
+
+
+def print_tradeoff_plot(found: Tradeoff) -> None:
+    """Error against time, both logarithmic: the settings on each family, then string elements."""
+    page = Page()
+    room = page.room or PIPE_WIDTH
+    for family, group in groupby(found.measured, attrgetter("family")):
+        measured = list(group)
+        points = [(one.seconds, drawable(one.worst_ulp)) for one in measured]
+        page.say(family, "bold")
+        _show(page, _scatter("worst error (ulp)", [points], room, LETTERS))
+    letters = zip(LETTERS, measured, strict=False)
+    page.say(f"{', '.join(f'{letter} {one.setting}' for letter, one in letters)}.")
+    page.say(f"{EDGES} Times are this machine's, for one scene.")
+    if found.marches:
+        curves = [
+            [
+                (one.seconds, one.relative_error)
+                for one in found.marches
+                if one.extrapolated == way and one.elements
+            ]
+            for way in (False, True)
+        ]
+        page.say("String elements", "bold")
+        _show(page, _scatter("relative error of e^(μφ)", curves, room, ""))
+        page.say("a elements, b extrapolated; from left to right 4 to 10 million of them.")
+    for note in (*found.notes, found.advice):
+        page.say(note)
+
+
+def _scatter(title: str, curves: list[list[tuple[float, float]]], room: int, marks: str) -> list[str]:
+    """Points with a letter each, or curves with a letter each."""
+
+    def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
+        for number, curve in enumerate(curves):
+            dots = [(x_axis.dot(x), y_axis.dot(y)) for x, y in curve]
+            for mark, dot in zip(marks, dots, strict=False):
+                canvas.point(*dot, marker=mark, color=COLOURS[number])
+            if not marks:
+                for start, end in pairwise(dots):
+                    canvas.line(*start, *end, color=COLOURS[number])
+                canvas.point(*dots[len(dots) // 2], color=COLOURS[number], marker=LETTERS[number])
+
+    xs, ys = ([point[i] for curve in curves for point in curve] for i in (0, 1))
+    return _framed(("time (s)", title), (xs, ys), (True, True), room, SMALL_HEIGHT, draw)
 
 
 PLAIN = {DOTS[0]: " "}
@@ -84,32 +136,48 @@ def _ascii(line: str) -> str:
 
 
 def _lines(drawn: Picture, room: int, height: int) -> list[str]:
+    several = len(drawn.curves) > 1
+
+    def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
+        for curve in drawn.curves:
+            for i in curve.changes:
+                y = curve.ys[i]
+                top = y_axis.dot(y) if several and y is not None else y_axis.dots
+                for dot in range(0, top, 3):
+                    canvas.point(x_axis.dot(curve.xs[i]), dot, color=MARK)
+        for number, curve in enumerate(drawn.curves):
+            _draw_curve(canvas, curve, x_axis, y_axis, number, several)
+
     ys = [y for curve in drawn.curves for y in curve.ys if y is not None]
-    y_axis = Axis(ys, 4 * height, max(height // 4, LEAST_TICKS))
+    return _framed((drawn.x, drawn.y), (drawn.curves[0].xs, ys), (drawn.log, False), room, height, draw)
+
+
+def _framed(
+    titles: tuple[str, str],
+    values: tuple[list[float], list[float]],
+    logs: tuple[bool, bool],
+    room: int,
+    height: int,
+    draw: Callable[[Any, Axis, Axis], None],
+) -> list[str]:
+    """Axes over the values in x and y, and what is drawn on them."""
+    y_axis = Axis(values[1], 4 * height, max(height // 4, LEAST_TICKS), logs[1])
     labels = {y_axis.dot(float(tick)) // 4: _label(tick) for tick in y_axis.ticks}
     margin = max(map(len, labels.values()), default=0)
     width = max(room - margin - 3, LEAST_WIDTH)
-    x_axis = Axis(drawn.curves[0].xs, 2 * width, max(width // 12, LEAST_TICKS), drawn.log)
+    x_axis = Axis(values[0], 2 * width, max(width // 12, LEAST_TICKS), logs[0])
     canvas = Canvas(width, height, 0, 0, 2 * width, 4 * height)
-    several = len(drawn.curves) > 1
-    for curve in drawn.curves:
-        for i in curve.changes:
-            y = curve.ys[i]
-            top = y_axis.dot(y) if several and y is not None else y_axis.dots
-            for dot in range(0, top, 3):
-                canvas.point(x_axis.dot(curve.xs[i]), dot, color=MARK)
-    for number, curve in enumerate(drawn.curves):
-        _draw_curve(canvas, curve, x_axis, y_axis, number, several)
+    draw(canvas, x_axis, y_axis)
     rows = canvas.plot("\n").split("\n")
     left = [f" {labels.get(i, ''):>{margin}} {'┤' if i in labels else '│'}" for i in range(height)]
     ticks = {x_axis.dot(float(tick)) // 2: _label(tick) for tick in x_axis.ticks}
     bottom = "".join("┬" if i in ticks else "─" for i in range(width))
     return [
-        f" {drawn.y}",
+        f" {titles[1]}",
         *(start + row for start, row in zip(reversed(left), rows, strict=True)),
         f" {'':>{margin}} └{bottom}",
         f" {'':>{margin}}  {_under(ticks, width)}",
-        f" {'':>{margin}}  {drawn.x:>{width}}",
+        f" {'':>{margin}}  {titles[0]:>{width}}",
     ]
 
 
@@ -129,6 +197,9 @@ def _draw_curve(canvas: Any, curve: Curve, x_axis: Axis, y_axis: Axis, number: i
 
 
 def _label(tick: Decimal) -> str:
+    sign, digits, power = tick.normalize().as_tuple()
+    if len(digits) == 1 and abs(int(power)) > LONGEST_POWER:
+        return f"{'-' * sign}{digits[0]}e{power}"
     return as_typed(Fraction(tick))
 
 

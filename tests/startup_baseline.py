@@ -99,6 +99,28 @@ def contact(
 
 
 @app.command()
+def tradeoff(
+    m1: Annotated[str | None, option("--m1")] = None,
+    m2: Annotated[str | None, option("--m2")] = None,
+    M: Annotated[str | None, option("--M", "--pulley-mass")] = None,
+    mu: Annotated[str | None, option("--mu")] = None,
+    mu_k: Annotated[str | None, option("--mu-k")] = None,
+    g: Annotated[str | None, option("--g")] = None,
+    inertia: Annotated[str | None, option("--inertia")] = None,
+    I: Annotated[str | None, option("--I")] = None,
+    R: Annotated[str | None, option("--R", "--radius")] = None,
+    wrap: Annotated[str | None, option("--wrap")] = None,
+    family: Annotated[list[str] | None, option("--family")] = None,
+    scenes: Annotated[str | None, option("--scenes")] = None,
+    seed: Annotated[str | None, option("--seed")] = None,
+    plot: Annotated[bool, option("--plot")] = False,
+    figure: Annotated[str | None, option("--figure")] = None,
+    as_json: Annotated[bool, option("--json")] = False,
+    csv: Annotated[bool, option("--csv")] = False,
+) -> None: ...
+
+
+@app.command()
 def batch(
     table: str,
     output: Annotated[str, option("--output", "-o")] = "-",

@@ -1,0 +1,505 @@
+"""`atwood tradeoff`: what it measures is held against an oracle, and broken formulas do not pass it."""
+
+import csv
+import io
+import json
+import re
+from decimal import Decimal
+from fractions import Fraction
+from math import inf, nextafter, ulp
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+
+from atwood_cli import solve_arrays, tradeoff
+from atwood_cli.columns import FLOATS, Floats, Pair, Pairs
+from atwood_cli.scene import Scene
+from atwood_cli.tradeoff import (
+    DECIMALS,
+    FAMILIES,
+    SETTINGS,
+    VALUES,
+    March,
+    Measured,
+    advice,
+    draw_scenes,
+    errors,
+    in_seconds,
+    marches,
+    measure,
+    percent,
+    scientific,
+    short,
+    with_orders,
+)
+
+from . import oracle
+from .running import Atwood
+from .test_arrays import exact_scene
+
+NAMES = [setting.name for setting in SETTINGS]
+SCENE = ["tradeoff", "--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3"]
+G = 9.80665
+
+
+@pytest.fixture
+def briefly(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few repeats of short runs: these tests are about the errors."""
+    monkeypatch.setattr(tradeoff, "REPEATS", 2)
+    monkeypatch.setattr(tradeoff, "RUN_SECONDS", 1e-4)
+    monkeypatch.setattr(tradeoff, "COUNTS", (4, 10, 100, 1000))
+
+
+def of(measured: list[Measured], setting: str) -> Measured:
+    (one,) = [one for one in measured if one.setting == setting]
+    return one
+
+
+# Scenes
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_scenes_come_from_the_seed(family: str) -> None:
+    first = draw_scenes(family, 30, 1)
+    assert first == draw_scenes(family, 30, 1)
+    assert first[:7] == draw_scenes(family, 7, 1)
+    assert not any(row in first for row in draw_scenes(family, 30, 2))
+
+
+def test_scenes_are_the_same_on_every_platform() -> None:
+    """Exponents and mantissas are drawn apart, so that no library's power or logarithm has a say."""
+    (ordinary,), (near,) = (draw_scenes(family, 1, 1) for family in ("ordinary", "near-critical"))
+    assert list(ordinary.values()) == [
+        0.16445123133464037,
+        0.20210789773600948,
+        0.8335547957401686,
+        0.014586684315688787,
+    ]
+    assert list(near.values()) == [8.82546756886875, 1214.438866204906, 513.4088800424233, 0.8413462820148073]
+
+
+def test_families_are_what_they_say() -> None:
+    drawn = {family: draw_scenes(family, 300, 1) for family in FAMILIES}
+    for rows in drawn.values():
+        assert all(row["m1"] <= row["m2"] for row in rows)
+    for row in drawn["ordinary"]:
+        assert 0.007 < row["m1"] < 128
+        assert 1.007 < row["m2"] / row["m1"] < 129
+        assert 0.007 < row["M"] < 1024
+    apart = [float(Fraction(row["m2"]) / Fraction(row["m1"]) - 1) for row in drawn["nearly-equal"]]
+    assert 0 < min(apart) < 1e-14
+    assert 1e-3 < max(apart) < 0.01
+    assert 7e-31 < min(row["M"] for row in drawn["light-pulley"]) < 1e-28
+    assert 1e-4 < max(row["M"] for row in drawn["light-pulley"]) < 1e-3
+    exponents = [np.log10(row["m1"]) for row in drawn["whole-range"]]
+    assert min(exponents) < -320 < 250 < max(exponents)
+    off = []
+    for row in drawn["near-critical"]:
+        critical = solve_arrays(row["m1"], row["m2"], mu=row["mu"], accuracy="exact")["critical_pulley_mass"]
+        least = solve_arrays(
+            row["m1"], 2 * row["m1"], mu=row["mu"], accuracy="exact", quantities=["least_heavier_mass"]
+        )["least_heavier_mass"]
+        off.append(min((abs(row["M"] / critical - 1), abs(row["m2"] / least - 1)), key=np.nan_to_num))
+    assert np.nanmax(off) < 1.1e-3
+    assert 0 < np.nanmin(off) < 1e-13
+
+
+# Errors
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_errors_are_those_against_the_oracle(family: str) -> None:
+    rows = draw_scenes(family, 25, 3)
+    exact = tradeoff._in_decimals(tradeoff.EXACT_DIGITS)
+    right = exact.run(exact.prepare(rows, len(rows)))
+    for setting in SETTINGS[:-2]:  # the oracle's balls are as tight as 17 digits take
+        found = setting.read(rows, setting.run(setting.prepare(rows, len(rows))))
+        want = [
+            worst
+            for row, one in zip(rows, found, strict=True)
+            if (worst := oracle_error(row, one)) is not None
+        ]
+        assert errors(found, right) == pytest.approx(want, rel=1e-9, abs=1e-12)
+
+
+def oracle_error(row: dict[str, float], found: dict[str, Any]) -> float | None:
+    want = oracle.expected(exact_scene({"g": G, **row}))
+    if found["regime"] != want["regime"]:
+        return None
+    worst = 0.0
+    for name in VALUES:
+        if want[name] is not None:
+            nearest: Any = oracle.correctly_rounded(want[name], None)
+            precise = Fraction(oracle.correctly_rounded(want[name], 60))
+            value = found[name]
+            if nearest == inf or abs(value) == inf or value != value:
+                worst = max(worst, 0.0 if value == nearest else inf)
+            else:
+                worst = max(worst, float(abs(Fraction(value) - precise) / Fraction(ulp(nearest))))
+    return worst
+
+
+def test_what_is_lost_is_infinitely_wrong() -> None:
+    right = solve_row(1, 3, 10, 0.3)
+    for lost in (inf, -inf, float("nan")):
+        assert errors([right | {"tension_1": lost}], [decimals(right)]) == [inf]
+    assert errors([right | {"regime": "slip"}], [decimals(right)]) == []
+    one_ulp_off = right | {"tension_1": nextafter(right["tension_1"], inf)}
+    assert errors([one_ulp_off], [decimals(right)]) == [1.0]
+    undetermined = dict.fromkeys(VALUES) | {"regime": "no-slip"}
+    assert errors([right], [undetermined]) == [0.0]
+
+
+def solve_row(*scene: float) -> dict[str, Any]:
+    found = solve_arrays(*scene, accuracy="exact")
+    return {"regime": "no-slip"} | {name: found[name].item() for name in VALUES}
+
+
+def decimals(row: dict[str, Any]) -> dict[str, Any]:
+    """As exact values; those that do not exist are none."""
+    return {
+        name: value if name == "regime" else None if value != value else Decimal(value)
+        for name, value in row.items()
+    }
+
+
+# Measuring
+
+
+@pytest.mark.usefixtures("briefly")
+@pytest.mark.parametrize("family", FAMILIES)
+def test_promises_hold_where_they_are_measured(family: str) -> None:
+    measured = measure(family, draw_scenes(family, 60, 4))
+    assert [one.setting for one in measured] == NAMES
+    for one in measured:
+        assert one.family == family
+        assert one.seconds > 0
+        assert one.spread >= 0
+        if one.worst_ulp is not None:
+            assert one.percentile_99_ulp is not None
+            assert one.percentile_99_ulp <= one.worst_ulp
+            assert bool(one.share_over_4_ulp) == (one.worst_ulp > 4)
+    assert (of(measured, "certified").worst_ulp or 0) <= 4
+    assert (of(measured, "exact").worst_ulp or 0) <= 0.5
+    for digits in DECIMALS:
+        # Half a unit in the last of the digits, of a number whose ulp is at least 2^-53 of it
+        assert (of(measured, f"{digits} digits").worst_ulp or 0) <= 0.5 * 10.0 ** (1 - digits) * 2**53
+    for name in ("certified", "exact", *(f"{digits} digits" for digits in DECIMALS)):
+        assert of(measured, name).share_wrong_regime == 0
+    assert of(measured, "paper, float64").share_wrong_regime > 0.1
+    assert (of(measured, "paper, float32").worst_ulp or 0) > 1e6
+
+
+def test_the_best_are_those_that_none_beats() -> None:
+    one = Measured("any", "one", 2.0, 0, 2.0, 2.0, 0, 0.0)
+    assert not tradeoff._beats(one, one)
+    assert tradeoff._beats(one._replace(seconds=1.0), one)
+    assert tradeoff._beats(one._replace(worst_ulp=1.0), one)
+    assert not tradeoff._beats(one._replace(seconds=1.0, worst_ulp=3.0), one)
+    assert not tradeoff._beats(one._replace(seconds=1.0, share_wrong_regime=0.01), one)
+    assert tradeoff._beats(one, one._replace(worst_ulp=0.0, share_wrong_regime=0.01))
+    assert tradeoff._beats(one, one._replace(worst_ulp=None, share_wrong_regime=1.0))
+
+
+@pytest.mark.usefixtures("briefly")
+def test_each_family_marks_its_fastest_and_its_most_accurate() -> None:
+    measured = measure("ordinary", draw_scenes("ordinary", 30, 1))
+    assert min(measured, key=lambda one: one.seconds).best
+    assert of(measured, "200 digits").best
+    for one in measured:
+        others = [o for o in measured if o.seconds <= one.seconds and not o.share_wrong_regime and o != one]
+        better = [
+            o for o in others if (o.worst_ulp or 0) <= (inf if one.share_wrong_regime else one.worst_ulp or 0)
+        ]
+        assert one.best == (not better) or one.share_wrong_regime
+
+
+def test_the_advice_is_from_the_numbers() -> None:
+    times = dict(zip(NAMES, (1e-8, 2e-8, 4e-8, 2e-7, 5e-7, 3e-4, 3.5e-4, 5e-4), strict=True))
+    off = dict(zip(NAMES, (inf, 1e9, 39.2, 1.8, 0.5, 0.4, 1e-34, 1e-184), strict=True))
+    measured = [
+        Measured(
+            "ordinary", name, times[name], 0.1, off[name], off[name], 0.0, 0.3 * name.startswith("paper")
+        )
+        for name in NAMES
+    ]
+    assert advice(measured) == (
+        "Take certified for results within 4 ulp (200 ns a scene), exact for the nearest double (500 ns),"
+        " 50 digits for more digits (350 µs); fast (40 ns) was up to 39 ulp off."
+    )
+    wrong = [
+        one._replace(family="b", share_wrong_regime=0.008) if one.setting == "fast" else one
+        for one in measured
+    ]
+    assert advice([*measured, *wrong]).endswith("39 ulp off and took up to 0.8 % of the regimes wrongly.")
+    better = [one._replace(worst_ulp=0.3) if one.setting == "fast" else one for one in measured]
+    assert advice(better) == (
+        "Take fast for results within 4 ulp and the nearest double (40 ns a scene), 50 digits for more digits (350 µs)."
+    )
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [(4.1e-8, "41 ns"), (2.5e-6, "2.5 µs"), (0.000999999, "1e3 µs"), (1.5, "1.5 s"), (2e4, "2e4 s")],
+)
+def test_times_are_short(value: float, shown: str) -> None:
+    assert in_seconds(value) == shown
+
+
+def test_numbers_are_short() -> None:
+    assert [short(x) for x in (None, inf, 0.0, 0.4999, 39.17, 5.2e14, 3.5e-184)] == [
+        "-", "inf", "0", "0.5", "39", "5.2e14", "3.5e-184",
+    ]  # fmt: skip
+    assert [percent(x) for x in (None, 0.0, 0.0084, 1.0, 1.3)] == ["-", "0 %", "0.84 %", "100 %", "130 %"]
+    assert [scientific(x) for x in (0.0, 8.46e-5, 0.058)] == ["0.0e0", "8.5e-5", "5.8e-2"]
+
+
+# String elements
+
+
+def test_elements_converge_until_rounding_takes_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tradeoff, "REPEATS", 1)
+    monkeypatch.setattr(tradeoff, "COUNTS", tradeoff.COUNTS[:-2])
+    found = with_orders(list(marches(Scene.read(tradeoff.PAPERS_SCENE))))
+    plain_, extrapolated = (
+        [one for one in found if one.extrapolated == way and one.elements] for way in (0, 1)
+    )
+    orders = {way: {one.elements: one.order for one in by} for way, by in ((2, plain_), (4, extrapolated))}
+    assert all(orders[2][count] == pytest.approx(2, abs=0.02) for count in (30, 100, 300, 1000, 3000, 10000))
+    assert all(orders[4][count] == pytest.approx(4, abs=0.07) for count in (30, 100, 300))
+    for by in (plain_, extrapolated):
+        (best,) = [one for one in by if one.best]
+        assert best.relative_error == min(one.relative_error for one in by)
+        assert best is not by[-1]
+    closed = found[-1]
+    assert (closed.elements, closed.best) == (None, True)
+    assert closed.relative_error < 2**-52
+    with mpmath.workdps(30):
+        tangent = mpmath.mpf("0.3") * mpmath.tan(mpmath.pi / 200)
+        ratio = ((1 + tangent) / (1 - tangent)) ** 100
+        error = ratio / mpmath.exp(mpmath.mpf("0.3") * mpmath.pi) - 1
+    (hundred,) = [one for one in plain_ if one.elements == 100]
+    assert hundred.relative_error == pytest.approx(float(error), rel=1e-8)
+
+
+def test_orders_are_those_of_the_number_before() -> None:
+    errors_ = {4: 1e-2, 40: 1e-4, 400: 0.0, 4000: 1e-3}
+    found = with_orders([March(count, False, 1.0, 0.0, error) for count, error in errors_.items()])
+    assert [one.order for one in found] == [None, pytest.approx(2), None, None]
+    assert [one.best for one in found] == [False, False, True, False]
+
+
+# Broken formulas do not pass
+
+
+def plainly(self: Any, x: Any) -> Any:
+    return np.log(1 + x)
+
+
+def plain_expm1(self: Any, x: Any) -> Any:
+    return np.exp(x) - 1
+
+
+@pytest.mark.usefixtures("briefly")
+@pytest.mark.parametrize(("name", "broken"), [("log1p", plainly), ("expm1", plain_expm1)])
+@pytest.mark.parametrize("family", ["nearly-equal", "light-pulley"])
+def test_plain_functions_show_in_fast(
+    name: str, broken: Any, family: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rows = draw_scenes(family, 60, 1)
+    before = of(measure(family, rows), "fast")
+    monkeypatch.setattr(Floats, name, broken)
+    assert FLOATS.log1p is not np.log1p or name == "expm1"
+    after = of(measure(family, rows), "fast")
+    assert (before.worst_ulp or 0) < 100
+    assert (after.worst_ulp or inf) > 1e6 or after.share_wrong_regime > before.share_wrong_regime
+
+
+@pytest.mark.usefixtures("briefly")
+def test_a_plain_logarithm_shows_in_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = draw_scenes("nearly-equal", 60, 1)
+    monkeypatch.setattr(np, "log1p", lambda x, out=None: np.log(1 + x, out=out))
+    after = of(measure("nearly-equal", rows), "certified")
+    assert (after.worst_ulp or 0) > 1e6
+
+
+@pytest.mark.usefixtures("briefly")
+def test_a_plain_exponential_shows_in_certified(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(self: Pairs, x: Pair) -> Pair:
+        return Pair(self, np.exp(x.value) - 1, None, 2.0**-53)
+
+    rows = draw_scenes("nearly-equal", 60, 1)
+    monkeypatch.setattr(Pairs, "expm1", broken)
+    after = of(measure("nearly-equal", rows), "certified")
+    assert (after.worst_ulp or 0) > 1e6
+
+
+# The command
+
+
+@pytest.fixture
+def brief(briefly: None) -> list[str]:
+    return ["tradeoff", "--scenes", "6"]
+
+
+def test_the_table(atwood: Atwood, brief: list[str]) -> None:
+    ran = atwood(*brief)
+    assert (ran.status, ran.err) == (0, "")
+    for family, about in FAMILIES.items():
+        assert f"{family}: {about.meaning}\n" in ran.out
+    for name in NAMES:
+        assert len(re.findall(rf"│ [* ] {name} +│", ran.out)) == len(FAMILIES)
+    assert tradeoff.LEGEND in ran.out
+    assert tradeoff.ELEMENTS_LEGEND in ran.out
+    assert re.search(r"│ closed form │ \* \d\.\de-1[67] │", ran.out)
+    assert ran.out.splitlines()[-1].startswith("Take certified for results within 4 ulp (")
+
+
+def test_json(atwood: Atwood, brief: list[str]) -> None:
+    ran = atwood(*brief, "--json", "--seed", "7", "--family", "whole-range", "--family", "ordinary")
+    found = json.loads(ran.out)
+    assert list(found) == ["seed", "scenes", "arithmetic", "elements", "notes", "advice"]
+    assert (found["seed"], found["scenes"], found["notes"]) == (7, 6, [])
+    assert [(one["family"], one["setting"]) for one in found["arithmetic"]] == [
+        (family, name) for family in ("whole-range", "ordinary") for name in NAMES
+    ]
+    assert list(found["arithmetic"][0]) == list(Measured._fields)
+    assert [list(one) for one in found["elements"]] == [list(March._fields)] * 9
+    lost = found["arithmetic"][0]
+    assert lost["worst_ulp"] is None  # infinite
+    again = json.loads(atwood(*brief, "--json", "--seed", "7", "--family", "ordinary").out)
+    kept = [name for name in Measured._fields if name not in ("seconds", "spread", "best")]
+    for one, other in zip(found["arithmetic"][len(NAMES) :], again["arithmetic"], strict=True):
+        assert [one[name] for name in kept] == [other[name] for name in kept]
+
+
+def test_csv(atwood: Atwood, brief: list[str]) -> None:
+    ran = atwood(*brief, "--csv", "--family", "near-critical")
+    rows = list(csv.DictReader(io.StringIO(ran.out)))
+    assert [row["setting"] for row in rows] == [*NAMES, *["elements"] * 8, "closed form"]
+    assert {row["best"] for row in rows} == {"true", "false"}
+    assert float(rows[NAMES.index("exact")]["worst_ulp"]) <= 0.5
+    assert ran.err.startswith("atwood: Take ")
+
+
+@pytest.mark.usefixtures("briefly")
+def test_a_scene_of_ones_own(atwood: Atwood) -> None:
+    found = json.loads(atwood(*SCENE, "--json").out)
+    assert found["scene"]["M"] == 10
+    assert {one["family"] for one in found["arithmetic"]} == {"scene"}
+    by_name = {one["setting"]: one for one in found["arithmetic"]}
+    assert by_name["paper, float64"]["worst_ulp"] < 10
+    assert by_name["paper, float64"]["share_wrong_regime"] == 0
+    mirrored = json.loads(atwood(*"tradeoff --m1 3 --m2 1 --M 10 --mu 0.3 --json".split()).out)
+    for one, other in zip(found["arithmetic"], mirrored["arithmetic"], strict=True):
+        assert one["worst_ulp"] == other["worst_ulp"]
+    table = atwood(*SCENE).out
+    assert (
+        "scene: m1 = 1 kg, m2 = 3 kg, M = 10 kg, mu = 0.3, g = 9.80665 m/s², inertia = 0.5, wrap = 180°\n"
+        in table
+    )
+
+
+@pytest.mark.usefixtures("briefly")
+@pytest.mark.parametrize(
+    "given",
+    [
+        "--m1 1 --m2 3",
+        "--m1 1 --m2 3 --mu 0.3",
+        "--m1 1 --m2 3 --M 1e-9",
+        "--m1 1 --m2 3 --M inf --mu 0.2",
+        "--m1 1 --m2 3 --M 500 --mu 0.3 --mu-k 0.2 --inertia hoop --wrap 3.5rad --R 5cm --g moon",
+        "--m1 2 --m2 2 --M 1",
+    ],
+)
+def test_scenes_of_every_kind(given: str, atwood: Atwood) -> None:
+    found = json.loads(atwood("tradeoff", *given.split(), "--json").out)
+    for one in found["arithmetic"]:
+        if one["setting"] in ("certified", "exact") or "digits" in one["setting"]:
+            assert one["share_wrong_regime"] == 0
+            assert one["worst_ulp"] <= (4 if one["setting"] == "certified" else 0.5)
+    if "hoop" in given:
+        assert found["arithmetic"][1]["share_wrong_regime"] == 1  # it slips, which the formulas do not know
+        assert found["arithmetic"][1]["worst_ulp"] is None
+    else:
+        assert found["arithmetic"][1]["share_wrong_regime"] == ("inf" in given)
+
+
+@pytest.mark.usefixtures("briefly")
+@pytest.mark.parametrize(
+    ("given", "note"),
+    [
+        (
+            "--m1 0 --m2 3 --M 1",
+            "String elements: not defined for a free end: the string is fixed to the pulley and no friction holds it.",
+        ),
+        (
+            "--m1 1 --m2 3 --M 1 --mu 700",
+            "String elements run in doubles, which this scene is too large for.",
+        ),
+    ],
+)
+def test_where_no_elements_can_be(given: str, note: str, atwood: Atwood) -> None:
+    found = json.loads(atwood("tradeoff", *given.split(), "--json").out)
+    assert (found["elements"], found["notes"]) == ([], [note])
+    assert note in atwood("tradeoff", *given.split()).out
+
+
+def test_the_plot(atwood: Atwood, brief: list[str]) -> None:
+    ran = atwood(*brief, "--plot", "--family", "near-critical")
+    assert ran.status == 0
+    assert ran.out.startswith("near-critical\n worst error (ulp)\n")
+    scatter = ran.out[: ran.out.index("time (s)")]
+    for letter in "abcdef":
+        assert letter in scatter.split("(ulp)")[1]
+    assert (
+        "a paper, float32, b paper, float64, c fast, d certified, e exact, f 17 digits, g 50 digits"
+        in ran.out
+    )
+    assert "relative error of e^(μφ)\n" in ran.out
+    assert re.search(r" 1e\d+ ┤", scatter)  # no zeros to count
+
+
+def test_the_figure(atwood: Atwood, brief: list[str], tmp_path: Path) -> None:
+    file = tmp_path / "errors.svg"
+    assert atwood(*brief, "--figure", str(file)).status == 0
+    drawn = file.read_text(encoding="utf-8")
+    for name in (*NAMES, *FAMILIES, "worst error (ulp)", "extrapolated"):
+        assert f"<!-- {name} -->" in drawn
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error"),
+    [
+        ("--family ordinry", "--family 'ordinry' is no family of scenes; did you mean ordinary?"),
+        (
+            "--family x",
+            "--family 'x' is no family of scenes; there are ordinary, nearly-equal, light-pulley, near-critical, whole-range",
+        ),
+        ("--scenes 0", "--scenes '0' must be a whole number from 1 to 100000"),
+        ("--seed -1", "--seed '-1' must be a whole number from 0 to 1000000000"),
+        ("--m1 1 --m2 3 --seed 1", "--seed '1' has no say where a scene is given; leave one of them out"),
+        ("--m1 1 --m2 3 --scenes 9", "--scenes '9' has no say where a scene is given; leave one of them out"),
+        (
+            "--m1 1 --m2 3 --family ordinary",
+            "--family 'ordinary' has no say where a scene is given; leave one of them out",
+        ),
+        ("--m1 1", "--m2 is missing; give both masses, m1 and m2"),
+        ("--m1 1e400 --m2 3", "--m1 '1e400' is beyond the doubles, which are measured here"),
+        ("--m1 1 --m2 3 --M 1e-400", "--M '1e-400' is beyond the doubles, which are measured here"),
+        (
+            "--m1 1 --m2 3 --I 2 --R 1",
+            "--I is not measured, as arrays have no such column; give --inertia",
+        ),
+        ("--plot --json", "--plot draws text, not JSON; leave one of them out"),
+        ("--plot --csv", "--plot draws text, not CSV; leave one of them out"),
+        ("--figure x.gif", "--figure 'x.gif' must end in one of .svg, .png, .pdf"),
+        ("--json --csv", "--json and --csv exclude each other; give one of them"),
+    ],
+)
+def test_errors(arguments: str, error: str, atwood: Atwood) -> None:
+    ran = atwood("tradeoff", *arguments.split())
+    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {error}\n")
