@@ -440,7 +440,8 @@ def tradeoff(
       atwood tradeoff --json > measured.json
     """
     from . import output as out
-    from .tradeoff import FAMILIES, MOST_SCENES
+    from .families import FAMILIES
+    from .tradeoff import MOST_SCENES
     from .tradeoff import tradeoff as measure
 
     _exclude_each_other(json, csv)

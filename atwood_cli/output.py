@@ -360,7 +360,8 @@ def print_sweep_json(sweep: "Sweep", rows: "Sequence[Row]", names: Sequence[str]
 
 def print_tradeoff(found: "Tradeoff") -> None:
     """A table of the settings for each family of scenes, one of string elements, and what follows."""
-    from .tradeoff import ELEMENTS_LEGEND, FAMILIES, LEGEND
+    from .families import FAMILIES
+    from .tradeoff import ELEMENTS_LEGEND, LEGEND
 
     page = Page()
     for family, measured in groupby(found.measured, attrgetter("family")):

@@ -16,16 +16,15 @@ import pytest
 
 from atwood_cli import solve_arrays, tradeoff
 from atwood_cli.columns import FLOATS, Floats, Pair, Pairs
+from atwood_cli.families import FAMILIES, draw_scenes
 from atwood_cli.scene import Scene
 from atwood_cli.tradeoff import (
     DECIMALS,
-    FAMILIES,
     SETTINGS,
     VALUES,
     March,
     Measured,
     advice,
-    draw_scenes,
     errors,
     in_seconds,
     marches,
