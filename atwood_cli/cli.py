@@ -31,6 +31,7 @@ app = typer.Typer(
       atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3
       atwood contact --m1 1 --m2 3 --M 10 --mu 0.3
       atwood batch scenes.csv -o results.csv
+      atwood tradeoff
     """,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},

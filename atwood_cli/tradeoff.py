@@ -1,8 +1,9 @@
 """What accuracy costs on this machine: time a scene beside the error against the exact values.
 
-Scenes come from a seed, so that the errors can be had again; times are this machine's. Errors are in units in the last place (ulp) of the exact
-value's double, those of a scene the worst of its quantities', and counted where the regime is right.
-The exact values are decimals of `EXACT_DIGITS` digits; the tests hold those to an independent library.
+Scenes come from a seed, so that the errors can be had again; times are this machine's. Errors are in
+units in the last place (ulp) of the exact value's double, those of a scene the worst of its
+quantities', and counted where the regime is right. The exact values are decimals of `EXACT_DIGITS`
+digits; the tests hold what is measured to an independent library.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
