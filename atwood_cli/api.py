@@ -4,7 +4,7 @@ from decimal import Decimal
 from typing import TYPE_CHECKING, Any, overload
 
 from .quantities import NAMES, Solution
-from .scene import Given, Scene, read_digits
+from .scene import Given, read_digits, read_uncertain
 from .solver import Answers
 from .words import notes
 
@@ -49,10 +49,20 @@ def solve(
     no M, a massless pulley, or with mu the one that brings the string to the verge of slipping.
     Defaults: g standard gravity, inertia that of a disk (1/2), wrap 180, mu_k = mu.
 
+    Text may carry a standard uncertainty, as "1.000(2)", "1.000±0.002" or "(250±1)g"; the solution's
+    ``uncertainty`` then has those of the quantities by name, to first order.
+
     Floats come back, each the double nearest to the exact value; with ``digits=N`` Decimals, each
     correctly rounded to N significant digits. Raises SceneError (a ValueError) on bad input.
     """
     given = {key: value for key, value in locals().items() if key != "digits"}
-    answers = Answers(Scene.read(given), read_digits(digits))
+    scene, uncertain = read_uncertain(given)
+    answers = Answers(scene, read_digits(digits))
     values = {name: answers[name] for name in NAMES}
-    return Solution(scene=answers.case.scene, notes=tuple(notes(answers)), **values)
+    remarks, spreads = notes(answers), {}
+    if uncertain:
+        from .uncertainty import propagate
+
+        found = propagate(scene, uncertain, NAMES)
+        remarks, spreads = [*remarks, *found.notes], found.rounded(answers)
+    return Solution(scene=scene, notes=tuple(remarks), uncertainty=spreads, **values)

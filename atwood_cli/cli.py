@@ -15,7 +15,7 @@ from typer.core import TyperCommand
 from . import __version__
 from .output import for_stream
 from .quantities import NAMES
-from .scene import PARAMETERS, Scene, SceneError, nearest, read_digits, read_whole
+from .scene import PARAMETERS, Scene, SceneError, nearest, read_digits, read_uncertain, read_whole
 
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
@@ -111,7 +111,10 @@ Digits = Annotated[
 AsJson = Annotated[bool, _output("--json", help="Print JSON: results, scene and notes.")]
 AsCsv = Annotated[bool, _output("--csv", help="Print CSV, with a line of names first.")]
 Only = Annotated[list[str] | None, _output(metavar="NAME", help="Print only this quantity; repeatable.")]
-
+Budget = Annotated[
+    bool,
+    _output("--budget", help="Also print each uncertain input's share of every result's variance."),
+]
 
 DEFAULT_POINTS = 13
 Points = Annotated[
@@ -246,8 +249,13 @@ def solve(
     json: AsJson = False,
     csv: AsCsv = False,
     only: Only = None,
+    budget: Budget = False,
 ) -> int:
     """Solve one scene: acceleration, tensions, friction, critical masses.
+
+    Any number may have its standard uncertainty, as 1.000+/-0.002 or, in quotes
+    for the shell, '1.000(2)'. Results then have theirs, to first order, and a
+    table ends each value at the second digit of it, whatever --digits.
 
     \b
     Examples:
@@ -255,6 +263,7 @@ def solve(
       atwood solve --m1 250g --m2 300g --M 100g --R 5cm --digits 6
       atwood solve --m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --json
       atwood solve --m1 1 --m2 3 --M 10 --only acceleration --only mu_verge
+      atwood solve --m1 '1.000(2)' --m2 3+/-0.01 --M 10 --budget
     """
     from . import output
     from .solver import Answers
@@ -263,20 +272,30 @@ def solve(
     _exclude_each_other(json, csv)
     names = only or []
     _check_names("only", *names)
-    answers = Answers(Scene.read(given), read_digits(digits))
+    scene, uncertain = read_uncertain(given)
+    answers = Answers(scene, read_digits(digits))
+    bare = bool(names) and not (json or csv)
+    if budget and not uncertain:
+        raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
+    if budget and (csv or bare):
+        raise SceneError("budget", None, f"has no place in {'CSV' if csv else 'bare values'}; take --json")
+    found = None
+    if uncertain:
+        from .uncertainty import propagate
+
+        found = propagate(scene, uncertain, [] if bare else names or NAMES)
     if json:
-        output.print_json(answers, names)
+        output.print_json(answers, names, found, budget)
     elif csv:
-        output.print_csv(answers, names)
+        output.print_csv(answers, names, found)
     elif names:
         output.print_only(answers, names)
     else:
-        output.print_table(answers)
+        output.print_table(answers, found=found, budget=budget)
         return DONE
     if csv or names:
-        for reason in reasons(answers):
+        for reason in [*reasons(answers), *(found.notes if found else [])]:
             _say(reason)
-    bare = not (json or csv)
     return COULD_NOT if bare and not all(output.cell(answers[name]) for name in names) else DONE
 
 

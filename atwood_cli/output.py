@@ -13,7 +13,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from .quantities import NAMES, QUANTITIES
-from .rounding import as_typed, is_infinite, text
+from .rounding import as_typed, is_infinite, text, with_uncertainty
 from .scene import Radians, Scene, stated
 from .solver import Answers
 from .words import notes, reasons_at, verdict
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .elements import Elements
     from .sweep import Row, Sweep
     from .tradeoff import March, Measured, Tradeoff
+    from .uncertainty import Uncertainties
 
 T = TypeVar("T")
 
@@ -53,11 +54,21 @@ def takes_unicode(stream: TextIO | None) -> bool:
     return encoding.lower().startswith("utf")
 
 
-def print_json(answers: Answers, only: Sequence[str]) -> None:
-    """All quantities with scene and notes, or only those named."""
+def print_json(
+    answers: Answers, only: Sequence[str], found: "Uncertainties | None" = None, budget: bool = False
+) -> None:
+    """All quantities with scene and notes, or only those named; uncertainties where inputs have some."""
     results: dict[str, object] = {name: answers[name] for name in only or NAMES}
+    if found:
+        results["uncertainty"] = found.rounded(answers)
+        if budget:
+            results["budget"] = {
+                name: {x: answers.round(100 * share) for x, share in spread.shares.items()} or None
+                for name, spread in found.spreads.items()
+            }
     if not only:
-        results = {"scene": _scene(answers.case.scene), **results, "notes": notes(answers)}
+        every = [*notes(answers), *(found.notes if found else [])]
+        results = {"scene": _scene(answers.case.scene), **results, "notes": every}
     print(_json(results))
 
 
@@ -89,9 +100,11 @@ def _json(value: object, indent: str = "\n") -> str:
     return json.dumps(value)
 
 
-def print_csv(answers: Answers, only: Sequence[str]) -> None:
-    """A line of names and a line of values; a value that does not exist is empty."""
-    print_records_csv([{name: answers[name] for name in only or NAMES}])
+def print_csv(answers: Answers, only: Sequence[str], found: "Uncertainties | None" = None) -> None:
+    """A line of names and a line of values, then of uncertainties; what does not exist is empty."""
+    spreads = found.rounded(answers) if found else {}
+    values = {name: answers[name] for name in only or NAMES}
+    print_records_csv([values | {f"u_{name}": u for name, u in spreads.items()}])
 
 
 def cell(value: object) -> str:
@@ -104,14 +117,15 @@ def cell(value: object) -> str:
     return str(value or "")
 
 
-def describe(scene: Scene, ranges: Mapping[str, object] = {}) -> str:
-    """The scene in one line, as understood, with ranges as typed in place of values."""
+def describe(scene: Scene, ranges: Mapping[str, object] = {}, found: "Uncertainties | None" = None) -> str:
+    """The scene in one line, as understood, with uncertainties, or with ranges as typed."""
     parts = []
     for name, value in {**_scene(scene), **ranges}.items():
+        spread = f" ± {as_typed(found.given[name])}" if found and name in found.given else ""
         if isinstance(value, Fraction):
-            parts.append(stated(name, as_typed(value)))
+            parts.append(stated(name, f"{as_typed(value)}{spread}"))
         elif value is not None:
-            parts.append(f"{name} = {value}")
+            parts.append(f"{name} = {str(value).replace('rad', f'{spread}rad')}")
     return ", ".join(parts)
 
 
@@ -130,9 +144,9 @@ class Page:
 
         self.console.print(Text(for_stream(words, sys.stdout), style), soft_wrap=self.room is None)
 
-    def head(self, answers: Answers) -> None:
+    def head(self, answers: Answers, found: "Uncertainties | None" = None) -> None:
         """The scene and the verdict."""
-        self.say(describe(answers.case.scene))
+        self.say(describe(answers.case.scene, found=found))
         self.say(verdict(answers), f"bold {REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]], keys: int = 1) -> None:
@@ -162,12 +176,17 @@ class Page:
         self.console.width = room
 
 
-def print_table(answers: Answers, console: "Console | None" = None) -> None:
-    """The scene, the verdict, a table of the quantities that exist, and the notes."""
+def print_table(
+    answers: Answers,
+    console: "Console | None" = None,
+    found: "Uncertainties | None" = None,
+    budget: bool = False,
+) -> None:
+    """The scene, the verdict, the quantities that exist, the notes, and the budget if asked for."""
     page = Page(console)
-    groups = _rows(answers)
+    groups = _rows(answers, found)
     _, *others = notes(answers)
-    page.head(answers)
+    page.head(answers, found)
     columns = list(COLUMNS)
     while page.room and _width(columns, groups) > page.room:
         columns.pop()
@@ -175,18 +194,20 @@ def print_table(answers: Answers, console: "Console | None" = None) -> None:
     if groups and len(columns) > 1:
         page.table(columns, groups)
     else:  # not even two columns fit: a plain line a quantity
-        for name, value, unit, *_ in chain.from_iterable(_rows(answers)):
+        for name, value, unit, *_ in chain.from_iterable(_rows(answers, found)):
             page.console.out(f"{name} = {value.lstrip()} {unit}".rstrip())
-    for note in others:
+    for note in [*others, *(found.notes if found else [])]:
         page.say(note)
+    if found and budget:
+        _print_budget(page, found)
 
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
 
-def _rows(answers: Answers) -> list[list[list[str]]]:
+def _rows(answers: Answers, found: "Uncertainties | None") -> list[list[list[str]]]:
     """The cells of the table, a row for each quantity that exists, by group."""
-    values = {name: shown for name in QUANTITIES if (shown := cell(answers[name]))}
+    values = {name: shown for name in QUANTITIES if (shown := _cell_with_uncertainty(answers, name, found))}
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, _aligned(values.values()), strict=True):
         about = QUANTITIES[name]
@@ -196,6 +217,22 @@ def _rows(answers: Answers) -> list[list[list[str]]]:
         row = [name, value, about.unit, about.symbol, equation]
         groups.setdefault(about.group, []).append([for_stream(word, sys.stdout) for word in row])
     return list(groups.values())
+
+
+def _cell_with_uncertainty(answers: Answers, name: str, found: "Uncertainties | None") -> str:
+    shown = cell(answers[name])
+    u = found.spreads[name].u if found and shown else None
+    return with_uncertainty(lambda place: answers.cut(name, place), u) if u else shown
+
+
+def _print_budget(page: Page, found: "Uncertainties") -> None:
+    """By quantity, each uncertain input's share of the variance."""
+    page.say("Each input's share of the variance, in percent:")
+    spreads = {name: spread.shares for name, spread in found.spreads.items() if spread.shares}
+    columns = [_aligned(f"{100 * shares[x]:.1f}" for shares in spreads.values()) for x in found.given]
+    rows = zip(spreads.items(), zip(*columns, strict=True), strict=True)
+    by_group = groupby(rows, lambda row: QUANTITIES[row[0][0]].group)
+    page.table(["Quantity", *found.given], [[[name, *cells] for (name, _), cells in g] for _, g in by_group])
 
 
 def _aligned(numbers: Iterable[str]) -> list[str]:
@@ -464,7 +501,7 @@ def _with_bar(parts: Iterator[T], done: int, total: int | None, size: Callable[[
 
 
 def _integer_part(value: str) -> int:
-    return len(value.partition(".")[0].partition("e")[0])
+    return len(value.partition(" ")[0].partition(".")[0].partition("e")[0])
 
 
 def print_only(answers: Answers, only: Iterable[str]) -> None:

@@ -1,5 +1,6 @@
 """The registry: every quantity's name, symbol, unit, equation and meaning, once."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from decimal import Decimal
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -31,6 +32,8 @@ class Solution(Generic[T]):
     """The state of a scene: floats, or Decimals if digits were asked for; None if undetermined.
 
     ``scene`` is what was given, ``notes`` say why the regime is what it is and why a value is None.
+    ``uncertainty`` has the standard uncertainty of every quantity by name, and is empty if all that
+    was given is exact; one is None, with a note, where there is none to first order.
     Forces are on the pulley, x from the axle to where m1's string meets it, y up; accelerations,
     torque and angles are positive the way m2 descends.
     """
@@ -57,6 +60,7 @@ class Solution(Generic[T]):
     least_heavier_mass: T | None = _is("limits", "m min", "kg", "(36)", "what the heavier mass must exceed to slip")
     least_pulley_mass: T | None = _is("limits", "M min", "kg", "(36)", "what the pulley's mass must exceed to slip")
     # fmt: on
+    uncertainty: Mapping[str, T | None] = field(default_factory=dict, hash=False)
 
 
 QUANTITIES: dict[str, About] = {

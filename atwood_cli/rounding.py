@@ -18,6 +18,7 @@ Rounding = Callable[[Fraction | Decimal], T]
 
 # Far more than any valid input was found to need (about 6000): a bug must not become a hang.
 LARGEST_PRECISION = 50_000
+WIDE = 5000  # digits, more than the ratio of any two numbers written beside each other has
 
 
 def to_double(x: Fraction | Decimal) -> float:
@@ -47,6 +48,19 @@ def to_digits(digits: int) -> Rounding[Decimal]:
         if not value.is_finite():
             return value
         return context.quantize(value, Decimal((0, (1,), value.adjusted() - digits + 1)))
+
+    return round_
+
+
+def to_place(place: int) -> Rounding[Decimal]:
+    """Rounding to a multiple of 10^place, half to even, never -0."""
+    context, unit = decimal_context(WIDE, ROUND_HALF_EVEN), Decimal((0, (1,), place))
+
+    def round_(x: Fraction | Decimal) -> Decimal:
+        if isinstance(x, Fraction):  # to a whole number of units first, which is exact
+            x = context.multiply(Decimal(round(x / Fraction(10) ** place)), unit)
+        value = context.quantize(x, unit) if x.is_finite() else x
+        return value if value else value.copy_abs()
 
     return round_
 
@@ -106,11 +120,25 @@ def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits:
 
 def as_typed(q: Fraction) -> str:
     """The exact decimal of a rational number, or n/d where it has none."""
-    context = decimal_context(5000, ROUND_HALF_EVEN)
+    context = decimal_context(WIDE, ROUND_HALF_EVEN)
     value = context.divide(Decimal(q.numerator), Decimal(q.denominator))
     if context.flags[Inexact]:
         return str(q)
     return text(context.normalize(value) if value.adjusted() >= 16 else value)
+
+
+def with_uncertainty(cut: Callable[[int], Decimal], u: Decimal) -> str:
+    """A value and its standard uncertainty u > 0, both cut at the second digit of u: 0.764 ± 0.012.
+
+    ``cut`` rounds the value to a multiple of a power of ten, as `to_place` does.
+    """
+    place = to_digits(2)(u).adjusted() - 1
+    pair = cut(place), to_place(place)(u)
+    power = max(x.adjusted() for x in pair if x)
+    if -4 <= power < 16:
+        return "{:f} ± {:f}".format(*pair)
+    context = decimal_context(WIDE, ROUND_HALF_EVEN)
+    return "({:f} ± {:f})e{}".format(*(context.scaleb(x, -power) for x in pair), power)
 
 
 def text(value: float | Decimal) -> str:

@@ -60,6 +60,17 @@ MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 NUMBER = re.compile(r"([+-]?)(\d+(?:\.\d+)?|\.\d+)(?:e([+-]?\d+))?(?: *([A-Za-z]+|°))?", re.ASCII)
 NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
 
+# An uncertainty: in units of the last digit, 1.000(2), or written out, 1.000±0.002, (1.000±0.002)g.
+_DIGITS, _EXPONENT, _UNIT = r"(?:\d+(?:\.\d+)?|\.\d+)", r"(?:e[+-]?\d+)?", r"(?: *(?:[A-Za-z]+|°))?"
+IN_LAST_DIGITS = rf"([+-]?{_DIGITS})\((\d+)\)({_EXPONENT}{_UNIT})"
+IN_BRACKETS = rf"\(([+-]?{_DIGITS}) *(?:±|\+/-) *({_DIGITS})\)({_EXPONENT}{_UNIT})"
+WRITTEN_OUT = rf"([+-]?{_DIGITS}{_EXPONENT})({_UNIT}) *(?:±|\+/-) *({_DIGITS}{_EXPONENT})({_UNIT})"
+UNCERTAIN = ("(", "±", "+/-")
+NOT_UNCERTAIN = (
+    "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+/-0.002 or 1.000(2),"
+    " and a unit after that"
+)
+
 
 class SceneError(ValueError):
     """An input that is not a valid scene: ``parameter``, its ``value`` as given, the ``rule``."""
@@ -176,6 +187,38 @@ class Scene(NamedTuple):
             raise SceneError("I", given["I"], f"contradicts M = {given['M']}; leave one of them out")
 
 
+def read_uncertain(given: Mapping[str, Given | None]) -> tuple[Scene, dict[str, Fraction]]:
+    """The scene given, and the standard uncertainties of what is not exact in it. Raises SceneError."""
+    plain, uncertain = dict(given), {}
+    for name, words in given.items():
+        if isinstance(words, str) and any(mark in words for mark in UNCERTAIN):
+            plain[name], uncertain[name] = split_uncertainty(name, words)
+    try:
+        scene = Scene.read(plain)
+        spreads = {name: _read_text(name, words, PARAMETERS[name]) for name, words in uncertain.items()}
+    except SceneError as error:
+        typed = None if error.value is None else given[error.parameter]
+        raise SceneError(error.parameter, typed, error.rule) from None
+    return scene, {name: Fraction(spread) for name, spread in spreads.items() if spread}
+
+
+def split_uncertainty(name: str, given: str) -> tuple[str, str]:
+    """The texts of a value and of its uncertainty: 0.25(12)g is 0.25g and 0.12g. Raises SceneError."""
+    if match := re.fullmatch(IN_LAST_DIGITS, given, re.ASCII):
+        value, digits, tail = match.groups()
+        places = len(value.partition(".")[2])
+        point = max(1, len(digits) - places)
+        digits = digits.zfill(point + places)
+        return value + tail, f"{digits[:point]}{'.' * bool(places)}{digits[point:]}{tail}"
+    if match := re.fullmatch(IN_BRACKETS, given, re.ASCII):
+        value, spread, tail = match.groups()
+        return value + tail, spread + tail
+    match = re.fullmatch(WRITTEN_OUT, given, re.ASCII)
+    if not match or match[2] not in ("", match[4]):
+        raise SceneError(name, given, NOT_UNCERTAIN)
+    return match[1] + match[4], match[3] + match[4]
+
+
 def read_value(name: str, given: Given | None) -> Any:
     """The exact value of one parameter (None, Fraction or inf). Raises SceneError."""
     default = {"g": STANDARD_GRAVITY, "wrap": "180"}
@@ -232,6 +275,8 @@ def _read_text(name: str, given: str, parameter: Parameter) -> Fraction | float:
 def _not_a_number(parameter: Parameter, word: str) -> str:
     if word.lower() in ("nan", "inf", "+inf", "-inf", "infinity"):
         return parameter.domain
+    if any(mark in word for mark in UNCERTAIN):
+        return "carries an uncertainty, which only solve takes; give the value alone"
     near = nearest(word, parameter.names)
     return f"{NOT_A_NUMBER}{_or_one_of(parameter.names)}{near}"
 

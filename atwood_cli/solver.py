@@ -18,6 +18,7 @@ from .rounding import (
     settle,
     to_digits,
     to_double,
+    to_place,
 )
 from .scene import Scene
 
@@ -54,6 +55,12 @@ class Answers:
                 self._values[name] = None
                 self.reasons[name] = str(reason)
         return self._values[name]
+
+    def cut(self, name: str, place: int) -> Decimal:
+        """The value of a quantity that exists, rounded to a multiple of 10^place."""
+        value = self._settle(attrgetter(name), to_place(place))
+        assert isinstance(value, Decimal)
+        return value
 
     def settle(self, quantity: OnMachine) -> float | Decimal:
         """Anything that a machine has, correctly rounded. Raises Undetermined."""

@@ -40,6 +40,7 @@ def solve(
     as_json: Annotated[bool, option("--json")] = False,
     csv: Annotated[bool, option("--csv")] = False,
     only: Annotated[list[str] | None, option("--only")] = None,
+    budget: Annotated[bool, option("--budget")] = False,
 ) -> None:
     if as_json:
         print(json.dumps({"acceleration": 0.764026672247107}))

@@ -1,0 +1,561 @@
+"""Standard uncertainties: how they are typed, propagated, shown, and what is refused."""
+
+import csv
+import io
+import json
+import re
+import subprocess
+import sys
+from decimal import Decimal
+from fractions import Fraction
+from math import pi, sqrt
+from typing import Any
+
+import mpmath
+import pytest
+import sympy as sp
+import uncertainties as unc
+from uncertainties import umath
+
+from atwood_cli import SceneError, solve
+from atwood_cli.quantities import NAMES
+from atwood_cli.rounding import to_place, with_uncertainty
+from atwood_cli.scene import Radians, read_uncertain
+from atwood_cli.uncertainty import Spread, propagate
+
+from .running import Atwood, on_terminal, plain, process
+
+UNCERTAIN = ["solve", "--m1", "1.000(2)", "--m2", "3+/-0.01", "--M", "10"]
+
+
+def spreads(names: str = " ".join(NAMES), **given: str) -> dict[str, Spread]:
+    return dict(propagate(*read_uncertain(given), names.split()).spreads)
+
+
+# How they are typed
+
+
+@pytest.mark.parametrize(
+    ("text", "value", "u"),
+    [
+        ("1.000(2)", "1", "0.002"),
+        ("1.00(12)", "1", "0.12"),
+        ("1.5(2)e-3", "0.0015", "0.0002"),
+        ("1.5(234)", "1.5", "23.4"),
+        (".5(1)", "0.5", "0.1"),
+        ("250(1)", "250", "1"),
+        ("250.0(5)g", "0.25", "0.0005"),
+        ("250.0(5) g", "0.25", "0.0005"),
+        ("1.000±0.002", "1", "0.002"),
+        ("1.000+/-0.002", "1", "0.002"),
+        ("1 ± .5", "1", "0.5"),
+        ("1e-3±2e-5", "0.001", "0.00002"),
+        ("250±1g", "0.25", "0.001"),
+        ("250±1 g", "0.25", "0.001"),
+        ("250 g ± 1 g", "0.25", "0.001"),
+        ("(250±1)g", "0.25", "0.001"),
+        ("(250 +/- 1) g", "0.25", "0.001"),
+        ("(2.5±0.1)e-1kg", "0.25", "0.01"),
+        ("0(1)", "0", "1"),
+        ("1.000", "1", "0"),
+        ("1.000(0)", "1", "0"),
+        ("1±0", "1", "0"),
+    ],
+)
+def test_text(text: str, value: str, u: str) -> None:
+    scene, uncertain = read_uncertain({"m1": text, "m2": "3"})
+    assert scene.m1 == Fraction(value)
+    assert uncertain == ({"m1": Fraction(u)} if Fraction(u) else {})
+
+
+def test_angles_stay_in_their_unit() -> None:
+    scene, uncertain = read_uncertain({"m1": "1", "m2": "3", "wrap": "3.14(2)rad"})
+    assert type(scene.wrap) is Radians
+    assert uncertain == {"wrap": Fraction("0.02")}
+    turns = read_uncertain({"m1": "1", "m2": "3", "wrap": "0.5±0.01turn"})
+    assert (turns[0].wrap, turns[1]["wrap"]) == (Fraction(180), Fraction("3.6"))
+
+
+FORMS = (
+    "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+/-0.002 or 1.000(2), and a unit"
+    " after that"
+)
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        *(
+            ({"m1": bad}, f"m1 {bad!r} {FORMS}")
+            for bad in (
+                *("1.0(0.2)", "1.0()", "(1.0)", "1±", "±1", "1±-1", "1±1±1", "1.0(2)(3)", "1 (2)", "1.0(2"),
+                *("1g±1", "1kg±1g", "inf±1", "1±inf", "1±5%", "(1e3±1)", "1E3±1", "1,5±1", "sin(1)"),
+            )
+        ),
+        ({"g": "moon±0.1"}, f"g 'moon±0.1' {FORMS}"),
+        ({"m1": "-1.0(2)"}, "m1 '-1.0(2)' must be 0 or more, and finite"),
+        ({"g": "0±1"}, "g '0±1' must be above 0, and finite"),
+        ({"m1": "1.0(2)kgs"}, "m1 '1.0(2)kgs' has the unknown unit 'kgs'; did you mean kg?"),
+        ({"mu": "0.30(1)kg"}, "mu '0.30(1)kg' must be a plain number, without the 'kg'"),
+        ({"m1": "1±1e501"}, "m1 '1±1e501' has an exponent beyond 500 in magnitude"),
+        (
+            {"mu": "0.30(1)", "mu_k": "0.40(1)"},
+            "mu_k '0.40(1)' must not be above mu; exactly, 0.4 > 0.3",
+        ),
+        ({"m2": None, "m1": "1(1)"}, "m2 is missing; give both masses, m1 and m2"),
+    ],
+)
+def test_errors_say_what_was_typed(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        solve(**{"m1": "1", "m2": "3", **given})
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(
+    "arguments", ["contact --m1 1.0(2) --m2 3", "sweep --m1 1.0(2) --m2 3 --M 1:2:3", "batch -"]
+)
+def test_only_solve_takes_them(arguments: str, atwood: Atwood) -> None:
+    rule = "'1.0(2)' carries an uncertainty, which only solve takes; give the value alone"
+    if arguments == "batch -":
+        ran = process(shell="printf 'm1,m2\\n1.0(2),3\\n' | atwood batch - --only regime")
+        assert ran.out == f'm1,m2,regime,error\n1.0(2),3,,"m1 {rule}"\n'
+        return
+    ran = atwood(*arguments.split())
+    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: --m1 {rule}\n")
+
+
+# Against the package `uncertainties`, with formulas of its own
+
+
+def by_hand(regime: str, x: dict[str, Any], phi: Any) -> dict[str, Any]:
+    """The paper's formulas in any arithmetic that has umath's functions."""
+    m1, m2, M, mu, g, beta, R = (x[n] for n in "m1 m2 M mu g inertia R".split())
+    first = (m2 - m1).nominal_value > 0
+    l, h = (m1, m2) if first else (m2, m1)
+    k = umath.exp(mu * phi)
+    out: dict[str, Any] = {"least_heavier_mass": l * k, "least_pulley_mass": 2 * l * (k - 1) / beta}
+    out["critical_pulley_mass"] = 2 * l * h * (k - 1) / (beta * (h - l * k))
+    if regime == "verge":
+        M = out["critical_pulley_mass"]
+    else:
+        c = beta * M
+        out["critical_heavier_mass"] = c * l * k / (c - 2 * l * (k - 1))
+    if regime == "slip":
+        mu_friction = x["mu_k"]
+        ratio = umath.exp(mu_friction * phi)
+        a = g * (h - l * ratio) / (h + l * ratio)
+    else:
+        mu_friction = mu
+        a = g * (h - l) / (h + l + beta * M)
+    light, heavy = l * (g + a), h * (g - a)
+    tensions = (light, heavy) if first else (heavy, light)
+    out["tension_1"], out["tension_2"] = tensions
+    rim = (heavy - light) / (beta * M)
+    sign = 1 if first else -1
+    out["acceleration"], out["rim_acceleration"] = sign * a, sign * rim
+    out["torque"], out["angular_acceleration"] = sign * R * (heavy - light), sign * rim / R
+    at_grip = g * (h - l) / (h + l + beta * M)
+    out["mu_verge"] = umath.log(h * (g - at_grip) / (l * (g + at_grip))) / phi
+    resultant = umath.sqrt(light**2 + heavy**2 - 2 * light * heavy * umath.cos(phi))
+    if regime == "no-slip":
+        alpha = umath.log(heavy / light) / mu
+        longest = umath.sqrt(light**2 + heavy**2 - 2 * light * heavy * umath.cos(alpha))
+        out["friction_force_max"] = mu / umath.sqrt(1 + mu**2) * longest
+    else:
+        out["friction_force"] = mu_friction / umath.sqrt(1 + mu_friction**2) * resultant
+    return out
+
+
+INPUTS: dict[str, dict[str, tuple[str, str]]] = {
+    "no-slip": {"M": ("10", "0.2"), "mu": ("0.3", "0.01")},
+    "verge": {"mu": ("0.3", "0.01")},
+    "slip": {"M": ("100", "3"), "mu": ("0.3", "0.01"), "mu_k": ("0.25", "0.02")},
+}
+COMMON = {"g": ("9.81", "0.01"), "inertia": ("0.5", "0.01"), "R": ("0.05", "0.001")}
+MASSES = {"m1": ("1", "0.002"), "m2": ("3", "0.01")}
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize("wrap", [("180", "0"), ("160", "2"), ("3", "0.05")])
+@pytest.mark.parametrize("regime", INPUTS)
+def test_every_regime_against_uncertainties(regime: str, wrap: tuple[str, str], mirrored: bool) -> None:
+    masses = MASSES if not mirrored else {"m1": MASSES["m2"], "m2": MASSES["m1"]}
+    inputs = masses | INPUTS[regime] | COMMON
+    radians = wrap[0] == "3"
+    x: dict[str, Any] = {name: unc.ufloat(float(v), float(u)) for name, (v, u) in inputs.items()}
+    angle = unc.ufloat(float(wrap[0]), float(wrap[1])) if wrap[1] != "0" else unc.ufloat(180, 1e-99)
+    expected = by_hand(regime, {"M": None, **x}, angle if radians else angle * pi / 180)
+    text = {name: f"{v}±{u}" for name, (v, u) in inputs.items()}
+    text["wrap"] = f"{wrap[0]}±{wrap[1]}{'rad' if radians else ''}"
+    solution = solve(**text)
+    assert solution.regime == regime
+    assert list(solution.uncertainty) == list(NAMES[1:])
+    found = spreads(**text)
+    # friction at α of the circle is where doubles lose most; all else agrees to 13 digits.
+    for name, quantity in expected.items():
+        u = solution.uncertainty[name]
+        assert u == pytest.approx(quantity.std_dev, rel=1e-12), name
+        assert getattr(solution, name) == pytest.approx(quantity.nominal_value, rel=1e-12), name
+        by_input = {id(v): c**2 / quantity.std_dev**2 for v, c in quantity.error_components().items()}
+        for label, variable in {**x, "wrap": angle}.items():
+            share = float(found[name].shares.get(label, 0))
+            assert share == pytest.approx(by_input.get(id(variable), 0), rel=1e-9, abs=1e-24), (name, label)
+
+
+def test_kinetic_friction_that_is_not_given_follows_the_static() -> None:
+    slipping = {"m1": "1", "m2": "3", "M": "100", "mu": "0.25(2)"}
+    alone = spreads("acceleration", **slipping)["acceleration"]
+    twin = spreads("acceleration", **(slipping | {"mu": "0.25", "mu_k": "0.25(2)"}))["acceleration"]
+    assert alone.u == twin.u != 0
+    both = spreads("acceleration", **(slipping | {"mu_k": "0.25"}))["acceleration"]
+    assert both.u == 0
+
+
+def test_the_least_friction_force_against_mpmath() -> None:
+    """The least over s of |T_l e^{(μ+i)s} (1 - e^{iδ}) + T_h e^{iφ} - T_l|, differentiated numerically."""
+    with mpmath.workdps(60):
+
+        def least(m1: Any, M: Any, mu: Any) -> Any:
+            g, m2, phi = mpmath.mpf("9.80665"), mpmath.mpf(3), mpmath.mpf(150) / 180 * mpmath.pi
+            a = g * (m2 - m1) / (m1 + m2 + M / 2)
+            light, heavy = m1 * (g + a), m2 * (g - a)
+            alpha = mpmath.log(heavy / light) / mu
+            stuck = 1 - mpmath.expj(phi - alpha)
+
+            def force(s: Any) -> Any:
+                return abs(light * mpmath.exp((mu + 1j) * s) * stuck + heavy * mpmath.expj(phi) - light)
+
+            s = mpmath.findroot(lambda s: mpmath.diff(force, s), alpha / 2)
+            return mu / mpmath.sqrt(1 + mu**2) * force(s)
+
+        at, us = (mpmath.mpf(1), mpmath.mpf(10), mpmath.mpf("0.3")), ("0.002", "0.1", "0.01")
+        gradient = [mpmath.diff(least, at, n=tuple(int(i == j) for j in range(3))) for i in range(3)]
+        u = mpmath.sqrt(sum((d * mpmath.mpf(u)) ** 2 for d, u in zip(gradient, us, strict=True)))
+    solution = solve(m1="1±0.002", m2="3", M="10±0.1", mu="0.3±0.01", wrap="150")
+    assert solution.uncertainty["friction_force_min"] == pytest.approx(float(u), rel=1e-14)
+
+
+# Against derivatives by SymPy where doubles have nothing left
+
+
+l, h, M, mu, g = sp.symbols("l h M mu g", positive=True)
+GRIP = g * (h - l) / (l + h + M / 2)
+SLIP = g * (h - l * sp.exp(mu * sp.pi)) / (h + l * sp.exp(mu * sp.pi))
+VERGE = sp.log(h * (g - GRIP) / (l * (g + GRIP))) / sp.pi
+CRITICAL = 4 * l * h * (sp.exp(mu * sp.pi) - 1) / (h - l * sp.exp(mu * sp.pi))
+SYMBOLS = {"m1": l, "m2": h, "M": M, "mu": mu, "g": g}
+
+
+def by_sympy(formula: sp.Expr, values: dict[str, str], us: dict[str, str]) -> float:
+    at = {SYMBOLS[name]: sp.Rational(Fraction(v)) for name, v in {"g": "9.80665", **values}.items()}
+    parts = [formula.diff(SYMBOLS[name]).subs(at) * sp.Rational(Fraction(u)) for name, u in us.items()]
+    with mpmath.workdps(30):
+        return float(mpmath.sqrt(sum(mpmath.mpf(sp.N(part, 30, maxn=5000)) ** 2 for part in parts)))
+
+
+def critical_mass(digits: int) -> str:
+    return str(solve(m1="1", m2="3", mu="0.3", digits=digits).critical_pulley_mass)
+
+
+K = str(solve(m1="1", m2="3", mu="0.3", digits=60).least_heavier_mass)
+BEYOND_K = f"{K[:40]}{int(K[40]) + 1}"  # about 1e-40 above, and not 9 there
+
+
+@pytest.mark.parametrize(
+    ("name", "formula", "values", "us"),
+    [
+        # Nearly equal masses: the kink is 1e-30, 1e-90 and 1e-300 away.
+        *(
+            ("mu_verge", VERGE, {"m1": "1", "m2": f"1.{'0' * zeros}1", "M": "10"}, {"m1": "0.002", "M": "1"})
+            for zeros in (29, 89, 299)
+        ),
+        ("acceleration", GRIP, {"m1": "1", "m2": f"1.{'0' * 99}1", "M": "10"}, {"M": "1"}),
+        # Nearly critical: the drive is 1e-40 of the masses, and the verge 1e-60 and 1e-150 away.
+        (
+            "critical_pulley_mass",
+            CRITICAL,
+            {"m1": "1", "m2": BEYOND_K, "mu": "0.3"},
+            {"mu": "0.01", "m2": "0.1"},
+        ),
+        *(
+            (
+                "acceleration",
+                formula,
+                {"m1": "1", "m2": "3", "mu": "0.3", "M": mass},
+                {"M": "1", "mu": "0.01"},
+            )
+            for digits in (60, 150)
+            for formula, mass in (
+                (GRIP, critical_mass(digits)[:-2]),
+                (SLIP, critical_mass(digits)[:-2] + "99"),
+            )
+        ),
+        # Of scales far apart, and uncertainties far above and below what they are of.
+        ("mu_verge", VERGE, {"m1": "1", "m2": "3", "M": "1e-200"}, {"m1": "0.01", "M": "1e-3"}),
+        ("mu_verge", VERGE, {"m1": "1", "m2": "3", "M": "10"}, {"M": "1e-300"}),
+        ("acceleration", SLIP, {"m1": "1", "m2": "3", "M": "10", "mu": "1e-100"}, {"mu": "1e-101"}),
+        ("acceleration", GRIP, {"m1": "1e-200", "m2": "3e-200", "M": "1"}, {"m1": "1e-202"}),
+    ],
+)
+def test_extremes_against_sympy(
+    name: str, formula: sp.Expr, values: dict[str, str], us: dict[str, str]
+) -> None:
+    text = values | {x: f"{values[x]}±{u}" for x, u in us.items()}
+    found = spreads(name, **text)[name]
+    assert found.u is not None
+    assert float(found.u) == pytest.approx(by_sympy(formula, values, us), rel=1e-15)
+
+
+# Ends of domains, kinks, and values that are not there nearby
+
+
+def test_at_the_end_of_a_domain_the_slope_is_that_inside() -> None:
+    solution = solve(m1="1", m2="3", M="0±0.1")
+    # c = M/2: a = 2 g/(4 + c), and ln(T2/T1) grows by c (h - l)/(2 l h).
+    assert solution.uncertainty["acceleration"] == pytest.approx(9.80665 * 2 / 16 * 0.05, rel=1e-15)
+    assert solution.uncertainty["mu_verge"] == pytest.approx(0.05 / 3 / pi, rel=1e-15)
+    frictionless = solve(m1="1", m2="3", M="10", mu="0±0.01")
+    # a = g (3 - k)/(3 + k) at k = 1.
+    assert frictionless.uncertainty["acceleration"] == pytest.approx(9.80665 * 6 / 16 * pi * 0.01, rel=1e-15)
+
+
+def test_a_slope_that_vanishes_is_zero() -> None:
+    assert solve(m1="1", m2="3", M="0±0.1").uncertainty["friction_force_y"] == 0  # as mu_verge squared
+    assert solve(m1="1", m2="3", M="10±1").uncertainty["critical_pulley_mass"] is None
+    assert solve(m1="1", m2="3", M="10±1", mu="0.3").uncertainty["critical_pulley_mass"] == 0
+
+
+def test_equal_masses_have_kinks_where_friction_is_needed_and_slopes_elsewhere() -> None:
+    solution = solve(m1="1.00(2)", m2="1", M="10")
+    found = solution.uncertainty
+    assert found["acceleration"] == pytest.approx(9.80665 / 7 * 0.02, rel=1e-15)
+    assert found["friction_force_y"] == 0
+    assert found["mu_verge"] is None
+    assert (
+        "u_mu_verge, u_friction_force: unknown where the masses are equal, as there it has a kink."
+        in solution.notes
+    )
+
+
+def test_half_a_turn_that_may_be_more() -> None:
+    solution = solve(m1="1", m2="3", M="10", mu="0.3", wrap="180±2")
+    assert solution.axle_force is not None
+    assert solution.uncertainty["axle_force"] is None
+    beside = "unknown, as with another wrap it may have no value:"
+    assert (
+        f"u_axle_force: {beside} defined for half a turn of wrap (and whole turns more), where both ends pull"
+        " downwards." in solution.notes
+    )
+    assert (
+        f"u_friction_force_min, u_friction_force_max: {beside} bounds are known for up to half a turn of wrap"
+        " (180 degrees)." in solution.notes
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (
+            {"m1": "1.00(1)", "m2": "1.02(1)"},
+            "Which mass is heavier is in doubt: m2 - m1 = 0.020 ± 0.014 kg is within",
+        ),
+        ({"m1": "1.00(1)", "m2": "1.03(1)"}, ""),
+        (
+            {"M": "10", "mu": "0.21(1)"},
+            "Whether the string slips is in doubt: mu - mu_verge = 0.004 ± 0.010 is within",
+        ),
+        (
+            {"M": "10", "mu": "0.20(1)"},
+            "Whether the string slips is in doubt: mu - mu_verge = -0.006 ± 0.010 is within",
+        ),
+        ({"M": "10", "mu": "0.23(1)"}, ""),
+        (
+            {"M": "10(1)", "mu": "0.22"},
+            "Whether the string slips is in doubt: mu - mu_verge = 0.0142 ± 0.0083 is within",
+        ),
+        ({"M": "10(1)", "mu": "0.25"}, ""),
+        ({"M": "10(1)"}, ""),
+        (
+            {"mu": "0.35(1)"},
+            "Whether any pulley can make the string slip is in doubt: mu - mu_verge of a locked pulley = 0.000 ± 0.010"
+            " is within",
+        ),
+        ({"m2": "1", "m1": "1.0(5)", "M": "10", "mu": "0.1"}, "mu - mu_verge = 0.10 ± 0.11 is within"),
+        ({"mu": "0.30(1)", "m1": "1(1)e-40", "m2": "1"}, ""),
+    ],
+)
+def test_what_is_in_doubt_is_said(given: dict[str, str], words: str) -> None:
+    notes = [note for note in solve(**{"m1": "1", "m2": "3", **given}).notes if "in doubt" in note]
+    if not words:
+        assert notes == []
+        return
+    assert any(words in note for note in notes)
+    assert all(
+        note.endswith(
+            "within 2 standard uncertainties of 0 (95 % of a normal distribution). The results are for the"
+            " inputs as given."
+        )
+        for note in notes
+    )
+
+
+# How they are shown
+
+
+def test_the_table_ends_values_at_the_second_digit_of_their_uncertainty(atwood: Atwood) -> None:
+    ran = atwood(*UNCERTAIN)
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.startswith("m1 = 1 ± 0.002 kg, m2 = 3 ± 0.01 kg, M = 10 kg, g")
+    assert re.search(r"│ acceleration +│ +2\.1793 ± 0\.0089 +│", ran.out)
+    assert re.search(r"│ tension_2 +│ +22\.882 ± 0\.051 +│", ran.out)
+    assert re.search(r"│ axle_force +│ 132\.935 ± 0\.066 +│", ran.out)
+
+
+def test_what_has_no_uncertainty_is_shown_in_full(atwood: Atwood) -> None:
+    assert re.search(r"│ mu_verge +│ +0 +│", atwood("solve", "--m1", "1.000(2)", "--m2", "3").out)
+    given = ["solve", "--m1", "1", "--m2", "3", "--M", "10", "--g", "9.81(1)"]
+    assert re.search(r"│ mu_verge +│ +0\.20582781927064067 +│", atwood(*given).out)
+    assert re.search(r"│ mu_verge +│ +0\.2058 +│", atwood(*given, "--digits", "4").out)
+    assert re.search(r"│ acceleration +│ +2\.1800 ± 0\.0022 +│", atwood(*given, "--digits", "1").out)
+
+
+@pytest.mark.parametrize(
+    ("value", "u", "shown"),
+    [
+        ("0.7640266", "0.0123", "0.764 ± 0.012"),
+        ("0.7640266", "0.0996", "0.76 ± 0.10"),
+        ("9.8765", "0.994", "9.88 ± 0.99"),
+        ("9.8765", "0.995", "9.9 ± 1.0"),
+        ("1211148", "7740", "1211100 ± 7700"),
+        ("9.80665", "98.0665", "10 ± 98"),
+        ("0.00980665", "98.0665", "0 ± 98"),
+        ("-0.0049", "0.15", "0.00 ± 0.15"),
+        ("9.80665e-9", "1.96e-10", "(9.81 ± 0.20)e-9"),
+        ("-9.80665e20", "1.96e19", "(-9.81 ± 0.20)e20"),
+        ("1e-30", "1e-3", "0.0000 ± 0.0010"),
+        ("0.25", "0.1", "0.25 ± 0.10"),
+        ("0.0125", "0.010", "0.012 ± 0.010"),
+        ("0.0135", "0.010", "0.014 ± 0.010"),
+        ("1e-5", "1e-450", f"(1.{'0' * 446} ± 0.{'0' * 444}10)e-5"),
+    ],
+)
+def test_numbers_of_every_size(value: str, u: str, shown: str) -> None:
+    for exact in (Fraction(value), Decimal(value)):
+        assert with_uncertainty(lambda place, exact=exact: to_place(place)(exact), Decimal(u)) == shown  # type: ignore[misc]
+
+
+def test_the_scene_shows_radians_as_they_are(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1", "--m2", "3", "--wrap", "3.1(1)rad")
+    assert "wrap = 3.1 ± 0.1rad\n" in ran.out
+    assert "wrap = 180 ± 2°\n" in atwood("solve", "--m1", "1", "--m2", "3", "--wrap", "180(2)").out
+
+
+def test_ascii_has_plus_minus_too() -> None:
+    ran = process(*UNCERTAIN, PYTHONIOENCODING="ascii")
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.isascii()
+    assert "m1 = 1 +/- 0.002 kg" in ran.out
+    assert re.search(r"2\.1793 \+/- 0\.0089 ", ran.out)
+
+
+def test_a_narrow_terminal_has_it_as_lines() -> None:
+    seen = plain(on_terminal(*UNCERTAIN, columns=30))
+    assert "acceleration = 2.1793 ± 0.0089" in seen.replace("\n", " ")
+
+
+def test_json_has_an_object_of_them(atwood: Atwood) -> None:
+    result = json.loads(atwood(*UNCERTAIN, "--json").out)
+    exact = json.loads(atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", "--json").out)
+    assert list(result) == [*list(exact)[:-1], "uncertainty", "notes"]
+    assert {key: result[key] for key in exact} == exact
+    assert list(result["uncertainty"]) == list(NAMES[1:])
+    # a = g (m2 - m1)/(m1 + m2 + 5): by m1, -g (2 m2 + 5)/81, by m2, g (2 m1 + 5)/81.
+    expected = 9.80665 / 81 * sqrt((11 * 0.002) ** 2 + (7 * 0.01) ** 2)
+    assert result["uncertainty"]["acceleration"] == pytest.approx(expected, rel=1e-15)
+    assert result["uncertainty"]["torque"] is None
+    only = json.loads(atwood(*UNCERTAIN, "--json", "--only", "regime", "--only", "torque").out)
+    assert only == {"regime": "no-slip", "torque": None, "uncertainty": {"torque": None}}
+    digits = atwood(*UNCERTAIN, "--json", "--only", "acceleration", "--digits", "3").out
+    assert '"acceleration": 2.18,' in digits
+    assert '"acceleration": 0.00888' in digits
+
+
+def test_csv_has_columns_after(atwood: Atwood) -> None:
+    ran = atwood(*UNCERTAIN, "--csv", "--only", "regime", "--only", "acceleration", "--only", "torque")
+    names, values = csv.reader(io.StringIO(ran.out))
+    assert names == ["regime", "acceleration", "torque", "u_acceleration", "u_torque"]
+    assert [*values[:3], values[4]] == ["no-slip", "2.1792555555555557", "", ""]
+    assert float(values[3]) == pytest.approx(9.80665 / 324 * sqrt(22**2 + 70**2) / 250, rel=1e-15)
+    assert ran.err == "atwood: torque: give R, the pulley's radius.\n"
+    every = next(csv.reader(io.StringIO(atwood(*UNCERTAIN, "--csv").out)))
+    assert every == [*NAMES, *(f"u_{name}" for name in NAMES[1:])]
+
+
+def test_only_gives_scripts_the_value_and_people_the_doubt(atwood: Atwood) -> None:
+    ran = atwood(*UNCERTAIN, "--only", "acceleration")
+    assert (ran.status, ran.out, ran.err) == (0, "2.1792555555555557\n", "")
+    doubtful = atwood(*UNCERTAIN, "--mu", "0.21(1)", "--only", "regime")
+    assert (doubtful.status, doubtful.out) == (0, "no-slip\n")
+    assert doubtful.err.startswith("atwood: Whether the string slips is in doubt: mu - mu_verge = ")
+
+
+def test_the_budget_in_a_table_and_in_json(atwood: Atwood) -> None:
+    out = atwood(*UNCERTAIN, "--budget").out
+    assert "Each input's share of the variance, in percent:" in out
+    # (11 · 2)² of (11 · 2)² + (7 · 10)²
+    assert re.search(r"│ acceleration +│ +9\.0 │ +91\.0 │", out)
+    result = json.loads(
+        atwood(*UNCERTAIN, "--budget", "--json", "--only", "acceleration", "--only", "torque").out
+    )
+    shares = result["budget"]["acceleration"]
+    assert shares == {
+        "m1": pytest.approx(48400 / 5384, rel=1e-14),
+        "m2": pytest.approx(490000 / 5384, rel=1e-14),
+    }
+    assert result["budget"]["torque"] is None
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            ["solve", "--m1", "1", "--m2", "3", "--budget"],
+            "--budget needs an input with its uncertainty, like --m1 '1.000(2)'",
+        ),
+        ([*UNCERTAIN, "--budget", "--csv"], "--budget has no place in CSV; take --json"),
+        (
+            [*UNCERTAIN, "--budget", "--only", "acceleration"],
+            "--budget has no place in bare values; take --json",
+        ),
+    ],
+)
+def test_a_budget_that_cannot_be(arguments: list[str], message: str, atwood: Atwood) -> None:
+    ran = atwood(*arguments)
+    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
+
+
+def test_help_says_how_to_type_it(atwood: Atwood) -> None:
+    words = " ".join(atwood("solve", "-h").out.split())
+    assert "in quotes for the shell, '1.000(2)'" in words
+
+
+def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:
+    code = (
+        "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
+    )
+    for words, loaded in ((["--m1", "1"], False), (["--m1", "1(1)"], True)):
+        done = subprocess.run(
+            [sys.executable, "-c", code, "solve", *words, "--m2", "3", "--json"],
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert ("atwood_cli.uncertainty" in done.stderr.split()) == loaded
+        assert ("uncertainty" in json.loads(done.stdout)) == loaded
+    assert solve(m1="1", m2="3").uncertainty == {}
+    assert hash(solve(m1="1", m2="3")) == hash(solve(m1="1", m2="3.0"))
+
+
+def test_digits_give_decimals() -> None:
+    solution = solve(m1="1.000(2)", m2="3", digits=5)
+    assert solution.uncertainty["acceleration"] == Decimal("0.0073550")
