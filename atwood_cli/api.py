@@ -4,8 +4,8 @@ from decimal import Decimal
 from typing import TYPE_CHECKING, Any, overload
 
 from .quantities import NAMES, Solution
-from .scene import Given, read_digits, read_uncertain
-from .solver import Answers
+from .scene import Given, read_digits
+from .solver import read_answers
 from .words import notes
 
 if TYPE_CHECKING:
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
         I: Given | None
         R: Given | None
         wrap: Given
+        a: Given | None
+        drop: Given | None
+        time: Given | None
 
 
 @overload
@@ -40,6 +43,9 @@ def solve(
     I: Given | None = None,
     R: Given | None = None,
     wrap: Given | None = None,
+    a: Given | None = None,
+    drop: Given | None = None,
+    time: Given | None = None,
     digits: int | str | None = None,
 ) -> Any:
     """The state of Atwood's machine: m1 and m2 on a rough string over a pulley.
@@ -49,6 +55,10 @@ def solve(
     no M, a massless pulley, or with mu the one that brings the string to the verge of slipping.
     Defaults: g standard gravity, inertia that of a disk (1/2), wrap 180, mu_k = mu.
 
+    ``a``, a measured acceleration, stands in place of M, or beside M of g, and finds it; ``drop``, a
+    height, gives the time and speed of the fall, and with ``time`` stands for the ``a`` it implies. A
+    MeasuredSolution comes back, which has these results too.
+
     Text may carry a standard uncertainty, as "1.000(2)", "1.000±0.002" or "(250±1)g"; the solution's
     ``uncertainty`` then has those of the quantities by name, to first order.
 
@@ -56,13 +66,17 @@ def solve(
     correctly rounded to N significant digits. Raises SceneError (a ValueError) on bad input.
     """
     given = {key: value for key, value in locals().items() if key != "digits"}
-    scene, uncertain = read_uncertain(given)
-    answers = Answers(scene, read_digits(digits))
-    values = {name: answers[name] for name in NAMES}
+    answers, uncertain = read_answers(given, read_digits(digits))
+    values = {name: answers[name] for name in answers.names}
     remarks, spreads = notes(answers), {}
     if uncertain:
         from .uncertainty import propagate
 
-        found = propagate(scene, uncertain, NAMES)
+        found = propagate(answers.case, uncertain, answers.names)
         remarks, spreads = [*remarks, *found.notes], found.rounded(answers)
-    return Solution(scene=scene, notes=tuple(remarks), uncertainty=spreads, **values)
+    kind: type[Solution[Any]] = Solution
+    if answers.names != NAMES:
+        from .inverse import MeasuredSolution
+
+        kind = MeasuredSolution
+    return kind(scene=answers.case.scene, notes=tuple(remarks), uncertainty=spreads, **values)

@@ -101,7 +101,14 @@ class Rationals:
     def expm1(self, x: Fraction) -> Fraction:
         raise Irrational
 
-    exp = log1p = sqrt = expm1
+    exp = log1p = expm1
+
+    def sqrt(self, x: Fraction) -> Fraction:
+        """Square root of x >= 0, where it is rational."""
+        root = Fraction(isqrt(x.numerator), isqrt(x.denominator))
+        if root * root != x:
+            raise Irrational
+        return root
 
     def hypot(self, x: Fraction, y: Fraction | int) -> Fraction:
         raise Irrational

@@ -5,7 +5,7 @@ import io
 import os
 import sys
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from typing import Annotated, Any
 
@@ -14,8 +14,8 @@ from typer.core import TyperCommand
 
 from . import __version__
 from .output import for_stream
-from .quantities import NAMES
-from .scene import PARAMETERS, Scene, SceneError, nearest, read_digits, read_uncertain, read_whole
+from .quantities import FOUND_NAMES, NAMES
+from .scene import PARAMETERS, Scene, SceneError, nearest, parameter_of, read_digits, read_whole
 
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
@@ -63,6 +63,9 @@ REMARKS = {
     "I": ", in place of inertia; needs R",
     "R": ", as 0.1 or 5cm",
     "wrap": ", in degrees, or as 1.5turn or 3rad; 180 if not given",
+    "a": ": finds M, or beside M gravity",
+    "drop": ": gives the time and the speed",
+    "time": ", with drop in place of a",
 }
 
 
@@ -70,15 +73,15 @@ def _flag(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
-def _scene_option(name: str) -> Any:
-    parameter = PARAMETERS[name]
+def _scene_option(name: str, panel: str = "Scene") -> Any:
+    parameter = parameter_of(name)
     flags = [_flag(name), *ALIASES.get(name, [])]
     unit = f" ({parameter.unit})" if parameter.unit not in ("", "°") else ""
     names = f", or {', '.join(parameter.names)}" if parameter.names else ""
     meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
     text = for_stream(f"{meaning}{unit}{names}{REMARKS.get(name, '')}.", sys.stdout)
     metavar = (parameter.dimension or "number").upper()
-    return typer.Option(*flags, help=text, metavar=metavar, rich_help_panel="Scene", show_default=False)
+    return typer.Option(*flags, help=text, metavar=metavar, rich_help_panel=panel, show_default=False)
 
 
 def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
@@ -115,6 +118,10 @@ Budget = Annotated[
     bool,
     _output("--budget", help="Also print each uncertain input's share of every result's variance."),
 ]
+
+A = Annotated[str | None, _scene_option("a", "Measured")]
+Drop = Annotated[str | None, _scene_option("drop", "Measured")]
+Time = Annotated[str | None, _scene_option("time", "Measured")]
 
 DEFAULT_POINTS = 13
 Points = Annotated[
@@ -245,6 +252,9 @@ def root(context: typer.Context, version: Version = False) -> None:
 def solve(
     given: Mapping[str, str | None],
     *,
+    a: A = None,
+    drop: Drop = None,
+    time: Time = None,
     digits: Digits = None,
     json: AsJson = False,
     csv: AsCsv = False,
@@ -266,14 +276,13 @@ def solve(
       atwood solve --m1 '1.000(2)' --m2 3+/-0.01 --M 10 --budget
     """
     from . import output
-    from .solver import Answers
+    from .solver import read_answers
     from .words import reasons
 
     _exclude_each_other(json, csv)
     names = only or []
-    _check_names("only", *names)
-    scene, uncertain = read_uncertain(given)
-    answers = Answers(scene, read_digits(digits))
+    _check_names("only", *names, known=(*NAMES, *FOUND_NAMES))
+    answers, uncertain = read_answers({**given, "a": a, "drop": drop, "time": time}, read_digits(digits))
     bare = bool(names) and not (json or csv)
     if budget and not uncertain:
         raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
@@ -283,7 +292,7 @@ def solve(
     if uncertain:
         from .uncertainty import propagate
 
-        found = propagate(scene, uncertain, [] if bare else names or NAMES)
+        found = propagate(answers.case, uncertain, [] if bare else names or answers.names)
     if json:
         output.print_json(answers, names, found, budget)
     elif csv:
@@ -549,10 +558,10 @@ def batch(
     return COULD_NOT if tally.errors and not allow_errors else DONE
 
 
-def _check_names(option: str, *names: str) -> None:
+def _check_names(option: str, *names: str, known: Sequence[str] = NAMES) -> None:
     for name in names:
-        if name not in NAMES:
-            hint = nearest(name, NAMES) or f"; there are {', '.join(NAMES)}"
+        if name not in known:
+            hint = nearest(name, known) or f"; there are {', '.join(known)}"
             raise SceneError(option, name, f"is no quantity{hint}")
 
 

@@ -13,7 +13,7 @@ from . import physics, profile
 from .arithmetic import EXACT, Arithmetic
 from .physics import N
 from .rounding import Quantity, is_positive
-from .scene import Radians, Scene
+from .scene import UNMEASURED, Motion, Radians, Scene
 
 NEEDS_MU = "give mu, the friction coefficient"
 NEEDS_M = "give M, the pulley's mass, which decides here"
@@ -32,6 +32,10 @@ DEFINITE = "bounds are for a string that grips with friction to spare; here fric
 NOT_APPLICABLE = "conditions (36) do not apply without friction"
 LOCKED_AXLE = "not defined for a locked pulley: M = inf is not its weight"
 ONE_SIDED = "defined for half a turn of wrap (and whole turns more), where both ends pull downwards"
+NEEDS_A = "give a, a measured acceleration, in place of M"
+NEEDS_A_BESIDE_M = "give a, a measured acceleration, beside M and in place of g"
+NEEDS_DROP = "give drop, the height that the heavier mass falls from rest"
+AT_REST = "does not exist, as nothing moves"
 LONG_WRAP = "bounds are known for up to half a turn of wrap (180 degrees)"
 
 
@@ -50,8 +54,8 @@ def is_zero(value: object) -> bool:
 class Case:
     """What is decided about a scene before anything is computed, exactly."""
 
-    def __init__(self, scene: Scene) -> None:
-        self.scene = scene
+    def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
+        self.scene, self.motion = scene, motion
 
     @cached_property
     def sign(self) -> int:
@@ -496,6 +500,40 @@ class Machine(Generic[N]):
         if is_zero(self.scene.mu) and not self.case.pulley_known:
             raise Undetermined(NOT_APPLICABLE)
         return physics.least_pulley_mass(transfer, self._given(self.case.beta, UNKNOWN_SHAPE))
+
+    @property
+    def pulley_mass(self) -> N:
+        if self.case.motion.finds != "M":
+            raise Undetermined(NEEDS_A)
+        return self._given(self.case.pulley_mass, NEEDS_M)
+
+    @property
+    def moment_of_inertia(self) -> N:
+        if self.case.motion.finds != "M":
+            raise Undetermined(NEEDS_A)
+        R = self._given(self.scene.R, NEEDS_R)
+        return physics.moment_of_inertia(self._given(self.case.rim_mass, NEEDS_M), R)
+
+    @property
+    def gravity(self) -> N:
+        if self.case.motion.finds != "g":
+            raise Undetermined(NEEDS_A_BESIDE_M)
+        return self.g
+
+    @property
+    def fall_time(self) -> N:
+        return physics.fall_time(*self._fall(), self.ar.sqrt)
+
+    @property
+    def final_speed(self) -> N:
+        return physics.final_speed(*self._fall(), self.ar.sqrt)
+
+    def _fall(self) -> tuple[N, N]:
+        """The height fallen, and the acceleration."""
+        drop = self._given(self.case.motion.drop, NEEDS_DROP)
+        if self.ar.is_zero(self._magnitude):
+            raise Undetermined(AT_REST)
+        return drop, self._magnitude
 
     @cached_property
     def friction_force_min(self) -> N:

@@ -12,9 +12,9 @@ from operator import attrgetter, itemgetter
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
-from .quantities import NAMES, QUANTITIES
+from .quantities import about as about_quantity
 from .rounding import as_typed, is_infinite, text, with_uncertainty
-from .scene import Radians, Scene, stated
+from .scene import MEASURED, UNMEASURED, Motion, Radians, Scene, stated
 from .solver import Answers
 from .words import notes, reasons_at, verdict
 
@@ -58,7 +58,7 @@ def print_json(
     answers: Answers, only: Sequence[str], found: "Uncertainties | None" = None, budget: bool = False
 ) -> None:
     """All quantities with scene and notes, or only those named; uncertainties where inputs have some."""
-    results: dict[str, object] = {name: answers[name] for name in only or NAMES}
+    results: dict[str, object] = {name: answers[name] for name in only or answers.names}
     if found:
         results["uncertainty"] = found.rounded(answers)
         if budget:
@@ -68,13 +68,16 @@ def print_json(
             }
     if not only:
         every = [*notes(answers), *(found.notes if found else [])]
-        results = {"scene": _scene(answers.case.scene), **results, "notes": every}
+        results = {"scene": _scene(answers.case.scene, answers.case.motion), **results, "notes": every}
     print(_json(results))
 
 
-def _scene(scene: Scene) -> dict[str, object]:
+def _scene(scene: Scene, motion: Motion = UNMEASURED) -> dict[str, object]:
     """The inputs as JSON has them: numbers in SI units and degrees, or text where JSON has no number."""
     given: dict[str, object] = scene._asdict()
+    if motion != UNMEASURED:
+        given |= {name: getattr(motion, name) for name in MEASURED}
+        given |= {motion.finds: None} if motion.finds else {}
     if scene.M == inf:
         given["M"] = "inf"
     if isinstance(scene.wrap, Radians):
@@ -103,7 +106,7 @@ def _json(value: object, indent: str = "\n") -> str:
 def print_csv(answers: Answers, only: Sequence[str], found: "Uncertainties | None" = None) -> None:
     """A line of names and a line of values, then of uncertainties; what does not exist is empty."""
     spreads = found.rounded(answers) if found else {}
-    values = {name: answers[name] for name in only or NAMES}
+    values = {name: answers[name] for name in only or answers.names}
     print_records_csv([values | {f"u_{name}": u for name, u in spreads.items()}])
 
 
@@ -118,7 +121,7 @@ def cell(value: object) -> str:
 
 
 def describe(scene: Scene, ranges: Mapping[str, object] = {}, found: "Uncertainties | None" = None) -> str:
-    """The scene in one line, as understood, with uncertainties, or with ranges as typed."""
+    """The scene in one line, as understood, with uncertainties, and with ranges as typed."""
     parts = []
     for name, value in {**_scene(scene), **ranges}.items():
         spread = f" ± {as_typed(found.given[name])}" if found and name in found.given else ""
@@ -146,7 +149,8 @@ class Page:
 
     def head(self, answers: Answers, found: "Uncertainties | None" = None) -> None:
         """The scene and the verdict."""
-        self.say(describe(answers.case.scene, found=found))
+        scene, motion = answers.case.scene, answers.case.motion
+        self.say(describe(scene, _scene(scene, motion), found))
         self.say(verdict(answers), f"bold {REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]], keys: int = 1) -> None:
@@ -207,10 +211,12 @@ COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
 def _rows(answers: Answers, found: "Uncertainties | None") -> list[list[list[str]]]:
     """The cells of the table, a row for each quantity that exists, by group."""
-    values = {name: shown for name in QUANTITIES if (shown := _cell_with_uncertainty(answers, name, found))}
+    values = {
+        name: shown for name in answers.names[1:] if (shown := _cell_with_uncertainty(answers, name, found))
+    }
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, _aligned(values.values()), strict=True):
-        about = QUANTITIES[name]
+        about = about_quantity(name)
         equation = about.equation
         if answers.case.regime == "slip" and about.equation_in_slip is not None:
             equation = about.equation_in_slip
@@ -231,7 +237,7 @@ def _print_budget(page: Page, found: "Uncertainties") -> None:
     spreads = {name: spread.shares for name, spread in found.spreads.items() if spread.shares}
     columns = [_aligned(f"{100 * shares[x]:.1f}" for shares in spreads.values()) for x in found.given]
     rows = zip(spreads.items(), zip(*columns, strict=True), strict=True)
-    by_group = groupby(rows, lambda row: QUANTITIES[row[0][0]].group)
+    by_group = groupby(rows, lambda row: about_quantity(row[0][0]).group)
     page.table(["Quantity", *found.given], [[[name, *cells] for (name, _), cells in g] for _, g in by_group])
 
 

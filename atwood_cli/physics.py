@@ -61,6 +61,41 @@ def acceleration(drive: N, load: N, g: N) -> N:
     return g * (drive / load)
 
 
+def load_under(drive: N, a: N, g: N) -> N:
+    """Load s (kg) that the drive sets moving with a measured acceleration; inverse of `acceleration`."""
+    return g * (drive / a)
+
+
+def gravity_under(drive: N, load: N, a: N) -> N:
+    """Gravity (m/s²) under which the drive sets the load moving with a; inverse of `acceleration`."""
+    return a * (load / drive)
+
+
+def added_load(l: N, h: N, load: N) -> N:
+    """What is added to the masses in a load (kg), c where the string grips; inverse of `load`."""
+    return load - l - h
+
+
+def moment_of_inertia(c: N, R: N) -> N:
+    """Moment of inertia (kg m²) of a pulley of radius R (m), from its c as a mass at the rim."""
+    return c * R * R
+
+
+def acceleration_of_fall(drop: N, time: N) -> N:
+    """Constant acceleration (m/s²) that covers the height ``drop`` (m) from rest in ``time`` (s)."""
+    return 2 * drop / (time * time)
+
+
+def fall_time(drop: N, a: N, sqrt: Function[N]) -> N:
+    """Time (s) that it takes for that."""
+    return sqrt(2 * drop / a)
+
+
+def final_speed(drop: N, a: N, sqrt: Function[N]) -> N:
+    """Speed (m/s) at its end."""
+    return sqrt(2 * drop * a)
+
+
 def light_tension(l: N, a: N, g: N) -> N:
     """Tension on the lighter mass (N), from (1): its weight and what accelerates it."""
     return l * g + l * a

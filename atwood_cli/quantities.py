@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from decimal import Decimal
+from itertools import chain
 from typing import Any, Generic, NamedTuple, TypeVar
 
 from .scene import Scene
@@ -23,7 +24,7 @@ class About(NamedTuple):
     equation_in_slip: str | None = None
 
 
-def _is(*about: str) -> Any:
+def quantity(*about: str) -> Any:
     return field(default=None, metadata={"about": About(*about)})
 
 
@@ -42,31 +43,52 @@ class Solution(Generic[T]):
     notes: tuple[str, ...]
     regime: str
     # fmt: off
-    acceleration: T | None = _is("motion", "a", "m/s²", "(4)", "acceleration, positive when m2 descends", "(1), (26)")
-    tension_1: T | None = _is("motion", "T₁", "N", "(4)", "tension of the string at m1", "(1), (26)")
-    tension_2: T | None = _is("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)")
-    mu_verge: T | None = _is("friction", "μ*", "", "(27)", "friction coefficient below which the string slips")
-    friction_force: T | None = _is("friction", "F", "N", "(32)", "net friction force on the pulley")
-    friction_force_min: T | None = _is("friction", "F min", "N", "", "least net friction force of a string that grips")
-    friction_force_max: T | None = _is("friction", "F max", "N", "", "greatest net friction force of a string that grips")
-    friction_force_x: T | None = _is("friction", "Fx", "N", "(31)", "net friction force, towards m1's side")
-    friction_force_y: T | None = _is("friction", "Fy", "N", "(31)", "net friction force, upwards")
-    axle_force: T | None = _is("pulley", "A", "N", "(20)", "force on the axle, with the pulley's weight")
-    torque: T | None = _is("pulley", "τ", "N m", "(23)", "torque of the string on the pulley")
-    rim_acceleration: T | None = _is("pulley", "a rim", "m/s²", "(3)", "acceleration of the pulley's rim")
-    angular_acceleration: T | None = _is("pulley", "α", "rad/s²", "(2)", "angular acceleration of the pulley")
-    critical_pulley_mass: T | None = _is("limits", "M*", "kg", "(34)", "pulley mass above which the string slips")
-    critical_heavier_mass: T | None = _is("limits", "m*", "kg", "(35)", "heavier mass above which the string slips")
-    least_heavier_mass: T | None = _is("limits", "m min", "kg", "(36)", "what the heavier mass must exceed to slip")
-    least_pulley_mass: T | None = _is("limits", "M min", "kg", "(36)", "what the pulley's mass must exceed to slip")
+    acceleration: T | None = quantity("motion", "a", "m/s²", "(4)", "acceleration, positive when m2 descends", "(1), (26)")
+    tension_1: T | None = quantity("motion", "T₁", "N", "(4)", "tension of the string at m1", "(1), (26)")
+    tension_2: T | None = quantity("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)")
+    mu_verge: T | None = quantity("friction", "μ*", "", "(27)", "friction coefficient below which the string slips")
+    friction_force: T | None = quantity("friction", "F", "N", "(32)", "net friction force on the pulley")
+    friction_force_min: T | None = quantity("friction", "F min", "N", "", "least net friction force of a string that grips")
+    friction_force_max: T | None = quantity("friction", "F max", "N", "", "greatest net friction force of a string that grips")
+    friction_force_x: T | None = quantity("friction", "Fx", "N", "(31)", "net friction force, towards m1's side")
+    friction_force_y: T | None = quantity("friction", "Fy", "N", "(31)", "net friction force, upwards")
+    axle_force: T | None = quantity("pulley", "A", "N", "(20)", "force on the axle, with the pulley's weight")
+    torque: T | None = quantity("pulley", "τ", "N m", "(23)", "torque of the string on the pulley")
+    rim_acceleration: T | None = quantity("pulley", "a rim", "m/s²", "(3)", "acceleration of the pulley's rim")
+    angular_acceleration: T | None = quantity("pulley", "α", "rad/s²", "(2)", "angular acceleration of the pulley")
+    critical_pulley_mass: T | None = quantity("limits", "M*", "kg", "(34)", "pulley mass above which the string slips")
+    critical_heavier_mass: T | None = quantity("limits", "m*", "kg", "(35)", "heavier mass above which the string slips")
+    least_heavier_mass: T | None = quantity("limits", "m min", "kg", "(36)", "what the heavier mass must exceed to slip")
+    least_pulley_mass: T | None = quantity("limits", "M min", "kg", "(36)", "what the pulley's mass must exceed to slip")
     # fmt: on
     uncertainty: Mapping[str, T | None] = field(default_factory=dict, hash=False)
 
 
-QUANTITIES: dict[str, About] = {
-    f.name: f.metadata["about"] for f in fields(Solution) if "about" in f.metadata
-}
+def abouts(solution: type[Solution[Any]]) -> dict[str, About]:
+    """How the quantities of a kind of solution are shown, by name."""
+    return {f.name: f.metadata["about"] for f in fields(solution) if "about" in f.metadata}
+
+
+QUANTITIES = abouts(Solution)
 NAMES = ("regime", *QUANTITIES)
+FOUND: dict[str | None, tuple[str, ...]] = {
+    "M": ("pulley_mass", "moment_of_inertia"),
+    "g": ("gravity",),
+    "drop": ("fall_time", "final_speed"),
+}
+"""Quantities that only some scenes have, by the parameter that is found there, or given."""
+FOUND_NAMES = tuple(chain.from_iterable(FOUND.values()))
+
+
+def about(name: str) -> About:
+    """How a quantity is shown, whether every scene has it or only some."""
+    if name in QUANTITIES:
+        return QUANTITIES[name]
+    from .inverse import MeasuredSolution
+
+    return abouts(MeasuredSolution)[name]
+
+
 STANDARD = (
     "regime",
     "acceleration",

@@ -1,15 +1,16 @@
 """What is given: words and numbers in, an exact and valid `Scene` out. Nothing is computed."""
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
 from numbers import Rational, Real
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from .rounding import as_typed
 
+T = TypeVar("T")
 Given = str | int | float | Decimal | Fraction
 """An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
 
@@ -36,7 +37,8 @@ LENGTH = {
     "yd": "0.9144",
 }
 ANGLE = {"deg": "1", "°": "1", "turn": "360", "rad": "1"}
-DIMENSIONS = {"mass": MASS, "length": LENGTH, "angle": ANGLE}
+TIME = {"s": "1", "ms": "1e-3", "min": "60"}
+DIMENSIONS = {"mass": MASS, "length": LENGTH, "angle": ANGLE, "time": TIME}
 
 INERTIA_FACTORS = {"disk": "0.5", "hoop": "1"}
 
@@ -104,9 +106,12 @@ class Parameter(NamedTuple):
     inf: bool = False
     dimension: str | None = None
     names: Mapping[str, str] = {}
+    signed: bool = False
 
     @property
     def domain(self) -> str:
+        if self.signed:
+            return "must be finite"
         bound = "0 or more" if self.zero else "above 0"
         return f"must be {bound}{' (inf locks the pulley)' if self.inf else ', and finite'}"
 
@@ -123,11 +128,22 @@ PARAMETERS = {
     "R": Parameter("radius of the pulley", "m", dimension="length"),
     "wrap": Parameter("angle over which the string touches the pulley", "°", dimension="angle"),
 }
+MEASURED = {
+    "a": Parameter("measured acceleration, positive when m2 descends", "m/s²", signed=True),
+    "drop": Parameter("height that the heavier mass falls from rest", "m", dimension="length"),
+    "time": Parameter("measured time in which it does", "s", dimension="time"),
+}
+"""What may be known of the motion, beside the scene or in place of a part of it; see `inverse`."""
+
+
+def parameter_of(name: str) -> Parameter:
+    """What an input may be, of the scene or of the motion."""
+    return PARAMETERS.get(name) or MEASURED[name]
 
 
 def stated(name: str, value: str) -> str:
     """A parameter with its value and unit, for a sentence."""
-    unit = PARAMETERS[name].unit
+    unit = parameter_of(name).unit
     return f"{name} = {value}{' ' * (unit not in ('', '°'))}{unit}"
 
 
@@ -187,19 +203,36 @@ class Scene(NamedTuple):
             raise SceneError("I", given["I"], f"contradicts M = {given['M']}; leave one of them out")
 
 
-def read_uncertain(given: Mapping[str, Given | None]) -> tuple[Scene, dict[str, Fraction]]:
-    """The scene given, and the standard uncertainties of what is not exact in it. Raises SceneError."""
+class Motion(NamedTuple):
+    """What was measured of the motion, in SI units, exact; None where not given.
+
+    ``finds`` is the parameter of the scene, "M" or "g", that follows from it and was not given.
+    """
+
+    a: Fraction | None = None
+    drop: Fraction | None = None
+    time: Fraction | None = None
+    finds: str | None = None
+
+
+UNMEASURED = Motion()
+
+
+def read_uncertain(
+    given: Mapping[str, Given | None], read: Callable[[Mapping[str, Given | None]], T]
+) -> tuple[T, dict[str, Fraction]]:
+    """What ``read`` makes of the inputs without their uncertainties, and these. Raises SceneError."""
     plain, uncertain = dict(given), {}
     for name, words in given.items():
         if isinstance(words, str) and any(mark in words for mark in UNCERTAIN):
             plain[name], uncertain[name] = split_uncertainty(name, words)
     try:
-        scene = Scene.read(plain)
-        spreads = {name: _read_text(name, words, PARAMETERS[name]) for name, words in uncertain.items()}
+        found = read(plain)
+        spreads = {name: _read_text(name, words, parameter_of(name)) for name, words in uncertain.items()}
     except SceneError as error:
         typed = None if error.value is None else given[error.parameter]
         raise SceneError(error.parameter, typed, error.rule) from None
-    return scene, {name: Fraction(spread) for name, spread in spreads.items() if spread}
+    return found, {name: Fraction(spread) for name, spread in spreads.items() if spread}
 
 
 def split_uncertainty(name: str, given: str) -> tuple[str, str]:
@@ -224,9 +257,13 @@ def read_value(name: str, given: Given | None) -> Any:
     default = {"g": STANDARD_GRAVITY, "wrap": "180"}
     if given is None:
         return Fraction(default[name]) if name in default else None
-    parameter = PARAMETERS[name]
+    parameter = parameter_of(name)
     value = _read_text(name, given, parameter) if isinstance(given, str) else _read_number(name, given)
-    if value < 0 or (value == 0 and not parameter.zero) or (value == inf and not parameter.inf):
+    if (
+        (value < 0 and not parameter.signed)
+        or (value == 0 and not (parameter.zero or parameter.signed))
+        or (abs(value) == inf and not parameter.inf)
+    ):
         raise SceneError(name, given, parameter.domain)
     return value
 
@@ -315,7 +352,7 @@ def _read_number(name: str, given: object) -> Fraction | float:
     if isinstance(given, bool) or not isinstance(given, Real | Decimal):
         raise SceneError(name, given, "must be text or a number (str, int, float, Decimal, Fraction)")
     if given.is_nan() if isinstance(given, Decimal) else given != given:
-        raise SceneError(name, given, PARAMETERS[name].domain)
+        raise SceneError(name, given, parameter_of(name).domain)
     if given in (inf, -inf):
         return float(given)
     # A huge exponent is refused before it becomes a huge integer.

@@ -1,6 +1,6 @@
 """The solver: settles the quantities of a scene, each when it is asked for."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from operator import attrgetter
@@ -9,6 +9,7 @@ from typing import Any
 from .arithmetic import LARGEST_EXPONENT, Arithmetic
 from .machine import Case, Machine, Undetermined
 from .physics import N
+from .quantities import FOUND, NAMES
 from .rounding import (
     Quantity,
     Rounding,
@@ -20,7 +21,7 @@ from .rounding import (
     to_double,
     to_place,
 )
-from .scene import Scene
+from .scene import MEASURED, UNMEASURED, Given, Motion, Scene, read_uncertain
 
 DOUBLE_DIGITS = 17
 
@@ -34,13 +35,20 @@ OnMachine = Callable[[Machine[Any]], Any]
 class Answers:
     """The quantities of a scene, settled when asked for: to doubles or to ``digits`` digits."""
 
-    def __init__(self, scene: Scene, digits: int | None = None) -> None:
-        self.case = Case(scene)
+    def __init__(self, scene: Scene, digits: int | None = None, motion: Motion = UNMEASURED) -> None:
+        self.case = Case(scene, motion)
         self.digits = digits
         self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._values: dict[str, Any] = {"regime": self.case.regime}
         self.reasons: dict[str, str] = {}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The quantities that every scene has, and those that come with what is given of the motion."""
+        motion = self.case.motion
+        drop = "drop" if motion.drop is not None else None
+        return (*NAMES, *FOUND.get(motion.finds, ()), *FOUND.get(drop, ()))
 
     def __getitem__(self, name: str) -> Any:
         """The value of a quantity by its name, None where ``reasons`` says why there is none."""
@@ -96,3 +104,16 @@ class Answers:
     def with_pulley(self, mass: Fraction | float) -> "Answers":
         """The same scene on a pulley of that mass (inf: locked), with a string that grips."""
         return Answers(self.case.scene._replace(M=mass, mu=None, mu_k=None), self.digits)
+
+
+def read_answers(
+    given: Mapping[str, Given | None], digits: int | None
+) -> tuple[Answers, dict[str, Fraction]]:
+    """The answers to what is given, and the uncertainties of what in it is not exact. Raises SceneError."""
+    if all(given.get(name) is None for name in MEASURED):
+        scene, uncertain = read_uncertain(given, Scene.read)
+        return Answers(scene, digits), uncertain
+    from . import inverse
+
+    (scene, motion), uncertain = read_uncertain(given, inverse.read)
+    return Answers(inverse.found(scene, motion), digits, motion), uncertain

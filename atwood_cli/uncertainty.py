@@ -26,14 +26,14 @@ from math import inf
 from typing import Any, NamedTuple
 
 from .arithmetic import ZERO, decimal_context
-from .machine import Undetermined
+from .machine import Case, Undetermined
 from .rounding import is_infinite, to_place, with_uncertainty
-from .scene import Scene
+from .scene import Motion, Scene
 from .solver import Answers
 from .words import reasons_at
 
 SURE = 20
-"""Digits to which a slope is right, at least."""
+"""Digits to which a slope is right."""
 FIRST_STEP, LAST_STEP = 2 * SURE, 32 * SURE
 """How many powers of ten a step is below the scale of what is stepped."""
 COVERAGE = 2
@@ -76,9 +76,9 @@ class Uncertainties(NamedTuple):
         return {n: None if found.u is None else answers.round(found.u) for n, found in self.spreads.items()}
 
 
-def propagate(scene: Scene, uncertain: Uncertain, names: Sequence[str]) -> Uncertainties:
+def propagate(case: Case, uncertain: Uncertain, names: Sequence[str]) -> Uncertainties:
     """The uncertainties of the quantities named, with notes on what is missing or in doubt."""
-    slope = _slopes(scene, uncertain)
+    slope = _slopes(case, uncertain)
 
     def spread(name: str) -> Spread:
         parts = {}
@@ -96,18 +96,18 @@ def propagate(scene: Scene, uncertain: Uncertain, names: Sequence[str]) -> Uncer
 
     spreads = {name: spread(name) for name in names if name != "regime"}
     missing = {(f"u_{name}", found.reason): 1 for name, found in spreads.items() if found.reason}
-    return Uncertainties(uncertain, spreads, [*doubts(scene, uncertain), *reasons_at(missing, 1)])
+    return Uncertainties(uncertain, spreads, [*doubts(case, uncertain), *reasons_at(missing, 1)])
 
 
-def doubts(scene: Scene, uncertain: Uncertain) -> list[str]:
+def doubts(case: Case, uncertain: Uncertain) -> list[str]:
     """Sentences on what may be otherwise: which mass is heavier, whether the string slips."""
+    scene, known = case.scene, case.pulley_known
     spread = {x: decimal(u) for x, u in uncertain.items()}
     masses = [spread[x] for x in ("m1", "m2") if x in spread]
     found = [_doubt("Which mass is heavier", "m2 - m1", decimal(scene.m2 - scene.m1), masses, " kg")]
     if scene.mu is not None:
-        known = Answers(scene).case.pulley_known
         holding = scene._replace(mu=None, mu_k=None, M=scene.M if known else inf)
-        slope = _slopes(holding, uncertain)
+        slope = _slopes(Case(holding, case.motion), uncertain)
         parts = [
             spread[x] if x == "mu" else AT.multiply(slope("mu_verge", x).steepest, spread[x])
             for x in spread
@@ -143,13 +143,16 @@ def decimal(q: Fraction) -> Decimal:
     return AT.divide(Decimal(q.numerator), Decimal(q.denominator))
 
 
-def _slopes(scene: Scene, uncertain: Uncertain) -> Callable[[str, str], Slope]:
+def _slopes(case: Case, uncertain: Uncertain) -> Callable[[str, str], Slope]:
     """The slope of a quantity with an input, by their names; it raises Undetermined."""
+    scene, motion = case.scene, case.motion
 
     @cache
     def answers(x: str, offset: Fraction, digits: int) -> Answers:
-        value = getattr(scene, x)
-        return Answers(scene._replace(**{x: type(value)(value + offset)}), digits)
+        holder = scene if x in Scene._fields else motion
+        value = getattr(holder, x)
+        moved = holder._replace(**{x: type(value)(value + offset)})
+        return answers_of(*((moved, motion) if isinstance(moved, Scene) else (scene, moved)), digits)
 
     def at(name: str, x: str, offset: Fraction, digits: int) -> Decimal:
         found = answers(x, offset, digits)
@@ -161,7 +164,7 @@ def _slopes(scene: Scene, uncertain: Uncertain) -> Callable[[str, str], Slope]:
         return value
 
     def slope(name: str, x: str) -> Slope:
-        value: Fraction = getattr(scene, x)
+        value: Fraction = getattr(scene if x in Scene._fields else motion, x)
         scale = decimal(value or uncertain[x]).adjusted() + _closeness(scene)
         step, before = FIRST_STEP, None
         digits = _enough(step)
@@ -195,6 +198,15 @@ def _slopes(scene: Scene, uncertain: Uncertain) -> Callable[[str, str], Slope]:
         raise Undetermined("unknown, as its slope did not settle")
 
     return slope
+
+
+def answers_of(scene: Scene, motion: Motion, digits: int) -> Answers:
+    """The answers to a scene in which what follows from the motion is still to be found."""
+    if motion.finds is not None:
+        from .inverse import found
+
+        scene = found(scene, motion)
+    return Answers(scene, digits, motion)
 
 
 def _enough(step: int) -> int:

@@ -15,6 +15,7 @@ import pytest
 
 from atwood_cli import solve
 from atwood_cli.__main__ import main
+from atwood_cli.quantities import FOUND_NAMES
 
 from . import oracle
 from .running import PAPER, Atwood, on_terminal, plain, process
@@ -239,11 +240,11 @@ def test_a_table_without_rows_is_no_table(atwood: Atwood) -> None:
         ("solve --m1 1 --m2 2 --only accel", "--only 'accel' is no quantity; did you mean acceleration?"),
         (
             "solve --m1 1 --m2 2 --only zzz",
-            f"--only 'zzz' is no quantity; there are {', '.join(oracle.NAMES)}",
+            f"--only 'zzz' is no quantity; there are {', '.join([*oracle.NAMES, *FOUND_NAMES])}",
         ),
         (
             "solve --m1 1 --m2 2 --radus 3",
-            "No such option: --radus (Possible options: --radius, --wrap); atwood solve -h shows how",
+            "No such option: --radus (Possible options: --a, --radius, --wrap); atwood solve -h shows how",
         ),
         ("solve --zzz", "No such option: --zzz; atwood solve -h shows how"),
         ("solve --m1", "Option '--m1' requires an argument"),
@@ -370,6 +371,7 @@ SLOW = """
 import sys, time
 import atwood_cli.cli, atwood_cli.output, atwood_cli.solver
 from atwood_cli.__main__ import main
+from atwood_cli.quantities import FOUND_NAMES
 def slow(*_):
     print("started", file=sys.stderr, flush=True)
     time.sleep(60)

@@ -79,7 +79,9 @@ def test_every_example_is_tested() -> None:
     assert [script.name for script in EXAMPLES] == [
         "capstan.sh",
         "ci-smoke.sh",
+        "inertia.sh",
         "lift.sh",
+        "measure-mu.sh",
         "paper.sh",
         "scripts.sh",
         "sweep.sh",

@@ -20,7 +20,8 @@ from uncertainties import umath
 from atwood_cli import SceneError, solve
 from atwood_cli.quantities import NAMES
 from atwood_cli.rounding import to_place, with_uncertainty
-from atwood_cli.scene import Radians, read_uncertain
+from atwood_cli.scene import Radians, Scene, read_uncertain
+from atwood_cli.solver import read_answers
 from atwood_cli.uncertainty import Spread, propagate
 
 from .running import Atwood, on_terminal, plain, process
@@ -29,7 +30,8 @@ UNCERTAIN = ["solve", "--m1", "1.000(2)", "--m2", "3+/-0.01", "--M", "10"]
 
 
 def spreads(names: str = " ".join(NAMES), **given: str) -> dict[str, Spread]:
-    return dict(propagate(*read_uncertain(given), names.split()).spreads)
+    answers, uncertain = read_answers(given, None)
+    return dict(propagate(answers.case, uncertain, names.split()).spreads)
 
 
 # How they are typed
@@ -63,16 +65,16 @@ def spreads(names: str = " ".join(NAMES), **given: str) -> dict[str, Spread]:
     ],
 )
 def test_text(text: str, value: str, u: str) -> None:
-    scene, uncertain = read_uncertain({"m1": text, "m2": "3"})
+    scene, uncertain = read_uncertain({"m1": text, "m2": "3"}, Scene.read)
     assert scene.m1 == Fraction(value)
     assert uncertain == ({"m1": Fraction(u)} if Fraction(u) else {})
 
 
 def test_angles_stay_in_their_unit() -> None:
-    scene, uncertain = read_uncertain({"m1": "1", "m2": "3", "wrap": "3.14(2)rad"})
+    scene, uncertain = read_uncertain({"m1": "1", "m2": "3", "wrap": "3.14(2)rad"}, Scene.read)
     assert type(scene.wrap) is Radians
     assert uncertain == {"wrap": Fraction("0.02")}
-    turns = read_uncertain({"m1": "1", "m2": "3", "wrap": "0.5±0.01turn"})
+    turns = read_uncertain({"m1": "1", "m2": "3", "wrap": "0.5±0.01turn"}, Scene.read)
     assert (turns[0].wrap, turns[1]["wrap"]) == (Fraction(180), Fraction("3.6"))
 
 

@@ -1,0 +1,339 @@
+"""From a measured acceleration back to the pulley or to gravity, and the fall from rest."""
+
+import csv
+import io
+import json
+from decimal import Decimal
+from fractions import Fraction
+from math import sqrt
+from typing import Any
+
+import pytest
+import sympy as sp
+import uncertainties as unc
+from hypothesis import given
+from hypothesis import strategies as st
+
+from atwood_cli import Scene, SceneError, Solution, physics, solve
+from atwood_cli.inverse import MeasuredSolution
+from atwood_cli.quantities import FOUND_NAMES, NAMES, QUANTITIES, abouts
+
+from .running import Atwood, process
+
+masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
+
+
+def measured(**given: Any) -> MeasuredSolution[Any]:
+    solution = solve(**{"m1": "1", "m2": "3", **given})
+    assert isinstance(solution, MeasuredSolution)
+    return solution
+
+
+def test_they_are_registered_by_what_they_come_with() -> None:
+    assert tuple(abouts(MeasuredSolution)) == (*QUANTITIES, *FOUND_NAMES)
+
+
+# The equations are inverses of those that they invert
+
+
+def test_they_undo_the_acceleration_and_the_load() -> None:
+    d, s, g, l, h, c, H, a = sp.symbols("d s g l h c H a", positive=True)
+    forwards = physics.acceleration(d, s, g)
+    assert sp.simplify(physics.load_under(d, forwards, g) - s) == 0
+    assert sp.simplify(physics.gravity_under(d, s, forwards) - g) == 0
+    assert sp.simplify(physics.added_load(l, h, physics.load(l, h, c)) - c) == 0
+    # Constant acceleration: H = a t²/2 and v = a t.
+    t, v = physics.fall_time(H, a, sp.sqrt), physics.final_speed(H, a, sp.sqrt)
+    assert sp.simplify(a * t**2 / 2 - H) == 0
+    assert sp.simplify(v - a * t) == 0
+    assert sp.simplify(physics.acceleration_of_fall(H, t) - a) == 0
+    R = sp.symbols("R", positive=True)
+    # A disk: I = M R²/2, c = M/2.
+    assert physics.moment_of_inertia(c, R) == c * R**2
+
+
+@given(masses, masses, st.fractions(min_value=0, max_value=10**6), masses, masses, st.booleans())
+def test_what_is_found_gives_the_measured_acceleration_exactly(
+    l: Fraction, more: Fraction, M: Fraction, g: Fraction, beta: Fraction, mirrored: bool
+) -> None:
+    m1, m2 = (l + more, l) if mirrored else (l, l + more)
+    a = (m2 - m1) * g / (m1 + m2 + beta * M)
+    known = {"m1": m1, "m2": m2, "inertia": beta, "a": a}
+    for_pulley, for_gravity = solve(**known, g=g, digits=30), solve(**known, M=M, digits=30)
+    assert (
+        for_pulley.scene
+        == for_gravity.scene
+        == Scene(m1, m2, M, None, None, g, beta, None, None, Fraction(180))
+    )
+    exact = solve(m1=m1, m2=m2, M=M, g=g, inertia=beta, digits=30)
+    for name in NAMES:
+        assert getattr(for_pulley, name) == getattr(for_gravity, name) == getattr(exact, name)
+
+
+def test_the_results_that_are_found() -> None:
+    # c = 2 g - 4 = 15.6133, M = c/β.
+    s = measured(a="1", R="0.1", drop="2")
+    assert (s.pulley_mass, s.moment_of_inertia, s.gravity) == (31.2266, 0.156133, None)
+    assert (s.fall_time, s.final_speed, s.acceleration) == (2, 2, 1)
+    assert s.scene.M == Fraction("31.2266")
+    # g = 1 (1 + 3 + 5)/2
+    s = measured(a="1", M="10")
+    assert (s.gravity, s.pulley_mass, s.moment_of_inertia, s.fall_time) == (4.5, None, None, None)
+    # A free end on a pulley: a = m2 g/(m2 + c).
+    assert measured(m1="0", m2="1", a="4.903325").pulley_mass == 2
+    # The massless pulley itself.
+    assert measured(a="4.903325").pulley_mass == 0
+    assert measured(m1="3", m2="1", a="-4.903325").pulley_mass == 0
+
+
+def test_a_height_alone_gives_the_fall_of_any_scene() -> None:
+    for scene in ({"M": "10"}, {"M": "100", "mu": "0.3"}, {"mu": "0.3"}, {"m1": "5", "M": "10"}):
+        s = measured(drop="1.5", **scene)
+        assert s.acceleration is not None
+        assert s.fall_time == pytest.approx(sqrt(3 / abs(s.acceleration)), rel=1e-15)
+        assert s.final_speed == pytest.approx(sqrt(3 * abs(s.acceleration)), rel=1e-15)
+        assert s.pulley_mass is s.gravity is None
+
+
+@pytest.mark.parametrize(
+    ("time", "a"), [("2", "1"), ("1.25", "2.56"), ("4/3", "2.25"), ("1.2345678901234567890123", None)]
+)
+def test_a_time_stands_for_the_acceleration_it_implies(time: str, a: str | None) -> None:
+    t = Fraction(time)
+    s = measured(drop="2", time=t)
+    assert s.fall_time == float(t)
+    assert s.final_speed == float(4 / t)
+    assert s.acceleration == float(4 / t**2)
+    if a is not None:
+        assert s.pulley_mass == measured(a=a).pulley_mass
+        mirrored = measured(m1="3", m2="1", drop="2", time=t)
+        assert (mirrored.acceleration, mirrored.pulley_mass) == (-float(a), s.pulley_mass)
+
+
+@pytest.mark.parametrize(
+    ("drop", "digits", "shown"),
+    [
+        # √(2 H/1): perfect squares, a tie among them, and one that is none.
+        ("3.125", 1, "2"),
+        ("6.125", 1, "4"),
+        ("3.125", 5, "2.5000"),
+        ("1", 30, "1.41421356237309504880168872421"),
+    ],
+)
+def test_roots_are_exact_where_they_are_rational_and_ties_end(drop: str, digits: int, shown: str) -> None:
+    s = measured(a="1", drop=drop, digits=digits)
+    assert str(s.fall_time) == str(s.final_speed) == shown
+
+
+# With uncertainties
+
+
+def test_laboratory_results_against_uncertainties() -> None:
+    m1, m2, a, g, R, drop = (
+        unc.ufloat(*pair)
+        for pair in ((0.055, 1e-4), (0.06, 2e-4), (0.38, 4e-3), (9.81, 0.01), (0.05, 1e-3), (0.8, 0.01))
+    )
+    c = g * (m2 - m1) / a - m1 - m2
+    time = (2 * drop / a) ** 0.5
+    wanted = {"pulley_mass": 2 * c, "moment_of_inertia": c * R**2, "fall_time": time, "final_speed": a * time}
+    wanted |= {
+        "tension_1": m1 * (g + a),
+        "torque": c * a * R,
+        "axle_force": m1 * (g + a) + m2 * (g - a) + 2 * c * g,
+    }
+    s = measured(m1="55.0(1)g", m2="60.0(2)g", a="0.380(4)", g="9.81(1)", R="5.0(1)cm", drop="0.80(1)")
+    timed = measured(m1="55.0(1)g", m2="60.0(2)g", drop="0.80(1)", time="2.00(2)s", M="30(1)g")
+    for name, quantity in wanted.items():
+        assert getattr(s, name) == pytest.approx(quantity.nominal_value, rel=1e-12), name
+        assert s.uncertainty[name] == pytest.approx(quantity.std_dev, rel=1e-12), name
+    M, t = unc.ufloat(0.03, 1e-3), unc.ufloat(2, 0.02)
+    a = 2 * drop / t**2
+    gravity = a * (m1 + m2 + M / 2) / (m2 - m1)
+    assert timed.uncertainty["gravity"] == pytest.approx(gravity.std_dev, rel=1e-12)
+    assert timed.uncertainty["acceleration"] == pytest.approx(a.std_dev, rel=1e-12)
+    assert timed.uncertainty["fall_time"] == pytest.approx(0.02, rel=1e-15)
+    assert timed.uncertainty["final_speed"] == pytest.approx((a * t).std_dev, rel=1e-12)
+    assert timed.uncertainty["mu_verge"] == pytest.approx(
+        solve(m1="55.0(1)g", m2="60.0(2)g", M="30(1)g").uncertainty["mu_verge"], rel=1e-15
+    )
+
+
+def test_an_acceleration_no_pulley_is_light_enough_for_beside_it() -> None:
+    s = measured(a="4.903325(10)")
+    assert s.pulley_mass == 0
+    assert s.uncertainty["pulley_mass"] is None
+    assert any(
+        note.startswith("u_acceleration, ")
+        and note.endswith(": unknown, as beside these inputs are such that no pulley fits.")
+        for note in s.notes
+    )
+
+
+def test_a_fall_in_doubt_of_slipping() -> None:
+    s = measured(M="10", mu="0.21(1)", drop="2.00(1)")
+    assert any(
+        "Whether the string slips is in doubt: mu - mu_verge = 0.004 ± 0.010" in note for note in s.notes
+    )
+
+
+# What cannot be
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"a": "inf"}, "a 'inf' must be finite"),
+        ({"a": float("nan")}, "a nan must be finite"),
+        ({"a": float("-inf")}, "a -inf must be finite"),
+        ({"a": "1kg"}, "a '1kg' must be a plain number, without the 'kg'"),
+        ({"drop": "0"}, "drop '0' must be above 0, and finite"),
+        (
+            {"drop": "1s"},
+            "drop '1s' has a unit of time; it takes one of length (m, km, dm, cm, mm, um, in, ft, yd)",
+        ),
+        ({"drop": "1", "time": "-1"}, "time '-1' must be above 0, and finite"),
+        ({"time": "1"}, "time '1' needs drop, the height fallen in it"),
+        (
+            {"time": "1", "drop": "1", "a": "1"},
+            "time '1' and a both tell the acceleration; give one of them",
+        ),
+        (
+            {"a": "1", "mu": "0.3"},
+            "a '1' has no place beside mu, as a string that slips moves alike on any pulley; leave mu out",
+        ),
+        (
+            {"a": "1", "I": "1", "R": "1"},
+            "a '1' has no place beside I, which already tells how the pulley turns; leave I out",
+        ),
+        (
+            {"a": "1", "M": "inf"},
+            "a '1' has no place beside M = inf, which lets nothing move; leave one of them out",
+        ),
+        (
+            {"a": "1", "M": "1", "g": "9.8"},
+            "a '1' leaves nothing to find beside both M and g; leave one of them out",
+        ),
+        (
+            {"a": "1", "m2": "1"},
+            "a '1' tells nothing of equal masses, which rest on any pulley; leave it out",
+        ),
+        *(
+            (
+                {"a": a},
+                f"a {a!r} must be between 0 (a locked pulley: M = inf) and 4.903325 m/s² (a massless one),"
+                " as m2 is the heavier mass",
+            )
+            for a in ("0", "-1", "4.9034", "5.0(1)")
+        ),
+        (
+            {"a": "1", "m1": "3", "m2": "1"},
+            "a '1' must be between 0 (a locked pulley: M = inf) and -4.903325 m/s² (a massless one),"
+            " as m1 is the heavier mass",
+        ),
+        (
+            {"drop": "1", "time": "0.5(1)"},
+            "time '0.5(1)' implies a = 8 m/s², which must be between 0 (a locked pulley: M = inf) and 4.903325 m/s²"
+            " (a massless one), as m2 is the heavier mass",
+        ),
+        ({"a": "-1", "M": "1"}, "a '-1' must be above 0, as m2 is the heavier mass"),
+        ({"a": "0", "M": "1", "m1": "4"}, "a '0' must be below 0, as m1 is the heavier mass"),
+        (
+            {"a": "1.0(0.1)"},
+            "a '1.0(0.1)' is not a number with its uncertainty; write it like 1.000±0.002,"
+            " 1.000+/-0.002 or 1.000(2), and a unit after that",
+        ),
+    ],
+)
+def test_errors(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        solve(**{"m1": "1", "m2": "3", **given})
+    assert str(caught.value) == message
+
+
+def test_only_of_what_the_scene_does_not_ask_names_the_option(atwood: Atwood) -> None:
+    words = [word for name in FOUND_NAMES for word in ("--only", name)]
+    ran = atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", *words)
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err.splitlines() == [
+        "atwood: pulley_mass, moment_of_inertia: give a, a measured acceleration, in place of M.",
+        "atwood: gravity: give a, a measured acceleration, beside M and in place of g.",
+        "atwood: fall_time, final_speed: give drop, the height that the heavier mass falls from rest.",
+    ]
+
+
+@pytest.mark.parametrize("given", [["--m2", "1"], ["--m2", "3", "--M", "inf"]])
+def test_what_rests_does_not_fall(given: list[str], atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1", *given, "--drop", "1", "--only", "fall_time", "--only", "final_speed")
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err == "atwood: fall_time, final_speed: does not exist, as nothing moves.\n"
+
+
+def test_a_fall_that_needs_the_pulley(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1", "--m2", "3", "--mu", "0.4", "--drop", "1", "--only", "fall_time")
+    assert (ran.status, ran.err) == (1, "atwood: fall_time: give M, the pulley's mass, which decides here.\n")
+
+
+# How they are shown
+
+
+LAB = ["solve", "--m1", "1", "--m2", "3", "--a", "1.00(1)", "--R", "10cm", "--drop", "2"]
+
+
+def test_the_table_has_them_in_a_group_of_their_own(atwood: Atwood) -> None:
+    ran = atwood(*LAB)
+    assert (ran.status, ran.err) == (0, "")
+    assert "wrap = 180°, a = 1 ± 0.01 m/s², drop = 2 m\n" in ran.out
+    assert ", M = " not in ran.out.splitlines()[0]
+    rows = [line.split("│")[1:4] for line in ran.out.splitlines() if line.startswith("│")]
+    assert [[cell.strip() for cell in row] for row in rows][-4:] == [
+        ["pulley_mass", "31.23 ± 0.39", "kg"],
+        ["moment_of_inertia", "0.1561 ± 0.0020", "kg m²"],
+        ["fall_time", "2.000 ± 0.010", "s"],
+        ["final_speed", "2.000 ± 0.010", "m/s"],
+    ]
+
+
+def test_json_and_csv_have_them_only_with_what_they_come_from(atwood: Atwood) -> None:
+    bare = json.loads(atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", "--json").out)
+    found = json.loads(atwood(*LAB, "--json").out)
+    assert list(found) == ["scene", *NAMES, *FOUND_NAMES[:2], *FOUND_NAMES[3:], "uncertainty", "notes"]
+    assert list(found["scene"]) == [*bare["scene"], "a", "drop", "time"]
+    assert found["scene"]["M"] is None
+    assert (found["scene"]["a"], found["scene"]["drop"], found["scene"]["time"]) == (1, 2, None)
+    gravity = json.loads(atwood("solve", "--m1", "1", "--m2", "3", "--M", "7", "--a", "1.5", "--json").out)
+    assert list(gravity) == ["scene", *NAMES, "gravity", "notes"]
+    assert (gravity["scene"]["g"], gravity["gravity"]) == (None, 5.625)
+    names, values = csv.reader(io.StringIO(atwood(*LAB, "--csv").out))
+    here = [*NAMES, *FOUND_NAMES[:2], *FOUND_NAMES[3:]]
+    assert names == [*here, *(f"u_{name}" for name in here[1:])]
+    assert dict(zip(names, values, strict=True))["pulley_mass"] == "31.2266"
+
+
+def test_a_pulley_mass_without_a_decimal_is_no_trouble_for_json(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1", "--m2", "3", "--a", "0.3", "--json", "--only", "pulley_mass")
+    assert json.loads(ran.out) == {"pulley_mass": float(2 * (Fraction("9.80665") * 2 / Fraction("0.3") - 4))}
+    assert (
+        json.loads(atwood("solve", "--m1", "1", "--m2", "3", "--a", "0.3", "--json").out)["scene"]["M"]
+        is None
+    )
+
+
+def test_other_commands_and_solutions_know_nothing_of_them(atwood: Atwood) -> None:
+    assert type(solve(m1=1, m2=3, M=10)) is Solution
+    assert not any(hasattr(solve(m1=1, m2=3, M=10), name) for name in FOUND_NAMES)
+    ran = atwood("sweep", "--m1", "1", "--m2", "3", "--M", "1:2:3", "--only", "fall_time")
+    assert ran.err.startswith("atwood: --only 'fall_time' is no quantity; ")
+    assert "No such option: --drop" in atwood("contact", "--m1", "1", "--m2", "3", "--drop", "1").err
+    batch = process(shell="printf 'm1,m2\\n1,3\\n' | atwood batch - --only pulley_mass")
+    assert batch.err.startswith("atwood: --only 'pulley_mass' is no quantity; ")
+
+
+def test_help_has_a_panel_for_them(atwood: Atwood) -> None:
+    words = atwood("solve", "-h").out
+    assert all(option in words for option in ("Measured", "--a ", "--drop", "--time"))
+
+
+def test_digits_and_signs() -> None:
+    s = measured(m1="3", m2="1", a="-1", drop="1", digits=20)
+    assert s.pulley_mass == Decimal("31.226600000000000000")
+    assert s.fall_time == Decimal("1.4142135623730950488")
