@@ -274,6 +274,8 @@ def solve(
       atwood solve --m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --json
       atwood solve --m1 1 --m2 3 --M 10 --only acceleration --only mu_verge
       atwood solve --m1 '1.000(2)' --m2 3+/-0.01 --M 10 --budget
+      atwood solve --m1 55g --m2 60g --R 5cm --a 0.380+/-0.004
+      atwood solve --m1 55g --m2 60g --drop 80cm --time '2.05(2)'
     """
     from . import output
     from .solver import read_answers

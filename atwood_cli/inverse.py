@@ -29,7 +29,7 @@ class MeasuredSolution(Solution[T]):
     # fmt: on
 
 
-NO_PULLEY = "unknown, as beside these inputs are such that no pulley fits"
+NO_PULLEY = "unknown, as inputs a little different fit no pulley"
 
 
 def read(given: Mapping[str, Given | None]) -> tuple[Scene, Motion]:

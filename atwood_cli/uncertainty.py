@@ -3,14 +3,16 @@
 For inputs x that are known to u(x), independently of each other, u(q)² = Σ (∂q/∂x · u(x))²; this is
 (10) in 5.1.2 of the GUM (JCGM 100:2008). No formula is differentiated for it. A slope is a difference
 quotient between the scene as given and scenes one step to either side, solved to as many digits as
-the steps are short: with steps of about 10^-40 and 110 digits it is right to some 20 digits.
+the steps are short: with steps of about 10^-40 and 110 digits it is right to some 20 digits. Steps are
+shorter, and digits more, by as many powers of ten as the scales of the scene are apart: an input that
+is 10^-200 of the others moves a quantity by so much less.
 
 Two checks stand in for trust in that. The slopes to the left and to the right must agree to 10 digits,
 so that the error of their mean, of second order in the step, is in the 20th; where they do not, the
 step reaches over a bend, and is shortened, and where they shrink with it to the end, the slope is 0.
 And what the rounding of the values is worth in a slope must be below its 20th digit; where it is not,
 because much cancels, digits are added. A slope of 0 is otherwise only believed of values that agree in
-all their digits, more than twice as many as the step has.
+all their digits, more than twice as many as the step has powers of ten.
 
 There is one place where no step is short enough: at equal masses the friction needed, which goes with
 |m2 - m1|, has a kink, so no slope and no uncertainty. Any other bend (from grip to slip) lies beside the
@@ -34,8 +36,8 @@ from .words import reasons_at
 
 SURE = 20
 """Digits to which a slope is right."""
-FIRST_STEP, LAST_STEP = 2 * SURE, 32 * SURE
-"""How many powers of ten a step is below the scale of what is stepped."""
+STEPS = (40, 80, 160, 320, 640)
+"""How many powers of ten a step is below the input, where all in the scene is of the same scale."""
 COVERAGE = 2
 """How many standard uncertainties from the line between two cases leave the case in doubt."""
 
@@ -146,13 +148,18 @@ def decimal(q: Fraction) -> Decimal:
 def _slopes(case: Case, uncertain: Uncertain) -> Callable[[str, str], Slope]:
     """The slope of a quantity with an input, by their names; it raises Undetermined."""
     scene, motion = case.scene, case.motion
+    closeness, span = _apart(case)
+
+    def given(x: str) -> Fraction:
+        value: Fraction = getattr(scene if x in Scene._fields else motion, x)
+        return value
 
     @cache
     def answers(x: str, offset: Fraction, digits: int) -> Answers:
-        holder = scene if x in Scene._fields else motion
-        value = getattr(holder, x)
-        moved = holder._replace(**{x: type(value)(value + offset)})
-        return answers_of(*((moved, motion) if isinstance(moved, Scene) else (scene, moved)), digits)
+        moved: dict[str, Any] = {x: type(given(x))(given(x) + offset)}
+        if x in Scene._fields:
+            return answers_of(scene._replace(**moved), motion, digits)
+        return answers_of(scene, motion._replace(**moved), digits)
 
     def at(name: str, x: str, offset: Fraction, digits: int) -> Decimal:
         found = answers(x, offset, digits)
@@ -163,36 +170,39 @@ def _slopes(case: Case, uncertain: Uncertain) -> Callable[[str, str], Slope]:
         assert isinstance(value, Decimal)
         return value
 
-    def slope(name: str, x: str) -> Slope:
-        value: Fraction = getattr(scene if x in Scene._fields else motion, x)
-        scale = decimal(value or uncertain[x]).adjusted() + _closeness(scene)
-        step, before = FIRST_STEP, None
-        digits = _enough(step)
-        while step <= LAST_STEP:
-            h = Fraction(10) ** (scale - step)
+    def sides(name: str, x: str, exponent: int, digits: int) -> tuple[Decimal, Decimal]:
+        """The slopes over the steps of 10^exponent to the right and to the left, or the next right one."""
+        value, h = given(x), Fraction(10) ** exponent
+        while True:
             here, right, other = (at(name, x, n * h, digits) for n in (0, 1, -1 if value else 2))
             exactly = decimal_context(2 * digits, ROUND_HALF_EVEN)
-            first = exactly.subtract(right, here)
-            second = exactly.subtract(here, other) if value else exactly.subtract(other, right)
-            steepest = max(abs(first), abs(second))
-            if not steepest:
-                return Slope(ZERO, ZERO)
+            rises = (
+                exactly.subtract(right, here),
+                exactly.subtract(here, other) if value else exactly.subtract(other, right),
+            )
+            if not any(rises):
+                return ZERO, ZERO
             noise = max(q.adjusted() for q in (here, right, other) if q) - digits + 1
-            if steepest.adjusted() - noise < SURE:
-                digits += SURE - (steepest.adjusted() - noise)
-                continue
-            apart = exactly.subtract(first, second)
-            steepest = AT.scaleb(steepest, step - scale)
-            if not apart or apart.adjusted() + step - scale <= steepest.adjusted() - SURE // 2:
-                # The mean; at the end of the domain, what lies half the difference before the first.
-                half = exactly.divide(apart, Decimal(2))
-                mean = exactly.subtract(first, half) if value else exactly.add(first, half)
-                return Slope(AT.scaleb(mean, step - scale), steepest)
-            shrinks = before is None or steepest.adjusted() < before.adjusted() - SURE
+            lacking = noise + SURE - max(abs(rise) for rise in rises).adjusted()
+            if lacking <= 0:
+                first, second = (AT.scaleb(rise, -exponent) for rise in rises)
+                return first, second
+            digits += lacking
+
+    def slope(name: str, x: str) -> Slope:
+        value, before = given(x), Decimal(inf)
+        scale = decimal(value or uncertain[x]).adjusted()
+        for step in (closeness + number for number in STEPS):
+            first, second = sides(name, x, scale - step, 2 * step + span + 30)
+            apart, steepest = AT.subtract(first, second), max(abs(first), abs(second))
+            if not apart or apart.adjusted() <= steepest.adjusted() - SURE // 2:
+                # The mean; at the end of the domain, as much before the first as they are apart, halved.
+                half = AT.divide(apart, Decimal(2))
+                return Slope(AT.subtract(first, half) if value else AT.add(first, half), steepest)
+            shrinks = steepest < AT.scaleb(before, -SURE)
             if scene.m1 == scene.m2 and not shrinks:
                 return Slope(None, steepest)
-            step, before = 2 * step, steepest
-            digits = _enough(step)
+            before = steepest
         if shrinks:
             return Slope(ZERO, ZERO)
         raise Undetermined("unknown, as its slope did not settle")
@@ -209,12 +219,12 @@ def answers_of(scene: Scene, motion: Motion, digits: int) -> Answers:
     return Answers(scene, digits, motion)
 
 
-def _enough(step: int) -> int:
-    """Digits for values a step apart."""
-    return 2 * step + 30
-
-
-def _closeness(scene: Scene) -> int:
-    """How many powers of ten (0 or less) the closest scales of the scene are apart."""
-    masses = decimal(abs(scene.m2 - scene.m1) / (scene.m1 + scene.m2))
-    return min(0, *(q.adjusted() for q in (masses, decimal(scene.mu or Fraction(1))) if q))
+def _apart(case: Case) -> tuple[int, int]:
+    """How many powers of ten a bend may be nearer than all else in the scene, and scales are apart in all."""
+    scene, total = case.scene, case.scene.m1 + case.scene.m2
+    near = [(scene.m2 - scene.m1) / total, scene.mu]
+    other = [scene.m1 / total, scene.m2 / total, (case.rim_mass or 0) / total, scene.wrap]
+    closeness, span = (
+        sum(abs(decimal(Fraction(q)).adjusted()) for q in ratios if q) for ratios in (near, near + other)
+    )
+    return closeness, span

@@ -164,7 +164,7 @@ def test_an_acceleration_no_pulley_is_light_enough_for_beside_it() -> None:
     assert s.uncertainty["pulley_mass"] is None
     assert any(
         note.startswith("u_acceleration, ")
-        and note.endswith(": unknown, as beside these inputs are such that no pulley fits.")
+        and note.endswith(": unknown, as inputs a little different fit no pulley.")
         for note in s.notes
     )
 
