@@ -383,6 +383,15 @@ def test_equal_masses_have_kinks_where_friction_is_needed_and_slopes_elsewhere()
     )
 
 
+def test_a_bend_too_near_to_tell() -> None:
+    solution = solve(m1="1", m2="3", mu="0.3", M=f"{critical_mass(900)}±1")
+    assert solution.uncertainty["acceleration"] is None
+    assert any(
+        note.startswith("u_acceleration, ") and note.endswith(": unknown, as its slope did not settle.")
+        for note in solution.notes
+    )
+
+
 def test_half_a_turn_that_may_be_more() -> None:
     solution = solve(m1="1", m2="3", M="10", mu="0.3", wrap="180±2")
     assert solution.axle_force is not None
