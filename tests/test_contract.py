@@ -4,7 +4,7 @@ import subprocess
 import sys
 from decimal import Decimal
 from fractions import Fraction
-from math import inf, pi
+from math import inf
 from typing import Any
 
 import pytest
@@ -100,15 +100,6 @@ def test_pulley_and_mu_give_the_true_motion(M: str, regime: str) -> None:
     assert s.critical_pulley_mass == 43.34192486321087
     assert s.critical_heavier_mass is not None
     assert (s.friction_force is None) == (regime == "no-slip")
-
-
-@pytest.mark.parametrize("side", ["-1e-900", "1e-900"])
-def test_either_side_of_the_verge_is_decided_at_any_closeness(side: str) -> None:
-    critical = solve(m1="1", m2="3", mu="0.3", digits=1000).critical_pulley_mass
-    assert critical is not None
-    s = solve(m1=1, m2=3, mu="0.3", M=Fraction(critical) + Fraction(side))
-    assert s.regime == ("slip" if side == "1e-900" else "no-slip")
-    assert s.acceleration == solve(m1="1", m2="3", mu="0.3").acceleration
 
 
 # The corners
@@ -240,42 +231,7 @@ def test_critical_heavier_mass_is_where_the_regime_changes() -> None:
     assert solve(m1=1, m2=3, M=6, mu="0.3").critical_heavier_mass is None
 
 
-def test_slip_runs_on_kinetic_friction_alone() -> None:
-    s, heavier_pulley = (solve(m1=1, m2=3, M=M, mu="0.3", mu_k="0.1", digits=30) for M in (100, 1000))
-    assert s.acceleration == heavier_pulley.acceleration
-    assert s.acceleration is not None
-    assert s.rim_acceleration is not None
-    assert s.rim_acceleration < s.acceleration
-    assert s.tension_1 is not None
-    assert float(s.tension_2 / s.tension_1) == pytest.approx(2.718281828459045 ** (0.1 * pi))  # type: ignore[operator]
-
-
 # What every solution has
-
-
-def test_every_quantity_mirrors() -> None:
-    for more in (
-        {"mu": "0.3"},
-        {"M": "10"},
-        {"M": "100", "mu": "0.3"},
-        {"M": "5", "mu": "0.3"},
-        {"wrap": "100", "M": 3},
-    ):
-        s, t = solve(m1=1, m2=3, R=2, **more), solve(m1=3, m2=1, R=2, **more)
-        assert (s.tension_1, s.tension_2) == (t.tension_2, t.tension_1)
-        for name in ("acceleration", "rim_acceleration", "angular_acceleration", "torque"):
-            assert getattr(t, name) == (None if getattr(s, name) is None else -getattr(s, name))
-        for name in (
-            "mu_verge",
-            "friction_force",
-            "critical_pulley_mass",
-            "critical_heavier_mass",
-            "axle_force",
-        ):
-            assert getattr(s, name) == getattr(t, name)
-        if s.friction_force_x is not None and "wrap" not in more:
-            assert s.friction_force_x == -t.friction_force_x  # type: ignore[operator]
-            assert s.friction_force_y == t.friction_force_y
 
 
 def test_every_missing_value_has_a_note() -> None:
@@ -336,14 +292,6 @@ def test_values_below_the_doubles_are_zero_and_said() -> None:
     s = solve(m1="1e-400", m2="2e-400")
     assert s.tension_1 == 0
     assert any("below the range of doubles" in note for note in s.notes)
-
-
-@pytest.mark.parametrize("mu", ["1e6", "1e400"])
-def test_a_huge_mu_is_answered_by_logic(mu: str) -> None:
-    s = solve(m1=1, m2=3, mu=mu, digits=5)
-    assert s.regime == "no-slip"
-    assert s.least_heavier_mass == (Decimal("2.2586e1364376") if mu == "1e6" else Decimal("Infinity"))
-    assert any("beyond 10^100000000" in note for note in s.notes) == (mu == "1e400")
 
 
 @pytest.mark.parametrize(
