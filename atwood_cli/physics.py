@@ -98,7 +98,7 @@ def final_speed(drop: N, a: N, sqrt: Function[N]) -> N:
 
 def light_tension(l: N, a: N, g: N) -> N:
     """Tension on the lighter mass (N), from (1): its weight and what accelerates it."""
-    return l * g + l * a
+    return l * (g + a)
 
 
 def difference_of_a_pulley(c: N, a: N) -> N:
@@ -118,7 +118,7 @@ def difference_of_friction(light: N, k1: N) -> N:
 
 def excess_ratio(l: N, h: N, c: N) -> N:
     """T_h/T_l - 1 of a string that grips, from (4); without cancellation."""
-    return c * (h - l) / (l * (2 * h + c))
+    return locked_excess(l, h) * (c / (2 * h + c))
 
 
 def locked_excess(l: N, h: N) -> N:
