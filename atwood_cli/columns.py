@@ -10,10 +10,38 @@ platform and with any SIMD path; that its log1p, cos and sin are within one unit
 2^±120 (`WINDOW`), so that no product of the equations leaves the normal doubles, but for squares
 that do not matter beside what they are added to. Whoever calls sees to the last.
 
-The error of a sum of two doubles is a double, found by six more additions (D. E. Knuth); that of a
-product, by splitting each factor into halves of 26 bits (T. J. Dekker); that of a quotient from its
-remainder. What is lost is of second order: the rounding of what is added up into rest, and the product
-of two rests. If |rest| <= u |value|, as after `normal`, that is in units of u² of the result
+The error of a sum of two doubles is a double, found by six more additions (D. E. Knuth), or by two
+where the first is known to be the larger one (T. J. Dekker).
+
+Bounds add up in products and quotients. A sum of what is not negative inherits the larger one. In a
+difference, and a sum of what is off by more than a few u in some row, they count as much as the terms
+weigh beside what is left, row by row: a row that cancels is told from its neighbours, and only such rows
+pay for more digits. Weights are taken from values, and sizes
+from results, as they are computed; that is of second order, as is the product of two bounds, and whoever
+compares a bound leaves room for it.
+
+Products come in three kinds, that differ in cost: *rounded*, to a double; *quick*, by halves; *thorough*.
+
+A quick product splits both factors into a head of 26 bits, the double with its other bits cut off, and a
+tail. The product of the heads is exact, and is the value; the rest is (head tail + tail whole). A quick
+quotient is the head q of the rounded one, and as rest the remainder divided: (x - q head) - q tail over
+the whole; a quick root is the head v of the rounded root w, and (x - v²)/(w + v). So rests are not small
+but |rest| <= t |value|, where each product, quotient and root adds 2^-25 for every head that it cuts to
+what its operands have; a sum has no more than its terms, and a difference is made normal. As no quantity
+takes more than 60 operations on the way, t < 2^-18. Every rounding is one of a tail or a remainder, none
+of them above 2t of the result: the tails, one whole, two products, their sum: 7 times u t in a product;
+9 in a quotient, with its two divisions; fewer in a root or sum. Each is below 2^-67 of the result, or of
+both terms in a difference (`LOSS`). Where a difference leaves less than t of its terms, `normal` may round
+as well, 2 u t of the terms, and what is left may have a rest beyond t: its bound, at least 2^-66/t, is so
+large that whoever looks at it asks for more digits anyway, and is larger than what that rest loses.
+
+Rounded products and quotients lose u each, and what is of second order: their rests are a few u, as they
+start with at most half a unit in the last place (`normal`) and grow by u per operation. A rest counts once,
+in first order: 60² u² and the roundings of rests are less than `LOOSE` = 2^14 u². What comes from a quick
+operation is made normal first.
+
+If thorough, the errors of products are doubles too, found by splitting each factor into halves of 26 bits,
+the lower one with a sign (T. J. Dekker), and every result is made normal. What is lost is, in units of u²,
 
 - sum: two additions into rest, to at most 2u each: 4 (of both terms, in a difference);
 - product: two products, 1 each, their additions, to at most 2u and 3u, and the rests': 8; with only one
@@ -21,21 +49,22 @@ of two rests. If |rest| <= u |value|, as after `normal`, that is in units of u²
 - quotient: what is added to the remainder, 2 + 1 + 3, its division, 3, and that by the value alone, 3: 12.
   A root has fewer.
 
-One more each covers what is of third order. Without `normal`, |rest| grows by u per operation on the
-way; no quantity takes more than 60, so `LOOSE` = 2^14 covers the losses.
+One more each covers what is of third order.
 
-Bounds add up in products and quotients. A sum of what is not negative inherits the larger one. In a
-difference, they count as much as the terms weigh beside what is left, row by row: a row that
-cancels is told from its neighbours, and only such rows pay for more digits.
+e^x - 1 is put together from (1 + a)(1 + b) - 1 = a + b (1 + a), in which nothing cancels for x >=
+0: a table of a = 2^(i/16384) - 1 (if thorough, also of 2^(i/65536) - 1, i < 4), and the Taylor
+series of what is left, r. A multiple n of ln 2/16384 (ln 2/65536) comes off x in parts, of 30 bits
+(24) each as n has at most 20 (27), so that only the product with the last part is rounded: x 2^-83
+(x 2^-125) is lost, and u² x (if quick, u t x) for each time that a part adds to what x has as rest.
+An error of x counts x + 1 times, as x e^x < (x + 1)(e^x - 1).
 
-e^x - 1 is put together from (1 + a)(1 + b) - 1 = a + b + ab, in which nothing cancels for x >= 0:
-factors 2^(i/4096) (and 2^(i/65536) if thorough) from tables, and the Taylor series of what is left,
-r < 0.00017 (1.1e-5), cut off where the next term is below 2^-71 r (2^-110 r). The first term is a
-pair, the others, at most r²/2 <= 2^-13 r, are plain doubles with errors of some 6u: 2^-62 r in all.
-If thorough, the terms up to r³/6 are pairs, the others below 2^-53 r, 2^-102 r in all. A multiple n
-of ln 2/4096 (ln 2/65536) comes off x in parts, of 30 bits (24) each as n has at most 23 (27), so that
-only the product with the last part is rounded: x 2^-83 (x 2^-125) is lost, and u² x for each time that
-a part adds to what x has as rest. An error of x counts x + 1 times, as x e^x < (x + 1)(e^x - 1).
+- Quick: n is the nearest, so |r| < 2^-15.5. With a 2^m, and 2^m - 1, as a head that is exact for x
+  <= 36 (`LARGE`) and a tail, 1 + a is rounded twice, r and their product once each: 4 u r, less
+  than 2^-66 of e^x, which is 2^-66 (1 + 1/x) of e^x - 1. The other terms, below r², are doubles and
+  lose less than 2^-66 of r; the next one would be 2^-69 r. Where n = 0, a = 0 and r (1 + a) is
+  exact: that is all.
+- Thorough: n is the next lower, so r < 1.1e-5. The terms up to r³/6 are pairs, the others below
+  2^-53 r, 2^-102 r in all, and the next one would be below 2^-110 r.
 """
 
 from collections.abc import Callable
@@ -43,7 +72,7 @@ from fractions import Fraction
 from functools import cache, cached_property
 from math import frexp, ldexp, pi
 from threading import local
-from typing import Any, Literal, Union
+from typing import Any, Union
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,10 +84,12 @@ Column = NDArray[np.float64]
 UNIT = 2.0**-53
 LIBRARY = 2 * UNIT
 MANY = 256  # single numbers kept
-LOOSE = 2**14  # losses in u² where rests are not kept normal
+LOOSE = 2**14 * UNIT**2  # of second order, lost by a rounded operation
+LOSS = 2.0**-67  # lost by a quick one
+HEAD = -1 << 27  # masks the last 27 of the 53 bits
 WINDOW = 2.0**-120, 2.0**120
-LARGEST = 700.0  # argument of an exponential
-COARSE, FINER = 4096, 16  # steps of its tables to a factor of 2, and to a coarse step
+LARGE, LARGEST = 36.0, 700.0  # argument of an exponential, quick and thorough
+COARSE, FINER = 16_384, 4  # steps of its tables to a factor of 2, and to a coarse step
 FINE = COARSE * FINER
 
 
@@ -108,55 +139,78 @@ FLOATS = Floats()
 class Pair:
     """value + rest, relative error at most ``bound``; ``rest`` is None where value is exact.
 
-    Columns have the shape (n,), single numbers (1,). ``positive`` says that no row is negative.
+    Columns have the shape (n,), single numbers (1,). ``positive`` says that no row is negative. The
+    bound is ``loss``, the same in all rows, and ``doubt``, a column or None, where terms cancelled.
     """
 
-    __slots__ = ("bound", "positive", "power", "rest", "value", "within")
+    __slots__ = ("_halves", "_rounded", "doubt", "loss", "positive", "power", "rest", "value", "within")
 
     def __init__(
         self,
         within: "Pairs",
         value: Column,
         rest: Column | None = None,
-        bound: Any = 0.0,
+        loss: float = 0.0,
+        doubt: Column | None = None,
         positive: bool = True,
     ) -> None:
-        self.within, self.value, self.rest, self.bound, self.positive = within, value, rest, bound, positive
+        self.within, self.value, self.rest, self.positive = within, value, rest, positive
+        self.loss, self.doubt = loss, doubt
         self.power = 0.0  # the value, where it is a single power of two: a factor that rounds nothing
+        self._halves: tuple[Column, Column] | None = None
+        self._rounded: Column | None = None
 
-    def _lift(self, other: Union["Pair", Fraction, int]) -> "Pair":
-        return other if isinstance(other, Pair) else self.within.number(other)
+    @property
+    def bound(self) -> Any:
+        return self.loss if self.doubt is None else self.doubt + self.loss
+
+    def _meet(self, other: Union["Pair", Fraction, int]) -> tuple["Pair", "Pair"]:
+        """Both, as the less accurate of their arithmetics takes them."""
+        two = other if isinstance(other, Pair) else self.within.number(other)
+        if two.within is self.within:
+            return self, two
+        within = min(self.within, two.within, key=LEVELS.index)
+        return self._as(within), two._as(within)
+
+    def _as(self, within: "Pairs") -> "Pair":
+        if self.within is within:
+            return self
+        pair = Pair(within, self.value, self.rest, self.loss, self.doubt, self.positive)
+        pair.power = self.power
+        return pair if pair.rest is None else pair.normal()
 
     def __add__(self, other: Union["Pair", int]) -> "Pair":
-        return self._plus(self._lift(other), np.add)
+        return self._plus(other, np.add)
 
     __radd__ = __add__
 
     def __sub__(self, other: Union["Pair", int]) -> "Pair":
-        return self._plus(self._lift(other), np.subtract)
+        return self._plus(other, np.subtract)
 
-    def _plus(self, other: "Pair", add: Any) -> "Pair":
+    def _plus(self, other: Union["Pair", int], add: Any) -> "Pair":
         """The sum, or the difference if ``add`` is np.subtract."""
-        x, y = self.value, other.value
-        value, rest = _sum(x, y, add)
-        if self.rest is not None:
-            rest += self.rest
-        if other.rest is not None:
-            add(rest, other.rest, out=rest)
-        sum_, loss = Pair(self.within, value, rest), self.within.sum_loss
-        together = self.positive and other.positive and add is np.add
-        plain = isinstance(self.bound, float) and isinstance(other.bound, float)
-        if together and plain and not self.within.thorough:
-            sum_.bound = max(self.bound, other.bound) + loss
-            return sum_
-        sum_.normal()
-        sum_.positive = together or bool(sum_.value.min() >= 0)
-        if not (self._exact and other._exact):
-            size = sum_.value if sum_.positive else np.abs(sum_.value)
-            weighed = self._weighed(loss) + other._weighed(loss)
-            sum_.bound = weighed / size
-            if np.isnan(sum_.bound.min()):  # 0 plus or minus 0 is 0
-                sum_.bound = np.where(weighed == 0, 0.0, sum_.bound)
+        one, two = self._meet(other)
+        positive = one.positive and two.positive
+        value, rest, ordered = _sum(one.value, two.value, add, positive)
+        if one.rest is not None:
+            rest += one.rest
+        if two.rest is not None:
+            add(rest, two.rest, out=rest)
+        together, loss = positive and add is np.add, one.within.sum_loss
+        sum_ = Pair(one.within, value, rest)
+        if one._exact and two._exact:
+            sum_.positive = together or ordered or bool(value.min() >= 0)
+            sum_._rounded = value
+        elif together and one.within.trusts(one) and one.within.trusts(two):
+            sum_.loss = max(one.loss, two.loss) + loss
+            sum_.doubt = one.doubt if one.doubt is two.doubt else _both(one.doubt, two.doubt, np.maximum)
+        else:
+            sum_ = sum_.normal()
+            sum_.positive = together or bool(sum_.value.min() >= 0)
+            weighed = one._weighed(loss) + two._weighed(loss)
+            sum_.doubt = weighed / (sum_.value if sum_.positive else np.abs(sum_.value))
+            if np.isnan(sum_.doubt.min()):  # 0 plus or minus 0 is 0
+                sum_.doubt = np.where(weighed == 0, 0.0, sum_.doubt)
         return sum_
 
     def _weighed(self, loss: float) -> Any:
@@ -165,94 +219,107 @@ class Pair:
 
     @property
     def _exact(self) -> bool:
-        return self.rest is None and isinstance(self.bound, float) and self.bound == 0
+        return self.rest is None and self.doubt is None and self.loss == 0
 
     def normal(self) -> "Pair":
         """The same with a rest of at most half a unit in the last place."""
         assert self.rest is not None
         value = np.add(self.value, self.rest, out=_room(self.value))
-        rest = np.subtract(value, self.value, out=self.value)
-        np.subtract(self.rest, rest, out=self.rest)
-        self.value = value
+        rest = np.subtract(self.value, value, out=_room(value))
+        rest += self.rest
+        normal = Pair(self.within, value, rest, self.loss, self.doubt, self.positive)
+        normal._rounded = value
+        return normal
+
+    def halved(self) -> "Pair":
+        """The same, whose value is known to have 26 bits."""
+        assert self.rest is not None
+        self._halves = self.value, self.rest
         return self
+
+    def halves(self) -> tuple[Column, Column]:
+        """Two columns that add up to this, the first of 26 bits."""
+        if self._halves is None:
+            head = _head(self.value)
+            tail = np.subtract(self.value, head, out=_room(head))
+            if self.rest is not None:
+                tail += self.rest
+            self._halves = head, tail
+        return self._halves
+
+    def rounded(self) -> Column:
+        """The double that value + rest round to."""
+        if self.rest is None:
+            return self.value
+        if self._rounded is None:
+            self._rounded = np.add(self.value, self.rest, out=_room(self.value))
+        return self._rounded
 
     def _scaled(self, factor: float) -> "Pair":
         """Times a power of two, or -1."""
         rest = None if self.rest is None else self.rest * factor
-        return Pair(self.within, self.value * factor, rest, self.bound, self.positive and factor > 0)
+        positive = self.positive and factor > 0
+        return Pair(self.within, self.value * factor, rest, self.loss, self.doubt, positive)
 
     def __mul__(self, other: Union["Pair", Fraction, int]) -> "Pair":
-        other = self._lift(other)
-        for one, factor in ((self, other), (other, self)):
+        one, two = self._meet(other)
+        for factor, of in ((one, two), (two, one)):
             if factor.power:
-                return one._scaled(factor.power)
-        x, y = self.value, other.value
-        value, rest = self.within.product(x, y)
-        terms = [(a, b) for a, b in ((x, other.rest), (y, self.rest)) if b is not None]
-        loss = self.within.product_loss[len(terms)]
-        for a, b in terms:
-            term = np.multiply(a, b, out=_room(value))
-            rest = term if rest is None else np.add(rest, term, out=rest)
-        return self._of_factors(other, value, rest, loss)
+                return of._scaled(factor.power)
+        return one.within.product(one, two)
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: Union["Pair", int]) -> "Pair":
-        other = self._lift(other)
-        x, y = self.value, other.value
-        if other.power:
-            return self._scaled(1 / other.power)
-        value = np.divide(x, y, out=_room(x, y))
-        rest = self.rest
-        if self.within.exact_products:
-            product, error = _product(value, y)
-            remainder = np.subtract(x, product, out=product)
-            remainder -= error
-            rest = remainder if rest is None else np.add(remainder, rest, out=remainder)
-        if other.rest is not None:
-            term = np.multiply(value, other.rest, out=_room(value))
-            rest = np.subtract(0.0 if rest is None else rest, term, out=term)
-        if rest is not None:
-            rest = np.divide(rest, y, out=_room(value))
-        return self._of_factors(other, value, rest, self.within.quotient_loss)
+        one, two = self._meet(other)
+        if two.power:
+            return one._scaled(1 / two.power)
+        return one.within.quotient(one, two)
 
-    def _of_factors(self, other: "Pair", value: Column, rest: Column | None, loss: float) -> "Pair":
+    def of_factors(self, other: "Pair", value: Column, rest: Column | None, loss: float) -> "Pair":
         """The product or quotient of two pairs, in which so much is lost."""
-        within = self.within
-        bound = self.bound + other.bound + loss
-        found = Pair(within, value, rest, bound, self.positive and other.positive)
-        return found.normal() if within.thorough else found
+        doubt = _both(self.doubt, other.doubt, np.add)
+        positive = self.positive and other.positive
+        return Pair(self.within, value, rest, self.loss + other.loss + loss, doubt, positive)
 
     def __rtruediv__(self, other: int) -> "Pair":
-        return self._lift(other) / self
+        one: Pair = self.within.number(other)
+        return one / self
 
     def take(self, index: NDArray[np.intp]) -> "Pair":
         """Some of the rows."""
-        rest = None if self.rest is None else self.rest.take(index)
-        bound = self.bound if isinstance(self.bound, float) else self.bound.take(index)
-        return Pair(self.within, self.value.take(index), rest, bound, self.positive)
-
-    def rounded(self) -> Column:
-        """The double that value + rest round to."""
-        return self.value + (0.0 if self.rest is None else self.rest)
+        rest, doubt = (None if part is None else part.take(index) for part in (self.rest, self.doubt))
+        return Pair(self.within, self.value.take(index), rest, self.loss, doubt, self.positive)
 
 
 class Pairs:
-    """Pairs, on one of three levels, from the fastest to the most accurate.
+    """What the arithmetics of pairs have in common."""
 
-    0: products and quotients are rounded to a double. 1: they are exact but for what is said above.
-    2: so are exponentials and logarithms, and every rest is kept normal.
-    """
+    sum_loss: float
 
-    def __init__(self, level: Literal[0, 1, 2]) -> None:
-        self.exact_products, self.thorough = level > 0, level > 1
-        self._singles: dict[Fraction, Pair] = {}
-        rounding = 0.0 if self.exact_products else UNIT
-        # By the number of factors that have a rest: a product of exact doubles is exact.
-        losses = (0, 4, 9) if self.thorough else (0, LOOSE, LOOSE)
-        self.product_loss = [rounding + loss * UNIT**2 for loss in losses]
-        self.quotient_loss = rounding + (13 if self.thorough else LOOSE) * UNIT**2
-        self.sum_loss = (5 if self.thorough else LOOSE) * UNIT**2
+    def __init__(self) -> None:
+        self._singles: dict[tuple[int, int], Pair] = {}
+
+    def product(self, x: Pair, y: Pair) -> Pair:
+        raise NotImplementedError
+
+    def quotient(self, x: Pair, y: Pair) -> Pair:
+        raise NotImplementedError
+
+    def sqrt(self, x: Pair) -> Pair:
+        raise NotImplementedError
+
+    def expm1(self, x: Pair) -> Pair:
+        """e^x - 1 for x >= 0."""
+        raise NotImplementedError
+
+    def log1p(self, x: Pair) -> Pair:
+        """ln(1 + x) for x >= 0."""
+        raise NotImplementedError
+
+    def trusts(self, x: Pair) -> bool:
+        """Whether no row of a term is off so much that a sum should weigh it."""
+        return x.doubt is None or bool(x.doubt.max() < 3 * UNIT)
 
     def number(self, q: Any) -> Any:
         """A number, or a column of exact doubles."""
@@ -260,12 +327,12 @@ class Pairs:
             return q
         if isinstance(q, np.ndarray):
             return Pair(self, q)
-        q = Fraction(q)
-        single = self._singles.get(q)
+        key = q.numerator, q.denominator  # to hash a Fraction takes longer
+        single = self._singles.get(key)
         if single is None:
             if len(self._singles) > MANY:
                 self._singles.clear()
-            single = self._singles[q] = self._single(q)
+            single = self._singles[key] = self._single(Fraction(q))
         return single
 
     def _single(self, q: Fraction) -> Pair:
@@ -273,14 +340,10 @@ class Pairs:
         rest = float(q - Fraction(value))
         if rest:
             left = abs(float((q - Fraction(value) - Fraction(rest)) / q)) * 1.001
-            return Pair(self, np.array([value]), np.array([rest]), left, value >= 0)
+            return Pair(self, np.array([value]), np.array([rest]), left, positive=value >= 0)
         number = Pair(self, np.array([value]), positive=value >= 0)
         number.power = value if abs(frexp(value)[0]) == 0.5 else 0.0
         return number
-
-    def product(self, x: Column, y: Column) -> tuple[Column, Column | None]:
-        """x y, and the error of that, as far as this level has it."""
-        return _product(x, y) if self.exact_products else (np.multiply(x, y, out=_room(x, y)), None)
 
     def is_zero(self, x: Pair) -> bool:
         return x.value.size == 1 and x._exact and x.value[0] == 0
@@ -289,104 +352,21 @@ class Pairs:
     def pi(self) -> Pair:
         return self._single(_pi())
 
-    def sqrt(self, x: Pair) -> Pair:
-        value = np.sqrt(x.value, out=_room(x.value))
-        product, error = _product(value, value)
-        rest = np.subtract(x.value, product, out=product)
-        rest -= error
-        if x.rest is not None:
-            rest += x.rest
-        rest /= 2 * value
-        root = Pair(self, value, rest, x.bound / 2 + self.quotient_loss)
-        return root.normal() if self.thorough else root
-
     def hypot(self, x: Pair, y: Pair | int) -> Pair:
         return self.sqrt(x * x + y * y)
 
     def exp(self, x: Pair) -> Pair:
         return self.expm1(x) + 1
 
-    def expm1(self, x: Pair) -> Pair:
-        """e^x - 1 for x >= 0; unvouched beyond e^700."""
-        value, steps = np.minimum(x.value, LARGEST), FINE if self.thorough else COARSE
-        count = np.floor(value * (steps / np.log(2)))
-        first, *parts = _ln2_in_parts(steps)
-        left = value - count * first  # exact: the two are near each other
-        rest = np.zeros_like(left) if x.rest is None else x.rest.copy()
-        for part in parts:
-            left, error = _sum(left, count * part, np.subtract)
-            rest += error
-        k = self._small_expm1(Pair(self, left, rest).normal())
-        number = count.astype(np.int64)
-        if self.thorough:
-            k, number = self._compound(k, FINE, number % FINER), number // FINER
-        k, number = self._compound(k, COARSE, number % COARSE), number // COARSE
-        if number.max() > 0:
-            power = np.ldexp(1.0, np.arange(1024)).take(number, mode="clip")
-            assert k.rest is not None
-            # Exact: k times a power of two, and that power less one.
-            scaled = Pair(self, k.value * power, k.rest * power, k.bound)
-            k = scaled + Pair(self, *_sum(power, np.array([-1.0])))
-        k.bound = k.bound + (x.bound + 4 * UNIT**2) * (1 + x.value)
-        return k if np.max(x.value) < LARGEST else self._unvouched(k, x.value >= LARGEST)
-
-    def _unvouched(self, x: Pair, where: Any) -> Pair:
-        x.bound = np.where(where, np.inf, x.bound)
-        return x
-
-    def _small_expm1(self, r: Pair) -> Pair:
-        """e^r - 1 for what the tables leave."""
-        x = r.value
-        if self.thorough:
-            square = r * r / 2
-            rest = x * x * x * x * (1 / 24 + x * (1 / 120 + x / 720))
-            k = r + square + square * r / 3
-            assert k.rest is not None
-            k.rest += rest
-            k.bound += self.sum_loss
-            return k.normal()
-        rest = x * x * (1 / 2 + x * (1 / 6 + x * (1 / 24 + x / 120)))
-        if r.rest is not None:
-            rest += r.rest
-        return Pair(self, x, rest, 2.0**-62).normal()
-
-    def _compound(self, k: Pair, steps: int, index: NDArray[np.int64]) -> Pair:
-        """(1 + k) 2^(index/steps) - 1."""
-        values, rests = _powers(steps)
-        factor = Pair(self, values.take(index, mode="clip"), rests.take(index, mode="clip"), UNIT**2 / 2)
-        if self.thorough:
-            return factor + k + factor * k
-        # k < 2^-12: rounding the product loses 2^-65 of the whole.
-        assert k.rest is not None
-        product = factor.value * k.value
-        sum_ = _sum(factor.value, k.value)
-        total = _sum(sum_[0], product)
-        rest = np.add(sum_[1], total[1], out=total[1])
-        rest += factor.rest
-        rest += k.rest * (1 + factor.value)
-        return Pair(self, total[0], rest, k.bound)
-
-    def log1p(self, x: Pair) -> Pair:
-        """ln(1 + x) for x >= 0."""
-        value = np.log1p(x.value, out=_room(x.value))
-        if not self.thorough:
-            rest = None if x.rest is None else x.rest / (1 + x.value)
-            # With no more digits than a double has: exact products from here on gain nothing.
-            return Pair(ROUNDED, value, rest, LIBRARY + x.bound)
-        guess = self.expm1(Pair(self, value))
-        off = (x - guess) / (guess + 1)
-        found = Pair(self, value) + off - off * off / 2
-        found.positive = True
-        return found
-
     def cos_sin(self, x: Pair) -> tuple[Pair, Pair]:
         """Cosine and sine, |x| <= 4."""
+        x = x if x.rest is None else x.normal()
         cos, sin = np.cos(x.value), np.sin(x.value)
         error = np.abs(x.value) * (x.bound + self.sum_loss)
         rest = 0.0 if x.rest is None else x.rest
         return (
-            Pair(self, cos, -sin * rest, LIBRARY + error / np.abs(cos), positive=False),
-            Pair(self, sin, cos * rest, LIBRARY + error / np.abs(sin), positive=False),
+            Pair(self, cos, -sin * rest, LIBRARY, error / np.abs(cos), positive=False),
+            Pair(self, sin, cos * rest, LIBRARY, error / np.abs(sin), positive=False),
         )
 
     def cos_sin_of_degrees(self, x: Any) -> tuple[Pair, Pair]:
@@ -397,13 +377,11 @@ class Pairs:
         folded, turn = _fold(x.value)
         angle = self.pi * Pair(self, folded, positive=False) / 180
         cos, sin = self.cos_sin(angle)
-        sin.bound = np.where(folded == 0, 0.0, sin.bound)
-        values, rests, bounds = (
-            turn(getattr(cos, part), getattr(sin, part)) for part in ("value", "rest", "bound")
-        )
+        bounds = cos.bound, np.where(folded == 0, 0.0, sin.bound)
+        values, rests = (turn(getattr(cos, part), getattr(sin, part)) for part in ("value", "rest"))
         cos, sin = (
-            Pair(self, value, rest, np.abs(bound), positive=False)
-            for value, rest, bound in zip(values, rests, bounds, strict=True)
+            Pair(self, value, rest, doubt=np.abs(bound), positive=False)
+            for value, rest, bound in zip(values, rests, turn(*bounds), strict=True)
         )
         return cos, sin
 
@@ -411,7 +389,227 @@ class Pairs:
         raise Unvouched
 
 
-ROUNDED, QUICK, THOROUGH = Pairs(0), Pairs(1), Pairs(2)
+class Quick(Pairs):
+    """Products, quotients, roots and exponentials by halves; logarithms as NumPy has them."""
+
+    sum_loss = LOSS
+
+    def product(self, x: Pair, y: Pair) -> Pair:
+        if x.rest is None:
+            x, y = y, x  # so that y, of whom the whole is needed, has it at hand
+        (x_head, x_tail), (y_head, y_tail) = x.halves(), y.halves()
+        value = np.multiply(x_head, y_head, out=_room(x_head, y_head))
+        rest = np.multiply(x_head, y_tail, out=_room(value))
+        rest += np.multiply(x_tail, y.rounded(), out=_aside(1, value.size)[0])
+        return x.of_factors(y, value, rest, LOSS)
+
+    def quotient(self, x: Pair, y: Pair) -> Pair:
+        whole, (head, tail) = y.rounded(), y.halves()
+        value = np.divide(x.value, whole, out=_room(x.value, whole))
+        value = _head(value, out=value)
+        product, more = _aside(2, value.size)
+        np.multiply(value, head, out=product)
+        rest = self._rest(x, product, np.multiply(value, tail, out=more), whole)
+        return x.of_factors(y, value, rest, LOSS).halved()
+
+    def sqrt(self, x: Pair) -> Pair:
+        root = np.sqrt(x.rounded(), out=_room(x.value))
+        value = _head(root)
+        # As x - value² = (root - value) (root + value).
+        (product,) = _aside(1, value.size)
+        rest = self._rest(x, np.multiply(value, value, out=product), None, np.add(value, root, out=root))
+        doubt = None if x.doubt is None else x.doubt / 2
+        return Pair(self, value, rest, x.loss / 2 + LOSS, doubt).halved()
+
+    def _rest(self, x: Pair, product: Column, more: Column | None, by: Column) -> Column:
+        """What is left of x less a product in two parts, divided: the rest of a quotient or root."""
+        rest = np.subtract(x.value, product, out=_room(product))
+        if more is not None:
+            rest -= more
+        if x.rest is not None:
+            rest += x.rest
+        rest /= by
+        return rest
+
+    def expm1(self, x: Pair) -> Pair:
+        """e^x - 1 for x >= 0; unvouched beyond e^36."""
+        whole = x.rounded()
+        least, most = float(whole.min()), float(whole.max())
+        if most > LARGE:
+            off = whole > LARGE
+            rest = None if x.rest is None else np.where(off, 0.0, x.rest)
+            k = self.expm1(Pair(self, np.where(off, 1.0, x.value), rest, x.loss, x.doubt))
+            k.doubt = np.where(off, np.inf, 0.0 if k.doubt is None else k.doubt)
+            return k
+        count = np.multiply(whole, COARSE / np.log(2), out=_room(whole))
+        np.rint(count, out=count)
+        first, last = _ln2_in_parts(COARSE)
+        (near,) = _aside(1, count.size)
+        left = Pair(self, x.value - np.multiply(count, first, out=near), count * -last)
+        assert left.rest is not None
+        if x.rest is not None:
+            left.rest += x.rest
+        left = left.normal()
+        r = left.value
+        terms = np.multiply(r, 1 / 24, out=_room(r))
+        terms += 1 / 6
+        terms *= r
+        terms += 1 / 2
+        terms *= r
+        terms *= r
+        terms += left.rest
+        number = count.astype(np.int64)
+        head, tail = (part.take(number & (COARSE - 1)) for part in _short_powers())
+        if number.max() >= COARSE:
+            power = 2.0 ** np.arange(64)
+            power = power.take(number >> COARSE.bit_length() - 1)
+            head *= power
+            tail *= power
+            head += power - 1
+        factor = np.add(head, 1.0, out=_room(head))
+        factor += tail
+        value, rest = _fast_sum(head, np.multiply(factor, r, out=near))
+        rest += np.multiply(factor, terms, out=terms)
+        rest += tail
+        loss = 2.0**-66
+        doubt = None
+        if least > 2.0**-6:
+            loss += 2.0**-66 / least
+        else:
+            doubt = np.where(count == 0, 0.0, 2.0**-66 / whole)
+        loss += (x.loss + LOSS) * (1 + most)
+        if x.doubt is not None:
+            doubt = _both(doubt, x.doubt * (1 + most), np.add)
+        k = Pair(self, value, rest, loss, doubt)
+        return k if doubt is None else k.normal()
+
+    def log1p(self, x: Pair) -> Pair:
+        if x.rest is not None:
+            x = x.normal()
+        value = np.log1p(x.value, out=_room(x.value))
+        rest = None if x.rest is None else x.rest / (1 + x.value)
+        # With no more digits than a double has: exact products from here on gain nothing.
+        return Pair(ROUNDED, value, rest, LIBRARY + x.loss + LOOSE, x.doubt)
+
+
+class Rounded(Quick):
+    """Products and quotients are rounded to a double, and rests small: what is lost is of the first order."""
+
+    sum_loss = LOOSE
+
+    def product(self, x: Pair, y: Pair) -> Pair:
+        value, rest = np.multiply(x.value, y.value, out=_room(x.value, y.value)), None
+        for a, b in (x.value, y.rest), (y.value, x.rest):
+            if b is not None:
+                term = np.multiply(a, b, out=_room(value))
+                rest = term if rest is None else np.add(rest, term, out=rest)
+        return x.of_factors(y, value, rest, UNIT + LOOSE)
+
+    def quotient(self, x: Pair, y: Pair) -> Pair:
+        value = np.divide(x.value, y.value, out=_room(x.value, y.value))
+        rest = x.rest
+        if y.rest is not None:
+            term = np.multiply(value, y.rest, out=_room(value))
+            rest = np.subtract(0.0 if rest is None else rest, term, out=term)
+        if rest is not None:
+            rest = np.divide(rest, y.value, out=_room(value))
+        return x.of_factors(y, value, rest, UNIT + LOOSE)
+
+    def sqrt(self, x: Pair) -> Pair:
+        return super().sqrt(x).normal()
+
+    def expm1(self, x: Pair) -> Pair:
+        return super().expm1(x).normal()
+
+
+class Thorough(Pairs):
+    """Everything to about twice the digits of a double, and every rest kept normal."""
+
+    sum_loss = 5 * UNIT**2
+
+    def trusts(self, x: Pair) -> bool:
+        return False
+
+    def product(self, x: Pair, y: Pair) -> Pair:
+        value, rest = _product(x.value, y.value)
+        terms = [(a, b) for a, b in ((x.value, y.rest), (y.value, x.rest)) if b is not None]
+        for a, b in terms:
+            rest += a * b
+        return x.of_factors(y, value, rest, (0, 4, 9)[len(terms)] * UNIT**2).normal()
+
+    def quotient(self, x: Pair, y: Pair) -> Pair:
+        value = np.divide(x.value, y.value, out=_room(x.value, y.value))
+        rest = self._remainder(x, value, y.value)
+        if y.rest is not None:
+            rest -= value * y.rest
+        rest /= y.value
+        return x.of_factors(y, value, rest, 13 * UNIT**2).normal()
+
+    def sqrt(self, x: Pair) -> Pair:
+        value = np.sqrt(x.value, out=_room(x.value))
+        rest = self._remainder(x, value, value)
+        rest /= 2 * value
+        doubt = None if x.doubt is None else x.doubt / 2
+        return Pair(self, value, rest, x.loss / 2 + 13 * UNIT**2, doubt).normal()
+
+    def _remainder(self, x: Pair, a: Column, b: Column) -> Column:
+        """x - a b, which is small."""
+        product, error = _product(a, b)
+        rest = np.subtract(x.value, product, out=product)
+        rest -= error
+        if x.rest is not None:
+            rest += x.rest
+        return rest
+
+    def expm1(self, x: Pair) -> Pair:
+        """e^x - 1 for x >= 0; unvouched beyond e^700."""
+        value = np.minimum(x.value, LARGEST)
+        count = np.floor(value * (FINE / np.log(2)))
+        first, *parts = _ln2_in_parts(FINE)
+        left = value - count * first  # exact: the two are near each other
+        rest = np.zeros_like(left) if x.rest is None else x.rest.copy()
+        for part in parts:
+            left, error, _ = _sum(left, count * part, np.subtract)
+            rest += error
+        k = self._small_expm1(Pair(self, left, rest).normal())
+        number = count.astype(np.int64)
+        for steps, among in (FINE, FINER), (COARSE, COARSE):
+            k, number = self._compound(k, steps, number % among), number // among
+        if number.max() > 0:
+            power = np.ldexp(1.0, np.arange(1024)).take(number, mode="clip")
+            assert k.rest is not None
+            # Exact: k times a power of two, and that power less one.
+            scaled = Pair(self, k.value * power, k.rest * power, k.loss, k.doubt)
+            k = scaled + Pair(self, *_sum(power, np.array([-1.0]))[:2])
+        off = (x.bound + 4 * UNIT**2) * (1 + x.value)
+        k.doubt = _both(k.doubt, np.where(x.value < LARGEST, off, np.inf), np.add)
+        return k
+
+    def _small_expm1(self, r: Pair) -> Pair:
+        """e^r - 1 for what the tables leave."""
+        x = r.value
+        square = r * r / 2
+        rest = x * x * x * x * (1 / 24 + x * (1 / 120 + x / 720))
+        k = r + square + square * r / 3
+        assert k.rest is not None
+        return Pair(self, k.value, k.rest + rest, k.loss + self.sum_loss, k.doubt).normal()
+
+    def _compound(self, k: Pair, steps: int, index: NDArray[np.int64]) -> Pair:
+        """(1 + k) 2^(index/steps) - 1."""
+        values, rests = _powers(steps)
+        factor = Pair(self, values.take(index, mode="clip"), rests.take(index, mode="clip"), UNIT**2 / 2)
+        return factor + k + factor * k
+
+    def log1p(self, x: Pair) -> Pair:
+        value = np.log1p(x.value)
+        guess = self.expm1(Pair(self, value))
+        off = (x - guess) / (guess + 1)
+        found = Pair(self, value) + off - off * off / 2
+        found.positive = True
+        return found
+
+
+ROUNDED, QUICK, THOROUGH = LEVELS = Rounded(), Quick(), Thorough()
 
 
 def _room(like: Column, or_like: Column | None = None) -> Column:
@@ -433,13 +631,20 @@ def _aside(count: int, size: int) -> list[Column]:
     return [room[:size] for room in rooms[:count]]
 
 
-def _sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:
-    """x + y, or x - y if ``add`` is np.subtract, rounded, and the error of that, exactly."""
+def _sum(x: Column, y: Column, add: Any = np.add, positive: bool = False) -> tuple[Column, Column, bool]:
+    """x + y, or x - y if ``add`` is np.subtract, rounded, and the error of that, exactly.
+
+    ``positive`` says that no row of either is negative; the answer's last, that neither is the result's.
+    """
+    if add is np.add and y[0] > x[0]:
+        x, y = y, x
+    if (y[:16] <= x[:16]).all() and (positive or y.min() >= 0) and (y <= x).all():
+        return *_fast_sum(x, y, add), True
+    if positive and add is np.add:
+        larger, smaller = _aside(2, max(x.size, y.size))
+        return *_fast_sum(np.maximum(x, y, out=larger), np.minimum(x, y, out=smaller)), False
     total = add(x, y, out=_room(x, y))
     error = _room(total)
-    if y.min() >= 0 and (y <= x).all():  # then two operations do (T. J. Dekker)
-        np.subtract(x, total, out=error)
-        return total, add(error, y, out=error)
     (added,) = _aside(1, total.size)
     np.subtract(total, x, out=added)
     np.subtract(total, added, out=error)
@@ -450,7 +655,26 @@ def _sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:
     else:
         added += y
         error -= added
-    return total, error
+    return total, error, False
+
+
+def _fast_sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:
+    """The same where no row of y is the larger one in size: then two operations do (T. J. Dekker)."""
+    total = add(x, y, out=_room(x, y))
+    error = np.subtract(x, total, out=_room(total))
+    return total, add(error, y, out=error)
+
+
+def _head(x: Column, out: Column | None = None) -> Column:
+    """The first 26 bits."""
+    out = _room(x) if out is None else out
+    np.bitwise_and(x.view(np.int64), HEAD, out=out.view(np.int64))
+    return out
+
+
+def _both(x: Any, y: Any, join: Any) -> Any:
+    """Two columns joined, either of which may be None."""
+    return y if x is None else x if y is None else join(x, y)
 
 
 def _product(x: Column, y: Column) -> tuple[Column, Column]:
@@ -530,6 +754,14 @@ def _powers(steps: int) -> tuple[Column, Column]:
     step = int(Fraction(ENOUGH.expm1(ENOUGH.number(_ln2() / steps)).lo) * 2**bits)
     for _ in range(count - 1):
         exact.append(exact[-1] + step + (exact[-1] * step >> bits))
-    values = [Fraction(power, 2**bits) for power in exact]
-    heads = [float(value) for value in values]
-    return np.array(heads), np.array([float(v - Fraction(h)) for v, h in zip(values, heads, strict=True)])
+    heads = [float(power) for power in exact]
+    rests = [float(power - int(head)) for power, head in zip(exact, heads, strict=True)]
+    return np.array(heads) * 2.0**-bits, np.array(rests) * 2.0**-bits
+
+
+@cache
+def _short_powers() -> tuple[Column, Column]:
+    """The coarse table by halves."""
+    values, rests = _powers(COARSE)
+    heads = _head(values)
+    return heads, values - heads + rests

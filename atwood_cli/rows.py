@@ -9,8 +9,8 @@ What the accuracies promise, and why they keep it:
 - ``fast``: doubles as they come. Whether a string slips is read off doubles too, and what comes of an
   e^{μφ} beyond the doubles is infinite, even where a tiny mass would bring it back.
 - ``certified``: a value is within 4 units in the last place (ulp) of the exact one for the given
-  doubles, and every regime is right. A row goes up a ladder until an arithmetic vouches for it: quick
-  pairs, thorough pairs, and at the end the exact arithmetic of a single scene. A pair vouches where
+  doubles, and every regime is right. A row goes up a ladder until an arithmetic vouches for it: rounded,
+  quick, and thorough pairs, and at the end the exact arithmetic of a single scene. A pair vouches where
   its bound is at most 3.49 · 2^-53 of the value: that is at most 3.49 ulp, and rounding value + rest
   to a double costs half an ulp more. A question (does it slip?) is answered by doubles where the two
   sides differ by a 2^-40 of them, far more than the few roundings they take can amount to; else by the
@@ -111,14 +111,15 @@ class Rows:
             self._fields[name] = _take(whole.field(name), index, whole.size)
         return self._fields[name]
 
-    def write(self, out: NDArray[Any], values: Any, rests: Any = None) -> None:
-        """Write values, or sums of values and rests; 0.0 is what -0 takes to be 0."""
-        if rests is None:
-            out[slice(None) if self.index is None else self.index] = values
-        elif self.index is None:
-            np.add(values, rests, out=out)
-        else:
-            out[self.index] = values + rests
+    def write(self, out: NDArray[Any], values: Any) -> None:
+        out[slice(None) if self.index is None else self.index] = values
+
+    def write_sum(self, out: NDArray[Any], values: Any, rests: Any) -> Column:
+        """Write sums of values and rests, and return them; 0.0 is what -0 takes to be 0."""
+        sums: Column = np.add(values, rests, out=out if self.index is None else None)
+        if self.index is not None:
+            out[self.index] = sums
+        return sums
 
     # Solving
 
@@ -157,10 +158,10 @@ class Rows:
 
     def _write_vouched(self, name: str, out: Mapping[str, NDArray[Any]], rung: int, value: Any) -> None:
         if not isinstance(value, Pair):
-            self.write(out[name], value, 0.0)
+            self.write_sum(out[name], value, 0.0)
             return
-        rounded, vouched = _certify(value) if self.accuracy == "certified" else _nearest(value)
-        self.write(out[name], rounded)
+        rounded = self.write_sum(out[name], value.value, 0.0 if value.rest is None else value.rest)
+        vouched = (_certified if self.accuracy == "certified" else _nearest)(value, rounded)
         if np.all(vouched):
             return
         doubtful = np.broadcast_to(np.logical_not(vouched), self.size).copy()
@@ -222,9 +223,7 @@ class Rows:
         """Whether the excess of the tension ratio is beyond what friction holds, e^{μφ} - 1."""
         if self.far:
             return np.array([self._settled(row, question) for row in range(self.size)])
-        machine = self.machine(FLOATS)
-        excess = machine.excess if question == "excess_ratio" else getattr(machine.case, question)(FLOATS)
-        held = machine.k1
+        excess, held = self._excess(question), self.machine(FLOATS).k1
         if self.accuracy == "fast":
             return excess > held
         beaten = np.broadcast_to(excess > held * (1 + 2.0**-40), self.size)
@@ -234,6 +233,14 @@ class Rows:
         beaten = beaten.copy()
         beaten[open_] = self.part(open_)._beats_friction_thoroughly(question)
         return beaten
+
+    def _excess(self, question: Any) -> Any:
+        """The excess in doubles, from pairs if they have it already."""
+        for machine in self._machines.values():
+            if question == "excess_ratio" and "excess" in vars(machine):
+                return machine.excess.rounded() if isinstance(machine.excess, Pair) else machine.excess
+        machine = self.machine(FLOATS)
+        return machine.excess if question == "excess_ratio" else getattr(machine.case, question)(FLOATS)
 
     def _beats_friction_thoroughly(self, question: Excess) -> Any:
         machine = self.machine(THOROUGH)
@@ -310,19 +317,17 @@ def _take(column: Any, index: NDArray[np.intp], size: int) -> Any:
     return column.take(index) if isinstance(many, np.ndarray) and many.size == size else column
 
 
-def _certify(pair: Pair) -> tuple[Column, Any]:
-    """The doubles, and which are within 4 ulp."""
-    rounded = pair.rounded()
-    if isinstance(pair.bound, float) and np.isfinite(rounded.sum()):
-        return rounded, pair.bound <= CERTIFIED
-    return rounded, np.asarray(pair.bound <= CERTIFIED) & np.isfinite(rounded)
+def _certified(pair: Pair, rounded: Column) -> Any:
+    """Which rows are within 4 ulp, so rounded."""
+    enough = CERTIFIED - pair.loss
+    vouched = enough >= 0 if pair.doubt is None else pair.doubt <= enough
+    return vouched if np.isfinite(rounded.sum()) else vouched & np.isfinite(rounded)
 
 
-def _nearest(pair: Pair) -> tuple[Column, NDArray[np.bool_]]:
-    """The doubles, and which are the nearest."""
-    rounded = pair.rounded()
+def _nearest(pair: Pair, rounded: Column) -> Any:
+    """Which rows are the nearest doubles, so rounded."""
     if pair.rest is None:
-        return rounded, np.asarray(pair.bound == 0) & np.isfinite(rounded)
+        return np.asarray(pair.bound == 0) & np.isfinite(rounded)
     error = np.abs(pair.value) * (pair.bound + 2.0**-104)
     same = (pair.value + (pair.rest - error) == rounded) & (pair.value + (pair.rest + error) == rounded)
-    return rounded, (same | (np.asarray(pair.bound) == 0)) & np.isfinite(rounded)
+    return (same | (np.asarray(pair.bound) == 0)) & np.isfinite(rounded)
