@@ -88,7 +88,7 @@ class Case:
         scene, mass = self.scene, self.pulley_mass
         if scene.I is not None and scene.R is not None:
             return scene.I / scene.R**2
-        if mass is None or scene.inertia is None or is_zero(mass):
+        if mass is None or scene.inertia is None:
             return mass
         return scene.inertia * mass
 
@@ -211,6 +211,11 @@ class Machine(Generic[N]):
     def g(self) -> N:
         return self.ar.number(self.scene.g)
 
+    @cached_property
+    def phi(self) -> N:
+        """The angle of wrap φ (rad)."""
+        return wrap_angle(self.ar, self.scene)
+
     # What the quantities are made of
 
     def _given(self, value: Fraction | None, otherwise: str) -> N:
@@ -222,7 +227,7 @@ class Machine(Generic[N]):
         """e^{μφ} - 1; without friction no exponential is asked for."""
         if is_zero(mu):
             return self.ar.number(0)
-        return self.ar.expm1(self.ar.number(mu) * wrap_angle(self.ar, self.scene))
+        return self.ar.expm1(self.ar.number(mu) * self.phi)
 
     @cached_property
     def k1(self) -> N:
@@ -237,32 +242,39 @@ class Machine(Generic[N]):
         return self.case.excess_ratio(self.ar)
 
     @cached_property
-    def _transfer(self) -> N:
+    def transfer(self) -> N:
         """The transfer z at the limit of static friction; see `physics`."""
         return physics.transfer_at_limit(self.l, self.k1)
 
     @cached_property
-    def _drive(self) -> N:
+    def drive(self) -> N:
         """The drive d at the limit of static friction."""
-        return physics.drive_at_limit(self.l, self.h, self._transfer)
+        return physics.drive_at_limit(self.l, self.h, self.transfer)
 
     @cached_property
-    def _limiting_k1(self) -> N:
+    def limiting_k1(self) -> N:
         """The excess of the tension ratio in a regime where friction is at its limit."""
         mu = self.case.limiting_mu
         return self.k1 if mu is self.scene.mu else self._capstan_excess(mu)
 
     @cached_property
-    def _magnitude(self) -> N:
+    def limiting_transfer(self) -> N:
+        """The transfer z in that regime."""
+        static = self.case.limiting_mu is self.scene.mu
+        return self.transfer if static else physics.transfer_at_limit(self.l, self.limiting_k1)
+
+    @cached_property
+    def limiting_drive(self) -> N:
+        """The drive d in that regime."""
+        static = self.case.limiting_mu is self.scene.mu
+        return self.drive if static else physics.drive_at_limit(self.l, self.h, self.limiting_transfer)
+
+    @cached_property
+    def magnitude(self) -> N:
         """The magnitude of the acceleration."""
         l, h, case = self.l, self.h, self.case
         if case.regime != "no-slip":
-            if case.limiting_mu is self.scene.mu:
-                transfer, drive = self._transfer, self._drive
-            else:
-                transfer = physics.transfer_at_limit(l, self._limiting_k1)
-                drive = physics.drive_at_limit(l, h, transfer)
-            load = physics.load(l, h, transfer)
+            drive, load = self.limiting_drive, physics.load(l, h, self.limiting_transfer)
         elif case.sign == 0 or case.locked:
             return self.ar.number(0)
         else:
@@ -270,7 +282,7 @@ class Machine(Generic[N]):
         return physics.acceleration(drive, load, self.g)
 
     @cached_property
-    def _friction_mu(self) -> N:
+    def friction_mu(self) -> N:
         """The μ with which T(θ) = T1 e^{±μθ}, where that is so."""
         if self.case.regime != "no-slip":
             return self.ar.number(self.case.limiting_mu)
@@ -291,7 +303,7 @@ class Machine(Generic[N]):
         """The arc (rad) that friction at its limit needs, where the string grips with some to spare."""
         if self.scene.mu is None:
             raise Undetermined(NEEDS_MU)
-        log_ratio = self.mu_verge * wrap_angle(self.ar, self.scene)
+        log_ratio = self.mu_verge * self.phi
         return physics.limiting_arc(log_ratio, self.ar.number(self.scene.mu))
 
     def arcs(self, kind: profile.Kind) -> list[profile.Arc[N]]:
@@ -305,7 +317,7 @@ class Machine(Generic[N]):
         if ar.is_zero(mu):  # the tension is the same everywhere: no angle is needed, so no π either
             nowhere = ar.number(0)
             return profile.arcs(ar, kind, mu, [nowhere], light, self._end(nowhere))
-        phi = wrap_angle(ar, self.scene)
+        phi = self.phi
         end = self._end(phi)
         if kind == "exponential":
             return profile.arcs(ar, kind, mu, [phi], light, end)
@@ -317,7 +329,7 @@ class Machine(Generic[N]):
 
     def arc_mu(self, kind: profile.Kind) -> N:
         """The coefficient that the friction of a profile is at, where it is at its limit."""
-        return self._friction_mu if kind == "exponential" else self._given(self.scene.mu, NEEDS_MU)
+        return self.friction_mu if kind == "exponential" else self._given(self.scene.mu, NEEDS_MU)
 
     @property
     def reference_mu(self) -> N:
@@ -344,6 +356,11 @@ class Machine(Generic[N]):
         """Cosine and sine of the angle of wrap."""
         return self._cos_sin(1)
 
+    @cached_property
+    def half_sine(self) -> N:
+        """Sine of half the angle of wrap."""
+        return self._cos_sin(2)[1]
+
     def _cos_sin(self, parts: int) -> tuple[N, N]:
         """Cosine and sine of an equal part of the angle of wrap; exact at multiples of 90°."""
         wrap = self.scene.wrap
@@ -352,20 +369,20 @@ class Machine(Generic[N]):
         return self.ar.cos_sin_of_degrees(wrap / parts)
 
     @cached_property
-    def _difference(self) -> N:
+    def difference(self) -> N:
         """The magnitude of T2 - T1."""
         case = self.case
         if case.regime != "no-slip":
-            return physics.difference_of_friction(self.light_tension, self._limiting_k1)
+            return physics.difference_of_friction(self.light_tension, self.limiting_k1)
         if case.tensions_equal:
             return self.ar.number(0)
         if case.locked:
             return physics.difference_of_a_locked_pulley(self.l, self.h, self.g)
-        return physics.difference_of_a_pulley(self._given(case.rim_mass, NEEDS_M), self._magnitude)
+        return physics.difference_of_a_pulley(self._given(case.rim_mass, NEEDS_M), self.magnitude)
 
     @property
     def tension_difference(self) -> N:
-        return self._difference * self.case.sign
+        return self.difference * self.case.sign
 
     def _bounded(self) -> bool:
         """Whether the friction force is bounded by more than 0; raises where it has no bounds."""
@@ -384,15 +401,15 @@ class Machine(Generic[N]):
 
     @property
     def acceleration(self) -> N:
-        return self._magnitude if self.case.sign > 0 else self._magnitude * self.case.sign
+        return self.magnitude if self.case.sign > 0 else self.magnitude * self.case.sign
 
     @cached_property
     def light_tension(self) -> N:
-        return physics.light_tension(self.l, self._magnitude, self.g)
+        return physics.light_tension(self.l, self.magnitude, self.g)
 
     @cached_property
     def heavy_tension(self) -> N:
-        return self.light_tension + self._difference
+        return self.light_tension + self.difference
 
     @property
     def tension_1(self) -> N:
@@ -413,23 +430,23 @@ class Machine(Generic[N]):
             if case.regime == "verge":
                 return self.ar.number(case.limiting_mu)
             raise Undetermined(NEEDS_M)
-        return physics.verge_coefficient(self.ar.log1p(self.excess), wrap_angle(self.ar, self.scene))
+        return physics.verge_coefficient(self.ar.log1p(self.excess), self.phi)
 
     @cached_property
     def friction_force(self) -> N:
-        mu = self._friction_mu
+        mu = self.friction_mu
         if self.ar.is_zero(mu):
             return self.ar.number(0)
         if self.case.ends_hang_down:
             force = physics.half_turn_resultant(self.light_tension, self.heavy_tension)
         else:
-            force = self._resultant(self._cos_sin(2)[1])
+            force = self._resultant(self.half_sine)
         return physics.friction_magnitude(mu, force, self.ar.hypot)
 
     def _resultant(self, sin_half: N) -> N:
         """The force (N) of both tensions on an arc, by the sine of its half."""
         light, heavy, ar = self.light_tension, self.heavy_tension, self.ar
-        return physics.resultant(light, heavy, self._difference, sin_half, ar.sqrt, ar.hypot)
+        return physics.resultant(light, heavy, self.difference, sin_half, ar.sqrt, ar.hypot)
 
     @cached_property
     def friction_force_x(self) -> N:
@@ -473,13 +490,13 @@ class Machine(Generic[N]):
             raise Undetermined(NEEDS_MU)
         if not self.case.can_slip:
             raise Undetermined(NO_CRITICAL_MASS)
-        transfer = self._transfer
+        transfer = self.transfer
         beta = self._given(self.case.beta, UNKNOWN_SHAPE)
-        return physics.critical_pulley_mass(self.h, transfer, self._drive, beta)
+        return physics.critical_pulley_mass(self.h, transfer, self.drive, beta)
 
     @cached_property
     def critical_heavier_mass(self) -> N:
-        transfer = self._transfer
+        transfer = self.transfer
         if self.case.locked:
             return self.least_heavier_mass
         c = self._given(self.case.rim_mass, NEEDS_M)
@@ -489,14 +506,14 @@ class Machine(Generic[N]):
 
     @cached_property
     def least_heavier_mass(self) -> N:
-        transfer = self._transfer
+        transfer = self.transfer
         if is_zero(self.scene.mu) and not self.case.pulley_known:
             raise Undetermined(NOT_APPLICABLE)
         return physics.least_heavier_mass(self.l, transfer)
 
     @cached_property
     def least_pulley_mass(self) -> N:
-        transfer = self._transfer
+        transfer = self.transfer
         if is_zero(self.scene.mu) and not self.case.pulley_known:
             raise Undetermined(NOT_APPLICABLE)
         return physics.least_pulley_mass(transfer, self._given(self.case.beta, UNKNOWN_SHAPE))
