@@ -6,7 +6,7 @@ from fractions import Fraction
 from operator import attrgetter
 from typing import Any
 
-from .arithmetic import LARGEST_EXPONENT, Arithmetic
+from .arithmetic import EXACT, LARGEST_EXPONENT, Arithmetic, Irrational
 from .machine import Case, Machine, Undetermined
 from .physics import N
 from .quantities import FOUND, NAMES
@@ -77,6 +77,14 @@ class Answers:
     def _settle(self, quantity: OnMachine, round_: Rounding[Any]) -> float | Decimal:
         digits = self.digits or DOUBLE_DIGITS
         value: float | Decimal = settle(self._on_machines(quantity), round_, digits)
+        return value
+
+    def exactly(self, quantity: OnMachine) -> Fraction | None:
+        """The same unrounded, where it is rational for want of anything else in its formula."""
+        try:
+            value: Fraction = self._on_machines(quantity)(EXACT)
+        except Irrational:
+            return None
         return value
 
     def nearly(self, quantity: OnMachine) -> float | Decimal:

@@ -64,27 +64,37 @@ def verdict(answers: Answers) -> str:
 
 
 def _remarks(answers: Answers) -> list[str]:
-    case, scene = answers.case, answers.case.scene
-    found = []
-    if case.beta is not None and case.beta > 1:
-        found.append(
-            f"The inertia factor I/(M R^2) is {to_double(case.beta):.6g}, above 1: the mass lies outside"
-            " the rim the string runs on. If that is not so, check inertia, I and R."
-        )
-    if scene.mu is not None and answers["least_heavier_mass"] is not None:
-        found.append(_conditions(answers))
-    if scene.mu is not None and case.regime == "no-slip" and answers["acceleration"] is None:
-        ends = [answers.with_pulley(mass) for mass in (Fraction(0), inf)]
-        ranges = (
-            f"{name} from {_say(ends[0], name)} to {_say(ends[1], name)}"
-            for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
-        )
-        found.append(f"From a massless to a locked pulley: {', '.join(ranges)}.")
-    return found
+    return [*odd_inertia(answers), *conditions(answers), *open_range(answers)]
 
 
-def _conditions(answers: Answers) -> str:
+def odd_inertia(answers: Answers) -> list[str]:
+    """A doubt about an inertia factor that few pulleys have."""
+    beta = answers.case.beta
+    if beta is None or beta <= 1:
+        return []
+    return [
+        f"The inertia factor I/(M R^2) is {to_double(beta):.6g}, above 1: the mass lies outside"
+        " the rim the string runs on. If that is not so, check inertia, I and R."
+    ]
+
+
+def open_range(answers: Answers) -> list[str]:
+    """Between what the motion lies where it depends on the pulley's mass and that is not given."""
+    case = answers.case
+    if case.scene.mu is None or case.regime != "no-slip" or answers["acceleration"] is not None:
+        return []
+    ends = [answers.with_pulley(mass) for mass in (Fraction(0), inf)]
+    ranges = (
+        f"{name} from {_say(ends[0], name)} to {_say(ends[1], name)}"
+        for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
+    )
+    return [f"From a massless to a locked pulley: {', '.join(ranges)}."]
+
+
+def conditions(answers: Answers) -> list[str]:
     """Both conditions of (36), necessary for the verge: threshold, and whether it is met."""
+    if answers.case.scene.mu is None or answers["least_heavier_mass"] is None:
+        return []
     case, mass = answers.case, answers.case.scene.M
     met = {True: "met", False: "not met"}
     least = _apart(answers, "least_heavier_mass", case.heavy, above=not case.can_slip)
@@ -99,7 +109,7 @@ def _conditions(answers: Answers) -> str:
         parts.append(f"pulley's mass {as_typed(mass)} kg > {least} kg, {met[case.can_be_made_slip]}")
     else:
         parts.append(f"pulley's mass, infinite, > {_say(answers, 'least_pulley_mass')} kg, met")
-    return f"Conditions (36) for the verge: {'; '.join(parts)}."
+    return [f"Conditions (36) for the verge: {'; '.join(parts)}."]
 
 
 def _apart(answers: Answers, name: str, other: Fraction, above: bool) -> str:
