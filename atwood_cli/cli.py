@@ -122,6 +122,13 @@ Budget = Annotated[
 A = Annotated[str | None, _scene_option("a", "Measured")]
 Drop = Annotated[str | None, _scene_option("drop", "Measured")]
 Time = Annotated[str | None, _scene_option("time", "Measured")]
+Explain = Annotated[
+    bool, _output("--explain", help="Instead, show how it follows: step by step, with the numbers put in.")
+]
+Markdown = Annotated[
+    bool, _output("--markdown", help="With --explain: a page of Markdown, its mathematics in LaTeX.")
+]
+
 
 DEFAULT_POINTS = 13
 Points = Annotated[
@@ -260,6 +267,8 @@ def solve(
     csv: AsCsv = False,
     only: Only = None,
     budget: Budget = False,
+    explain: Explain = False,
+    markdown: Markdown = False,
 ) -> int:
     """Solve one scene: acceleration, tensions, friction, critical masses.
 
@@ -276,6 +285,7 @@ def solve(
       atwood solve --m1 '1.000(2)' --m2 3+/-0.01 --M 10 --budget
       atwood solve --m1 55g --m2 60g --R 5cm --a 0.380+/-0.004
       atwood solve --m1 55g --m2 60g --drop 80cm --time '2.05(2)'
+      atwood solve --m1 1 --m2 3 --mu 0.3 --explain
     """
     from . import output
     from .solver import read_answers
@@ -284,8 +294,16 @@ def solve(
     _exclude_each_other(json, csv)
     names = only or []
     _check_names("only", *names, known=(*NAMES, *FOUND_NAMES))
-    answers, uncertain = read_answers({**given, "a": a, "drop": drop, "time": time}, read_digits(digits))
+    measured = {"a": a, "drop": drop, "time": time}
+    refused = {"--json": json, "--csv": csv, "--only": names, "--budget": budget}
+    _check_explain(explain, markdown, refused | {_flag(name): value for name, value in measured.items()})
+    answers, uncertain = read_answers({**given, **measured}, read_digits(digits))
     bare = bool(names) and not (json or csv)
+    if explain:
+        if uncertain:
+            raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
+        output.print_explanation(answers, markdown)
+        return DONE
     if budget and not uncertain:
         raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
     if budget and (csv or bare):
@@ -565,6 +583,14 @@ def _check_names(option: str, *names: str, known: Sequence[str] = NAMES) -> None
         if name not in known:
             hint = nearest(name, known) or f"; there are {', '.join(known)}"
             raise SceneError(option, name, f"is no quantity{hint}")
+
+
+def _check_explain(explain: bool, markdown: bool, others: Mapping[str, object]) -> None:
+    if markdown and not explain:
+        raise SceneError("markdown", None, "needs --explain")
+    for option, given in others.items():
+        if explain and given:
+            raise SceneError("explain", None, f"has no part in {option}; leave one of them out")
 
 
 def _exclude_each_other(json: bool, csv: bool) -> None:

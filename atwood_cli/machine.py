@@ -548,9 +548,9 @@ class Machine(Generic[N]):
     def _fall(self) -> tuple[N, N]:
         """The height fallen, and the acceleration."""
         drop = self._given(self.case.motion.drop, NEEDS_DROP)
-        if self.ar.is_zero(self._magnitude):
+        if self.ar.is_zero(self.magnitude):
             raise Undetermined(AT_REST)
-        return drop, self._magnitude
+        return drop, self.magnitude
 
     @cached_property
     def friction_force_min(self) -> N:

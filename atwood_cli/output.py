@@ -40,7 +40,18 @@ COLUMN_UNITS = {
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 ASCII = str.maketrans(
     {"μ": "mu", "µ": "u", "φ": "phi", "β": "beta", "π": "pi", "τ": "tau", "α": "alpha", "θ": "theta"}
-    | {"₁": "1", "₂": "2", "²": "^2", "°": "deg", "·": "*", "±": "+/-", "≤": "<=", "≥": ">="}
+    | {
+        "₁": "1",
+        "₂": "2",
+        "²": "^2",
+        "°": "deg",
+        "·": "*",
+        "±": "+/-",
+        "≤": "<=",
+        "≥": ">=",
+        "≈": "~",
+        "√": "sqrt",
+    }
 )
 
 
@@ -147,6 +158,12 @@ class Page:
 
         self.console.print(Text(for_stream(words, sys.stdout), style), soft_wrap=self.room is None)
 
+    def line(self, words: str, style: str = "") -> None:
+        """A line as it is."""
+        from rich.text import Text
+
+        self.console.print(Text(words, style), soft_wrap=True)
+
     def head(self, answers: Answers, found: "Uncertainties | None" = None) -> None:
         """The scene and the verdict."""
         scene, motion = answers.case.scene, answers.case.motion
@@ -204,6 +221,26 @@ def print_table(
         page.say(note)
     if found and budget:
         _print_budget(page, found)
+
+
+READABLE = 80  # columns: longer lines of text are hard to follow
+NARROWEST = 40
+
+
+def print_explanation(answers: Answers, markdown: bool) -> None:
+    """The derivation, step by step: on a terminal in its columns, or as Markdown."""
+    from .explain import explain
+    from .handout import as_markdown, as_text
+
+    scene, told = describe(answers.case.scene), explain(answers)
+    if markdown:
+        for line in as_markdown(scene, told):
+            print(for_stream(line, sys.stdout))
+        return
+    page = Page()
+    width = max(NARROWEST, min(READABLE, page.room or READABLE))
+    for line, style in as_text(scene, told, width, lambda words: for_stream(words, sys.stdout)):
+        page.line(line, style)
 
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")

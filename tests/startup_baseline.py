@@ -44,6 +44,8 @@ def solve(
     csv: Annotated[bool, option("--csv")] = False,
     only: Annotated[list[str] | None, option("--only")] = None,
     budget: Annotated[bool, option("--budget")] = False,
+    explain: Annotated[bool, option("--explain")] = False,
+    markdown: Annotated[bool, option("--markdown")] = False,
 ) -> None:
     if as_json:
         print(json.dumps({"acceleration": 0.764026672247107}))

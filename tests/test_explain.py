@@ -1,0 +1,471 @@
+"""The derivation: every equation worked out again from its text, every number against the oracle."""
+
+import re
+from collections.abc import Iterator
+from decimal import Decimal
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import mpmath as mp
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from atwood_cli.derivation import HELD, Equation, Law
+from atwood_cli.explain import Explanation, explain
+from atwood_cli.handout import as_markdown, as_text, chain
+from atwood_cli.scene import Scene
+from atwood_cli.solver import Answers
+
+from . import oracle
+from .running import Atwood, on_terminal, plain, process
+from .scenes import FAMILIES, Given, scenes
+
+TOP = Path(__file__).parent.parent
+NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
+KINDS: dict[str, Given] = {
+    "massless": {},
+    "given pulley": {"M": "10"},
+    "verge": {"mu": "0.3"},
+    "no critical mass": {"mu": "0.4"},
+    "grips": {"M": "10", "mu": "0.3"},
+    "grips on a long wrap": {"M": "10", "mu": "0.3", "wrap": "540"},
+    "slips": {"M": "100", "mu": "0.3", "mu_k": "0.25", "R": "0.1"},
+    "slides without friction": {"M": "100", "mu": "0.3", "mu_k": "0"},
+    "locked": {"M": "inf"},
+    "locked and slips": {"M": "inf", "mu": "0.2", "wrap": "1rad"},
+    "locked and grips": {"M": "inf", "mu": "0.4"},
+    "equal": {"m2": "1", "M": "3", "mu": "0.1", "R": "1"},
+    "free end": {"m1": "0", "M": "2"},
+    "free end, massless": {"m1": "0"},
+    "no friction, no pulley": {"mu": "0"},
+    "no friction": {"mu": "0", "M": "5"},
+    "massless, rough": {"M": "0", "mu": "0.2"},
+    "mirror": {"m1": "3", "m2": "1", "M": "50", "mu": "0.3", "R": "0.1"},
+    "inertia": {"M": "50", "mu": "0.3", "R": "0.1", "I": "0.8", "wrap": "100"},
+    "inertia alone": {"mu": "0.3", "R": "0.1", "I": "0.3"},
+    "hoop": {"M": "10", "inertia": "hoop", "g": "moon"},
+}
+kinds = pytest.mark.parametrize("kind", KINDS)
+
+
+def scene_of(kind: str) -> Scene:
+    return Scene.read({"m1": "1", "m2": "3", **KINDS[kind]})
+
+
+def told(scene: Scene, digits: int | None = None) -> Explanation:
+    return explain(Answers(scene, digits))
+
+
+def equations(found: Explanation) -> list[Equation]:
+    return [part for step in found.steps for part in step.body if isinstance(part, Equation)]
+
+
+def sentences(found: Explanation) -> list[str]:
+    return [*found.answer, *(part for step in found.steps for part in step.body if isinstance(part, str))]
+
+
+# The equations, read as a person reads them and worked out with another library
+
+FUNCTIONS = {"ln": mp.log, "sqrt": mp.sqrt, "sin": mp.sin, "N": mp.mpf}
+
+
+def work_out(words: str, **symbols: Any) -> Any:
+    """The value of an expression as printed; numbers are taken exactly."""
+    words = words.replace("·", "*").replace("√", "sqrt").replace("e^", "E^")
+    words = re.sub(r"(?<![\w.])(\d+(?:\.\d+)?(?:e-?\d+)?)", r"N('\1')", words)
+    words = re.sub(r"(?<=[\w)]) (?=[\w(])", "*", words).replace("^", "**")
+    return eval(words, {**FUNCTIONS, "E": mp.e, **symbols})
+
+
+def from_latex(words: str) -> str:
+    """LaTeX as plain text."""
+    while r"\frac" in words:
+        at = words.index(r"\frac")
+        above, then = braced(words, at + 5)
+        below, end = braced(words, then)
+        words = f"{words[:at]}(({above})/({below})){words[end:]}"
+    words = re.sub(r"(\d) \\times 10\^\{(-?\d+)\}", r"\1e\2", words).replace(r"\cdot", "·")
+    return re.sub(r"\\(ln|sin)", r"\1", words).replace(r"\sqrt", "√").translate({123: "(", 125: ")"})
+
+
+def braced(words: str, start: int) -> tuple[str, int]:
+    depth = 0
+    for i in range(start, len(words)):
+        depth += {"{": 1, "}": -1}.get(words[i], 0)
+        if not depth:
+            return words[start + 1 : i], i + 1
+    raise AssertionError(f"braces do not match: {words}")
+
+
+def check_numbers(equation: Equation, digits: int) -> None:
+    if equation.numbers is None:
+        return
+    numbers = equation.numbers.values()
+    mp.mp.dps = 100 + sum(len(str(number)) + max(0, -2 * number.adjusted()) for number in numbers)
+    _, put_in, result = chain(equation)
+    value, shown = work_out(put_in[2:]), Decimal(equation.result)
+    assert equation.result in result
+    last = Decimal((0, (1,), shown.adjusted() - digits + 1)) if shown else Decimal(0)
+    assert abs(value - mp.mpf(str(shown))) <= mp.mpf(str(last)) * mp.mpf("0.500001"), (put_in, result)
+    if equation.signs[1] == "=":
+        assert mp.almosteq(value, mp.mpf(str(shown)), rel_eps=mp.mpf(10) ** -90) or value == shown == 0
+    latex = chain(equation, latex=True)[1]
+    sign, _, words = latex.partition(" ")
+    assert sign == {"=": "=", "≈": r"\approx"}[equation.signs[0]]
+    assert mp.almosteq(work_out(from_latex(words)), value, rel_eps=mp.mpf(10) ** -80)
+
+
+@kinds
+@pytest.mark.parametrize("digits", [None, 1, 3, 30])
+def test_every_line_gives_its_result(kind: str, digits: int | None) -> None:
+    found = equations(told(scene_of(kind), digits))
+    assert found
+    for equation in found:
+        assert equation.numbers is not None
+        check_numbers(equation, digits or 6)
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@given(st.sampled_from(sorted(FAMILIES)), st.integers(0, 10**9), st.sampled_from([None, 2, 17]))
+def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits: int | None) -> None:
+    scene = Scene.read(next(scenes(family, 1, seed)))
+    found = told(scene, digits)
+    check_values(found, scene, digits or 6)
+    for equation in equations(found):
+        # mpmath needs as many digits as a number is small.
+        if all(abs(number.adjusted()) < 3000 for number in (equation.numbers or {}).values()):
+            check_numbers(equation, digits or 6)
+    assert [*as_text("", found, 80)]
+    check_markdown([*as_markdown("", found)])
+
+
+@kinds
+def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
+    """The formula as printed, with the oracle's inputs and the results so far, gives each result."""
+    mp.mp.dps = 60
+    scene = scene_of(kind)
+    inputs = {"m1": scene.m1, "m2": scene.m2, "g": scene.g, "R": scene.R, "I": scene.I}
+    inputs |= {
+        "μ": scene.mu,
+        "μ_k": scene.mu_k,
+        "M": scene.M if isinstance(scene.M, Fraction) else Fraction(0),
+    }
+    inputs["β"] = scene.inertia
+    if scene.inertia is None and scene.M is not None and scene.I is not None and scene.R is not None:
+        inputs["β"] = scene.I / (Fraction(scene.M) * scene.R**2)
+    if scene.I is not None and scene.R is not None:
+        inputs["c"] = scene.I / scene.R**2
+    elif scene.inertia is not None:
+        inputs["c"] = scene.inertia * (inputs["M"] or 0)
+    env = {name: mp.mpf(q.numerator) / q.denominator for name, q in inputs.items() if q is not None}
+    env |= {
+        "π": +mp.pi,
+        "φ": mp.radians(mp.mpf(scene.wrap.numerator) / scene.wrap.denominator),
+        "a": mp.mpf(0),
+    }
+    if KINDS[kind].get("wrap") == "1rad":
+        env["φ"] = mp.mpf(1)
+    if scene.mu == 0 or scene.mu_k == 0:
+        k, z = ("k", "z") if scene.mu == 0 else ("k_kin", "z_kin")
+        env |= {k: mp.mpf(1), z: mp.mpf(0), "M*": mp.mpf(0)}
+    lighter, heavier = ("T2", "T1") if scene.m1 > scene.m2 else ("T1", "T2")
+    for equation in equations(told(scene, 50)):
+        symbols = {spelled(name): value for name, value in env.items()}
+        value = work_out(spelled(chain(equation)[0][2:]), **symbols)
+        assert mp.almosteq(value, mp.mpf(equation.result), rel_eps=mp.mpf(10) ** -45), equation.left
+        left = equation.left
+        env[left.removesuffix(" - 1")] = mp.mpf(equation.result) + (1 if left.endswith(" - 1") else 0)
+        if " - T" in left:
+            env[heavier] = env[lighter] + mp.mpf(equation.result)
+        elif left == lighter:  # what is shown of equal tensions
+            env.setdefault(heavier, env[lighter])
+        if left == "|a|":
+            env["a"] = -env["|a|"]
+
+
+def spelled(words: str) -> str:
+    return words.replace("μ*", "mustar").replace("M*", "M_crit").replace("|a|", "abs_a")
+
+
+# Every number against the oracle
+
+VALUES = {
+    "a": "acceleration",
+    "|a|": "acceleration",
+    "T1": "tension_1",
+    "T2": "tension_2",
+    "μ*": "mu_verge",
+    "F": "friction_force",
+    "F_x": "friction_force_x",
+    "F_y": "friction_force_y",
+    "A": "axle_force",
+    "τ": "torque",
+    "a_rim": "rim_acceleration",
+    "α": "angular_acceleration",
+    "M*": "critical_pulley_mass",
+    "m*": "critical_heavier_mass",
+    "m min": "least_heavier_mass",
+    "M min": "least_pulley_mass",
+}
+
+
+def stated(found: Explanation) -> Iterator[tuple[str, str]]:
+    """Each symbol with the number that it is said to be."""
+    for equation in equations(found):
+        if equation.signs[1] != ">":
+            yield equation.left, equation.result
+    for words in sentences(found):
+        yield from re.findall(rf"`([^`]+)`{HELD}={HELD}({NUMBER})", words)
+
+
+def check_values(found: Explanation, scene: Scene, digits: int) -> int:
+    expected, checked = oracle.expected(scene), 0
+    for symbol, shown in stated(found):
+        value = expected.get(VALUES.get(symbol, ""))
+        if value is not None:
+            right = oracle.correctly_rounded(value, digits)
+            assert Decimal(shown) == (abs(right) if symbol == "|a|" else right), symbol
+            checked += 1
+    return checked
+
+
+@kinds
+def test_every_number_is_the_oracles(kind: str) -> None:
+    scene = scene_of(kind)
+    if scene.wrap == 1:
+        pytest.skip("the oracle's wraps are in degrees")
+    found = told(scene)
+    checked = check_values(found, scene, 6)
+    assert checked >= (1 if kind == "no critical mass" else 4)
+
+
+def test_bounds_are_those_of_the_design() -> None:
+    found = dict(stated(told(scene_of("grips"))))
+    assert Decimal(found["F min"]).quantize(Decimal("0.0001")) == Decimal("5.4057")
+    assert Decimal(found["F max"]).quantize(Decimal("0.0001")) == Decimal("8.9493")
+
+
+@pytest.mark.parametrize(
+    "kind", ["given pulley", "grips", "verge", "slips", "mirror", "inertia", "locked and slips"]
+)
+def test_what_simpler_models_give_is_what_they_give(kind: str) -> None:
+    scene = scene_of(kind)
+    bare = {"m1": scene.m1, "m2": scene.m2, "g": scene.g, "R": scene.R, "wrap": scene.wrap}
+    others = [Scene.read({**bare, "M": 0})]
+    if Answers(scene).case.regime == "slip":
+        others.append(scene._replace(mu=None, mu_k=None))
+    steps = [step for step in told(scene).steps if step.title.startswith("What if")]
+    for step, other in zip(steps, others, strict=True):
+        assert len(step.body) == 3
+        for words, name in zip(step.body, ("acceleration", "tension_1", "tension_2"), strict=True):
+            assert isinstance(words, str)
+            there, here, *off = re.findall(rf"(?<![\w/])[+-]?{NUMBER}", words.partition("= ")[2])
+            exact = [Decimal(Answers(each, 40)[name]) for each in (other, scene)]
+            assert [Decimal(there), Decimal(here)] == [+Answers(each, 6)[name] for each in (other, scene)]
+            error = 100 * (exact[0] - exact[1]) / exact[1]
+            assert [Decimal(word) for word in off] == [Decimal(f"{error:.3g}")], words
+
+
+@kinds
+def test_the_laws_hold(kind: str) -> None:
+    """(1) as printed, with the oracle's numbers; (3) is worked out as an equation."""
+    scene, mp.mp.dps = scene_of(kind), 40
+    if scene.wrap == 1:
+        pytest.skip("the oracle's wraps are in degrees")
+    expected = oracle.expected(scene)
+    if expected["acceleration"] is None:
+        pytest.skip("the motion is open")
+
+    def number(name: str) -> Any:
+        return mp.mpf(str(oracle.correctly_rounded(expected[name], 35)))
+
+    given = {
+        name: mp.mpf(q.numerator) / q.denominator
+        for name, q in (("m1", scene.m1), ("m2", scene.m2), ("g", scene.g))
+    }
+    symbols = {**given, "T1": number("tension_1"), "T2": number("tension_2"), "a": number("acceleration")}
+    symbols["abs_a"] = abs(symbols["a"])
+    laws = [part for step in told(scene).steps for part in step.body if isinstance(part, Law)]
+    checked = 0
+    for law in laws:
+        if law.label == "(1)":
+            left, right = (work_out(spelled(side), **symbols) for side in law.words.split(" = "))
+            assert mp.almosteq(left, right, rel_eps=mp.mpf(10) ** -30, abs_eps=mp.mpf(10) ** -30)
+            checked += 1
+    assert checked == 2
+
+
+# What is said
+
+
+@kinds
+def test_what_acts_on_the_pulley_is_said(kind: str) -> None:
+    words = " ".join(sentences(told(scene_of(kind))))
+    assert "`T1` and `T2` do not act on the pulley." in words
+    assert "contact force of the string" in words
+    labels = [
+        part.label for step in told(scene_of(kind)).steps for part in step.body if not isinstance(part, str)
+    ]
+    assert {"(1)", "(2)", "(12)", "(13)", "(23)"} <= set(labels)
+
+
+@pytest.mark.parametrize(
+    ("kind", "labels", "words"),
+    [
+        ("massless", {"(4)"}, "takes no torque to turn the pulley"),
+        ("given pulley", {"(3)", "(4)", "(27)", "(33)"}, "Assumed to hold, without mu"),
+        ("verge", {"(24)", "(26)", "(34)", "(36)"}, "On a pulley of the critical mass"),
+        ("no critical mass", {"(26)", "(36)"}, "Holds on any pulley"),
+        ("grips", {"(4)", "(27)", "(34)", "(35)", "(36)"}, "not one number while the string grips"),
+        ("grips on a long wrap", {"(4)", "(27)"}, "bounds are known for up to half a turn"),
+        ("slips", {"(1), (26)", "(3)", "(34)"}, "that of kinetic friction"),
+        ("slides without friction", {"(1), (26)"}, "Without friction `k_kin = 1`"),
+        ("locked", {"(1)", "(27)"}, "M = inf is a pulley that is locked"),
+        ("equal", {"(1)"}, "neither descends"),
+        ("free end", {"(4)"}, "nothing hangs from its free end"),
+        ("mirror", {"(1), (26)"}, "`a` is positive when `m2` descends, so here it is negative"),
+        ("inertia alone", {"(33)", "(27)"}, "give M, the pulley's mass, beside I"),
+    ],
+)
+def test_each_regime_has_its_equations_and_its_reason(kind: str, labels: set[str], words: str) -> None:
+    found = told(scene_of(kind))
+    assert labels <= {equation.label for equation in equations(found)} | {"(24)"}
+    assert words in " ".join(sentences(found))
+
+
+@kinds
+def test_the_answer_comes_first(kind: str, atwood: Atwood) -> None:
+    given = [
+        word
+        for name, value in {"m1": "1", "m2": "3", **KINDS[kind]}.items()
+        for word in (f"--{name.replace('_', '-')}", value)
+    ]
+    ran = atwood("solve", *given, "--explain")
+    assert (ran.status, ran.err) == (0, "")
+    scene, verdict, *_ = atwood("solve", *given, "--digits", "6").out.splitlines()
+    top = ran.out.partition("\n1. The masses\n")[0].replace("\n", " ")
+    assert top.startswith(f"{scene} {verdict} ")
+    assert (" a = " in top) == (kind != "no critical mass")
+
+
+def test_an_arc_of_another_angle_has_no_force_downwards_but_guide_sheaves() -> None:
+    half, other = (" ".join(sentences(told(scene_of(kind)))) for kind in ("slips", "inertia"))
+    assert "the force, downwards, and the torque" in half
+    assert "guide sheaves" not in half
+    assert "the force and the torque" in other
+    assert "guide sheaves without mass or friction" in other
+
+
+def test_digits_asked_for_are_shown(atwood: Atwood) -> None:
+    out = atwood("solve", "--m1", "1", "--m2", "3", "--mu", "0.3", "--digits", "30", "--explain").out
+    assert "43.3419248632108669785916777830 kg" in out
+
+
+# On the page
+
+
+@kinds
+@pytest.mark.parametrize("width", [40, 60, 80, 200])
+def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str, width: int) -> None:
+    found = told(scene_of(kind), 20)
+    lines = [line for line, _ in as_text("m1 = 1 kg", found, width)]
+    assert all(len(line) <= width or " " not in line.strip() for line in lines)
+    words = " ".join(lines).split()
+    for equation in equations(found):
+        assert any(equation.result in word for word in words)
+        for number in (equation.numbers or {}).values():
+            shown = str(number).lower().replace("e+", "e")
+            assert any(shown in word for word in words)
+    assert HELD not in "".join(lines)
+    assert not any(re.search(r"^=|\w =$", line) for line in lines)
+    assert "`" not in "".join(lines)
+
+
+@pytest.mark.parametrize("columns", [30, 40, 80, 200])
+def test_on_a_terminal(columns: int) -> None:
+    seen = on_terminal("solve", "--m1", "1", "--m2", "3", "--mu", "0.3", "--explain", columns=columns)
+    assert "\x1b[1m1. The masses" in seen
+    assert max(map(len, plain(seen).splitlines())) <= max(40, min(80, columns))
+    assert "≈ 43.3419 kg" in re.sub(r"\s+", " ", plain(seen))
+
+
+@pytest.mark.parametrize("more", [[], ["--markdown"]])
+@pytest.mark.parametrize(
+    "environment",
+    [
+        {"PYTHONIOENCODING": "ascii"},
+        {"PYTHONIOENCODING": "cp1252"},
+        {"LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+    ],
+)
+def test_symbols_are_spelled_out_where_stdout_is_not_unicode(
+    more: list[str], environment: dict[str, str]
+) -> None:
+    scene = ["--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3", "--R", "1"]
+    ran = process("solve", *scene, "--explain", *more, **environment)
+    assert (ran.status, ran.err) == (0, "")
+    assert ran.out.isascii()
+    # No symbol was lost: the only question marks are those of titles.
+    assert all(line.endswith("?") and line.count("?") == 1 for line in ran.out.splitlines() if "?" in line)
+    assert "43.3419" in ran.out
+    assert max(map(len, ran.out.splitlines())) <= 80 or more
+
+
+def check_markdown(lines: list[str]) -> None:
+    page = "\n".join(lines)
+    assert "`" not in page
+    assert HELD not in page
+    pieces = page.split("$$")
+    assert len(pieces) % 2 == 1
+    for display in pieces[1::2]:
+        assert display.startswith("\n")
+        assert display.endswith("\n")
+        assert display.count("{") == display.count("}")
+        assert display.count(r"\begin{aligned}") == display.count(r"\end{aligned}") <= 1
+        assert display.isascii()
+    for prose in pieces[::2]:
+        inline = re.sub(r"\\\$", "", prose).split("$")
+        assert len(inline) % 2 == 1
+        assert all(piece.isascii() and "\n" not in piece for piece in inline[1::2])
+    titles = [line for line in lines if line.startswith("#")]
+    assert titles[0] == "# Atwood's machine, step by step"
+    assert all(title.startswith(f"## {i}. ") for i, title in enumerate(titles[1:], 1))
+
+
+@kinds
+def test_markdown_is_well_formed(kind: str) -> None:
+    check_markdown([*as_markdown("m1 = 1 kg", told(scene_of(kind)))])
+
+
+def test_the_handout_is_todays(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3", "--explain", "--markdown")
+    assert ran.out == (TOP / "examples" / "handout.md").read_text(encoding="utf-8")
+
+
+# What cannot be
+
+
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (["--markdown"], "--markdown needs --explain"),
+        (["--explain", "--json"], "--explain has no part in --json; leave one of them out"),
+        (["--explain", "--csv"], "--explain has no part in --csv; leave one of them out"),
+        (["--explain", "--only", "torque"], "--explain has no part in --only; leave one of them out"),
+        (["--explain", "--a", "1"], "--explain has no part in --a; leave one of them out"),
+        (["--explain", "--M", "2(1)"], "--explain shows exact numbers; leave their uncertainties out"),
+        (["--explain", "--m1", "x"], "--m1 is given 2 times; give it once"),
+    ],
+)
+def test_errors(more: list[str], message: str, atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1", "--m2", "3", *more)
+    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
+
+
+def test_a_ratio_too_large_to_write_is_told() -> None:
+    found = told(Scene.read({"m1": "1", "m2": "3", "M": "5", "mu": "1e9"}))
+    tell = {equation.left: equation for equation in equations(found)}
+    assert (tell["z"].signs, tell["z"].result, tell["z"].numbers) == ("=>", "10^100000000", None)
+    assert tell["a"].numbers is not None
