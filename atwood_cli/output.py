@@ -135,12 +135,21 @@ def describe(scene: Scene, ranges: Mapping[str, object] = {}, found: "Uncertaint
     """The scene in one line, as understood, with uncertainties, and with ranges as typed."""
     parts = []
     for name, value in {**_scene(scene), **ranges}.items():
-        spread = f" ± {as_typed(found.given[name])}" if found and name in found.given else ""
+        u = as_typed(found.given[name]) if found and name in found.given else ""
+        spread = f" ± {u}" if u else ""
         if isinstance(value, Fraction):
-            parts.append(stated(name, f"{as_typed(value)}{spread}"))
+            parts.append(stated(name, f"{_as_fine(as_typed(value), u)}{spread}"))
         elif value is not None:
             parts.append(f"{name} = {str(value).replace('rad', f'{spread}rad')}")
     return ", ".join(parts)
+
+
+def _as_fine(number: str, other: str) -> str:
+    """The number with as many decimals as the other, zeros if it has fewer: 3 beside 0.02 is 3.00."""
+    decimals = len(other.partition(".")[2]) - len(number.partition(".")[2])
+    if decimals <= 0 or "e" in number + other or "/" in number + other:
+        return number
+    return f"{number}{'' if '.' in number else '.'}{'0' * decimals}"
 
 
 class Page:

@@ -460,7 +460,7 @@ def test_what_is_in_doubt_is_said(given: dict[str, str], words: str) -> None:
 def test_the_table_ends_values_at_the_second_digit_of_their_uncertainty(atwood: Atwood) -> None:
     ran = atwood(*UNCERTAIN)
     assert (ran.status, ran.err) == (0, "")
-    assert ran.out.startswith("m1 = 1 ± 0.002 kg, m2 = 3 ± 0.01 kg, M = 10 kg, g")
+    assert ran.out.startswith("m1 = 1.000 ± 0.002 kg, m2 = 3.00 ± 0.01 kg, M = 10 kg, g")
     assert re.search(r"│ acceleration +│ +2\.1793 ± 0\.0089 +│", ran.out)
     assert re.search(r"│ tension_2 +│ +22\.882 ± 0\.051 +│", ran.out)
     assert re.search(r"│ axle_force +│ 132\.935 ± 0\.066 +│", ran.out)
@@ -509,7 +509,7 @@ def test_ascii_has_plus_minus_too() -> None:
     ran = process(*UNCERTAIN, PYTHONIOENCODING="ascii")
     assert (ran.status, ran.err) == (0, "")
     assert ran.out.isascii()
-    assert "m1 = 1 +/- 0.002 kg" in ran.out
+    assert "m1 = 1.000 +/- 0.002 kg" in ran.out
     assert re.search(r"2\.1793 \+/- 0\.0089 ", ran.out)
 
 
