@@ -7,24 +7,60 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperCommand
+from typer.core import TyperCommand, TyperGroup
 
 from . import __version__
 from .output import for_stream
-from .quantities import FOUND_NAMES, NAMES
+from .quantities import FOUND_NAMES, NAMES, QUANTITIES
 from .scene import PARAMETERS, Scene, SceneError, nearest, parameter_of, read_digits, read_whole
 
+COMPLETING = "_ATWOOD_COMPLETE"
+"""Set where a shell asks what a word could be."""
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
 
+# The parent of all of typer's complaints about usage; typer exports only this child of it.
+UsageError: Any = typer.BadParameter.__mro__[1]
+
+
+WORDS = "words typed"
+"""Where the context of a command keeps them, for completion."""
+
+
+class Command(TyperCommand):
+    """A command with our help, that refuses a scalar option given twice, rather than take the last."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
+        ctx.meta[WORDS] = list(args)
+        if ctx.resilient_parsing:  # to complete what is typed so far
+            return super().parse_args(ctx, args)
+        _, _, order = self.make_parser(ctx).parse_args(args=list(args))
+        for option, times in Counter(order).items():
+            if times > 1 and not (getattr(option, "multiple", 0) or getattr(option, "is_flag", 0)):
+                raise SceneError(str(option.name), None, f"is given {times} times; give it once")
+        return super().parse_args(ctx, args)
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        from .help import page
+
+        formatter.write(page(self, ctx))
+
+
+class Group(TyperGroup):
+    """The commands, with our help."""
+
+    format_help = Command.format_help
+
+
 app = typer.Typer(
     name="atwood",
+    cls=Group,
     help="""Atwood's machine with a massive pulley and a rough string, every digit right.
 
-    \b
     Examples:
       atwood solve --m1 1 --m2 3 --mu 0.3
       atwood solve --m1 250g --m2 300g --M 100g --only acceleration
@@ -36,21 +72,6 @@ app = typer.Typer(
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-
-# The parent of all of typer's complaints about usage; typer exports only this child of it.
-UsageError: Any = typer.BadParameter.__mro__[1]
-
-
-class Command(TyperCommand):
-    """A command that refuses a scalar option given twice, rather than take the last."""
-
-    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        _, _, order = self.make_parser(ctx).parse_args(args=list(args))
-        for option, times in Counter(order).items():
-            if times > 1 and not (getattr(option, "multiple", 0) or getattr(option, "is_flag", 0)):
-                raise SceneError(str(option.name), None, f"is given {times} times; give it once")
-        return super().parse_args(ctx, args)
 
 
 ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
@@ -73,15 +94,49 @@ def _flag(name: str) -> str:
     return f"--{name.replace('_', '-')}"
 
 
-def _scene_option(name: str, panel: str = "Scene") -> Any:
+Words = Callable[[], Mapping[str, str]]
+"""Words that a shell may complete, with what they mean."""
+
+
+def _option(group: str, *flags: str, metavar: str = "", words: Words | None = None, **more: Any) -> Any:
+    """An option: the group in which help shows it, and the words it takes.
+
+    Where the metavar lists alternatives (a|b), they are the words.
+    """
+    if "|" in metavar:
+        words = partial(_alternatives, metavar)
+
+    def complete(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
+        # FILE NAME: the first is no word, and a shell without words completes files.
+        if " " in metavar and ctx.meta[WORDS][-1:] in [[flag] for flag in flags]:
+            return []
+        return list(words().items()) if words else []
+
+    return typer.Option(
+        *flags,
+        metavar=metavar or None,
+        rich_help_panel=group,
+        show_default=False,
+        # typer takes its time over every such function, so at other times there is none.
+        autocompletion=complete if words and COMPLETING in os.environ else None,
+        **more,
+    )
+
+
+def _alternatives(metavar: str) -> Mapping[str, str]:
+    return dict.fromkeys(metavar.split("|"), "")
+
+
+def _scene_option(name: str, group: str = "Scene") -> Any:
     parameter = parameter_of(name)
     flags = [_flag(name), *ALIASES.get(name, [])]
     unit = f" ({parameter.unit})" if parameter.unit not in ("", "°") else ""
     names = f", or {', '.join(parameter.names)}" if parameter.names else ""
     meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
-    text = for_stream(f"{meaning}{unit}{names}{REMARKS.get(name, '')}.", sys.stdout)
+    text = f"{meaning}{unit}{names}{REMARKS.get(name, '')}."
     metavar = (parameter.dimension or "number").upper()
-    return typer.Option(*flags, help=text, metavar=metavar, rich_help_panel=panel, show_default=False)
+    words = {**parameter.names, **({"inf": "a locked pulley"} if parameter.inf else {})}
+    return _option(group, *flags, help=text, metavar=metavar, words=(lambda: words) if words else None)
 
 
 def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
@@ -104,8 +159,26 @@ def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
     return with_scene
 
 
-def _output(*flags: str, **more: Any) -> Any:
-    return typer.Option(*flags, rich_help_panel="Output", show_default=False, **more)
+_output, _files = partial(_option, "Output"), partial(_option, "Files")
+_arc, _measured = partial(_option, "Arc"), partial(_option, "Measurement")
+
+
+def _quantities() -> Mapping[str, str]:
+    return {"regime": "no-slip, verge or slip"} | _numbers()
+
+
+def _answers() -> Mapping[str, str]:
+    return {**_quantities(), **dict.fromkeys(FOUND_NAMES, "found from what was measured")}
+
+
+def _numbers() -> Mapping[str, str]:
+    return {name: shown.meaning for name, shown in QUANTITIES.items()}
+
+
+def _families() -> Mapping[str, str]:
+    from .families import FAMILIES
+
+    return {name: family.meaning for name, family in FAMILIES.items()}
 
 
 Digits = Annotated[
@@ -113,7 +186,10 @@ Digits = Annotated[
 ]
 AsJson = Annotated[bool, _output("--json", help="Print JSON: results, scene and notes.")]
 AsCsv = Annotated[bool, _output("--csv", help="Print CSV, with a line of names first.")]
-Only = Annotated[list[str] | None, _output(metavar="NAME", help="Print only this quantity; repeatable.")]
+Only = Annotated[
+    list[str] | None,
+    _output(metavar="NAME", words=_answers, help="Print only this quantity; repeatable."),
+]
 Budget = Annotated[
     bool,
     _output("--budget", help="Also print each uncertain input's share of every result's variance."),
@@ -133,13 +209,11 @@ Markdown = Annotated[
 DEFAULT_POINTS = 13
 Points = Annotated[
     str | None,
-    _output(
-        metavar="N", help=f"Angles along the arc to show, with both ends; {DEFAULT_POINTS} if not given."
-    ),
+    _arc(metavar="N", help=f"Angles along the arc to show, with both ends; {DEFAULT_POINTS} if not given."),
 ]
 Profile = Annotated[
     str | None,
-    _output(
+    _arc(
         metavar="creep|least",
         help="Which tension, where friction to spare leaves it open: that of a slightly elastic string"
         " (creep, if not given), or that with the least net friction.",
@@ -147,66 +221,77 @@ Profile = Annotated[
 ]
 Elements = Annotated[
     str | None,
-    _output(
+    _arc(
         metavar="N",
         help="Instead, solve the arc by N elements of string, in doubles, beside the exact values.",
     ),
 ]
-Extrapolate = Annotated[
-    bool, _output("--extrapolate", help="Extrapolate from N/2 and N elements (Richardson).")
-]
+Extrapolate = Annotated[bool, _arc("--extrapolate", help="Extrapolate from N/2 and N elements (Richardson).")]
 
 
 FigureFile = Annotated[
-    str | None, _output(metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure).")
+    str | None, _files(metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure).")
 ]
 
 Columns = Annotated[
     list[str] | None,
     _output(
-        "--only", metavar="NAME", help="A column for this quantity, not for the usual seven; repeatable."
+        "--only",
+        metavar="NAME",
+        words=_quantities,
+        help="A column for this quantity, not for the usual seven; repeatable.",
     ),
 ]
 Plot = Annotated[
     str | None,
-    _output(metavar="NAME", help="Draw this quantity's curve in place of the table (extra: plot)."),
+    _output(
+        metavar="NAME", words=_numbers, help="Draw this quantity's curve in place of the table (extra: plot)."
+    ),
 ]
 SweepFigure = Annotated[
     tuple[str, str] | None,
-    _output(
+    _files(
+        "--figure",
         metavar="FILE NAME",
+        words=_numbers,
         help="Also draw this quantity's curve to FILE.svg, .png or .pdf (extra: figure).",
     ),
 ]
 OutputFile = Annotated[
     str | None,
-    _output(
+    _files(
         "--output",
         "-o",
         metavar="FILE",
         help="Write to FILE, whole or not at all; .json and .csv there choose the format.",
     ),
 ]
-Force = Annotated[bool, _output("--force", help="Replace the file of --output, if it is there.")]
+Force = Annotated[bool, _files("--force", help="Replace the file of --output, if it is there.")]
 
 
 Table = Annotated[
     str,
     typer.Argument(
         metavar="IN",
+        rich_help_panel="Files",
         help="Table of scenes: .csv, .tsv, .ndjson, .jsonl or .parquet; - for stdin.",
         show_default=False,
     ),
 ]
 OutTable = Annotated[
-    str, _output("--output", "-o", metavar="OUT", help="Write to this file; - for stdout, if not given.")
+    str, _files("--output", "-o", metavar="OUT", help="Write to this file; - for stdout, if not given.")
 ]
 FromFormat = Annotated[
     str | None,
-    _output("--from", metavar="FORMAT", help="Format of IN: csv, tsv, ndjson, parquet; else its suffix."),
+    _files("--from", metavar="csv|tsv|ndjson|parquet", help="Format of IN, if not that of its suffix."),
 ]
 ToFormat = Annotated[
-    str | None, _output("--to", metavar="FORMAT", help="Format of OUT; else its suffix; for stdout csv.")
+    str | None,
+    _files(
+        "--to",
+        metavar="csv|tsv|ndjson|parquet",
+        help="Format of OUT, if not that of its suffix; stdout: csv.",
+    ),
 ]
 Accuracy = Annotated[
     str,
@@ -220,16 +305,18 @@ AllowErrors = Annotated[bool, _output("--allow-errors", help="Exit 0 though rows
 
 Families = Annotated[
     list[str] | None,
-    _output("--family", metavar="NAME", help="Measure this family of scenes only; repeatable."),
+    _measured(
+        "--family", metavar="NAME", words=_families, help="Measure this family of scenes only; repeatable."
+    ),
 ]
 DEFAULT_SCENES, DEFAULT_SEED, MOST_SEED = 500, 1, 10**9
 Scenes = Annotated[
     str | None,
-    _output(metavar="N", help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given."),
+    _measured(metavar="N", help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given."),
 ]
 Seed = Annotated[
     str | None,
-    _output(metavar="N", help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given."),
+    _measured(metavar="N", help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given."),
 ]
 PlotErrors = Annotated[
     bool, _output("--plot", help="Draw error against time in place of the tables (extra: plot).")
@@ -251,7 +338,9 @@ Version = Annotated[
 @app.callback()
 def root(context: typer.Context, version: Version = False) -> None:
     if context.invoked_subcommand is None:
-        print(context.get_help())
+        from .help import brief
+
+        print(brief(context.command, context))
 
 
 @app.command("solve", cls=Command)
@@ -272,11 +361,6 @@ def solve(
 ) -> int:
     """Solve one scene: acceleration, tensions, friction, critical masses.
 
-    Any number may have its standard uncertainty, as 1.000+/-0.002 or, in quotes
-    for the shell, '1.000(2)'. Results then have theirs, to first order, and a
-    table ends each value at the second digit of it, whatever --digits.
-
-    \b
     Examples:
       atwood solve --m1 1 --m2 3 --mu 0.3
       atwood solve --m1 250g --m2 300g --M 100g --R 5cm --digits 6
@@ -286,6 +370,10 @@ def solve(
       atwood solve --m1 55g --m2 60g --R 5cm --a 0.380+/-0.004
       atwood solve --m1 55g --m2 60g --drop 80cm --time '2.05(2)'
       atwood solve --m1 1 --m2 3 --mu 0.3 --explain
+
+    Any number may have its standard uncertainty, as 1.000+/-0.002 or, in quotes for the shell, '1.000(2)'.
+    Results then have theirs, to first order, and a table ends each value at the second digit of it,
+    whatever --digits.
     """
     from . import output
     from .solver import read_answers
@@ -344,7 +432,6 @@ def contact(
 ) -> int:
     """Show what acts along the arc of contact, and that it adds up.
 
-    \b
     Examples:
       atwood contact --m1 1 --m2 3 --mu 0.3 --digits 6
       atwood contact --m1 1 --m2 3 --M 10 --mu 0.3 --profile least
@@ -407,7 +494,6 @@ def sweep(
 ) -> int:
     """Solve a range of scenes: one or two options carry start:stop:count or start:stop:count:log.
 
-    \b
     Examples:
       atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3 --digits 6
       atwood sweep --m1 1 --m2 3 --M 1:1000:4:log --mu 0.2:0.4:3 --only regime
@@ -481,7 +567,6 @@ def tradeoff(
 ) -> int:
     """Measure what accuracy costs on this machine: time beside error, for families of scenes or for one.
 
-    \b
     Examples:
       atwood tradeoff
       atwood tradeoff --family near-critical --scenes 2000 --plot
@@ -550,16 +635,15 @@ def batch(
 ) -> int:
     """Solve a table of scenes: the same table with results appended, and the error of each bad row.
 
-    \b
-    Columns m1, m2, M, mu, mu_k, g, inertia, R, wrap are the options of solve,
-    in SI units; an empty cell is not given. Other columns stay as they are.
-
-    \b
     Examples:
       atwood batch scenes.csv -o results.csv
       atwood batch scenes.parquet -o results.parquet --accuracy exact
       atwood batch scenes.csv --only regime --only acceleration | head
       generate | atwood batch - --from ndjson --to ndjson --allow-errors
+
+    Columns m1, m2, M, mu, mu_k, g, inertia, R, wrap are the options of solve, in SI units; an empty cell
+    is not given. Other columns stay as they are. A cell is read as the double nearest to it, as is g: so
+    even exact can differ in the last digit from solve, which takes 0.1 for a tenth.
     """
     from .arrays import ACCURACIES
     from .batch import Job, run_batch
@@ -612,7 +696,9 @@ def run(arguments: list[str] | None = None) -> int:
         status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
         sys.stdout.flush()
         return status
-    except (BrokenPipeError, SystemExit):  # typer and rich exit where the reader of stdout has left
+    except (BrokenPipeError, SystemExit) as error:  # typer and rich exit where the reader of stdout has left
+        if isinstance(error, SystemExit) and COMPLETING in os.environ:  # fish goes by the status
+            return int(error.code or DONE)
         # What is still buffered must not fail again when Python closes stdout.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return DONE

@@ -1,0 +1,239 @@
+"""Help and completion, as people and shells ask for them."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+import typer
+
+from atwood_cli import cli
+from atwood_cli.arrays import ACCURACIES
+from atwood_cli.families import FAMILIES
+from atwood_cli.quantities import NAMES
+from atwood_cli.scene import BODIES, INERTIA_FACTORS
+from atwood_cli.tables import FORMATS
+from examples.help import COMMANDS, pages
+
+from .running import Atwood, on_terminal, process
+
+TOP = Path(__file__).parent.parent
+GROUP: Any = typer.main.get_command(cli.app)
+PAGES = ["", *(f"{command} -h".strip() for command in COMMANDS)]
+ATWOOD = Path(sys.executable).with_name("atwood")
+
+
+def test_the_help_kept_is_todays() -> None:
+    kept = (TOP / "examples" / "help.txt").read_text(encoding="utf-8")
+    assert pages() == kept, "python -m examples.help > examples/help.txt"
+
+
+def test_help_is_kept_of_every_command() -> None:
+    assert list(COMMANDS) == ["", *GROUP.commands]
+
+
+@pytest.mark.parametrize("command", GROUP.commands)
+def test_every_option_says_what_it_means_and_in_which_group(command: str) -> None:
+    *params, the_help = GROUP.commands[command].get_params(typer.Context(GROUP.commands[command]))
+    assert "--help" in the_help.opts
+    assert all(param.help.endswith(".") for param in params)
+    assert {param.rich_help_panel for param in params} <= {
+        "Scene",
+        "Arc",
+        "Measured",
+        "Measurement",
+        "Output",
+        "Files",
+    }
+    assert all(param.is_flag or param.metavar for param in params)
+
+
+@pytest.mark.parametrize("columns", [10, 24, 40, 80, 200])
+@pytest.mark.parametrize("words", PAGES)
+def test_no_width_loses_a_word_of_help(atwood: Atwood, words: str, columns: int) -> None:
+    def stream(text: str) -> list[str]:
+        return text.replace("\\\n", "\n").split()
+
+    os.environ["COLUMNS"] = str(columns)
+    try:
+        out = atwood(*words.split()).out
+        os.environ["COLUMNS"] = "100"
+        whole = atwood(*words.split()).out
+    finally:
+        del os.environ["COLUMNS"]
+    assert sorted(stream(out)) == sorted(stream(whole))
+    assert columns < 40 or max(map(len, out.splitlines())) <= min(columns - 1, 100)
+
+
+@pytest.mark.parametrize("words", PAGES)
+def test_help_is_bold_on_a_terminal_and_says_the_same(words: str) -> None:
+    seen = on_terminal(*words.split(), columns=70, COLUMNS="70")
+    piped = process(*words.split(), COLUMNS="70").out
+    assert "\x1b[1mExamples:\x1b[0m" in seen
+    assert re.sub(r"\x1b\[[01]m", "", seen) == piped
+    assert on_terminal(*words.split(), columns=70, TERM="dumb") == piped
+
+
+def test_a_terminal_tells_its_width() -> None:
+    wide, narrow = (on_terminal("solve", "-h", columns=n) for n in (90, 45))
+    assert 80 < max(map(len, wide.splitlines())) < 90
+    assert max(map(len, narrow.splitlines())) < 45
+
+
+def test_a_long_example_is_continued_as_a_shell_takes_it(
+    atwood: Atwood, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "40")
+    out = atwood("solve", "-h").out
+    assert "  atwood solve --m1 1 --m2 3 --mu 0.3\n" in out
+    assert "  atwood solve --m1 250g --m2 300g \\\n    --M 100g --R 5cm --digits 6\n" in out
+
+
+def test_alone_it_is_brief(atwood: Atwood) -> None:
+    ran, full = atwood(), atwood("-h")
+    assert (ran.status, ran.err) == (0, "")
+    assert len(ran.out.splitlines()) < 20 < len(full.out.splitlines())
+    assert ran.out.count("  atwood ") == 3
+    assert all(f"\n  {command} " in ran.out for command in GROUP.commands)
+    assert "atwood -h says more" in ran.out
+
+
+def test_help_needs_neither_rich_nor_numpy() -> None:
+    code = "import sys; from atwood_cli.cli import run; run(['batch', '-h']); print(*sys.modules, file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert not {"rich", "numpy", "polars"} & set(done.stderr.split())
+
+
+# Completion
+
+
+def completed(*words: str, shell: str = "bash") -> list[str]:
+    """What the program offers for the last of the words, by the protocol of the shell."""
+    typed = " ".join(["atwood", *words])
+    asked = {
+        "COMP_WORDS": typed,
+        "COMP_CWORD": str(len(words)),
+        "_TYPER_COMPLETE_ARGS": typed,
+        "_TYPER_COMPLETE_WORD_TO_COMPLETE": words[-1],
+        "_TYPER_COMPLETE_FISH_ACTION": "get-args",
+    }
+    ran = process(**asked, _ATWOOD_COMPLETE=f"complete_{shell}")
+    assert (ran.status, ran.err) == (0, "")
+    return [line for line in ran.out.splitlines() if line]
+
+
+@pytest.mark.parametrize(
+    ("words", "offered"),
+    [
+        ("s", ["solve", "sweep"]),
+        ("solve --mu", ["--mu", "--mu-k"]),
+        ("solve --m1 1 --m1 2 --cs", ["--csv"]),
+        ("solve --only ten", ["tension_1", "tension_2"]),
+        ("sweep --only ", list(NAMES)),
+        ("batch in.csv --only reg", ["regime"]),
+        ("sweep --plot ", list(NAMES[1:])),
+        ("sweep --figure a.svg acc", ["acceleration"]),
+        ("sweep --figure a", []),
+        ("contact --figure a", []),
+        ("solve --g ", list(BODIES)),
+        ("contact --inertia ", list(INERTIA_FACTORS)),
+        ("solve --M ", ["inf"]),
+        ("contact --profile ", ["creep", "least"]),
+        ("batch in.csv --accuracy ", list(ACCURACIES)),
+        ("batch in.csv --from ", list(FORMATS)),
+        ("batch in.csv --to p", ["parquet"]),
+        ("batch ", []),
+        ("tradeoff --family ", list(FAMILIES)),
+    ],
+)
+def test_completion(words: str, offered: list[str]) -> None:
+    assert completed(*words.split(" ")) == offered
+
+
+def test_every_shell_gets_names_with_what_they_mean() -> None:
+    words = ("solve", "--only", "tor")
+    assert completed(*words) == ["torque"]
+    assert completed(*words, shell="fish") == ["torque\ttorque of the string on the pulley"]
+    assert completed(*words, shell="zsh") == [
+        '_arguments \'*: :(("torque":"torque of the string on the pulley"))\''
+    ]
+    assert completed(*words, shell="powershell") == ["torque:::torque of the string on the pulley"]
+
+
+@pytest.mark.parametrize(("words", "status"), [("solve --only tor", 0), ("batch in", 1)])
+def test_fish_is_told_where_files_are_to_be_completed(words: str, status: int) -> None:
+    asked = {"_TYPER_COMPLETE_ARGS": f"atwood {words}", "_TYPER_COMPLETE_FISH_ACTION": "is-args"}
+    assert process(**asked, _ATWOOD_COMPLETE="complete_fish") == (status, "", "")
+
+
+@pytest.mark.parametrize("words", ["solve --only te", "sweep --plot a"])
+def test_completion_imports_little(words: str) -> None:
+    code = (
+        "import sys, atexit; from atwood_cli.cli import run;"
+        " atexit.register(lambda: print(*sys.modules, file=sys.stderr)); run()"
+    )
+    asked = {"COMP_WORDS": f"atwood {words}", "COMP_CWORD": "3", "_ATWOOD_COMPLETE": "complete_bash"}
+    done = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=os.environ | asked
+    )
+    assert done.stdout
+    assert "atwood_cli.cli" in done.stderr
+    assert not {"rich", "numpy", "polars"} & set(done.stderr.split())
+
+
+def in_shell(shell: str, script: str, **environment: str) -> str:
+    """Run a script in a shell that has the program on its path."""
+    if not (ATWOOD.exists() and shutil.which(shell)):
+        pytest.skip(f"needs {shell} and the installed program")
+    env = os.environ | {"PATH": f"{ATWOOD.parent}{os.pathsep}{os.environ['PATH']}"} | environment
+    done = subprocess.run([shell, "-c", script], capture_output=True, text=True, check=True, env=env)
+    assert done.stderr == ""
+    return done.stdout
+
+
+def test_bash_completes() -> None:
+    script = """
+    eval "$(_ATWOOD_COMPLETE=source_bash atwood)"
+    COMP_WORDS=(atwood solve --only ten) COMP_CWORD=3
+    _atwood_completion atwood
+    echo "${COMPREPLY[@]}"
+    complete -p atwood
+    """
+    shown = in_shell("bash", script)
+    assert shown == "tension_1 tension_2\ncomplete -o default -F _atwood_completion atwood\n"
+
+
+def test_fish_completes(tmp_path: Path) -> None:
+    (tmp_path / "scenes.csv").touch()
+    script = f"""
+    _ATWOOD_COMPLETE=source_fish atwood | source
+    cd {tmp_path}
+    complete -C "atwood solve --only ten"
+    complete -C "atwood batch sc"
+    """
+    shown = in_shell("fish", script, HOME=str(tmp_path))
+    names, file = shown.splitlines()[:2], shown.splitlines()[2:]
+    assert [line.split("\t")[0] for line in names] == ["tension_1", "tension_2"]
+    assert file == ["scenes.csv"]
+
+
+def test_zsh_takes_what_it_is_offered(tmp_path: Path) -> None:
+    """Its completion needs a terminal; what it evaluates there is recorded here."""
+    script = """
+    compdef() { }
+    _arguments() { print -r -- "$@" }
+    _files() { print files }
+    eval "$(_ATWOOD_COMPLETE=source_zsh atwood)"
+    words=(atwood solve --only ten) CURRENT=4; _atwood_completion
+    words=(atwood solve --g) CURRENT=3; _atwood_completion
+    words=(atwood batch sc) CURRENT=3; _atwood_completion
+    """
+    shown = in_shell("zsh", script, HOME=str(tmp_path))
+    lines = shown.splitlines()
+    assert "tension_1" in lines[0]
+    assert "--g" in shown
+    assert lines[-1] == "files"
