@@ -1,19 +1,32 @@
 """The program's door: `python -m atwood_cli` and the command `atwood`."""
 
+import signal
 import sys
 
-INTERRUPTED = 130
+INTERRUPTED, TERMINATED = 130, 143
 
 
 def main() -> int:
     """Run the command line and return its exit status."""
+    terminated = False
+
+    def terminate(*_: object) -> None:
+        """Stop as on Ctrl-C, which cleans up: nothing half-written stays beside a file."""
+        nonlocal terminated
+        terminated = True
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGTERM, terminate)
     try:
         # Imported here, so that Ctrl-C during start-up shows no traceback either.
         from .cli import run
 
-        return run()
+        status = run()
     except KeyboardInterrupt:
-        return INTERRUPTED
+        status = INTERRUPTED
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    return TERMINATED if terminated else status
 
 
 if __name__ == "__main__":

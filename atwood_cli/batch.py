@@ -15,11 +15,11 @@ from tempfile import NamedTemporaryFile
 from typing import IO, TYPE_CHECKING, Any
 
 from .arrays import solve_arrays
-from .files import written_beside
+from .files import STREAM, written_beside
 from .quantities import REGIMES
 from .rows import COLUMNS, Accuracy
 from .scene import NUMBER, PARAMETERS, Given, Scene, SceneError, read_plain, read_value
-from .tables import STREAM, Piece, Unreadable, read, write
+from .tables import Piece, Unreadable, read, write
 
 if TYPE_CHECKING:
     import polars as pl

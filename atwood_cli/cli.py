@@ -164,7 +164,7 @@ _arc, _measured = partial(_option, "Arc"), partial(_option, "Measurement")
 
 
 def _quantities() -> Mapping[str, str]:
-    return {"regime": "no-slip, verge or slip"} | _numbers()
+    return {"regime": "no-slip, verge or slip", **_numbers()}
 
 
 def _answers() -> Mapping[str, str]:
@@ -263,10 +263,11 @@ OutputFile = Annotated[
         "--output",
         "-o",
         metavar="FILE",
-        help="Write to FILE, whole or not at all; .json and .csv there choose the format.",
+        help="Write to FILE, whole or not at all: as CSV (.csv), JSON (.json) or as shown (.txt).",
     ),
 ]
-Force = Annotated[bool, _files("--force", help="Replace the file of --output, if it is there.")]
+SWEEP_SUFFIXES = ("", ".txt", ".csv", ".json")
+Force = Annotated[bool, _files("--force", help="Replace a file that is there.")]
 
 
 Table = Annotated[
@@ -426,6 +427,7 @@ def contact(
     elements: Elements = None,
     extrapolate: Extrapolate = False,
     figure: FigureFile = None,
+    force: Force = False,
     digits: Digits = None,
     json: AsJson = False,
     csv: AsCsv = False,
@@ -443,6 +445,7 @@ def contact(
     from .solver import Answers
 
     _exclude_each_other(json, csv)
+    _check_force(force, figure=figure)
     answers = Answers(Scene.read(given), read_digits(digits))
     if elements is not None:
         from .elements import elements as march_elements
@@ -466,7 +469,7 @@ def contact(
     if figure is not None:
         from .figure import save
 
-        save(answers, profile, figure)
+        save(answers, profile, figure, force)
     if json:
         output.print_arc_json(answers, arc)
     elif csv:
@@ -502,15 +505,19 @@ def sweep(
       atwood sweep --m1 1 --m2 3 --M 0:60:61 --figure a.svg mu_verge -o a.csv
     """
     from . import output as out
-    from .files import stdout_into
+    from .files import STREAM, stdout_into
     from .quantities import STANDARD
     from .sweep import check_drawable, picture, read_sweep, solve_rows
 
     _exclude_each_other(json, csv)
-    if force and output is None:
-        raise SceneError("force", None, "needs --output")
-    if output is not None and not (json or csv):
-        json, csv = (output.lower().endswith(suffix) for suffix in (".json", ".csv"))
+    _check_force(force, output=output, figure=figure)
+    into_file = output not in (None, STREAM)
+    if output is not None and into_file and not (json or csv):
+        suffix = os.path.splitext(output)[1].lower()
+        if suffix not in SWEEP_SUFFIXES:
+            rule = f"must end in one of {', '.join(filter(None, SWEEP_SUFFIXES))}, or name --json or --csv"
+            raise SceneError("output", output, rule)
+        json, csv = suffix == ".json", suffix == ".csv"
     names = list(dict.fromkeys(only or STANDARD))
     _check_names("only", *names)
     found, precision = read_sweep(given), read_digits(digits)
@@ -530,22 +537,22 @@ def sweep(
 
         names = [plot]
     if figure is not None:
-        from .figure import check_format, save_sweep
+        from .figure import check_file, save_sweep
 
-        check_format(figure[0])
+        check_file(figure[0], force)
     wanted = dict.fromkeys([*names, *(name for name in drawn.values() if name)])
     with stdout_into(output, force):
         rows = list(out.watched(solve_rows(found, list(wanted), precision), found.total))
         if figure is not None:
-            save_sweep(picture(found, rows, "figure", figure[1]), out.sweep_head(found), figure[0])
+            save_sweep(picture(found, rows, "figure", figure[1]), out.sweep_head(found), figure[0], force)
         if plot is not None:
-            print_plot(found, rows, plot, plain=output is not None)
+            print_plot(found, rows, plot, plain=into_file)
         elif json:
             out.print_sweep_json(found, rows, names)
         elif csv:
             out.print_sweep_csv(found, rows, names)
         else:
-            out.print_sweep(found, rows, names, plain=output is not None)
+            out.print_sweep(found, rows, names, plain=into_file)
     if csv:
         for note in out.sweep_notes(rows, names):
             _say(note)
@@ -562,6 +569,7 @@ def tradeoff(
     seed: Seed = None,
     plot: PlotErrors = False,
     figure: FigureFile = None,
+    force: Force = False,
     json: AsJson = False,
     csv: AsCsv = False,
 ) -> int:
@@ -579,6 +587,7 @@ def tradeoff(
     from .tradeoff import tradeoff as measure
 
     _exclude_each_other(json, csv)
+    _check_force(force, figure=figure)
     scene = None
     if any(value is not None for value in given.values()):
         scene = Scene.read(given)
@@ -596,9 +605,9 @@ def tradeoff(
             )
         from .plot import print_tradeoff_plot
     if figure is not None:
-        from .figure import check_format, save_tradeoff
+        from .figure import check_file, save_tradeoff
 
-        check_format(figure)
+        check_file(figure, force)
     found = measure(
         list(dict.fromkeys(family or FAMILIES)),
         read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES),
@@ -607,7 +616,7 @@ def tradeoff(
         out.watched,
     )
     if figure is not None:
-        save_tradeoff(found, figure)
+        save_tradeoff(found, figure, force)
     if plot:
         print_tradeoff_plot(found)
     elif json:
@@ -680,6 +689,11 @@ def _check_explain(explain: bool, markdown: bool, others: Mapping[str, object]) 
 def _exclude_each_other(json: bool, csv: bool) -> None:
     if json and csv:
         raise SceneError("json", None, "and --csv exclude each other; give one of them")
+
+
+def _check_force(force: bool, **files: object) -> None:
+    if force and not any(files.values()):
+        raise SceneError("force", None, f"needs {' or '.join(map(_flag, files))}")
 
 
 def _say(message: str) -> None:

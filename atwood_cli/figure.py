@@ -6,11 +6,13 @@ No pyplot, no display; the same scene gives the same SVG to the byte.
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
+from itertools import pairwise
 from math import cos, degrees, hypot, nan, radians, sin
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from .contact import Contact, contact
+from .files import check_free, written_beside
 from .machine import wrap_angle
 from .output import describe
 from .scene import SceneError
@@ -38,14 +40,14 @@ STYLE: Any = {
 }
 
 
-def save(answers: Answers, kind: str | None, path: str) -> None:
+def save(answers: Answers, kind: str | None, path: str, force: bool) -> None:
     """Draw the arc to a file, whose suffix is its format. Raises SceneError, OSError."""
-    check_format(path)
+    check_file(path, force)
     doubles = Answers(answers.case.scene)
     forces = [float(doubles[name] or 0) for name in ("tension_1", "tension_2")]
     if not DRAWABLE[0] < max(forces) < DRAWABLE[1]:
         raise SceneError("figure", path, f"draws forces between {DRAWABLE[0]} and {DRAWABLE[1]} N only")
-    with _page(path) as figure:
+    with _page(path, force) as figure:
         machine, curve = figure.subplots(1, 2, width_ratios=[1.1, 1])
         _draw_machine(machine, doubles, contact(doubles, ARROWS, kind))
         _draw_tension(curve, contact(doubles, CURVE_POINTS, kind))
@@ -53,10 +55,10 @@ def save(answers: Answers, kind: str | None, path: str) -> None:
         figure.suptitle(f"{describe(shown.case.scene)}\n{verdict(shown)}", fontsize=10)
 
 
-def save_sweep(picture: "Picture", title: str, path: str) -> None:
+def save_sweep(picture: "Picture", title: str, path: str, force: bool) -> None:
     """Draw the curves of a sweep to a file, whose suffix is its format. Raises SceneError, OSError."""
-    check_format(path)
-    with _page(path) as figure:
+    check_file(path, force)
+    with _page(path, force) as figure:
         axes = figure.subplots()
         axes.set_xlabel(picture.x)
         axes.set_ylabel(picture.y)
@@ -70,11 +72,11 @@ def save_sweep(picture: "Picture", title: str, path: str) -> None:
         figure.suptitle(title, fontsize=10)
 
 
-def save_tradeoff(found: "Tradeoff", path: str) -> None:
+def save_tradeoff(found: "Tradeoff", path: str, force: bool) -> None:
     """Draw error against time to a file, whose suffix is its format. Raises SceneError, OSError."""
     from .tradeoff import EDGES, MARGIN, drawable
 
-    with _page(path) as figure:
+    with _page(path, force) as figure:
         arithmetic, elements = figure.subplots(1, 2)
         families = list(dict.fromkeys(one.family for one in found.measured))
         settings = list(dict.fromkeys(one.setting for one in found.measured))
@@ -108,30 +110,31 @@ MARKERS = "xPs^Do*v"
 def _draw_curve(axes: "Axes", curve: "Curve") -> None:
     ys = [nan if y is None else y for y in curve.ys]
     (line,) = axes.plot(curve.xs, ys, marker="." if len(ys) <= MARKED else "", label=curve.label)
-    for i, words in zip(curve.changes, curve.regimes[1:], strict=True):
+    for i, regimes in zip(curve.changes, pairwise(curve.regimes), strict=True):
         axes.axvline(curve.xs[i], color=line.get_color(), lw=1, ls="--")
-        label = f"{words}, {curve.label}" if curve.label else words
+        label = ", ".join([*regimes, *filter(None, [curve.label])])
         place = axes.get_xaxis_transform()  # the height is a share of the axes'
         axes.text(curve.xs[i], 0.98, f" {label}", transform=place, rotation=90, ha="right", va="top", size=9)
 
 
-def check_format(path: str) -> None:
-    """Raises SceneError where the suffix is no format of a figure, and misses matplotlib in time."""
+def check_file(path: str, force: bool) -> None:
+    """Raises in time: SceneError where the suffix is no format, ImportError, or OSError if it exists."""
     if Path(path).suffix.lower() not in FORMATS:
         raise SceneError("figure", path, f"must end in one of {', '.join(FORMATS)}")
     import_module("matplotlib")
+    check_free(Path(path), force)
 
 
 @contextmanager
-def _page(path: str) -> Iterator["Figure"]:
+def _page(path: str, force: bool) -> Iterator["Figure"]:
     """A figure to draw on, which is then saved."""
     from matplotlib import rc_context
     from matplotlib.figure import Figure
 
-    with rc_context(STYLE):
+    with written_beside(Path(path), force) as beside, rc_context(STYLE):
         figure = Figure(figsize=(11, 6), layout="constrained")
         yield figure
-        figure.savefig(path, dpi=200, metadata={"Date": None} if path.lower().endswith(".svg") else None)
+        figure.savefig(beside, dpi=200, metadata={"Date": None} if path.lower().endswith(".svg") else None)
 
 
 def _draw_machine(axes: "Axes", answers: Answers, arc: Contact) -> None:

@@ -6,6 +6,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
 
+STREAM = "-"
+"""The name of a file that is stdin or stdout."""
+
+
+def check_free(path: Path, force: bool) -> None:
+    """Raises FileExistsError where a file is there, unless ``force`` lets it be replaced."""
+    if path.is_file() and not force:
+        raise FileExistsError(errno.EEXIST, "it exists already; --force replaces it", str(path))
+
 
 @contextmanager
 def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
@@ -17,8 +26,7 @@ def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
     if path.exists() and not path.is_file():
         yield path
         return
-    if path.exists() and not force:
-        raise FileExistsError(errno.EEXIST, "it exists already; --force replaces it", str(path))
+    check_free(path, force)
     target = path.resolve()  # a link stays a link
     # The suffix stays, for those who tell the format by it.
     beside = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
@@ -36,8 +44,8 @@ def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
 
 @contextmanager
 def stdout_into(file: str | None, force: bool = False) -> Iterator[None]:
-    """What is printed goes to the file, if one is named. Raises OSError."""
-    if file is None:
+    """What is printed goes to the file, if one is named, other than -. Raises OSError."""
+    if file in (None, STREAM):
         yield
         return
     with (

@@ -314,6 +314,11 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
         return parameter.domain
     if any(mark in word for mark in UNCERTAIN):
         return "carries an uncertainty, which only solve takes; give the value alone"
+    if ":" in word:
+        return "is a range, not a number; atwood sweep takes ranges"
+    pointed = word.replace(",", ".")
+    if pointed != word and NUMBER.fullmatch(pointed):
+        return f"is not a number; write it with a decimal point, {pointed}"
     near = nearest(word, parameter.names)
     return f"{NOT_A_NUMBER}{_or_one_of(parameter.names)}{near}"
 

@@ -233,9 +233,23 @@ def groups(sweep: Sweep, rows: Sequence[Row]) -> list[list[Row]]:
 
 
 def regimes(rows: Sequence[Row], along: str) -> list[str]:
-    """The first regime, and each that follows with the first point that has it."""
-    changed = (rows[i] for i in _changes(rows))
-    return [rows[0].regime, *(f"{row.regime} from {_stated(along, row.at[along])}" for row in changed)]
+    """Each regime with the points between which it holds; what is between two of them is not told."""
+    starts = [0, *_changes(rows)]
+    ends = [*(i - 1 for i in starts[1:]), len(rows) - 1]
+    if len(starts) == 1:
+        return [rows[0].regime]
+    found = []
+    for start, end in zip(starts, ends, strict=True):
+        first, last = (_stated(along, rows[i].at[along]) for i in (start, end))
+        where = f"from {first} to {last}"
+        if start == end:
+            where = f"at {first}"
+        elif not start:
+            where = f"up to {last}"
+        elif end == len(rows) - 1:
+            where = f"from {first} on"
+        found.append(f"{rows[start].regime} {where}")
+    return found
 
 
 def _changes(rows: Sequence[Row]) -> list[int]:

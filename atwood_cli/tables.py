@@ -14,6 +14,7 @@ from itertools import chain
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn
 
+from .files import STREAM
 from .scene import SceneError
 
 if TYPE_CHECKING:
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
 FORMATS = ("csv", "tsv", "ndjson", "parquet")
 SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
 SEPARATORS = {"csv": ",", "tsv": "\t"}
-STREAM = "-"
 PIECE_BYTES, PIECE_ROWS = 1 << 21, 1 << 16
 LONGEST_RECORD = 1 << 26
 """Bytes: a quotation mark that is never closed must not make one record of the whole file."""
@@ -120,6 +120,7 @@ def _read_csv(file: IO[bytes], separator: str) -> Iterator[Piece]:
             if b"\r" in rows[:end].rstrip(b"\r\n"):
                 raise Unreadable("its lines end in carriage returns alone; save it with line feeds")
             header = next(_cells(_decode(rows[:end], lambda _: "the header"), separator))
+            _check_separator(header, separator)
             # Stand-ins, as polars renames what is there twice and drops what is empty.
             names = separator.join(map(str, range(len(header)))).encode() + b"\n"
             rows = rows[end:]
@@ -135,6 +136,19 @@ def _read_csv(file: IO[bytes], separator: str) -> Iterator[Piece]:
             yield Piece(header, frame.slice(start, PIECE_ROWS), 0 if start else len(text))
     if not header:
         raise Unreadable("it is empty")
+
+
+def _check_separator(header: Sequence[str], separator: str) -> None:
+    """Refuse a header of one column that holds several by another separator; no table has one column."""
+    if len(header) > 1:
+        return
+    for other, how in (
+        ("\t", "tabs; give --from tsv"),
+        (",", "commas; give --from csv"),
+        (";", "semicolons; save it with commas or tabs, and decimal points"),
+    ):
+        if other in header[0] and other != separator:
+            raise Unreadable(f"its cells are parted by {how}")
 
 
 def _distinct(names: list[str]) -> list[str]:
@@ -175,7 +189,8 @@ def _explain(error: Exception, rows: bytes, width: int, done: int, separator: st
         raise Unreadable("it ends within quotation marks: it is truncated, or one is left open")
     for number, cells in enumerate(_cells(text, separator), done + 1):
         if len(cells) > width:
-            raise Unreadable(f"row {number} has {len(cells)} cells, and the header {width}")
+            how = "; is there a decimal comma? write a point" if separator == "," else ""
+            raise Unreadable(f"row {number} has {len(cells)} cells, and the header {width}{how}")
     raise Unreadable(str(error).splitlines()[0])
 
 

@@ -64,7 +64,7 @@ def main(machine: str) -> None:
     written = PLACE.sub(lambda match: match[1] + section(found, machine) + match[2], readme)
     if PLACE.search(readme) is None:
         raise SystemExit("README.md holds no place for what is measured")
-    save_tradeoff(found, str(PICTURE))
+    save_tradeoff(found, str(PICTURE), force=True)
     README.write_text(written, encoding="utf-8")
 
 

@@ -98,6 +98,7 @@ def contact(
     elements: Annotated[str | None, option("--elements")] = None,
     extrapolate: Annotated[bool, option("--extrapolate")] = False,
     figure: Annotated[str | None, option("--figure")] = None,
+    force: Annotated[bool, option("--force")] = False,
     digits: Annotated[str | None, option("--digits")] = None,
     as_json: Annotated[bool, option("--json")] = False,
     csv: Annotated[bool, option("--csv")] = False,
@@ -121,6 +122,7 @@ def tradeoff(
     seed: Annotated[str | None, option("--seed")] = None,
     plot: Annotated[bool, option("--plot")] = False,
     figure: Annotated[str | None, option("--figure")] = None,
+    force: Annotated[bool, option("--force")] = False,
     as_json: Annotated[bool, option("--json")] = False,
     csv: Annotated[bool, option("--csv")] = False,
 ) -> None: ...

@@ -306,7 +306,7 @@ BEYOND = "is beyond the range of doubles, 4.9e-324 to 1.8e308"
     ("row", "error"),
     [
         ({"m1": "abc"}, f"m1 'abc' {NOT_A_NUMBER}"),
-        ({"m1": "1,5"}, f"m1 '1,5' {NOT_A_NUMBER}"),
+        ({"m1": "1,5"}, "m1 '1,5' is not a number; write it with a decimal point, 1.5"),
         ({"m1": "0x10"}, f"m1 '0x10' {NOT_A_NUMBER}"),
         ({"m1": "1_000"}, f"m1 '1_000' {NOT_A_NUMBER}"),
         ({"g": "moon"}, f"g 'moon' {NOT_A_NUMBER}"),
@@ -462,7 +462,15 @@ def test_exit_status_with_allow_errors(atwood: Atwood, table: Table) -> None:
             "column 'regime' would be there twice, as a result is named so; rename it, or name other results by --only",
         ),
         (b"m1,m2,error\n1,2,3\n", "column 'error' would be there twice, as a result is named so; rename it"),
-        (b"m1,m2\n1,2\n1,5,2\n", "row 2 has 3 cells, and the header 2"),
+        (
+            b"m1,m2\n1,2\n1,5,2\n",
+            "row 2 has 3 cells, and the header 2; is there a decimal comma? write a point",
+        ),
+        (
+            b"m1;m2\n1,5;2\n",
+            "its cells are parted by semicolons; save it with commas or tabs, and decimal points",
+        ),
+        (b"m1\tm2\n1\t2\n", "its cells are parted by tabs; give --from tsv"),
         (
             b"m1,m2,M\n1,2,3\n1,2",
             "row 2, the last, stops after 2 of 3 cells, without a line end: it is truncated",
@@ -662,10 +670,10 @@ def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blow: signal.Signals) 
         time.sleep(0.01)
     child.send_signal(blow)
     _, err = child.communicate(timeout=20)
-    assert child.returncode == (130 if blow == signal.SIGINT else -blow)
+    assert child.returncode == {signal.SIGINT: 130, signal.SIGTERM: 143}.get(blow, -blow)
     assert b"Traceback" not in err
     assert not out.exists()
-    if blow == signal.SIGINT:
+    if blow != signal.SIGKILL:
         assert list(tmp_path.iterdir()) == []
 
 

@@ -222,7 +222,12 @@ def test_a_table_without_rows_is_no_table(atwood: Atwood) -> None:
     [
         ("solve", "--m1 is missing; give both masses, m1 and m2"),
         ("solve --m1 1", "--m2 is missing; give both masses, m1 and m2"),
-        ("solve --m1 1,5 --m2 2", "--m1 '1,5' is not a number; write it like 2, 0.5 or 1.5e-3"),
+        ("solve --m1 1,5 --m2 2", "--m1 '1,5' is not a number; write it with a decimal point, 1.5"),
+        ("solve --m1 1,5,0 --m2 2", "--m1 '1,5,0' is not a number; write it like 2, 0.5 or 1.5e-3"),
+        (
+            "solve --m1 1 --m2 2 --M 0:10:3",
+            "--M '0:10:3' is a range, not a number; atwood sweep takes ranges",
+        ),
         ("solve --m1 -1 --m2 2", "--m1 '-1' must be 0 or more, and finite"),
         (
             "solve --m1 1 --m2 2 --mu-k 1",

@@ -51,7 +51,7 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
     ({"wrap": "-180"}, "wrap '-180' must be above 0, and finite"),
     *(
         ({"m1": bad}, f"m1 {bad!r} {NOT_A_NUMBER}")
-        for bad in ("1,5", "1_000", "abc", "", " 1", "1.", "1E3", "0x1F")
+        for bad in ("1,5,0", "1_000", "abc", "", " 1", "1.", "1E3", "0x1F")
     ),
     ({"m1": "१"}, f"m1 '१' {NOT_A_NUMBER}"),
     ({"m1": "１"}, f"m1 '１' {NOT_A_NUMBER}"),

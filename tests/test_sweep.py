@@ -180,7 +180,7 @@ def test_the_table(atwood: Atwood) -> None:
     assert (ran.status, ran.err) == (0, "")
     assert ran.out.splitlines() == [
         "m1 = 1 kg, m2 = 3 kg, M = 0:50:6, mu = 0.3, g = 9.80665 m/s², inertia = 0.5, wrap = 180°",
-        "Regimes: no-slip, slip from M = 50 kg.",
+        "Regimes: no-slip up to M = 40 kg, slip at M = 50 kg.",
         "╭────────┬─────────┬─────────────────────╮",
         "│ M (kg) │ regime  │ acceleration (m/s²) │",
         "├────────┼─────────┼─────────────────────┤",
@@ -201,6 +201,19 @@ def test_two_ranges_make_a_group_for_each_value_of_the_slow_one(atwood: Atwood) 
     assert "│ 10     │" not in out
     assert "│  10    │ 0.2 │ slip    │\n│  10    │ 0.3 │ no-slip │" in out
     assert " from " not in out
+
+
+def test_regimes_are_told_by_the_points_on_both_sides(atwood: Atwood) -> None:
+    """Where between them the string begins to slip is not what a sweep tells."""
+
+    def said(*words: str) -> str:
+        return atwood("sweep", "--m2", "3", "--mu", "0.3", *words, "--only", "regime").out.splitlines()[1]
+
+    assert said("--m1", "1", "--M", "0:20:3") == "Regimes: no-slip."
+    assert said("--m1", "1", "--M", "50:0:3") == "Regimes: slip at M = 50 kg, no-slip from M = 25 kg on."
+    assert said("--m1", "1:17:9", "--M", "100") == (
+        "Regimes: slip at m1 = 1 kg, no-slip from m1 = 3 kg to m1 = 9 kg, slip from m1 = 11 kg on."
+    )
 
 
 def test_a_column_without_values_is_left_out_of_the_table_only(atwood: Atwood) -> None:
@@ -251,7 +264,7 @@ def test_an_angle_in_radians_is_headed_so(atwood: Atwood) -> None:
     out = atwood(*words).out
     assert "│ wrap (rad) │" in out
     assert "│ 3          │ no-slip │" in out
-    assert "Regimes: slip, no-slip from wrap = 3rad." in out
+    assert "Regimes: slip up to wrap = 2rad, no-slip from wrap = 3rad on." in out
     assert "3rad,no-slip\n" in atwood(*words, "--csv").out
 
 
@@ -264,7 +277,7 @@ def test_a_long_table_is_trimmed_in_the_middle_on_a_terminal() -> None:
     assert shown[-1] == "100"
     assert "│ ...    │ ... " in seen
     assert f"{101 - len(shown)} rows in the middle are left out; a pipe or -o FILE has them all." in seen
-    assert "Regimes: no-slip, slip from M = 44 kg." in seen
+    assert "Regimes: no-slip up to M = 43 kg, slip from M = 44 kg on." in seen
 
 
 def test_a_table_that_fits_is_whole() -> None:
@@ -448,6 +461,48 @@ def test_a_device_is_written_to_as_it_is(atwood: Atwood) -> None:
     assert not Path("/dev/full").is_file()
 
 
+@pytest.mark.parametrize("output", ["", "--csv", "--json"])
+def test_a_dash_is_stdout(
+    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, output: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words = [*HELD, "--M", "1:2:3", "--only", "tension_1", *output.split()]
+    assert atwood(*words, "-o", "-") == atwood(*words)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_flag_names_the_format_of_any_file(atwood: Atwood, tmp_path: Path) -> None:
+    file = tmp_path / "a.dat"
+    assert atwood(*HELD, "--M", "1:2:3", "--only", "regime", "--csv", "-o", str(file)).status == 0
+    assert file.read_text().startswith("M,regime\n")
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "sweep --M 1:2:3 --figure FILE acceleration",
+        "contact --M 1 --figure FILE",
+        "tradeoff --M 1 --figure FILE",
+    ],
+)
+def test_a_figure_is_replaced_only_by_force(
+    atwood: Atwood, tmp_path: Path, words: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    pytest.importorskip("matplotlib")
+    monkeypatch.setattr("atwood_cli.tradeoff.REPEATS", 1)
+    monkeypatch.setattr("atwood_cli.tradeoff.COUNTS", (4, 10))
+    file = tmp_path / "a.svg"
+    file.write_text("kept")
+    command, *rest = words.replace("FILE", str(file)).split()
+    ran = atwood(command, "--m1", "1", "--m2", "3", *rest)
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err == f"atwood: cannot write {file}: it exists already; --force replaces it\n"
+    assert file.read_text() == "kept"
+    assert atwood(command, "--m1", "1", "--m2", "3", *rest, "--force").status == 0
+    assert "<svg" in file.read_text(encoding="utf-8")
+    assert list(tmp_path.iterdir()) == [file]
+
+
 # Curves
 
 
@@ -462,7 +517,7 @@ def test_a_plot(atwood: Atwood) -> None:
     assert lines[-4].startswith("   └┬")
     assert lines[-3].split() == ["0", "20", "40", "60", "80", "100"]
     assert lines[-2].endswith("M (kg)")
-    assert lines[-1] == "Regimes: no-slip, slip from M = 44 kg."
+    assert lines[-1] == "Regimes: no-slip up to M = 43 kg, slip from M = 44 kg on."
     assert max(map(len, lines[1:])) == 80
     # The dotted line stands where 44 is: above the curve there is nothing else.
     assert {line.rstrip().rfind(" ") + 1 for line in lines[2:12]} == {4 + round(0.44 * 76)}
@@ -478,8 +533,8 @@ def test_a_plot_with_gaps_and_letters(atwood: Atwood) -> None:
     curves = "".join(lines[2:22])
     assert (curves.count("a"), curves.count("b"), curves.count("c")) == (1, 1, 0)
     assert lines[-4:-1] == [
-        "a: mu = 0.2: no-slip, slip from M = 10 kg",
-        "b: mu = 0.3: no-slip, slip from M = 44.668359215096312 kg",
+        "a: mu = 0.2: no-slip up to M = 8.9125093813374553 kg, slip from M = 10 kg on",
+        "b: mu = 0.3: no-slip up to M = 39.810717055349725 kg, slip from M = 44.668359215096312 kg on",
         "c: mu = 0.4: no-slip",
     ]
     assert lines[-1].startswith("friction_force: not one number")
@@ -531,7 +586,7 @@ def test_plot_on_a_terminal() -> None:
     assert "\x1b[36m" in seen
     assert "\x1b[33m" in seen
     assert max(map(len, plain(seen).splitlines())) <= 50
-    assert plain(seen).splitlines()[-3].split()[-1] == "100"
+    assert plain(seen).splitlines()[-4].split()[-1] == "100"
     assert "\x1b[3" not in on_terminal(*words, columns=50, NO_COLOR="1")
     assert "\x1b[3" not in on_terminal(*words, columns=50, TERM="dumb")
     assert max(map(len, plain(on_terminal(*words, columns=12)).splitlines())) <= len(" acceleration (m/s²)")
@@ -565,7 +620,10 @@ def test_a_figure(atwood: Atwood, tmp_path: Path) -> None:
     assert first == second
     shown = {label.strip() for label in labels(first.decode())}
     assert {"M (kg)", "friction_force (N)", "mu = 0.2", "mu = 0.3"} <= shown
-    assert {"slip from M = 10 kg, mu = 0.2", "slip from M = 46 kg, mu = 0.3"} <= shown
+    assert {
+        "no-slip up to M = 7 kg, slip from M = 10 kg on, mu = 0.2",
+        "no-slip up to M = 43 kg, slip from M = 46 kg on, mu = 0.3",
+    } <= shown
     assert any(label.startswith("m1 = 1 kg, m2 = 3 kg, M = 1:100:34") for label in shown)
 
 
@@ -669,7 +727,11 @@ FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
         ),
         ("--M 1:2:3 --json --csv", "--json and --csv exclude each other; give one of them"),
         ("--M 1:2:3 --digits 0", "--digits '0' must be a whole number from 1 to 1000"),
-        ("--M 1:2:3 --force", "--force needs --output"),
+        ("--M 1:2:3 --force", "--force needs --output or --figure"),
+        (
+            "--M 1:2:3 -o a.tsv",
+            "--output 'a.tsv' must end in one of .txt, .csv, .json, or name --json or --csv",
+        ),
         ("--M 1:2:3 -o a --output b", "--output is given 2 times; give it once"),
     ],
 )
