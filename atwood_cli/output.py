@@ -9,6 +9,7 @@ from fractions import Fraction
 from itertools import chain, groupby, product
 from math import inf
 from operator import attrgetter, itemgetter
+from shutil import get_terminal_size
 from time import monotonic
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
@@ -158,7 +159,11 @@ class Page:
     def __init__(self, console: "Console | None" = None, plain: bool = False) -> None:
         from rich.console import Console
 
-        self.console = console or Console(highlight=False, force_terminal=False if plain else None)
+        # rich itself takes COLUMNS=0 at its word, and every dumb terminal for one of 80 columns.
+        width, height = get_terminal_size()
+        self.console = console or Console(
+            highlight=False, force_terminal=False if plain else None, width=width, height=height
+        )
         self.room = self.console.width if self.console.is_terminal else None
 
     def say(self, words: str, style: str = "") -> None:

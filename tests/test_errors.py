@@ -1,0 +1,91 @@
+"""Every error text is a test: what the package can say is looked up in what the tests expect."""
+
+import ast
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+
+import polars as pl
+import pytest
+
+from atwood_cli import cli
+
+from .running import Atwood
+
+PACKAGE, TESTS = Path(cli.__file__).parent, Path(__file__).parent
+SENTENCES = ("SceneError", "Unreadable", "OSError", "FileExistsError", "ArithmeticError")
+NOT_REACHED = {
+    "not settled within": "no scene is known that a million digits do not settle",
+}
+
+
+def fragments(node: ast.AST) -> Iterator[str]:
+    """The constant texts within an expression, or within the constant of the module it names."""
+    for part in ast.walk(node):
+        if isinstance(part, ast.Constant) and isinstance(part.value, str):
+            yield part.value
+
+
+def errors() -> Iterator[tuple[str, str]]:
+    """Where an error is made, and the longest text in it that does not depend on what was given."""
+    for path in sorted(PACKAGE.glob("*.py")):
+        module = import_module(f"atwood_cli.{path.stem}") if path.stem[0] != "_" else None
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Call) and getattr(node.func, "id", "") in SENTENCES and node.args:
+                rule = node.args[min(2, len(node.args) - 1)] if node.func.id == "SceneError" else node  # type: ignore[attr-defined]
+                texts = list(fragments(rule))
+                if isinstance(rule, ast.Name):
+                    texts = [str(getattr(module, rule.id, ""))]
+                if text := max(texts, key=len, default="").strip(" ;:,."):
+                    yield f"{path.name}:{node.lineno}", text
+
+
+EXPECTED = [
+    text
+    for path in TESTS.glob("test_*.py")
+    for text in fragments(ast.parse(path.read_text(encoding="utf-8")))
+    if text not in NOT_REACHED
+]
+
+
+def test_errors_are_found() -> None:
+    found = list(errors())
+    assert len(found) > 60
+    assert {where.split(":")[0] for where, _ in found} >= {"scene.py", "sweep.py", "cli.py", "tables.py"}
+
+
+@pytest.mark.parametrize(("where", "text"), list(errors()), ids=lambda word: word[:40])
+def test_every_error_text_is_expected_by_a_test(where: str, text: str) -> None:
+    if text in NOT_REACHED:
+        pytest.skip(NOT_REACHED[text])
+    assert any(text in expected for expected in EXPECTED), f"{where} is tried by no test"
+
+
+# Those that no other file provokes
+
+
+@pytest.mark.parametrize(
+    ("content", "error"),
+    [
+        (b'm1,"m2\n1,2\n', "the header ends within quotation marks: one is left open"),
+        (b"m1,m2\r1,2\r", "its lines end in carriage returns alone; save it with line feeds"),
+    ],
+)
+def test_headers_that_are_none(atwood: Atwood, tmp_path: Path, content: bytes, error: str) -> None:
+    file = tmp_path / "in.csv"
+    file.write_bytes(content)
+    ran = atwood("batch", str(file))
+    assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: cannot read {file}: {error}\n")
+
+
+def test_what_polars_says_is_handed_on_in_one_line(
+    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def refuse(*_: object, **__: object) -> None:
+        raise pl.exceptions.ComputeError("does not like it\nat all")
+
+    monkeypatch.setattr(pl, "read_csv", refuse)
+    file = tmp_path / "in.csv"
+    file.write_text("m1,m2\n1,2\n")
+    ran = atwood("batch", str(file))
+    assert (ran.status, ran.err) == (1, f"atwood: cannot read {file}: does not like it\n")

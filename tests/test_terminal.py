@@ -1,0 +1,168 @@
+"""Every command wherever it may run: terminals of any width, without colour, without Unicode, without room."""
+
+import re
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from .running import on_terminal, plain, process
+
+SCENE = "--m1 1 --m2 3"
+COMMANDS = {
+    "solve": f"solve {SCENE} --M 10 --mu 0.3 --R 5cm --digits 30",
+    "json": f"solve {SCENE} --mu 0.3 --json",
+    "contact": f"contact {SCENE} --M 10 --mu 0.3 --R 5cm --points 4 --digits 30",
+    "elements": f"contact {SCENE} --mu 0.3 --elements 100",
+    "sweep": f"sweep {SCENE} --M 0:100:9 --mu 0.3 --digits 30",
+    "plot": f"sweep {SCENE} --M 0:100:9 --mu 0.3 --plot acceleration",
+    "batch": "batch {table}",
+    "help": "",
+    "helps": "sweep -h",
+    "error": "solve --m1 1 --m2 µ",
+    "usage": "solve --zzz",
+}
+"""A command of each kind; others that come are added here."""
+PLACES: dict[str, Any] = {
+    "colour": {},
+    "forced colour": {"FORCE_COLOR": "1"},
+    "no colour": {"NO_COLOR": "1"},
+    "dumb": {"TERM": "dumb"},
+    "ascii": {"PYTHONIOENCODING": "ascii"},
+    "cp1252": {"PYTHONIOENCODING": "cp1252"},
+    "C": {"LC_ALL": "C"},
+}
+DISK = pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
+
+
+@pytest.fixture
+def table(tmp_path: Path) -> str:
+    file = tmp_path / "in.csv"
+    file.write_text("m1,m2,M,mu\n1,3,10,0.3\n1,3,100,0.3\n")
+    return str(file)
+
+
+def words(command: str, table: str) -> list[str]:
+    if command == "plot":
+        pytest.importorskip("plotille")
+    return COMMANDS[command].format(table=table).split()
+
+
+def numbers(text: str) -> set[str]:
+    """The long ones, whatever lies between them."""
+    return set(re.findall(r"\d+\.\d{7,}", text))
+
+
+@pytest.mark.parametrize("columns", [40, 80, 200])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_no_width_loses_a_digit(command: str, columns: int, table: str) -> None:
+    piped = process(*words(command, table))
+    assert piped.status == (2 if command in ("error", "usage") else 0)
+    seen = plain(on_terminal(*words(command, table), columns=columns))
+    assert numbers(piped.out + piped.err) <= numbers(seen)
+    assert "…" not in seen
+    assert "Traceback" not in seen
+    assert bool(seen.strip())
+
+
+@pytest.mark.parametrize("place", [place for place in PLACES if place != "colour"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_place_says_the_same(command: str, place: str, table: str) -> None:
+    """What colour tells, words tell: without it the text is the same, but for symbols that are spelled out."""
+    everywhere = plain(on_terminal(*words(command, table), columns=100, **PLACES["colour"]))
+    seen = plain(on_terminal(*words(command, table), columns=100, **PLACES[place]))
+    if place in ("ascii", "cp1252"):
+        assert seen.isascii()
+        assert numbers(seen) == numbers(everywhere)
+        told = {word for word in everywhere.split() if word.isascii() and word.isalpha()}
+        assert told <= set(re.findall(r"[A-Za-z]+", seen))
+    else:
+        assert seen == everywhere
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_no_colour_means_none(command: str, table: str) -> None:
+    assert not re.search(
+        r"\x1b\[[0-9;]*3[0-9]", on_terminal(*words(command, table), columns=100, NO_COLOR="1")
+    )
+    assert "\x1b" not in on_terminal(*words(command, table), columns=100, TERM="dumb")
+    ran = process(*words(command, table))
+    assert "\x1b" not in ran.out + ran.err
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("columns", ["0", "40"])
+def test_a_pipe_takes_any_columns(command: str, columns: str, table: str) -> None:
+    ran, usual = (process(*words(command, table), COLUMNS=n) for n in (columns, "80"))
+    assert ran.status == usual.status
+    assert numbers(ran.out) == numbers(usual.out)
+    assert "Traceback" not in ran.err
+
+
+def test_a_dumb_terminal_cuts_no_number_off() -> None:
+    """rich takes it for one of 80 columns, and cut off what was longer."""
+    seen = on_terminal(*f"sweep {SCENE} --M 0:1:2 --digits 150".split(), columns=40, TERM="dumb")
+    assert len(max(re.findall(r"\d+\.\d+", seen), key=len)) == len("0.0") + 150
+    assert max(map(len, re.findall(r"\w[^│\n]+\.$", seen, re.MULTILINE))) <= 40
+
+
+# How it ends
+
+
+OUTPUTS = [command for command in COMMANDS if command not in ("error", "usage")]
+
+
+@pytest.mark.parametrize("command", OUTPUTS)
+def test_a_reader_that_leaves_is_no_error(command: str, table: str) -> None:
+    typed = " ".join(words(command, table))
+    ran = process(shell=f"atwood {typed} | head -1; echo ${{PIPESTATUS[0]}}")
+    assert (ran.status, ran.out.splitlines()[-1], len(ran.out.splitlines())) == (0, "0", 2)
+    gone = process(shell=f"atwood {typed} | true; echo ${{PIPESTATUS[0]}}")
+    assert gone.out == "0\n"
+    assert "Traceback" not in ran.err + gone.err
+    assert "Broken" not in ran.err + gone.err
+
+
+@pytest.mark.parametrize("command", OUTPUTS)
+def test_a_closed_stdout_is_quiet(command: str, table: str) -> None:
+    ran = process(shell=f"atwood {' '.join(words(command, table))} >&-")
+    assert (ran.status, ran.out) == (0, "")
+    assert ran.err == "" or command == "batch"  # which says what became of the rows
+
+
+@DISK
+@pytest.mark.parametrize("command", OUTPUTS)
+def test_a_full_disk_is_an_error(command: str, table: str) -> None:
+    ran = process(shell=f"atwood {' '.join(words(command, table))} > /dev/full")
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err == "atwood: cannot write the output: No space left on device\n"
+
+
+SLOW = """
+import sys, time
+import atwood_cli.cli, atwood_cli.solver, atwood_cli.batch
+from atwood_cli.__main__ import main
+def slow(*_, **__):
+    print("started", file=sys.stderr, flush=True)
+    time.sleep(60)
+atwood_cli.solver.Answers = atwood_cli.batch.run_batch = slow
+import atwood_cli.sweep
+atwood_cli.sweep.Answers = slow
+sys.exit(main())
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+@pytest.mark.parametrize(("blow", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize("command", ["solve", "contact", "sweep", "batch"])
+def test_what_ends_it_ends_it_quietly(command: str, blow: signal.Signals, status: int, table: str) -> None:
+    typed = [sys.executable, "-c", SLOW, *words(command, table)]
+    child = subprocess.Popen(typed, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+    assert child.stderr is not None
+    assert child.stderr.readline() == b"started\n"
+    child.send_signal(blow)
+    out, err = child.communicate(timeout=20)
+    assert (child.returncode, out, err) == (status, b"", b"")
