@@ -697,8 +697,14 @@ def _check_force(force: bool, **files: object) -> None:
 
 
 def _say(message: str) -> None:
+    text = for_stream(f"atwood: {message}", sys.stderr)
+    if sys.stderr.isatty():  # a line breaks between words, where it must
+        from shutil import get_terminal_size
+        from textwrap import fill
+
+        text = fill(text, get_terminal_size().columns, break_long_words=False, break_on_hyphens=False)
     with suppress(OSError):  # there is nobody else to tell
-        print(for_stream(f"atwood: {message}", sys.stderr), file=sys.stderr)
+        print(text, file=sys.stderr)
 
 
 def run(arguments: list[str] | None = None) -> int:

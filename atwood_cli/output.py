@@ -226,9 +226,9 @@ def print_table(
     while page.room and _width(columns, groups) > page.room:
         columns.pop()
         groups = [[row[: len(columns)] for row in group] for group in groups]
-    if groups and len(columns) > 1:
+    if groups and "Unit" in columns:
         page.table(columns, groups)
-    else:  # not even two columns fit: a plain line a quantity
+    else:  # no number without its unit: a plain line a quantity
         for name, value, unit, *_ in chain.from_iterable(_rows(answers, found)):
             page.console.out(f"{name} = {value.lstrip()} {unit}".rstrip())
     for note in [*others, *(found.notes if found else [])]:

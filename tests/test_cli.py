@@ -75,8 +75,7 @@ def test_a_narrow_terminal_gives_up_columns_before_the_frame() -> None:
     assert "Equation" in wide
     assert "Equation" not in middle
     assert "Unit" in middle
-    assert "Unit" not in narrow
-    assert "│ Value" in narrow
+    assert "acceleration = 0.764026672247107 m/s²" in narrow  # no number without its unit
     assert "acceleration = 0.764026672247107 m/s²" in tiny
 
 

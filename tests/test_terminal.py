@@ -102,6 +102,12 @@ def test_a_pipe_takes_any_columns(command: str, columns: str, table: str) -> Non
     assert "Traceback" not in ran.err
 
 
+def test_an_error_breaks_between_words() -> None:
+    seen = on_terminal("sweep", "--m1", "1", "--m2", "1", columns=40)
+    assert max(map(len, seen.splitlines())) <= 40
+    assert " ".join(seen.split()) == " ".join(process("sweep", "--m1", "1", "--m2", "1").err.split())
+
+
 def test_a_dumb_terminal_cuts_no_number_off() -> None:
     """rich takes it for one of 80 columns, and cut off what was longer."""
     seen = on_terminal(*f"sweep {SCENE} --M 0:1:2 --digits 150".split(), columns=40, TERM="dumb")
