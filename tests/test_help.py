@@ -133,6 +133,7 @@ def completed(*words: str, shell: str = "bash") -> list[str]:
         ("solve --mu", ["--mu", "--mu-k"]),
         ("solve --m1 1 --m1 2 --cs", ["--csv"]),
         ("solve --only ten", ["tension_1", "tension_2"]),
+        ("solve --only fall", ["fall_time"]),
         ("sweep --only ", list(NAMES)),
         ("batch in.csv --only reg", ["regime"]),
         ("sweep --plot ", list(NAMES[1:])),

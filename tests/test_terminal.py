@@ -15,6 +15,8 @@ SCENE = "--m1 1 --m2 3"
 COMMANDS = {
     "solve": f"solve {SCENE} --M 10 --mu 0.3 --R 5cm --digits 30",
     "json": f"solve {SCENE} --mu 0.3 --json",
+    "budget": f"solve {SCENE} --M 10+/-0.01 --mu 0.3 --budget",
+    "explain": f"solve {SCENE} --M 10 --mu 0.3 --explain",
     "contact": f"contact {SCENE} --M 10 --mu 0.3 --R 5cm --points 4 --digits 30",
     "elements": f"contact {SCENE} --mu 0.3 --elements 100",
     "sweep": f"sweep {SCENE} --M 0:100:9 --mu 0.3 --digits 30",
