@@ -2,11 +2,16 @@
 
 import doctest
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
+
+from atwood_cli.families import FAMILIES
+from atwood_cli.scene import Scene
+from atwood_cli.tradeoff import COUNTS, PAPERS_SCENE, SETTINGS, March, Measured, Tradeoff
 
 from .running import process
 
@@ -73,6 +78,42 @@ def test_the_picture_shows_todays_table() -> None:
         return re.findall(r"<text[^>]*>([^<]*)</text>", svg)
 
     assert words(fresh) == words((TOP / "examples" / "solve.svg").read_text(encoding="utf-8"))
+
+
+def test_what_was_measured_is_of_todays_settings() -> None:
+    """Times are that day's; the names, the promises and the picture are today's."""
+    measured = README.split("<!-- python -m examples.speed writes this -->")[1].split("<!-- to here -->")[0]
+    rows = [line.strip("| ").split(" | ") for line in measured.splitlines() if line.startswith("| ")]
+    assert rows[0] == ["setting", "time of an ordinary scene", *FAMILIES]
+    errors = {row[0]: [cell.replace("*", "") for cell in row[2:]] for row in rows[2 : 2 + len(SETTINGS)]}
+    assert list(errors) == [setting.name for setting in SETTINGS]
+    assert max(map(float, errors["certified"])) <= 4
+    assert max(map(float, errors["exact"])) <= 0.5
+    counts = [row[0] for row in rows[4 + len(SETTINGS) :]]
+    assert counts == [*map(str, COUNTS), "closed form"]
+    picture = (TOP / "examples" / "tradeoff.svg").read_text(encoding="utf-8")
+    assert all(f"<!-- {name} -->" in picture for name in (*FAMILIES, *errors))
+
+
+def test_the_measuring_script_fills_its_place() -> None:
+    script = runpy.run_path(str(TOP / "examples" / "speed.py"))
+    assert script["PLACE"].search(README)
+    found = Tradeoff(
+        Scene.read(PAPERS_SCENE),
+        6,
+        1,
+        [
+            Measured(family, setting.name, 2e-7, 0.1, 1.5, 1.5, 0.0, 0.0)
+            for family in FAMILIES
+            for setting in SETTINGS
+        ],
+        [March(4, False, 1e-5, 0.1, 1e-3), March(None, False, 1e-8, 0.1, 1e-17, None, True)],
+        [],
+    )
+    written = script["section"](found, "a machine")
+    assert ", on a machine; 6 scenes of each family, seed 1.\n" in written
+    assert "| certified | 200 ns ± 10 % | 1.5 | 1.5 | 1.5 | 1.5 | 1.5 |\n" in written
+    assert "| closed form | **1.0e-17** |  | 10 ns |  |  |  |\n" in written
 
 
 def test_every_example_is_tested() -> None:
