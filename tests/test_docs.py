@@ -103,11 +103,10 @@ def test_the_measuring_script_fills_its_place() -> None:
         6,
         1,
         [
-            Measured(
-                family, setting.name, 2e-7, 0.1, *2 * [1e-30 if "digits" in setting.name else 1.5], 0.0, 0.0
-            )
+            Measured(family, setting.name, 2e-7, 0.1, off, off, 0.0, 0.0)
             for family in FAMILIES
             for setting in SETTINGS
+            for off in [1e-30 if "digits" in setting.name else 1.5]
         ],
         [March(4, False, 1e-5, 0.1, 1e-3), March(None, False, 1e-8, 0.1, 1e-17, None, True)],
         [],
