@@ -219,9 +219,12 @@ def print_table(
 ) -> None:
     """The scene, the verdict, the quantities that exist, the notes, and the budget if asked for."""
     page = Page(console)
-    groups = _rows(answers, found)
-    _, *others = notes(answers)
-    page.head(answers, found)
+    groups, told = _rows(answers, found), answers
+    if found and answers.digits is None:  # in sentences: what is uncertain has no seventeen digits to tell
+        told = Answers(answers.case.scene, UNCERTAIN_DIGITS, answers.case.motion)
+        _ = [told[name] for name in told.names]
+    _, *others = notes(told)
+    page.head(told, found)
     columns = list(COLUMNS)
     while page.room and _width(columns, groups) > page.room:
         columns.pop()
@@ -257,6 +260,7 @@ def print_explanation(answers: Answers, markdown: bool) -> None:
         page.line(line, style)
 
 
+UNCERTAIN_DIGITS = 6
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
 

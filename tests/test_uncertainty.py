@@ -614,3 +614,11 @@ def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:
 def test_digits_give_decimals() -> None:
     solution = solve(m1="1.000(2)", m2="3", digits=5)
     assert solution.uncertainty["acceleration"] == Decimal("0.0073550")
+
+
+def test_sentences_beside_uncertainties_are_short(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1.000(2)", "--m2", "3", "--M", "10")
+    assert ran.out.splitlines()[1] == "Assumed to hold, without mu: it does if mu is at least 0.205828."
+    assert "torque, angular_acceleration: give R, the pulley's radius.\n" in ran.out
+    exactly = atwood("solve", "--m1", "1.000(2)", "--m2", "3", "--M", "10", "--digits", "9")
+    assert exactly.out.splitlines()[1].endswith(" at least 0.205827819.")
