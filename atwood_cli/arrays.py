@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 from .columns import WINDOW, Column
 from .quantities import NAMES, STANDARD
 from .rows import COLUMNS, Accuracy, Rows
-from .scene import PARAMETERS, SceneError, nearest
+from .scene import MISSING_MASS, PARAMETERS, SceneError, nearest
 
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
 BLOCK = 81_920
@@ -51,8 +51,8 @@ def solve_arrays(
     Returns arrays by name, of the inputs' common shape: the ``quantities`` asked for (those of
     `quantities.STANDARD` if None), NaN where undetermined, ±inf beyond the doubles; ``regime`` is an
     int8 index into `REGIMES`, -1 where the row is invalid; and always ``status``, an int8 index into
-    `STATUSES`, 0 where it is valid. An invalid row never stops the others. Raises SceneError for an
-    unknown accuracy or quantity, ValueError for shapes that do not broadcast.
+    `STATUSES`, 0 where it is valid. An invalid row never stops the others. Raises SceneError for a
+    missing mass, an unknown accuracy or quantity, ValueError for shapes that do not broadcast.
     """
     names = list(STANDARD if quantities is None else dict.fromkeys(quantities))
     for name in names:
@@ -65,6 +65,9 @@ def solve_arrays(
         for name, value in zip(COLUMNS, (m1, m2, M, mu, mu_k, g, inertia, R, wrap), strict=True)
         if value is not None
     }
+    for mass in ("m1", "m2"):
+        if mass not in inputs:
+            raise SceneError(mass, None, MISSING_MASS)
     shape = np.broadcast_shapes(*(column.shape for column in inputs.values()))
     kinds = {"regime": np.int8, "status": np.int8}
     found = {name: np.empty(shape, kinds.get(name, np.float64)) for name in (*names, "status")}

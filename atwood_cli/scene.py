@@ -60,6 +60,7 @@ MAX_DIGITS, MAX_EXPONENT = 1000, 500
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 
 NUMBER = re.compile(r"([+-]?)(\d+(?:\.\d+)?|\.\d+)(?:e([+-]?\d+))?(?: *([A-Za-z]+|°))?", re.ASCII)
+MISSING_MASS = "is missing; give both masses, m1 and m2"
 NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
 
 # An uncertainty: in units of the last digit, 1.000(2), or written out, 1.000±0.002, (1.000±0.002)g.
@@ -174,7 +175,7 @@ class Scene(NamedTuple):
         values = {name: read_value(name, given.get(name)) for name in PARAMETERS}
         for mass in ("m1", "m2"):
             if values[mass] is None:
-                raise SceneError(mass, None, "is missing; give both masses, m1 and m2")
+                raise SceneError(mass, None, MISSING_MASS)
         if values["inertia"] is None and values["I"] is None:
             values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
         elif values["inertia"] is not None and values["I"] is not None:

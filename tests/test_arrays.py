@@ -302,6 +302,13 @@ def test_errors(arguments: dict[str, Any], message: str) -> None:
         solve_arrays(1, 3, **arguments)
 
 
+def test_a_mass_that_is_missing() -> None:
+    missing: Any = None
+    for mass, masses in (("m1", (missing, 3)), ("m2", (1, missing))):
+        with pytest.raises(SceneError, match=f"^{mass} is missing; give both masses, m1 and m2$"):
+            solve_arrays(*masses)
+
+
 def test_shapes_that_do_not_broadcast() -> None:
     with pytest.raises(ValueError, match="broadcast"):
         solve_arrays([1, 2, 3], [1, 2])

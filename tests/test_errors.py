@@ -15,7 +15,7 @@ from .running import Atwood
 PACKAGE, TESTS = Path(cli.__file__).parent, Path(__file__).parent
 SENTENCES = ("SceneError", "Unreadable", "OSError", "FileExistsError", "ArithmeticError")
 NOT_REACHED = {
-    "not settled within": "no scene is known that a million digits do not settle",
+    "not settled within": "no scene is known that fifty thousand digits do not settle",
 }
 
 
