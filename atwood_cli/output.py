@@ -485,7 +485,7 @@ def _print_measured(page: Page, measured: "Sequence[Measured]") -> None:
         "±": [percent(one.spread) for one in measured],
         "Worst": [short(one.worst_ulp) for one in measured],
         "99 %": [short(one.percentile_99_ulp) for one in measured],
-        "Over 4 ulp": [percent(one.share_over_4_ulp) for one in measured],
+        "Over 4": [percent(one.share_over_4_ulp) for one in measured],
         "Regime": [percent(one.share_wrong_regime) for one in measured],
     }
     _print_columns(page, list(columns), list(columns.values()))

@@ -311,8 +311,8 @@ PAPERS_SCENE = {"m1": "1", "m2": "3", "mu": "0.3"}
 LEGEND = (
     "* No other setting is both faster and more accurate. Time is for one scene on this machine, ± half the"
     " range of its repeats. Errors are in units in the last place (ulp) of a double, a scene's the worst of"
-    " its quantities', over the scenes whose regime is right; Regime is the share of those where it is"
-    " wrong. paper: the paper's formulas typed into NumPy."
+    " its quantities', over the scenes whose regime is right; Over 4 is the share of them over 4 ulp, Regime"
+    " the share of scenes whose regime is wrong. paper: the paper's formulas typed into NumPy."
 )
 ELEMENTS_LEGEND = (
     "* The least error: with more elements rounding takes over. Order is the power of N by which the error"

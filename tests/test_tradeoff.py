@@ -355,7 +355,9 @@ def test_the_table(atwood: Atwood, brief: list[str]) -> None:
     assert tradeoff.LEGEND in ran.out
     assert tradeoff.ELEMENTS_LEGEND in ran.out
     assert re.search(r"│ closed form │ \* \d\.\de-1[67] │", ran.out)
-    assert ran.out.splitlines()[-1].startswith("Take certified for results within 4 ulp (")
+    # Which one is the fastest, a busy machine may tell otherwise.
+    right = f"({'|'.join(name for name in NAMES if name not in ('fast', NAMES[0], NAMES[1]))})"
+    assert re.match(rf"Take {right} for results within 4 ulp ", ran.out.splitlines()[-1])
 
 
 def test_json(atwood: Atwood, brief: list[str]) -> None:
