@@ -114,9 +114,11 @@ class Rows:
     def write(self, out: NDArray[Any], values: Any) -> None:
         out[slice(None) if self.index is None else self.index] = values
 
-    def write_sum(self, out: NDArray[Any], values: Any, rests: Any) -> Column:
+    def write_sum(self, out: NDArray[Any], values: Any, rests: Any, signed: bool = False) -> Column:
         """Write sums of values and rests, and return them; 0.0 is what -0 takes to be 0."""
         sums: Column = np.add(values, rests, out=out if self.index is None else None)
+        if signed:  # the rest may be -0 too
+            sums = np.add(sums, 0.0, out=out if self.index is None else None)
         if self.index is not None:
             out[self.index] = sums
         return sums
@@ -160,7 +162,8 @@ class Rows:
         if not isinstance(value, Pair):
             self.write_sum(out[name], value, 0.0)
             return
-        rounded = self.write_sum(out[name], value.value, 0.0 if value.rest is None else value.rest)
+        rest = 0.0 if value.rest is None else value.rest
+        rounded = self.write_sum(out[name], value.value, rest, not value.positive)
         vouched = (_certified if self.accuracy == "certified" else _nearest)(value, rounded)
         if np.all(vouched):
             return

@@ -302,6 +302,20 @@ def test_errors(arguments: dict[str, Any], message: str) -> None:
         solve_arrays(1, 3, **arguments)
 
 
+@pytest.mark.parametrize("accuracy", ACCURACIES)
+def test_a_mirrored_zero_is_no_negative_zero(accuracy: Any) -> None:
+    """The rest of a pair that is turned round is -0 as well, and -0 and -0 is -0."""
+    signed = ["torque", "friction_force_x", "friction_force_y", "rim_acceleration", "angular_acceleration"]
+    for masses in ((2.0, 1.0), (1.0, 2.0)):
+        for rows_ in (1, 5):
+            found = solve_arrays(
+                np.full(rows_, masses[0]), masses[1], mu=0.0, R=1.0, accuracy=accuracy, quantities=signed
+            )
+            for name in signed:
+                assert [repr(x) for x in found[name].tolist() if x == 0] == ["0.0"] * sum(found[name] == 0)
+            assert [repr(x) for x in found["torque"].tolist()] == ["0.0"] * rows_
+
+
 def test_a_mass_that_is_missing() -> None:
     missing: Any = None
     for mass, masses in (("m1", (missing, 3)), ("m2", (1, missing))):
