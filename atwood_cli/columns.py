@@ -86,6 +86,7 @@ LIBRARY = 2 * UNIT
 MANY = 256  # single numbers kept
 LOOSE = 2**14 * UNIT**2  # of second order, lost by a rounded operation
 LOSS = 2.0**-67  # lost by a quick one
+NEARLY = 0.4 * UNIT  # off, a constant such as π may be divided by as if it were a double
 HEAD = -1 << 27  # masks the last 27 of the 53 bits
 WINDOW = 2.0**-120, 2.0**120
 LARGE, LARGEST = 36.0, 700.0  # argument of an exponential, quick and thorough
@@ -143,7 +144,7 @@ class Pair:
     bound is ``loss``, the same in all rows, and ``doubt``, a column or None, where terms cancelled.
     """
 
-    __slots__ = ("_halves", "_rounded", "doubt", "loss", "positive", "power", "rest", "value", "within")
+    __slots__ = ("_kept", "doubt", "loss", "near", "positive", "power", "rest", "value", "within")
 
     def __init__(
         self,
@@ -157,8 +158,8 @@ class Pair:
         self.within, self.value, self.rest, self.positive = within, value, rest, positive
         self.loss, self.doubt = loss, doubt
         self.power = 0.0  # the value, where it is a single power of two: a factor that rounds nothing
-        self._halves: tuple[Column, Column] | None = None
-        self._rounded: Column | None = None
+        self.near = 1.0  # how far the value of a constant alone is off
+        self._kept: dict[Any, Any] = {}  # what was made of it; shared by all arithmetics if it is exact
 
     @property
     def bound(self) -> Any:
@@ -170,14 +171,18 @@ class Pair:
         if two.within is self.within:
             return self, two
         within = min(self.within, two.within, key=LEVELS.index)
-        return self._as(within), two._as(within)
+        return self.taken_by(within), two.taken_by(within)
 
-    def _as(self, within: "Pairs") -> "Pair":
+    def taken_by(self, within: "Pairs") -> "Pair":
         if self.within is within:
             return self
-        pair = Pair(within, self.value, self.rest, self.loss, self.doubt, self.positive)
-        pair.power = self.power
-        return pair if pair.rest is None else pair.normal()
+        exact = self.loss == 0 and self.doubt is None
+        own = self if exact or self.rest is None else self.normal()
+        pair = Pair(within, own.value, own.rest, own.loss, own.doubt, own.positive)
+        pair.power, pair.near = own.power, own.near
+        if exact:
+            pair._kept = own._kept
+        return pair
 
     def __add__(self, other: Union["Pair", int]) -> "Pair":
         return self._plus(other, np.add)
@@ -190,76 +195,112 @@ class Pair:
     def _plus(self, other: Union["Pair", int], add: Any) -> "Pair":
         """The sum, or the difference if ``add`` is np.subtract."""
         one, two = self._meet(other)
+        doubles = one.exact and two.exact
+        if doubles and (add, id(two._kept)) in one._kept:
+            kept: Pair = one._kept[add, id(two._kept)][0]
+            return kept.taken_by(one.within)
+        if add is np.add and two.value[0] > one.value[0]:
+            one, two = two, one
         positive = one.positive and two.positive
-        value, rest, ordered = _sum(one.value, two.value, add, positive)
+        ordered = positive and one._covers(two)
+        together, loss = positive and add is np.add, one.within.sum_loss
+        if ordered:
+            value, rest = _fast_sum(one.value, two.value, add)
+        elif together:
+            larger, smaller = _aside(2, max(one.value.size, two.value.size))
+            np.maximum(one.value, two.value, out=larger)
+            value, rest = _fast_sum(larger, np.minimum(one.value, two.value, out=smaller))
+        else:
+            value, rest = _sum(one.value, two.value, add)
         if one.rest is not None:
             rest += one.rest
         if two.rest is not None:
             add(rest, two.rest, out=rest)
-        together, loss = positive and add is np.add, one.within.sum_loss
         sum_ = Pair(one.within, value, rest)
-        if one._exact and two._exact:
+        if doubles:
             sum_.positive = together or ordered or bool(value.min() >= 0)
-            sum_._rounded = value
+            sum_._kept["whole"] = value
+            one._kept[add, id(two._kept)] = sum_, two._kept  # which keeps its number
         elif together and one.within.trusts(one) and one.within.trusts(two):
-            sum_.loss = max(one.loss, two.loss) + loss
+            sum_.loss = max(one.loss, (one.loss + two.loss) / 2 if ordered else two.loss) + loss
             sum_.doubt = one.doubt if one.doubt is two.doubt else _both(one.doubt, two.doubt, np.maximum)
         else:
             sum_ = sum_.normal()
             sum_.positive = together or bool(sum_.value.min() >= 0)
-            weighed = one._weighed(loss) + two._weighed(loss)
+            weighed = one._weighed(
+                one.bound + loss, two.bound + loss, None if ordered and not together else two
+            )
             sum_.doubt = weighed / (sum_.value if sum_.positive else np.abs(sum_.value))
             if np.isnan(sum_.doubt.min()):  # 0 plus or minus 0 is 0
                 sum_.doubt = np.where(weighed == 0, 0.0, sum_.doubt)
         return sum_
 
-    def _weighed(self, loss: float) -> Any:
-        """How far this may be off, and what adding it may lose."""
-        return (self.value if self.positive else np.abs(self.value)) * (self.bound + loss)
+    def _covers(self, two: "Pair") -> bool:
+        """Whether no row of the other is larger, where neither has negative ones."""
+        x, y = self.value, two.value
+        if (np.subtract, id(two._kept)) in self._kept:
+            found: bool = self._kept[np.subtract, id(two._kept)][0].positive
+            return found
+        if not (y[:16] <= x[:16]).all():
+            return False
+        return bool(y.max() <= x[0] if x.size == 1 else (y <= x).all())
+
+    def _weighed(self, bound: Any, other: Any, two: "Pair | None") -> Any:
+        """How far a sum may be off, from the bounds of its terms; None for one that is no larger."""
+        size = self.value if self.positive else np.abs(self.value)
+        if two is None:
+            return size * (bound + other)
+        return size * bound + (two.value if two.positive else np.abs(two.value)) * other
 
     @property
-    def _exact(self) -> bool:
+    def exact(self) -> bool:
         return self.rest is None and self.doubt is None and self.loss == 0
 
     def normal(self) -> "Pair":
         """The same with a rest of at most half a unit in the last place."""
         assert self.rest is not None
-        value = np.add(self.value, self.rest, out=_room(self.value))
+        value = self.rounded()
+        if value is self.value:
+            return self
         rest = np.subtract(self.value, value, out=_room(value))
         rest += self.rest
         normal = Pair(self.within, value, rest, self.loss, self.doubt, self.positive)
-        normal._rounded = value
+        normal._kept["whole"] = value
         return normal
 
     def halved(self) -> "Pair":
         """The same, whose value is known to have 26 bits."""
         assert self.rest is not None
-        self._halves = self.value, self.rest
+        self._kept["halves"] = self.value, self.rest
         return self
 
     def halves(self) -> tuple[Column, Column]:
         """Two columns that add up to this, the first of 26 bits."""
-        if self._halves is None:
+        if "halves" not in self._kept:
             head = _head(self.value)
             tail = np.subtract(self.value, head, out=_room(head))
             if self.rest is not None:
                 tail += self.rest
-            self._halves = head, tail
-        return self._halves
+            self._kept["halves"] = head, tail
+        halves: tuple[Column, Column] = self._kept["halves"]
+        return halves
 
     def rounded(self) -> Column:
         """The double that value + rest round to."""
         if self.rest is None:
             return self.value
-        if self._rounded is None:
-            self._rounded = np.add(self.value, self.rest, out=_room(self.value))
-        return self._rounded
+        if "whole" not in self._kept:
+            self._kept["whole"] = np.add(self.value, self.rest, out=_room(self.value))
+        whole: Column = self._kept["whole"]
+        return whole
 
     def _scaled(self, factor: float) -> "Pair":
         """Times a power of two, or -1."""
         rest = None if self.rest is None else self.rest * factor
         positive = self.positive and factor > 0
-        return Pair(self.within, self.value * factor, rest, self.loss, self.doubt, positive)
+        scaled = Pair(self.within, self.value * factor, rest, self.loss, self.doubt, positive)
+        scaled.near = self.near
+        return scaled
 
     def __mul__(self, other: Union["Pair", Fraction, int]) -> "Pair":
         one, two = self._meet(other)
@@ -318,13 +359,13 @@ class Pairs:
         raise NotImplementedError
 
     def trusts(self, x: Pair) -> bool:
-        """Whether no row of a term is off so much that a sum should weigh it."""
-        return x.doubt is None or bool(x.doubt.max() < 3 * UNIT)
+        """Whether few rows of a term are off so much that a sum should weigh it."""
+        return x.doubt is None or 50 * int(np.count_nonzero(x.doubt > 3 * UNIT)) <= x.doubt.size
 
     def number(self, q: Any) -> Any:
         """A number, or a column of exact doubles."""
         if isinstance(q, Pair):
-            return q
+            return q.taken_by(self) if q.exact else q
         if isinstance(q, np.ndarray):
             return Pair(self, q)
         key = q.numerator, q.denominator  # to hash a Fraction takes longer
@@ -340,13 +381,15 @@ class Pairs:
         rest = float(q - Fraction(value))
         if rest:
             left = abs(float((q - Fraction(value) - Fraction(rest)) / q)) * 1.001
-            return Pair(self, np.array([value]), np.array([rest]), left, positive=value >= 0)
+            pair = Pair(self, np.array([value]), np.array([rest]), left, positive=value >= 0)
+            pair.near = abs(rest / value) + left
+            return pair
         number = Pair(self, np.array([value]), positive=value >= 0)
         number.power = value if abs(frexp(value)[0]) == 0.5 else 0.0
         return number
 
     def is_zero(self, x: Pair) -> bool:
-        return x.value.size == 1 and x._exact and x.value[0] == 0
+        return x.value.size == 1 and x.exact and x.value[0] == 0
 
     @cached_property
     def pi(self) -> Pair:
@@ -507,13 +550,16 @@ class Rounded(Quick):
 
     def quotient(self, x: Pair, y: Pair) -> Pair:
         value = np.divide(x.value, y.value, out=_room(x.value, y.value))
-        rest = x.rest
+        rest, loss = x.rest, UNIT + LOOSE
         if y.rest is not None:
-            term = np.multiply(value, y.rest, out=_room(value))
-            rest = np.subtract(0.0 if rest is None else rest, term, out=term)
+            if y.near < NEARLY:
+                loss += y.near
+            else:
+                term = np.multiply(value, y.rest, out=_room(value))
+                rest = np.subtract(0.0 if rest is None else rest, term, out=term)
         if rest is not None:
             rest = np.divide(rest, y.value, out=_room(value))
-        return x.of_factors(y, value, rest, UNIT + LOOSE)
+        return x.of_factors(y, value, rest, loss)
 
     def sqrt(self, x: Pair) -> Pair:
         return super().sqrt(x).normal()
@@ -569,7 +615,7 @@ class Thorough(Pairs):
         left = value - count * first  # exact: the two are near each other
         rest = np.zeros_like(left) if x.rest is None else x.rest.copy()
         for part in parts:
-            left, error, _ = _sum(left, count * part, np.subtract)
+            left, error = _sum(left, count * part, np.subtract)
             rest += error
         k = self._small_expm1(Pair(self, left, rest).normal())
         number = count.astype(np.int64)
@@ -580,7 +626,7 @@ class Thorough(Pairs):
             assert k.rest is not None
             # Exact: k times a power of two, and that power less one.
             scaled = Pair(self, k.value * power, k.rest * power, k.loss, k.doubt)
-            k = scaled + Pair(self, *_sum(power, np.array([-1.0]))[:2])
+            k = scaled + Pair(self, *_sum(power, np.array([-1.0])))
         off = (x.bound + 4 * UNIT**2) * (1 + x.value)
         k.doubt = _both(k.doubt, np.where(x.value < LARGEST, off, np.inf), np.add)
         return k
@@ -631,18 +677,8 @@ def _aside(count: int, size: int) -> list[Column]:
     return [room[:size] for room in rooms[:count]]
 
 
-def _sum(x: Column, y: Column, add: Any = np.add, positive: bool = False) -> tuple[Column, Column, bool]:
-    """x + y, or x - y if ``add`` is np.subtract, rounded, and the error of that, exactly.
-
-    ``positive`` says that no row of either is negative; the answer's last, that neither is the result's.
-    """
-    if add is np.add and y[0] > x[0]:
-        x, y = y, x
-    if (y[:16] <= x[:16]).all() and (positive or y.min() >= 0) and (y <= x).all():
-        return *_fast_sum(x, y, add), True
-    if positive and add is np.add:
-        larger, smaller = _aside(2, max(x.size, y.size))
-        return *_fast_sum(np.maximum(x, y, out=larger), np.minimum(x, y, out=smaller)), False
+def _sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:
+    """x + y, or x - y if ``add`` is np.subtract, rounded, and the error of that, exactly (D. E. Knuth)."""
     total = add(x, y, out=_room(x, y))
     error = _room(total)
     (added,) = _aside(1, total.size)
@@ -655,7 +691,7 @@ def _sum(x: Column, y: Column, add: Any = np.add, positive: bool = False) -> tup
     else:
         added += y
         error -= added
-    return total, error, False
+    return total, error
 
 
 def _fast_sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:

@@ -119,8 +119,12 @@ class Case:
             return "no-slip"
         if not self.pulley_known:
             return "verge" if self.can_slip else "no-slip"
-        slips = self.can_slip if self.locked else self.beats_friction("excess_ratio")
-        return "slip" if slips else "no-slip"
+        return "slip" if self.slips else "no-slip"
+
+    @cached_property
+    def slips(self) -> bool:
+        """Whether the string slips on a pulley that is known and friction that is given."""
+        return self.can_slip if self.locked else self.beats_friction("excess_ratio")
 
     @property
     def limiting_mu(self) -> Fraction:
@@ -137,7 +141,10 @@ class Case:
     @cached_property
     def can_slip(self) -> bool:
         """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
-        return self.sign != 0 and self.beats_friction("locked_excess")
+        if self.sign == 0:
+            return False
+        # Whatever slips on a pulley that turns slips on a heavier one.
+        return (self.rim_mass is not None and self.slips) or self.beats_friction("locked_excess")
 
     @cached_property
     def can_be_made_slip(self) -> bool:

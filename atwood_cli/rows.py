@@ -23,10 +23,11 @@ what could overflow on the way is solved one by one, at about a millisecond a ro
 is what comes of an e^{μφ} above e^700, and the friction_force_min of all rows.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from functools import cached_property
 from math import nan
+from operator import attrgetter
 from typing import Any, Literal
 from weakref import proxy
 
@@ -43,6 +44,7 @@ Accuracy = Literal["fast", "certified", "exact"]
 COLUMNS = tuple(name for name in PARAMETERS if name != "I")
 ALONG = {"fast": 1, "certified": 3, "exact": 3}
 """How many times the others' number rows must be for taking the others along to cost less than parting."""
+BLOCK = 163_840  # rows
 FEW = 3  # rows: quicker one by one, at 0.2 ms each, than as columns of pairs
 CERTIFIED = 3.49 * 2.0**-53
 LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
@@ -50,52 +52,61 @@ LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
     "certified": (ROUNDED, QUICK, THOROUGH),
     "exact": (THOROUGH,),
 }
-# What cancels on the way, or takes too many roundings: the lowest rung never vouches for it.
-TAKES_EXACT_PRODUCTS = {"mu_verge", "critical_pulley_mass", "critical_heavier_mass"}
+IN_ALL_REGIMES = {"mu_verge", "critical_pulley_mass", "critical_heavier_mass"}
 
 
 class Divided(Exception):
-    """The rows do not agree on the answer to a question: ask its parts, which do."""
+    """The rows do not agree on the answer to a question: ask most of them, and later the few others."""
 
-    def __init__(self, parts: list["Rows"]) -> None:
-        super().__init__(parts)
-        self.parts = parts
+    def __init__(self, most: "Rows", few: NDArray[np.intp], answers: Mapping[str, bool]) -> None:
+        super().__init__(most, few, answers)
+        self.most, self.few, self.answers = most, few, answers
+
+
+Index = slice | NDArray[np.intp]
+Waiting = dict[tuple[tuple[str, ...], int, frozenset[tuple[str, bool]]], list[Any]]
 
 
 class Rows:
     """Rows that agree on all that was asked of them so far.
 
-    ``fields`` are the inputs: a Fraction, None or inf where all rows share it, else a column. A part of
-    other rows takes them from ``whole``, at its index there. ``others`` are rows that came along because
-    to leave them out would cost more; what they get is overwritten.
+    ``given`` are the inputs of many rows: a Fraction, None or inf where all share it, else a column; these
+    are the ones at ``index`` there. ``others`` are rows that came along because to leave them out would
+    cost more; what they get is overwritten.
     """
 
     def __init__(
         self,
-        fields: Mapping[str, Any],
+        given: Mapping[str, Any],
         sign: int,
-        size: int,
         accuracy: Accuracy,
-        index: NDArray[np.intp] | None = None,
+        index: Index,
         far: bool = False,
-        whole: "tuple[Rows, NDArray[np.intp]] | None" = None,
+        waiting: "Waiting | None" = None,
     ) -> None:
-        self._fields, self.sign, self.size, self.accuracy = dict(fields), sign, size, accuracy
-        self.index, self.far, self._whole = index, far, whole
+        self._given, self.sign, self.accuracy, self.index, self.far = given, sign, accuracy, index, far
+        self.size: int = index.stop - index.start if isinstance(index, slice) else index.size
+        self._waiting: Waiting = {} if waiting is None else waiting
         self.others: NDArray[np.intp] | None = None
+        self._fields: dict[str, Any] = {}
+        self._pairs: dict[str, Pair] = {}
         self._answers: dict[str, bool] = {}
         self._machines: dict[Any, Machine[Any]] = {}
         self._singles: dict[int, Answers] = {}
 
+    def _at(self, index: Index, answers: Mapping[str, bool]) -> "Rows":
+        """Rows of the same inputs that agree on so much."""
+        rows = Rows(self._given, self.sign, self.accuracy, index, self.far, self._waiting)
+        rows._answers = dict(answers)
+        return rows
+
     def part(self, index: NDArray[np.intp] | None = None) -> "Rows":
         """Some of these rows, or all for another answer."""
         if index is None:
-            whole = self._whole
-            rows = Rows(self._fields, self.sign, self.size, self.accuracy, self.index, self.far, whole)
+            rows = self._at(self.index, self._answers)
+            rows._fields, rows._pairs = self._fields, self._pairs
         else:
-            within = index if self.index is None else self.index[index]
-            rows = Rows({}, self.sign, len(index), self.accuracy, within, self.far, (self, index))
-        rows._answers = dict(self._answers)
+            rows = self._at(self._within(index), self._answers)
         for arithmetic, machine in self._machines.items():
             # The exponential costs too much to compute it twice.
             if "k1" in vars(machine):
@@ -103,40 +114,86 @@ class Rows:
                 rows.machine(arithmetic).k1 = k1
         return rows
 
+    def _within(self, index: NDArray[np.intp]) -> NDArray[np.intp]:
+        """The place of some of these rows among all."""
+        return index + self.index.start if isinstance(self.index, slice) else self.index[index]
+
     def field(self, name: str) -> Any:
         """An input of these rows."""
         if name not in self._fields:
-            assert self._whole is not None
-            whole, index = self._whole
-            self._fields[name] = _take(whole.field(name), index, whole.size)
+            given = self._given[name]
+            self._fields[name] = given[self.index] if isinstance(given, np.ndarray) else given
         return self._fields[name]
 
+    def number(self, name: str, arithmetic: Any) -> Any:
+        """The same as an arithmetic takes it; pairs of all arithmetics share what was made of them."""
+        field = self.field(name)
+        if not isinstance(field, np.ndarray) or arithmetic is FLOATS:
+            return field
+        if name not in self._pairs:
+            self._pairs[name] = arithmetic.number(field)
+        return arithmetic.number(self._pairs[name])
+
+    def rim_mass(self, arithmetic: Any) -> Any:
+        """That of the pulley, where it has one; an exact product is the same in all arithmetics of pairs."""
+        if arithmetic is ROUNDED:
+            return self.rim_mass(QUICK).taken_by(ROUNDED)
+        if "c" in self._pairs:
+            return self._pairs["c"].value if arithmetic is FLOATS else self._pairs["c"].taken_by(arithmetic)
+        inertia, mass = (arithmetic.number(self.number(name, arithmetic)) for name in ("inertia", "M"))
+        rim_mass = inertia * mass
+        if isinstance(rim_mass, Pair) and rim_mass.exact:
+            self._pairs["c"] = rim_mass
+        return rim_mass
+
     def write(self, out: NDArray[Any], values: Any) -> None:
-        out[slice(None) if self.index is None else self.index] = values
+        out[self.index] = values
 
     def write_sum(self, out: NDArray[Any], values: Any, rests: Any, signed: bool = False) -> Column:
         """Write sums of values and rests, and return them; 0.0 is what -0 takes to be 0."""
-        sums: Column = np.add(values, rests, out=out if self.index is None else None)
+        there = out[self.index] if isinstance(self.index, slice) else None
+        sums: Column = np.add(values, rests, out=there)
         if signed:  # the rest may be -0 too
-            sums = np.add(sums, 0.0, out=out if self.index is None else None)
-        if self.index is not None:
+            sums = np.add(sums, 0.0, out=sums)
+        if there is None:
             out[self.index] = sums
         return sums
 
     # Solving
 
-    def solve(self, names: Sequence[str], out: Mapping[str, NDArray[Any]], rung: int = 0) -> None:
-        """Write quantities of all rows, in the arithmetic on that rung of the ladder or higher."""
-        for i, name in enumerate(names):
+    def solve(self, names: Sequence[str], out: Mapping[str, NDArray[Any]]) -> None:
+        """Write quantities of all rows."""
+        self._wait(names, 0, {}, self.index)
+        while self._waiting:
+            # What is written higher up the ladder comes last, and stays.
+            waited, rung, answers = what = min(self._waiting, key=lambda what: what[1])
+            indices = self._waiting.pop(what)
+            index = indices[0] if len(indices) == 1 else np.concatenate(indices)
+            for block in _blocks(index):
+                rows = self._at(block, dict(answers))
+                few = rows.size <= FEW and LADDERS[self.accuracy][rung:] == (THOROUGH,)
+                rows._solve_all(waited, out, rung + 1 if few and rung else rung)
+
+    def _wait(self, names: Sequence[str], rung: int, answers: Mapping[str, bool], index: Index) -> None:
+        """Rows to be solved later, together with those of other blocks that agree with them."""
+        what = tuple(names), rung, frozenset(answers.items())
+        self._waiting.setdefault(what, []).append(index)
+
+    def _solve_all(self, names: Sequence[str], out: Mapping[str, NDArray[Any]], rung: int) -> None:
+        """In the arithmetic on that rung of the ladder or higher."""
+        for i in range(len(names)):
             try:
-                self._solve(name, out, rung)
+                self._solve(names[i:], out, rung)
             except Divided as divided:
-                while divided.parts:  # which let go of their columns one by one
-                    divided.parts.pop(0).solve(names[i:], out, rung)
+                self._wait(names[i:], rung, divided.answers, self._within(divided.few))
+                most = divided.most
+                del divided
+                most._solve_all(names[i:], out, rung)
                 return
 
-    def _solve(self, name: str, out: Mapping[str, NDArray[Any]], rung: int) -> None:
-        ladder = LADDERS[self.accuracy]
+    def _solve(self, names: Sequence[str], out: Mapping[str, NDArray[Any]], rung: int) -> None:
+        """The first of the quantities; rows that are not vouched for wait with all of them."""
+        name, ladder = names[0], LADDERS[self.accuracy]
         try:
             if name == "regime":
                 self.write(out[name], REGIMES.index(self.machine(FLOATS).case.regime))
@@ -144,27 +201,29 @@ class Rows:
                 self.write(out[name], [self._single(row, name) for row in range(self.size)])
             else:
                 rung = self._first_rung(name, rung)
-                self._write_vouched(name, out, rung, getattr(self.machine(ladder[rung]), name))
+                value = getattr(self.machine(ladder[rung]), name)
+                self._wait_doubtful([name], rung, self._vouched(out[name], value))
         except Undetermined:
             self.write(out[name], nan)
         except Unvouched:
-            self._solve(name, out, rung + 1)
+            self._solve(names, out, rung + 1)
 
     def _first_rung(self, name: str, rung: int) -> int:
-        """Higher up where something cancels, or takes too many roundings for doubles to be vouched for."""
-        if self.accuracy != "certified":
+        """Higher up where what slips takes too many roundings for the lowest to vouch for it."""
+        if self.accuracy != "certified" or name in IN_ALL_REGIMES:
             return rung
-        if name in TAKES_EXACT_PRODUCTS or self.machine(FLOATS).case.regime != "no-slip":
-            return max(rung, 1)
-        return rung
+        return rung if self.machine(FLOATS).case.regime == "no-slip" else max(rung, 1)
 
-    def _write_vouched(self, name: str, out: Mapping[str, NDArray[Any]], rung: int, value: Any) -> None:
+    def _vouched(self, out: NDArray[Any], value: Any) -> Any:
+        """Write a quantity's values; whether they are what the accuracy promises."""
         if not isinstance(value, Pair):
-            self.write_sum(out[name], value, 0.0)
-            return
+            self.write_sum(out, value, 0.0)
+            return True
         rest = 0.0 if value.rest is None else value.rest
-        rounded = self.write_sum(out[name], value.value, rest, not value.positive)
-        vouched = (_certified if self.accuracy == "certified" else _nearest)(value, rounded)
+        rounded = self.write_sum(out, value.value, rest, not value.positive)
+        return (_certified if self.accuracy == "certified" else _nearest)(value, rounded)
+
+    def _wait_doubtful(self, names: Sequence[str], rung: int, vouched: Any) -> None:
         if np.all(vouched):
             return
         doubtful = np.broadcast_to(np.logical_not(vouched), self.size).copy()
@@ -172,11 +231,15 @@ class Rows:
             doubtful[self.others] = False
         index = np.flatnonzero(doubtful)
         if index.size:
-            self.part(index).solve([name], out, rung + 1 if index.size > FEW else len(LADDERS[self.accuracy]))
+            self._wait(names, rung + 1, self._answers, self._within(index))
 
     def machine(self, arithmetic: Any) -> Machine[Any]:
         if arithmetic not in self._machines:
-            self._machines[arithmetic] = Machine(_RowsCase(self, arithmetic), arithmetic)
+            case = _RowsCase(self, arithmetic)
+            if arithmetic is ROUNDED:
+                self._machines[arithmetic] = _RoundedMachine(case, self.machine(QUICK))
+            else:
+                self._machines[arithmetic] = Machine(case, arithmetic)
         return self._machines[arithmetic]
 
     def scene(self, row: int) -> Scene:
@@ -199,7 +262,11 @@ class Rows:
         """The answer of all rows; raises Divided if they differ."""
         if question not in self._answers:
             ask: Any = QUESTIONS.get(question, Rows._beats_friction)
-            self._agree(question, np.broadcast_to(ask(self, question), self.size))
+            found = ask(self, question)
+            if np.size(found) == 1:
+                self._answers[question] = bool(found)
+            else:
+                self._agree(question, found)
         return self._answers[question]
 
     def _agree(self, question: str, answers: NDArray[np.bool_]) -> None:
@@ -218,9 +285,8 @@ class Rows:
         else:
             found[others] = True
             most = self.part(np.flatnonzero(~found))
-        few = self.part(index)
-        few._answers[question], most._answers[question] = rarer, not rarer
-        raise Divided([most, few])  # in this order: the second overwrites what comes along
+        most._answers[question] = not rarer
+        raise Divided(most, index, self._answers | {question: rarer})
 
     def _beats_friction(self, question: Any) -> Any:
         """Whether the excess of the tension ratio is beyond what friction holds, e^{μφ} - 1."""
@@ -229,12 +295,11 @@ class Rows:
         excess, held = self._excess(question), self.machine(FLOATS).k1
         if self.accuracy == "fast":
             return excess > held
-        beaten = np.broadcast_to(excess > held * (1 + 2.0**-40), self.size)
-        open_ = np.flatnonzero(~beaten & (excess >= held * (1 - 2.0**-40)))
-        if not open_.size:
-            return beaten
-        beaten = beaten.copy()
-        beaten[open_] = self.part(open_)._beats_friction_thoroughly(question)
+        ratio = np.broadcast_to(np.divide(excess, held), self.size)
+        beaten, not_beaten = ratio > 1 + 2.0**-40, ratio < 1 - 2.0**-40
+        if np.count_nonzero(beaten) + np.count_nonzero(not_beaten) < self.size:
+            open_ = np.flatnonzero(~(beaten | not_beaten))
+            beaten[open_] = self.part(open_)._beats_friction_thoroughly(question)
         return beaten
 
     def _excess(self, question: Any) -> Any:
@@ -275,12 +340,10 @@ class _Inputs:
     I = None
 
     def __init__(self, rows: Rows, arithmetic: Any) -> None:
-        self._rows, self._number = proxy(rows), arithmetic.number
+        self._rows, self._arithmetic = proxy(rows), arithmetic
 
     def __getattr__(self, name: str) -> Any:
-        field = self._rows.field(name)
-        if isinstance(field, np.ndarray):
-            field = self._number(field)
+        field = self._rows.number(name, self._arithmetic)
         setattr(self, name, field)
         return field
 
@@ -293,14 +356,14 @@ class _RowsCase(Case):
         super().__init__(inputs)
         # The rows own their machines: they must not own them in turn, or columns would outlive their block.
         self._rows: Rows = proxy(rows)
-        self.sign, self._number = rows.sign, arithmetic.number
+        self.sign, self._arithmetic = rows.sign, arithmetic
 
     @cached_property
     def rim_mass(self) -> Any:
         mass = self.pulley_mass
         if mass is None or is_zero(mass):
             return mass
-        return self._number(self.scene.inertia) * self._number(mass)
+        return self._rows.rim_mass(self._arithmetic)
 
     @cached_property
     def long_wrap(self) -> bool:
@@ -314,17 +377,38 @@ class _RowsCase(Case):
         return self._rows.answer(which)
 
 
+class _RoundedMachine(Machine[Any]):
+    """A machine whose products are rounded, but for those that come before something cancels."""
+
+    def __init__(self, case: Case, finer: Machine[Any]) -> None:
+        super().__init__(case, ROUNDED)
+        self._finer = finer
+
+    phi, k1, excess, transfer, drive = (
+        cached_property[Any](attrgetter(f"_finer.{name}"))
+        for name in ("phi", "k1", "excess", "transfer", "drive")
+    )
+
+
+def _blocks(index: Index) -> Iterator[Index]:
+    if isinstance(index, slice):
+        for start in range(index.start, index.stop, BLOCK):
+            yield slice(start, min(start + BLOCK, index.stop))
+    else:
+        for start in range(0, index.size, BLOCK):
+            yield index[start : start + BLOCK]
+
+
 def _take(column: Any, index: NDArray[np.intp], size: int) -> Any:
     """Some rows of a column of that size; what is the same in all rows stays."""
     many = getattr(column, "value", column)
     return column.take(index) if isinstance(many, np.ndarray) and many.size == size else column
 
 
-def _certified(pair: Pair, rounded: Column) -> Any:
+def _certified(pair: Pair, _: Column) -> Any:
     """Which rows are within 4 ulp, so rounded."""
     enough = CERTIFIED - pair.loss
-    vouched = enough >= 0 if pair.doubt is None else pair.doubt <= enough
-    return vouched if np.isfinite(rounded.sum()) else vouched & np.isfinite(rounded)
+    return enough >= 0 if pair.doubt is None else pair.doubt <= enough
 
 
 def _nearest(pair: Pair, rounded: Column) -> Any:
