@@ -16,12 +16,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from .columns import WINDOW, Column
 from .quantities import NAMES, STANDARD
-from .rows import COLUMNS, Accuracy, Rows
+from .rows import COLUMNS, Accuracy, Index, Rows
 from .scene import MISSING_MASS, PARAMETERS, SceneError, nearest
 
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
-STRETCH = 327_680  # rows
+BLOCK = 163_840  # rows
 LET_GO = 4_000_000  # doubles; its limit is 32 MB
+LEAVE = 1_000  # rows of a block that are better solved with those of others
 THREADS = 4  # more would wait for the interpreter, and hold 30 MB of columns each
 FAST_WINDOW = 2.0**-250, 2.0**250  # beyond it, what comes in between may overflow though results do not
 MAY_BE_ABSENT = ("M", "mu", "mu_k", "R")
@@ -74,52 +75,77 @@ def solve_arrays(
     found = {name: np.empty(shape, kinds.get(name, np.float64)) for name in (*names, "status")}
     flat = {name: column.reshape(-1) for name, column in found.items()}
 
-    def solve_stretch(start: int) -> None:
-        stop = min(start + STRETCH, prod(shape))
-        given = {name: _cut(column, shape, start, stop) for name, column in inputs.items()}
-        with np.errstate(all="ignore"):
-            _solve_stretch(
-                given, {name: column[start:stop] for name, column in flat.items()}, names, accuracy
-            )
+    left: dict[tuple[tuple[str, ...], int], list[NDArray[np.intp]]] = {}
 
-    _on_threads(solve_stretch, range(0, prod(shape), STRETCH))
+    def solve_rows(index: Index, names: Sequence[str], rung: int, leave: int) -> None:
+        given = {name: _cut(column, shape, index) for name, column in inputs.items()}
+        out = {name: flat[name][index] for name in (*names, "status")}
+        with np.errstate(all="ignore"):
+            for some, higher, within in _solve(given, out, names, accuracy, rung, leave):
+                assert isinstance(index, slice)
+                left.setdefault((some, higher), []).append(within + index.start)
+        if not isinstance(index, slice):
+            for name, column in out.items():
+                flat[name][index] = column
+
+    threads = min(THREADS, os.cpu_count() or 1)
+    blocks = _blocks(prod(shape), threads)
+    leave = LEAVE if len(blocks) > 1 else 0
+    _on_threads(threads, lambda block: solve_rows(block, names, 0, leave), blocks)
+    for (some, rung), indices in sorted(left.items()):
+        index = np.concatenate(indices)
+        for block in _blocks(index.size):
+            solve_rows(index[block], some, rung, 0)
     return found
 
 
-def _cut(column: Column, shape: tuple[int, ...], start: int, stop: int) -> Column:
+def _blocks(size: int, threads: int = 1) -> list[slice]:
+    """Slices of nearly the same length, so many that the threads share them evenly."""
+    count = -(-size // BLOCK)
+    count = -(-count // threads) * threads if count > 1 else count
+    return [slice(size * i // count, size * (i + 1) // count) for i in range(count)]
+
+
+def _cut(column: Column, shape: tuple[int, ...], rows: Index) -> Column:
     """Rows of a column as if it were broadcast and flat; a single number stays single."""
     if column.size == 1:
         return column.reshape(1)
     if column.shape == shape and column.flags.c_contiguous:
-        return column.reshape(-1)[start:stop]
-    return np.broadcast_to(column, shape).flat[start:stop]
+        return column.reshape(-1)[rows]
+    return np.broadcast_to(column, shape).flat[rows]
 
 
-def _on_threads(work: Callable[[int], None], starts: Sequence[int]) -> None:
+def _on_threads(threads: int, work: Callable[[slice], None], blocks: Sequence[slice]) -> None:
     """NumPy lets go of the interpreter while it computes, so threads share the blocks."""
-    if len(starts) < 2:
-        for start in starts:
-            work(start)
+    if len(blocks) < 2:
+        for block in blocks:
+            work(block)
         return
     # The GNU C library takes the largest array that was let go of as its measure of what is small: with
     # this one, it keeps the memory of a block for the next one, and 0.3 s of page faults are saved in 10
     # million rows. Elsewhere it does nothing, and nowhere is its memory touched.
     np.empty(LET_GO)
-    pool = ThreadPoolExecutor(min(THREADS, os.cpu_count() or 1))
+    pool = ThreadPoolExecutor(threads)
     try:
-        for _ in pool.map(work, starts):
+        for _ in pool.map(work, blocks):
             pass
     finally:
         pool.shutdown(cancel_futures=True)
 
 
-def _solve_stretch(
-    columns: Mapping[str, Column], out: dict[str, NDArray[Any]], names: Sequence[str], accuracy: Accuracy
-) -> None:
+def _solve(
+    columns: Mapping[str, Column],
+    out: dict[str, NDArray[Any]],
+    names: Sequence[str],
+    accuracy: Accuracy,
+    rung: int,
+    leave: int,
+) -> Iterator[tuple[tuple[str, ...], int, NDArray[np.intp]]]:
+    """Write quantities of scenes, in an arithmetic on that rung or higher; yields what `Rows` leave."""
     given = {name: _Given.of(name, column, accuracy) for name, column in columns.items()}
     out["status"][:] = status = _status(given, len(out["status"]))
     for rows in _agreeing(given, status, accuracy):
-        rows.solve(sorted(names, key=_turn), out)
+        yield from rows.solve(sorted(names, key=_turn), out, rung, leave)
     if status.any():
         for name in names:
             out[name][status != 0] = -1 if name == "regime" else nan

@@ -44,7 +44,6 @@ Accuracy = Literal["fast", "certified", "exact"]
 COLUMNS = tuple(name for name in PARAMETERS if name != "I")
 ALONG = {"fast": 1, "certified": 3, "exact": 3}
 """How many times the others' number rows must be for taking the others along to cost less than parting."""
-BLOCK = 163_840  # rows
 FEW = 3  # rows: quicker one by one, at 0.2 ms each, than as columns of pairs
 CERTIFIED = 3.49 * 2.0**-53
 LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
@@ -161,21 +160,28 @@ class Rows:
 
     # Solving
 
-    def solve(self, names: Sequence[str], out: Mapping[str, NDArray[Any]]) -> None:
-        """Write quantities of all rows."""
-        self._wait(names, 0, {}, self.index)
+    def solve(
+        self, names: Sequence[str], out: Mapping[str, NDArray[Any]], rung: int = 0, leave: int = 0
+    ) -> Iterator[tuple[tuple[str, ...], int, NDArray[np.intp]]]:
+        """Write quantities of all rows, in the arithmetic on that rung of the ladder or higher.
+
+        Rows that have to go up and are no more than ``leave`` are left: names, rung, index.
+        """
+        self._wait(names, rung, {}, self.index)
         while self._waiting:
             # What is written higher up the ladder comes last, and stays.
             waited, rung, answers = what = min(self._waiting, key=lambda what: what[1])
             indices = self._waiting.pop(what)
             index = indices[0] if len(indices) == 1 else np.concatenate(indices)
-            for block in _blocks(index):
-                rows = self._at(block, dict(answers))
-                few = rows.size <= FEW and LADDERS[self.accuracy][rung:] == (THOROUGH,)
-                rows._solve_all(waited, out, rung + 1 if few and rung else rung)
+            if rung and not isinstance(index, slice) and index.size <= leave:
+                yield waited, rung, index
+                continue
+            rows = self._at(index, dict(answers))
+            few = rows.size <= FEW and LADDERS[self.accuracy][rung:] == (THOROUGH,)
+            rows._solve_all(waited, out, rung + 1 if few and rung else rung)
 
     def _wait(self, names: Sequence[str], rung: int, answers: Mapping[str, bool], index: Index) -> None:
-        """Rows to be solved later, together with those of other blocks that agree with them."""
+        """Rows to be solved later, with others that agree with them."""
         what = tuple(names), rung, frozenset(answers.items())
         self._waiting.setdefault(what, []).append(index)
 
@@ -388,15 +394,6 @@ class _RoundedMachine(Machine[Any]):
         cached_property[Any](attrgetter(f"_finer.{name}"))
         for name in ("phi", "k1", "excess", "transfer", "drive")
     )
-
-
-def _blocks(index: Index) -> Iterator[Index]:
-    if isinstance(index, slice):
-        for start in range(index.start, index.stop, BLOCK):
-            yield slice(start, min(start + BLOCK, index.stop))
-    else:
-        for start in range(0, index.size, BLOCK):
-            yield index[start : start + BLOCK]
 
 
 def _take(column: Any, index: NDArray[np.intp], size: int) -> Any:

@@ -238,8 +238,7 @@ def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> N
     whole = solve_arrays(**given, accuracy=accuracy)
     every_other: dict[str, Any] = {name: np.repeat(c, 2)[::2] for name, c in given.items()}
     strided = solve_arrays(**every_other, accuracy=accuracy)
-    monkeypatch.setattr(arrays, "STRETCH", 17)
-    monkeypatch.setattr("atwood_cli.rows.BLOCK", 7)
+    monkeypatch.setattr(arrays, "BLOCK", 7)
     in_blocks = solve_arrays(**given, accuracy=accuracy)
     for name in whole:
         np.testing.assert_array_equal(whole[name], in_blocks[name])
