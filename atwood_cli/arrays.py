@@ -145,7 +145,7 @@ def _solve(
     given = {name: _Given.of(name, column, accuracy) for name, column in columns.items()}
     out["status"][:] = status = _status(given, len(out["status"]))
     for rows in _agreeing(given, status, accuracy):
-        yield from rows.solve(sorted(names, key=_turn), out, rung, leave)
+        yield from rows.solve(tuple(sorted(names, key=_turn)), out, rung, leave)
     if status.any():
         for name in names:
             out[name][status != 0] = -1 if name == "regime" else nan

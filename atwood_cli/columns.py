@@ -13,12 +13,13 @@ that do not matter beside what they are added to. Whoever calls sees to the last
 The error of a sum of two doubles is a double, found by six more additions (D. E. Knuth), or by two
 where the first is known to be the larger one (T. J. Dekker).
 
-Bounds add up in products and quotients. A sum of what is not negative inherits the larger one. In a
-difference, and a sum of what is off by more than a few u in some row, they count as much as the terms
-weigh beside what is left, row by row: a row that cancels is told from its neighbours, and only such rows
-pay for more digits. Weights are taken from values, and sizes
-from results, as they are computed; that is of second order, as is the product of two bounds, and whoever
-compares a bound leaves room for it.
+Bounds add up in products and quotients. A sum of what is not negative inherits the larger one; of a
+term that is the smaller one in all rows, which is at most half of the sum, half the bound counts beside
+half the other's. In a difference, and a sum of what is off by more than a few u in more than a few rows,
+they count as much as the terms weigh beside what is left, row by row: a row that cancels is told from its
+neighbours, and only such rows pay for more digits. Weights are taken from values, and sizes from results,
+as they are computed; that is of second order, as is the product of two bounds, and whoever compares a
+bound leaves room for it.
 
 Products come in three kinds, that differ in cost: *rounded*, to a double; *quick*, by halves; *thorough*.
 
@@ -38,7 +39,8 @@ large that whoever looks at it asks for more digits anyway, and is larger than w
 Rounded products and quotients lose u each, and what is of second order: their rests are a few u, as they
 start with at most half a unit in the last place (`normal`) and grow by u per operation. A rest counts once,
 in first order: 60² u² and the roundings of rests are less than `LOOSE` = 2^14 u². What comes from a quick
-operation is made normal first.
+operation is made normal first. The rest of a constant that is divided by counts as lost, not as a rest, if
+it is less than 0.4 u of it; that of π is 0.35.
 
 If thorough, the errors of products are doubles too, found by splitting each factor into halves of 26 bits,
 the lower one with a sign (T. J. Dekker), and every result is made normal. What is lost is, in units of u²,
@@ -174,6 +176,7 @@ class Pair:
         return self.taken_by(within), two.taken_by(within)
 
     def taken_by(self, within: "Pairs") -> "Pair":
+        """The same in another arithmetic; what is exact is so in all of them."""
         if self.within is within:
             return self
         exact = self.loss == 0 and self.doubt is None
@@ -195,12 +198,13 @@ class Pair:
     def _plus(self, other: Union["Pair", int], add: Any) -> "Pair":
         """The sum, or the difference if ``add`` is np.subtract."""
         one, two = self._meet(other)
-        doubles = one.exact and two.exact
-        if doubles and (add, id(two._kept)) in one._kept:
-            kept: Pair = one._kept[add, id(two._kept)][0]
-            return kept.taken_by(one.within)
         if add is np.add and two.value[0] > one.value[0]:
             one, two = two, one
+        doubles = one.exact and two.exact
+        key = add, id(two._kept)
+        if doubles and key in one._kept:
+            kept: Pair = one._kept[key][0]
+            return kept.taken_by(one.within)
         positive = one.positive and two.positive
         ordered = positive and one._covers(two)
         together, loss = positive and add is np.add, one.within.sum_loss
@@ -220,7 +224,8 @@ class Pair:
         if doubles:
             sum_.positive = together or ordered or bool(value.min() >= 0)
             sum_._kept["whole"] = value
-            one._kept[add, id(two._kept)] = sum_, two._kept  # which keeps its number
+            if one.value.size > 1:  # single numbers outlive their rows
+                one._kept[key] = sum_, two._kept  # which keeps its number
         elif together and one.within.trusts(one) and one.within.trusts(two):
             sum_.loss = max(one.loss, (one.loss + two.loss) / 2 if ordered else two.loss) + loss
             sum_.doubt = one.doubt if one.doubt is two.doubt else _both(one.doubt, two.doubt, np.maximum)

@@ -10,20 +10,24 @@ What the accuracies promise, and why they keep it:
   e^{μφ} beyond the doubles is infinite, even where a tiny mass would bring it back.
 - ``certified``: a value is within 4 units in the last place (ulp) of the exact one for the given
   doubles, and every regime is right. A row goes up a ladder until an arithmetic vouches for it: rounded,
-  quick, and thorough pairs, and at the end the exact arithmetic of a single scene. A pair vouches where
-  its bound is at most 3.49 · 2^-53 of the value: that is at most 3.49 ulp, and rounding value + rest
-  to a double costs half an ulp more. A question (does it slip?) is answered by doubles where the two
-  sides differ by a 2^-40 of them, far more than the few roundings they take can amount to; else by the
-  sign of a thorough difference, if its bound is below 1; else by the exact comparison.
+  quick, and thorough pairs, and at the end the exact arithmetic of a single scene. What may cancel, the
+  lowest rung takes from the one above. A pair vouches where its bound is at most 3.49 · 2^-53 of the
+  value: that is at most 3.49 ulp, and rounding value + rest to a double costs half an ulp more. (Where a
+  power of two lies between the exact value and the double, an ulp is the larger one.) A question (does
+  it slip?) is answered by doubles where the two sides differ by a 2^-40 of them, far more than the few
+  roundings they take can amount to; else by the sign of a thorough difference, if its bound is below 1;
+  else by the exact comparison.
 - ``exact``: the double nearest to the exact value. A thorough pair vouches where rounding gives the
   same double at both ends of its bound (Ziv's test), or where it is exact.
 
 Rows with an input beyond `columns.WINDOW` (and not 0), or `FAST_WINDOW`, start at the top of the ladder:
 what could overflow on the way is solved one by one, at about a millisecond a row. So, but when fast,
 is what comes of an e^{μφ} above e^700, and the friction_force_min of all rows.
+
+Parts wait until those on lower rungs are done, so that what is written last is what was vouched for.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from functools import cached_property
 from math import nan
@@ -52,6 +56,7 @@ LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
     "exact": (THOROUGH,),
 }
 IN_ALL_REGIMES = {"mu_verge", "critical_pulley_mass", "critical_heavier_mass"}
+"""The same equations in all regimes: they start on the lowest rung, as does what does not slip."""
 
 
 class Divided(Exception):
@@ -161,45 +166,46 @@ class Rows:
     # Solving
 
     def solve(
-        self, names: Sequence[str], out: Mapping[str, NDArray[Any]], rung: int = 0, leave: int = 0
+        self, names: tuple[str, ...], out: Mapping[str, NDArray[Any]], rung: int = 0, leave: int = 0
     ) -> Iterator[tuple[tuple[str, ...], int, NDArray[np.intp]]]:
         """Write quantities of all rows, in the arithmetic on that rung of the ladder or higher.
 
-        Rows that have to go up and are no more than ``leave`` are left: names, rung, index.
+        Of those that have to go up further, no more than ``leave`` are left: yields names, rung, index.
         """
         self._wait(names, rung, {}, self.index)
         while self._waiting:
-            # What is written higher up the ladder comes last, and stays.
-            waited, rung, answers = what = min(self._waiting, key=lambda what: what[1])
+            what = min(self._waiting, key=lambda what: what[1])
             indices = self._waiting.pop(what)
             index = indices[0] if len(indices) == 1 else np.concatenate(indices)
-            if rung and not isinstance(index, slice) and index.size <= leave:
-                yield waited, rung, index
+            some, higher, answers = what
+            if higher > rung and index.size <= leave:
+                yield some, higher, index
                 continue
-            rows = self._at(index, dict(answers))
-            few = rows.size <= FEW and LADDERS[self.accuracy][rung:] == (THOROUGH,)
-            rows._solve_all(waited, out, rung + 1 if few and rung else rung)
+            rows: Rows | None = self._at(index, dict(answers))
+            thorough = LADDERS[self.accuracy][higher:] == (THOROUGH,)
+            if thorough and index is not self.index and index.size <= FEW:
+                higher += 1
+            while rows is not None:
+                rows, some = rows._solve_some(some, out, higher)
 
-    def _wait(self, names: Sequence[str], rung: int, answers: Mapping[str, bool], index: Index) -> None:
+    def _wait(self, names: tuple[str, ...], rung: int, answers: Mapping[str, bool], index: Index) -> None:
         """Rows to be solved later, with others that agree with them."""
-        what = tuple(names), rung, frozenset(answers.items())
-        self._waiting.setdefault(what, []).append(index)
+        self._waiting.setdefault((names, rung, frozenset(answers.items())), []).append(index)
 
-    def _solve_all(self, names: Sequence[str], out: Mapping[str, NDArray[Any]], rung: int) -> None:
-        """In the arithmetic on that rung of the ladder or higher."""
-        for i in range(len(names)):
+    def _solve_some(
+        self, names: tuple[str, ...], out: Mapping[str, NDArray[Any]], rung: int
+    ) -> "tuple[Rows | None, tuple[str, ...]]":
+        """Write quantities until the rows disagree: then most of them, and what is left to write."""
+        for i, name in enumerate(names):
             try:
-                self._solve(names[i:], out, rung)
+                self._solve_one(name, out, rung)
             except Divided as divided:
                 self._wait(names[i:], rung, divided.answers, self._within(divided.few))
-                most = divided.most
-                del divided
-                most._solve_all(names[i:], out, rung)
-                return
+                return divided.most, names[i:]
+        return None, ()
 
-    def _solve(self, names: Sequence[str], out: Mapping[str, NDArray[Any]], rung: int) -> None:
-        """The first of the quantities; rows that are not vouched for wait with all of them."""
-        name, ladder = names[0], LADDERS[self.accuracy]
+    def _solve_one(self, name: str, out: Mapping[str, NDArray[Any]], rung: int) -> None:
+        ladder = LADDERS[self.accuracy]
         try:
             if name == "regime":
                 self.write(out[name], REGIMES.index(self.machine(FLOATS).case.regime))
@@ -207,12 +213,11 @@ class Rows:
                 self.write(out[name], [self._single(row, name) for row in range(self.size)])
             else:
                 rung = self._first_rung(name, rung)
-                value = getattr(self.machine(ladder[rung]), name)
-                self._wait_doubtful([name], rung, self._vouched(out[name], value))
+                self._write_vouched(name, out[name], rung, getattr(self.machine(ladder[rung]), name))
         except Undetermined:
             self.write(out[name], nan)
         except Unvouched:
-            self._solve(names, out, rung + 1)
+            self._solve_one(name, out, rung + 1)
 
     def _first_rung(self, name: str, rung: int) -> int:
         """Higher up where what slips takes too many roundings for the lowest to vouch for it."""
@@ -220,16 +225,14 @@ class Rows:
             return rung
         return rung if self.machine(FLOATS).case.regime == "no-slip" else max(rung, 1)
 
-    def _vouched(self, out: NDArray[Any], value: Any) -> Any:
-        """Write a quantity's values; whether they are what the accuracy promises."""
+    def _write_vouched(self, name: str, out: NDArray[Any], rung: int, value: Any) -> None:
+        """Write a quantity; rows of which it is not what the accuracy promises have to go up."""
         if not isinstance(value, Pair):
             self.write_sum(out, value, 0.0)
-            return True
+            return
         rest = 0.0 if value.rest is None else value.rest
         rounded = self.write_sum(out, value.value, rest, not value.positive)
-        return (_certified if self.accuracy == "certified" else _nearest)(value, rounded)
-
-    def _wait_doubtful(self, names: Sequence[str], rung: int, vouched: Any) -> None:
+        vouched = (_certified if self.accuracy == "certified" else _nearest)(value, rounded)
         if np.all(vouched):
             return
         doubtful = np.broadcast_to(np.logical_not(vouched), self.size).copy()
@@ -237,7 +240,7 @@ class Rows:
             doubtful[self.others] = False
         index = np.flatnonzero(doubtful)
         if index.size:
-            self._wait(names, rung + 1, self._answers, self._within(index))
+            self._wait((name,), rung + 1, self._answers, self._within(index))
 
     def machine(self, arithmetic: Any) -> Machine[Any]:
         if arithmetic not in self._machines:
@@ -402,10 +405,12 @@ def _take(column: Any, index: NDArray[np.intp], size: int) -> Any:
     return column.take(index) if isinstance(many, np.ndarray) and many.size == size else column
 
 
-def _certified(pair: Pair, _: Column) -> Any:
+def _certified(pair: Pair, rounded: Column) -> Any:
     """Which rows are within 4 ulp, so rounded."""
     enough = CERTIFIED - pair.loss
-    return enough >= 0 if pair.doubt is None else pair.doubt <= enough
+    vouched = enough >= 0 if pair.doubt is None else pair.doubt <= enough
+    # The lower rungs take no e^{μφ} that could leave the doubles.
+    return vouched & np.isfinite(rounded) if pair.within is THOROUGH else vouched
 
 
 def _nearest(pair: Pair, rounded: Column) -> Any:

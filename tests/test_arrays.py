@@ -245,6 +245,42 @@ def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> N
         np.testing.assert_array_equal(whole[name], strided[name])
 
 
+def test_single_numbers_keep_no_columns() -> None:
+    given = {name: np.tile(column, 50) for name, column in columns(rows("ordinary", 400)).items()}
+    given["m2"] = np.float64(given["m1"].max() * 2)
+    tracemalloc.start()
+    try:
+        sizes = []
+        for _ in range(20):
+            solve_arrays(**given)
+            sizes.append(tracemalloc.get_traced_memory()[0])
+    finally:
+        tracemalloc.stop()
+    assert sizes[-1] - sizes[4] < given["m1"].nbytes
+
+
+def test_what_leaves_the_doubles_is_infinite() -> None:
+    """e^{μφ} is within them and l e^{μφ} is not, by a thorough pair and by one scene."""
+    mu, names = 690 / np.pi, ["least_heavier_mass", "least_pulley_mass"]
+    for m1 in (2.0**100, 2.0**-100):
+        found = solve_arrays([m1] * 9, 2 * m1, 1.0, mu, quantities=names)
+        one = solve_any(m1=m1, m2=2 * m1, M=1.0, mu=mu)
+        for name in names:
+            np.testing.assert_allclose(found[name], float(getattr(one, name)), rtol=1e-15)
+
+
+def test_rows_that_go_up_are_solved_wherever_they_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With those of their block, where they are many, or of all blocks; and some go up twice."""
+    given = columns(rows("ordinary", 200) + rows("near_critical", 800))
+    whole = solve_arrays(**given)
+    monkeypatch.setattr(arrays, "BLOCK", 100)
+    for leave in (0, 1, 10, 1000):
+        monkeypatch.setattr(arrays, "LEAVE", leave)
+        found = solve_arrays(**given)
+        for name in whole:
+            np.testing.assert_allclose(found[name], whole[name], rtol=9e-16, atol=0)
+
+
 def test_inputs_are_left_alone() -> None:
     given = columns(rows("ordinary", 100))
     before = {name: column.copy() for name, column in given.items()}
