@@ -72,6 +72,21 @@ def test_bounds_hold(level: str, operation: str) -> None:
 
 
 @pytest.mark.parametrize("level", LEVELS)
+def test_bounds_of_ordered_terms_hold(level: str) -> None:
+    """Where roundings weigh most: products just above 1, beside terms that are larger in all rows."""
+    ar = LEVELS[level]
+    x, y = rng.uniform(1, 1.01, 400), rng.uniform(1, 1.01, 400)
+    z = x * y * (1 + 1e-9)
+    a, b, c = map(ar.number, (x, y, z))
+    off(c + a * b, lambda x, y, z: z + x * y, x, y, z)
+    off(ar.number(Fraction(3)) - a * b, lambda x, y: 3 - x * y, x, y)
+    near = Fraction(21, 10)  # off its double by 0.38 units
+    off(ar.number(2.1 * x) / ar.number(near), lambda x: x / arb(near), 2.1 * x)
+    if ar is not THOROUGH:
+        assert (c + a * b).bound <= (a * b).bound / 2 + ar.sum_loss
+
+
+@pytest.mark.parametrize("level", LEVELS)
 def test_bounds_of_exponentials_hold(level: str) -> None:
     ar = LEVELS[level]
     most = 220 if ar is THOROUGH else 11  # π times which is below 700, or 36
