@@ -20,7 +20,7 @@ from .rows import COLUMNS, Accuracy, Index, Rows
 from .scene import MISSING_MASS, PARAMETERS, SceneError, nearest
 
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
-BLOCK = 163_840  # rows
+BLOCK = {"fast": 163_840, "certified": 163_840, "exact": 81_920}  # rows, as measured
 LET_GO = 4_000_000  # doubles; its limit is 32 MB
 LEAVE = 1_000  # rows of a block that are better solved with those of others
 THREADS = 4  # more would wait for the interpreter, and hold 30 MB of columns each
@@ -89,19 +89,19 @@ def solve_arrays(
                 flat[name][index] = column
 
     threads = min(THREADS, os.cpu_count() or 1)
-    blocks = _blocks(prod(shape), threads)
+    blocks = _blocks(prod(shape), BLOCK[accuracy], threads)
     leave = LEAVE if len(blocks) > 1 else 0
     _on_threads(threads, lambda block: solve_rows(block, names, 0, leave), blocks)
     for (some, rung), indices in sorted(left.items()):
         index = np.concatenate(indices)
-        for block in _blocks(index.size):
+        for block in _blocks(index.size, BLOCK[accuracy]):
             solve_rows(index[block], some, rung, 0)
     return found
 
 
-def _blocks(size: int, threads: int = 1) -> list[slice]:
+def _blocks(size: int, most: int, threads: int = 1) -> list[slice]:
     """Slices of nearly the same length, so many that the threads share them evenly."""
-    count = -(-size // BLOCK)
+    count = -(-size // most)
     count = -(-count // threads) * threads if count > 1 else count
     return [slice(size * i // count, size * (i + 1) // count) for i in range(count)]
 

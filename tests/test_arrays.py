@@ -238,7 +238,7 @@ def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> N
     whole = solve_arrays(**given, accuracy=accuracy)
     every_other: dict[str, Any] = {name: np.repeat(c, 2)[::2] for name, c in given.items()}
     strided = solve_arrays(**every_other, accuracy=accuracy)
-    monkeypatch.setattr(arrays, "BLOCK", 7)
+    monkeypatch.setitem(arrays.BLOCK, accuracy, 7)
     in_blocks = solve_arrays(**given, accuracy=accuracy)
     for name in whole:
         np.testing.assert_array_equal(whole[name], in_blocks[name])
@@ -273,7 +273,7 @@ def test_rows_that_go_up_are_solved_wherever_they_wait(monkeypatch: pytest.Monke
     """With those of their block, where they are many, or of all blocks; and some go up twice."""
     given = columns(rows("ordinary", 200) + rows("near_critical", 800))
     whole = solve_arrays(**given)
-    monkeypatch.setattr(arrays, "BLOCK", 100)
+    monkeypatch.setitem(arrays.BLOCK, "certified", 100)
     for leave in (0, 1, 10, 1000):
         monkeypatch.setattr(arrays, "LEAVE", leave)
         found = solve_arrays(**given)
