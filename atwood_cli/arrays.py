@@ -20,7 +20,7 @@ from .rows import COLUMNS, Accuracy, Index, Rows
 from .scene import MISSING_MASS, PARAMETERS, SceneError, nearest
 
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
-BLOCK = {"fast": 163_840, "certified": 163_840, "exact": 81_920}  # rows, as measured
+BLOCK = {"fast": 131_072, "certified": 131_072, "exact": 81_920}  # rows, as measured
 LET_GO = 4_000_000  # doubles; its limit is 32 MB
 LEAVE = 1_000  # rows of a block that are better solved with those of others
 THREADS = 4  # more would wait for the interpreter, and hold 30 MB of columns each

@@ -71,7 +71,7 @@ An error of x counts x + 1 times, as x e^x < (x + 1)(e^x - 1).
 
 from collections.abc import Callable
 from fractions import Fraction
-from functools import cache, cached_property
+from functools import cache
 from math import frexp, ldexp, pi
 from threading import local
 from typing import Any, Union
@@ -80,6 +80,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .arithmetic import EXACT, Irrational, enclosures
+from .lazy import lazy
 
 Column = NDArray[np.float64]
 
@@ -396,7 +397,7 @@ class Pairs:
     def is_zero(self, x: Pair) -> bool:
         return x.value.size == 1 and x.exact and x.value[0] == 0
 
-    @cached_property
+    @lazy
     def pi(self) -> Pair:
         return self._single(_pi())
 

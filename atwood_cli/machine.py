@@ -6,11 +6,11 @@ does not determine raises `Undetermined` with the reason.
 """
 
 from fractions import Fraction
-from functools import cached_property
 from typing import Generic, Literal
 
 from . import physics, profile
 from .arithmetic import EXACT, Arithmetic
+from .lazy import lazy
 from .physics import N
 from .rounding import Quantity, is_positive
 from .scene import UNMEASURED, Motion, Radians, Scene
@@ -57,24 +57,24 @@ class Case:
     def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
         self.scene, self.motion = scene, motion
 
-    @cached_property
+    @lazy
     def sign(self) -> int:
         """1 if m2 is the heavier mass, -1 if m1 is, else 0."""
         return (self.scene.m2 > self.scene.m1) - (self.scene.m2 < self.scene.m1)
 
-    @cached_property
+    @lazy
     def light(self) -> Fraction:
         return self.by_side(self.scene.m1, self.scene.m2)[0]
 
-    @cached_property
+    @lazy
     def heavy(self) -> Fraction:
         return self.by_side(self.scene.m1, self.scene.m2)[1]
 
-    @cached_property
+    @lazy
     def locked(self) -> bool:
         return isinstance(self.scene.M, float)
 
-    @cached_property
+    @lazy
     def pulley_mass(self) -> Fraction | None:
         """The pulley's mass; none where it is locked, and 0 where nothing is said of the pulley."""
         M, scene = self.scene.M, self.scene
@@ -82,7 +82,7 @@ class Case:
             return Fraction(0)
         return None if isinstance(M, float) else M
 
-    @cached_property
+    @lazy
     def rim_mass(self) -> Fraction | None:
         """The pulley's inertia as a mass at the rim, c = βM; none where it is locked or not known."""
         scene, mass = self.scene, self.pulley_mass
@@ -92,7 +92,7 @@ class Case:
             return mass
         return scene.inertia * mass
 
-    @cached_property
+    @lazy
     def beta(self) -> Fraction | None:
         """The inertia factor; none where I is given and M is not."""
         if self.scene.I is None:
@@ -113,7 +113,7 @@ class Case:
         """Whether a string that grips needs no friction."""
         return self.sign == 0 or is_zero(self.rim_mass)
 
-    @cached_property
+    @lazy
     def regime(self) -> Literal["no-slip", "verge", "slip"]:
         if self.scene.mu is None or self.tensions_equal:
             return "no-slip"
@@ -121,7 +121,7 @@ class Case:
             return "verge" if self.can_slip else "no-slip"
         return "slip" if self.slips else "no-slip"
 
-    @cached_property
+    @lazy
     def slips(self) -> bool:
         """Whether the string slips on a pulley that is known and friction that is given."""
         return self.can_slip if self.locked else self.beats_friction("excess_ratio")
@@ -138,7 +138,7 @@ class Case:
         """Whether the string moves, or rests, without friction."""
         return self.tensions_equal or (self.regime != "no-slip" and is_zero(self.limiting_mu))
 
-    @cached_property
+    @lazy
     def can_slip(self) -> bool:
         """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
         if self.sign == 0:
@@ -146,12 +146,12 @@ class Case:
         # Whatever slips on a pulley that turns slips on a heavier one.
         return (self.rim_mass is not None and self.slips) or self.beats_friction("locked_excess")
 
-    @cached_property
+    @lazy
     def can_be_made_slip(self) -> bool:
         """Whether it slips under a heavier mass that is heavy enough: second condition of (36)."""
         return self.rim_mass is None or self.beats_friction("heaviest_excess")
 
-    @cached_property
+    @lazy
     def long_wrap(self) -> bool:
         """Whether the wrap is beyond half a turn."""
         wrap = self.scene.wrap
@@ -159,7 +159,7 @@ class Case:
             return wrap > 180
         return is_positive(lambda ar: wrap_angle(ar, self.scene) - ar.pi)
 
-    @cached_property
+    @lazy
     def ends_hang_down(self) -> bool:
         """Whether both ends of the string leave the pulley downwards."""
         return not isinstance(self.scene.wrap, Radians) and (self.scene.wrap - 180) % 360 == 0
@@ -206,19 +206,19 @@ class Machine(Generic[N]):
         self.case, self.scene, self.ar = case, case.scene, ar
         self._arcs: dict[profile.Kind, list[profile.Arc[N]]] = {}
 
-    @cached_property
+    @lazy
     def l(self) -> N:
         return self.ar.number(self.case.light)
 
-    @cached_property
+    @lazy
     def h(self) -> N:
         return self.ar.number(self.case.heavy)
 
-    @cached_property
+    @lazy
     def g(self) -> N:
         return self.ar.number(self.scene.g)
 
-    @cached_property
+    @lazy
     def phi(self) -> N:
         """The angle of wrap φ (rad)."""
         return wrap_angle(self.ar, self.scene)
@@ -236,47 +236,47 @@ class Machine(Generic[N]):
             return self.ar.number(0)
         return self.ar.expm1(self.ar.number(mu) * self.phi)
 
-    @cached_property
+    @lazy
     def k1(self) -> N:
         """The excess of the capstan ratio of static friction."""
         if self.scene.mu is None:
             raise Undetermined(NEEDS_MU)
         return self._capstan_excess(self.scene.mu)
 
-    @cached_property
+    @lazy
     def excess(self) -> N:
         """T_h/T_l - 1 of a string that grips."""
         return self.case.excess_ratio(self.ar)
 
-    @cached_property
+    @lazy
     def transfer(self) -> N:
         """The transfer z at the limit of static friction; see `physics`."""
         return physics.transfer_at_limit(self.l, self.k1)
 
-    @cached_property
+    @lazy
     def drive(self) -> N:
         """The drive d at the limit of static friction."""
         return physics.drive_at_limit(self.l, self.h, self.transfer)
 
-    @cached_property
+    @lazy
     def limiting_k1(self) -> N:
         """The excess of the tension ratio in a regime where friction is at its limit."""
         mu = self.case.limiting_mu
         return self.k1 if mu is self.scene.mu else self._capstan_excess(mu)
 
-    @cached_property
+    @lazy
     def limiting_transfer(self) -> N:
         """The transfer z in that regime."""
         static = self.case.limiting_mu is self.scene.mu
         return self.transfer if static else physics.transfer_at_limit(self.l, self.limiting_k1)
 
-    @cached_property
+    @lazy
     def limiting_drive(self) -> N:
         """The drive d in that regime."""
         static = self.case.limiting_mu is self.scene.mu
         return self.drive if static else physics.drive_at_limit(self.l, self.h, self.limiting_transfer)
 
-    @cached_property
+    @lazy
     def magnitude(self) -> N:
         """The magnitude of the acceleration."""
         l, h, case = self.l, self.h, self.case
@@ -288,7 +288,7 @@ class Machine(Generic[N]):
             drive, load = h - l, physics.load(l, h, self._given(case.rim_mass, NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
-    @cached_property
+    @lazy
     def friction_mu(self) -> N:
         """The μ with which T(θ) = T1 e^{±μθ}, where that is so."""
         if self.case.regime != "no-slip":
@@ -297,7 +297,7 @@ class Machine(Generic[N]):
             return self.mu_verge
         raise Undetermined(NOT_BOUNDED if self.case.long_wrap else NOT_DEFINITE)
 
-    @cached_property
+    @lazy
     def friction_vector(self) -> tuple[N, N]:
         return self.seen_from_m1(profile.friction(self.arcs("exponential")))
 
@@ -305,7 +305,7 @@ class Machine(Generic[N]):
         """A vector as it is where m1, not the lighter mass, is at the start of the arc."""
         return vector if self.case.sign >= 0 else physics.mirrored(*vector, *self._direction)
 
-    @cached_property
+    @lazy
     def alpha(self) -> N:
         """The arc (rad) that friction at its limit needs, where the string grips with some to spare."""
         if self.scene.mu is None:
@@ -351,19 +351,19 @@ class Machine(Generic[N]):
     def _end(self, angle: N) -> profile.Knot[N]:
         return profile.Knot(angle, *self._direction, self.heavy_tension)
 
-    @cached_property
+    @lazy
     def resultant_vector(self) -> tuple[N, N]:
         """The force (N) that T1 and T2 would exert on the pulley, x and y."""
         cos, sin = self._direction
         dx, dy = self.heavy_tension * cos - self.light_tension, self.heavy_tension * sin
         return self.seen_from_m1(physics.resultant_vector(dx, dy))
 
-    @cached_property
+    @lazy
     def _direction(self) -> tuple[N, N]:
         """Cosine and sine of the angle of wrap."""
         return self._cos_sin(1)
 
-    @cached_property
+    @lazy
     def half_sine(self) -> N:
         """Sine of half the angle of wrap."""
         return self._cos_sin(2)[1]
@@ -375,7 +375,7 @@ class Machine(Generic[N]):
             return self.ar.cos_sin(self.ar.number(wrap) / parts)
         return self.ar.cos_sin_of_degrees(wrap / parts)
 
-    @cached_property
+    @lazy
     def difference(self) -> N:
         """The magnitude of T2 - T1."""
         case = self.case
@@ -410,11 +410,11 @@ class Machine(Generic[N]):
     def acceleration(self) -> N:
         return self.magnitude if self.case.sign > 0 else self.magnitude * self.case.sign
 
-    @cached_property
+    @lazy
     def light_tension(self) -> N:
         return physics.light_tension(self.l, self.magnitude, self.g)
 
-    @cached_property
+    @lazy
     def heavy_tension(self) -> N:
         return self.light_tension + self.difference
 
@@ -426,7 +426,7 @@ class Machine(Generic[N]):
     def tension_2(self) -> N:
         return self.case.by_side(self.light_tension, self.heavy_tension)[1]
 
-    @cached_property
+    @lazy
     def mu_verge(self) -> N:
         case = self.case
         if is_zero(case.light):
@@ -439,7 +439,7 @@ class Machine(Generic[N]):
             raise Undetermined(NEEDS_M)
         return physics.verge_coefficient(self.ar.log1p(self.excess), self.phi)
 
-    @cached_property
+    @lazy
     def friction_force(self) -> N:
         mu = self.friction_mu
         if self.ar.is_zero(mu):
@@ -455,15 +455,15 @@ class Machine(Generic[N]):
         light, heavy, ar = self.light_tension, self.heavy_tension, self.ar
         return physics.resultant(light, heavy, self.difference, sin_half, ar.sqrt, ar.hypot)
 
-    @cached_property
+    @lazy
     def friction_force_x(self) -> N:
         return self.friction_vector[0]
 
-    @cached_property
+    @lazy
     def friction_force_y(self) -> N:
         return self.friction_vector[1]
 
-    @cached_property
+    @lazy
     def axle_force(self) -> N:
         if not self.case.ends_hang_down:
             raise Undetermined(ONE_SIDED)
@@ -475,11 +475,11 @@ class Machine(Generic[N]):
             mass = self._given(self.case.pulley_mass, NEEDS_M)
         return physics.axle_force(self.tension_1, self.tension_2, mass, self.g)
 
-    @cached_property
+    @lazy
     def torque(self) -> N:
         return self.tension_difference * self._given(self.scene.R, NEEDS_R)
 
-    @cached_property
+    @lazy
     def rim_acceleration(self) -> N:
         if self.case.regime != "slip":
             return self.acceleration
@@ -487,11 +487,11 @@ class Machine(Generic[N]):
             return self.ar.number(0)
         return self.tension_difference / self.ar.number(self.case.rim_mass)
 
-    @cached_property
+    @lazy
     def angular_acceleration(self) -> N:
         return self.rim_acceleration / self._given(self.scene.R, NEEDS_R)
 
-    @cached_property
+    @lazy
     def critical_pulley_mass(self) -> N:
         if self.scene.mu is None:
             raise Undetermined(NEEDS_MU)
@@ -501,7 +501,7 @@ class Machine(Generic[N]):
         beta = self._given(self.case.beta, UNKNOWN_SHAPE)
         return physics.critical_pulley_mass(self.h, transfer, self.drive, beta)
 
-    @cached_property
+    @lazy
     def critical_heavier_mass(self) -> N:
         transfer = self.transfer
         if self.case.locked:
@@ -511,14 +511,14 @@ class Machine(Generic[N]):
             raise Undetermined(NO_CRITICAL_HEAVIER_MASS)
         return physics.critical_heavier_mass(self.l, c, transfer)
 
-    @cached_property
+    @lazy
     def least_heavier_mass(self) -> N:
         transfer = self.transfer
         if is_zero(self.scene.mu) and not self.case.pulley_known:
             raise Undetermined(NOT_APPLICABLE)
         return physics.least_heavier_mass(self.l, transfer)
 
-    @cached_property
+    @lazy
     def least_pulley_mass(self) -> N:
         transfer = self.transfer
         if is_zero(self.scene.mu) and not self.case.pulley_known:
@@ -559,14 +559,14 @@ class Machine(Generic[N]):
             raise Undetermined(AT_REST)
         return drop, self.magnitude
 
-    @cached_property
+    @lazy
     def friction_force_min(self) -> N:
         if not self._bounded():
             return self.ar.number(0)
         x, y = profile.friction(self.arcs("least"))
         return self.ar.sqrt(x * x + y * y)
 
-    @cached_property
+    @lazy
     def friction_force_max(self) -> N:
         if not self._bounded():
             return self.ar.number(0)

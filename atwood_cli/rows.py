@@ -29,7 +29,6 @@ Parts wait until those on lower rungs are done, so that what is written last is 
 
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
-from functools import cached_property
 from math import nan
 from operator import attrgetter
 from typing import Any, Literal
@@ -39,6 +38,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .columns import FLOATS, QUICK, ROUNDED, THOROUGH, Column, Floats, Pair, Pairs, Unvouched
+from .lazy import lazy
 from .machine import Case, Excess, Machine, Undetermined, is_zero
 from .quantities import REGIMES
 from .scene import PARAMETERS, Scene
@@ -367,18 +367,18 @@ class _RowsCase(Case):
         self._rows: Rows = proxy(rows)
         self.sign, self._arithmetic = rows.sign, arithmetic
 
-    @cached_property
+    @lazy
     def rim_mass(self) -> Any:
         mass = self.pulley_mass
         if mass is None or is_zero(mass):
             return mass
         return self._rows.rim_mass(self._arithmetic)
 
-    @cached_property
+    @lazy
     def long_wrap(self) -> bool:
         return self._rows.answer("long_wrap")
 
-    @cached_property
+    @lazy
     def ends_hang_down(self) -> bool:
         return self._rows.answer("ends_hang_down")
 
@@ -394,8 +394,7 @@ class _RoundedMachine(Machine[Any]):
         self._finer = finer
 
     phi, k1, excess, transfer, drive = (
-        cached_property[Any](attrgetter(f"_finer.{name}"))
-        for name in ("phi", "k1", "excess", "transfer", "drive")
+        lazy(attrgetter(f"_finer.{name}")) for name in ("phi", "k1", "excess", "transfer", "drive")
     )
 
 

@@ -2,8 +2,10 @@
 
 import tracemalloc
 from collections import Counter
+from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from math import inf, isfinite, isinf, isnan, nan, ulp
+from threading import Barrier
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,8 @@ from hypothesis import strategies as st
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
 from atwood_cli.arrays import ACCURACIES, STATUSES
+from atwood_cli.lazy import lazy
+from atwood_cli.machine import Case
 from atwood_cli.quantities import NAMES, STANDARD
 from atwood_cli.rows import COLUMNS
 from atwood_cli.scene import Scene
@@ -279,6 +283,22 @@ def test_rows_that_go_up_are_solved_wherever_they_wait(monkeypatch: pytest.Monke
         found = solve_arrays(**given)
         for name in whole:
             np.testing.assert_allclose(found[name], whole[name], rtol=9e-16, atol=0)
+
+
+def test_threads_do_not_wait_for_each_others_attributes() -> None:
+    """Until Python 3.12 functools' own holds a lock for all objects of a class: blocks waited for ever."""
+    both = Barrier(2, timeout=10)
+
+    class Block:
+        @lazy
+        def attribute(self) -> int:
+            return both.wait()
+
+    with ThreadPoolExecutor(2) as pool:
+        found = list(pool.map(lambda block: (block.attribute, block.attribute), [Block(), Block()]))
+    assert sorted(found) == [(0, 0), (1, 1)]
+    assert isinstance(Block.attribute, lazy)
+    assert all(isinstance(vars(Case)[name], lazy) for name in ("regime", "slips", "can_slip"))
 
 
 def test_inputs_are_left_alone() -> None:

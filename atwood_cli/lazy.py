@@ -1,0 +1,22 @@
+"""Attributes computed when they are first asked for."""
+
+import sys
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING or sys.version_info >= (3, 12):
+    lazy = cached_property
+else:
+
+    class lazy(cached_property):  # noqa: N801 - a decorator
+        """As in Python 3.12: until then a lock held all objects of a class back, on whatever thread.
+
+        Threads that each solve a block waited for each other, and for ever where two attributes may
+        need each other (`Case.slips` and `Case.can_slip`).
+        """
+
+        def __get__(self, instance: Any, owner: Any = None) -> Any:
+            if instance is None:
+                return self
+            value = instance.__dict__[self.attrname] = self.func(instance)
+            return value
