@@ -48,7 +48,8 @@ def solve_arrays(
 
     Masses in kg, g in m/s², R in m, wrap in degrees; M = inf locks the pulley. NaN in M, mu, mu_k or R
     means not given for that row. ``accuracy`` is "fast" (doubles), "certified" (every value within 4
-    units in the last place of the exact one, every regime right), or "exact" (the nearest double).
+    units in the last place of the exact one, every regime right), or "exact" (the nearest double, and so
+    the same everywhere; else the last place may differ between NumPy's builds, or by the rows beside).
 
     Returns arrays by name, of the inputs' common shape: the ``quantities`` asked for (those of
     `quantities.STANDARD` if None), NaN where undetermined, ±inf beyond the doubles; ``regime`` is an
@@ -87,10 +88,9 @@ def solve_arrays(
             for name, column in out.items():
                 flat[name][index] = column
 
-    threads = min(THREADS, os.cpu_count() or 1)
-    blocks = _blocks(prod(shape), BLOCK[accuracy], threads)
+    blocks = _blocks(prod(shape), BLOCK[accuracy], THREADS)
     leave = LEAVE if len(blocks) > 1 else 0
-    _on_threads(threads, lambda block: solve_rows(block, names, 0, leave), blocks)
+    _on_threads(lambda block: solve_rows(block, names, 0, leave), blocks)
     for (some, rung), indices in sorted(left.items()):
         index = np.sort(np.concatenate(indices))  # whichever thread was first
         for block in _blocks(index.size, BLOCK[accuracy]):
@@ -98,10 +98,13 @@ def solve_arrays(
     return found
 
 
-def _blocks(size: int, most: int, threads: int = 1) -> list[slice]:
-    """Slices of nearly the same length, so many that the threads share them evenly."""
+def _blocks(size: int, most: int, multiple_of: int = 1) -> list[slice]:
+    """Slices of nearly the same length, so many that threads share them evenly.
+
+    Not by how many processors there are: the digits must not depend on it.
+    """
     count = -(-size // most)
-    count = -(-count // threads) * threads if count > 1 else count
+    count = -(-count // multiple_of) * multiple_of if count > 1 else count
     return [slice(size * i // count, size * (i + 1) // count) for i in range(count)]
 
 
@@ -114,7 +117,7 @@ def _cut(column: Column, shape: tuple[int, ...], rows: Index) -> Column:
     return np.broadcast_to(column, shape).flat[rows]
 
 
-def _on_threads(threads: int, work: Callable[[slice], None], blocks: Sequence[slice]) -> None:
+def _on_threads(work: Callable[[slice], None], blocks: Sequence[slice]) -> None:
     """NumPy lets go of the interpreter while it computes, so threads share the blocks."""
     if len(blocks) < 2:
         for block in blocks:
@@ -124,7 +127,7 @@ def _on_threads(threads: int, work: Callable[[slice], None], blocks: Sequence[sl
     # this one, whose memory is never touched, it keeps a block's memory for the next one, which saves a
     # quarter of a second of page faults in 10 million rows. Others need no such hint.
     np.empty(LET_GO)
-    pool = ThreadPoolExecutor(threads)
+    pool = ThreadPoolExecutor(min(THREADS, os.cpu_count() or 1))
     try:
         for _ in pool.map(work, blocks):
             pass

@@ -7,6 +7,7 @@ from fractions import Fraction
 from math import inf, isfinite, isinf, isnan, nan, ulp
 from threading import Barrier
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -247,6 +248,19 @@ def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> N
     for name in whole:
         np.testing.assert_array_equal(whole[name], in_blocks[name])
         np.testing.assert_array_equal(whole[name], strided[name])
+
+
+def test_blocks_are_the_same_on_any_number_of_processors(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the last place of a row that goes up the ladder may depend on the rows of its block."""
+    monkeypatch.setitem(arrays.BLOCK, "certified", 7)
+    on_threads = Mock(wraps=arrays._on_threads)
+    monkeypatch.setattr(arrays, "_on_threads", on_threads)
+    for count in (None, 1, 3, 16):
+        monkeypatch.setattr("os.cpu_count", Mock(return_value=count))
+        solve_arrays(np.ones(100), 3.0, 10.0, 0.3)
+    first, *others = (call.args[1] for call in on_threads.call_args_list)
+    assert len(first) == 16
+    assert others == [first] * 3
 
 
 def test_single_numbers_keep_no_columns() -> None:
