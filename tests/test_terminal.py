@@ -4,12 +4,14 @@ import re
 import signal
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from .running import on_terminal, plain, process
+from . import running
+from .running import plain
 
 SCENE = "--m1 1 --m2 3"
 COMMANDS = {
@@ -40,9 +42,13 @@ PLACES: dict[str, Any] = {
 DISK = pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 
 
-@pytest.fixture
-def table(tmp_path: Path) -> str:
-    file = tmp_path / "in.csv"
+# What several tests compare with is run once.
+process, on_terminal = cache(running.process), cache(running.on_terminal)
+
+
+@pytest.fixture(scope="module")
+def table(tmp_path_factory: pytest.TempPathFactory) -> str:
+    file = tmp_path_factory.mktemp("terminal") / "in.csv"
     file.write_text("m1,m2,M,mu\n1,3,10,0.3\n1,3,100,0.3\n")
     return str(file)
 
