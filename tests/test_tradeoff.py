@@ -6,6 +6,7 @@ import json
 import re
 from decimal import Decimal
 from fractions import Fraction
+from itertools import count
 from math import inf, nextafter, ulp
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,8 @@ from atwood_cli.tradeoff import (
     VALUES,
     March,
     Measured,
+    Setting,
+    _size,
     advice,
     errors,
     in_seconds,
@@ -190,6 +193,21 @@ def test_promises_hold_where_they_are_measured(family: str) -> None:
         assert of(measured, name).share_wrong_regime == 0
     assert of(measured, "paper, float64").share_wrong_regime > 0.1
     assert (of(measured, "paper, float32").worst_ulp or 0) > 1e6
+
+
+@pytest.mark.parametrize("interrupted", [None, 0, 1, 2, 3])
+def test_an_interruption_makes_no_run_too_short(
+    interrupted: int | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So few rows were timed then that it was the call that counted, not the scenes."""
+    clock, runs = [0.0], count()
+
+    def run(size: int) -> None:
+        clock[0] += size * 1e-6 + (next(runs) == interrupted)
+
+    monkeypatch.setattr(tradeoff, "perf_counter", lambda: clock[0])
+    setting = Setting("slow now and then", lambda _, size: size, run, lambda *_: [])
+    assert 0.01 <= 1e-6 * _size(setting, [{}] * 1000) <= 0.03
 
 
 def test_the_best_are_those_that_none_beats() -> None:
