@@ -4,6 +4,8 @@ import tracemalloc
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
+from functools import cache
+from itertools import islice
 from math import inf, isfinite, isinf, isnan, nan, ulp
 from threading import Barrier
 from typing import Any
@@ -44,9 +46,10 @@ def row_of(given: dict[str, str]) -> Row | None:
     return row if row["m1"] and row["m2"] and row["g"] else None
 
 
+@cache
 def rows(family: str, count: int) -> list[Row]:
     found = (row_of(given) for given in scenes(family, 2 * count))
-    return [row for row in found if row is not None][:count]
+    return list(islice((row for row in found if row is not None), count))
 
 
 def columns(of: list[Row]) -> dict[str, Any]:
