@@ -43,10 +43,11 @@ from decimal import (
     Decimal,
 )
 from fractions import Fraction
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from math import inf, isqrt
 from typing import Protocol, Union
 
+from .lazy import lazy
 from .physics import N
 
 # Far beyond any input (1e±1500), far within what `decimal` takes on a 32-bit machine.
@@ -206,7 +207,7 @@ class Enclosures:
         """0 <= anything in x less its lower end."""
         return Enclosure(self, ZERO, self.up.subtract(x.hi, x.lo))
 
-    @cached_property
+    @lazy
     def pi(self) -> Enclosure:
         bits = _bits(self.digits)
         return self._fixed(_pi(bits), 2, bits)

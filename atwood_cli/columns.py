@@ -162,7 +162,9 @@ class Pair:
         self.loss, self.doubt = loss, doubt
         self.power = 0.0  # the value, where it is a single power of two: a factor that rounds nothing
         self.near = 1.0  # how far the value of a constant alone is off
-        self._kept: dict[Any, Any] = {}  # what was made of it; shared by all arithmetics if it is exact
+        self._kept: dict[
+            Any, Any
+        ] = {}  # what was made of it; shared by all arithmetics if it has lost nothing
 
     @property
     def bound(self) -> Any:
@@ -177,14 +179,14 @@ class Pair:
         return self.taken_by(within), two.taken_by(within)
 
     def taken_by(self, within: "Pairs") -> "Pair":
-        """The same in another arithmetic; what is exact is so in all of them."""
+        """The same in another arithmetic; what has lost nothing is the same in all of them."""
         if self.within is within:
             return self
-        exact = self.loss == 0 and self.doubt is None
-        own = self if exact or self.rest is None else self.normal()
+        lossless = self.loss == 0 and self.doubt is None
+        own = self if lossless or self.rest is None else self.normal()
         pair = Pair(within, own.value, own.rest, own.loss, own.doubt, own.positive)
         pair.power, pair.near = own.power, own.near
-        if exact:
+        if lossless:
             pair._kept = own._kept
         return pair
 
@@ -260,6 +262,7 @@ class Pair:
 
     @property
     def exact(self) -> bool:
+        """Whether this is a double, or a column of them."""
         return self.rest is None and self.doubt is None and self.loss == 0
 
     def normal(self) -> "Pair":
