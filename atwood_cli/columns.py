@@ -271,7 +271,7 @@ class Pair:
         value = self.rounded()
         if value is self.value:
             return self
-        rest = np.subtract(self.value, value, out=_room(value))
+        rest = self.value - value
         rest += self.rest
         normal = Pair(self.within, value, rest, self.loss, self.doubt, self.positive)
         normal._kept["whole"] = value
@@ -287,7 +287,7 @@ class Pair:
         """Two columns that add up to this, the first of 26 bits."""
         if "halves" not in self._kept:
             head = _head(self.value)
-            tail = np.subtract(self.value, head, out=_room(head))
+            tail = self.value - head
             if self.rest is not None:
                 tail += self.rest
             self._kept["halves"] = head, tail
@@ -299,7 +299,7 @@ class Pair:
         if self.rest is None:
             return self.value
         if "whole" not in self._kept:
-            self._kept["whole"] = np.add(self.value, self.rest, out=_room(self.value))
+            self._kept["whole"] = self.value + self.rest
         whole: Column = self._kept["whole"]
         return whole
 
@@ -450,14 +450,14 @@ class Quick(Pairs):
         if x.rest is None:
             x, y = y, x  # so that y, of whom the whole is needed, has it at hand
         (x_head, x_tail), (y_head, y_tail) = x.halves(), y.halves()
-        value = np.multiply(x_head, y_head, out=_room(x_head, y_head))
-        rest = np.multiply(x_head, y_tail, out=_room(value))
+        value = x_head * y_head
+        rest = x_head * y_tail
         rest += np.multiply(x_tail, y.rounded(), out=_aside(1, value.size)[0])
         return x.of_factors(y, value, rest, LOSS)
 
     def quotient(self, x: Pair, y: Pair) -> Pair:
         whole, (head, tail) = y.rounded(), y.halves()
-        value = np.divide(x.value, whole, out=_room(x.value, whole))
+        value = x.value / whole
         value = _head(value, out=value)
         product, more = _aside(2, value.size)
         np.multiply(value, head, out=product)
@@ -465,7 +465,7 @@ class Quick(Pairs):
         return x.of_factors(y, value, rest, LOSS).halved()
 
     def sqrt(self, x: Pair) -> Pair:
-        root = np.sqrt(x.rounded(), out=_room(x.value))
+        root = np.sqrt(x.rounded())
         value = _head(root)
         # As x - value² = (root - value) (root + value).
         (product,) = _aside(1, value.size)
@@ -475,7 +475,7 @@ class Quick(Pairs):
 
     def _rest(self, x: Pair, product: Column, more: Column | None, by: Column) -> Column:
         """What is left of x less a product in two parts, divided: the rest of a quotient or root."""
-        rest = np.subtract(x.value, product, out=_room(product))
+        rest = x.value - product
         if more is not None:
             rest -= more
         if x.rest is not None:
@@ -493,17 +493,17 @@ class Quick(Pairs):
             k = self.expm1(Pair(self, np.where(off, 1.0, x.value), rest, x.loss, x.doubt))
             k.doubt = np.where(off, np.inf, 0.0 if k.doubt is None else k.doubt)
             return k
-        count = np.multiply(whole, COARSE / np.log(2), out=_room(whole))
+        count = whole * (COARSE / np.log(2))
         np.rint(count, out=count)
         first, last = _ln2_in_parts(COARSE)
         (near,) = _aside(1, count.size)
-        left = Pair(self, x.value - np.multiply(count, first, out=near), count * -last)
-        assert left.rest is not None
+        rest = count * -last
         if x.rest is not None:
-            left.rest += x.rest
-        left = left.normal()
+            rest += x.rest
+        left = Pair(self, x.value - np.multiply(count, first, out=near), rest).normal()
+        assert left.rest is not None
         r = left.value
-        terms = np.multiply(r, 1 / 24, out=_room(r))
+        terms = r * (1 / 24)
         terms += 1 / 6
         terms *= r
         terms += 1 / 2
@@ -518,7 +518,7 @@ class Quick(Pairs):
             head *= power
             tail *= power
             head += power - 1
-        factor = np.add(head, 1.0, out=_room(head))
+        factor = head + 1.0
         factor += tail
         value, rest = _fast_sum(head, np.multiply(factor, r, out=near))
         rest += np.multiply(factor, terms, out=terms)
@@ -538,7 +538,7 @@ class Quick(Pairs):
     def log1p(self, x: Pair) -> Pair:
         if x.rest is not None:
             x = x.normal()
-        value = np.log1p(x.value, out=_room(x.value))
+        value = np.log1p(x.value)
         rest = None if x.rest is None else x.rest / (1 + x.value)
         # With no more digits than a double has: exact products from here on gain nothing.
         return Pair(ROUNDED, value, rest, LIBRARY + x.loss + LOOSE, x.doubt)
@@ -550,24 +550,24 @@ class Rounded(Quick):
     sum_loss = LOOSE
 
     def product(self, x: Pair, y: Pair) -> Pair:
-        value, rest = np.multiply(x.value, y.value, out=_room(x.value, y.value)), None
+        value, rest = x.value * y.value, None
         for a, b in (x.value, y.rest), (y.value, x.rest):
             if b is not None:
-                term = np.multiply(a, b, out=_room(value))
+                term = a * b
                 rest = term if rest is None else np.add(rest, term, out=rest)
         return x.of_factors(y, value, rest, UNIT + LOOSE)
 
     def quotient(self, x: Pair, y: Pair) -> Pair:
-        value = np.divide(x.value, y.value, out=_room(x.value, y.value))
+        value = x.value / y.value
         rest, loss = x.rest, UNIT + LOOSE
         if y.rest is not None:
             if y.near < NEARLY:
                 loss += y.near
             else:
-                term = np.multiply(value, y.rest, out=_room(value))
+                term = value * y.rest
                 rest = np.subtract(0.0 if rest is None else rest, term, out=term)
         if rest is not None:
-            rest = np.divide(rest, y.value, out=_room(value))
+            rest = rest / y.value
         return x.of_factors(y, value, rest, loss)
 
     def sqrt(self, x: Pair) -> Pair:
@@ -593,7 +593,7 @@ class Thorough(Pairs):
         return x.of_factors(y, value, rest, (0, 4, 9)[len(terms)] * UNIT**2).normal()
 
     def quotient(self, x: Pair, y: Pair) -> Pair:
-        value = np.divide(x.value, y.value, out=_room(x.value, y.value))
+        value = x.value / y.value
         rest = self._remainder(x, value, y.value)
         if y.rest is not None:
             rest -= value * y.rest
@@ -601,7 +601,7 @@ class Thorough(Pairs):
         return x.of_factors(y, value, rest, 13 * UNIT**2).normal()
 
     def sqrt(self, x: Pair) -> Pair:
-        value = np.sqrt(x.value, out=_room(x.value))
+        value = np.sqrt(x.value)
         rest = self._remainder(x, value, value)
         rest /= 2 * value
         doubt = None if x.doubt is None else x.doubt / 2
@@ -667,14 +667,6 @@ class Thorough(Pairs):
 ROUNDED, QUICK, THOROUGH = LEVELS = Rounded(), Quick(), Thorough()
 
 
-def _room(like: Column, or_like: Column | None = None) -> Column:
-    """Where to put a result, at a multiple of 64 bytes: SIMD is twice as fast there."""
-    size = like.size if or_like is None else max(like.size, or_like.size)
-    room = np.empty(size + 7)
-    ahead: int = -(room.__array_interface__["data"][0] >> 3) & 7
-    return room[ahead : ahead + size]
-
-
 _scratch = local()
 
 
@@ -682,17 +674,16 @@ def _aside(count: int, size: int) -> list[Column]:
     """Rooms for what is soon forgotten: each thread has its own, which the processor has at hand."""
     rooms: list[Column] = getattr(_scratch, "rooms", [])
     if not rooms or rooms[0].size < size:
-        _scratch.rooms = rooms = [_room(np.empty(size)) for _ in range(5)]
+        _scratch.rooms = rooms = [np.empty(size) for _ in range(5)]
     return [room[:size] for room in rooms[:count]]
 
 
 def _sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:
     """x + y, or x - y if ``add`` is np.subtract, rounded, and the error of that, exactly (D. E. Knuth)."""
-    total = add(x, y, out=_room(x, y))
-    error = _room(total)
+    total = add(x, y)
     (added,) = _aside(1, total.size)
     np.subtract(total, x, out=added)
-    np.subtract(total, added, out=error)
+    error = total - added
     np.subtract(x, error, out=error)
     if add is np.add:
         np.subtract(y, added, out=added)
@@ -705,16 +696,17 @@ def _sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:
 
 def _fast_sum(x: Column, y: Column, add: Any = np.add) -> tuple[Column, Column]:
     """The same where no row of y is the larger one in size: then two operations do (T. J. Dekker)."""
-    total = add(x, y, out=_room(x, y))
-    error = np.subtract(x, total, out=_room(total))
+    total = add(x, y)
+    error = x - total
     return total, add(error, y, out=error)
 
 
 def _head(x: Column, out: Column | None = None) -> Column:
     """The first 26 bits."""
-    out = _room(x) if out is None else out
-    np.bitwise_and(x.view(np.int64), HEAD, out=out.view(np.int64))
-    return out
+    head: NDArray[np.int64] = np.bitwise_and(
+        x.view(np.int64), HEAD, out=None if out is None else out.view(np.int64)
+    )
+    return head.view(np.float64)
 
 
 def _both(x: Any, y: Any, join: Any) -> Any:
@@ -724,11 +716,11 @@ def _both(x: Any, y: Any, join: Any) -> Any:
 
 def _product(x: Column, y: Column) -> tuple[Column, Column]:
     """x y, rounded, and the error of that, exactly."""
-    product = np.multiply(x, y, out=_room(x, y))
+    product = x * y
     part, *rooms = _aside(5, product.size)
     x_high, x_low = _halves(x, *rooms[:2])
     y_high, y_low = _halves(y, *rooms[2:])
-    error = np.multiply(x_high, y_high, out=_room(product))
+    error = x_high * y_high
     error -= product
     error += np.multiply(x_low, y_high, out=part)
     error += np.multiply(x_high, y_low, out=part)
