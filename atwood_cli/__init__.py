@@ -5,13 +5,20 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .api import solve
     from .arrays import solve_arrays
-    from .quantities import REGIMES, Solution
-    from .scene import Scene, SceneError
+    from .model.quantities import REGIMES, Solution
+    from .model.scene import Scene, SceneError
 
 __all__ = ["REGIMES", "Scene", "SceneError", "Solution", "solve", "solve_arrays"]
 __version__ = "0.1.0"
 
-_HOMES = {"solve": "api", "solve_arrays": "arrays", "REGIMES": "quantities", "Solution": "quantities"}
+_HOMES = {
+    "REGIMES": "model.quantities",
+    "Scene": "model.scene",
+    "SceneError": "model.scene",
+    "Solution": "model.quantities",
+    "solve": "api",
+    "solve_arrays": "arrays",
+}
 
 
 def __getattr__(name: str) -> Any:
@@ -19,9 +26,9 @@ def __getattr__(name: str) -> Any:
 
     So it can catch Ctrl-C while they load.
     """
-    if name not in __all__:
+    if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     from importlib import import_module
 
-    value = globals()[name] = getattr(import_module(f".{_HOMES.get(name, 'scene')}", __name__), name)
+    value = globals()[name] = getattr(import_module(f".{_HOMES[name]}", __name__), name)
     return value

@@ -3,10 +3,10 @@
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any, overload
 
-from .quantities import NAMES, Solution
-from .scene import Given, read_digits
-from .solver import read_answers
-from .words import notes
+from .model.quantities import NAMES, Solution
+from .model.scene import Given, read_digits
+from .solver.answers import read_answers
+from .solver.messages import notes
 
 if TYPE_CHECKING:
     from typing import TypedDict, Unpack
@@ -70,13 +70,13 @@ def solve(
     values = {name: answers[name] for name in answers.names}
     remarks, spreads = notes(answers), {}
     if uncertain:
-        from .uncertainty import propagate
+        from .solver.uncertainty import propagate
 
         found = propagate(answers.case, uncertain, answers.names)
         remarks, spreads = [*remarks, *found.notes], found.rounded(answers)
     kind: type[Solution[Any]] = Solution
     if answers.names != NAMES:
-        from .inverse import MeasuredSolution
+        from .model.motion import MeasuredSolution
 
         kind = MeasuredSolution
     return kind(scene=answers.case.scene, notes=tuple(remarks), uncertainty=spreads, **values)

@@ -6,8 +6,8 @@ from pathlib import Path
 from rich.console import Console
 
 from atwood_cli import Scene
-from atwood_cli.output import print_table
-from atwood_cli.solver import Answers
+from atwood_cli.cli.page import print_table
+from atwood_cli.solver.answers import Answers
 
 
 def picture() -> str:

@@ -8,10 +8,10 @@ import sys
 from datetime import date
 from pathlib import Path
 
-from atwood_cli.families import FAMILIES
-from atwood_cli.figure import save_tradeoff
-from atwood_cli.output import watched
-from atwood_cli.tradeoff import Tradeoff, in_seconds, percent, scientific, short, tradeoff
+from atwood_cli.cli.figure import save_tradeoff
+from atwood_cli.cli.page import watched
+from atwood_cli.tradeoff.measure import Tradeoff, in_seconds, percent, scientific, short, tradeoff
+from atwood_cli.tradeoff.scenes import FAMILIES
 
 TOP = Path(__file__).parent.parent
 README, PICTURE = TOP / "README.md", TOP / "examples" / "tradeoff.svg"

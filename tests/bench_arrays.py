@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from atwood_cli import solve_arrays
-from atwood_cli.yardstick import paper_in_numpy
+from atwood_cli.tradeoff.baseline import paper_in_numpy
 
 REPEATS = 5
 Columns = tuple[Any, Any, Any, Any]

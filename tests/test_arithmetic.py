@@ -10,10 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atwood_cli import arithmetic, rounding, solve
-from atwood_cli.arithmetic import EXACT, Enclosure, enclosures
-from atwood_cli.physics import N
-from atwood_cli.rounding import to_digits, to_double
+from atwood_cli import solve
+from atwood_cli.arithmetic import interval as arithmetic
+from atwood_cli.arithmetic import rounding
+from atwood_cli.arithmetic.interval import EXACT, Enclosure, enclosures
+from atwood_cli.arithmetic.rounding import to_digits, to_double
+from atwood_cli.model.physics import N
 
 precisions = st.sampled_from([20, 25, 50, 97, 200, 1000])
 rationals = st.fractions().filter(lambda q: abs(q) < 10**30)

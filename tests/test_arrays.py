@@ -17,12 +17,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
+from atwood_cli.arithmetic.lazy import lazy
 from atwood_cli.arrays import ACCURACIES, STATUSES
-from atwood_cli.lazy import lazy
-from atwood_cli.machine import Case
-from atwood_cli.quantities import NAMES, STANDARD
-from atwood_cli.rows import COLUMNS
-from atwood_cli.scene import Scene
+from atwood_cli.arrays.rows import COLUMNS
+from atwood_cli.model.machine import Case
+from atwood_cli.model.quantities import NAMES, STANDARD
+from atwood_cli.model.scene import Scene
 
 from . import oracle
 from .scenes import FAMILIES, scenes

@@ -19,11 +19,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from atwood_cli import solve, tables
+from atwood_cli import solve
 from atwood_cli.arrays import solve_arrays
-from atwood_cli.quantities import NAMES, STANDARD
-from atwood_cli.rows import COLUMNS
-from atwood_cli.tables import FORMATS
+from atwood_cli.arrays.rows import COLUMNS
+from atwood_cli.batch import formats as tables
+from atwood_cli.batch.formats import FORMATS
+from atwood_cli.model.quantities import NAMES, STANDARD
 
 from .running import Atwood, Ran, on_terminal, plain, process
 
@@ -124,7 +125,7 @@ def test_every_accuracy_is_handed_on(
         asked.append(accuracy)
         return solve_arrays(*args, accuracy=accuracy, **more)
 
-    monkeypatch.setattr("atwood_cli.batch.solve_arrays", spy)
+    monkeypatch.setattr("atwood_cli.batch.run.solve_arrays", spy)
     assert atwood("batch", table(as_csv(SCENES)), "--accuracy", accuracy).status == 0
     assert set(asked) == {accuracy}
 
@@ -702,7 +703,8 @@ def test_closed_streams(table: Table) -> None:
 
 BAR = """
 import sys
-from atwood_cli import output, tables
+from atwood_cli.cli import page as output
+from atwood_cli.batch import formats as tables
 tables.PIECE_BYTES = 64
 clock = iter(range(10**6))
 output.monotonic = lambda: next(clock)

@@ -13,7 +13,7 @@ import pytest
 
 from atwood_cli import solve
 from atwood_cli.__main__ import main
-from atwood_cli.quantities import FOUND_NAMES
+from atwood_cli.model.quantities import FOUND_NAMES
 
 from . import oracle
 from .running import PAPER, Atwood, on_terminal, plain, process
@@ -287,7 +287,7 @@ def test_only_what_is_needed_is_imported(output: str) -> None:
         [sys.executable, "-c", LOADED, *PAPER, *output.split()], capture_output=True, text=True, check=True
     )
     loaded = set(done.stderr.split())
-    assert "atwood_cli.solver" in loaded
+    assert "atwood_cli.solver.answers" in loaded
     assert "numpy" not in loaded
     assert ("rich" in loaded) == (output == "")
 
@@ -334,10 +334,10 @@ def test_the_door_opens_before_anything_is_loaded() -> None:
         [sys.executable, "-c", code], capture_output=True, text=True, check=True
     ).stdout.split()
     assert "atwood_cli.__main__" in loaded
-    assert not {"atwood_cli.cli", "atwood_cli.solver", "atwood_cli.scene", "typer"} & set(loaded)
+    assert not {"atwood_cli.cli", "atwood_cli.solver", "atwood_cli.model", "typer"} & set(loaded)
 
 
-@pytest.mark.parametrize("where", ["atwood_cli.solver.Answers", "atwood_cli.cli.run"])
+@pytest.mark.parametrize("where", ["atwood_cli.solver.answers.Answers", "atwood_cli.cli.run"])
 def test_an_interrupt_ends_it_with_130(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], where: str
 ) -> None:

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atwood_cli.columns import FLOATS, QUICK, ROUNDED, THOROUGH, UNIT, Pairs
+from atwood_cli.arithmetic.double_double import FLOATS, QUICK, ROUNDED, THOROUGH, UNIT, Pairs
 
 LEVELS = {"rounded": ROUNDED, "quick": QUICK, "thorough": THOROUGH}
 rng = np.random.default_rng(2026)

@@ -23,10 +23,10 @@ from scipy.optimize import linprog, minimize_scalar
 from scipy.sparse import diags_array, vstack
 
 from atwood_cli import Scene, SceneError, solve
-from atwood_cli.contact import Contact, contact
-from atwood_cli.elements import Row, elements
-from atwood_cli.rounding import text
-from atwood_cli.solver import Answers
+from atwood_cli.arithmetic.rounding import text
+from atwood_cli.solver.answers import Answers
+from atwood_cli.solver.contact import Contact, contact
+from atwood_cli.solver.elements import Row, elements
 
 from . import oracle
 from .running import Atwood, on_terminal, plain, process

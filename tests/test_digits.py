@@ -5,8 +5,8 @@ from math import isinf
 
 import pytest
 
-from atwood_cli.scene import Scene
-from atwood_cli.solver import Answers
+from atwood_cli.model.scene import Scene
+from atwood_cli.solver.answers import Answers
 
 from . import oracle
 from .scenes import FAMILIES, scenes

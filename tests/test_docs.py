@@ -9,9 +9,9 @@ from pathlib import Path
 
 import pytest
 
-from atwood_cli.families import FAMILIES
-from atwood_cli.scene import Scene
-from atwood_cli.tradeoff import COUNTS, PAPERS_SCENE, SETTINGS, March, Measured, Tradeoff
+from atwood_cli.model.scene import Scene
+from atwood_cli.tradeoff.measure import COUNTS, PAPERS_SCENE, SETTINGS, March, Measured, Tradeoff
+from atwood_cli.tradeoff.scenes import FAMILIES
 
 from .running import process
 

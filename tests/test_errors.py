@@ -8,11 +8,11 @@ from pathlib import Path
 import polars as pl
 import pytest
 
-from atwood_cli import cli
+import atwood_cli
 
 from .running import Atwood
 
-PACKAGE, TESTS = Path(cli.__file__).parent, Path(__file__).parent
+PACKAGE, TESTS = Path(atwood_cli.__file__).parent, Path(__file__).parent
 SENTENCES = ("SceneError", "Unreadable", "OSError", "FileExistsError", "ArithmeticError")
 NOT_REACHED = {
     "not settled within": "no scene is known that fifty thousand digits do not settle",
@@ -28,8 +28,10 @@ def fragments(node: ast.AST) -> Iterator[str]:
 
 def errors() -> Iterator[tuple[str, str]]:
     """Where an error is made, and the longest text in it that does not depend on what was given."""
-    for path in sorted(PACKAGE.glob("*.py")):
-        module = import_module(f"atwood_cli.{path.stem}") if path.stem[0] != "_" else None
+    for path in sorted(PACKAGE.rglob("*.py")):
+        module = import_module(
+            ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
+        )
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") in SENTENCES and node.args:
                 rule = node.args[min(2, len(node.args) - 1)] if node.func.id == "SceneError" else node  # type: ignore[attr-defined]
@@ -37,7 +39,7 @@ def errors() -> Iterator[tuple[str, str]]:
                 if isinstance(rule, ast.Name):
                     texts = [str(getattr(module, rule.id, ""))]
                 if text := max(texts, key=len, default="").strip(" ;:,."):
-                    yield f"{path.name}:{node.lineno}", text
+                    yield f"{path.relative_to(PACKAGE).as_posix()}:{node.lineno}", text
 
 
 EXPECTED = [
@@ -51,7 +53,12 @@ EXPECTED = [
 def test_errors_are_found() -> None:
     found = list(errors())
     assert len(found) > 60
-    assert {where.split(":")[0] for where, _ in found} >= {"scene.py", "sweep.py", "cli.py", "tables.py"}
+    assert {where.split(":")[0] for where, _ in found} >= {
+        "model/scene.py",
+        "solver/sweep.py",
+        "cli/__init__.py",
+        "batch/formats.py",
+    }
 
 
 @pytest.mark.parametrize(("where", "text"), list(errors()), ids=lambda word: word[:40])

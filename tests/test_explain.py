@@ -12,11 +12,11 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from atwood_cli.derivation import HELD, Equation, Law
-from atwood_cli.explain import Explanation, explain
-from atwood_cli.handout import as_markdown, as_text, chain
-from atwood_cli.scene import Scene
-from atwood_cli.solver import Answers
+from atwood_cli.derivation.equations import HELD, Equation, Law
+from atwood_cli.derivation.steps import Explanation, explain
+from atwood_cli.derivation.typeset import as_markdown, as_text, chain
+from atwood_cli.model.scene import Scene
+from atwood_cli.solver.answers import Answers
 
 from . import oracle
 from .running import Atwood, on_terminal, plain, process

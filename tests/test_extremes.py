@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from mpmath import MPContext
 
 from atwood_cli import REGIMES, solve, solve_arrays
-from atwood_cli.quantities import NAMES
+from atwood_cli.model.quantities import NAMES
 
 mp: Any = MPContext()
 mp.dps = 60

@@ -13,10 +13,10 @@ import typer
 
 from atwood_cli import cli
 from atwood_cli.arrays import ACCURACIES
-from atwood_cli.families import FAMILIES
-from atwood_cli.quantities import NAMES
-from atwood_cli.scene import BODIES, INERTIA_FACTORS
-from atwood_cli.tables import FORMATS
+from atwood_cli.batch.formats import FORMATS
+from atwood_cli.model.quantities import NAMES
+from atwood_cli.model.scene import BODIES, INERTIA_FACTORS
+from atwood_cli.tradeoff.scenes import FAMILIES
 from examples.help import COMMANDS, pages
 
 from .running import Atwood, on_terminal, process

@@ -14,9 +14,10 @@ import uncertainties as unc
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli import Scene, SceneError, Solution, physics, solve
-from atwood_cli.inverse import MeasuredSolution
-from atwood_cli.quantities import FOUND_NAMES, NAMES, QUANTITIES, abouts
+from atwood_cli import Scene, SceneError, Solution, solve
+from atwood_cli.model import physics
+from atwood_cli.model.motion import MeasuredSolution
+from atwood_cli.model.quantities import FOUND_NAMES, NAMES, QUANTITIES, abouts
 
 from .running import Atwood, process
 

@@ -7,7 +7,7 @@ import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli import physics
+from atwood_cli.model import physics
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
 l, h, c, g, mu, phi, t1, t2, beta = sp.symbols("l h c g mu phi T1 T2 beta", positive=True)

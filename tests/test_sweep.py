@@ -20,12 +20,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli.arithmetic import LARGEST_EXPONENT
+from atwood_cli.arithmetic.interval import LARGEST_EXPONENT
 from atwood_cli.cli import sweep
-from atwood_cli.output import watched
-from atwood_cli.quantities import NAMES, STANDARD
-from atwood_cli.scene import PARAMETERS, SceneError
-from atwood_cli.sweep import Row, point_text, read_range, read_sweep, solve_rows
+from atwood_cli.cli.page import watched
+from atwood_cli.model.quantities import NAMES, STANDARD
+from atwood_cli.model.scene import PARAMETERS, SceneError
+from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows
 
 from .running import Atwood, on_terminal, plain, process
 from .test_contact import labels
@@ -378,7 +378,7 @@ def test_a_long_run_shows_a_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -
             shown.append((shown[-1][0] + by, 5))
 
     monkeypatch.setattr("rich.progress.Progress", Bar)
-    monkeypatch.setattr("atwood_cli.output.monotonic", lambda: next(clock))
+    monkeypatch.setattr("atwood_cli.cli.page.monotonic", lambda: next(clock))
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     assert list(watched(iter(rows), 5)) == rows
     assert shown == [(2, 5), (3, 5), (4, 5), (5, 5)]
@@ -489,8 +489,8 @@ def test_a_figure_is_replaced_only_by_force(
     atwood: Atwood, tmp_path: Path, words: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("matplotlib")
-    monkeypatch.setattr("atwood_cli.tradeoff.REPEATS", 1)
-    monkeypatch.setattr("atwood_cli.tradeoff.COUNTS", (4, 10))
+    monkeypatch.setattr("atwood_cli.tradeoff.measure.REPEATS", 1)
+    monkeypatch.setattr("atwood_cli.tradeoff.measure.COUNTS", (4, 10))
     file = tmp_path / "a.svg"
     file.write_text("kept")
     command, *rest = words.replace("FILE", str(file)).split()

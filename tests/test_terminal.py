@@ -157,14 +157,14 @@ def test_a_full_disk_is_an_error(command: str, table: str) -> None:
 
 SLOW = """
 import sys, time
-import atwood_cli.cli, atwood_cli.solver, atwood_cli.batch
+import atwood_cli.cli, atwood_cli.solver.answers, atwood_cli.batch.run
 from atwood_cli.__main__ import main
 def slow(*_, **__):
     print("started", file=sys.stderr, flush=True)
     time.sleep(60)
-atwood_cli.solver.Answers = atwood_cli.batch.run_batch = slow
-import atwood_cli.sweep
-atwood_cli.sweep.Answers = slow
+atwood_cli.solver.answers.Answers = atwood_cli.batch.run.run_batch = slow
+import atwood_cli.solver.sweep
+atwood_cli.solver.sweep.Answers = slow
 sys.exit(main())
 """
 

@@ -15,11 +15,11 @@ import mpmath
 import numpy as np
 import pytest
 
-from atwood_cli import solve_arrays, tradeoff
-from atwood_cli.columns import FLOATS, LEVELS, Floats, Pair, Pairs
-from atwood_cli.families import FAMILIES, draw_scenes
-from atwood_cli.scene import Scene
-from atwood_cli.tradeoff import (
+from atwood_cli import solve_arrays
+from atwood_cli.arithmetic.double_double import FLOATS, LEVELS, Floats, Pair, Pairs
+from atwood_cli.model.scene import Scene
+from atwood_cli.tradeoff import measure as tradeoff
+from atwood_cli.tradeoff.measure import (
     DECIMALS,
     SETTINGS,
     VALUES,
@@ -37,6 +37,7 @@ from atwood_cli.tradeoff import (
     short,
     with_orders,
 )
+from atwood_cli.tradeoff.scenes import FAMILIES, draw_scenes
 
 from . import oracle
 from .running import Atwood

@@ -19,12 +19,12 @@ import uncertainties as unc
 from uncertainties import umath
 
 from atwood_cli import SceneError, solve
-from atwood_cli.machine import Case
-from atwood_cli.quantities import NAMES
-from atwood_cli.rounding import to_place, with_uncertainty
-from atwood_cli.scene import Radians, Scene, read_uncertain
-from atwood_cli.solver import read_answers
-from atwood_cli.uncertainty import Spread, propagate
+from atwood_cli.arithmetic.rounding import to_place, with_uncertainty
+from atwood_cli.model.machine import Case
+from atwood_cli.model.quantities import NAMES
+from atwood_cli.model.scene import Radians, Scene, read_uncertain
+from atwood_cli.solver.answers import read_answers
+from atwood_cli.solver.uncertainty import Spread, propagate
 
 from . import oracle
 from .running import Atwood, on_terminal, plain, process
@@ -605,7 +605,7 @@ def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:
             text=True,
             check=True,
         )
-        assert ("atwood_cli.uncertainty" in done.stderr.split()) == loaded
+        assert ("atwood_cli.solver.uncertainty" in done.stderr.split()) == loaded
         assert ("uncertainty" in json.loads(done.stdout)) == loaded
     assert solve(m1="1", m2="3").uncertainty == {}
     assert hash(solve(m1="1", m2="3")) == hash(solve(m1="1", m2="3.0"))

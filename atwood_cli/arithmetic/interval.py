@@ -1,0 +1,417 @@
+"""Exact and adaptive-precision arithmetic, and why the last printed digit is right.
+
+Every input is a rational number, taken exactly as typed. A quantity is first computed in exact
+fractions (`EXACT`); if its formula stays rational, one division, rounded once, gives the answer,
+ties included. Otherwise (an exponential, logarithm or root was asked for) it is computed in
+*enclosures*: pairs lo <= value <= hi of decimals. Sums, products and quotients round lo down and
+hi up; the standard library's `decimal` does both exactly as told, on every platform. So the true
+value lies in the enclosure whatever was lost to cancellation, which only makes it wider.
+
+Rounding is monotonic: if lo and hi round to the same double, or to the same N digits, so does
+everything between them, the true value too. If they differ, the precision is doubled and the
+quantity computed anew (Ziv's strategy). This ends because the width tends to zero and the true
+value is no tie: for rational inputs, what is not rational here is transcendental (e^q and ln q are,
+for rational q other than 0 and 1; so is e^{πq}, by Gelfond's theorem). A comparison, such as μφ
+against ln(T_h/T_l), is decided the same way: once the enclosure of the difference excludes zero.
+
+Few things are not plain arithmetic. `sqrt` is correctly rounded by `decimal`; one step outwards on
+each side encloses it. π and ln 10 are Machin-like sums in integers with 2^-w as unit: each term is
+cut off by less than two units, there are fewer than w terms, the coefficients add up to at most 100,
+and 40 further bits absorb that up to w = 2^32, so what is cut to w bits is right to two units.
+
+`expm1` works on integers too, unit 2^-w. The argument less n ln 10 is in [0, 2.4), off by at most
+2n + 2 units. It is divided by 2^s, summed as e^r - 1 = r + r²/2 + ..., and doubled s times by
+e^{2r} - 1 = u (2 + u). A term inherits at most its predecessor's error and is cut off by less than
+one unit twice, so t terms are off by at most 3t units; a doubling multiplies the error by 2 (1 + u)
+and adds at most one unit. The product of those factors is 2^s e^{2.4} < 12 · 2^s. So the sum is off
+by fewer than 12 · 2^s (3t + s + 2n + 4) units, less than 2^(s + 8) (w + n), as t and s are below w.
+That is what is added and taken off. Cosine and sine, of an argument within ±π/4 after n quarter
+turns, have no doublings: 4 (w + n) units cover them. `log1p` needs no series: for a guess y0,
+ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
+Whatever the guess, that encloses; a good one encloses tightly.
+
+A function is evaluated at the lower end only; over a width δ <= 1 of its argument ln(1 + y), cosine
+and sine change by at most δ, and e^x by at most 2δ e^x.
+"""
+
+from collections.abc import Callable
+from decimal import (
+    ROUND_CEILING,
+    ROUND_FLOOR,
+    ROUND_HALF_EVEN,
+    Context,
+    Decimal,
+)
+from fractions import Fraction
+from functools import lru_cache
+from math import inf, isqrt
+from typing import Protocol, Union
+
+from ..model.physics import N
+from .lazy import lazy
+
+# Far beyond any input (1e±1500), far within what `decimal` takes on a 32-bit machine.
+LARGEST_EXPONENT = 10**8
+LARGEST_ARGUMENT = LARGEST_EXPONENT * 2_302_585_092 // 10**9  # of an exponential: times ln 10
+ZERO, ONE, TWO = Decimal(0), Decimal(1), Decimal(2)
+LOG10_E = Decimal("0.434294481903")  # rounded down, so that what remains is not negative
+
+
+class Irrational(ArithmeticError):
+    """The quantity leaves the rational numbers: compute it in enclosures."""
+
+
+class Unsettled(ArithmeticError):
+    """The enclosure is too wide to go on: compute with more digits, ``digits`` if that is known."""
+
+    def __init__(self, digits: int = 0) -> None:
+        super().__init__(digits)
+        self.digits = digits
+
+
+class Arithmetic(Protocol[N]):
+    """The number type that the equations run in, with its transcendental functions."""
+
+    def number(self, q: Fraction | int) -> N: ...
+    def is_zero(self, x: N) -> bool: ...
+    @property
+    def pi(self) -> N: ...
+    def exp(self, x: N) -> N: ...
+    def expm1(self, x: N) -> N: ...
+    def log1p(self, x: N) -> N: ...
+    def sqrt(self, x: N) -> N: ...
+    def hypot(self, x: N, y: N | int) -> N: ...
+    def cos_sin(self, x: N) -> tuple[N, N]: ...
+    def cos_sin_of_degrees(self, x: Fraction) -> tuple[N, N]: ...
+    def root(self, f: Callable[[N], N], end: N) -> N: ...
+
+
+class Rationals:
+    """Exact fractions; whatever would leave them raises `Irrational`."""
+
+    def number(self, q: Fraction | int) -> Fraction:
+        return Fraction(q)
+
+    def is_zero(self, x: Fraction) -> bool:
+        return x == 0
+
+    @property
+    def pi(self) -> Fraction:
+        raise Irrational
+
+    def expm1(self, x: Fraction) -> Fraction:
+        raise Irrational
+
+    exp = log1p = expm1
+
+    def sqrt(self, x: Fraction) -> Fraction:
+        """Square root of x >= 0, where it is rational."""
+        root = Fraction(isqrt(x.numerator), isqrt(x.denominator))
+        if root * root != x:
+            raise Irrational
+        return root
+
+    def hypot(self, x: Fraction, y: Fraction | int) -> Fraction:
+        raise Irrational
+
+    def cos_sin(self, x: Fraction) -> tuple[Fraction, Fraction]:
+        raise Irrational
+
+    def cos_sin_of_degrees(self, x: Fraction) -> tuple[Fraction, Fraction]:
+        if (x / 90).denominator > 1:
+            raise Irrational
+        cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[x // 90 % 4]
+        return Fraction(cos), Fraction(sin)
+
+    def root(self, f: Callable[[Fraction], Fraction], end: Fraction) -> Fraction:
+        raise Irrational
+
+
+EXACT = Rationals()
+
+
+def decimal_context(digits: int, rounding: str) -> Context:
+    limit = 2 * LARGEST_EXPONENT
+    return Context(prec=digits, rounding=rounding, Emin=-limit, Emax=limit, traps=[])
+
+
+class Enclosure:
+    """A pair lo <= value <= hi of decimals, with arithmetic that keeps it so."""
+
+    __slots__ = ("hi", "lo", "within")
+
+    def __init__(self, within: "Enclosures", lo: Decimal, hi: Decimal) -> None:
+        self.within, self.lo, self.hi = within, lo, hi
+
+    def _lift(self, other: Union["Enclosure", int]) -> "Enclosure":
+        return self.within.number(other) if isinstance(other, int) else other
+
+    def __add__(self, other: Union["Enclosure", int]) -> "Enclosure":
+        other, at = self._lift(other), self.within
+        return Enclosure(at, at.down.add(self.lo, other.lo), at.up.add(self.hi, other.hi))
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Union["Enclosure", int]) -> "Enclosure":
+        other, at = self._lift(other), self.within
+        return Enclosure(at, at.down.subtract(self.lo, other.hi), at.up.subtract(self.hi, other.lo))
+
+    def __mul__(self, other: Union["Enclosure", int]) -> "Enclosure":
+        other, at = self._lift(other), self.within
+        if self.lo >= 0 and other.lo >= 0:
+            lo, hi = at.down.multiply(self.lo, other.lo), at.up.multiply(self.hi, other.hi)
+        else:
+            pairs = [(a, b) for a in (self.lo, self.hi) for b in (other.lo, other.hi)]
+            lo = min(at.down.multiply(a, b) for a, b in pairs)
+            hi = max(at.up.multiply(a, b) for a, b in pairs)
+        return Enclosure(at, lo, hi)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Union["Enclosure", int]) -> "Enclosure":
+        """Every denominator of the equations is positive; one that may be zero is too wide."""
+        other, at = self._lift(other), self.within
+        if other.lo <= 0:
+            raise Unsettled
+        lo = at.down.divide(self.lo, other.hi if self.lo >= 0 else other.lo)
+        return Enclosure(at, lo, at.up.divide(self.hi, other.lo if self.hi >= 0 else other.hi))
+
+    def __rtruediv__(self, other: int) -> "Enclosure":
+        return self._lift(other) / self
+
+
+class Enclosures:
+    """Enclosures of about ``digits`` significant digits."""
+
+    def __init__(self, digits: int) -> None:
+        self.digits = digits
+        self.down, self.up = decimal_context(digits, ROUND_FLOOR), decimal_context(digits, ROUND_CEILING)
+
+    def number(self, q: Fraction | int) -> Enclosure:
+        n, d = Decimal(q.numerator), Decimal(q.denominator)
+        return Enclosure(self, self.down.divide(n, d), self.up.divide(n, d))
+
+    def is_zero(self, x: Enclosure) -> bool:
+        return x.lo == x.hi == 0
+
+    def _fixed(self, value: int, error: int, bits: int) -> Enclosure:
+        unit = Decimal(1 << bits)
+        lo, hi = Decimal(value - error), Decimal(value + error)
+        return Enclosure(self, self.down.divide(lo, unit), self.up.divide(hi, unit))
+
+    def _from_zero(self, x: Enclosure) -> Enclosure:
+        """What is left of the enclosure of a value known not to be negative."""
+        return x if x.lo >= 0 else Enclosure(self, ZERO, x.hi)
+
+    def _width(self, x: Enclosure) -> Enclosure:
+        """0 <= anything in x less its lower end."""
+        return Enclosure(self, ZERO, self.up.subtract(x.hi, x.lo))
+
+    @lazy
+    def pi(self) -> Enclosure:
+        bits = _bits(self.digits)
+        return self._fixed(_pi(bits), 2, bits)
+
+    def sqrt(self, x: Enclosure) -> Enclosure:
+        """Square root of x >= 0."""
+        lo = self._from_zero(x).lo
+        return Enclosure(
+            self,
+            self.down.next_minus(self.down.sqrt(lo)) if lo else ZERO,
+            self.up.next_plus(self.up.sqrt(x.hi)),
+        )
+
+    def hypot(self, x: Enclosure, y: Enclosure | int) -> Enclosure:
+        """√(x² + y²)."""
+        return self.sqrt(x * x + y * y)
+
+    def cos_sin(self, x: Enclosure) -> tuple[Enclosure, Enclosure]:
+        """Cosine and sine of x >= 0."""
+        x = self._from_zero(x)
+        n, d = x.lo.as_integer_ratio()
+        bits = _bits(self.digits + max(0, -x.lo.adjusted()))
+        w = bits + 2 * bits.bit_length() + (n // d).bit_length() + 8
+        angle, quarter = (n << w) // d, _pi(w) >> 1
+        turns = (angle + (quarter >> 1)) // quarter
+        c, s = _cos_sin_series(angle - turns * quarter, w)
+        c, s = ((c, s), (-s, c), (-c, -s), (s, -c))[turns % 4]
+        slack = self._width(x)
+        error = 4 * (w + turns)
+        return self._fixed(c, error, w) + slack - slack, self._fixed(s, error, w) + slack - slack
+
+    def cos_sin_of_degrees(self, x: Fraction) -> tuple[Enclosure, Enclosure]:
+        """Cosine and sine of x >= 0, exact at multiples of 90°."""
+        try:
+            cos, sin = EXACT.cos_sin_of_degrees(x)
+        except Irrational:
+            return self.cos_sin(self.pi * self.number(x / 180))
+        return self.number(cos), self.number(sin)
+
+    def root(self, f: Callable[[Enclosure], Enclosure], end: Enclosure) -> Enclosure:
+        """The root of f between 0 and ``end``, where f is negative before it and positive after.
+
+        Secants find it, and bisection where they lead astray (T. J. Dekker, 1969). That f has opposite
+        signs at the ends of what is returned is checked, so the search need not be trusted.
+        """
+
+        def at(x: Decimal) -> Enclosure:
+            return f(Enclosure(self, x, x))
+
+        near = decimal_context(self.digits, ROUND_HALF_EVEN)
+        # A root at 10^-n of the scale of f's terms is lost without 2n digits more.
+        wanted = self.digits + 2 * max(0, -end.lo.adjusted())
+        a, b = ZERO, end.lo
+        f_a, f_b = at(a), at(b)
+        if not f_a.hi < 0 < f_b.lo:
+            raise Unsettled(wanted)
+        x, f_x, y, f_y, blur = a, f_a.hi, b, f_b.lo, self._width(f_b).hi
+        slope = near.divide(near.subtract(f_y, f_x), b)
+        for _ in range(8 * self.digits):
+            c, rise = near.divide(near.add(a, b), TWO), near.subtract(f_y, f_x)
+            if rise:
+                step = near.divide(near.multiply(f_y, near.subtract(y, x)), rise)
+                if step.copy_abs() < near.scaleb(y, 2 - self.digits):
+                    break
+                secant = near.subtract(y, step)
+                c = secant if a < secant < b else c
+            f_c = at(c)
+            x, f_x, y, f_y, blur = y, f_y, c, f_c.lo, self._width(f_c).hi
+            if f_c.lo <= 0 <= f_c.hi:
+                break
+            a, b = (c, b) if f_c.hi < 0 else (a, c)
+        # How far from y the sign of f can be told if f is about straight, and then further.
+        error = near.scaleb(near.add(near.divide(blur, slope), near.scaleb(y, -self.digits)), 1)
+        while error < end.lo:
+            lo, hi = self.down.subtract(y, error), self.up.add(y, error)
+            if lo > 0 and at(lo).hi < 0 < at(hi).lo:
+                return Enclosure(self, lo, hi)
+            error = near.scaleb(error, self.digits // 8)
+        raise Unsettled(wanted)
+
+    def exp(self, x: Enclosure) -> Enclosure:
+        """e^x for x >= 0, without the digits that e^x - 1 takes if x is tiny."""
+        x = self._from_zero(x)
+        at_lo, width = self._expm1(x.lo, ONE) + 1, self._width(x)
+        if width.hi > 1 or at_lo.lo == inf:
+            return Enclosure(self, at_lo.lo, (self._expm1(x.hi, ONE) + 1).hi)
+        return Enclosure(self, at_lo.lo, (at_lo + 2 * width * at_lo).hi)
+
+    def expm1(self, x: Enclosure) -> Enclosure:
+        """e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
+        x = self._from_zero(x)
+        at_lo, width = self._expm1(x.lo), self._width(x)
+        if width.hi > 1 or at_lo.lo == inf:
+            return Enclosure(self, at_lo.lo, self._expm1(x.hi).hi)
+        return Enclosure(self, at_lo.lo, (at_lo + 2 * width * (at_lo + 1)).hi)
+
+    def _expm1(self, x: Decimal, scale: Decimal | None = None) -> Enclosure:
+        """e^x - 1 to all the digits of itself, or of what is of that scale."""
+        if x == 0:
+            return Enclosure(self, ZERO, ZERO)
+        if x > LARGEST_ARGUMENT:
+            return Enclosure(self, Decimal(inf), Decimal(inf))
+        tens = int(self.down.multiply(x, LOG10_E)) if x > 2 else 0
+        bits = _bits(self.digits + max(0, -(scale or x).adjusted()))
+        halvings = isqrt(bits)
+        w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
+        n, d = x.as_integer_ratio()
+        rest = (n << w) // d - (tens * _ln10(w) if tens else 0)
+        u = _expm1_series(rest, halvings, w)
+        small = self._fixed(u, (w + tens) << (halvings + 8), w)
+        if not tens:
+            return small
+        k = small + 1
+        scaled = Enclosure(self, self.down.scaleb(k.lo, tens), self.up.scaleb(k.hi, tens))
+        return scaled - 1
+
+    def log1p(self, x: Enclosure) -> Enclosure:
+        """ln(1 + x) for x >= 0."""
+        x = self._from_zero(x)
+        at_lo = self._log1p(x.lo)
+        return Enclosure(self, at_lo.lo, (at_lo + self._width(x)).hi)
+
+    def _log1p(self, y: Decimal) -> Enclosure:
+        if y == 0:
+            return Enclosure(self, ZERO, ZERO)
+        guess = self._log1p_guess(y)
+        at_guess, exactly = self._expm1(guess), Enclosure(self, y, y)
+        delta = (exactly - at_guess) / (at_guess + 1)
+        inner = delta / (delta + 1)
+        middle = Enclosure(self, guess, guess)
+        return Enclosure(self, (middle + inner).lo, (middle + delta).hi)
+
+    def _log1p_guess(self, y: Decimal) -> Decimal:
+        """ln(1 + y) to about half the digits: each step of `_log1p` doubles them."""
+        if self.digits > 36:
+            return enclosures(self.digits // 2 + 2)._log1p(y).lo
+        at = self.down
+        if y.adjusted() < -9:
+            return at.multiply(y, at.subtract(ONE, at.divide(y, TWO)))
+        return decimal_context(self.digits // 2 + 12, ROUND_HALF_EVEN).ln(at.add(ONE, y))
+
+
+@lru_cache(maxsize=64)
+def enclosures(digits: int) -> Enclosures:
+    """The arithmetic of enclosures with that many digits; one object, so that π is kept."""
+    return Enclosures(digits)
+
+
+def _bits(digits: int) -> int:
+    return digits * 10 // 3 + 8
+
+
+def _expm1_series(x: int, halvings: int, w: int) -> int:
+    r = x >> halvings
+    total, term, n = 0, r, 1
+    while term:
+        total += term
+        n += 1
+        term = (term * r >> w) // n
+    for _ in range(halvings):
+        total = total * ((2 << w) + total) >> w
+    return total
+
+
+def _cos_sin_series(x: int, w: int) -> tuple[int, int]:
+    sums, term, n = [0, 0, 0, 0], 1 << w, 0
+    while term:
+        sums[n % 4] += term
+        n += 1
+        term = (term * x >> w) // n
+    return sums[0] - sums[2], sums[1] - sums[3]
+
+
+def _inverse(q: int, sign: int, w: int) -> int:
+    """atan(1/q) for sign -1, atanh(1/q) for sign 1, in units of 2^-w."""
+    power = (1 << w) // q
+    total, n = power, 1
+    while power:
+        power //= q * q
+        n += 2
+        total += power // n if sign > 0 or n % 4 == 1 else -(power // n)
+    return total
+
+
+GUARD = 40
+# Constants are kept to a power of two of bits, at least twice this, so that precisions share them.
+LEAST_BITS = 256
+
+
+def _pi(bits: int) -> int:
+    """π in units of 2^-bits (J. Machin, 1706)."""
+    return _constant((16, 5, -1), (-4, 239, -1), bits=bits)
+
+
+def _ln10(bits: int) -> int:
+    """ln 10 in units of 2^-bits: 10 = (32/30)^23 (50/48)^17 (162/160)^10."""
+    return _constant((46, 31, 1), (34, 49, 1), (20, 161, 1), bits=bits)
+
+
+def _constant(*terms: tuple[int, int, int], bits: int) -> int:
+    wide = 1 << max(LEAST_BITS, bits).bit_length()
+    return _wide_constant(terms, wide + GUARD) >> (wide + GUARD - bits)
+
+
+@lru_cache
+def _wide_constant(terms: tuple[tuple[int, int, int], ...], w: int) -> int:
+    return sum(factor * _inverse(q, sign, w) for factor, q, sign in terms)

@@ -1,0 +1,149 @@
+"""From exact values and enclosures to correctly rounded digits, and to text.
+
+`arithmetic` argues why what is settled here is right.
+"""
+
+from collections.abc import Callable
+from decimal import ROUND_HALF_EVEN, Decimal, Inexact
+from fractions import Fraction
+from math import inf
+from typing import Protocol, TypeVar
+
+from ..model.physics import N
+from .interval import EXACT, ZERO, Arithmetic, Enclosure, Irrational, Unsettled, decimal_context, enclosures
+
+A = TypeVar("A")
+T = TypeVar("T", bound=float | Decimal)
+Rounding = Callable[[Fraction | Decimal], T]
+
+# Far more than any valid input was found to need (about 6000): a bug must not become a hang.
+LARGEST_PRECISION = 50_000
+WIDE = 5000  # digits, more than the ratio of any two numbers written beside each other has
+
+
+def to_double(x: Fraction | Decimal) -> float:
+    """The nearest double, half to even; ±inf beyond the range, never -0."""
+    try:
+        return float(x) + 0.0
+    except OverflowError:
+        return inf if x > 0 else -inf
+
+
+def is_infinite(value: float | Decimal) -> bool:
+    """Whether a value is too large to be written (math.isinf makes a double of it first)."""
+    return value in (inf, -inf)
+
+
+def to_digits(digits: int) -> Rounding[Decimal]:
+    """Rounding to that many significant digits, half to even, trailing zeros kept, never -0."""
+    context = decimal_context(digits, ROUND_HALF_EVEN)
+
+    def round_(x: Fraction | Decimal) -> Decimal:
+        if isinstance(x, Fraction):
+            value = context.divide(Decimal(x.numerator), Decimal(x.denominator))
+        else:
+            value = context.plus(x)
+        if not value:
+            return ZERO
+        if not value.is_finite():
+            return value
+        return context.quantize(value, Decimal((0, (1,), value.adjusted() - digits + 1)))
+
+    return round_
+
+
+def to_place(place: int) -> Rounding[Decimal]:
+    """Rounding to a multiple of 10^place, half to even, never -0."""
+    context, unit = decimal_context(WIDE, ROUND_HALF_EVEN), Decimal((0, (1,), place))
+
+    def round_(x: Fraction | Decimal) -> Decimal:
+        if isinstance(x, Fraction):  # to a whole number of units first, which is exact
+            x = context.multiply(Decimal(round(x / Fraction(10) ** place)), unit)
+        value = context.quantize(x, unit) if x.is_finite() else x
+        return value if value else value.copy_abs()
+
+    return round_
+
+
+class Quantity(Protocol):
+    """A number that can be computed in any arithmetic."""
+
+    def __call__(self, arithmetic: Arithmetic[N], /) -> N: ...
+
+
+def settle(quantity: Quantity, round_: Rounding[T], digits: int) -> T:
+    """The correctly rounded value of a quantity; ``digits`` is about how many are wanted."""
+
+    def rounded(value: Enclosure) -> T | None:
+        lo, hi = round_(value.lo), round_(value.hi)
+        return lo if lo == hi else None
+
+    try:
+        return round_(quantity(EXACT))
+    except Irrational:
+        return _refine(quantity, rounded, digits + 8)
+
+
+def middle(quantity: Quantity, digits: int) -> Fraction:
+    """About the value of a quantity, right to about so many digits."""
+
+    def tight(value: Enclosure) -> Fraction | None:
+        if is_infinite(value.hi):
+            return None
+        lo, hi = Fraction(value.lo), Fraction(value.hi)
+        return (lo + hi) / 2 if (hi - lo) * 10**digits <= abs(lo) else None
+
+    return _refine(quantity, tight, digits + 8)
+
+
+def is_positive(quantity: Quantity) -> bool:
+    """The sign of a quantity that is known to be irrational, so not zero."""
+
+    def sign(value: Enclosure) -> bool | None:
+        return value.lo > 0 if value.lo > 0 or value.hi < 0 else None
+
+    return _refine(quantity, sign, 24)
+
+
+def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits: int) -> A:
+    """What ``answer`` says of the first enclosure of the quantity that is tight enough for it."""
+    while digits < LARGEST_PRECISION:
+        needed = 0
+        try:
+            if (found := answer(quantity(enclosures(digits)))) is not None:
+                return found
+        except Unsettled as unsettled:
+            needed = unsettled.digits
+        digits = max(2 * digits, needed)
+    raise ArithmeticError(f"not settled within {LARGEST_PRECISION} digits")
+
+
+def as_typed(q: Fraction) -> str:
+    """The exact decimal of a rational number, or n/d where it has none."""
+    context = decimal_context(WIDE, ROUND_HALF_EVEN)
+    value = context.divide(Decimal(q.numerator), Decimal(q.denominator))
+    if context.flags[Inexact]:
+        return str(q)
+    return text(context.normalize(value) if value.adjusted() >= 16 else value)
+
+
+def with_uncertainty(cut: Callable[[int], Decimal], u: Decimal) -> str:
+    """A value and its standard uncertainty u > 0, both cut at the second digit of u: 0.764 ± 0.012.
+
+    ``cut`` rounds the value to a multiple of a power of ten, as `to_place` does.
+    """
+    place = to_digits(2)(u).adjusted() - 1
+    pair = cut(place), to_place(place)(u)
+    power = max(x.adjusted() for x in pair if x)
+    if -4 <= power < 16:
+        return "{:f} ± {:f}".format(*pair)
+    context = decimal_context(WIDE, ROUND_HALF_EVEN)
+    return "({:f} ± {:f})e{}".format(*(context.scaleb(x, -power) for x in pair), power)
+
+
+def text(value: float | Decimal) -> str:
+    """The shortest text that reads back to the same double; all the digits of a decimal."""
+    mantissa, _, exponent = str(value).lower().partition("e")
+    if isinstance(value, float):
+        mantissa = mantissa.removesuffix(".0")
+    return f"{mantissa}e{int(exponent)}" if exponent else mantissa

@@ -1,0 +1,284 @@
+"""Many scenes: a table in, the same table with its results out, a row that is no scene among them."""
+
+import os
+import shutil
+import stat
+import sys
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass, field
+from inspect import signature
+from math import inf, nan
+from pathlib import Path
+from tempfile import NamedTemporaryFile
+from typing import IO, TYPE_CHECKING, Any
+
+from ..arrays import solve_arrays
+from ..arrays.rows import COLUMNS, Accuracy
+from ..files import STREAM, written_beside
+from ..model.quantities import REGIMES
+from ..model.scene import NUMBER, PARAMETERS, Given, Scene, SceneError, read_plain, read_value
+from .formats import Piece, Unreadable, read, write
+
+if TYPE_CHECKING:
+    import polars as pl
+
+REQUIRED = COLUMNS[:2]
+ERROR = "error"
+
+
+@dataclass
+class Tally:
+    """What became of the rows, and remarks on columns."""
+
+    rows: int = 0
+    regimes: Counter[str] = field(default_factory=Counter)
+    errors: int = 0
+    first_error: str = ""
+    beyond: int = 0
+    remarks: list[str] = field(default_factory=list)
+
+    def lines(self) -> list[str]:
+        """What to say of it: remarks, the summary, the first error."""
+        parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
+        counts = [", ".join(parts)] if parts else []
+        counts.append(_counted(self.errors, "error") if self.errors else "no errors")
+        if self.beyond:
+            counts.append(f"{_counted(self.beyond, 'value')} beyond the range of doubles left empty")
+        summary = f"{_counted(self.rows, 'row')}: {'; '.join(counts)}."
+        first = [f"first error, in {self.first_error}"] if self.errors else []
+        return [*self.remarks, summary, *first]
+
+
+def _counted(count: int, thing: str) -> str:
+    return f"{count} {thing}{'s' * (count != 1)}"
+
+
+@dataclass(frozen=True)
+class Job:
+    """What is to be done: files with their formats, results with their accuracy."""
+
+    source: str
+    source_format: str
+    target: str
+    target_format: str
+    names: Sequence[str]
+    accuracy: Accuracy
+    force: bool
+
+
+def run_batch(job: Job) -> Tally:
+    """Solve a table of scenes. Raises OSError."""
+    import polars as pl
+
+    with ExitStack() as stack:
+        source = _open(job, stack)
+        target = _target(job, stack)
+        tally = Tally()
+        try:
+            write(job.target_format, target, _solved(job, source, tally))
+        except Unreadable as error:
+            raise OSError(f"cannot read {'stdin' if job.source == STREAM else job.source}: {error}") from None
+        except pl.exceptions.PolarsError as error:
+            raise OSError(f"cannot write {job.target_format}: {str(error).splitlines()[0]}") from None
+        target.flush()
+    return tally
+
+
+def _open(job: Job, stack: ExitStack) -> IO[bytes]:
+    if job.source == STREAM:
+        if sys.stdin is None:
+            raise OSError("cannot read stdin: it is closed")
+        stream: IO[bytes] = sys.stdin.buffer
+        if job.source_format != "parquet":
+            return stream
+        spool = stack.enter_context(NamedTemporaryFile())  # noqa: SIM115
+        shutil.copyfileobj(stream, spool)
+        spool.flush()
+        return spool
+    try:
+        return stack.enter_context(open(job.source, "rb"))
+    except OSError as error:
+        raise OSError(f"cannot read {job.source}: {error.strerror}") from None
+
+
+def _target(job: Job, stack: ExitStack) -> IO[bytes]:
+    if job.target == STREAM:
+        sys.stdout.flush()
+        stream: IO[bytes] | None = getattr(sys.stdout, "buffer", None)
+        return stream or stack.enter_context(open(os.devnull, "wb"))
+    with suppress(OSError):
+        source = os.fstat(sys.stdin.fileno()) if job.source == STREAM else os.stat(job.source)
+        if os.path.isfile(job.target) and os.path.samestat(source, os.stat(job.target)):
+            raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
+    return stack.enter_context(open(stack.enter_context(written_beside(Path(job.target), job.force)), "wb"))
+
+
+def _solved(job: Job, source: IO[bytes], tally: Tally) -> "Iterator[tuple[Piece, pl.DataFrame]]":
+    from ..cli.page import watched
+
+    pieces = read(job.source_format, source, COLUMNS if job.target_format == "ndjson" else None)
+    if job.target != STREAM or not sys.stdout.isatty():
+        pieces = watched(pieces, _size(job, source), lambda piece: piece.size)
+    known: Sequence[str] = ()
+    for piece in pieces:
+        if piece.columns != known:
+            _check_columns(piece.columns, [*job.names, ERROR])
+            tally.remarks = _remarks(piece.columns)
+            known = piece.columns
+        yield piece, _solve(piece.frame, job, tally)
+
+
+def _size(job: Job, source: IO[bytes]) -> int | None:
+    import polars as pl
+
+    if job.source_format == "parquet":
+        with suppress(pl.exceptions.PolarsError):
+            return int(pl.scan_parquet(source.name, glob=False).select(pl.len()).collect().item())
+    about = os.fstat(source.fileno())
+    return about.st_size if stat.S_ISREG(about.st_mode) else None
+
+
+def _check_columns(columns: Sequence[str], results: Sequence[str]) -> None:
+    for name, times in Counter(columns).items():
+        if times > 1:
+            raise Unreadable(f"column {name!r} is there {times} times")
+        if name in results:
+            how = "rename it" if name == ERROR else "rename it, or name other results by --only"
+            raise Unreadable(f"column {name!r} would be there twice, as a result is named so; {how}")
+    for name in REQUIRED:
+        if name not in columns:
+            raise Unreadable(f"column {name} is missing; there are {_listed(columns)}")
+
+
+def _listed(names: Sequence[str], most: int = 12) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return f"{', '.join(map(repr, names[:most]))}{more}"
+
+
+def _remarks(columns: Sequence[str]) -> list[str]:
+    """Of columns that are passed on, though they may have been meant."""
+    meant = {name.lower(): name for name in COLUMNS}
+    found = [f"column {'I'!r} is not used; give inertia, I/(M R^2)"] if "I" in columns else []
+    for column in columns:
+        name = meant.get(column.strip().partition(" ")[0].lower().replace("-", "_"))
+        if name and column not in COLUMNS and name not in columns:
+            found.append(f"column {column!r} is not used; did you mean {name}?")
+    return found
+
+
+def _solve(frame: "pl.DataFrame", job: Job, tally: Tally) -> "pl.DataFrame":
+    """The columns to append: the results, empty in rows that failed, and what is wrong with those."""
+    import polars as pl
+
+    scenes, errors = _scenes(frame)
+    wanted = list(dict.fromkeys(["regime", *job.names]))
+    found = solve_arrays(**scenes, accuracy=job.accuracy, quantities=wanted)
+    for row in found["status"].nonzero()[0].tolist():
+        if row not in errors:
+            errors[row] = _why(frame.select(list(scenes)).row(row, named=True))
+    failed = sorted(errors)
+    texts = [errors.get(row) for row in range(frame.height)] if errors else []
+    columns = {
+        "regime": _words(found["regime"], failed, tally),
+        **{name: _finite(found[name], failed, tally) for name in wanted[1:]},
+        ERROR: pl.Series(texts, dtype=pl.String)
+        if texts
+        else pl.repeat(None, frame.height, dtype=pl.String, eager=True),
+    }
+    if errors and not tally.errors:
+        tally.first_error = f"row {tally.rows + failed[0] + 1}: {errors[failed[0]]}"
+    tally.errors += len(errors)
+    tally.rows += frame.height
+    return pl.DataFrame({name: columns[name] for name in [*job.names, ERROR]})
+
+
+def _words(regimes: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
+    import numpy as np
+    import polars as pl
+
+    codes = regimes.astype(np.uint32)
+    codes[failed] = len(REGIMES)
+    tally.regimes.update(
+        dict(zip(REGIMES, np.bincount(codes, minlength=len(REGIMES)).tolist(), strict=False))
+    )
+    return pl.Series([*REGIMES, None]).gather(codes)
+
+
+def _finite(values: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
+    """A column, empty where a value does not exist or no double can hold it."""
+    import numpy as np
+    import polars as pl
+
+    exists = np.isfinite(values)
+    exists[failed] = False
+    tally.beyond += int(np.isinf(np.delete(values, failed)).sum())
+    return pl.Series(np.where(exists, values, nan), nan_to_null=True)
+
+
+def _scenes(frame: "pl.DataFrame") -> tuple[dict[str, Any], dict[int, str]]:
+    """The cells as doubles by column, and by row what is wrong with the first cell that is none."""
+    import polars as pl
+
+    inputs = [name for name in COLUMNS if name in frame.columns]
+    for name in inputs:
+        if not (frame[name].dtype.is_numeric() or frame[name].dtype in (pl.String, pl.Null)):
+            raise Unreadable(f"column {name} holds {frame[name].dtype}, not numbers")
+    doubles = frame.select(pl.col(inputs).cast(pl.Float64, strict=False))  # all at once: in parallel
+    scenes: dict[str, Any] = {}
+    errors: dict[int, str] = {}
+    for name in inputs:
+        scenes[name], odd = _column(frame[name], doubles[name])
+        for row, cell in odd.items():
+            if error := _wrong(name, cell):
+                errors.setdefault(row, error)
+        default = signature(solve_arrays).parameters[name].default
+        if isinstance(default, float):
+            scenes[name][scenes[name] != scenes[name]] = default
+    return scenes, errors
+
+
+def _column(cells: "pl.Series", doubles: "pl.Series") -> tuple[Any, dict[int, Any]]:
+    """Cells as doubles, NaN where empty, and by row those that may be no doubles."""
+    import numpy as np
+    import polars as pl
+
+    text = cells.dtype == pl.String
+    if doubles.null_count() > cells.null_count():
+        cells = cells.str.strip_chars(" ")
+        doubles = cells.cast(pl.Float64, strict=False)
+    array = doubles.to_numpy(writable=True)
+    odd = ~np.isfinite(array)
+    if odd.any():
+        odd &= cells.is_not_null().to_numpy()
+    if text and (zero := array == 0).any():  # what is too small for a double would be another scene
+        odd |= zero & cells.str.contains("^[^eE]*[1-9]").fill_null(False).to_numpy()
+    rows = odd.nonzero()[0]
+    return array, dict(zip(rows.tolist(), cells.gather(rows).to_list(), strict=True)) if len(rows) else {}
+
+
+def _wrong(name: str, cell: str | float) -> str:
+    """What is wrong with a cell that may be no double; nothing if it is empty, or locks the pulley."""
+    if cell in ("", "inf", inf) and (cell == "" or PARAMETERS[name].inf):
+        return ""
+    try:
+        read_plain(name, cell) if isinstance(cell, str) else read_value(name, cell)
+    except SceneError as error:
+        return str(error)
+    return str(SceneError(name, cell, "is beyond the range of doubles, 4.9e-324 to 1.8e308"))
+
+
+def _why(row: Mapping[str, Any]) -> str:
+    """What is wrong with a row, by the one door that says so; as typed, if a scene is typed so."""
+    cells: dict[str, Given | None] = {}
+    for name, cell in row.items():
+        text = cell.strip(" ") if isinstance(cell, str) else cell
+        if text is None or text == "":
+            continue
+        cells[name] = text if isinstance(text, str) and NUMBER.fullmatch(text) else float(text)
+    try:
+        Scene.read(cells)
+    except SceneError as error:
+        return str(error)
+    return "this row cannot be solved"

@@ -1,0 +1,128 @@
+"""Help as plain text: examples first, options by group, nothing cut off at any width.
+
+The docstring of a command is its text: paragraphs, and after a line that ends in a colon lines that stay
+as they are. An option says itself to which group it belongs (``rich_help_panel``). rich is not imported.
+"""
+
+import os
+import re
+import shutil
+import sys
+from collections.abc import Iterator
+from textwrap import wrap
+from typing import Any
+
+from .page import for_stream
+
+NARROWEST, WIDEST = 24, 100
+LEAST_BESIDE = 40
+"""Columns: where less is left beside the options' names, what they mean stands below them."""
+LONGEST_NAME, BELOW = 28, 6
+LAST = ("Output", "Files", "Help")
+"""Groups of options that stand behind a command's own."""
+BRIEF_EXAMPLES = 3
+
+
+def page(command: Any, context: Any) -> str:
+    """All there is to say on a command, for stdout as it is."""
+    commands = getattr(command, "commands", {})
+    arguments = [param.metavar for param in command.params if not param.opts[0].startswith("-")]
+    usage = " ".join([context.command_path, *["COMMAND"] * bool(commands), *arguments, "[OPTIONS]"])
+    parts = [[f"Usage: {usage}"], *_paragraphs(command)]
+    if commands:
+        parts.append(["Commands:", *_commands(commands)])
+    groups: dict[str, list[tuple[str, str]]] = {}
+    for param in command.get_params(context):
+        panel = getattr(param, "rich_help_panel", None) or ("Help" if context.parent else "Options")
+        groups.setdefault(panel, []).append((_names(param), param.help or ""))
+    column = _column([name for rows in groups.values() for name, _ in rows])
+    panels = sorted(groups, key=lambda panel: LAST.index(panel) if panel in LAST else -1)
+    parts += [[f"{panel}:", *_pairs(groups[panel], column)] for panel in panels]
+    return _joined(parts)
+
+
+def brief(command: Any, context: Any) -> str:
+    """What the program does, a few examples, its commands, and how to get more."""
+    title, examples, *_ = _paragraphs(command, BRIEF_EXAMPLES)
+    name = context.command_path
+    more = f"{name} -h says more; {name} solve -h, as with every command, shows its options."
+    return _joined([title, examples, ["Commands:", *_commands(command.commands)], _filled(more)])
+
+
+def _joined(parts: list[list[str]]) -> str:
+    text = "\n\n".join("\n".join(map(_heading, part)) for part in parts)
+    return for_stream(text, sys.stdout)
+
+
+def _heading(line: str) -> str:
+    """Headings are bold where a terminal can do that; they are told by their colon anyway."""
+    bold = sys.stdout.isatty() and os.environ.get("TERM", "dumb") not in ("dumb", "unknown")
+    is_heading = line.endswith(":") and not line.startswith(" ")
+    return f"\x1b[1m{line}\x1b[0m" if bold and is_heading and os.name != "nt" else line
+
+
+def _width() -> int:
+    # One column stays free: some terminals break the line behind a full one.
+    return max(NARROWEST, min(shutil.get_terminal_size().columns - 1, WIDEST))
+
+
+def _paragraphs(command: Any, most: int | None = None) -> list[list[str]]:
+    """The docstring, of lists at most so many lines."""
+    found = []
+    for paragraph in (command.help or "").split("\n\n"):
+        head, *rest = paragraph.replace("\b\n", "").splitlines()
+        if head.endswith(":"):
+            found.append([head, *(part for line in rest[:most] for part in _example(line))])
+        else:
+            found.append(_filled(" ".join([head, *rest])))
+    return found
+
+
+def _filled(text: str, indent: str = "") -> list[str]:
+    return wrap(
+        text,
+        _width(),
+        initial_indent=indent,
+        subsequent_indent=indent,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def _example(line: str) -> Iterator[str]:
+    """A command that does not fit is continued as a shell takes it, an option beside its value."""
+    glued = re.sub(r" (?![-|])", "\xa0", line.strip())
+    room = _width() - (2 if len(glued) + 2 <= _width() else 6)
+    *first, last = wrap(glued, room, break_long_words=False, break_on_hyphens=False)
+    lines = [*(f"{part} \\" for part in first), last]
+    return (f"{'    ' if number else '  '}{part}".replace("\xa0", " ") for number, part in enumerate(lines))
+
+
+def _commands(commands: Any) -> Iterator[str]:
+    """The first paragraph of each command."""
+    rows = [(name, " ".join(one.help.split("\n\n")[0].split())) for name, one in commands.items()]
+    return _pairs(rows, _column(list(commands)))
+
+
+def _names(param: Any) -> str:
+    flags = sorted(param.opts, key=lambda flag: flag.startswith("--"))  # -o before --output
+    is_option = flags[-1].startswith("-")
+    return " ".join(filter(None, [", ".join(flags) if is_option else "", param.metavar]))
+
+
+def _column(names: list[str]) -> int:
+    """Where the meanings of names begin."""
+    column = 4 + max(len(name) for name in names if len(name) <= LONGEST_NAME)
+    return column if _width() - column >= LEAST_BESIDE else BELOW
+
+
+def _pairs(rows: list[tuple[str, str]], column: int) -> Iterator[str]:
+    """Names with what they mean, beside them or below."""
+    for name, meaning in rows:
+        lines = _filled(meaning, " " * column)
+        start = f"  {name}"
+        if len(start) + 2 <= column:
+            lines = [start + line[len(start) :] for line in lines[:1]] + lines[1:]
+        else:
+            lines.insert(0, start)
+        yield from lines

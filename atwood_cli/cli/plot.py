@@ -1,0 +1,222 @@
+"""Curves in the terminal: needs plotille (extra ``plot``), which sets the dots; the axes are drawn here."""
+
+import sys
+from collections.abc import Callable, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from itertools import groupby, pairwise
+from math import ceil, floor, log10
+from operator import attrgetter
+from typing import Any
+
+from plotille import Canvas
+
+from ..arithmetic.rounding import as_typed
+from ..solver.sweep import Curve, Picture, Row, Sweep, picture
+from ..tradeoff.measure import EDGES, Tradeoff, drawable
+from .page import Page, for_stream, sweep_head, sweep_notes, takes_unicode
+
+PIPE_WIDTH, HEIGHT, SMALL_HEIGHT = 80, 20, 12
+LEAST_WIDTH, LEAST_HEIGHT = 10, 5
+LEAST_TICKS = 3  # asking for fewer may give none
+LONGEST_POWER = 4  # of ten, written out
+AROUND = 9  # lines above and below the curves, with the prompt
+COLOURS = ("cyan", "magenta", "green", "blue", "red", "bright_cyan")
+MARK = "yellow"
+LETTERS = "abcdefgh"
+DOTS = range(0x2800, 0x2900)
+UPPER, LOWER = 0x1B, 0xE4  # the bits of the dots in the upper and the lower half of a braille character
+FRAME = str.maketrans("┤│└┬─", "||++-")
+
+
+class Axis:
+    """Where numbers lie between the first and the last of ``dots``, and the ticks among them."""
+
+    def __init__(self, values: list[float], dots: int, ticks: int, log: bool = False) -> None:
+        self.dots, self.log = dots, log
+        low, high = min(values), max(values)
+        if self._place(low) == self._place(high):
+            low, high = low - (abs(low) or 1) / 2, high + (abs(high) or 1) / 2
+        self.low, self.high = self._place(low), self._place(high)
+        self.ticks = _decades(low, high, ticks) if log else _steps(Decimal(low), Decimal(high), ticks)
+
+    def _place(self, value: float) -> float:
+        return log10(value) if self.log else value
+
+    def dot(self, value: float) -> int:
+        return round((self._place(value) - self.low) / (self.high - self.low) * (self.dots - 1))
+
+
+def _steps(low: Decimal, high: Decimal, most: int) -> list[Decimal]:
+    """About as many round numbers between two as wanted."""
+    span = high - low
+    power = Decimal(1).scaleb((span / most).adjusted())
+    step = next(power * m for m in (1, 2, 5, 10) if span <= power * m * most)
+    return [step * k for k in range(ceil(low / step), floor(high / step) + 1)]
+
+
+def _decades(low: float, high: float, most: int) -> list[Decimal]:
+    """Powers of ten between two numbers, or else the two."""
+    powers = range(ceil(log10(low)), floor(log10(high)) + 1)
+    if len(powers) < 2:
+        return [Decimal(repr(low)), Decimal(repr(high))]
+    return [Decimal(1).scaleb(power) for power in powers[:: ceil(len(powers) / most)]]
+
+
+def print_plot(sweep: Sweep, rows: Sequence[Row], name: str, plain: bool) -> None:
+    """The scene, the curves with their regimes and dotted lines where those change, and the notes."""
+    page, drawn = Page(plain=plain), picture(sweep, rows, "plot", name)
+    page.say(sweep_head(sweep))
+    height = min(HEIGHT, max(page.console.height - AROUND, LEAST_HEIGHT)) if page.room else HEIGHT
+    _show(page, _lines(drawn, page.room or PIPE_WIDTH, height))
+    for note in [*_legend(drawn), *sweep_notes(rows, [name])]:
+        page.say(note)
+
+
+def _show(page: Page, lines: list[str]) -> None:
+    from rich.text import Text
+
+    for line in lines:
+        shown = line.translate(PLAIN) if takes_unicode(sys.stdout) else for_stream(_ascii(line), sys.stdout)
+        page.console.print(Text.from_ansi(shown.rstrip()), soft_wrap=True)
+
+
+def print_tradeoff_plot(found: Tradeoff) -> None:
+    """Error against time, both logarithmic: the settings on each family, then string elements."""
+    page = Page()
+    room = page.room or PIPE_WIDTH
+    for family, group in groupby(found.measured, attrgetter("family")):
+        measured = list(group)
+        points = [(one.seconds, drawable(one.worst_ulp)) for one in measured]
+        page.say(family, "bold")
+        _show(page, _scatter("worst error (ulp)", [points], room, LETTERS))
+    letters = zip(LETTERS, measured, strict=False)
+    page.say(f"{', '.join(f'{letter} {one.setting}' for letter, one in letters)}.")
+    page.say(f"{EDGES} Times are this machine's, for one scene.")
+    if found.marches:
+        curves = [
+            [
+                (one.seconds, one.relative_error)
+                for one in found.marches
+                if one.extrapolated == way and one.elements
+            ]
+            for way in (False, True)
+        ]
+        page.say("String elements", "bold")
+        _show(page, _scatter("relative error of e^(μφ)", curves, room, ""))
+        page.say("a elements, b extrapolated; from left to right 4 to 10 million of them.")
+    for note in (*found.notes, found.advice):
+        page.say(note)
+
+
+def _scatter(title: str, curves: list[list[tuple[float, float]]], room: int, marks: str) -> list[str]:
+    """Points with a letter each, or curves with a letter each."""
+
+    def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
+        for number, curve in enumerate(curves):
+            dots = [(x_axis.dot(x), y_axis.dot(y)) for x, y in curve]
+            for mark, dot in zip(marks, dots, strict=False):
+                canvas.point(*dot, marker=mark, color=COLOURS[number])
+            if not marks:
+                for start, end in pairwise(dots):
+                    canvas.line(*start, *end, color=COLOURS[number])
+                canvas.point(*dots[len(dots) // 2], color=COLOURS[number], marker=LETTERS[number])
+
+    xs, ys = ([point[i] for curve in curves for point in curve] for i in (0, 1))
+    return _framed(("time (s)", title), (xs, ys), (True, True), room, SMALL_HEIGHT, draw)
+
+
+PLAIN = {DOTS[0]: " "}
+
+
+def _ascii(line: str) -> str:
+    halves = {(False, False): " ", (True, False): "'", (False, True): ".", (True, True): ":"}
+    dots = {c: halves[bool(c & UPPER), bool(c & LOWER)] for c in DOTS}
+    return line.translate(FRAME).translate(dots)
+
+
+def _lines(drawn: Picture, room: int, height: int) -> list[str]:
+    several = len(drawn.curves) > 1
+
+    def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
+        for curve in drawn.curves:
+            for i in curve.changes:
+                y = curve.ys[i]
+                top = y_axis.dot(y) if several and y is not None else y_axis.dots
+                for dot in range(0, top, 3):
+                    canvas.point(x_axis.dot(curve.xs[i]), dot, color=MARK)
+        for number, curve in enumerate(drawn.curves):
+            _draw_curve(canvas, curve, x_axis, y_axis, number, several)
+
+    ys = [y for curve in drawn.curves for y in curve.ys if y is not None]
+    return _framed((drawn.x, drawn.y), (drawn.curves[0].xs, ys), (drawn.log, False), room, height, draw)
+
+
+def _framed(
+    titles: tuple[str, str],
+    values: tuple[list[float], list[float]],
+    logs: tuple[bool, bool],
+    room: int,
+    height: int,
+    draw: Callable[[Any, Axis, Axis], None],
+) -> list[str]:
+    """Axes over the values in x and y, and what is drawn on them."""
+    y_axis = Axis(values[1], 4 * height, max(height // 4, LEAST_TICKS), logs[1])
+    labels = {y_axis.dot(float(tick)) // 4: _label(tick) for tick in y_axis.ticks}
+    margin = max(map(len, labels.values()), default=0)
+    width = max(room - margin - 3, LEAST_WIDTH)
+    x_axis = Axis(values[0], 2 * width, max(width // 12, LEAST_TICKS), logs[0])
+    canvas = Canvas(width, height, 0, 0, 2 * width, 4 * height)
+    draw(canvas, x_axis, y_axis)
+    rows = canvas.plot("\n").split("\n")
+    left = [f" {labels.get(i, ''):>{margin}} {'┤' if i in labels else '│'}" for i in range(height)]
+    ticks = {x_axis.dot(float(tick)) // 2: _label(tick) for tick in x_axis.ticks}
+    bottom = "".join("┬" if i in ticks else "─" for i in range(width))
+    return [
+        f" {titles[1]}",
+        *(start + row for start, row in zip(reversed(left), rows, strict=True)),
+        f" {'':>{margin}} └{bottom}",
+        f" {'':>{margin}}  {_under(ticks, width)}",
+        f" {'':>{margin}}  {titles[0]:>{width}}",
+    ]
+
+
+def _draw_curve(canvas: Any, curve: Curve, x_axis: Axis, y_axis: Axis, number: int, several: bool) -> None:
+    colour = COLOURS[number]
+    dots = [
+        None if y is None else (x_axis.dot(x), y_axis.dot(y)) for x, y in zip(curve.xs, curve.ys, strict=True)
+    ]
+    for dot in filter(None, dots):
+        canvas.point(*dot, color=colour)
+    for start, end in pairwise(dots):
+        if start and end:
+            canvas.line(*start, *end, color=colour)
+    there = [dot for dot in dots if dot]
+    if several and there:  # letters tell the curves apart without colour, each at its own place
+        canvas.point(*there[(2 * number + 1) * len(there) // 12], color=colour, marker=LETTERS[number])
+
+
+def _label(tick: Decimal) -> str:
+    sign, digits, power = tick.normalize().as_tuple()
+    if len(digits) == 1 and abs(int(power)) > LONGEST_POWER:
+        return f"{'-' * sign}{digits[0]}e{power}"
+    return as_typed(Fraction(tick))
+
+
+def _under(ticks: dict[int, str], width: int) -> str:
+    """The labels below their ticks, without those that would touch the one before."""
+    line = ""
+    for column, label in sorted(ticks.items()):
+        start = max(0, min(column - len(label) // 2, width - len(label)))
+        if not line or start > len(line):
+            line = line.ljust(start) + label
+    return line
+
+
+def _legend(drawn: Picture) -> list[str]:
+    """The regimes along each curve, after its letter if there are several."""
+    regimes = [", ".join(curve.regimes) for curve in drawn.curves]
+    if len(regimes) == 1:
+        return [f"Regimes: {regimes[0]}."]
+    curves = zip(LETTERS, drawn.curves, regimes, strict=False)
+    return [f"{letter}: {curve.label}: {words}" for letter, curve, words in curves]

@@ -1,0 +1,1 @@
+"""The equations of a scene, written out with the numbers put in."""

@@ -1,0 +1,314 @@
+"""The equations of a scene, each as the model has it, with numbers put in that give its result.
+
+No equation is written here and nothing is computed here but how many digits a line needs: an equation
+is what the model does with symbols (`formula`), and the numbers are the solver's.
+"""
+
+from collections.abc import Iterator, Mapping
+from decimal import Decimal
+from fractions import Fraction
+from operator import attrgetter
+from typing import Any, NamedTuple
+
+from ..arithmetic.interval import LARGEST_EXPONENT, Arithmetic, Unsettled, enclosures
+from ..arithmetic.rounding import as_typed, is_infinite, settle, text, to_digits
+from ..arithmetic.symbolic import Formula, Symbol, Symbols
+from ..model.machine import Machine
+from ..model.physics import N
+from ..model.quantities import QUANTITIES
+from ..model.scene import Radians, Scene
+from ..solver.answers import Answers
+
+DIGITS = 6
+"""Significant digits of a derivation, unless others are asked for."""
+DOUBT = 3
+"""Significant digits of how much something matters (%)."""
+TYPED = 17
+"""Digits up to which an input is put in as it was typed."""
+
+
+class Law(NamedTuple):
+    """An equation that no number is put into."""
+
+    label: str
+    words: str
+
+
+class Equation(NamedTuple):
+    """An equation worked out: symbols, the numbers put in, the result.
+
+    ``numbers`` is None where they are too large to write. ``signs``, = or ≈, stand before the numbers
+    and before the result.
+    """
+
+    label: str
+    left: str
+    formula: Formula
+    numbers: Mapping[Symbol, Decimal] | None
+    signs: str
+    result: str
+    unit: str
+
+
+HELD = "\x1f"
+"""A blank at which no line breaks; ASCII, so that any stream takes it until it is one."""
+
+Part = str | Law | Equation
+
+
+LABELS = {
+    "k1": "(26)",
+    "limiting_k1": "(26)",
+    "transfer": "(26)",
+    "limiting_transfer": "(26)",
+    "drive": "(33)",
+    "limiting_drive": "(33)",
+    "excess": "(33)",
+}
+UNITS = {
+    "transfer": "kg",
+    "drive": "kg",
+    "limiting_transfer": "kg",
+    "limiting_drive": "kg",
+    "alpha": "rad",
+    "difference": "N",
+}
+ALSO = {"magnitude": "acceleration", "light_tension": "tension_1", "heavy_tension": "tension_1"}
+"""What is of the kind of a quantity."""
+
+
+class Derivation:
+    """The equations of a scene, each as the model has it, with the solver's numbers."""
+
+    def __init__(self, answers: Answers) -> None:
+        self.answers, self.case, self.scene = answers, answers.case, answers.case.scene
+        self.digits = answers.digits or DIGITS
+        self._finer = {self.digits: answers}
+        self.shown: set[str] = set()
+        self.explained: set[str] = set()
+        case, scene = self.case, self.scene
+        self.light, self.heavy = ("2", "1") if case.sign < 0 else ("1", "2")
+        values = {
+            "m1": scene.m1,
+            "m2": scene.m2,
+            "M": case.pulley_mass,
+            "c": case.rim_mass,
+            "β": case.beta,
+            "μ": scene.mu,
+            "μ_k": scene.mu_k,
+            "g": scene.g,
+            "I": scene.I,
+            "R": scene.R,
+        }
+        self.inputs = {name: Symbol(name, value) for name, value in values.items() if value is not None}
+        names = {
+            "phi": "π" if self.half_turn else "φ",
+            "half_sine": "sin(φ/2)",
+            "magnitude": "a" if case.sign >= 0 else "|a|",
+            "light_tension": f"T{self.light}",
+            "heavy_tension": f"T{self.heavy}",
+            "difference": f"T{self.heavy} - T{self.light}",
+            "rim_acceleration": "a_rim" if case.regime == "slip" else "a",
+            "excess": "x",
+            "mu_verge": "μ*",
+            "k1": "k - 1",
+            "transfer": "z",
+            "drive": "d",
+            "alpha": "s",
+            "critical_pulley_mass": "M*",
+        }
+        if case.regime == "slip" and scene.mu_k is not None:
+            names |= {
+                "limiting_k1": "k_kin - 1",
+                "limiting_transfer": "z_kin",
+                "limiting_drive": "d_kin",
+            }
+        if case.regime == "verge":
+            del names["mu_verge"]  # it is the coefficient given
+        self.names = names
+
+    @property
+    def half_turn(self) -> bool:
+        return not isinstance(self.scene.wrap, Radians) and self.scene.wrap == 180
+
+    def formula(self, name: str) -> Formula:
+        """What the model does for a quantity, with the symbols of all that it is made of."""
+        arithmetic: Any = Symbols(list(self.inputs.values()))
+        machine: Machine[Any] = Machine(self.case, arithmetic)
+        for other, symbol in self.names.items():
+            if other != name:
+                machine.__dict__[other] = Formula("symbol", Symbol(symbol, other))
+        found: Formula = getattr(machine, name)
+        return found
+
+    def equation(self, name: str) -> Equation:
+        """The equation of anything that the scene determines."""
+        about = QUANTITIES.get(ALSO.get(name, name))
+        unit = about.unit if about else UNITS.get(name, "")
+        symbol = self.names.get(name) or plain(about.symbol if about else name)
+        return self.worked_out(self.label(name), symbol, self.formula(name), Symbol(symbol, name), unit)
+
+    def label(self, name: str) -> str:
+        """The paper's number for an equation, or none."""
+        gives_tensions = {"no-slip": "(1)"}.get(self.case.regime, "(1), (26)")
+        match name:
+            case "magnitude" if self.case.regime == "no-slip":
+                return "(4)"
+            case "magnitude" | "light_tension":
+                return gives_tensions
+            case "difference" if self.case.regime != "no-slip":
+                return "(26)"
+            case "difference":
+                return "(1)" if self.case.locked else "(3)"
+        return LABELS.get(name, QUANTITIES[name].equation if name in QUANTITIES else "")
+
+    def worked_out(self, label: str, left: str, formula: Formula, result: Symbol, unit: str) -> Equation:
+        """The equation with numbers put in, each with as many digits as give the result shown."""
+        value, exact = self.number(result, self.digits, self.digits)
+        if is_infinite(value):
+            return Equation(label, left, formula, None, "=>", f"10^{LARGEST_EXPONENT}", unit)
+        symbols, digits = sorted(formula.symbols()), self.digits
+        while True:
+            found = {symbol: self.number(symbol, digits, max(digits, TYPED)) for symbol in symbols}
+            numbers = {symbol: number for symbol, (number, _) in found.items()}
+            if any(map(is_infinite, numbers.values())):
+                return Equation(label, left, formula, None, "=≈", text(value), unit)
+            if self._gives(formula, numbers, value):
+                break
+            digits += 1 + digits // 16
+        put_in = "=" if all(is_exact for _, is_exact in found.values()) else "≈"
+        signs = put_in + ("=" if exact and put_in == "=" else "≈")
+        return Equation(label, left, formula, numbers, signs, text(value), unit)
+
+    def _gives(self, formula: Formula, numbers: Mapping[Symbol, Decimal], result: Decimal) -> bool:
+        """Whether the numbers, worked out, are the result but for half a unit of its last digit."""
+        longest = max((len(number.as_tuple().digits) for number in numbers.values()), default=0)
+        precision = 2 * (longest + self.digits) + 20
+        while True:
+            try:
+                found = formula.worked_out(enclosures(precision), numbers)
+            except Unsettled:
+                precision *= 2
+                continue
+            break
+        if not result:
+            return found.lo == found.hi == 0
+        at = enclosures(precision).up
+        half = at.multiply(Decimal("0.500001"), Decimal((0, (1,), result.adjusted() - self.digits + 1)))
+        return at.subtract(found.hi, result) <= half and at.subtract(result, found.lo) <= half
+
+    def number(self, symbol: Symbol, digits: int, typed: int) -> tuple[Decimal, bool]:
+        """The number for a symbol, correctly rounded if it is not short, and whether it is exact."""
+        if isinstance(symbol.of, Fraction):
+            exact: Fraction | None = symbol.of
+            keep = typed
+        else:
+            exact, keep = self.answers.exactly(attrgetter(str(symbol.of))), digits
+        if exact is not None:
+            rounded = to_digits(keep)(exact)
+            if Fraction(rounded) == exact:
+                return Decimal(as_typed(exact)), True
+            return to_digits(digits)(exact), False
+        if digits not in self._finer:
+            self._finer[digits] = Answers(self.scene, digits)
+        value = self._finer[digits].settle(attrgetter(str(symbol.of)))
+        return Decimal(value), False
+
+    def lines(self, *names: str) -> Iterator[Equation]:
+        """The equations of what exists, each once in a derivation."""
+        for name in names:
+            if name in self.shown or (name in QUANTITIES and self.answers[name] is None):
+                continue
+            self.shown.add(name)
+            yield self.equation(name)
+
+    def rim_mass(self) -> Iterator[Part]:
+        """Where c comes from."""
+        given, c = self.inputs, self.case.rim_mass
+        if c is None:
+            yield f"where `c = β M` and `β` = {as_typed(self.scene.inertia or Fraction(1))}."
+            return
+        names = ("I", "R") if self.scene.I is not None else ("β", "M")
+        one, other = (Formula("symbol", given[name]) for name in names)
+        formula = one / Formula("square", other) if self.scene.I is not None else one * other
+        yield self.worked_out("", "c", formula, given["c"], "kg")
+
+    def direction(self) -> Iterator[Part]:
+        """The sign of the acceleration, where it is not the magnitude."""
+        if self.case.sign < 0:
+            yield f"`a` is positive when `m2` descends, so here it is negative, {self.say('acceleration')}."
+
+    def tensions(self) -> Iterator[Part]:
+        """The tensions, from the acceleration."""
+        yield from self.lines("light_tension")
+        if self.case.frictionless:
+            yield Law("", f"T{self.heavy} = T{self.light}")
+        else:
+            yield from self.lines("difference", "heavy_tension")
+
+    def extras(self) -> Iterator[Part]:
+        """What belongs to the pulley's motion, where it is asked for by its radius, and its axle."""
+        if self.scene.R is not None and self.case.sign:
+            yield "On the pulley, that makes"
+            yield from self.lines("torque", "angular_acceleration")
+        if self.case.ends_hang_down and not self.case.locked:
+            yield "The axle bears both tensions, as (20) says, and the pulley's weight:"
+            yield from self.lines("axle_force")
+
+    def compared(self, scene: Scene) -> Iterator[Part]:
+        """What another scene gives in place of this one, and by how much that is off."""
+        other = Answers(scene, self.digits)
+        for name in ("acceleration", "tension_1", "tension_2"):
+            about, value = QUANTITIES[name], self.answers[name]
+            off = f" ({self.off(other, name)} %)" if value and not is_infinite(value) else ""
+            yield (
+                f"- `{plain(about.symbol)}` = {in_words(other[name], about.unit)} in place of"
+                f" {in_words(value, about.unit)}{off}"
+            )
+
+    def off(self, other: Answers, name: str) -> str:
+        """The relative error (%) of another scene's quantity, with its sign."""
+
+        def error(ar: Arithmetic[N]) -> N:
+            here, there = (
+                getattr(Machine(answers.case, ar), {"acceleration": "magnitude"}.get(name, name))
+                for answers in (self.answers, other)
+            )
+            found: N = 100 * (there - here) / here
+            return found
+
+        shown = text(settle(error, to_digits(DOUBT), DOUBT))
+        return shown if shown.startswith("-") or shown == "0" else f"+{shown}"
+
+    def reason(self, name: str) -> str:
+        """Why there is no such value, told once."""
+        self.explained.add(name)
+        return self.answers.reasons[name]
+
+    def value(self, name: str, unit: str = "") -> str:
+        """A symbol of the model with its value, for a sentence."""
+        symbol = self.names[name]
+        number, _ = self.number(Symbol(symbol, name), self.digits, self.digits)
+        return _is(symbol, number, unit)
+
+    def meaning(self, symbol: str) -> str:
+        return next(about.meaning for about in QUANTITIES.values() if about.symbol == symbol)
+
+    def say(self, name: str) -> str:
+        """A symbol with its value, for a sentence."""
+        about = QUANTITIES[name]
+        return _is(plain(about.symbol), self.answers[name], about.unit)
+
+
+def _is(symbol: str, value: Any, unit: str) -> str:
+    """A symbol and its value, on one line."""
+    return f"`{symbol}`{HELD}={HELD}{in_words(value, unit).replace(' ', HELD)}"
+
+
+def in_words(value: Any, unit: str) -> str:
+    return f"{text(value)}{' ' * bool(unit)}{unit}"
+
+
+def plain(symbol: str) -> str:
+    """The registry's symbol as equations have it."""
+    return {"T₁": "T1", "T₂": "T2", "a rim": "a_rim", "Fx": "F_x", "Fy": "F_y"}.get(symbol, symbol)

@@ -1,0 +1,1 @@
+"""What a scene is, the equations, and the machine that picks the model the scene needs."""

@@ -1,0 +1,113 @@
+"""How the tension runs along the arc of contact, in any arithmetic.
+
+Everything is seen from the lighter mass: the angle starts where its string meets the pulley, and
+the tension grows from T_l to T_h = T_l e^{μα}. Friction at its limit takes the arc α for that. If
+the arc of contact is longer, the string is stuck over the rest, δ = φ - α, and what differs between
+the profiles is only where: after a *lead* s of limiting arc.
+
+- exponential: α = φ, nothing is stuck. The verge, slip, and the least μ that holds.
+- creep: s = 0. A slightly elastic string creeps over one arc, on the side where it leaves the pulley
+  (O. Reynolds, 1875; F. Grashof, 1883), which is the heavier mass's. This has the greatest net
+  friction of all profiles in which friction nowhere opposes the rest.
+- least: the s with the least net friction, found as the root of `physics.least_friction_slope`.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Generic, Literal, NamedTuple
+
+from ..arithmetic.interval import Arithmetic
+from . import physics
+from .physics import N
+
+Kind = Literal["exponential", "creep", "least"]
+STUCK = {"exponential": (False,), "creep": (True, False), "least": (False, True, False)}
+"""The pieces of each profile from the light end: whether the string is stuck over them."""
+
+
+class Knot(NamedTuple, Generic[N]):
+    """A point of the arc: its angle (rad) with cosine and sine, and the tension there (N)."""
+
+    angle: N
+    cos: N
+    sin: N
+    tension: N
+
+
+class Arc(NamedTuple, Generic[N]):
+    """A piece of the arc over which T grows as e^{μθ}; ``mu`` is 0 where the string is stuck."""
+
+    mu: N
+    stuck: bool
+    start: Knot[N]
+    end: Knot[N]
+
+
+def arcs(ar: Arithmetic[N], kind: Kind, mu: N, lengths: Sequence[N], light: N, end: Knot[N]) -> list[Arc[N]]:
+    """The pieces with their lengths as arcs, from the light end with its tension to ``end``."""
+    zero, one = ar.number(0), ar.number(1)
+    knots = [Knot(zero, one, zero, light)]
+    for length, stuck in list(zip(lengths, STUCK[kind], strict=True))[:-1]:
+        last = knots[-1]
+        angle = last.angle + length
+        tension = last.tension if stuck else last.tension * ar.exp(mu * length)
+        knots.append(Knot(angle, *ar.cos_sin(angle), tension))
+    knots.append(end)
+    return [
+        Arc(zero if stuck else mu, stuck, *ends)
+        for stuck, ends in zip(STUCK[kind], pairwise(knots), strict=True)
+    ]
+
+
+def least_lead(ar: Arithmetic[N], mu: N, alpha: N, stuck: N, light: N, end: Knot[N]) -> N:
+    """The lead s of the profile with the least net friction; φ <= π."""
+    _, half_sine = ar.cos_sin(stuck / 2)
+    chord = 2 * light * half_sine
+    dx, dy = end.tension * end.cos - light, end.tension * end.sin
+
+    def slope(s: N) -> N:
+        cos, sin = ar.cos_sin(s + stuck / 2)
+        return physics.least_friction_slope(mu, chord, ar.exp(mu * s), cos, sin, dx, dy)
+
+    return ar.root(slope, alpha)
+
+
+def _differences(arc: Arc[N]) -> tuple[N, N]:
+    start, end = arc.start, arc.end
+    return (
+        end.tension * end.cos - start.tension * start.cos,
+        end.tension * end.sin - start.tension * start.sin,
+    )
+
+
+def friction(pieces: Sequence[Arc[N]]) -> tuple[N, N]:
+    """Net friction force on the pulley (N), (x, y)."""
+    return _sum([physics.friction_vector(arc.mu, *_differences(arc)) for arc in pieces])
+
+
+def normal(pieces: Sequence[Arc[N]]) -> tuple[N, N]:
+    """Net normal force on the pulley (N), (x, y)."""
+    return _sum([physics.normal_vector(arc.mu, *_differences(arc)) for arc in pieces])
+
+
+def _sum(vectors: Sequence[tuple[N, N]]) -> tuple[N, N]:
+    x, y = vectors[0]
+    for dx, dy in vectors[1:]:
+        x, y = x + dx, y + dy
+    return x, y
+
+
+def torque_per_radius(ar: Arithmetic[N], pieces: Sequence[Arc[N]]) -> N:
+    """∫ dT/dθ dθ (N), the friction's torque on the pulley over its radius, arc by arc; (22)."""
+    total = ar.number(0)
+    for arc in pieces:
+        if not arc.stuck:
+            total += arc.start.tension * ar.expm1(arc.mu * (arc.end.angle - arc.start.angle))
+    return total
+
+
+def tension(ar: Arithmetic[N], arc: Arc[N], angle: N) -> N:
+    """T (N) at an angle within the arc; also nR, the normal force per radian (13)."""
+    if arc.stuck:
+        return arc.start.tension
+    return arc.start.tension * ar.exp(arc.mu * (angle - arc.start.angle))

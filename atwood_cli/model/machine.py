@@ -1,0 +1,575 @@
+"""The model of a scene, written once for every number type.
+
+`Case` holds what is decided once and exactly: who is heavier, whether the string grips. `Machine` is
+the model in one arithmetic; it computes nothing that is not asked for, and a quantity that the scene
+does not determine raises `Undetermined` with the reason.
+"""
+
+from fractions import Fraction
+from typing import Generic, Literal
+
+from ..arithmetic.interval import EXACT, Arithmetic
+from ..arithmetic.lazy import lazy
+from ..arithmetic.rounding import Quantity, is_positive
+from . import arc as profile
+from . import physics
+from .physics import N
+from .scene import UNMEASURED, Motion, Radians, Scene
+
+NEEDS_MU = "give mu, the friction coefficient"
+NEEDS_M = "give M, the pulley's mass, which decides here"
+NEEDS_R = "give R, the pulley's radius"
+UNKNOWN_SHAPE = "give M, the pulley's mass, beside I"
+FREE_END = "not defined for a free end: the string is fixed to the pulley and no friction holds it"
+NO_CRITICAL_MASS = "does not exist, as the string holds on any pulley, however heavy"
+NO_CRITICAL_HEAVIER_MASS = "does not exist, as the string holds under any heavier mass"
+NOT_BOUNDED = "not one number while the string grips with friction to spare"
+NOT_DEFINITE = (
+    f"{NOT_BOUNDED}: between friction_force_min and"
+    " friction_force_max if friction nowhere opposes the rest; tension locked in on laying the string"
+    " widens that range"
+)
+DEFINITE = "bounds are for a string that grips with friction to spare; here friction_force is definite"
+NOT_APPLICABLE = "conditions (36) do not apply without friction"
+LOCKED_AXLE = "not defined for a locked pulley: M = inf is not its weight"
+ONE_SIDED = "defined for half a turn of wrap (and whole turns more), where both ends pull downwards"
+NEEDS_A = "give a, a measured acceleration, in place of M"
+NEEDS_A_BESIDE_M = "give a, a measured acceleration, beside M and in place of g"
+NEEDS_DROP = "give drop, the height that the heavier mass falls from rest"
+AT_REST = "does not exist, as nothing moves"
+LONG_WRAP = "bounds are known for up to half a turn of wrap (180 degrees)"
+
+
+class Undetermined(Exception):
+    """The scene does not determine the quantity; the message says why and what to give."""
+
+
+Excess = Literal["excess_ratio", "locked_excess", "heaviest_excess"]
+
+
+def is_zero(value: object) -> bool:
+    """Whether an input is exactly 0. Columns are not: rows with a zero are solved apart."""
+    return isinstance(value, Fraction) and not value
+
+
+class Case:
+    """What is decided about a scene before anything is computed, exactly."""
+
+    def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
+        self.scene, self.motion = scene, motion
+
+    @lazy
+    def sign(self) -> int:
+        """1 if m2 is the heavier mass, -1 if m1 is, else 0."""
+        return (self.scene.m2 > self.scene.m1) - (self.scene.m2 < self.scene.m1)
+
+    @lazy
+    def light(self) -> Fraction:
+        return self.by_side(self.scene.m1, self.scene.m2)[0]
+
+    @lazy
+    def heavy(self) -> Fraction:
+        return self.by_side(self.scene.m1, self.scene.m2)[1]
+
+    @lazy
+    def locked(self) -> bool:
+        return isinstance(self.scene.M, float)
+
+    @lazy
+    def pulley_mass(self) -> Fraction | None:
+        """The pulley's mass; none where it is locked, and 0 where nothing is said of the pulley."""
+        M, scene = self.scene.M, self.scene
+        if M is None and scene.mu is None and scene.I is None:
+            return Fraction(0)
+        return None if isinstance(M, float) else M
+
+    @lazy
+    def rim_mass(self) -> Fraction | None:
+        """The pulley's inertia as a mass at the rim, c = βM; none where it is locked or not known."""
+        scene, mass = self.scene, self.pulley_mass
+        if scene.I is not None and scene.R is not None:
+            return scene.I / scene.R**2
+        if mass is None or scene.inertia is None:
+            return mass
+        return scene.inertia * mass
+
+    @lazy
+    def beta(self) -> Fraction | None:
+        """The inertia factor; none where I is given and M is not."""
+        if self.scene.I is None:
+            return self.scene.inertia
+        return self.rim_mass / self.pulley_mass if self.rim_mass and self.pulley_mass else None
+
+    def by_side(self, one: N, other: N) -> tuple[N, N]:
+        """What belongs to the lighter and the heavier mass from what belongs to m1 and m2, or back."""
+        return (one, other) if self.sign >= 0 else (other, one)
+
+    @property
+    def pulley_known(self) -> bool:
+        """Whether the pulley is known enough for the motion of a string that grips."""
+        return self.locked or self.rim_mass is not None
+
+    @property
+    def tensions_equal(self) -> bool:
+        """Whether a string that grips needs no friction."""
+        return self.sign == 0 or is_zero(self.rim_mass)
+
+    @lazy
+    def regime(self) -> Literal["no-slip", "verge", "slip"]:
+        if self.scene.mu is None or self.tensions_equal:
+            return "no-slip"
+        if not self.pulley_known:
+            return "verge" if self.can_slip else "no-slip"
+        return "slip" if self.slips else "no-slip"
+
+    @lazy
+    def slips(self) -> bool:
+        """Whether the string slips on a pulley that is known and friction that is given."""
+        return self.can_slip if self.locked else self.beats_friction("excess_ratio")
+
+    @property
+    def limiting_mu(self) -> Fraction:
+        """The coefficient that friction is at on the verge (static) and in slip (kinetic)."""
+        mu, mu_k = self.scene.mu, self.scene.mu_k
+        limit = mu if mu_k is None or self.regime == "verge" else mu_k
+        return Fraction(0) if limit is None else limit
+
+    @property
+    def frictionless(self) -> bool:
+        """Whether the string moves, or rests, without friction."""
+        return self.tensions_equal or (self.regime != "no-slip" and is_zero(self.limiting_mu))
+
+    @lazy
+    def can_slip(self) -> bool:
+        """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
+        if self.sign == 0:
+            return False
+        # Whatever slips on a pulley that turns slips on a heavier one.
+        return (self.rim_mass is not None and self.slips) or self.beats_friction("locked_excess")
+
+    @lazy
+    def can_be_made_slip(self) -> bool:
+        """Whether it slips under a heavier mass that is heavy enough: second condition of (36)."""
+        return self.rim_mass is None or self.beats_friction("heaviest_excess")
+
+    @lazy
+    def long_wrap(self) -> bool:
+        """Whether the wrap is beyond half a turn."""
+        wrap = self.scene.wrap
+        if not isinstance(wrap, Radians):
+            return wrap > 180
+        return is_positive(lambda ar: wrap_angle(ar, self.scene) - ar.pi)
+
+    @lazy
+    def ends_hang_down(self) -> bool:
+        """Whether both ends of the string leave the pulley downwards."""
+        return not isinstance(self.scene.wrap, Radians) and (self.scene.wrap - 180) % 360 == 0
+
+    def excess_ratio(self, ar: Arithmetic[N]) -> N:
+        """T_h/T_l - 1 of a string that grips."""
+        if self.rim_mass is None:
+            return self.locked_excess(ar)
+        return physics.excess_ratio(*map(ar.number, (self.light, self.heavy, self.rim_mass)))
+
+    def locked_excess(self, ar: Arithmetic[N]) -> N:
+        """The same on a locked pulley."""
+        return physics.locked_excess(ar.number(self.light), ar.number(self.heavy))
+
+    def heaviest_excess(self, ar: Arithmetic[N]) -> N:
+        """The same under a heavier mass beyond all bounds, on a pulley that is not locked."""
+        assert self.rim_mass is not None
+        return physics.heaviest_excess(ar.number(self.light), ar.number(self.rim_mass))
+
+    def beats_friction(self, which: Excess) -> bool:
+        """Whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed."""
+        excess: Quantity = getattr(self, which)
+        mu, exactly = self.scene.mu, excess(EXACT)
+        if not mu or not exactly:
+            return exactly > 0
+
+        def margin(ar: Arithmetic[N]) -> N:
+            return ar.log1p(excess(ar)) - ar.number(mu) * wrap_angle(ar, self.scene)
+
+        return is_positive(margin)
+
+
+def wrap_angle(ar: Arithmetic[N], scene: Scene) -> N:
+    """The angle of wrap φ in radians."""
+    if isinstance(scene.wrap, Radians):
+        return ar.number(scene.wrap)
+    return ar.pi * ar.number(scene.wrap / 180)
+
+
+class Machine(Generic[N]):
+    """The model of a case in one arithmetic. Its properties are the quantities, by their names."""
+
+    def __init__(self, case: Case, ar: Arithmetic[N]) -> None:
+        self.case, self.scene, self.ar = case, case.scene, ar
+        self._arcs: dict[profile.Kind, list[profile.Arc[N]]] = {}
+
+    @lazy
+    def l(self) -> N:
+        return self.ar.number(self.case.light)
+
+    @lazy
+    def h(self) -> N:
+        return self.ar.number(self.case.heavy)
+
+    @lazy
+    def g(self) -> N:
+        return self.ar.number(self.scene.g)
+
+    @lazy
+    def phi(self) -> N:
+        """The angle of wrap φ (rad)."""
+        return wrap_angle(self.ar, self.scene)
+
+    # What the quantities are made of
+
+    def _given(self, value: Fraction | None, otherwise: str) -> N:
+        if value is None:
+            raise Undetermined(otherwise)
+        return self.ar.number(value)
+
+    def _capstan_excess(self, mu: Fraction) -> N:
+        """e^{μφ} - 1; without friction no exponential is asked for."""
+        if is_zero(mu):
+            return self.ar.number(0)
+        return self.ar.expm1(self.ar.number(mu) * self.phi)
+
+    @lazy
+    def k1(self) -> N:
+        """The excess of the capstan ratio of static friction."""
+        if self.scene.mu is None:
+            raise Undetermined(NEEDS_MU)
+        return self._capstan_excess(self.scene.mu)
+
+    @lazy
+    def excess(self) -> N:
+        """T_h/T_l - 1 of a string that grips."""
+        return self.case.excess_ratio(self.ar)
+
+    @lazy
+    def transfer(self) -> N:
+        """The transfer z at the limit of static friction; see `physics`."""
+        return physics.transfer_at_limit(self.l, self.k1)
+
+    @lazy
+    def drive(self) -> N:
+        """The drive d at the limit of static friction."""
+        return physics.drive_at_limit(self.l, self.h, self.transfer)
+
+    @lazy
+    def limiting_k1(self) -> N:
+        """The excess of the tension ratio in a regime where friction is at its limit."""
+        mu = self.case.limiting_mu
+        return self.k1 if mu is self.scene.mu else self._capstan_excess(mu)
+
+    @lazy
+    def limiting_transfer(self) -> N:
+        """The transfer z in that regime."""
+        static = self.case.limiting_mu is self.scene.mu
+        return self.transfer if static else physics.transfer_at_limit(self.l, self.limiting_k1)
+
+    @lazy
+    def limiting_drive(self) -> N:
+        """The drive d in that regime."""
+        static = self.case.limiting_mu is self.scene.mu
+        return self.drive if static else physics.drive_at_limit(self.l, self.h, self.limiting_transfer)
+
+    @lazy
+    def magnitude(self) -> N:
+        """The magnitude of the acceleration."""
+        l, h, case = self.l, self.h, self.case
+        if case.regime != "no-slip":
+            drive, load = self.limiting_drive, physics.load(l, h, self.limiting_transfer)
+        elif case.sign == 0 or case.locked:
+            return self.ar.number(0)
+        else:
+            drive, load = h - l, physics.load(l, h, self._given(case.rim_mass, NEEDS_M))
+        return physics.acceleration(drive, load, self.g)
+
+    @lazy
+    def friction_mu(self) -> N:
+        """The μ with which T(θ) = T1 e^{±μθ}, where that is so."""
+        if self.case.regime != "no-slip":
+            return self.ar.number(self.case.limiting_mu)
+        if self.scene.mu is None or self.case.tensions_equal or not self.case.pulley_known:
+            return self.mu_verge
+        raise Undetermined(NOT_BOUNDED if self.case.long_wrap else NOT_DEFINITE)
+
+    @lazy
+    def friction_vector(self) -> tuple[N, N]:
+        return self.seen_from_m1(profile.friction(self.arcs("exponential")))
+
+    def seen_from_m1(self, vector: tuple[N, N]) -> tuple[N, N]:
+        """A vector as it is where m1, not the lighter mass, is at the start of the arc."""
+        return vector if self.case.sign >= 0 else physics.mirrored(*vector, *self._direction)
+
+    @lazy
+    def alpha(self) -> N:
+        """The arc (rad) that friction at its limit needs, where the string grips with some to spare."""
+        if self.scene.mu is None:
+            raise Undetermined(NEEDS_MU)
+        log_ratio = self.mu_verge * self.phi
+        return physics.limiting_arc(log_ratio, self.ar.number(self.scene.mu))
+
+    def arcs(self, kind: profile.Kind) -> list[profile.Arc[N]]:
+        """The arc of contact from the light end, in pieces: limiting, stuck or both (see `profile`)."""
+        if kind not in self._arcs:
+            self._arcs[kind] = self._arrange(kind)
+        return self._arcs[kind]
+
+    def _arrange(self, kind: profile.Kind) -> list[profile.Arc[N]]:
+        ar, mu, light = self.ar, self.arc_mu(kind), self.light_tension
+        if ar.is_zero(mu):  # the tension is the same everywhere: no angle is needed, so no π either
+            nowhere = ar.number(0)
+            return profile.arcs(ar, kind, mu, [nowhere], light, self._end(nowhere))
+        phi = self.phi
+        end = self._end(phi)
+        if kind == "exponential":
+            return profile.arcs(ar, kind, mu, [phi], light, end)
+        stuck = phi - self.alpha
+        if kind == "creep":
+            return profile.arcs(ar, kind, mu, [stuck, self.alpha], light, end)
+        lead = profile.least_lead(ar, mu, self.alpha, stuck, light, end)
+        return profile.arcs(ar, kind, mu, [lead, stuck, self.alpha - lead], light, end)
+
+    def arc_mu(self, kind: profile.Kind) -> N:
+        """The coefficient that the friction of a profile is at, where it is at its limit."""
+        return self.friction_mu if kind == "exponential" else self._given(self.scene.mu, NEEDS_MU)
+
+    @property
+    def reference_mu(self) -> N:
+        """Static friction, or where it is not given the least that holds."""
+        return self.mu_verge if self.scene.mu is None else self.ar.number(self.scene.mu)
+
+    @property
+    def capstan_ratio(self) -> N:
+        """e^{μφ} at that coefficient; the tension ratio itself where that is what holds."""
+        return self.heavy_tension / self.light_tension if self.scene.mu is None else self.k1 + 1
+
+    def _end(self, angle: N) -> profile.Knot[N]:
+        return profile.Knot(angle, *self._direction, self.heavy_tension)
+
+    @lazy
+    def resultant_vector(self) -> tuple[N, N]:
+        """The force (N) that T1 and T2 would exert on the pulley, x and y."""
+        cos, sin = self._direction
+        dx, dy = self.heavy_tension * cos - self.light_tension, self.heavy_tension * sin
+        return self.seen_from_m1(physics.resultant_vector(dx, dy))
+
+    @lazy
+    def _direction(self) -> tuple[N, N]:
+        """Cosine and sine of the angle of wrap."""
+        return self._cos_sin(1)
+
+    @lazy
+    def half_sine(self) -> N:
+        """Sine of half the angle of wrap."""
+        return self._cos_sin(2)[1]
+
+    def _cos_sin(self, parts: int) -> tuple[N, N]:
+        """Cosine and sine of an equal part of the angle of wrap; exact at multiples of 90°."""
+        wrap = self.scene.wrap
+        if isinstance(wrap, Radians):
+            return self.ar.cos_sin(self.ar.number(wrap) / parts)
+        return self.ar.cos_sin_of_degrees(wrap / parts)
+
+    @lazy
+    def difference(self) -> N:
+        """The magnitude of T2 - T1."""
+        case = self.case
+        if case.regime != "no-slip":
+            return physics.difference_of_friction(self.light_tension, self.limiting_k1)
+        if case.tensions_equal:
+            return self.ar.number(0)
+        if case.locked:
+            return physics.difference_of_a_locked_pulley(self.l, self.h, self.g)
+        return physics.difference_of_a_pulley(self._given(case.rim_mass, NEEDS_M), self.magnitude)
+
+    @property
+    def tension_difference(self) -> N:
+        return self.difference * self.case.sign
+
+    def _bounded(self) -> bool:
+        """Whether the friction force is bounded by more than 0; raises where it has no bounds."""
+        if self.case.regime != "no-slip":
+            raise Undetermined(DEFINITE)
+        _ = self.mu_verge
+        if self.case.tensions_equal:
+            return False
+        if self.scene.mu is None:
+            raise Undetermined(NEEDS_MU)
+        if self.case.long_wrap:
+            raise Undetermined(LONG_WRAP)
+        return True
+
+    # The quantities
+
+    @property
+    def acceleration(self) -> N:
+        return self.magnitude if self.case.sign > 0 else self.magnitude * self.case.sign
+
+    @lazy
+    def light_tension(self) -> N:
+        return physics.light_tension(self.l, self.magnitude, self.g)
+
+    @lazy
+    def heavy_tension(self) -> N:
+        return self.light_tension + self.difference
+
+    @property
+    def tension_1(self) -> N:
+        return self.case.by_side(self.light_tension, self.heavy_tension)[0]
+
+    @property
+    def tension_2(self) -> N:
+        return self.case.by_side(self.light_tension, self.heavy_tension)[1]
+
+    @lazy
+    def mu_verge(self) -> N:
+        case = self.case
+        if is_zero(case.light):
+            raise Undetermined(FREE_END)
+        if case.tensions_equal:
+            return self.ar.number(0)
+        if not case.pulley_known:
+            if case.regime == "verge":
+                return self.ar.number(case.limiting_mu)
+            raise Undetermined(NEEDS_M)
+        return physics.verge_coefficient(self.ar.log1p(self.excess), self.phi)
+
+    @lazy
+    def friction_force(self) -> N:
+        mu = self.friction_mu
+        if self.ar.is_zero(mu):
+            return self.ar.number(0)
+        if self.case.ends_hang_down:
+            force = physics.half_turn_resultant(self.light_tension, self.heavy_tension)
+        else:
+            force = self._resultant(self.half_sine)
+        return physics.friction_magnitude(mu, force, self.ar.hypot)
+
+    def _resultant(self, sin_half: N) -> N:
+        """The force (N) of both tensions on an arc, by the sine of its half."""
+        light, heavy, ar = self.light_tension, self.heavy_tension, self.ar
+        return physics.resultant(light, heavy, self.difference, sin_half, ar.sqrt, ar.hypot)
+
+    @lazy
+    def friction_force_x(self) -> N:
+        return self.friction_vector[0]
+
+    @lazy
+    def friction_force_y(self) -> N:
+        return self.friction_vector[1]
+
+    @lazy
+    def axle_force(self) -> N:
+        if not self.case.ends_hang_down:
+            raise Undetermined(ONE_SIDED)
+        if self.case.locked:
+            raise Undetermined(LOCKED_AXLE)
+        if self.case.regime == "verge":
+            mass = self.critical_pulley_mass
+        else:
+            mass = self._given(self.case.pulley_mass, NEEDS_M)
+        return physics.axle_force(self.tension_1, self.tension_2, mass, self.g)
+
+    @lazy
+    def torque(self) -> N:
+        return self.tension_difference * self._given(self.scene.R, NEEDS_R)
+
+    @lazy
+    def rim_acceleration(self) -> N:
+        if self.case.regime != "slip":
+            return self.acceleration
+        if self.case.rim_mass is None:
+            return self.ar.number(0)
+        return self.tension_difference / self.ar.number(self.case.rim_mass)
+
+    @lazy
+    def angular_acceleration(self) -> N:
+        return self.rim_acceleration / self._given(self.scene.R, NEEDS_R)
+
+    @lazy
+    def critical_pulley_mass(self) -> N:
+        if self.scene.mu is None:
+            raise Undetermined(NEEDS_MU)
+        if not self.case.can_slip:
+            raise Undetermined(NO_CRITICAL_MASS)
+        transfer = self.transfer
+        beta = self._given(self.case.beta, UNKNOWN_SHAPE)
+        return physics.critical_pulley_mass(self.h, transfer, self.drive, beta)
+
+    @lazy
+    def critical_heavier_mass(self) -> N:
+        transfer = self.transfer
+        if self.case.locked:
+            return self.least_heavier_mass
+        c = self._given(self.case.rim_mass, NEEDS_M)
+        if not self.case.can_be_made_slip:
+            raise Undetermined(NO_CRITICAL_HEAVIER_MASS)
+        return physics.critical_heavier_mass(self.l, c, transfer)
+
+    @lazy
+    def least_heavier_mass(self) -> N:
+        transfer = self.transfer
+        if is_zero(self.scene.mu) and not self.case.pulley_known:
+            raise Undetermined(NOT_APPLICABLE)
+        return physics.least_heavier_mass(self.l, transfer)
+
+    @lazy
+    def least_pulley_mass(self) -> N:
+        transfer = self.transfer
+        if is_zero(self.scene.mu) and not self.case.pulley_known:
+            raise Undetermined(NOT_APPLICABLE)
+        return physics.least_pulley_mass(transfer, self._given(self.case.beta, UNKNOWN_SHAPE))
+
+    @property
+    def pulley_mass(self) -> N:
+        if self.case.motion.finds != "M":
+            raise Undetermined(NEEDS_A)
+        return self._given(self.case.pulley_mass, NEEDS_M)
+
+    @property
+    def moment_of_inertia(self) -> N:
+        if self.case.motion.finds != "M":
+            raise Undetermined(NEEDS_A)
+        R = self._given(self.scene.R, NEEDS_R)
+        return physics.moment_of_inertia(self._given(self.case.rim_mass, NEEDS_M), R)
+
+    @property
+    def gravity(self) -> N:
+        if self.case.motion.finds != "g":
+            raise Undetermined(NEEDS_A_BESIDE_M)
+        return self.g
+
+    @property
+    def fall_time(self) -> N:
+        return physics.fall_time(*self._fall(), self.ar.sqrt)
+
+    @property
+    def final_speed(self) -> N:
+        return physics.final_speed(*self._fall(), self.ar.sqrt)
+
+    def _fall(self) -> tuple[N, N]:
+        """The height fallen, and the acceleration."""
+        drop = self._given(self.case.motion.drop, NEEDS_DROP)
+        if self.ar.is_zero(self.magnitude):
+            raise Undetermined(AT_REST)
+        return drop, self.magnitude
+
+    @lazy
+    def friction_force_min(self) -> N:
+        if not self._bounded():
+            return self.ar.number(0)
+        x, y = profile.friction(self.arcs("least"))
+        return self.ar.sqrt(x * x + y * y)
+
+    @lazy
+    def friction_force_max(self) -> N:
+        if not self._bounded():
+            return self.ar.number(0)
+        _, sin_half = self.ar.cos_sin(self.alpha / 2)
+        return physics.friction_magnitude(self.arc_mu("creep"), self._resultant(sin_half), self.ar.hypot)

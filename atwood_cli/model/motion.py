@@ -1,0 +1,110 @@
+"""From a measured acceleration back to the pulley's mass, or to gravity; all of it is rational.
+
+Without slip a = g d/s, with the load s = l + h + c: what of M and g is not given follows from a. In slip,
+and with friction at its limit, the pulley's mass has no part in the motion, so that a tells nothing of it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from math import inf
+
+from ..arithmetic.rounding import text, to_double
+from . import physics
+from .machine import Case, Undetermined
+from .quantities import Solution, T, quantity
+from .scene import MEASURED, Given, Motion, Scene, SceneError, read_value
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasuredSolution(Solution[T]):
+    """A solution with what follows from a measured acceleration or a height of fall; else None."""
+
+    # fmt: off
+    pulley_mass: T | None = quantity("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration")
+    moment_of_inertia: T | None = quantity("measured", "I", "kg m²", "", "moment of inertia that gives the measured acceleration")
+    gravity: T | None = quantity("measured", "g", "m/s²", "(4)", "gravity that gives the measured acceleration")
+    fall_time: T | None = quantity("measured", "t", "s", "", "time to fall the height from rest")
+    final_speed: T | None = quantity("measured", "v", "m/s", "", "speed after that")
+    # fmt: on
+
+
+NO_PULLEY = "unknown, as inputs a little different fit no pulley"
+
+
+def read(given: Mapping[str, Given | None]) -> tuple[Scene, Motion]:
+    """The scene given, without what is to be found, and what was measured. Raises SceneError."""
+    a, drop, time = (read_value(name, given.get(name)) for name in MEASURED)
+    motion, scene = Motion(a, drop, time), Scene.read(given)
+    if time is not None and drop is None:
+        raise SceneError("time", given["time"], "needs drop, the height fallen in it")
+    if time is not None and a is not None:
+        raise SceneError("time", given["time"], "and a both tell the acceleration; give one of them")
+    if a is None and time is None:
+        return scene, motion
+    name = "a" if time is None else "time"
+    motion = motion._replace(finds="M" if scene.M is None else "g")
+    if rule := _contradiction(scene, given.get("g") is not None) or _impossible(Case(scene, motion), name):
+        raise SceneError(name, given[name], rule)
+    return scene, motion
+
+
+def _contradiction(scene: Scene, g_given: bool) -> str:
+    """Why an acceleration has no place beside what else is given; empty if it has."""
+    if scene.mu is not None:
+        return "has no place beside mu, as a string that slips moves alike on any pulley; leave mu out"
+    if scene.I is not None:
+        return "has no place beside I, which already tells how the pulley turns; leave I out"
+    if scene.M == inf:
+        return "has no place beside M = inf, which lets nothing move; leave one of them out"
+    if scene.M is not None and g_given:
+        return "leaves nothing to find beside both M and g; leave one of them out"
+    if scene.m1 == scene.m2:
+        return "tells nothing of equal masses, which rest on any pulley; leave it out"
+    return ""
+
+
+def _impossible(case: Case, name: str) -> str:
+    """Why no pulley, or no gravity, gives the acceleration; empty if one does."""
+    scene, motion = case.scene, case.motion
+    a = _signed(case)
+    most = physics.acceleration(
+        case.heavy - case.light, physics.load(case.light, case.heavy, Fraction(0)), scene.g
+    )
+    downhill = case.sign * a > 0
+    if downhill and (motion.finds == "g" or case.sign * a <= most):
+        return ""
+    implied = f"implies a = {text(to_double(a))} m/s², which " * (name == "time")
+    heavier = f"as {'m2' if case.sign > 0 else 'm1'} is the heavier mass"
+    if motion.finds == "g":
+        return f"{implied}must be {'above' if case.sign > 0 else 'below'} 0, {heavier}"
+    limit = text(to_double(case.sign * most))
+    return (
+        f"{implied}must be between 0 (a locked pulley: M = inf) and {limit} m/s² (a massless one), {heavier}"
+    )
+
+
+def _signed(case: Case) -> Fraction:
+    """The measured acceleration, positive when m2 descends."""
+    motion = case.motion
+    if motion.a is not None:
+        return motion.a
+    assert motion.drop is not None
+    assert motion.time is not None
+    return case.sign * physics.acceleration_of_fall(motion.drop, motion.time)
+
+
+def found(scene: Scene, motion: Motion) -> Scene:
+    """The scene with what follows from the motion in it. Raises Undetermined."""
+    if motion.finds is None:
+        return scene
+    case = Case(scene, motion)
+    l, h, a = case.light, case.heavy, case.sign * _signed(case)
+    if motion.finds == "g":
+        assert case.rim_mass is not None
+        return scene._replace(g=physics.gravity_under(h - l, physics.load(l, h, case.rim_mass), a))
+    c = physics.added_load(l, h, physics.load_under(h - l, a, scene.g))
+    if c < 0:
+        raise Undetermined(NO_PULLEY)
+    assert scene.inertia is not None
+    return scene._replace(M=c / scene.inertia)

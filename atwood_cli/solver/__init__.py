@@ -1,0 +1,1 @@
+"""The answers for one scene, to the digits asked for."""

@@ -1,0 +1,127 @@
+"""The solver: settles the quantities of a scene, each when it is asked for."""
+
+from collections.abc import Callable, Mapping
+from decimal import Decimal
+from fractions import Fraction
+from operator import attrgetter
+from typing import Any
+
+from ..arithmetic.interval import EXACT, LARGEST_EXPONENT, Arithmetic, Irrational
+from ..arithmetic.rounding import (
+    Quantity,
+    Rounding,
+    is_infinite,
+    is_positive,
+    middle,
+    settle,
+    to_digits,
+    to_double,
+    to_place,
+)
+from ..model.machine import Case, Machine, Undetermined
+from ..model.physics import N
+from ..model.quantities import FOUND, NAMES
+from ..model.scene import MEASURED, UNMEASURED, Given, Motion, Scene, read_uncertain
+
+DOUBLE_DIGITS = 17
+
+TOO_LARGE = f"beyond 10^{LARGEST_EXPONENT}, the largest number written out"
+ABOVE_DOUBLES = "beyond the range of doubles; ask for digits (--digits 17) to see it"
+BELOW_DOUBLES = "not 0 but below the range of doubles; ask for digits (--digits 17) to see it"
+
+OnMachine = Callable[[Machine[Any]], Any]
+
+
+class Answers:
+    """The quantities of a scene, settled when asked for: to doubles or to ``digits`` digits."""
+
+    def __init__(self, scene: Scene, digits: int | None = None, motion: Motion = UNMEASURED) -> None:
+        self.case = Case(scene, motion)
+        self.digits = digits
+        self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
+        self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
+        self._values: dict[str, Any] = {"regime": self.case.regime}
+        self.reasons: dict[str, str] = {}
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The quantities that every scene has, and those that come with what is given of the motion."""
+        motion = self.case.motion
+        drop = "drop" if motion.drop is not None else None
+        return (*NAMES, *FOUND.get(motion.finds, ()), *FOUND.get(drop, ()))
+
+    def __getitem__(self, name: str) -> Any:
+        """The value of a quantity by its name, None where ``reasons`` says why there is none."""
+        if name not in self._values:
+            try:
+                value = self._values[name] = self.settle(attrgetter(name))
+                if is_infinite(value):
+                    self.reasons[name] = ABOVE_DOUBLES if self.digits is None else TOO_LARGE
+                elif value == 0 and self.digits is None and self._settle(attrgetter(name), to_digits(1)):
+                    self.reasons[name] = BELOW_DOUBLES
+            except Undetermined as reason:
+                self._values[name] = None
+                self.reasons[name] = str(reason)
+        return self._values[name]
+
+    def cut(self, name: str, place: int) -> Decimal:
+        """The value of a quantity that exists, rounded to a multiple of 10^place."""
+        value = self._settle(attrgetter(name), to_place(place))
+        assert isinstance(value, Decimal)
+        return value
+
+    def settle(self, quantity: OnMachine) -> float | Decimal:
+        """Anything that a machine has, correctly rounded. Raises Undetermined."""
+        return self._settle(quantity, self.round)
+
+    def _settle(self, quantity: OnMachine, round_: Rounding[Any]) -> float | Decimal:
+        digits = self.digits or DOUBLE_DIGITS
+        value: float | Decimal = settle(self._on_machines(quantity), round_, digits)
+        return value
+
+    def exactly(self, quantity: OnMachine) -> Fraction | None:
+        """The same unrounded, where it is rational for want of anything else in its formula."""
+        try:
+            value: Fraction = self._on_machines(quantity)(EXACT)
+        except Irrational:
+            return None
+        return value
+
+    def nearly(self, quantity: OnMachine) -> float | Decimal:
+        """The same for what is rational though its formula is not, so that a tie would never settle.
+
+        The middle of an enclosure with digits to spare is rounded instead.
+        """
+        digits = 2 * (self.digits or DOUBLE_DIGITS)
+        value: float | Decimal = self.round(middle(self._on_machines(quantity), digits))
+        return value
+
+    def is_positive(self, quantity: OnMachine) -> bool:
+        """The sign of anything that a machine has and that is known to be irrational."""
+        return is_positive(self._on_machines(quantity))
+
+    def _on_machines(self, quantity: OnMachine) -> Quantity:
+        def of(ar: Arithmetic[N]) -> N:
+            if ar not in self._machines:
+                self._machines[ar] = Machine(self.case, ar)
+            value: N = quantity(self._machines[ar])
+            return value
+
+        return of
+
+    def with_pulley(self, mass: Fraction | float) -> "Answers":
+        """The same scene on a pulley of that mass (inf: locked), with a string that grips."""
+        return Answers(self.case.scene._replace(M=mass, mu=None, mu_k=None), self.digits)
+
+
+def read_answers(
+    given: Mapping[str, Given | None], digits: int | None
+) -> tuple[Answers, dict[str, Fraction]]:
+    """The answers to what is given, and the uncertainties of what in it is not exact. Raises SceneError."""
+    if all(given.get(name) is None for name in MEASURED):
+        scene, uncertain = read_uncertain(given, Scene.read)
+        return Answers(scene, digits), uncertain
+    from ..model import motion as inverse
+
+    (scene, motion), uncertain = read_uncertain(given, inverse.read)
+    return Answers(inverse.found(scene, motion), digits, motion), uncertain

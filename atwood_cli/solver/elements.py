@@ -1,0 +1,174 @@
+"""The arc as a simulator sees it: N string elements, each in balance, marched one after another.
+
+The balance (8) of one element with friction at its limit makes the tension at its end
+(1 + μ tan(Δθ/2))/(1 - μ tan(Δθ/2)) times that at its start. This runs in doubles, on purpose: it
+shows what finite elements cost in accuracy beside the limit Δθ → 0 that the rest of the program
+takes. The error falls as N^-2, with Richardson's extrapolation as N^-4, until rounding takes over.
+"""
+
+from decimal import Decimal
+from fractions import Fraction
+from math import atan2, cos, floor, hypot, inf, isfinite, tan
+from typing import NamedTuple
+
+from ..arithmetic.rounding import to_digits
+from ..model import physics
+from ..model.machine import wrap_angle
+from ..model.scene import SceneError, read_whole
+from .answers import Answers, OnMachine
+
+BLOCK = 1 << 16  # elements at a time: arrays of half a megabyte, which stay in the cache
+MAX_ELEMENTS = 10_000_000
+EXACT_DIGITS = 20
+
+
+class Row(NamedTuple):
+    """A quantity from the elements, its exact value, and the relative error (absolute if that is 0)."""
+
+    name: str
+    value: float | Decimal
+    exact: float | Decimal
+    error: Decimal
+
+
+class Elements(NamedTuple):
+    """What the elements give, and why something is missing."""
+
+    rows: list[Row]
+    notes: list[str]
+
+
+TOO_LARGE = "run in doubles, which this scene is too large for"
+TOO_SMALL = "run in doubles, which this scene is too small for"
+NOT_LIMITING = "tension_ratio, friction_force: not decided by mu while friction is to spare."
+NO_MASS = "critical_pulley_mass: so few elements overrate friction, and find no pulley heavy enough."
+
+
+def march(mu: float, phi: float, count: int) -> tuple[float, float, float]:
+    """k_N, the tension ratio over ``count`` elements, and the net friction (x, y) over T_l.
+
+    Elements must be so many that μ tan(Δθ/2) < 1. Raises SceneError where k_N is no double.
+    """
+    import numpy as np
+
+    step = phi / count
+    grip = mu * tan(step / 2)
+    tension, x, y = 1.0, 0.0, 0.0
+    for first in range(0, count, BLOCK):
+        ends = np.full(min(BLOCK, count - first), (1 + grip) / (1 - grip))
+        ends[0] *= tension
+        with np.errstate(over="ignore"):
+            np.multiply.accumulate(ends, out=ends)
+        if not isfinite(ends[-1]):
+            raise SceneError("elements", count, TOO_LARGE)
+        # (8a): the friction of an element is (F2 - F1) cos(Δθ/2), tangential at its middle.
+        friction = np.diff(ends, prepend=tension) * cos(step / 2)
+        middle = (np.arange(first, first + len(ends)) + 0.5) * step
+        x -= float(friction @ np.sin(middle))
+        y += float(friction @ np.cos(middle))
+        tension = float(ends[-1])
+    return tension, x, y
+
+
+def extrapolated(fine: float, coarse: float) -> float:
+    """Richardson's extrapolation of what ``coarse`` gives with half the elements, to errors as N^-4."""
+    return (4 * fine - coarse) / 3
+
+
+def balanced(mu: float, phi: float, count: int) -> bool:
+    """Whether μ tan(Δθ/2) < 1."""
+    return phi / (2 * count) < atan2(1, mu)
+
+
+def _check_count(mu: float, phi: float, count: int, halved: bool) -> None:
+    """Raise SceneError, with the least number that will do, where elements are too few to be in balance."""
+    times = 2 if halved else 1
+    if balanced(mu, phi, count // times):
+        return
+    most = MAX_ELEMENTS // times
+    rule = f"are too few for this mu and wrap, and so are {MAX_ELEMENTS}, the most"
+    if balanced(mu, phi, most):
+        least = max(1, floor(phi / (2 * atan2(1, mu))))
+        while not balanced(mu, phi, least):
+            least += 1
+        rule = f"are too few for this mu and wrap, which take at least {times * least}"
+    raise SceneError("elements", count, rule)
+
+
+def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> Elements:
+    """What friction at its limit decides, from ``count`` elements, beside the exact values.
+
+    With ``extrapolate``, Richardson's, from half as many elements too. Raises SceneError.
+    """
+    count = read_whole("elements", count, 1, MAX_ELEMENTS)
+    if extrapolate and count % 2:
+        raise SceneError("elements", count, "must be even, to extrapolate from half as many")
+    doubles, exact = Answers(answers.case.scene), Answers(answers.case.scene, EXACT_DIGITS)
+    machine = _Doubles(doubles, count)
+    _check_count(machine.mu, machine.phi, count, extrapolate)
+    values = machine.solve(count)
+    if extrapolate:
+        coarse = machine.solve(count // 2)
+        values = {name: extrapolated(value, coarse[name]) for name, value in values.items()}
+    rows, notes = [], []
+    for name, value in values.items():
+        if not isfinite(value):
+            notes.append(NO_MASS)
+            continue
+        right, shown = Fraction(exact.settle(EXACT[name])), Fraction(value)
+        if right and not shown:
+            raise SceneError("elements", count, TOO_SMALL)
+        error = to_digits(3)((shown - right) / right if right else shown)
+        rows.append(Row(name, answers.round(shown), answers.settle(EXACT[name]), error))
+    if "friction_force" not in values:
+        notes.append(NOT_LIMITING)
+    return Elements(rows, notes)
+
+
+EXACT: dict[str, OnMachine] = {
+    "capstan_ratio": lambda machine: machine.capstan_ratio,
+    "tension_ratio": lambda machine: machine.tension_2 / machine.tension_1,
+    "critical_pulley_mass": lambda machine: machine.critical_pulley_mass,
+    "friction_force": lambda machine: machine.friction_force,
+}
+
+
+class _Doubles:
+    """A scene in doubles, solved by elements."""
+
+    def __init__(self, answers: Answers, count: int) -> None:
+        self.answers, self.case, self.count = answers, answers.case, count
+        scene = answers.case.scene
+        self.phi = self._double(lambda machine: wrap_angle(machine.ar, scene))
+        self.mu = self._double(lambda machine: machine.reference_mu)
+
+    def _double(self, of: OnMachine) -> float:
+        value = float(self.answers.settle(of))
+        if not isfinite(value):
+            raise SceneError("elements", self.count, TOO_LARGE)
+        return value
+
+    def solve(self, count: int) -> dict[str, float]:
+        case, answers = self.case, self.answers
+        k, x, y = march(self.mu, self.phi, count)
+        found = {"capstan_ratio": k}
+        l, h = self._double(lambda machine: machine.l), self._double(lambda machine: machine.h)
+        if answers["critical_pulley_mass"] is not None:
+            beta = self._double(lambda machine: machine.ar.number(case.beta or 0))
+            transfer = physics.transfer_at_limit(l, k - 1)
+            drive = physics.drive_at_limit(l, h, transfer)
+            mass = physics.critical_pulley_mass(h, transfer, drive, beta) if drive > 0 else inf
+            found["critical_pulley_mass"] = mass
+        if answers["friction_force"] is None:
+            return found
+        if case.regime == "slip" and case.scene.mu_k is not None:
+            kinetic = self._double(lambda machine: machine.arc_mu("exponential"))
+            k, x, y = march(kinetic, self.phi, count)
+        light = self._double(lambda machine: machine.light_tension)
+        if case.regime != "no-slip":
+            transfer, g = physics.transfer_at_limit(l, k - 1), self._double(lambda machine: machine.g)
+            drive, load = physics.drive_at_limit(l, h, transfer), physics.load(l, h, transfer)
+            light = physics.light_tension(l, physics.acceleration(drive, load, g), g)
+        found["tension_ratio"] = k if case.sign >= 0 else 1 / k
+        found["friction_force"] = light * hypot(x, y)
+        return found

@@ -1,0 +1,136 @@
+"""A solved scene in words: what the string does and why, and what is missing and why."""
+
+from collections import Counter
+from collections.abc import Mapping
+from decimal import Decimal
+from fractions import Fraction
+from math import inf
+
+from ..arithmetic.interval import LARGEST_EXPONENT
+from ..arithmetic.rounding import as_typed, is_infinite, text, to_double
+from ..model.scene import MAX_DIGITS, MAX_MAGNITUDE
+from .answers import DOUBLE_DIGITS, Answers
+
+
+def notes(answers: Answers) -> list[str]:
+    """Sentences on the regime and why, on conditions (36), and on each value that is missing."""
+    return [verdict(answers), *_remarks(answers), *reasons(answers)]
+
+
+def reasons(answers: Answers) -> list[str]:
+    """Why values asked for so far are missing: a sentence a reason, naming them."""
+    return reasons_at(Counter(answers.reasons.items()), 1)
+
+
+def reasons_at(found: Mapping[tuple[str, str], int], points: int) -> list[str]:
+    """The same for many points: names with reasons, and at how many points."""
+    names: dict[tuple[str, int], list[str]] = {}
+    for (name, reason), times in found.items():
+        names.setdefault((reason, times), []).append(name)
+    return [
+        f"{', '.join(group)}: {reason}{'' if times == points else f' (at {times} of {points} points)'}."
+        for (reason, times), group in names.items()
+    ]
+
+
+def verdict(answers: Answers) -> str:
+    """What the string does, and why, in a sentence."""
+    case, scene = answers.case, answers.case.scene
+    heavy = as_typed(case.heavy)
+    if case.sign == 0:
+        return "At rest: the masses are equal, so no friction is needed."
+    if case.regime == "verge" and not scene.mu:
+        return "Slips on any pulley that has mass, for want of friction; the values are for one without."
+    if case.regime == "verge":
+        return (
+            "On the verge of slipping if the pulley has the critical mass,"
+            f" {_say(answers, 'critical_pulley_mass')} kg: on a heavier one the string slips."
+        )
+    if case.regime == "slip" and scene.mu is not None:
+        kinetic = "" if scene.mu_k is None else f", and slides with mu_k = {as_typed(scene.mu_k)}"
+        verge = _apart(answers, "mu_verge", scene.mu, above=True)
+        return f"Slips: mu = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
+    if case.tensions_equal:
+        return "Holds: a pulley without mass needs no friction to turn, so both tensions are equal."
+    if not case.light:
+        return "Holds: the string's end is fixed to the pulley."
+    if scene.mu is None:
+        return f"Assumed to hold, without mu: it does if mu is at least {_say(answers, 'mu_verge')}."
+    if case.pulley_known:
+        verge = _apart(answers, "mu_verge", scene.mu, above=False)
+        return f"Holds: mu = {as_typed(scene.mu)}, and {verge} is enough."
+    least = _apart(answers, "least_heavier_mass", case.heavy, above=True)
+    return f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {least} kg to slip."
+
+
+def _remarks(answers: Answers) -> list[str]:
+    return [*odd_inertia(answers), *conditions(answers), *open_range(answers)]
+
+
+def odd_inertia(answers: Answers) -> list[str]:
+    """A doubt about an inertia factor that few pulleys have."""
+    beta = answers.case.beta
+    if beta is None or beta <= 1:
+        return []
+    return [
+        f"The inertia factor I/(M R^2) is {to_double(beta):.6g}, above 1: the mass lies outside"
+        " the rim the string runs on. If that is not so, check inertia, I and R."
+    ]
+
+
+def open_range(answers: Answers) -> list[str]:
+    """Between what the motion lies where it depends on the pulley's mass and that is not given."""
+    case = answers.case
+    if case.scene.mu is None or case.regime != "no-slip" or answers["acceleration"] is not None:
+        return []
+    ends = [answers.with_pulley(mass) for mass in (Fraction(0), inf)]
+    ranges = (
+        f"{name} from {_say(ends[0], name)} to {_say(ends[1], name)}"
+        for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
+    )
+    return [f"From a massless to a locked pulley: {', '.join(ranges)}."]
+
+
+def conditions(answers: Answers) -> list[str]:
+    """Both conditions of (36), necessary for the verge: threshold, and whether it is met."""
+    if answers.case.scene.mu is None or answers["least_heavier_mass"] is None:
+        return []
+    case, mass = answers.case, answers.case.scene.M
+    met = {True: "met", False: "not met"}
+    least = _apart(answers, "least_heavier_mass", case.heavy, above=not case.can_slip)
+    parts = [f"heavier mass {as_typed(case.heavy)} kg > {least} kg, {met[case.can_slip]}"]
+    if answers["least_pulley_mass"] is None:
+        pass  # the pulley's shape is not known
+    elif mass is None:
+        answer = "met by the critical one" if case.can_slip else "open without M"
+        parts.append(f"pulley's mass > {_say(answers, 'least_pulley_mass')} kg, {answer}")
+    elif isinstance(mass, Fraction):
+        least = _apart(answers, "least_pulley_mass", mass, above=not case.can_be_made_slip)
+        parts.append(f"pulley's mass {as_typed(mass)} kg > {least} kg, {met[case.can_be_made_slip]}")
+    else:
+        parts.append(f"pulley's mass, infinite, > {_say(answers, 'least_pulley_mass')} kg, met")
+    return [f"Conditions (36) for the verge: {'; '.join(parts)}."]
+
+
+def _apart(answers: Answers, name: str, other: Fraction, above: bool) -> str:
+    """A value with as many digits as show that it is above another one, or below it."""
+    finer, digits = answers, answers.digits or DOUBLE_DIGITS
+    while not is_infinite(value := finer[name]):
+        shown = text(value)
+        # Beyond any input it is above; a fraction of it might have millions of digits.
+        huge = Decimal(shown).adjusted() > MAX_MAGNITUDE
+        if huge or (Fraction(shown) != other and (Fraction(shown) > other) == above):
+            return shown
+        if digits == MAX_DIGITS:  # the same number, or as good as
+            break
+        digits = min(2 * digits, MAX_DIGITS)
+        finer = Answers(answers.case.scene, digits)
+    return _say(answers, name)
+
+
+def _say(answers: Answers, name: str) -> str:
+    """A value as the output shows it, for a sentence."""
+    value = answers[name]
+    if is_infinite(value):
+        return "over 1.8e308" if answers.digits is None else f"over 10^{LARGEST_EXPONENT}"
+    return text(value)

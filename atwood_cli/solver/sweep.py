@@ -1,0 +1,306 @@
+"""Ranges in place of values: the points of a sweep, and the answers there.
+
+A point is the number that is printed, exactly, so that `solve` given that number prints the same row.
+Linear ranges step in exact fractions from one end to the other: steps of 0.1 are 0.1. Where the step is
+no decimal (a third), or the points are at equal ratios, they are rounded to 17 significant digits, or to
+more where they are closer together than those can tell. The ends are hit exactly.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from decimal import ROUND_HALF_EVEN, Decimal
+from fractions import Fraction
+from itertools import groupby, pairwise, product
+from math import lcm
+from typing import Any, NamedTuple
+
+from ..arithmetic.interval import decimal_context
+from ..arithmetic.rounding import as_typed, is_infinite, text
+from ..model.quantities import QUANTITIES
+from ..model.scene import (
+    MAX_DIGITS,
+    MAX_MAGNITUDE,
+    NUMBER,
+    PARAMETERS,
+    Radians,
+    Scene,
+    SceneError,
+    read_value,
+    read_whole,
+    stated,
+)
+from .answers import DOUBLE_DIGITS, Answers
+
+Point = Decimal | str
+"""A value of a swept parameter as it is printed; text where it has a unit (an angle in radians)."""
+
+MAX_POINTS, MAX_RANGES, MAX_CURVES = 1_000_000, 2, 6
+LARGEST_DRAWN = 1e100
+FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
+
+
+class Range(NamedTuple):
+    """A parameter that is swept: as typed, and its points."""
+
+    name: str
+    typed: str
+    points: list[Point]
+    log: bool
+
+    @property
+    def unit(self) -> str:
+        return "rad" if isinstance(self.points[0], str) else PARAMETERS[self.name].unit
+
+    def bare(self) -> list[Decimal]:
+        """The points without their unit."""
+        return [Decimal(str(point).removesuffix("rad")) for point in self.points]
+
+
+class Sweep(NamedTuple):
+    """Ranges, the first of which varies slowest, what else was given, and the scene at the first point."""
+
+    ranges: list[Range]
+    given: Mapping[str, str | None]
+    scene: Scene
+
+    @property
+    def total(self) -> int:
+        return len(self.ranges[0].points) * (len(self.ranges[1].points) if self.ranges[1:] else 1)
+
+
+class Row(NamedTuple):
+    """The answers at a point."""
+
+    at: dict[str, Point]
+    regime: str
+    values: dict[str, object]
+    reasons: dict[str, str]
+
+
+class Curve(NamedTuple):
+    """A quantity along a range, None where it does not exist; the regimes, and where they change."""
+
+    label: str
+    xs: list[float]
+    ys: list[float | None]
+    regimes: list[str]
+    changes: list[int]
+
+
+class Picture(NamedTuple):
+    """Curves, and what their axes say."""
+
+    x: str
+    y: str
+    log: bool
+    curves: list[Curve]
+
+
+def read_sweep(given: Mapping[str, str | None]) -> Sweep:
+    """The sweep given: values, of which one or two are ranges. Raises SceneError."""
+    typed = {name: words for name in PARAMETERS if ":" in (words := given.get(name) or "")}
+    if not typed:
+        raise SceneError("M", None, f"or another option of the scene must carry a range: {FORM}")
+    names = list(typed)
+    if len(names) > MAX_RANGES:
+        third = names[MAX_RANGES]
+        raise SceneError(third, typed[third], f"is a third range, after {' and '.join(names[:2])}; give two")
+    for name in PARAMETERS:
+        if name not in typed:
+            read_value(name, given.get(name))  # what is wrong everywhere is not the first point's fault
+    ranges = [read_range(name, words) for name, words in typed.items()]
+    # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
+    ends = [[range_.points[0], range_.points[-1]] for range_ in ranges]
+    scene, *_ = (_scene_at(given, dict(zip(names, corner, strict=True))) for corner in product(*ends))
+    sweep = Sweep(ranges, given, scene)
+    if sweep.total > MAX_POINTS:
+        rule = f"makes {sweep.total} points with {names[0]}; at most {MAX_POINTS} are taken"
+        raise SceneError(names[1], typed[names[1]], rule)
+    return sweep
+
+
+def read_range(name: str, typed: str) -> Range:
+    """A range of a parameter. Raises SceneError."""
+    words = typed.split(":")
+    if len(words) not in (3, 4) or words[3:] not in ([], ["log"]):
+        raise SceneError(name, typed, f"is no range; write {FORM}")
+    start, stop = (_read_end(name, typed, word) for word in words[:2])
+    _check_units(name, typed, words[:2], start == 0 or stop == 0)
+    if start == stop:
+        raise SceneError(name, typed, "has equal ends; a range runs from one value to another")
+    log = len(words) == 4
+    if log and not (start > 0 and stop > 0):
+        raise SceneError(name, typed, "has no equal ratios from or to 0; both ends must be above 0")
+    try:
+        last = read_whole(name, words[2], 2, MAX_POINTS) - 1
+    except SceneError as error:
+        raise SceneError(name, typed, f"has the count {words[2]!r}, which {error.rule}") from None
+    ends = [_tidy(Decimal(as_typed(end))) for end in (start, stop)]
+    points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last), ends[1]]
+    in_radians = isinstance(start, Radians)
+    return Range(name, typed, [f"{text(point)}rad" if in_radians else point for point in points], log)
+
+
+def _read_end(name: str, typed: str, word: str) -> Fraction:
+    if word == "inf" or word in PARAMETERS[name].names:
+        raise SceneError(name, typed, f"has the end {word!r}; a range runs between finite numbers")
+    value: Fraction = read_value(name, word)
+    return value
+
+
+def _check_units(name: str, typed: str, ends: Sequence[str], has_zero: bool) -> None:
+    """100:500g is from 100 kg to half a kilogram: hardly what was meant."""
+    first, second = (match[4] for word in ends if (match := NUMBER.fullmatch(word)))
+    if bool(first) != bool(second) and not has_zero:
+        raise SceneError(name, typed, "has a unit at one end only; write it at both")
+    if first != second and "rad" in (first, second):
+        raise SceneError(name, typed, "has one end in radians; write both in the same unit")
+
+
+def _equal_steps(start: Fraction, stop: Fraction, last: int) -> Iterator[Decimal]:
+    step = (stop - start) / last
+    unit = lcm(start.denominator, step.denominator)
+    is_decimal = "/" not in as_typed(Fraction(1, unit))
+    digits = MAX_DIGITS if is_decimal else _digits(max(abs(start), abs(stop)) / abs(step))
+    context = decimal_context(digits, ROUND_HALF_EVEN)
+    first, by, whole = int(start * unit), int(step * unit), Decimal(unit)
+    for i in range(1, last):
+        yield _tidy(context.divide(Decimal(first + i * by), whole))
+
+
+def _equal_ratios(start: Fraction, stop: Fraction, last: int) -> Iterator[Decimal]:
+    ratio = stop / start
+    # The step is not below value * |ln ratio| / last.
+    digits = _digits(last / min(abs(1 - ratio), abs(1 - 1 / ratio)))
+    context, finer = (decimal_context(n, ROUND_HALF_EVEN) for n in (digits, digits + 20))
+    value, whole = (finer.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (start, ratio))
+    by = finer.exp(finer.divide(finer.ln(whole), Decimal(last)))
+    for _ in range(1, last):  # a million factors cost half of the further digits
+        value = finer.multiply(value, by)
+        yield _tidy(context.plus(value))
+
+
+def _digits(steps: Fraction) -> int:
+    """The significant digits that tell values apart which are so many steps from 0."""
+    return max(DOUBLE_DIGITS, len(str(int(steps))) + 3)
+
+
+def _tidy(value: Decimal) -> Decimal:
+    """The same number without trailing zeros, and without an exponent where it is readable without."""
+    context = decimal_context(MAX_MAGNITUDE, ROUND_HALF_EVEN)
+    short = context.normalize(value)
+    if len(short.as_tuple().digits) <= short.adjusted() < 16:
+        return context.quantize(short, Decimal(1))
+    return short
+
+
+def point_text(point: Point) -> str:
+    """A point as `solve` takes it."""
+    return text(point) if isinstance(point, Decimal) else point
+
+
+def _stated(name: str, point: Point) -> str:
+    return stated(name, text(point)) if isinstance(point, Decimal) else f"{name} = {point}"
+
+
+def _scene_at(given: Mapping[str, str | None], at: Mapping[str, Point]) -> Scene:
+    here = {name: point_text(point) for name, point in at.items()}
+    try:
+        return Scene.read({**given, **here})
+    except SceneError as error:
+        if error.parameter in here or error.value is None:
+            raise
+        where = ", ".join(_stated(name, point) for name, point in at.items())
+        raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
+
+
+def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[Row]:
+    """The quantities named at every point, each point solved by itself."""
+    swept = [range_.name for range_ in sweep.ranges]
+    for points in product(*(range_.points for range_ in sweep.ranges)):
+        at = dict(zip(swept, points, strict=True))
+        answers = Answers(_scene_at(sweep.given, at), digits)
+        values = {name: answers[name] for name in names}
+        yield Row(at, answers.case.regime, values, answers.reasons)
+
+
+def groups(sweep: Sweep, rows: Sequence[Row]) -> list[list[Row]]:
+    """The rows in the parts that a table shows: by the slow range, or else by the regime."""
+    slow = sweep.ranges[0].name
+    return [
+        list(group)
+        for _, group in groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
+    ]
+
+
+def regimes(rows: Sequence[Row], along: str) -> list[str]:
+    """Each regime with the points between which it holds; what is between two of them is not told."""
+    starts = [0, *_changes(rows)]
+    ends = [*(i - 1 for i in starts[1:]), len(rows) - 1]
+    if len(starts) == 1:
+        return [rows[0].regime]
+    found = []
+    for start, end in zip(starts, ends, strict=True):
+        first, last = (_stated(along, rows[i].at[along]) for i in (start, end))
+        where = f"from {first} to {last}"
+        if start == end:
+            where = f"at {first}"
+        elif not start:
+            where = f"up to {last}"
+        elif end == len(rows) - 1:
+            where = f"from {first} on"
+        found.append(f"{rows[start].regime} {where}")
+    return found
+
+
+def _changes(rows: Sequence[Row]) -> list[int]:
+    return [i for i, (before, row) in enumerate(pairwise(rows), 1) if before.regime != row.regime]
+
+
+def check_drawable(sweep: Sweep, option: str, name: str) -> None:
+    """Raises SceneError where the sweep and the quantity make no curves."""
+    if name not in QUANTITIES:
+        raise SceneError(option, name, "is not a number to draw; name another quantity")
+    if min(len(range_.points) for range_ in sweep.ranges) > MAX_CURVES and sweep.ranges[1:]:
+        rule = f"would be more than {MAX_CURVES} curves; give one of the ranges at most {MAX_CURVES} points"
+        raise SceneError(option, name, rule)
+
+
+def picture(sweep: Sweep, rows: Sequence[Row], option: str, name: str) -> Picture:
+    """Curves of a quantity along the range of more points, one for each point of the other.
+
+    Raises SceneError where numbers are too large to draw, ArithmeticError where there are none.
+    """
+    x = max(reversed(sweep.ranges), key=lambda range_: len(range_.points))
+    parts: dict[str, list[Row]] = {}
+    for row in rows:
+        label = ", ".join(_stated(other, point) for other, point in row.at.items() if other != x.name)
+        parts.setdefault(label, []).append(row)
+    xs = list(map(float, x.bare()))
+    curves = [
+        Curve(label, xs, [_drawn(row.values[name]) for row in part], regimes(part, x.name), _changes(part))
+        for label, part in parts.items()
+    ]
+    values = [*xs, *(y for curve in curves for y in curve.ys if y is not None)]
+    if len(values) == len(xs):
+        why = "; ".join({row.reasons[name]: None for row in rows})
+        raise ArithmeticError(f"{name} exists at no point, so there is nothing to draw: {why}")
+    if max(map(abs, values)) > LARGEST_DRAWN or (x.log and min(xs) < 1 / LARGEST_DRAWN):
+        rule = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only"
+        raise SceneError(option, name, rule)
+    about = QUANTITIES[name]
+    return Picture(_with_unit(x.name, x.unit), _with_unit(name, about.unit), x.log, curves)
+
+
+def _drawn(value: Any) -> float | None:
+    """A value as a coordinate, None where there is none; doubles overflow to none, too."""
+    return None if value is None or is_infinite(value) else float(value)
+
+
+def _with_unit(name: str, unit: str) -> str:
+    return f"{name} ({unit})" if unit else name
+
+
+def heads(sweep: Sweep, names: Sequence[str]) -> list[str]:
+    """The names of parameters and quantities, with their units."""
+    swept = [_with_unit(range_.name, range_.unit) for range_ in sweep.ranges]
+    return swept + [_with_unit(n, QUANTITIES[n].unit if n in QUANTITIES else "") for n in names]

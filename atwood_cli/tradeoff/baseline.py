@@ -1,0 +1,35 @@
+"""The yardstick: the paper's formulas as anybody would type them into NumPy.
+
+Not part of the model. They stand here, outside `physics`, to be measured against (`tradeoff`): they
+know no regime, subtract what is nearly equal, and lose what they form on the way.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from ..model.quantities import STANDARD
+
+
+def paper_in_numpy(
+    l: Any, h: Any, M: Any = None, mu: Any = None, g: Any = 9.80665, inertia: Any = 0.5, phi: float = np.pi
+) -> dict[str, Any]:
+    """The seven standard quantities of masses l <= h (kg), less the regime, for arrays of any one float type.
+
+    Without M (kg) the pulley's mass is the critical one (34), or 0 without mu too; without mu friction
+    is that on the verge (27). ``phi`` is the angle of wrap (rad).
+    """
+    if mu is None:
+        critical = np.full_like(l, np.nan)
+        M = np.zeros_like(l) if M is None else M
+    else:
+        k = np.exp(mu * phi)
+        critical = 2 * l * h * (k - 1) / (inertia * (h - l * k))  # (34)
+        M = critical if M is None else M
+    a = (h - l) * g / (l + h + inertia * M)  # (4)
+    t_l = (2 * h + inertia * M) * l * g / (l + h + inertia * M)
+    t_h = (2 * l + inertia * M) * h * g / (l + h + inertia * M)
+    mu_verge = np.log(t_h / t_l) / phi  # (27)
+    limit = mu_verge if mu is None else mu
+    friction = limit / np.sqrt(1 + limit**2) * (t_l + t_h)  # (32)
+    return dict(zip(STANDARD[1:], (a, t_l, t_h, mu_verge, friction, critical), strict=True))
