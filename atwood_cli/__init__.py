@@ -3,9 +3,9 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .api import solve
+    from .api import Solution, solve
     from .arrays import solve_arrays
-    from .model.quantities import REGIMES, Solution
+    from .model.quantities import REGIMES
     from .model.scene import Scene, SceneError
 
 __all__ = ["REGIMES", "Scene", "SceneError", "Solution", "solve", "solve_arrays"]
@@ -15,7 +15,7 @@ _HOMES = {
     "REGIMES": "model.quantities",
     "Scene": "model.scene",
     "SceneError": "model.scene",
-    "Solution": "model.quantities",
+    "Solution": "api",
     "solve": "api",
     "solve_arrays": "arrays",
 }

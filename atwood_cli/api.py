@@ -1,10 +1,12 @@
-"""The door for Python: `solve`."""
+"""The door for Python: `solve`, and the `Solution` that it returns."""
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from decimal import Decimal
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
-from .model.quantities import NAMES, Solution
-from .model.scene import Given, read_digits
+from .model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
+from .model.scene import Given, Scene, read_digits
 from .solver.answers import read_answers
 from .solver.messages import notes
 
@@ -25,6 +27,71 @@ if TYPE_CHECKING:
         a: Given | None
         drop: Given | None
         time: Given | None
+
+
+T = TypeVar("T", float, Decimal)
+
+
+def _described(names: Sequence[str]) -> str:
+    """The registry's lines on quantities, for a docstring."""
+    width = max(map(len, names))
+    lines = []
+    for name in names:
+        about = QUANTITIES[name]
+        unit, equation = about.unit and f" [{about.unit}]", about.equation and f", {about.equation}"
+        lines.append(f"    {name:<{width}}  {about.meaning}{unit}{equation}")
+    return "\n".join(lines)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solution(Generic[T]):
+    __doc__ = f"""The state of a scene: floats, or Decimals if digits were asked for; None if undetermined.
+
+    ``scene`` is what was given, ``regime`` is "no-slip", "verge" or "slip", ``notes`` say why it is
+    what it is and why a value is None. ``uncertainty`` has the standard uncertainty of every quantity
+    by name, and is empty if all that was given is exact; one is None, with a note, where there is none
+    to first order. Forces are on the pulley, x from the axle to where m1's string meets it, y up;
+    accelerations, torque and angles are positive the way m2 descends. The quantities, with their units
+    and the paper's equations:
+
+{_described(NAMES[1:])}
+    """
+
+    scene: Scene
+    notes: tuple[str, ...]
+    regime: str
+    acceleration: T | None
+    tension_1: T | None
+    tension_2: T | None
+    mu_verge: T | None
+    friction_force: T | None
+    friction_force_min: T | None
+    friction_force_max: T | None
+    friction_force_x: T | None
+    friction_force_y: T | None
+    axle_force: T | None
+    torque: T | None
+    rim_acceleration: T | None
+    angular_acceleration: T | None
+    critical_pulley_mass: T | None
+    critical_heavier_mass: T | None
+    least_heavier_mass: T | None
+    least_pulley_mass: T | None
+    uncertainty: Mapping[str, T | None] = field(default_factory=dict, hash=False)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasuredSolution(Solution[T]):
+    __doc__ = f"""A solution with what follows from a measured acceleration or a height of fall, else None.
+
+{_described(MEASURED_NAMES)}
+    """
+
+    pulley_mass: T | None = None
+    moment_of_inertia: T | None = None
+    gravity: T | None = None
+    fall_time: T | None = None
+    final_speed: T | None = None
 
 
 @overload
@@ -74,9 +141,5 @@ def solve(
 
         found = propagate(answers.case, uncertain, answers.names)
         remarks, spreads = [*remarks, *found.notes], found.rounded(answers)
-    kind: type[Solution[Any]] = Solution
-    if answers.names != NAMES:
-        from .model.motion import MeasuredSolution
-
-        kind = MeasuredSolution
+    kind: type[Solution[Any]] = Solution if answers.names == NAMES else MeasuredSolution
     return kind(scene=answers.case.scene, notes=tuple(remarks), uncertainty=spreads, **values)

@@ -13,7 +13,7 @@ import pytest
 
 from atwood_cli import solve
 from atwood_cli.__main__ import main
-from atwood_cli.model.quantities import FOUND_NAMES
+from atwood_cli.model.quantities import MEASURED_NAMES
 
 from . import oracle
 from .running import PAPER, Atwood, on_terminal, plain, process
@@ -236,7 +236,7 @@ def test_a_table_without_rows_is_no_table(atwood: Atwood) -> None:
         ("solve --m1 1 --m2 2 --only accel", "--only 'accel' is no quantity; did you mean acceleration?"),
         (
             "solve --m1 1 --m2 2 --only zzz",
-            f"--only 'zzz' is no quantity; there are {', '.join([*oracle.NAMES, *FOUND_NAMES])}",
+            f"--only 'zzz' is no quantity; there are {', '.join([*oracle.NAMES, *MEASURED_NAMES])}",
         ),
         (
             "solve --m1 1 --m2 2 --radus 3",

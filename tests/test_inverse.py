@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+from dataclasses import fields
 from decimal import Decimal
 from fractions import Fraction
 from math import sqrt
@@ -15,9 +16,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import Scene, SceneError, Solution, solve
+from atwood_cli.api import MeasuredSolution
 from atwood_cli.model import physics
-from atwood_cli.model.motion import MeasuredSolution
-from atwood_cli.model.quantities import FOUND_NAMES, NAMES, QUANTITIES, abouts
+from atwood_cli.model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 
 from .running import Atwood, process
 
@@ -30,8 +31,18 @@ def measured(**given: Any) -> MeasuredSolution[Any]:
     return solution
 
 
-def test_they_are_registered_by_what_they_come_with() -> None:
-    assert tuple(abouts(MeasuredSolution)) == (*QUANTITIES, *FOUND_NAMES)
+def test_solutions_have_what_is_registered_and_say_what_it_is() -> None:
+    assert tuple(QUANTITIES) == (*NAMES[1:], *MEASURED_NAMES)
+    known = {"scene", "notes", "uncertainty"}
+    every = [f.name for f in fields(Solution) if f.name not in known]
+    assert every == list(NAMES)
+    measured_ones = [f.name for f in fields(MeasuredSolution) if f.name not in known]
+    assert measured_ones == [*NAMES, *MEASURED_NAMES]
+    for kind, names in ((Solution, NAMES[1:]), (MeasuredSolution, MEASURED_NAMES)):
+        for name in names:
+            about = QUANTITIES[name]
+            line = next(line for line in (kind.__doc__ or "").splitlines() if line.split()[:1] == [name])
+            assert all(part in line for part in (about.meaning, about.unit, about.equation))
 
 
 # The equations are inverses of those that they invert
@@ -252,7 +263,7 @@ def test_errors(given: dict[str, Any], message: str) -> None:
 
 
 def test_only_of_what_the_scene_does_not_ask_names_the_option(atwood: Atwood) -> None:
-    words = [word for name in FOUND_NAMES for word in ("--only", name)]
+    words = [word for name in MEASURED_NAMES for word in ("--only", name)]
     ran = atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", *words)
     assert (ran.status, ran.out) == (1, "")
     assert ran.err.splitlines() == [
@@ -297,7 +308,7 @@ def test_the_table_has_them_in_a_group_of_their_own(atwood: Atwood) -> None:
 def test_json_and_csv_have_them_only_with_what_they_come_from(atwood: Atwood) -> None:
     bare = json.loads(atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", "--json").out)
     found = json.loads(atwood(*LAB, "--json").out)
-    assert list(found) == ["scene", *NAMES, *FOUND_NAMES[:2], *FOUND_NAMES[3:], "uncertainty", "notes"]
+    assert list(found) == ["scene", *NAMES, *MEASURED_NAMES[:2], *MEASURED_NAMES[3:], "uncertainty", "notes"]
     assert list(found["scene"]) == [*bare["scene"], "a", "drop", "time"]
     assert found["scene"]["M"] is None
     assert (found["scene"]["a"], found["scene"]["drop"], found["scene"]["time"]) == (1, 2, None)
@@ -305,7 +316,7 @@ def test_json_and_csv_have_them_only_with_what_they_come_from(atwood: Atwood) ->
     assert list(gravity) == ["scene", *NAMES, "gravity", "notes"]
     assert (gravity["scene"]["g"], gravity["gravity"]) == (None, 5.625)
     names, values = csv.reader(io.StringIO(atwood(*LAB, "--csv").out))
-    here = [*NAMES, *FOUND_NAMES[:2], *FOUND_NAMES[3:]]
+    here = [*NAMES, *MEASURED_NAMES[:2], *MEASURED_NAMES[3:]]
     assert names == [*here, *(f"u_{name}" for name in here[1:])]
     assert dict(zip(names, values, strict=True))["pulley_mass"] == "31.2266"
 
@@ -321,7 +332,7 @@ def test_a_pulley_mass_without_a_decimal_is_no_trouble_for_json(atwood: Atwood) 
 
 def test_other_commands_and_solutions_know_nothing_of_them(atwood: Atwood) -> None:
     assert type(solve(m1=1, m2=3, M=10)) is Solution
-    assert not any(hasattr(solve(m1=1, m2=3, M=10), name) for name in FOUND_NAMES)
+    assert not any(hasattr(solve(m1=1, m2=3, M=10), name) for name in MEASURED_NAMES)
     ran = atwood("sweep", "--m1", "1", "--m2", "3", "--M", "1:2:3", "--only", "fall_time")
     assert ran.err.startswith("atwood: --only 'fall_time' is no quantity; ")
     assert "No such option: --drop" in atwood("contact", "--m1", "1", "--m2", "3", "--drop", "1").err

@@ -12,7 +12,7 @@ import typer
 from typer.core import TyperCommand, TyperGroup
 
 from .. import __version__
-from ..model.quantities import FOUND_NAMES, NAMES
+from ..model.quantities import MEASURED_NAMES, NAMES
 from ..model.scene import Scene, SceneError, nearest, read_digits, read_whole
 from .options import (
     COMPLETING,
@@ -165,7 +165,7 @@ def solve(
 
     _exclude_each_other(json, csv)
     names = only or []
-    _check_names("only", *names, known=(*NAMES, *FOUND_NAMES))
+    _check_names("only", *names, known=(*NAMES, *MEASURED_NAMES))
     measured = {"a": a, "drop": drop, "time": time}
     refused = {"--json": json, "--csv": csv, "--only": names, "--budget": budget}
     _check_explain(explain, markdown, refused | {flag(name): value for name, value in measured.items()})
@@ -287,10 +287,10 @@ def sweep(
       atwood sweep --m1 1 --m2 3 --M 0:60:61 --mu 0.3 --plot acceleration
       atwood sweep --m1 1 --m2 3 --M 0:60:61 --figure a.svg mu_verge -o a.csv
     """
-    from . import page as out
     from ..files import STREAM, stdout_into
     from ..model.quantities import STANDARD
     from ..solver.sweep import check_drawable, picture, read_sweep, solve_rows
+    from . import page as out
 
     _exclude_each_other(json, csv)
     _check_force(force, output=output, figure=figure)
@@ -364,10 +364,10 @@ def tradeoff(
       atwood tradeoff --m1 1 --m2 3 --M 10 --mu 0.3
       atwood tradeoff --json > measured.json
     """
-    from . import page as out
     from ..tradeoff.measure import MOST_SCENES
     from ..tradeoff.measure import tradeoff as measure
     from ..tradeoff.scenes import FAMILIES
+    from . import page as out
 
     _exclude_each_other(json, csv)
     _check_force(force, figure=figure)

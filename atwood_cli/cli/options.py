@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..model.quantities import FOUND_NAMES, QUANTITIES
+from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from ..model.scene import PARAMETERS, parameter_of
 
 COMPLETING = "_ATWOOD_COMPLETE"
@@ -110,11 +110,11 @@ def _quantities() -> Mapping[str, str]:
 
 
 def _answers() -> Mapping[str, str]:
-    return {**_quantities(), **dict.fromkeys(FOUND_NAMES, "found from what was measured")}
+    return {**_quantities(), **dict.fromkeys(MEASURED_NAMES, "found from what was measured")}
 
 
 def _numbers() -> Mapping[str, str]:
-    return {name: shown.meaning for name, shown in QUANTITIES.items()}
+    return {name: QUANTITIES[name].meaning for name in NAMES[1:]}
 
 
 def _families() -> Mapping[str, str]:

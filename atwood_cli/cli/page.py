@@ -14,7 +14,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from ..arithmetic.rounding import as_typed, is_infinite, text, with_uncertainty
-from ..model.quantities import about as about_quantity
+from ..model.quantities import QUANTITIES
 from ..model.scene import MEASURED, UNMEASURED, Motion, Radians, Scene, stated
 from ..solver.answers import Answers
 from ..solver.messages import notes, reasons_at, verdict
@@ -271,7 +271,7 @@ def _rows(answers: Answers, found: "Uncertainties | None") -> list[list[list[str
     }
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, _aligned(values.values()), strict=True):
-        about = about_quantity(name)
+        about = QUANTITIES[name]
         equation = about.equation
         if answers.case.regime == "slip" and about.equation_in_slip is not None:
             equation = about.equation_in_slip
@@ -292,7 +292,7 @@ def _print_budget(page: Page, found: "Uncertainties") -> None:
     spreads = {name: spread.shares for name, spread in found.spreads.items() if spread.shares}
     columns = [_aligned(f"{100 * shares[x]:.1f}" for shares in spreads.values()) for x in found.given]
     rows = zip(spreads.items(), zip(*columns, strict=True), strict=True)
-    by_group = groupby(rows, lambda row: about_quantity(row[0][0]).group)
+    by_group = groupby(rows, lambda row: QUANTITIES[row[0][0]].group)
     page.table(["Quantity", *found.given], [[[name, *cells] for (name, _), cells in g] for _, g in by_group])
 
 

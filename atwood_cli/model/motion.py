@@ -5,29 +5,13 @@ and with friction at its limit, the pulley's mass has no part in the motion, so 
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from fractions import Fraction
 from math import inf
 
 from ..arithmetic.rounding import text, to_double
 from . import physics
 from .machine import Case, Undetermined
-from .quantities import Solution, T, quantity
 from .scene import MEASURED, Given, Motion, Scene, SceneError, read_value
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MeasuredSolution(Solution[T]):
-    """A solution with what follows from a measured acceleration or a height of fall; else None."""
-
-    # fmt: off
-    pulley_mass: T | None = quantity("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration")
-    moment_of_inertia: T | None = quantity("measured", "I", "kg m²", "", "moment of inertia that gives the measured acceleration")
-    gravity: T | None = quantity("measured", "g", "m/s²", "(4)", "gravity that gives the measured acceleration")
-    fall_time: T | None = quantity("measured", "t", "s", "", "time to fall the height from rest")
-    final_speed: T | None = quantity("measured", "v", "m/s", "", "speed after that")
-    # fmt: on
-
 
 NO_PULLEY = "unknown, as inputs a little different fit no pulley"
 

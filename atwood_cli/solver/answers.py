@@ -20,7 +20,7 @@ from ..arithmetic.rounding import (
 )
 from ..model.machine import Case, Machine, Undetermined
 from ..model.physics import N
-from ..model.quantities import FOUND, NAMES
+from ..model.quantities import FROM_MOTION, NAMES
 from ..model.scene import MEASURED, UNMEASURED, Given, Motion, Scene, read_uncertain
 
 DOUBLE_DIGITS = 17
@@ -48,7 +48,7 @@ class Answers:
         """The quantities that every scene has, and those that come with what is given of the motion."""
         motion = self.case.motion
         drop = "drop" if motion.drop is not None else None
-        return (*NAMES, *FOUND.get(motion.finds, ()), *FOUND.get(drop, ()))
+        return (*NAMES, *FROM_MOTION.get(motion.finds, ()), *FROM_MOTION.get(drop, ()))
 
     def __getitem__(self, name: str) -> Any:
         """The value of a quantity by its name, None where ``reasons`` says why there is none."""
