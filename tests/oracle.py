@@ -98,7 +98,7 @@ def expected(scene: Scene) -> dict[str, Any]:
     equal = s == 0 or c == 0
 
     def phi() -> flint.arb:
-        return flint.arb.pi() * ball(scene.wrap) / 180
+        return flint.arb.pi() * ball(scene.wrap.number) / 180
 
     def k(coefficient: Fraction) -> flint.arb:
         return (ball(coefficient) * phi()).exp()
@@ -217,7 +217,7 @@ def expected(scene: Scene) -> dict[str, Any]:
             out["critical_heavier_mass"] = (
                 l if mu == 0 else lambda: ball(c) * ball(l) * k(mu) / (ball(c) - 2 * ball(l) * (k(mu) - 1))
             )
-    if state is not None and not locked and (scene.wrap - 180) % 360 == 0:
+    if state is not None and not locked and (scene.wrap.number - 180) % 360 == 0:
         pulley = out["critical_pulley_mass"] if regime == "verge" else mass
         if pulley is not None:
             out["axle_force"] = combine(lambda x, y, p: x + y + p * c_as(p, g), state[1], state[2], pulley)

@@ -20,7 +20,7 @@ from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
 from atwood_cli.arithmetic.lazy import lazy
 from atwood_cli.arrays import ACCURACIES, STATUSES
 from atwood_cli.arrays.rows import COLUMNS
-from atwood_cli.model.machine import Case
+from atwood_cli.model.case import Case
 from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import Scene
 
@@ -38,7 +38,8 @@ def row_of(given: dict[str, str]) -> Row | None:
     scene = Scene.read(given)
     if scene.I is not None:
         return None
-    values = {name: getattr(scene, name) for name in COLUMNS}
+    numbers = scene._asdict() | {"wrap": scene.wrap.number}
+    values = {name: numbers[name] for name in COLUMNS}
     try:
         row = {name: nan if value is None else float(value) for name, value in values.items()}
     except OverflowError:

@@ -18,6 +18,7 @@ from hypothesis import strategies as st
 from atwood_cli import Scene, SceneError, Solution, solve
 from atwood_cli.api import MeasuredSolution
 from atwood_cli.model import physics
+from atwood_cli.model.angle import Angle
 from atwood_cli.model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 
 from .running import Atwood, process
@@ -75,7 +76,7 @@ def test_what_is_found_gives_the_measured_acceleration_exactly(
     assert (
         for_pulley.scene
         == for_gravity.scene
-        == Scene(m1, m2, M, None, None, g, beta, None, None, Fraction(180))
+        == Scene(m1, m2, M, None, None, g, beta, None, None, Angle(Fraction(180)))
     )
     exact = solve(m1=m1, m2=m2, M=M, g=g, inertia=beta, digits=30)
     for name in NAMES:

@@ -12,7 +12,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import Scene, SceneError, solve
-from atwood_cli.model.scene import BODIES, LENGTH, MASS
+from atwood_cli.model.scene import BODIES
+from atwood_cli.model.units import LENGTH, MASS
 
 NUMBER = re.compile(r"[+-]?(\d+(\.\d+)?|\.\d+)(e[+-]?\d+)?", re.ASCII)
 

@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arithmetic.double_double import WINDOW, Column
 from ..model.quantities import NAMES, STANDARD
-from ..model.scene import MISSING_MASS, PARAMETERS, SceneError, nearest
+from ..model.scene import MISSING_MASS, PARAMETERS, SceneError
+from ..model.units import nearest
 from .rows import COLUMNS, Accuracy, Index, Rows
 
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")

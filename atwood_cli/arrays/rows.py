@@ -49,7 +49,9 @@ from ..arithmetic.double_double import (
     Unvouched,
 )
 from ..arithmetic.lazy import lazy
-from ..model.machine import Case, Excess, Machine, Undetermined, is_zero
+from ..model.angle import Angle
+from ..model.case import Case, Excess, is_zero
+from ..model.machine import Machine, Undetermined
 from ..model.quantities import REGIMES
 from ..model.scene import PARAMETERS, Scene
 from ..solver.answers import Answers
@@ -267,6 +269,7 @@ class Rows:
         for name, field in fields.items():
             if isinstance(field, np.ndarray):
                 fields[name] = Fraction(float(field[row]))
+        fields["wrap"] = Angle(fields["wrap"])
         return Scene(**fields, I=None)
 
     def _single(self, row: int, name: str) -> float:
@@ -363,6 +366,8 @@ class _Inputs:
 
     def __getattr__(self, name: str) -> Any:
         field = self._rows.number(name, self._arithmetic)
+        if name == "wrap":
+            field = Angle(field)
         setattr(self, name, field)
         return field
 

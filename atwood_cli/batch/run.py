@@ -18,7 +18,8 @@ from ..arrays import solve_arrays
 from ..arrays.rows import COLUMNS, Accuracy
 from ..files import STREAM, written_beside
 from ..model.quantities import REGIMES
-from ..model.scene import NUMBER, PARAMETERS, Given, Scene, SceneError, read_plain, read_value
+from ..model.scene import PARAMETERS, Given, Scene, SceneError, read_plain, read_value
+from ..model.units import NUMBER
 from .formats import Piece, Unreadable, read, write
 
 if TYPE_CHECKING:

@@ -13,7 +13,8 @@ from typer.core import TyperCommand, TyperGroup
 
 from .. import __version__
 from ..model.quantities import MEASURED_NAMES, NAMES
-from ..model.scene import Scene, SceneError, nearest, read_digits, read_whole
+from ..model.scene import Scene, SceneError, read_digits, read_whole
+from ..model.units import nearest
 from .options import (
     COMPLETING,
     DEFAULT_POINTS,

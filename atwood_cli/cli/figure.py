@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..files import check_free, written_beside
-from ..model.machine import wrap_angle
 from ..model.scene import SceneError
 from ..solver.answers import Answers
 from ..solver.contact import Contact, contact
@@ -140,7 +139,7 @@ def _page(path: str, force: bool) -> Iterator["Figure"]:
 def _draw_machine(axes: "Axes", answers: Answers, arc: Contact) -> None:
     from matplotlib.patches import Arc, Circle
 
-    phi = float(answers.settle(lambda m: wrap_angle(m.ar, m.scene)))
+    phi = float(answers.settle(lambda m: m.phi))
     axes.set_aspect("equal")
     axes.axis("off")
     axes.add_patch(Circle((0, 0), 1, facecolor="#eeeeee", edgecolor="#999999"))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from ..arithmetic.rounding import as_typed, is_infinite, text, with_uncertainty
 from ..model.quantities import QUANTITIES
-from ..model.scene import MEASURED, UNMEASURED, Motion, Radians, Scene, stated
+from ..model.scene import MEASURED, UNMEASURED, Motion, Scene, stated
 from ..solver.answers import Answers
 from ..solver.messages import notes, reasons_at, verdict
 
@@ -92,8 +92,8 @@ def _scene(scene: Scene, motion: Motion = UNMEASURED) -> dict[str, object]:
         given |= {motion.finds: None} if motion.finds else {}
     if scene.M == inf:
         given["M"] = "inf"
-    if isinstance(scene.wrap, Radians):
-        given["wrap"] = f"{as_typed(scene.wrap)}rad"
+    wrap = scene.wrap
+    given["wrap"] = wrap.number if wrap.unit == "°" else f"{as_typed(wrap.number)}rad"
     return given
 
 

@@ -16,7 +16,7 @@ from ..arithmetic.symbolic import Formula, Symbol, Symbols
 from ..model.machine import Machine
 from ..model.physics import N
 from ..model.quantities import QUANTITIES
-from ..model.scene import Radians, Scene
+from ..model.scene import Scene
 from ..solver.answers import Answers
 
 DIGITS = 6
@@ -129,7 +129,7 @@ class Derivation:
 
     @property
     def half_turn(self) -> bool:
-        return not isinstance(self.scene.wrap, Radians) and self.scene.wrap == 180
+        return self.scene.wrap.is_half_turn
 
     def formula(self, name: str) -> Formula:
         """What the model does for a quantity, with the symbols of all that it is made of."""

@@ -1,20 +1,18 @@
 """The model of a scene, written once for every number type.
 
-`Case` holds what is decided once and exactly: who is heavier, whether the string grips. `Machine` is
-the model in one arithmetic; it computes nothing that is not asked for, and a quantity that the scene
-does not determine raises `Undetermined` with the reason.
+`Machine` is the model of a `Case` in one arithmetic. It computes nothing that is not asked for, and a
+quantity that the scene does not determine raises `Undetermined` with the reason.
 """
 
 from fractions import Fraction
-from typing import Generic, Literal
+from typing import Generic
 
-from ..arithmetic.interval import EXACT, Arithmetic
+from ..arithmetic.interval import Arithmetic
 from ..arithmetic.lazy import lazy
-from ..arithmetic.rounding import Quantity, is_positive
 from . import arc as profile
 from . import physics
+from .case import Case, is_zero
 from .physics import N
-from .scene import UNMEASURED, Motion, Radians, Scene
 
 NEEDS_MU = "give mu, the friction coefficient"
 NEEDS_M = "give M, the pulley's mass, which decides here"
@@ -44,162 +42,6 @@ class Undetermined(Exception):
     """The scene does not determine the quantity; the message says why and what to give."""
 
 
-Excess = Literal["excess_ratio", "locked_excess", "heaviest_excess"]
-
-
-def is_zero(value: object) -> bool:
-    """Whether an input is exactly 0. Columns are not: rows with a zero are solved apart."""
-    return isinstance(value, Fraction) and not value
-
-
-class Case:
-    """What is decided about a scene before anything is computed, exactly."""
-
-    def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
-        self.scene, self.motion = scene, motion
-
-    @lazy
-    def sign(self) -> int:
-        """1 if m2 is the heavier mass, -1 if m1 is, else 0."""
-        return (self.scene.m2 > self.scene.m1) - (self.scene.m2 < self.scene.m1)
-
-    @lazy
-    def light(self) -> Fraction:
-        return self.by_side(self.scene.m1, self.scene.m2)[0]
-
-    @lazy
-    def heavy(self) -> Fraction:
-        return self.by_side(self.scene.m1, self.scene.m2)[1]
-
-    @lazy
-    def locked(self) -> bool:
-        return isinstance(self.scene.M, float)
-
-    @lazy
-    def pulley_mass(self) -> Fraction | None:
-        """The pulley's mass; none where it is locked, and 0 where nothing is said of the pulley."""
-        M, scene = self.scene.M, self.scene
-        if M is None and scene.mu is None and scene.I is None:
-            return Fraction(0)
-        return None if isinstance(M, float) else M
-
-    @lazy
-    def rim_mass(self) -> Fraction | None:
-        """The pulley's inertia as a mass at the rim, c = βM; none where it is locked or not known."""
-        scene, mass = self.scene, self.pulley_mass
-        if scene.I is not None and scene.R is not None:
-            return scene.I / scene.R**2
-        if mass is None or scene.inertia is None:
-            return mass
-        return scene.inertia * mass
-
-    @lazy
-    def beta(self) -> Fraction | None:
-        """The inertia factor; none where I is given and M is not."""
-        if self.scene.I is None:
-            return self.scene.inertia
-        return self.rim_mass / self.pulley_mass if self.rim_mass and self.pulley_mass else None
-
-    def by_side(self, one: N, other: N) -> tuple[N, N]:
-        """What belongs to the lighter and the heavier mass from what belongs to m1 and m2, or back."""
-        return (one, other) if self.sign >= 0 else (other, one)
-
-    @property
-    def pulley_known(self) -> bool:
-        """Whether the pulley is known enough for the motion of a string that grips."""
-        return self.locked or self.rim_mass is not None
-
-    @property
-    def tensions_equal(self) -> bool:
-        """Whether a string that grips needs no friction."""
-        return self.sign == 0 or is_zero(self.rim_mass)
-
-    @lazy
-    def regime(self) -> Literal["no-slip", "verge", "slip"]:
-        if self.scene.mu is None or self.tensions_equal:
-            return "no-slip"
-        if not self.pulley_known:
-            return "verge" if self.can_slip else "no-slip"
-        return "slip" if self.slips else "no-slip"
-
-    @lazy
-    def slips(self) -> bool:
-        """Whether the string slips on a pulley that is known and friction that is given."""
-        return self.can_slip if self.locked else self.beats_friction("excess_ratio")
-
-    @property
-    def limiting_mu(self) -> Fraction:
-        """The coefficient that friction is at on the verge (static) and in slip (kinetic)."""
-        mu, mu_k = self.scene.mu, self.scene.mu_k
-        limit = mu if mu_k is None or self.regime == "verge" else mu_k
-        return Fraction(0) if limit is None else limit
-
-    @property
-    def frictionless(self) -> bool:
-        """Whether the string moves, or rests, without friction."""
-        return self.tensions_equal or (self.regime != "no-slip" and is_zero(self.limiting_mu))
-
-    @lazy
-    def can_slip(self) -> bool:
-        """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
-        if self.sign == 0:
-            return False
-        # Whatever slips on a pulley that turns slips on a heavier one.
-        return (self.rim_mass is not None and self.slips) or self.beats_friction("locked_excess")
-
-    @lazy
-    def can_be_made_slip(self) -> bool:
-        """Whether it slips under a heavier mass that is heavy enough: second condition of (36)."""
-        return self.rim_mass is None or self.beats_friction("heaviest_excess")
-
-    @lazy
-    def long_wrap(self) -> bool:
-        """Whether the wrap is beyond half a turn."""
-        wrap = self.scene.wrap
-        if not isinstance(wrap, Radians):
-            return wrap > 180
-        return is_positive(lambda ar: wrap_angle(ar, self.scene) - ar.pi)
-
-    @lazy
-    def ends_hang_down(self) -> bool:
-        """Whether both ends of the string leave the pulley downwards."""
-        return not isinstance(self.scene.wrap, Radians) and (self.scene.wrap - 180) % 360 == 0
-
-    def excess_ratio(self, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 of a string that grips."""
-        if self.rim_mass is None:
-            return self.locked_excess(ar)
-        return physics.excess_ratio(*map(ar.number, (self.light, self.heavy, self.rim_mass)))
-
-    def locked_excess(self, ar: Arithmetic[N]) -> N:
-        """The same on a locked pulley."""
-        return physics.locked_excess(ar.number(self.light), ar.number(self.heavy))
-
-    def heaviest_excess(self, ar: Arithmetic[N]) -> N:
-        """The same under a heavier mass beyond all bounds, on a pulley that is not locked."""
-        assert self.rim_mass is not None
-        return physics.heaviest_excess(ar.number(self.light), ar.number(self.rim_mass))
-
-    def beats_friction(self, which: Excess) -> bool:
-        """Whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed."""
-        excess: Quantity = getattr(self, which)
-        mu, exactly = self.scene.mu, excess(EXACT)
-        if not mu or not exactly:
-            return exactly > 0
-
-        def margin(ar: Arithmetic[N]) -> N:
-            return ar.log1p(excess(ar)) - ar.number(mu) * wrap_angle(ar, self.scene)
-
-        return is_positive(margin)
-
-
-def wrap_angle(ar: Arithmetic[N], scene: Scene) -> N:
-    """The angle of wrap φ in radians."""
-    if isinstance(scene.wrap, Radians):
-        return ar.number(scene.wrap)
-    return ar.pi * ar.number(scene.wrap / 180)
-
-
 class Machine(Generic[N]):
     """The model of a case in one arithmetic. Its properties are the quantities, by their names."""
 
@@ -222,7 +64,7 @@ class Machine(Generic[N]):
     @lazy
     def phi(self) -> N:
         """The angle of wrap φ (rad)."""
-        return wrap_angle(self.ar, self.scene)
+        return self.scene.wrap.radians(self.ar)
 
     # What the quantities are made of
 
@@ -362,19 +204,12 @@ class Machine(Generic[N]):
     @lazy
     def _direction(self) -> tuple[N, N]:
         """Cosine and sine of the angle of wrap."""
-        return self._cos_sin(1)
+        return self.scene.wrap.cos_sin(self.ar)
 
     @lazy
     def half_sine(self) -> N:
         """Sine of half the angle of wrap."""
-        return self._cos_sin(2)[1]
-
-    def _cos_sin(self, parts: int) -> tuple[N, N]:
-        """Cosine and sine of an equal part of the angle of wrap; exact at multiples of 90°."""
-        wrap = self.scene.wrap
-        if isinstance(wrap, Radians):
-            return self.ar.cos_sin(self.ar.number(wrap) / parts)
-        return self.ar.cos_sin_of_degrees(wrap / parts)
+        return self.scene.wrap.cos_sin(self.ar, 2)[1]
 
     @lazy
     def difference(self) -> N:

@@ -10,26 +10,28 @@ from math import inf
 
 from ..arithmetic.rounding import text, to_double
 from . import physics
-from .machine import Case, Undetermined
-from .scene import MEASURED, Given, Motion, Scene, SceneError, read_value
+from .case import Case
+from .machine import Undetermined
+from .scene import MEASURED, Input, Motion, Scene, SceneError
 
 NO_PULLEY = "unknown, as inputs a little different fit no pulley"
 
 
-def read(given: Mapping[str, Given | None]) -> tuple[Scene, Motion]:
-    """The scene given, without what is to be found, and what was measured. Raises SceneError."""
-    a, drop, time = (read_value(name, given.get(name)) for name in MEASURED)
-    motion, scene = Motion(a, drop, time), Scene.read(given)
+def read(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
+    """The scene, without what is to be found, and what was measured. Raises SceneError."""
+    a, drop, time = (inputs[name].value for name in MEASURED)
+    motion, scene = Motion(a, drop, time), Scene.of(inputs)
     if time is not None and drop is None:
-        raise SceneError("time", given["time"], "needs drop, the height fallen in it")
+        raise SceneError("time", inputs["time"].given, "needs drop, the height fallen in it")
     if time is not None and a is not None:
-        raise SceneError("time", given["time"], "and a both tell the acceleration; give one of them")
+        raise SceneError("time", inputs["time"].given, "and a both tell the acceleration; give one of them")
     if a is None and time is None:
         return scene, motion
     name = "a" if time is None else "time"
     motion = motion._replace(finds="M" if scene.M is None else "g")
-    if rule := _contradiction(scene, given.get("g") is not None) or _impossible(Case(scene, motion), name):
-        raise SceneError(name, given[name], rule)
+    g_given = inputs["g"].given is not None
+    if rule := _contradiction(scene, g_given) or _impossible(Case(scene, motion), name):
+        raise SceneError(name, inputs[name].given, rule)
     return scene, motion
 
 

@@ -1,44 +1,27 @@
 """What is given: words and numbers in, an exact and valid `Scene` out. Nothing is computed."""
 
-import re
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
 from numbers import Rational, Real
-from typing import Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple
 
 from ..arithmetic.rounding import as_typed
+from .angle import Angle
+from .units import (
+    MAX_DIGITS,
+    MAX_MAGNITUDE,
+    NUMBER,
+    Malformed,
+    is_uncertain,
+    nearest,
+    read_number,
+    split_uncertainty,
+)
 
-T = TypeVar("T")
-Given = str | int | float | Decimal | Fraction
+Given = str | int | float | Decimal | Fraction | Angle
 """An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
-
-MASS = {
-    "kg": "1",
-    "g": "1e-3",
-    "mg": "1e-6",
-    "ug": "1e-9",
-    "t": "1e3",
-    "lb": "0.45359237",
-    "lbs": "0.45359237",
-    "oz": "0.028349523125",
-    "st": "6.35029318",
-}
-LENGTH = {
-    "m": "1",
-    "km": "1e3",
-    "dm": "1e-1",
-    "cm": "1e-2",
-    "mm": "1e-3",
-    "um": "1e-6",
-    "in": "0.0254",
-    "ft": "0.3048",
-    "yd": "0.9144",
-}
-ANGLE = {"deg": "1", "°": "1", "turn": "360", "rad": "1"}
-TIME = {"s": "1", "ms": "1e-3", "min": "60"}
-DIMENSIONS = {"mass": MASS, "length": LENGTH, "angle": ANGLE, "time": TIME}
 
 INERTIA_FACTORS = {"disk": "0.5", "hoop": "1"}
 
@@ -55,24 +38,9 @@ BODIES = {
 }
 """Mean surface gravity of bodies with a surface (m/s²): NASA planetary fact sheets; earth, standard."""
 
-MAX_DIGITS, MAX_EXPONENT = 1000, 500
-# No text within those limits is longer as a numerator or denominator.
-MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
-
-NUMBER = re.compile(r"([+-]?)(\d+(?:\.\d+)?|\.\d+)(?:e([+-]?\d+))?(?: *([A-Za-z]+|°))?", re.ASCII)
+DEFAULTS = {"g": STANDARD_GRAVITY, "wrap": "180"}
 MISSING_MASS = "is missing; give both masses, m1 and m2"
 NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
-
-# An uncertainty: in units of the last digit, 1.000(2), or written out, 1.000±0.002, (1.000±0.002)g.
-_DIGITS, _EXPONENT, _UNIT = r"(?:\d+(?:\.\d+)?|\.\d+)", r"(?:e[+-]?\d+)?", r"(?: *(?:[A-Za-z]+|°))?"
-IN_LAST_DIGITS = rf"([+-]?{_DIGITS})\((\d+)\)({_EXPONENT}{_UNIT})"
-IN_BRACKETS = rf"\(([+-]?{_DIGITS}) *(?:±|\+/-) *({_DIGITS})\)({_EXPONENT}{_UNIT})"
-WRITTEN_OUT = rf"([+-]?{_DIGITS}{_EXPONENT})({_UNIT}) *(?:±|\+/-) *({_DIGITS}{_EXPONENT})({_UNIT})"
-UNCERTAIN = ("(", "±", "+/-")
-NOT_UNCERTAIN = (
-    "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+/-0.002 or 1.000(2),"
-    " and a unit after that"
-)
 
 
 class SceneError(ValueError):
@@ -134,7 +102,7 @@ MEASURED = {
     "drop": Parameter("height that the heavier mass falls from rest", "m", dimension="length"),
     "time": Parameter("measured time in which it does", "s", dimension="time"),
 }
-"""What may be known of the motion, beside the scene or in place of a part of it; see `inverse`."""
+"""What may be known of the motion, beside the scene or in place of a part of it; see `motion`."""
 
 
 def parameter_of(name: str) -> Parameter:
@@ -148,14 +116,22 @@ def stated(name: str, value: str) -> str:
     return f"{name} = {value}{' ' * (unit not in ('', '°'))}{unit}"
 
 
-class Radians(Fraction):
-    """An angle in radians; a plain Fraction is one in degrees, and no rational is both."""
+class Input(NamedTuple):
+    """An input as it was read: its exact value in SI units, its standard uncertainty, and what was given.
+
+    ``value`` is None if nothing was given and there is no default, inf for a locked pulley, an `Angle`
+    for the wrap. The uncertainty is in the unit of the value, and 0 if that is exact.
+    """
+
+    value: Any
+    uncertainty: Fraction
+    given: Given | None
 
 
 class Scene(NamedTuple):
     """A valid scene in SI units, exact; None where not given.
 
-    ``M`` is a float only where it is infinite: a locked pulley. ``wrap`` is in degrees or `Radians`.
+    ``M`` is a float only where it is infinite: a locked pulley.
     """
 
     m1: Fraction
@@ -167,24 +143,30 @@ class Scene(NamedTuple):
     inertia: Fraction | None
     I: Fraction | None
     R: Fraction | None
-    wrap: Fraction
+    wrap: Angle
 
     @classmethod
     def read(cls, given: Mapping[str, Given | None]) -> "Scene":
         """The scene given, by parameter; absent or None is not given. Raises SceneError."""
-        values = {name: read_value(name, given.get(name)) for name in PARAMETERS}
+        return cls.of({name: read_exactly(name, given.get(name)) for name in PARAMETERS})
+
+    @classmethod
+    def of(cls, inputs: Mapping[str, Input]) -> "Scene":
+        """The scene of inputs that were read one by one. Raises SceneError if they do not go together."""
+        values = {name: inputs[name].value for name in PARAMETERS}
         for mass in ("m1", "m2"):
             if values[mass] is None:
                 raise SceneError(mass, None, MISSING_MASS)
         if values["inertia"] is None and values["I"] is None:
             values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
         elif values["inertia"] is not None and values["I"] is not None:
-            raise SceneError("I", given["I"], "and inertia both describe the pulley; give one of them")
+            raise SceneError("I", inputs["I"].given, "and inertia both describe the pulley; give one of them")
         scene = cls(**values)
-        scene._check_together(given)
+        scene._check_together(inputs)
         return scene
 
-    def _check_together(self, given: Mapping[str, Given | None]) -> None:
+    def _check_together(self, inputs: Mapping[str, Input]) -> None:
+        given = {name: one.given for name, one in inputs.items()}
         if self.m1 == self.m2 == 0:
             raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
         free = "m1" if self.m1 == 0 else "m2"
@@ -219,59 +201,41 @@ class Motion(NamedTuple):
 UNMEASURED = Motion()
 
 
-def read_uncertain(
-    given: Mapping[str, Given | None], read: Callable[[Mapping[str, Given | None]], T]
-) -> tuple[T, dict[str, Fraction]]:
-    """What ``read`` makes of the inputs without their uncertainties, and these. Raises SceneError."""
-    plain, uncertain = dict(given), {}
-    for name, words in given.items():
-        if isinstance(words, str) and any(mark in words for mark in UNCERTAIN):
-            plain[name], uncertain[name] = split_uncertainty(name, words)
+def read_input(name: str, given: Given | None) -> Input:
+    """One parameter, whose text may carry a standard uncertainty. Raises SceneError."""
+    if not isinstance(given, str) or not is_uncertain(given):
+        return read_exactly(name, given)
     try:
-        found = read(plain)
-        spreads = {name: _read_text(name, words, parameter_of(name)) for name, words in uncertain.items()}
-    except SceneError as error:
-        typed = None if error.value is None else given[error.parameter]
-        raise SceneError(error.parameter, typed, error.rule) from None
-    return found, {name: Fraction(spread) for name, spread in spreads.items() if spread}
+        texts = split_uncertainty(given)
+    except Malformed as error:
+        raise SceneError(name, given, str(error)) from None
+    value = _checked(name, given, *_read_text(name, given, texts[0]))
+    uncertainty, _ = _read_text(name, given, texts[1])
+    return Input(value, Fraction(uncertainty), given)
 
 
-def split_uncertainty(name: str, given: str) -> tuple[str, str]:
-    """The texts of a value and of its uncertainty: 0.25(12)g is 0.25g and 0.12g. Raises SceneError."""
-    if match := re.fullmatch(IN_LAST_DIGITS, given, re.ASCII):
-        value, digits, tail = match.groups()
-        places = len(value.partition(".")[2])
-        point = max(1, len(digits) - places)
-        digits = digits.zfill(point + places)
-        return value + tail, f"{digits[:point]}{'.' * bool(places)}{digits[point:]}{tail}"
-    if match := re.fullmatch(IN_BRACKETS, given, re.ASCII):
-        value, spread, tail = match.groups()
-        return value + tail, spread + tail
-    match = re.fullmatch(WRITTEN_OUT, given, re.ASCII)
-    if not match or match[2] not in ("", match[4]):
-        raise SceneError(name, given, NOT_UNCERTAIN)
-    return match[1] + match[4], match[3] + match[4]
+def read_exactly(name: str, given: Given | None) -> Input:
+    """One parameter, without an uncertainty. Raises SceneError."""
+    if given is None:
+        default = DEFAULTS.get(name)
+        return Input(default and read_value(name, default), Fraction(0), None)
+    if isinstance(given, str):
+        number, unit = _read_text(name, given, given)
+    elif isinstance(given, Angle) and parameter_of(name).dimension == "angle":
+        number, unit = _read_number(name, given.number), given.unit
+    else:
+        number, unit = _read_number(name, given), ""
+    return Input(_checked(name, given, number, unit), Fraction(0), given)
 
 
 def read_value(name: str, given: Given | None) -> Any:
-    """The exact value of one parameter (None, Fraction or inf). Raises SceneError."""
-    default = {"g": STANDARD_GRAVITY, "wrap": "180"}
-    if given is None:
-        return Fraction(default[name]) if name in default else None
-    parameter = parameter_of(name)
-    value = _read_text(name, given, parameter) if isinstance(given, str) else _read_number(name, given)
-    if (
-        (value < 0 and not parameter.signed)
-        or (value == 0 and not (parameter.zero or parameter.signed))
-        or (abs(value) == inf and not parameter.inf)
-    ):
-        raise SceneError(name, given, parameter.domain)
-    return value
+    """The exact value of one parameter: None, a Fraction, inf or an `Angle`. Raises SceneError."""
+    return read_exactly(name, given).value
 
 
-def read_plain(name: str, given: str) -> Fraction | float:
-    """The value of a number without unit or name, as a table has it. Raises SceneError."""
-    return _read_text(name, given, PARAMETERS[name]._replace(dimension=None, names={}))
+def read_plain(name: str, given: str) -> None:
+    """Raise SceneError unless a cell of a table is a number without unit or name."""
+    _read_text(name, given, given, PARAMETERS[name]._replace(dimension=None, names={}))
 
 
 def read_whole(name: str, given: int | str, least: int, most: int) -> int:
@@ -289,31 +253,42 @@ def read_digits(given: int | str | None) -> int | None:
     return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
 
 
-def _read_text(name: str, given: str, parameter: Parameter) -> Fraction | float:
-    if parameter.inf and given == "inf":
-        return inf
-    if given in parameter.names:
-        return Fraction(parameter.names[given])
-    match = NUMBER.fullmatch(given)
-    if not match:
-        raise SceneError(name, given, _not_a_number(parameter, given))
-    sign, mantissa, exponent, unit = match.groups(default="")
-    digits = len(mantissa.replace(".", ""))
-    power = exponent.lstrip("+-").lstrip("0") or "0"
-    if digits > MAX_DIGITS:
-        raise SceneError(name, given, f"has {digits} digits; at most {MAX_DIGITS} are taken")
-    if len(power) > 3 or int(power) > MAX_EXPONENT:
-        raise SceneError(name, given, f"has an exponent beyond {MAX_EXPONENT} in magnitude")
-    value = Fraction(f"{sign}{mantissa}e{'-' * exponent.startswith('-')}{power}")
-    if unit:
-        value *= _factor(name, given, unit, parameter.dimension)
-    return Radians(value) if unit == "rad" else value
+def _checked(name: str, given: Given, number: Fraction | float, unit: str) -> Any:
+    """The number as the parameter's value, an angle if it is one. Raises SceneError outside its domain."""
+    parameter = parameter_of(name)
+    if (
+        (number < 0 and not parameter.signed)
+        or (number == 0 and not (parameter.zero or parameter.signed))
+        or (abs(number) == inf and not parameter.inf)
+    ):
+        raise SceneError(name, given, parameter.domain)
+    if parameter.dimension == "angle":
+        return Angle(number, "rad" if unit == "rad" else "°")
+    return number
+
+
+def _read_text(
+    name: str, given: Given, text: str, parameter: Parameter | None = None
+) -> tuple[Fraction | float, str]:
+    """The number that a text, or part of it, stands for, and its unit; errors show all that was given."""
+    parameter = parameter or parameter_of(name)
+    if parameter.inf and text == "inf":
+        return inf, ""
+    if text in parameter.names:
+        return Fraction(parameter.names[text]), ""
+    try:
+        number = read_number(text, parameter.dimension)
+    except Malformed as error:
+        raise SceneError(name, given, str(error)) from None
+    if number is None:
+        raise SceneError(name, given, _not_a_number(parameter, text))
+    return number
 
 
 def _not_a_number(parameter: Parameter, word: str) -> str:
     if word.lower() in ("nan", "inf", "+inf", "-inf", "infinity"):
         return parameter.domain
-    if any(mark in word for mark in UNCERTAIN):
+    if is_uncertain(word):
         return "carries an uncertainty, which only solve takes; give the value alone"
     if ":" in word:
         return "is a range, not a number; atwood sweep takes ranges"
@@ -326,32 +301,6 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
 
 def _or_one_of(names: Mapping[str, str]) -> str:
     return f", or one of {', '.join(names)}" if names else ""
-
-
-def nearest(word: str, words: Iterable[str]) -> str:
-    """The hint that a near word may have been meant, empty if none is near."""
-    from difflib import get_close_matches
-
-    words = list(words)
-    near = get_close_matches(word.lower(), words, n=1) or [w for w in words if w.startswith(word.lower())]
-    return f"; did you mean {near[0]}?" if near else ""
-
-
-def _factor(name: str, given: str, unit: str, wanted: str | None) -> Fraction:
-    if wanted is None:
-        raise SceneError(name, given, f"must be a plain number, without the {unit!r}")
-    factors = DIMENSIONS[wanted]
-    if unit in factors:
-        return Fraction(factors[unit])
-    for dimension, others in DIMENSIONS.items():
-        if unit in others:
-            units = f"{wanted} ({', '.join(factors)})"
-            raise SceneError(name, given, f"has a unit of {dimension}; it takes one of {units}")
-    raise SceneError(
-        name,
-        given,
-        f"has the unknown unit {unit!r}{nearest(unit, factors) or '; there are ' + ', '.join(factors)}",
-    )
 
 
 def _read_number(name: str, given: object) -> Fraction | float:

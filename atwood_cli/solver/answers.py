@@ -18,10 +18,11 @@ from ..arithmetic.rounding import (
     to_double,
     to_place,
 )
-from ..model.machine import Case, Machine, Undetermined
+from ..model.case import Case
+from ..model.machine import Machine, Undetermined
 from ..model.physics import N
 from ..model.quantities import FROM_MOTION, NAMES
-from ..model.scene import MEASURED, UNMEASURED, Given, Motion, Scene, read_uncertain
+from ..model.scene import MEASURED, PARAMETERS, UNMEASURED, Given, Motion, Scene, read_input
 
 DOUBLE_DIGITS = 17
 
@@ -118,10 +119,11 @@ def read_answers(
     given: Mapping[str, Given | None], digits: int | None
 ) -> tuple[Answers, dict[str, Fraction]]:
     """The answers to what is given, and the uncertainties of what in it is not exact. Raises SceneError."""
-    if all(given.get(name) is None for name in MEASURED):
-        scene, uncertain = read_uncertain(given, Scene.read)
-        return Answers(scene, digits), uncertain
-    from ..model import motion as inverse
+    inputs = {name: read_input(name, given.get(name)) for name in (*PARAMETERS, *MEASURED)}
+    uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
+    if all(inputs[name].given is None for name in MEASURED):
+        return Answers(Scene.of(inputs), digits), uncertain
+    from ..model import motion as motions
 
-    (scene, motion), uncertain = read_uncertain(given, inverse.read)
-    return Answers(inverse.found(scene, motion), digits, motion), uncertain
+    scene, motion = motions.read(inputs)
+    return Answers(motions.found(scene, motion), digits, motion), uncertain

@@ -15,8 +15,8 @@ from typing import Any, NamedTuple
 from ..arithmetic.rounding import is_infinite
 from ..model import arc as profile
 from ..model.arc import Kind
-from ..model.machine import FREE_END, NEEDS_M, Machine, wrap_angle
-from ..model.scene import Radians, SceneError, read_whole
+from ..model.machine import FREE_END, NEEDS_M, Machine
+from ..model.scene import SceneError, read_whole
 from .answers import Answers
 
 Number = float | Decimal
@@ -87,7 +87,7 @@ def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
             return machine.light_tension
         if from_light == 1:
             return machine.heavy_tension
-        angle = machine.ar.number(from_light) * wrap_angle(machine.ar, scene)
+        angle = machine.ar.number(from_light) * machine.phi
         return profile.tension(machine.ar, machine.arcs(kind)[piece], angle)
 
     def friction(machine: Machine[Any]) -> Any:
@@ -97,7 +97,7 @@ def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
         return answers.settle(lambda machine: of(machine) / _radius(machine))
 
     found = {
-        "angle": answers.settle(lambda machine: _degrees(machine, q)),
+        "angle": answers.settle(lambda machine: scene.wrap.degrees(machine.ar, q)),
         "tension": answers.settle(tension),
         "normal_per_radian": answers.settle(tension),
         "friction_per_radian": answers.settle(friction),
@@ -113,18 +113,12 @@ def _piece(answers: Answers, kind: Kind, from_light: Fraction) -> int:
     for piece in range(last):
 
         def beyond(machine: Machine[Any], piece: int = piece) -> Any:
-            angle = machine.ar.number(from_light) * wrap_angle(machine.ar, answers.case.scene)
+            angle = machine.ar.number(from_light) * machine.phi
             return angle - machine.arcs(kind)[piece].end.angle
 
         if from_light == 0 or (from_light < 1 and not answers.is_positive(beyond)):
             return piece
     return last
-
-
-def _degrees(machine: Machine[Any], q: Fraction) -> Any:
-    wrap = machine.scene.wrap
-    degrees = machine.ar.number(q * wrap)
-    return degrees * 180 / machine.ar.pi if isinstance(wrap, Radians) and q else degrees
 
 
 def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Number]]:

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 from ..arithmetic.rounding import to_digits
 from ..model import physics
-from ..model.machine import wrap_angle
 from ..model.scene import SceneError, read_whole
 from .answers import Answers, OnMachine
 
@@ -138,8 +137,7 @@ class _Doubles:
 
     def __init__(self, answers: Answers, count: int) -> None:
         self.answers, self.case, self.count = answers, answers.case, count
-        scene = answers.case.scene
-        self.phi = self._double(lambda machine: wrap_angle(machine.ar, scene))
+        self.phi = self._double(lambda machine: machine.phi)
         self.mu = self._double(lambda machine: machine.reference_mu)
 
     def _double(self, of: OnMachine) -> float:

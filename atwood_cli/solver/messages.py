@@ -8,7 +8,7 @@ from math import inf
 
 from ..arithmetic.interval import LARGEST_EXPONENT
 from ..arithmetic.rounding import as_typed, is_infinite, text, to_double
-from ..model.scene import MAX_DIGITS, MAX_MAGNITUDE
+from ..model.units import MAX_DIGITS, MAX_MAGNITUDE
 from .answers import DOUBLE_DIGITS, Answers
 
 

@@ -16,18 +16,8 @@ from typing import Any, NamedTuple
 from ..arithmetic.interval import decimal_context
 from ..arithmetic.rounding import as_typed, is_infinite, text
 from ..model.quantities import QUANTITIES
-from ..model.scene import (
-    MAX_DIGITS,
-    MAX_MAGNITUDE,
-    NUMBER,
-    PARAMETERS,
-    Radians,
-    Scene,
-    SceneError,
-    read_value,
-    read_whole,
-    stated,
-)
+from ..model.scene import PARAMETERS, Scene, SceneError, read_value, read_whole, stated
+from ..model.units import MAX_DIGITS, MAX_MAGNITUDE, NUMBER
 from .answers import DOUBLE_DIGITS, Answers
 
 Point = Decimal | str
@@ -123,7 +113,7 @@ def read_range(name: str, typed: str) -> Range:
     words = typed.split(":")
     if len(words) not in (3, 4) or words[3:] not in ([], ["log"]):
         raise SceneError(name, typed, f"is no range; write {FORM}")
-    start, stop = (_read_end(name, typed, word) for word in words[:2])
+    (start, unit), (stop, _) = (_read_end(name, typed, word) for word in words[:2])
     _check_units(name, typed, words[:2], start == 0 or stop == 0)
     if start == stop:
         raise SceneError(name, typed, "has equal ends; a range runs from one value to another")
@@ -136,15 +126,15 @@ def read_range(name: str, typed: str) -> Range:
         raise SceneError(name, typed, f"has the count {words[2]!r}, which {error.rule}") from None
     ends = [_tidy(Decimal(as_typed(end))) for end in (start, stop)]
     points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last), ends[1]]
-    in_radians = isinstance(start, Radians)
-    return Range(name, typed, [f"{text(point)}rad" if in_radians else point for point in points], log)
+    return Range(name, typed, [f"{text(point)}rad" if unit == "rad" else point for point in points], log)
 
 
-def _read_end(name: str, typed: str, word: str) -> Fraction:
+def _read_end(name: str, typed: str, word: str) -> tuple[Fraction, str]:
+    """An end of a range, and its unit if it is an angle. Raises SceneError."""
     if word == "inf" or word in PARAMETERS[name].names:
         raise SceneError(name, typed, f"has the end {word!r}; a range runs between finite numbers")
-    value: Fraction = read_value(name, word)
-    return value
+    value = read_value(name, word)
+    return (value.number, value.unit) if name == "wrap" else (value, "")
 
 
 def _check_units(name: str, typed: str, ends: Sequence[str], has_zero: bool) -> None:

@@ -29,7 +29,8 @@ from typing import Any, NamedTuple
 
 from ..arithmetic.interval import ZERO, decimal_context
 from ..arithmetic.rounding import is_infinite, to_place, with_uncertainty
-from ..model.machine import Case, Undetermined
+from ..model.case import Case
+from ..model.machine import Undetermined
 from ..model.scene import Motion, Scene
 from .answers import Answers
 from .messages import reasons_at
@@ -151,13 +152,15 @@ def _slopes(case: Case, uncertain: Uncertain) -> Callable[[str, str], Slope]:
     closeness, span = _apart(case)
 
     def given(x: str) -> Fraction:
-        value: Fraction = getattr(scene if x in Scene._fields else motion, x)
-        return value
+        value = getattr(scene if x in Scene._fields else motion, x)
+        number: Fraction = value.number if x == "wrap" else value
+        return number
 
     @cache
     def answers(x: str, offset: Fraction, digits: int) -> Answers:
-        moved: dict[str, Any] = {x: type(given(x))(given(x) + offset)}
-        if x in Scene._fields:
+        of_scene = x in Scene._fields
+        moved: dict[str, Any] = {x: getattr(scene if of_scene else motion, x) + offset}
+        if of_scene:
             return answers_of(scene._replace(**moved), motion, digits)
         return answers_of(scene, motion._replace(**moved), digits)
 
@@ -223,7 +226,7 @@ def _apart(case: Case) -> tuple[int, int]:
     """How many powers of ten a bend may be nearer than all else in the scene, and scales are apart in all."""
     scene, total = case.scene, case.scene.m1 + case.scene.m2
     near = [(scene.m2 - scene.m1) / total, scene.mu]
-    other = [scene.m1 / total, scene.m2 / total, (case.rim_mass or 0) / total, scene.wrap]
+    other = [scene.m1 / total, scene.m2 / total, (case.rim_mass or 0) / total, scene.wrap.number]
     closeness, span = (
         sum(abs(decimal(Fraction(q)).adjusted()) for q in ratios if q) for ratios in (near, near + other)
     )

@@ -22,9 +22,9 @@ from ..arithmetic.interval import decimal_context
 from ..arithmetic.rounding import as_typed, text, to_double
 from ..arrays import ACCURACIES, solve_arrays
 from ..arrays.rows import COLUMNS
-from ..model.machine import Undetermined, wrap_angle
+from ..model.machine import Undetermined
 from ..model.quantities import REGIMES, STANDARD
-from ..model.scene import STANDARD_GRAVITY, Radians, Scene, SceneError
+from ..model.scene import STANDARD_GRAVITY, Scene, SceneError
 from ..solver.answers import Answers
 from ..solver.elements import MAX_ELEMENTS, TOO_LARGE, balanced, extrapolated, march
 from .baseline import paper_in_numpy
@@ -249,7 +249,7 @@ def marches(scene: Scene) -> Iterator[March]:
     answers = Answers(scene, EXACT_DIGITS)
     mu = float(answers.settle(attrgetter("reference_mu")))
     exact = Fraction(answers.settle(attrgetter("capstan_ratio")))
-    phi = float(answers.settle(lambda machine: wrap_angle(machine.ar, scene)))
+    phi = float(answers.settle(lambda machine: machine.phi))
     if to_double(exact) == inf:
         raise SceneError("elements", None, TOO_LARGE)
 
@@ -356,14 +356,15 @@ def tradeoff(families: Sequence[str], scenes: int, seed: int, scene: Scene | Non
 def row_of(scene: Scene) -> Row:
     """A scene as the doubles that it is measured with, m1 the lighter mass. Raises SceneError."""
     row: Row = {}
+    given = scene._asdict() | {"wrap": scene.wrap.number}
     for name in COLUMNS:
-        if (value := getattr(scene, name)) is not None:
+        if (value := given[name]) is not None:
             row[name] = double = to_double(value)
             if isinstance(value, Fraction) and (double == inf or (double == 0 and value)):
                 raise SceneError(name, as_typed(value), "is beyond the doubles, which are measured here")
     if scene.I is not None:
         raise SceneError("I", None, "is not measured, as arrays have no such column; give --inertia")
-    if isinstance(scene.wrap, Radians):
+    if scene.wrap.unit == "rad":
         row["wrap"] = degrees(row["wrap"])
     row["m1"], row["m2"] = sorted((row["m1"], row["m2"]))
     return row
