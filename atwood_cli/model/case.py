@@ -31,14 +31,17 @@ class Case:
 
     @lazy
     def light(self) -> Fraction:
+        """The lighter mass (kg)."""
         return self.by_side(self.scene.m1, self.scene.m2)[0]
 
     @lazy
     def heavy(self) -> Fraction:
+        """The heavier mass (kg)."""
         return self.by_side(self.scene.m1, self.scene.m2)[1]
 
     @lazy
     def locked(self) -> bool:
+        """Whether the pulley cannot turn: M = inf."""
         return isinstance(self.scene.M, float)
 
     @lazy
@@ -82,6 +85,7 @@ class Case:
 
     @lazy
     def regime(self) -> Literal["no-slip", "verge", "slip"]:
+        """What the string does; it is assumed to grip where nothing is said of friction."""
         if self.scene.mu is None or self.tensions_equal:
             return "no-slip"
         if not self.pulley_known:
@@ -115,7 +119,7 @@ class Case:
 
     @lazy
     def can_be_made_slip(self) -> bool:
-        """Whether it slips under a heavier mass that is heavy enough: second condition of (36)."""
+        """Whether the string slips under a heavier mass that is heavy enough: second condition of (36)."""
         return self.rim_mass is None or self.beats_friction("heaviest_excess")
 
     @lazy
@@ -135,11 +139,11 @@ class Case:
         return physics.excess_ratio(*map(ar.number, (self.light, self.heavy, self.rim_mass)))
 
     def locked_excess(self, ar: Arithmetic[N]) -> N:
-        """The same on a locked pulley."""
+        """T_h/T_l - 1 on a locked pulley."""
         return physics.locked_excess(ar.number(self.light), ar.number(self.heavy))
 
     def heaviest_excess(self, ar: Arithmetic[N]) -> N:
-        """The same under a heavier mass beyond all bounds, on a pulley that is not locked."""
+        """T_h/T_l - 1 under a heavier mass beyond all bounds, on a pulley that is not locked."""
         assert self.rim_mass is not None
         return physics.heaviest_excess(ar.number(self.light), ar.number(self.rim_mass))
 

@@ -9,8 +9,7 @@ from typing import Generic
 
 from ..arithmetic.interval import Arithmetic
 from ..arithmetic.lazy import lazy
-from . import arc as profile
-from . import physics
+from . import arc, physics
 from .case import Case, is_zero
 from .physics import N
 
@@ -47,18 +46,21 @@ class Machine(Generic[N]):
 
     def __init__(self, case: Case, ar: Arithmetic[N]) -> None:
         self.case, self.scene, self.ar = case, case.scene, ar
-        self._arcs: dict[profile.Kind, list[profile.Arc[N]]] = {}
+        self._arcs: dict[arc.Kind, list[arc.Arc[N]]] = {}
 
     @lazy
     def l(self) -> N:
+        """Lighter mass (kg)."""
         return self.ar.number(self.case.light)
 
     @lazy
     def h(self) -> N:
+        """Heavier mass (kg)."""
         return self.ar.number(self.case.heavy)
 
     @lazy
     def g(self) -> N:
+        """Gravity (m/s²)."""
         return self.ar.number(self.scene.g)
 
     @lazy
@@ -81,7 +83,7 @@ class Machine(Generic[N]):
 
     @lazy
     def k1(self) -> N:
-        """The excess of the capstan ratio of static friction."""
+        """Excess k - 1 of the capstan ratio of static friction."""
         if self.scene.mu is None:
             raise Undetermined(NEEDS_MU)
         return self._capstan_excess(self.scene.mu)
@@ -93,12 +95,12 @@ class Machine(Generic[N]):
 
     @lazy
     def transfer(self) -> N:
-        """The transfer z at the limit of static friction; see `physics`."""
+        """Transfer z at the limit of static friction (kg); see `physics`."""
         return physics.transfer_at_limit(self.l, self.k1)
 
     @lazy
     def drive(self) -> N:
-        """The drive d at the limit of static friction."""
+        """Drive d at the limit of static friction (kg); see `physics`."""
         return physics.drive_at_limit(self.l, self.h, self.transfer)
 
     @lazy
@@ -109,19 +111,19 @@ class Machine(Generic[N]):
 
     @lazy
     def limiting_transfer(self) -> N:
-        """The transfer z in that regime."""
+        """Transfer z at the limit of the friction that acts, kinetic in slip (kg)."""
         static = self.case.limiting_mu is self.scene.mu
         return self.transfer if static else physics.transfer_at_limit(self.l, self.limiting_k1)
 
     @lazy
     def limiting_drive(self) -> N:
-        """The drive d in that regime."""
+        """Drive d at the limit of the friction that acts, kinetic in slip (kg)."""
         static = self.case.limiting_mu is self.scene.mu
         return self.drive if static else physics.drive_at_limit(self.l, self.h, self.limiting_transfer)
 
     @lazy
     def magnitude(self) -> N:
-        """The magnitude of the acceleration."""
+        """Magnitude of the acceleration (m/s²)."""
         l, h, case = self.l, self.h, self.case
         if case.regime != "no-slip":
             drive, load = self.limiting_drive, physics.load(l, h, self.limiting_transfer)
@@ -142,7 +144,8 @@ class Machine(Generic[N]):
 
     @lazy
     def friction_vector(self) -> tuple[N, N]:
-        return self.seen_from_m1(profile.friction(self.arcs("exponential")))
+        """Net friction force on the pulley (N), (x, y), seen from m1."""
+        return self.seen_from_m1(arc.friction(self.arcs("exponential")))
 
     def seen_from_m1(self, vector: tuple[N, N]) -> tuple[N, N]:
         """A vector as it is where m1, not the lighter mass, is at the start of the arc."""
@@ -156,28 +159,28 @@ class Machine(Generic[N]):
         log_ratio = self.mu_verge * self.phi
         return physics.limiting_arc(log_ratio, self.ar.number(self.scene.mu))
 
-    def arcs(self, kind: profile.Kind) -> list[profile.Arc[N]]:
-        """The arc of contact from the light end, in pieces: limiting, stuck or both (see `profile`)."""
+    def arcs(self, kind: arc.Kind) -> list[arc.Arc[N]]:
+        """The arc of contact from the light end, in pieces: limiting, stuck or both (see `arc`)."""
         if kind not in self._arcs:
             self._arcs[kind] = self._arrange(kind)
         return self._arcs[kind]
 
-    def _arrange(self, kind: profile.Kind) -> list[profile.Arc[N]]:
+    def _arrange(self, kind: arc.Kind) -> list[arc.Arc[N]]:
         ar, mu, light = self.ar, self.arc_mu(kind), self.light_tension
         if ar.is_zero(mu):  # the tension is the same everywhere: no angle is needed, so no π either
             nowhere = ar.number(0)
-            return profile.arcs(ar, kind, mu, [nowhere], light, self._end(nowhere))
+            return arc.arcs(ar, kind, mu, [nowhere], light, self._end(nowhere))
         phi = self.phi
         end = self._end(phi)
         if kind == "exponential":
-            return profile.arcs(ar, kind, mu, [phi], light, end)
+            return arc.arcs(ar, kind, mu, [phi], light, end)
         stuck = phi - self.alpha
         if kind == "creep":
-            return profile.arcs(ar, kind, mu, [stuck, self.alpha], light, end)
-        lead = profile.least_lead(ar, mu, self.alpha, stuck, light, end)
-        return profile.arcs(ar, kind, mu, [lead, stuck, self.alpha - lead], light, end)
+            return arc.arcs(ar, kind, mu, [stuck, self.alpha], light, end)
+        lead = arc.least_lead(ar, mu, self.alpha, stuck, light, end)
+        return arc.arcs(ar, kind, mu, [lead, stuck, self.alpha - lead], light, end)
 
-    def arc_mu(self, kind: profile.Kind) -> N:
+    def arc_mu(self, kind: arc.Kind) -> N:
         """The coefficient that the friction of a profile is at, where it is at its limit."""
         return self.friction_mu if kind == "exponential" else self._given(self.scene.mu, NEEDS_MU)
 
@@ -191,8 +194,8 @@ class Machine(Generic[N]):
         """e^{μφ} at that coefficient; the tension ratio itself where that is what holds."""
         return self.heavy_tension / self.light_tension if self.scene.mu is None else self.k1 + 1
 
-    def _end(self, angle: N) -> profile.Knot[N]:
-        return profile.Knot(angle, *self._direction, self.heavy_tension)
+    def _end(self, angle: N) -> arc.Knot[N]:
+        return arc.Knot(angle, *self._direction, self.heavy_tension)
 
     @lazy
     def resultant_vector(self) -> tuple[N, N]:
@@ -213,7 +216,7 @@ class Machine(Generic[N]):
 
     @lazy
     def difference(self) -> N:
-        """The magnitude of T2 - T1."""
+        """Magnitude of T2 - T1 (N)."""
         case = self.case
         if case.regime != "no-slip":
             return physics.difference_of_friction(self.light_tension, self.limiting_k1)
@@ -225,6 +228,7 @@ class Machine(Generic[N]):
 
     @property
     def tension_difference(self) -> N:
+        """T2 - T1 (N)."""
         return self.difference * self.case.sign
 
     def _bounded(self) -> bool:
@@ -244,26 +248,32 @@ class Machine(Generic[N]):
 
     @property
     def acceleration(self) -> N:
+        """Acceleration of the masses (m/s²), positive when m2 descends: (4), in slip (1) with (26)."""
         return self.magnitude if self.case.sign > 0 else self.magnitude * self.case.sign
 
     @lazy
     def light_tension(self) -> N:
+        """Tension on the lighter mass (N), from (1)."""
         return physics.light_tension(self.l, self.magnitude, self.g)
 
     @lazy
     def heavy_tension(self) -> N:
+        """Tension on the heavier mass (N)."""
         return self.light_tension + self.difference
 
     @property
     def tension_1(self) -> N:
+        """Tension of the string at m1 (N): (4), in slip (1) with (26)."""
         return self.case.by_side(self.light_tension, self.heavy_tension)[0]
 
     @property
     def tension_2(self) -> N:
+        """Tension of the string at m2 (N): (4), in slip (1) with (26)."""
         return self.case.by_side(self.light_tension, self.heavy_tension)[1]
 
     @lazy
     def mu_verge(self) -> N:
+        """Friction coefficient at which a string that grips would be on the verge of slipping (27)."""
         case = self.case
         if is_zero(case.light):
             raise Undetermined(FREE_END)
@@ -277,6 +287,7 @@ class Machine(Generic[N]):
 
     @lazy
     def friction_force(self) -> N:
+        """Magnitude of the net friction force on the pulley (N), where it is one number (32)."""
         mu = self.friction_mu
         if self.ar.is_zero(mu):
             return self.ar.number(0)
@@ -293,14 +304,17 @@ class Machine(Generic[N]):
 
     @lazy
     def friction_force_x(self) -> N:
+        """Net friction force on the pulley (N), towards the side of m1 (31)."""
         return self.friction_vector[0]
 
     @lazy
     def friction_force_y(self) -> N:
+        """Net friction force on the pulley (N), upwards (31)."""
         return self.friction_vector[1]
 
     @lazy
     def axle_force(self) -> N:
+        """Force on the axle (N): both tensions (20), and the pulley's weight."""
         if not self.case.ends_hang_down:
             raise Undetermined(ONE_SIDED)
         if self.case.locked:
@@ -313,10 +327,12 @@ class Machine(Generic[N]):
 
     @lazy
     def torque(self) -> N:
+        """Torque of the string on the pulley (N m), positive the way m2 descends (23)."""
         return self.tension_difference * self._given(self.scene.R, NEEDS_R)
 
     @lazy
     def rim_acceleration(self) -> N:
+        """Acceleration of the pulley's rim (m/s²), which falls behind the string in slip (3)."""
         if self.case.regime != "slip":
             return self.acceleration
         if self.case.rim_mass is None:
@@ -325,10 +341,12 @@ class Machine(Generic[N]):
 
     @lazy
     def angular_acceleration(self) -> N:
+        """Angular acceleration of the pulley (rad/s²), positive the way m2 descends (2)."""
         return self.rim_acceleration / self._given(self.scene.R, NEEDS_R)
 
     @lazy
     def critical_pulley_mass(self) -> N:
+        """Pulley mass above which the string slips (kg) (34)."""
         if self.scene.mu is None:
             raise Undetermined(NEEDS_MU)
         if not self.case.can_slip:
@@ -339,6 +357,7 @@ class Machine(Generic[N]):
 
     @lazy
     def critical_heavier_mass(self) -> N:
+        """Heavier mass above which the string slips on this pulley (kg) (35)."""
         transfer = self.transfer
         if self.case.locked:
             return self.least_heavier_mass
@@ -349,6 +368,7 @@ class Machine(Generic[N]):
 
     @lazy
     def least_heavier_mass(self) -> N:
+        """What the heavier mass must exceed for any pulley to make the string slip (kg) (36)."""
         transfer = self.transfer
         if is_zero(self.scene.mu) and not self.case.pulley_known:
             raise Undetermined(NOT_APPLICABLE)
@@ -356,6 +376,7 @@ class Machine(Generic[N]):
 
     @lazy
     def least_pulley_mass(self) -> N:
+        """What the pulley's mass must exceed for any heavier mass to make the string slip (kg) (36)."""
         transfer = self.transfer
         if is_zero(self.scene.mu) and not self.case.pulley_known:
             raise Undetermined(NOT_APPLICABLE)
@@ -363,12 +384,14 @@ class Machine(Generic[N]):
 
     @property
     def pulley_mass(self) -> N:
+        """Pulley mass that gives the measured acceleration (kg)."""
         if self.case.motion.finds != "M":
             raise Undetermined(NEEDS_A)
         return self._given(self.case.pulley_mass, NEEDS_M)
 
     @property
     def moment_of_inertia(self) -> N:
+        """Moment of inertia of the pulley that gives the measured acceleration (kg m²)."""
         if self.case.motion.finds != "M":
             raise Undetermined(NEEDS_A)
         R = self._given(self.scene.R, NEEDS_R)
@@ -376,16 +399,19 @@ class Machine(Generic[N]):
 
     @property
     def gravity(self) -> N:
+        """Gravity that gives the measured acceleration (m/s²)."""
         if self.case.motion.finds != "g":
             raise Undetermined(NEEDS_A_BESIDE_M)
         return self.g
 
     @property
     def fall_time(self) -> N:
+        """Time in which the heavier mass falls the height from rest (s)."""
         return physics.fall_time(*self._fall(), self.ar.sqrt)
 
     @property
     def final_speed(self) -> N:
+        """Speed of the masses after that fall (m/s)."""
         return physics.final_speed(*self._fall(), self.ar.sqrt)
 
     def _fall(self) -> tuple[N, N]:
@@ -397,13 +423,15 @@ class Machine(Generic[N]):
 
     @lazy
     def friction_force_min(self) -> N:
+        """Least net friction force (N) of a string that grips, if friction nowhere opposes the rest."""
         if not self._bounded():
             return self.ar.number(0)
-        x, y = profile.friction(self.arcs("least"))
+        x, y = arc.friction(self.arcs("least"))
         return self.ar.sqrt(x * x + y * y)
 
     @lazy
     def friction_force_max(self) -> N:
+        """Greatest net friction force (N) of a string that grips, if friction nowhere opposes the rest."""
         if not self._bounded():
             return self.ar.number(0)
         _, sin_half = self.ar.cos_sin(self.alpha / 2)

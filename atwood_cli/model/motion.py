@@ -80,7 +80,7 @@ def _signed(case: Case) -> Fraction:
     return case.sign * physics.acceleration_of_fall(motion.drop, motion.time)
 
 
-def found(scene: Scene, motion: Motion) -> Scene:
+def completed(scene: Scene, motion: Motion) -> Scene:
     """The scene with what follows from the motion in it. Raises Undetermined."""
     if motion.finds is None:
         return scene

@@ -47,7 +47,7 @@ def transfer_at_limit(l: N, k1: N) -> N:
 
 
 def drive_at_limit(l: N, h: N, transfer: N) -> N:
-    """Drive d = h - l k (kg) of the same string; positive where a heavy enough pulley makes it slip."""
+    """Drive d = h - l k (kg) at the limit of friction; positive where a heavy enough pulley makes it slip."""
     return h - l - transfer
 
 
@@ -87,12 +87,12 @@ def acceleration_of_fall(drop: N, time: N) -> N:
 
 
 def fall_time(drop: N, a: N, sqrt: Function[N]) -> N:
-    """Time (s) that it takes for that."""
+    """Time (s) to fall the height ``drop`` (m) from rest with the acceleration ``a`` (m/s²)."""
     return sqrt(2 * drop / a)
 
 
 def final_speed(drop: N, a: N, sqrt: Function[N]) -> N:
-    """Speed (m/s) at its end."""
+    """Speed (m/s) after falling the height ``drop`` (m) from rest with the acceleration ``a`` (m/s²)."""
     return sqrt(2 * drop * a)
 
 
@@ -122,12 +122,12 @@ def excess_ratio(l: N, h: N, c: N) -> N:
 
 
 def locked_excess(l: N, h: N) -> N:
-    """The same on a locked pulley, c = ∞."""
+    """T_h/T_l - 1 of a string that grips a locked pulley, c = ∞."""
     return (h - l) / l
 
 
 def heaviest_excess(l: N, c: N) -> N:
-    """The same under a heavier mass beyond all bounds, h = ∞."""
+    """T_h/T_l - 1 of a string that grips under a heavier mass beyond all bounds, h = ∞."""
     return c / (2 * l)
 
 
@@ -187,7 +187,7 @@ def friction_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
 
 
 def normal_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
-    """Normal force on the pulley (N), (x, y), of the same arc: -∫ T e^{iθ} dθ, from (18)."""
+    """Normal force on the pulley (N), (x, y), where T grows as e^{μθ}: -∫ T e^{iθ} dθ, from (18)."""
     factor = 1 / (mu * mu + 1)
     return factor * (-1 * mu * dx - dy), factor * (dx - mu * dy)
 

@@ -81,7 +81,7 @@ class Answers:
         return value
 
     def exactly(self, quantity: OnMachine) -> Fraction | None:
-        """The same unrounded, where it is rational for want of anything else in its formula."""
+        """Anything that a machine has, unrounded; None unless its formula is rational."""
         try:
             value: Fraction = self._on_machines(quantity)(EXACT)
         except Irrational:
@@ -89,9 +89,9 @@ class Answers:
         return value
 
     def nearly(self, quantity: OnMachine) -> float | Decimal:
-        """The same for what is rational though its formula is not, so that a tie would never settle.
+        """Anything that a machine has and that is rational, though its formula is not.
 
-        The middle of an enclosure with digits to spare is rounded instead.
+        A tie would never settle, so the middle of an enclosure with digits to spare is rounded.
         """
         digits = 2 * (self.digits or DOUBLE_DIGITS)
         value: float | Decimal = self.round(middle(self._on_machines(quantity), digits))
@@ -111,7 +111,7 @@ class Answers:
         return of
 
     def with_pulley(self, mass: Fraction | float) -> "Answers":
-        """The same scene on a pulley of that mass (inf: locked), with a string that grips."""
+        """The answers to this scene on a pulley of that mass (inf: locked), with a string that grips."""
         return Answers(self.case.scene._replace(M=mass, mu=None, mu_k=None), self.digits)
 
 
@@ -126,4 +126,4 @@ def read_answers(
     from ..model import motion as motions
 
     scene, motion = motions.read(inputs)
-    return Answers(motions.found(scene, motion), digits, motion), uncertain
+    return Answers(motions.completed(scene, motion), digits, motion), uncertain

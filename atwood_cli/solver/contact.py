@@ -13,7 +13,7 @@ from math import inf
 from typing import Any, NamedTuple
 
 from ..arithmetic.rounding import is_infinite
-from ..model import arc as profile
+from ..model import arc
 from ..model.arc import Kind
 from ..model.machine import FREE_END, NEEDS_M, Machine
 from ..model.scene import SceneError, read_whole
@@ -79,7 +79,7 @@ def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
     scene, sign = answers.case.scene, answers.case.sign
     from_light = q if sign >= 0 else 1 - q
     piece = _piece(answers, kind, from_light)
-    stuck = profile.STUCK[kind][piece] or answers.case.frictionless
+    stuck = arc.STUCK[kind][piece] or answers.case.frictionless
 
     def tension(machine: Machine[Any]) -> Any:
         # Both ends are exact, and so is the string stuck to the pulley from the light end on.
@@ -88,7 +88,7 @@ def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
         if from_light == 1:
             return machine.heavy_tension
         angle = machine.ar.number(from_light) * machine.phi
-        return profile.tension(machine.ar, machine.arcs(kind)[piece], angle)
+        return arc.tension(machine.ar, machine.arcs(kind)[piece], angle)
 
     def friction(machine: Machine[Any]) -> Any:
         return machine.ar.number(0) if stuck else machine.arc_mu(kind) * tension(machine) * sign
@@ -96,20 +96,20 @@ def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
     def per_metre(of: Callable[[Machine[Any]], Any]) -> Number:
         return answers.settle(lambda machine: of(machine) / _radius(machine))
 
-    found = {
+    row = {
         "angle": answers.settle(lambda machine: scene.wrap.degrees(machine.ar, q)),
         "tension": answers.settle(tension),
         "normal_per_radian": answers.settle(tension),
         "friction_per_radian": answers.settle(friction),
     }
     if scene.R is not None:
-        found |= {"normal_per_metre": per_metre(tension), "friction_per_metre": per_metre(friction)}
-    return found
+        row |= {"normal_per_metre": per_metre(tension), "friction_per_metre": per_metre(friction)}
+    return row
 
 
 def _piece(answers: Answers, kind: Kind, from_light: Fraction) -> int:
     """Which piece of the profile holds the point at that fraction of the arc from the light end."""
-    last = len(profile.STUCK[kind]) - 1
+    last = len(arc.STUCK[kind]) - 1
     for piece in range(last):
 
         def beyond(machine: Machine[Any], piece: int = piece) -> Any:
@@ -127,12 +127,12 @@ def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Number]]:
     def vector(of: Callable[[Any], tuple[Any, Any]]) -> dict[str, Number]:
         return {"x": answers.settle(lambda m: of(m)[0]), "y": answers.settle(lambda m: of(m)[1])}
 
-    friction = vector(lambda m: m.seen_from_m1(profile.friction(m.arcs(kind))))
-    normal = vector(lambda m: m.seen_from_m1(profile.normal(m.arcs(kind))))
+    friction = vector(lambda m: m.seen_from_m1(arc.friction(m.arcs(kind))))
+    normal = vector(lambda m: m.seen_from_m1(arc.normal(m.arcs(kind))))
     ends = vector(lambda m: m.resultant_vector)
     together = {axis: _difference(answers, friction[axis], normal[axis], plus=True) for axis in "xy"}
     by_contact = answers.nearly(
-        lambda m: profile.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.case.sign
+        lambda m: arc.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.case.sign
     )
     by_ends = answers.settle(lambda m: m.tension_difference * _radius(m))
     return {
@@ -172,10 +172,10 @@ def _notes(answers: Answers, kind: Kind, balance: dict[str, dict[str, Number]]) 
         about = WITHOUT_MU
     else:
         about = ABOUT_KIND[kind]
-    found = [about]
+    notes = [about]
     for name in ("tension_1", "tension_2"):
         if answers[name] is not None and name in answers.reasons:
-            found.append(f"{name}: {answers.reasons[name]}.")
+            notes.append(f"{name}: {answers.reasons[name]}.")
     if any(balance[name][part] for name, part in RESIDUALS):
-        found.append(ROUNDING)
-    return found
+        notes.append(ROUNDING)
+    return notes

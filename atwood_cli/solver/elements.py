@@ -149,16 +149,16 @@ class _Doubles:
     def solve(self, count: int) -> dict[str, float]:
         case, answers = self.case, self.answers
         k, x, y = march(self.mu, self.phi, count)
-        found = {"capstan_ratio": k}
+        values = {"capstan_ratio": k}
         l, h = self._double(lambda machine: machine.l), self._double(lambda machine: machine.h)
         if answers["critical_pulley_mass"] is not None:
             beta = self._double(lambda machine: machine.ar.number(case.beta or 0))
             transfer = physics.transfer_at_limit(l, k - 1)
             drive = physics.drive_at_limit(l, h, transfer)
             mass = physics.critical_pulley_mass(h, transfer, drive, beta) if drive > 0 else inf
-            found["critical_pulley_mass"] = mass
+            values["critical_pulley_mass"] = mass
         if answers["friction_force"] is None:
-            return found
+            return values
         if case.regime == "slip" and case.scene.mu_k is not None:
             kinetic = self._double(lambda machine: machine.arc_mu("exponential"))
             k, x, y = march(kinetic, self.phi, count)
@@ -167,6 +167,6 @@ class _Doubles:
             transfer, g = physics.transfer_at_limit(l, k - 1), self._double(lambda machine: machine.g)
             drive, load = physics.drive_at_limit(l, h, transfer), physics.load(l, h, transfer)
             light = physics.light_tension(l, physics.acceleration(drive, load, g), g)
-        found["tension_ratio"] = k if case.sign >= 0 else 1 / k
-        found["friction_force"] = light * hypot(x, y)
-        return found
+        values["tension_ratio"] = k if case.sign >= 0 else 1 / k
+        values["friction_force"] = light * hypot(x, y)
+        return values

@@ -22,10 +22,10 @@ def reasons(answers: Answers) -> list[str]:
     return reasons_at(Counter(answers.reasons.items()), 1)
 
 
-def reasons_at(found: Mapping[tuple[str, str], int], points: int) -> list[str]:
-    """The same for many points: names with reasons, and at how many points."""
+def reasons_at(times_missing: Mapping[tuple[str, str], int], points: int) -> list[str]:
+    """Why values are missing at so many points, from how often a name is missing for a reason."""
     names: dict[tuple[str, int], list[str]] = {}
-    for (name, reason), times in found.items():
+    for (name, reason), times in times_missing.items():
         names.setdefault((reason, times), []).append(name)
     return [
         f"{', '.join(group)}: {reason}{'' if times == points else f' (at {times} of {points} points)'}."

@@ -216,9 +216,9 @@ def _slopes(case: Case, uncertain: Uncertain) -> Callable[[str, str], Slope]:
 def answers_of(scene: Scene, motion: Motion, digits: int) -> Answers:
     """The answers to a scene in which what follows from the motion is still to be found."""
     if motion.finds is not None:
-        from ..model.motion import found
+        from ..model.motion import completed
 
-        scene = found(scene, motion)
+        scene = completed(scene, motion)
     return Answers(scene, digits, motion)
 
 
