@@ -79,8 +79,9 @@ from typing import Any, Union
 import numpy as np
 from numpy.typing import NDArray
 
-from .interval import EXACT, Irrational, enclosures
+from .interval import enclosures
 from .lazy import lazy
+from .rational import EXACT, Irrational
 
 Column = NDArray[np.float64]
 

@@ -34,6 +34,8 @@ A function is evaluated at the lower end only; over a width δ <= 1 of its argum
 and sine change by at most δ, and e^x by at most 2δ e^x.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from decimal import (
     ROUND_CEILING,
@@ -45,10 +47,9 @@ from decimal import (
 from fractions import Fraction
 from functools import lru_cache
 from math import inf, isqrt
-from typing import Protocol, Union
 
-from ..model.physics import N
 from .lazy import lazy
+from .rational import EXACT, Irrational
 
 # Far beyond any input (1e±1500), far within what `decimal` takes on a 32-bit machine.
 LARGEST_EXPONENT = 10**8
@@ -57,77 +58,12 @@ ZERO, ONE, TWO = Decimal(0), Decimal(1), Decimal(2)
 LOG10_E = Decimal("0.434294481903")  # rounded down, so that what remains is not negative
 
 
-class Irrational(ArithmeticError):
-    """The quantity leaves the rational numbers: compute it in enclosures."""
-
-
 class Unsettled(ArithmeticError):
     """The enclosure is too wide to go on: compute with more digits, ``digits`` if that is known."""
 
     def __init__(self, digits: int = 0) -> None:
         super().__init__(digits)
         self.digits = digits
-
-
-class Arithmetic(Protocol[N]):
-    """The number type that the equations run in, with its transcendental functions."""
-
-    def number(self, q: Fraction | int) -> N: ...
-    def is_zero(self, x: N) -> bool: ...
-    @property
-    def pi(self) -> N: ...
-    def exp(self, x: N) -> N: ...
-    def expm1(self, x: N) -> N: ...
-    def log1p(self, x: N) -> N: ...
-    def sqrt(self, x: N) -> N: ...
-    def hypot(self, x: N, y: N | int) -> N: ...
-    def cos_sin(self, x: N) -> tuple[N, N]: ...
-    def cos_sin_of_degrees(self, x: Fraction) -> tuple[N, N]: ...
-    def root(self, f: Callable[[N], N], end: N) -> N: ...
-
-
-class Rationals:
-    """Exact fractions; whatever would leave them raises `Irrational`."""
-
-    def number(self, q: Fraction | int) -> Fraction:
-        return Fraction(q)
-
-    def is_zero(self, x: Fraction) -> bool:
-        return x == 0
-
-    @property
-    def pi(self) -> Fraction:
-        raise Irrational
-
-    def expm1(self, x: Fraction) -> Fraction:
-        raise Irrational
-
-    exp = log1p = expm1
-
-    def sqrt(self, x: Fraction) -> Fraction:
-        """Square root of x >= 0, where it is rational."""
-        root = Fraction(isqrt(x.numerator), isqrt(x.denominator))
-        if root * root != x:
-            raise Irrational
-        return root
-
-    def hypot(self, x: Fraction, y: Fraction | int) -> Fraction:
-        raise Irrational
-
-    def cos_sin(self, x: Fraction) -> tuple[Fraction, Fraction]:
-        raise Irrational
-
-    def cos_sin_of_degrees(self, x: Fraction) -> tuple[Fraction, Fraction]:
-        if (x / 90).denominator > 1:
-            raise Irrational
-        cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[x // 90 % 4]
-        return Fraction(cos), Fraction(sin)
-
-    def root(self, f: Callable[[Fraction], Fraction], end: Fraction) -> Fraction:
-        raise Irrational
-
-
-EXACT = Rationals()
 
 
 def decimal_context(digits: int, rounding: str) -> Context:
@@ -140,23 +76,23 @@ class Enclosure:
 
     __slots__ = ("hi", "lo", "within")
 
-    def __init__(self, within: "Enclosures", lo: Decimal, hi: Decimal) -> None:
+    def __init__(self, within: Enclosures, lo: Decimal, hi: Decimal) -> None:
         self.within, self.lo, self.hi = within, lo, hi
 
-    def _lift(self, other: Union["Enclosure", int]) -> "Enclosure":
+    def _lift(self, other: Enclosure | int) -> Enclosure:
         return self.within.number(other) if isinstance(other, int) else other
 
-    def __add__(self, other: Union["Enclosure", int]) -> "Enclosure":
+    def __add__(self, other: Enclosure | int) -> Enclosure:
         other, at = self._lift(other), self.within
         return Enclosure(at, at.down.add(self.lo, other.lo), at.up.add(self.hi, other.hi))
 
     __radd__ = __add__
 
-    def __sub__(self, other: Union["Enclosure", int]) -> "Enclosure":
+    def __sub__(self, other: Enclosure | int) -> Enclosure:
         other, at = self._lift(other), self.within
         return Enclosure(at, at.down.subtract(self.lo, other.hi), at.up.subtract(self.hi, other.lo))
 
-    def __mul__(self, other: Union["Enclosure", int]) -> "Enclosure":
+    def __mul__(self, other: Enclosure | int) -> Enclosure:
         other, at = self._lift(other), self.within
         if self.lo >= 0 and other.lo >= 0:
             lo, hi = at.down.multiply(self.lo, other.lo), at.up.multiply(self.hi, other.hi)
@@ -168,7 +104,7 @@ class Enclosure:
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Union["Enclosure", int]) -> "Enclosure":
+    def __truediv__(self, other: Enclosure | int) -> Enclosure:
         """Every denominator of the equations is positive; one that may be zero is too wide."""
         other, at = self._lift(other), self.within
         if other.lo <= 0:
@@ -176,7 +112,7 @@ class Enclosure:
         lo = at.down.divide(self.lo, other.hi if self.lo >= 0 else other.lo)
         return Enclosure(at, lo, at.up.divide(self.hi, other.lo if self.hi >= 0 else other.hi))
 
-    def __rtruediv__(self, other: int) -> "Enclosure":
+    def __rtruediv__(self, other: int) -> Enclosure:
         return self._lift(other) / self
 
 

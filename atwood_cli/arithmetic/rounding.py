@@ -3,14 +3,19 @@
 `arithmetic` argues why what is settled here is right.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from decimal import ROUND_HALF_EVEN, Decimal, Inexact
 from fractions import Fraction
 from math import inf
-from typing import Protocol, TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
-from ..model.physics import N
-from .interval import EXACT, ZERO, Arithmetic, Enclosure, Irrational, Unsettled, decimal_context, enclosures
+from .interval import ZERO, Enclosure, Unsettled, decimal_context, enclosures
+from .rational import EXACT, Irrational
+
+if TYPE_CHECKING:
+    from .protocol import Quantity
 
 A = TypeVar("A")
 T = TypeVar("T", bound=float | Decimal)
@@ -63,12 +68,6 @@ def to_place(place: int) -> Rounding[Decimal]:
         return value if value else value.copy_abs()
 
     return round_
-
-
-class Quantity(Protocol):
-    """A number that can be computed in any arithmetic."""
-
-    def __call__(self, arithmetic: Arithmetic[N], /) -> N: ...
 
 
 def settle(quantity: Quantity, round_: Rounding[T], digits: int) -> T:

@@ -4,20 +4,24 @@ No equation is written here and nothing is computed here but how many digits a l
 is what the model does with symbols (`formula`), and the numbers are the solver's.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from operator import attrgetter
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.interval import LARGEST_EXPONENT, Arithmetic, Unsettled, enclosures
+from ..arithmetic.interval import LARGEST_EXPONENT, Unsettled, enclosures
 from ..arithmetic.rounding import as_typed, is_infinite, settle, text, to_digits
 from ..arithmetic.symbolic import Formula, Symbol, Symbols
 from ..model.machine import Machine
-from ..model.physics import N
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene
 from ..solver.answers import Answers
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic, N
 
 DIGITS = 6
 """Significant digits of a derivation, unless others are asked for."""

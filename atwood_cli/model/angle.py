@@ -1,12 +1,13 @@
 """An angle of wrap, exact, in any arithmetic."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING, Any, Literal
 
 from ..arithmetic.rounding import is_positive
 
 if TYPE_CHECKING:
-    from ..arithmetic.interval import Arithmetic
-    from .physics import N
+    from ..arithmetic.protocol import Arithmetic, N
 
 
 class Angle:
@@ -31,22 +32,22 @@ class Angle:
     def __repr__(self) -> str:
         return f"Angle({self.number!r}, {self.unit!r})"
 
-    def __add__(self, more: Any) -> "Angle":
+    def __add__(self, more: Any) -> Angle:
         """The angle plus a number in its own unit."""
         return Angle(self.number + more, self.unit)
 
-    def radians(self, ar: "Arithmetic[N]") -> "N":
+    def radians(self, ar: Arithmetic[N]) -> N:
         """The angle in radians."""
         if self.unit == "rad":
             return ar.number(self.number)
         return ar.pi * ar.number(self.number / 180)
 
-    def degrees(self, ar: "Arithmetic[N]", share: Any = 1) -> "N":
+    def degrees(self, ar: Arithmetic[N], share: Any = 1) -> N:
         """A share of the angle in degrees; none of it is exactly 0."""
         number = ar.number(share * self.number)
         return number * 180 / ar.pi if self.unit == "rad" and share else number
 
-    def cos_sin(self, ar: "Arithmetic[N]", parts: int = 1) -> "tuple[N, N]":
+    def cos_sin(self, ar: Arithmetic[N], parts: int = 1) -> tuple[N, N]:
         """Cosine and sine of an equal part of the angle; exact at multiples of 90°."""
         if self.unit == "rad":
             return ar.cos_sin(ar.number(self.number) / parts)

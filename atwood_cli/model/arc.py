@@ -12,13 +12,17 @@ the profiles is only where: after a *lead* s of limiting arc.
 - least: the s with the least net friction, found as the root of `physics.least_friction_slope`.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Generic, Literal, NamedTuple
+from typing import TYPE_CHECKING, Generic, Literal, NamedTuple
 
-from ..arithmetic.interval import Arithmetic
+from ..arithmetic.protocol import N
 from . import physics
-from .physics import N
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic
 
 Kind = Literal["exponential", "creep", "least"]
 STUCK = {"exponential": (False,), "creep": (True, False), "least": (False, True, False)}

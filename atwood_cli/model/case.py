@@ -1,14 +1,18 @@
 """What is decided about a scene before anything is computed, exactly: the heavier side, grip or slip."""
 
-from fractions import Fraction
-from typing import Literal
+from __future__ import annotations
 
-from ..arithmetic.interval import EXACT, Arithmetic
+from fractions import Fraction
+from typing import TYPE_CHECKING, Literal
+
 from ..arithmetic.lazy import lazy
-from ..arithmetic.rounding import Quantity, is_positive
+from ..arithmetic.rational import EXACT
+from ..arithmetic.rounding import is_positive
 from . import physics
-from .physics import N
 from .scene import UNMEASURED, Motion, Scene
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic, N, Quantity
 
 Excess = Literal["excess_ratio", "locked_excess", "heaviest_excess"]
 

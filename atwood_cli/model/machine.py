@@ -4,14 +4,18 @@
 quantity that the scene does not determine raises `Undetermined` with the reason.
 """
 
-from fractions import Fraction
-from typing import Generic
+from __future__ import annotations
 
-from ..arithmetic.interval import Arithmetic
+from fractions import Fraction
+from typing import TYPE_CHECKING, Generic
+
 from ..arithmetic.lazy import lazy
+from ..arithmetic.protocol import N
 from . import arc, physics
 from .case import Case, is_zero
-from .physics import N
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic
 
 NEEDS_MU = "give mu, the friction coefficient"
 NEEDS_M = "give M, the pulley's mass, which decides here"

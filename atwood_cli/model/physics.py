@@ -21,22 +21,9 @@ Divisions come before products where a product could leave the range of doubles 
 """
 
 from collections.abc import Callable
-from typing import Any, Protocol, Self, TypeVar
 
+from ..arithmetic.protocol import N
 
-class Number(Protocol):
-    """What the equations ask of a number. Ints may stand on either side of an operation."""
-
-    def __add__(self, other: Any, /) -> Self: ...
-    def __radd__(self, other: Any, /) -> Self: ...
-    def __sub__(self, other: Any, /) -> Self: ...
-    def __mul__(self, other: Any, /) -> Self: ...
-    def __rmul__(self, other: Any, /) -> Self: ...
-    def __truediv__(self, other: Any, /) -> Self: ...
-    def __rtruediv__(self, other: Any, /) -> Self: ...
-
-
-N = TypeVar("N", bound=Number)
 Function = Callable[[N], N]
 Hypot = Callable[[N, N | int], N]
 

@@ -1,14 +1,16 @@
 """The solver: settles the quantities of a scene, each when it is asked for."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from ..arithmetic.interval import EXACT, LARGEST_EXPONENT, Arithmetic, Irrational
+from ..arithmetic.interval import LARGEST_EXPONENT
+from ..arithmetic.rational import EXACT, Irrational
 from ..arithmetic.rounding import (
-    Quantity,
     Rounding,
     is_infinite,
     is_positive,
@@ -20,9 +22,11 @@ from ..arithmetic.rounding import (
 )
 from ..model.case import Case
 from ..model.machine import Machine, Undetermined
-from ..model.physics import N
 from ..model.quantities import FROM_MOTION, NAMES
 from ..model.scene import MEASURED, PARAMETERS, UNMEASURED, Given, Motion, Scene, read_input
+
+if TYPE_CHECKING:
+    from ..arithmetic.protocol import Arithmetic, N, Quantity
 
 DOUBLE_DIGITS = 17
 
@@ -110,7 +114,7 @@ class Answers:
 
         return of
 
-    def with_pulley(self, mass: Fraction | float) -> "Answers":
+    def with_pulley(self, mass: Fraction | float) -> Answers:
         """The answers to this scene on a pulley of that mass (inf: locked), with a string that grips."""
         return Answers(self.case.scene._replace(M=mass, mu=None, mu_k=None), self.digits)
 
