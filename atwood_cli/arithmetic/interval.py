@@ -1,37 +1,12 @@
-"""Exact and adaptive-precision arithmetic, and why the last printed digit is right.
+"""Enclosures: pairs lo <= value <= hi of decimals that are certain to hold the true value.
 
-Every input is a rational number, taken exactly as typed. A quantity is first computed in exact
-fractions (`EXACT`); if its formula stays rational, one division, rounded once, gives the answer,
-ties included. Otherwise (an exponential, logarithm or root was asked for) it is computed in
-*enclosures*: pairs lo <= value <= hi of decimals. Sums, products and quotients round lo down and
-hi up; the standard library's `decimal` does both exactly as told, on every platform. So the true
-value lies in the enclosure whatever was lost to cancellation, which only makes it wider.
+Sums, products and quotients round lo down and hi up; the standard library's `decimal` does both exactly as
+told, on every platform. So the true value lies in the enclosure whatever was lost to cancellation, which
+only makes it wider. `rounding` draws the digits from enclosures.
 
-Rounding is monotonic: if lo and hi round to the same double, or to the same N digits, so does
-everything between them, the true value too. If they differ, the precision is doubled and the
-quantity computed anew (Ziv's strategy). This ends because the width tends to zero and the true
-value is no tie: for rational inputs, what is not rational here is transcendental (e^q and ln q are,
-for rational q other than 0 and 1; so is e^{πq}, by Gelfond's theorem). A comparison, such as μφ
-against ln(T_h/T_l), is decided the same way: once the enclosure of the difference excludes zero.
-
-Few things are not plain arithmetic. `sqrt` is correctly rounded by `decimal`; one step outwards on
-each side encloses it. π and ln 10 are Machin-like sums in integers with 2^-w as unit: each term is
-cut off by less than two units, there are fewer than w terms, the coefficients add up to at most 100,
-and 40 further bits absorb that up to w = 2^32, so what is cut to w bits is right to two units.
-
-`expm1` works on integers too, unit 2^-w. The argument less n ln 10 is in [0, 2.4), off by at most
-2n + 2 units. It is divided by 2^s, summed as e^r - 1 = r + r²/2 + ..., and doubled s times by
-e^{2r} - 1 = u (2 + u). A term inherits at most its predecessor's error and is cut off by less than
-one unit twice, so t terms are off by at most 3t units; a doubling multiplies the error by 2 (1 + u)
-and adds at most one unit. The product of those factors is 2^s e^{2.4} < 12 · 2^s. So the sum is off
-by fewer than 12 · 2^s (3t + s + 2n + 4) units, less than 2^(s + 8) (w + n), as t and s are below w.
-That is what is added and taken off. Cosine and sine, of an argument within ±π/4 after n quarter
-turns, have no doublings: 4 (w + n) units cover them. `log1p` needs no series: for a guess y0,
-ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
-Whatever the guess, that encloses; a good one encloses tightly.
-
-A function is evaluated at the lower end only; over a width δ <= 1 of its argument ln(1 + y), cosine
-and sine change by at most δ, and e^x by at most 2δ e^x.
+Few things are not plain arithmetic. Each function argues what it adds and takes off. Constants and series
+are summed in integers, in units of 2^-w. A function is evaluated at the lower end of its argument only; over
+a width δ <= 1 of it ln(1 + y), cosine and sine change by at most δ, and e^x by at most 2δ e^x.
 """
 
 from __future__ import annotations
@@ -67,6 +42,7 @@ class Unsettled(ArithmeticError):
 
 
 def decimal_context(digits: int, rounding: str) -> Context:
+    """A context of its own, so that nothing depends on the caller's; its exponents are ample."""
     limit = 2 * LARGEST_EXPONENT
     return Context(prec=digits, rounding=rounding, Emin=-limit, Emax=limit, traps=[])
 
@@ -105,7 +81,10 @@ class Enclosure:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Enclosure | int) -> Enclosure:
-        """Every denominator of the equations is positive; one that may be zero is too wide."""
+        """The quotient by what is positive, as every denominator of the equations is.
+
+        One that may be zero is too wide: Unsettled.
+        """
         other, at = self._lift(other), self.within
         if other.lo <= 0:
             raise Unsettled
@@ -131,6 +110,7 @@ class Enclosures:
         return x.lo == x.hi == 0
 
     def _fixed(self, value: int, error: int, bits: int) -> Enclosure:
+        """What is value ± error in units of 2^-bits."""
         unit = Decimal(1 << bits)
         lo, hi = Decimal(value - error), Decimal(value + error)
         return Enclosure(self, self.down.divide(lo, unit), self.up.divide(hi, unit))
@@ -149,7 +129,7 @@ class Enclosures:
         return self._fixed(_pi(bits), 2, bits)
 
     def sqrt(self, x: Enclosure) -> Enclosure:
-        """Square root of x >= 0."""
+        """Square root of x >= 0; `decimal` rounds it correctly, so one step outwards encloses it."""
         lo = self._from_zero(x).lo
         return Enclosure(
             self,
@@ -162,7 +142,11 @@ class Enclosures:
         return self.sqrt(x * x + y * y)
 
     def cos_sin(self, x: Enclosure) -> tuple[Enclosure, Enclosure]:
-        """Cosine and sine of x >= 0."""
+        """Cosine and sine of x >= 0.
+
+        The series are summed for what n quarter turns leave, within ±π/4. As in `_expm1`, but without
+        doublings: 4 (w + n) units cover the error.
+        """
         x = self._from_zero(x)
         n, d = x.lo.as_integer_ratio()
         bits = _bits(self.digits + max(0, -x.lo.adjusted()))
@@ -241,7 +225,15 @@ class Enclosures:
         return Enclosure(self, at_lo.lo, (at_lo + 2 * width * (at_lo + 1)).hi)
 
     def _expm1(self, x: Decimal, scale: Decimal | None = None) -> Enclosure:
-        """e^x - 1 to all the digits of itself, or of what is of that scale."""
+        """e^x - 1 for a number x, to all the digits of itself, or of what is of that scale.
+
+        In integers, unit 2^-w: x less n ln 10 is in [0, 2.4), off by at most 2n + 2 units. It is divided by
+        2^s, summed as e^r - 1 = r + r²/2 + ..., and doubled s times by e^{2r} - 1 = u (2 + u). A term
+        inherits at most its predecessor's error and is cut off by less than one unit twice, so t terms are
+        off by at most 3t units; a doubling multiplies the error by 2 (1 + u) and adds at most one unit. The
+        product of those factors is 2^s e^{2.4} < 12 · 2^s. So the sum is off by fewer than
+        12 · 2^s (3t + s + 2n + 4) units, less than 2^(s + 8) (w + n), as t and s are below w.
+        """
         if x == 0:
             return Enclosure(self, ZERO, ZERO)
         if x > LARGEST_ARGUMENT:
@@ -267,6 +259,11 @@ class Enclosures:
         return Enclosure(self, at_lo.lo, (at_lo + self._width(x)).hi)
 
     def _log1p(self, y: Decimal) -> Enclosure:
+        """ln(1 + y) for a number y >= 0, from a guess y0, with no series.
+
+        ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
+        Whatever the guess, that encloses; a good one encloses tightly.
+        """
         if y == 0:
             return Enclosure(self, ZERO, ZERO)
         guess = self._log1p_guess(y)
@@ -293,10 +290,12 @@ def enclosures(digits: int) -> Enclosures:
 
 
 def _bits(digits: int) -> int:
+    """The bits that hold so many digits, and a few more."""
     return digits * 10 // 3 + 8
 
 
 def _expm1_series(x: int, halvings: int, w: int) -> int:
+    """e^x - 1 by the series of x/2^halvings and as many doublings; x and the result in units of 2^-w."""
     r = x >> halvings
     total, term, n = 0, r, 1
     while term:
@@ -309,6 +308,7 @@ def _expm1_series(x: int, halvings: int, w: int) -> int:
 
 
 def _cos_sin_series(x: int, w: int) -> tuple[int, int]:
+    """Cosine and sine by their series; x and the results in units of 2^-w."""
     sums, term, n = [0, 0, 0, 0], 1 << w, 0
     while term:
         sums[n % 4] += term
@@ -344,6 +344,11 @@ def _ln10(bits: int) -> int:
 
 
 def _constant(*terms: tuple[int, int, int], bits: int) -> int:
+    """A sum of factor · `_inverse`(q, sign) for terms (factor, q, sign), right to two units of 2^-bits.
+
+    Each term of the series is cut off by less than two units of its own, 2^-w, there are fewer than w of
+    them, the factors add up to at most 100, and 40 further bits (`GUARD`) absorb that up to w = 2^32.
+    """
     wide = 1 << max(LEAST_BITS, bits).bit_length()
     return _wide_constant(terms, wide + GUARD) >> (wide + GUARD - bits)
 

@@ -1,6 +1,15 @@
-"""From exact values and enclosures to correctly rounded digits, and to text.
+"""From exact values and enclosures to correctly rounded digits and to text: why the last digit is right.
 
-`arithmetic` argues why what is settled here is right.
+Every input is a rational number, taken exactly as typed. A quantity is first computed in exact fractions; if
+its formula stays rational, one division, rounded once, gives the answer, ties included. Otherwise (an
+exponential, logarithm or root was asked for) it is computed in enclosures.
+
+Rounding is monotonic: if both ends of an enclosure round to the same double, or to the same N digits, so
+does everything between them, the true value too. If they differ, the precision is doubled and the quantity
+computed anew (Ziv's strategy). This ends because the width tends to zero and the true value is no tie: for
+rational inputs, what is not rational here is transcendental (e^q and ln q are, for rational q other than 0
+and 1; so is e^{πq}, by Gelfond's theorem). A comparison, such as μφ against ln(T_h/T_l), is decided in the
+same way: once the enclosure of the difference excludes zero.
 """
 
 from __future__ import annotations
@@ -84,7 +93,7 @@ def settle(quantity: Quantity, round_: Rounding[T], digits: int) -> T:
 
 
 def middle(quantity: Quantity, digits: int) -> Fraction:
-    """About the value of a quantity, right to about so many digits."""
+    """The middle of an enclosure of a quantity, right to about so many digits."""
 
     def tight(value: Enclosure) -> Fraction | None:
         if is_infinite(value.hi):
@@ -105,12 +114,12 @@ def is_positive(quantity: Quantity) -> bool:
 
 
 def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits: int) -> A:
-    """What ``answer`` says of the first enclosure of the quantity that is tight enough for it."""
+    """What ``answer`` says of the first enclosure of the quantity that is tight enough for it, not None."""
     while digits < LARGEST_PRECISION:
         needed = 0
         try:
-            if (found := answer(quantity(enclosures(digits)))) is not None:
-                return found
+            if (settled := answer(quantity(enclosures(digits)))) is not None:
+                return settled
         except Unsettled as unsettled:
             needed = unsettled.digits
         digits = max(2 * digits, needed)
