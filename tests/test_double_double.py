@@ -1,4 +1,4 @@
-"""The arithmetic of columns: every bound holds, and what is assumed of NumPy does."""
+"""The arithmetics of double-doubles: every bound holds, and what is assumed of NumPy does."""
 
 from collections.abc import Callable
 from fractions import Fraction
@@ -10,7 +10,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atwood_cli.arithmetic.double_double import FLOATS, QUICK, ROUNDED, THOROUGH, UNIT, Pairs
+from atwood_cli.arithmetic.double import FLOATS
+from atwood_cli.arithmetic.double_double import QUICK, ROUNDED, THOROUGH, Pairs
+from atwood_cli.arithmetic.error_free import UNIT
 
 LEVELS = {"rounded": ROUNDED, "quick": QUICK, "thorough": THOROUGH}
 rng = np.random.default_rng(2026)
@@ -28,11 +30,11 @@ def arb(x: float | Fraction) -> flint.arb:
 def off(pair: Any, exact: Callable[..., flint.arb], *columns: Any) -> None:
     """Assert that each row is within its bound, and the bound no wider than what it is for."""
     flint.ctx.prec = 400
-    bounds = np.broadcast_to(pair.bound, pair.value.shape)
-    rests = np.zeros_like(pair.value) if pair.rest is None else pair.rest
-    for value, rest, bound, *row in zip(pair.value, rests, bounds, *columns, strict=True):
+    bounds = np.broadcast_to(pair.bound, pair.high.shape)
+    lows = np.zeros_like(pair.high) if pair.low is None else pair.low
+    for high, low, bound, *row in zip(pair.high, lows, bounds, *columns, strict=True):
         want = exact(*(arb(float(x)) for x in row))
-        error = abs(arb(Fraction(value) + Fraction(rest)) - want)
+        error = abs(arb(Fraction(high) + Fraction(low)) - want)
         assert error <= arb(float(bound)) * abs(want), row
 
 
@@ -120,7 +122,7 @@ def test_bounds_are_as_tight_as_they_need_be() -> None:
     assert QUICK.expm1(QUICK.number(SMALL)).bound.max() < 2.0**-50
     assert THOROUGH.expm1(THOROUGH.number(SMALL) * THOROUGH.pi).bound.max() < 2.0**-94
     assert THOROUGH.log1p(THOROUGH.number(X) / THOROUGH.number(Y)).bound.max() < 2.0**-94
-    assert ROUNDED.number(X).value is X  # nothing is copied before it must be
+    assert ROUNDED.number(X).high is X  # nothing is copied before it must be
 
 
 @settings(max_examples=200, deadline=None)
@@ -133,8 +135,8 @@ def test_sums_and_thorough_products_of_doubles_are_exact(x: float, y: float, ar:
         (a - b, Fraction(x) - Fraction(y)),
         *products,
     ):
-        assert pair.rest is not None
-        assert Fraction(pair.value[0]) + Fraction(pair.rest[0]) == exact
+        assert pair.low is not None
+        assert Fraction(pair.high[0]) + Fraction(pair.low[0]) == exact
 
 
 def test_the_library_is_within_its_assumed_bound() -> None:

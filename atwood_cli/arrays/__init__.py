@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arithmetic.double_double import WINDOW, Column
+from ..arithmetic.double_double import WINDOW
+from ..arithmetic.error_free import Column
 from ..model.quantities import NAMES, STANDARD
 from ..model.scene import MISSING_MASS, PARAMETERS, SceneError
 from ..model.units import nearest

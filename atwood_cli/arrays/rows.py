@@ -37,17 +37,9 @@ from weakref import proxy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic.double_double import (
-    FLOATS,
-    QUICK,
-    ROUNDED,
-    THOROUGH,
-    Column,
-    Floats,
-    Pair,
-    Pairs,
-    Unvouched,
-)
+from ..arithmetic.double import FLOATS, Floats
+from ..arithmetic.double_double import QUICK, ROUNDED, THOROUGH, Pair, Pairs, Unvouched
+from ..arithmetic.error_free import UNIT, Column
 from ..arithmetic.lazy import lazy
 from ..model.angle import Angle
 from ..model.case import Case, Excess, is_zero
@@ -61,7 +53,7 @@ COLUMNS = tuple(name for name in PARAMETERS if name != "I")
 ALONG = {"fast": 1, "certified": 3, "exact": 3}
 """How many times the others' number rows must be for taking the others along to cost less than parting."""
 FEW = 3  # rows: quicker one by one, at 0.2 ms each, than as columns of pairs
-CERTIFIED = 3.49 * 2.0**-53
+CERTIFIED = 3.49 * UNIT
 LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
     "fast": (FLOATS,),
     "certified": (ROUNDED, QUICK, THOROUGH),
@@ -155,7 +147,7 @@ class Rows:
         if arithmetic is ROUNDED:
             return self.rim_mass(QUICK).taken_by(ROUNDED)
         if "c" in self._pairs:
-            return self._pairs["c"].value if arithmetic is FLOATS else self._pairs["c"].taken_by(arithmetic)
+            return self._pairs["c"].high if arithmetic is FLOATS else self._pairs["c"].taken_by(arithmetic)
         inertia, mass = (arithmetic.number(self.number(name, arithmetic)) for name in ("inertia", "M"))
         rim_mass = inertia * mass
         if isinstance(rim_mass, Pair) and rim_mass.exact:
@@ -242,8 +234,8 @@ class Rows:
         if not isinstance(value, Pair):
             self.write_sum(out, value, 0.0)
             return
-        rest = 0.0 if value.rest is None else value.rest
-        rounded = self.write_sum(out, value.value, rest, not value.positive)
+        low = 0.0 if value.low is None else value.low
+        rounded = self.write_sum(out, value.high, low, not value.positive)
         vouched = (_certified if self.accuracy == "certified" else _nearest)(value, rounded)
         if np.all(vouched):
             return
@@ -335,7 +327,7 @@ class Rows:
     def _beats_friction_thoroughly(self, question: Excess) -> Any:
         machine = self.machine(THOROUGH)
         margin = getattr(machine.case, question)(THOROUGH) - machine.k1
-        beaten = np.broadcast_to(margin.value > 0, self.size).copy()
+        beaten = np.broadcast_to(margin.high > 0, self.size).copy()
         for row in np.flatnonzero(~(np.broadcast_to(margin.bound, self.size) < 0.5)):
             beaten[row] = self._settled(int(row), question)
         return beaten
@@ -415,7 +407,7 @@ class _RoundedMachine(Machine[Any]):
 
 def _take(column: Any, index: NDArray[np.intp], size: int) -> Any:
     """Some rows of a column of that size; what is the same in all rows stays."""
-    many = getattr(column, "value", column)
+    many = getattr(column, "high", column)
     return column.take(index) if isinstance(many, np.ndarray) and many.size == size else column
 
 
@@ -424,13 +416,13 @@ def _certified(pair: Pair, rounded: Column) -> Any:
     enough = CERTIFIED - pair.loss
     vouched = enough >= 0 if pair.doubt is None else pair.doubt <= enough
     # The lower rungs take no e^{μφ} that could leave the doubles.
-    return vouched & np.isfinite(rounded) if pair.within is THOROUGH else vouched
+    return vouched & np.isfinite(rounded) if pair.arithmetic is THOROUGH else vouched
 
 
 def _nearest(pair: Pair, rounded: Column) -> Any:
     """Which rows are the nearest doubles, so rounded."""
-    if pair.rest is None:
+    if pair.low is None:
         return np.asarray(pair.bound == 0) & np.isfinite(rounded)
-    error = np.abs(pair.value) * (pair.bound + 2.0**-104)
-    same = (pair.value + (pair.rest - error) == rounded) & (pair.value + (pair.rest + error) == rounded)
+    error = np.abs(pair.high) * (pair.bound + 2.0**-104)
+    same = (pair.high + (pair.low - error) == rounded) & (pair.high + (pair.low + error) == rounded)
     return (same | (np.asarray(pair.bound) == 0)) & np.isfinite(rounded)
