@@ -1,7 +1,7 @@
 """The derivation for a scene, step by step in the paper's order: the words around the equations.
 
-Every number and every equation with numbers comes from `derivation`, the words on the regime and on what
-is missing from `words`. `handout` puts it on a page.
+Every number and every equation with numbers comes from `equations`, the words on the regime and on what is
+missing from the solver's `messages`. `typeset` puts it on a page.
 """
 
 from collections.abc import Iterator
@@ -36,49 +36,50 @@ def explain(answers: Answers) -> Explanation:
     """The derivation for a scene, to the digits of ``answers`` or to `DIGITS`."""
     if answers.digits is None:
         answers = Answers(answers.case.scene, DIGITS)
-    told = Derivation(answers)
+    derivation = Derivation(answers)
     case = answers.case
-    steps = [_masses(told), _pulley(told)]
+    steps = [_masses(derivation), _pulley(derivation)]
     if not case.light:
-        steps += [_motion(told)]
+        steps += [_motion(derivation)]
     elif case.regime == "no-slip":
-        steps += [_motion(told), _grip(told), _friction(told)]
+        steps += [_motion(derivation), _grip(derivation), _friction(derivation)]
     else:
-        steps += [_grip(told), _motion(told), _friction(told)]
+        steps += [_grip(derivation), _motion(derivation), _friction(derivation)]
     if case.scene.mu and case.sign:
-        steps.append(_limits(told))
-    steps += [*_simpler(told), _model(told)]
+        steps.append(_limits(derivation))
+    steps += [*_simpler(derivation), _model(derivation)]
     known = [name for name in ("acceleration", "tension_1", "tension_2") if answers[name] is not None]
-    answer = [verdict(answers), ", ".join(map(told.say, known)) + "."] if known else [verdict(answers)]
+    answer = [verdict(answers), ", ".join(map(derivation.say, known)) + "."] if known else [verdict(answers)]
     return Explanation(
         answer,
-        f"After = both sides are exactly equal, after ≈ the result is rounded to {told.digits} significant"
-        " digits. Numbers put in have as many digits as it takes to give the result.",
+        "After = both sides are exactly equal, after ≈ the result is rounded to"
+        f" {derivation.digits} significant digits. Numbers put in have as many digits as it takes to give the"
+        " result.",
         steps,
     )
 
 
-def _masses(told: Derivation) -> Step:
-    l, h = told.light, told.heavy
-    said: list[Part] = [
+def _masses(derivation: Derivation) -> Step:
+    l, h = derivation.light, derivation.heavy
+    body: list[Part] = [
         "Two forces act on each mass: its weight, downwards, and the tension of the string it hangs on,"
         " upwards. The string does not stretch, so both masses have the same acceleration."
     ]
-    a = told.names["magnitude"]
-    if told.case.sign == 0:
-        said.append("Neither is the heavier, so neither descends: `a` = 0.")
+    a = derivation.names["magnitude"]
+    if derivation.case.sign == 0:
+        body.append("Neither is the heavier, so neither descends: `a` = 0.")
     else:
-        said.append(f"`m{h}` is the heavier and descends, `m{l}` rises:")
-    said += [Law("(1)", f"T{l} - m{l} g = m{l} {a}"), Law("(1)", f"m{h} g - T{h} = m{h} {a}")]
-    if told.case.sign < 0:
-        said.append("(The paper has `m2` for the heavier mass; here 1 and 2 change places.)")
-    return Step("The masses", said)
+        body.append(f"`m{h}` is the heavier and descends, `m{l}` rises:")
+    body += [Law("(1)", f"T{l} - m{l} g = m{l} {a}"), Law("(1)", f"m{h} g - T{h} = m{h} {a}")]
+    if derivation.case.sign < 0:
+        body.append("(The paper has `m2` for the heavier mass; here 1 and 2 change places.)")
+    return Step("The masses", body)
 
 
-def _pulley(told: Derivation) -> Step:
-    case = told.case
-    difference = told.names["difference"]
-    said: list[Part] = [
+def _pulley(derivation: Derivation) -> Step:
+    case = derivation.case
+    difference = derivation.names["difference"]
+    body: list[Part] = [
         "`T1` and `T2` do not act on the pulley. They act on the string, at the two points where it"
         " leaves the pulley. What acts on the pulley is the contact force of the string, all along the"
         " arc on which it lies: friction `f`, along the rim, and the normal force `n`, towards the axle,"
@@ -91,60 +92,61 @@ def _pulley(told: Derivation) -> Step:
         " `T2` would have if they did act on the pulley. That is a result and not an assumption:",
     ]
     if case.ends_hang_down:
-        said.append(Law("(20)", "F_pulley = T1 + T2"))
-    said.append(Law("(23)", f"τ = R ({difference})"))
+        body.append(Law("(20)", "F_pulley = T1 + T2"))
+    body.append(Law("(23)", f"τ = R ({difference})"))
     if not case.light:
-        said.append(
+        body.append(
             "Here the string is fixed to the pulley and nothing hangs from its free end. It pulls where it is"
             " fixed, too, and with that the torque is the same."
         )
-    said.append("The pulley's weight and the force of the axle act at the axle and do not turn it. So")
-    said.append(Law("(2)", f"({difference}) R = I α"))
+    body.append("The pulley's weight and the force of the axle act at the axle and do not turn it. So")
+    body.append(Law("(2)", f"({difference}) R = I α"))
     if case.sign == 0:
-        said.append("The masses are at rest, and the pulley with them: equal tensions do not turn it.")
+        body.append("The masses are at rest, and the pulley with them: equal tensions do not turn it.")
     elif case.locked:
-        said.append("M = inf is a pulley that is locked: `α = 0`, whatever the torque.")
+        body.append("M = inf is a pulley that is locked: `α = 0`, whatever the torque.")
     elif case.tensions_equal:
-        said.append(
+        body.append(
             "Without mass `I = 0`, so `c = I/R^2 = 0`, and it takes no torque to turn the pulley:"
-            " the tensions"
-            " are equal."
+            " the tensions are equal."
         )
     else:
         grips = (
-            "While the string does not slip" if told.scene.mu is not None else "As the string does not slip"
+            "While the string does not slip"
+            if derivation.scene.mu is not None
+            else "As the string does not slip"
         )
-        said += [
+        body += [
             f"{grips}, the rim has the acceleration of the masses, `α = a/R`. With `c = I/R^2`, the pulley's"
             " inertia as a mass at the rim (`M/2` for the disk of the paper),",
-            Law("(3)", f"{difference} = c {told.names['magnitude']}"),
-            *told.rim_mass(),
-            *odd_inertia(told.answers),
+            Law("(3)", f"{difference} = c {derivation.names['magnitude']}"),
+            *derivation.rim_mass(),
+            *odd_inertia(derivation.answers),
         ]
-    return Step("The pulley", said)
+    return Step("The pulley", body)
 
 
-def _motion(told: Derivation) -> Step:
-    case, answers = told.case, told.answers
-    said: list[Part] = []
+def _motion(derivation: Derivation) -> Step:
+    case, answers = derivation.case, derivation.answers
+    body: list[Part] = []
     if case.regime != "no-slip":
-        return Step("The motion", [*_motion_at_the_limit(told), *told.extras()])
+        return Step("The motion", [*_motion_at_the_limit(derivation), *derivation.extras()])
     if answers["acceleration"] is None:
         return Step(
             "The motion",
             ["The motion depends on the pulley's mass, which is not given.", *open_range(answers)],
         )
     if case.sign == 0 or case.locked:
-        said += ["At rest, `a` = 0, each tension is the weight that hangs on it."]
+        body += ["At rest, `a` = 0, each tension is the weight that hangs on it."]
     else:
-        said += ["The sum of (1) and (3) has only the acceleration left. It gives the tensions."]
-        said += told.lines("magnitude")
-        said += told.direction()
-    return Step("The motion", [*said, *told.tensions(), *told.extras()])
+        body += ["The sum of (1) and (3) has only the acceleration left. It gives the tensions."]
+        body += derivation.lines("magnitude")
+        body += derivation.direction()
+    return Step("The motion", [*body, *derivation.tensions(), *derivation.extras()])
 
 
-def _motion_at_the_limit(told: Derivation) -> Iterator["Part"]:
-    case, scene, l, h = told.case, told.scene, told.light, told.heavy
+def _motion_at_the_limit(derivation: Derivation) -> Iterator["Part"]:
+    case, scene, l, h = derivation.case, derivation.scene, derivation.light, derivation.heavy
     kinetic = case.regime == "slip" and scene.mu_k is not None
     k = "k_kin" if kinetic else "k"
     if case.regime == "slip":
@@ -158,7 +160,7 @@ def _motion_at_the_limit(told: Derivation) -> Iterator["Part"]:
     if case.limiting_mu:
         if kinetic:
             yield Law("(26)", f"T{h} = T{l} {k}")
-        yield from told.lines("k1" if not kinetic else "limiting_k1")
+        yield from derivation.lines("k1" if not kinetic else "limiting_k1")
     else:
         yield f"Without friction `{k} = 1`, and the pulley has no part in the motion."
     z, d = ("z_kin", "d_kin") if kinetic else ("z", "d")
@@ -167,38 +169,41 @@ def _motion_at_the_limit(told: Derivation) -> Iterator["Part"]:
         f" `{d}`, drives"
         " them."
     )
-    yield from told.lines(*(("limiting_transfer", "limiting_drive") if kinetic else ("transfer", "drive")))
-    yield from told.lines("magnitude")
-    yield from told.direction()
-    yield from told.tensions()
+    yield from derivation.lines(
+        *(("limiting_transfer", "limiting_drive") if kinetic else ("transfer", "drive"))
+    )
+    yield from derivation.lines("magnitude")
+    yield from derivation.direction()
+    yield from derivation.tensions()
     if case.regime == "slip" and case.limiting_mu:
         if case.rim_mass is None:
             yield "The pulley is locked: its rim stands still."
         else:
             yield "Friction turns the pulley by (3), but its rim falls behind the string:"
-            yield from told.lines("rim_acceleration")
+            yield from derivation.lines("rim_acceleration")
     elif case.regime == "slip":
         yield "Nothing turns the pulley."
 
 
-def _grip(told: Derivation) -> Step:
-    case, scene, l, h = told.case, told.scene, told.light, told.heavy
-    said: list[Part] = []
+def _grip(derivation: Derivation) -> Step:
+    case, scene, l, h = derivation.case, derivation.scene, derivation.light, derivation.heavy
+    body: list[Part] = []
     if case.tensions_equal:
-        said.append("Equal tensions need no friction along the arc. So the string holds, whatever `μ` is.")
-        return Step("Does the string hold?", said)
-    said += [
+        body.append("Equal tensions need no friction along the arc. So the string holds, whatever `μ` is.")
+        return Step("Does the string hold?", body)
+    body += [
         "Friction can be `μ n` and no more. Where it is that, with (12) and (13),",
         Law("(24)", "f = μ n"),
         Law("(25)", "dT/dθ = μ T"),
         Law("(26)", f"T(θ) = T{l} e^(μ θ)"),
-        f"so at the most, friction makes `T{h}` as large as `k` = `e^(μ {told.names['phi']})` times `T{l}`"
-        + (f", where {told.value('phi', 'rad')}." if not told.half_turn else "."),
+        f"so at the most, friction makes `T{h}` as large as `k` = `e^(μ {derivation.names['phi']})`"
+        f" times `T{l}`"
+        + (f", where {derivation.value('phi', 'rad')}." if not derivation.half_turn else "."),
     ]
     if not scene.mu and scene.mu is not None:
-        said.append("Without friction `k = 1`: the tensions are equal and nothing turns the pulley.")
-        if case.regime == "verge" and told.answers["critical_pulley_mass"] is not None:
-            said.append(f"Only without mass does it go along: {told.say('critical_pulley_mass')}.")
+        body.append("Without friction `k = 1`: the tensions are equal and nothing turns the pulley.")
+        if case.regime == "verge" and derivation.answers["critical_pulley_mass"] is not None:
+            body.append(f"Only without mass does it go along: {derivation.say('critical_pulley_mass')}.")
     elif case.pulley_known:
         if_held = (
             "By (4) the tensions have"
@@ -209,96 +214,96 @@ def _grip(told: Derivation) -> Step:
             f"On a locked pulley the tensions are the weights. Their ratio is `T{h}/T{l}` = `1 + x`, with"
         )
         moving = f"{if_held} the ratio `T{h}/T{l}` = `1 + x`, with"
-        said += [locked if case.locked else moving, *told.lines("excess")]
-        said += ["and the least coefficient that allows it is", *told.lines("mu_verge")]
+        body += [locked if case.locked else moving, *derivation.lines("excess")]
+        body += ["and the least coefficient that allows it is", *derivation.lines("mu_verge")]
     else:
-        said += [*told.lines("k1", "transfer")]
-        said += [
+        body += [*derivation.lines("k1", "transfer")]
+        body += [
             f"The heavier the pulley, the larger the ratio; on a locked one it is `m{h}/m{l}`."
             f" If it is to slip on any pulley at all, `m{h}` must exceed `m{l} k` = `m{l} + z`.",
-            *told.lines("least_heavier_mass"),
+            *derivation.lines("least_heavier_mass"),
         ]
         if case.can_slip:
-            said += ["It does, by", *told.lines("drive")]
-            said += [
+            body += ["It does, by", *derivation.lines("drive")]
+            body += [
                 "The ratio (33) is `k` on a pulley of the critical mass,",
-                *told.lines("critical_pulley_mass"),
+                *derivation.lines("critical_pulley_mass"),
             ]
-    return Step("Does the string hold?", [*said, verdict(told.answers)])
+    return Step("Does the string hold?", [*body, verdict(derivation.answers)])
 
 
-def _friction(told: Derivation) -> Step:
-    case, answers = told.case, told.answers
-    said: list[Part] = []
+def _friction(derivation: Derivation) -> Step:
+    case, answers = derivation.case, derivation.answers
+    body: list[Part] = []
     if case.frictionless:
         return Step("The friction on the pulley", ["There is none."])
     if answers["friction_force"] is not None:
         if case.regime == "no-slip":
-            said.append("How friction is spread depends on `μ`. If that is just `μ*`, it is at its limit")
+            body.append("How friction is spread depends on `μ`. If that is just `μ*`, it is at its limit")
         else:
-            said.append("Friction is at its limit")
-        said[-1] = f"{said[-1]} all along the arc, so `T(θ)` is known, and the net force on the pulley is"
-        said += told.lines("friction_force")
-        said += [] if case.ends_hang_down else [f"with {told.value('half_sine')}."]
-        said.append(
+            body.append("Friction is at its limit")
+        body[-1] = f"{body[-1]} all along the arc, so `T(θ)` is known, and the net force on the pulley is"
+        body += derivation.lines("friction_force")
+        body += [] if case.ends_hang_down else [f"with {derivation.value('half_sine')}."]
+        body.append(
             "As a vector, `x` towards the side of `m1` and `y` upwards, it is"
-            f" {told.say('friction_force_x')},"
-            f" {told.say('friction_force_y')} by (31)."
+            f" {derivation.say('friction_force_x')},"
+            f" {derivation.say('friction_force_y')} by (31)."
         )
         if case.ends_hang_down:
-            said.append(
+            body.append(
                 "Its `x` component is not 0: no symmetry cancels it, as the tension changes along the arc."
             )
     elif not case.pulley_known:
-        said.append("It depends on the pulley's mass, which is not given.")
+        body.append("It depends on the pulley's mass, which is not given.")
     else:
         meaning = QUANTITIES["friction_force"].meaning
-        said.append(
-            f"The {meaning} is {told.reason('friction_force')}. (So the paper says after (17), as"
+        body.append(
+            f"The {meaning} is {derivation.reason('friction_force')}. (So the paper says after (17), as"
             " `T(θ)` is not known.)"
         )
         if answers["friction_force_max"] is not None:
-            said += [
+            body += [
                 "To make up the ratio of the tensions, friction is needed at its limit on a part of"
                 " the arc only,",
-                *told.lines("alpha"),
+                *derivation.lines("alpha"),
                 "Its net force is the greatest if that is one piece of the arc,",
-                *told.lines("friction_force_max"),
+                *derivation.lines("friction_force_max"),
                 "and the least if it is a piece at each end; how long each is, is found by search:"
-                f" {told.say('friction_force_min')}.",
+                f" {derivation.say('friction_force_min')}.",
             ]
-    return Step("The friction on the pulley", said)
+    return Step("The friction on the pulley", body)
 
 
-def _limits(told: Derivation) -> Step:
-    said: list[Part] = []
-    if masses := [*told.lines("critical_pulley_mass", "critical_heavier_mass")]:
-        if told.case.regime != "verge":
-            said.append("Static friction at its limit all along the arc makes the ratio (33) equal to `k`.")
-        meanings = (f"`{mass.left}` is the {told.meaning(mass.left)}" for mass in masses)
-        said.append(f"{', '.join(meanings)}.")
-        said += [*told.lines("k1", "transfer", *["drive"] * told.case.can_slip), *masses]
-    if least := [*told.lines("least_heavier_mass", "least_pulley_mass")]:
-        said.append("For the verge, the heavier mass must exceed `m min` and the pulley's mass `M min`.")
-        said += [*told.lines("k1", "transfer"), *least]
-    return Step("The critical masses", [*said, *conditions(told.answers)])
+def _limits(derivation: Derivation) -> Step:
+    body: list[Part] = []
+    if masses := [*derivation.lines("critical_pulley_mass", "critical_heavier_mass")]:
+        if derivation.case.regime != "verge":
+            body.append("Static friction at its limit all along the arc makes the ratio (33) equal to `k`.")
+        meanings = (f"`{mass.left}` is the {derivation.meaning(mass.left)}" for mass in masses)
+        body.append(f"{', '.join(meanings)}.")
+        body += [*derivation.lines("k1", "transfer", *["drive"] * derivation.case.can_slip), *masses]
+    if least := [*derivation.lines("least_heavier_mass", "least_pulley_mass")]:
+        body.append("For the verge, the heavier mass must exceed `m min` and the pulley's mass `M min`.")
+        body += [*derivation.lines("k1", "transfer"), *least]
+    return Step("The critical masses", [*body, *conditions(derivation.answers)])
 
 
-def _simpler(told: Derivation) -> Iterator[Step]:
+def _simpler(derivation: Derivation) -> Iterator[Step]:
     """What simpler models would give for this scene, and how far off."""
-    case, scene = told.case, told.scene
-    if case.sign == 0 or told.answers["acceleration"] is None:
+    case, scene = derivation.case, derivation.scene
+    if case.sign == 0 or derivation.answers["acceleration"] is None:
         return
     if not case.frictionless:
         massless = scene._replace(M=Fraction(0), I=None, inertia=Fraction(1), mu=None, mu_k=None)
-        yield Step("What if the pulley's mass is ignored?", [*told.compared(massless)])
+        yield Step("What if the pulley's mass is ignored?", [*derivation.compared(massless)])
     if case.regime == "slip":
         holding = scene._replace(mu=None, mu_k=None)
-        yield Step("What if slipping is ignored?", [*told.compared(holding)])
+        yield Step("What if slipping is ignored?", [*derivation.compared(holding)])
 
 
-def _model(told: Derivation) -> Step:
-    case, scene = told.case, told.scene
+def _model(derivation: Derivation) -> Step:
+    case, scene = derivation.case, derivation.scene
     pulley = (
         "a pulley without mass"
         if case.tensions_equal and case.sign
@@ -306,7 +311,7 @@ def _model(told: Derivation) -> Step:
     )
     sheaves = "" if case.ends_hang_down else ", guide sheaves without mass or friction"
     friction = ", Coulomb friction between the two" if scene.mu is not None else ""
-    missing = {item: 1 for item in told.answers.reasons.items() if item[0] not in told.explained}
+    missing = {item: 1 for item in derivation.answers.reasons.items() if item[0] not in derivation.explained}
     return Step(
         "What is modelled and what is not",
         [

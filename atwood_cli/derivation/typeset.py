@@ -1,25 +1,146 @@
-"""A derivation on a page: as plain text for a terminal, and as Markdown with LaTeX for a handout."""
+"""A derivation set in type: plain text for a terminal, Markdown with LaTeX for a handout.
+
+Formulas come first, from symbols and numbers to a line; then the page that sentences and equations make.
+"""
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from decimal import Decimal
 from textwrap import wrap
 
-from ..arithmetic.symbolic import in_latex, math, written
+from ..arithmetic.rounding import text
+from ..arithmetic.symbolic import Formula, Symbol
 from .equations import HELD, Equation, Law, Part
 from .steps import Explanation
 
 Spell = Callable[[str], str]
+Written = tuple[str, int]
+"""A formula as text and how tightly it holds together: it is put in parentheses where it is too loose."""
+SUM, PRODUCT, ATOM = range(3)
+GREEK = {
+    "μ": r"\mu",
+    "π": r"\pi",
+    "φ": r"\varphi",
+    "θ": r"\theta",
+    "α": r"\alpha",
+    "β": r"\beta",
+    "τ": r"\tau",
+}
 
 
-def as_text(scene: str, told: Explanation, width: int, spell: Spell = str) -> Iterator[tuple[str, str]]:
-    """Lines, and a style for each, of at most that width but for what has no blank to break at.
+def written(formula: Formula, numbers: Mapping[Symbol, Decimal] | None = None, latex: bool = False) -> str:
+    """The formula, with symbols or with numbers for them, as plain text or as LaTeX."""
+    return _write(formula, numbers, latex)[0]
 
-    Symbols are as ``spell`` has them.
+
+def _write(f: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) -> Written:
+    def write(part: Formula) -> Written:
+        return _write(part, numbers, latex)
+
+    def tight(part: Formula, level: int = ATOM) -> str:
+        words, its_level = write(part)
+        return words if its_level >= level else f"({words})"
+
+    match f.op:
+        case "symbol":
+            if numbers is not None:
+                return _write_number(text(numbers[f.parts[0]]), latex)
+            name = f.parts[0].name
+            return in_math(name) if latex else name, SUM if " " in name else ATOM
+        case "integer":
+            return _write_number(str(f.parts[0]), latex)
+        case "+" | "-":
+            left, right = f.parts
+            return f"{write(left)[0]} {f.op} {tight(right, PRODUCT)}", SUM
+        case "*" | "/":
+            return _quotient(f, write, numbers is not None, latex)
+        case "square":
+            return f"{tight(f.parts[0])}^2", ATOM
+        case "hypot":
+            inside = " + ".join(tight(part) + "^2" * (part.op != "integer") for part in f.parts)
+            return (rf"\sqrt{{{inside}}}" if latex else f"√({inside})"), ATOM
+        case "expm1":
+            power = write(f.parts[0])[0]
+            return (f"e^{{{power}}} - 1" if latex else f"e^({power}) - 1"), SUM
+        case "sqrt" if latex:
+            return rf"\sqrt{{{write(f.parts[0])[0]}}}", ATOM
+    inside = f"1 + {tight(f.parts[0], PRODUCT)}" if f.op == "log1p" else write(f.parts[0])[0]
+    function = {"log1p": "ln", "sqrt": "√"}.get(f.op, f.op)
+    return (rf"\{function}({inside})" if latex else f"{function}({inside})"), ATOM
+
+
+def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, latex: bool) -> Written:
+    """A product or quotient of all its factors: a minus in front, what divides below one line."""
+    above, below = _factors(f)
+    minus = above[0].op == "integer" and above[0].parts[0] < 0
+    if minus:
+        above = above[1:]
+    times = (r" \cdot " if latex else " · ") if numbers else (r" \, " if latex else " ")
+
+    def product(factors: list[Formula], alone: bool) -> str:
+        words = [(word if level == ATOM else f"({word})") for word, level in map(write, factors)]
+        return write(factors[0])[0] if alone and not factors[1:] else times.join(words)
+
+    upper = product(above, alone=latex and bool(below))
+    lower = product(below, alone=latex) if below else ""
+    if below and latex:
+        quotient = rf"\frac{{{upper}}}{{{lower}}}"
+    else:
+        quotient = upper + (f"/({lower})" if below[1:] else f"/{lower}" if below else "")
+    return f"{'-' * minus}{quotient}", SUM if minus else PRODUCT
+
+
+def _factors(f: Formula) -> tuple[list[Formula], list[Formula]]:
+    """The factors of a product or quotient, whole numbers first, and those that divide it."""
+    if f.op not in ("*", "/"):
+        return [f], []
+    (a, b), (c, d) = map(_factors, f.parts)
+    above, below = (a + c, b + d) if f.op == "*" else (a + d, b + c)
+    return sorted(above, key=lambda part: part.op != "integer"), below
+
+
+def _write_number(digits: str, latex: bool) -> Written:
+    level = SUM if digits.startswith("-") else ATOM
+    return (number_in_latex(digits), min(level, PRODUCT)) if latex and "e" in digits else (digits, level)
+
+
+def number_in_latex(digits: str) -> str:
+    """A number as LaTeX writes it, with its power of ten."""
+    mantissa, _, exponent = digits.partition("e")
+    return rf"{mantissa} \times 10^{{{exponent}}}" if exponent else digits
+
+
+def in_math(words: str) -> str:
+    """A symbol or a plain equation as LaTeX: indices lowered, Greek letters and powers spelled."""
+    words = re.sub(r"_(\w+)", r"_{\\mathrm{\1}}", words)
+    words = re.sub(r"\b([A-Za-z])(\d)", r"\1_\2", words)
+    words = re.sub(r" (min|max)\b", r"_{\\\1}", words)
+    words = re.sub(r"\^\(([^()]*)\)", r"^{\1}", words)
+    words = words.replace("*", r"^{\ast}").replace("√", r"\sqrt")
+    words = re.sub("[" + "".join(GREEK) + "]", lambda m: GREEK[m[0]] + " ", words)
+    return re.sub(r" +([ })^_]|$)", r"\1", words)
+
+
+# The page
+
+
+def as_text(
+    scene: str, explanation: Explanation, width: int, spell: Spell = str
+) -> Iterator[tuple[str, str]]:
+    """Lines of at most that width, but for what has no blank to break at, and a style for each.
+
+    ``spell`` rewrites symbols that the stream cannot take.
     """
-    room = max(len(part.label) for step in told.steps for part in step.body if not isinstance(part, str))
-    for words, style in ((scene, ""), *((words, "bold") for words in told.answer), (told.reading, "")):
+    room = max(
+        len(part.label) for step in explanation.steps for part in step.body if not isinstance(part, str)
+    )
+    for words, style in (
+        (scene, ""),
+        *((words, "bold") for words in explanation.answer),
+        (explanation.reading, ""),
+    ):
         yield from ((line, style) for line in wrapped(spell(in_text(words)), width))
-    for number, step in enumerate(told.steps, 1):
+    for number, step in enumerate(explanation.steps, 1):
         yield "", ""
         yield f"{number}. {step.title}", "bold"
         for part in step.body:
@@ -32,6 +153,7 @@ def as_text(scene: str, told: Explanation, width: int, spell: Spell = str) -> It
 
 
 def is_item(part: Part) -> bool:
+    """Whether a part of a step is an item of a list."""
     return isinstance(part, str) and part.startswith("- ")
 
 
@@ -64,12 +186,13 @@ def chain(equation: Equation, latex: bool = False) -> list[str]:
     sides = [f"= {written(equation.formula, None, latex)}"]
     if equation.numbers is not None:
         sides.append(f"{before} {written(equation.formula, equation.numbers, latex)}")
-    result = in_latex(equation.result) if latex else equation.result
+    result = number_in_latex(equation.result) if latex else equation.result
     sides.append(f"{after} {result}{'' if latex or not unit else ' '}{unit}")
     return sides
 
 
 def _equation_lines(part: Law | Equation, width: int, spell: Spell, label: str) -> list[str]:
+    """An equation in one line if it fits, else a line for each of its sides, below each other."""
     if isinstance(part, Law):
         return wrapped(spell(part.words), width, label, " " * (len(label) + 2))
     left, sides = spell(part.left), [spell(side) for side in chain(part)]
@@ -86,13 +209,13 @@ def _equation_lines(part: Law | Equation, width: int, spell: Spell, label: str) 
     return lines
 
 
-def as_markdown(scene: str, told: Explanation) -> Iterator[str]:
+def as_markdown(scene: str, explanation: Explanation) -> Iterator[str]:
     """A page of Markdown, its mathematics in LaTeX between dollars."""
     yield "# Atwood's machine, step by step"
-    for words in (scene, *told.answer, told.reading):
+    for words in (scene, *explanation.answer, explanation.reading):
         yield ""
         yield in_markdown(words)
-    for number, step in enumerate(told.steps, 1):
+    for number, step in enumerate(explanation.steps, 1):
         yield ""
         yield f"## {number}. {step.title}"
         for before, part in zip(["", *step.body], step.body, strict=False):
@@ -106,16 +229,17 @@ def as_markdown(scene: str, told: Explanation) -> Iterator[str]:
 
 
 def _aligned(part: Law | Equation) -> str:
+    """An equation in LaTeX, its = signs below each other."""
     if isinstance(part, Law):
-        return math(part.words)
+        return in_math(part.words)
     sides = chain(part, latex=True)
     rows = " \\\\\n".join(f"&{side}" for side in sides)
-    return f"\\begin{{aligned}}\n{math(part.left)} {rows}\n\\end{{aligned}}"
+    return f"\\begin{{aligned}}\n{in_math(part.left)} {rows}\n\\end{{aligned}}"
 
 
 def in_markdown(words: str) -> str:
     """A sentence with its symbols as mathematics, and no character of it mistaken for markup."""
     pieces = words.split("`")
     pieces[::2] = [re.sub(r"([*_|<>$\\])", r"\\\1", piece) for piece in pieces[::2]]
-    pieces[1::2] = [f"${math(piece)}$" for piece in pieces[1::2]]
+    pieces[1::2] = [f"${in_math(piece)}$" for piece in pieces[1::2]]
     return "".join(pieces).replace(HELD, " ")
