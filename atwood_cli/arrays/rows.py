@@ -117,9 +117,8 @@ class Rows:
             rows = self._at(self._within(index), self._answers)
         for arithmetic, machine in self._machines.items():
             # The exponential costs too much to compute it twice.
-            if "k1" in vars(machine):
-                k1 = machine.k1 if index is None else _take(machine.k1, index, self.size)
-                rows.machine(arithmetic).k1 = k1
+            if (k1 := machine.known("k1")) is not None:
+                rows.machine(arithmetic, {"k1": k1 if index is None else _take(k1, index, self.size)})
         return rows
 
     def _within(self, index: NDArray[np.intp]) -> NDArray[np.intp]:
@@ -246,13 +245,14 @@ class Rows:
         if index.size:
             self._wait((name,), rung + 1, self._answers, self._within(index))
 
-    def machine(self, arithmetic: Any) -> Machine[Any]:
+    def machine(self, arithmetic: Any, known: Mapping[str, Any] | None = None) -> Machine[Any]:
+        """The model of these rows in an arithmetic, made when first asked for: then ``known`` counts."""
         if arithmetic not in self._machines:
             case = _RowsCase(self, arithmetic)
             if arithmetic is ROUNDED:
-                self._machines[arithmetic] = _RoundedMachine(case, self.machine(QUICK))
+                self._machines[arithmetic] = _RoundedMachine(case, self.machine(QUICK), known)
             else:
-                self._machines[arithmetic] = Machine(case, arithmetic)
+                self._machines[arithmetic] = Machine(case, arithmetic, known)
         return self._machines[arithmetic]
 
     def scene(self, row: int) -> Scene:
@@ -319,8 +319,8 @@ class Rows:
     def _excess(self, question: Any) -> Any:
         """The excess in doubles, from pairs if they have it already."""
         for machine in self._machines.values():
-            if question == "excess_ratio" and "excess" in vars(machine):
-                return machine.excess.rounded() if isinstance(machine.excess, Pair) else machine.excess
+            if question == "excess_ratio" and (excess := machine.known("excess")) is not None:
+                return excess.rounded() if isinstance(excess, Pair) else excess
         machine = self.machine(FLOATS)
         return machine.excess if question == "excess_ratio" else getattr(machine.case, question)(FLOATS)
 
@@ -396,8 +396,8 @@ class _RowsCase(Case):
 class _RoundedMachine(Machine[Any]):
     """A machine whose products are rounded, but for those that come before something cancels."""
 
-    def __init__(self, case: Case, finer: Machine[Any]) -> None:
-        super().__init__(case, ROUNDED)
+    def __init__(self, case: Case, finer: Machine[Any], known: Mapping[str, Any] | None) -> None:
+        super().__init__(case, ROUNDED, known)
         self._finer = finer
 
     phi, k1, excess, transfer, drive = (

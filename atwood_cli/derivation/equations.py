@@ -1,7 +1,7 @@
 """The equations of a scene, each as the model has it, with numbers put in that give its result.
 
-No equation is written here and nothing is computed here but how many digits a line needs: an equation
-is what the model does with symbols (`formula`), and the numbers are the solver's.
+No equation is written here, and nothing is computed but how many digits a line needs: an equation is what
+the model does with symbols (`symbolic`), and the numbers are the solver's.
 """
 
 from __future__ import annotations
@@ -78,11 +78,16 @@ UNITS = {
     "difference": "N",
 }
 ALSO = {"magnitude": "acceleration", "light_tension": "tension_1", "heavy_tension": "tension_1"}
-"""What is of the kind of a quantity."""
+"""The quantity whose unit and symbol something else shares."""
 
 
 class Derivation:
-    """The equations of a scene, each as the model has it, with the solver's numbers."""
+    """The equations of a scene, each as the model has it, with the solver's numbers.
+
+    ``names`` are the symbols of what the model computes, ``inputs`` those of what is given, ``light`` and
+    ``heavy`` the indices of the masses. ``shown`` are the equations written so far, by name, ``explained``
+    the quantities whose absence has been explained.
+    """
 
     def __init__(self, answers: Answers) -> None:
         self.answers, self.case, self.scene = answers, answers.case, answers.case.scene
@@ -136,14 +141,15 @@ class Derivation:
         return self.scene.wrap.is_half_turn
 
     def formula(self, name: str) -> Formula:
-        """What the model does for a quantity, with the symbols of all that it is made of."""
+        """The model's formula for a quantity, in the symbols of the inputs and of what else has a name."""
         arithmetic: Any = Symbols(list(self.inputs.values()))
-        machine: Machine[Any] = Machine(self.case, arithmetic)
-        for other, symbol in self.names.items():
-            if other != name:
-                machine.__dict__[other] = Formula("symbol", Symbol(symbol, other))
-        found: Formula = getattr(machine, name)
-        return found
+        known = {
+            other: Formula("symbol", Symbol(symbol, other))
+            for other, symbol in self.names.items()
+            if other != name
+        }
+        formula: Formula = getattr(Machine(self.case, arithmetic, known), name)
+        return formula
 
     def equation(self, name: str) -> Equation:
         """The equation of anything that the scene determines."""
@@ -173,14 +179,14 @@ class Derivation:
             return Equation(label, left, formula, None, "=>", f"10^{LARGEST_EXPONENT}", unit)
         symbols, digits = sorted(formula.symbols()), self.digits
         while True:
-            found = {symbol: self.number(symbol, digits, max(digits, TYPED)) for symbol in symbols}
-            numbers = {symbol: number for symbol, (number, _) in found.items()}
+            rounded = {symbol: self.number(symbol, digits, max(digits, TYPED)) for symbol in symbols}
+            numbers = {symbol: number for symbol, (number, _) in rounded.items()}
             if any(map(is_infinite, numbers.values())):
                 return Equation(label, left, formula, None, "=≈", text(value), unit)
             if self._gives(formula, numbers, value):
                 break
             digits += 1 + digits // 16
-        put_in = "=" if all(is_exact for _, is_exact in found.values()) else "≈"
+        put_in = "=" if all(is_exact for _, is_exact in rounded.values()) else "≈"
         signs = put_in + ("=" if exact and put_in == "=" else "≈")
         return Equation(label, left, formula, numbers, signs, text(value), unit)
 
@@ -190,19 +196,23 @@ class Derivation:
         precision = 2 * (longest + self.digits) + 20
         while True:
             try:
-                found = formula.worked_out(enclosures(precision), numbers)
+                value = formula.worked_out(enclosures(precision), numbers)
             except Unsettled:
                 precision *= 2
                 continue
             break
         if not result:
-            return found.lo == found.hi == 0
+            return value.lo == value.hi == 0
         at = enclosures(precision).up
         half = at.multiply(Decimal("0.500001"), Decimal((0, (1,), result.adjusted() - self.digits + 1)))
-        return at.subtract(found.hi, result) <= half and at.subtract(result, found.lo) <= half
+        return at.subtract(value.hi, result) <= half and at.subtract(result, value.lo) <= half
 
     def number(self, symbol: Symbol, digits: int, typed: int) -> tuple[Decimal, bool]:
-        """The number for a symbol, correctly rounded if it is not short, and whether it is exact."""
+        """The number to put in for a symbol, and whether it is exact.
+
+        An exact one of no more digits than wanted stays as it is, else it is correctly rounded to ``digits``.
+        For an input ``typed`` digits are few enough, for a computed quantity ``digits``.
+        """
         if isinstance(symbol.of, Fraction):
             exact: Fraction | None = symbol.of
             keep = typed
@@ -219,7 +229,7 @@ class Derivation:
         return Decimal(value), False
 
     def lines(self, *names: str) -> Iterator[Equation]:
-        """The equations of what exists, each once in a derivation."""
+        """The equations of those that exist and have not been shown yet."""
         for name in names:
             if name in self.shown or (name in QUANTITIES and self.answers[name] is None):
                 continue
@@ -227,7 +237,7 @@ class Derivation:
             yield self.equation(name)
 
     def rim_mass(self) -> Iterator[Part]:
-        """Where c comes from."""
+        """The equation of c, the pulley's inertia as a mass at the rim."""
         given, c = self.inputs, self.case.rim_mass
         if c is None:
             yield f"where `c = β M` and `β` = {as_typed(self.scene.inertia or Fraction(1))}."
@@ -251,7 +261,7 @@ class Derivation:
             yield from self.lines("difference", "heavy_tension")
 
     def extras(self) -> Iterator[Part]:
-        """What belongs to the pulley's motion, where it is asked for by its radius, and its axle."""
+        """The torque and angular acceleration, if a radius is given, and the force on the axle."""
         if self.scene.R is not None and self.case.sign:
             yield "On the pulley, that makes"
             yield from self.lines("torque", "angular_acceleration")
@@ -278,14 +288,14 @@ class Derivation:
                 getattr(Machine(answers.case, ar), {"acceleration": "magnitude"}.get(name, name))
                 for answers in (self.answers, other)
             )
-            found: N = 100 * (there - here) / here
-            return found
+            percent: N = 100 * (there - here) / here
+            return percent
 
         shown = text(settle(error, to_digits(DOUBT), DOUBT))
         return shown if shown.startswith("-") or shown == "0" else f"+{shown}"
 
     def reason(self, name: str) -> str:
-        """Why there is no such value, told once."""
+        """Why there is no such value; what is explained here is not listed again at the end."""
         self.explained.add(name)
         return self.answers.reasons[name]
 
@@ -296,6 +306,7 @@ class Derivation:
         return _is(symbol, number, unit)
 
     def meaning(self, symbol: str) -> str:
+        """What the symbol of a quantity stands for, in words."""
         return next(about.meaning for about in QUANTITIES.values() if about.symbol == symbol)
 
     def say(self, name: str) -> str:
@@ -310,9 +321,10 @@ def _is(symbol: str, value: Any, unit: str) -> str:
 
 
 def in_words(value: Any, unit: str) -> str:
+    """A value with its unit."""
     return f"{text(value)}{' ' * bool(unit)}{unit}"
 
 
 def plain(symbol: str) -> str:
-    """The registry's symbol as equations have it."""
+    """The registry's symbol in plain letters, as equations write it."""
     return {"T₁": "T1", "T₂": "T2", "a rim": "a_rim", "Fx": "F_x", "Fy": "F_y"}.get(symbol, symbol)

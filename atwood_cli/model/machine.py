@@ -6,6 +6,7 @@ quantity that the scene does not determine raises `Undetermined` with the reason
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import TYPE_CHECKING, Generic
 
@@ -46,11 +47,20 @@ class Undetermined(Exception):
 
 
 class Machine(Generic[N]):
-    """The model of a case in one arithmetic. Its properties are the quantities, by their names."""
+    """The model of a case in one arithmetic. Its properties are the quantities, by their names.
 
-    def __init__(self, case: Case, ar: Arithmetic[N]) -> None:
+    ``known`` are quantities known beforehand, by name: they are taken as they are and not computed.
+    """
+
+    def __init__(self, case: Case, ar: Arithmetic[N], known: Mapping[str, N] | None = None) -> None:
         self.case, self.scene, self.ar = case, case.scene, ar
         self._arcs: dict[arc.Kind, list[arc.Arc[N]]] = {}
+        for name, value in (known or {}).items():
+            setattr(self, name, value)
+
+    def known(self, name: str) -> N | None:
+        """A quantity that is known by now, given or computed; computes nothing."""
+        return vars(self).get(name)
 
     @lazy
     def l(self) -> N:
