@@ -5,7 +5,7 @@ import shutil
 import stat
 import sys
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from inspect import signature
@@ -24,6 +24,9 @@ from .formats import Piece, Unreadable, read, write
 
 if TYPE_CHECKING:
     import polars as pl
+
+Watch = Callable[[Iterator[Piece], int | None, Callable[[Piece], int]], Iterator[Piece]]
+"""Hands on the pieces, of a table of that size if it is known, and may show how far they have come."""
 
 REQUIRED = COLUMNS[:2]
 ERROR = "error"
@@ -69,8 +72,8 @@ class Job:
     force: bool
 
 
-def run_batch(job: Job) -> Tally:
-    """Solve a table of scenes. Raises OSError."""
+def run_batch(job: Job, watch: Watch) -> Tally:
+    """Solve a table of scenes, under ``watch`` unless results go to a terminal. Raises OSError."""
     import polars as pl
 
     with ExitStack() as stack:
@@ -78,7 +81,7 @@ def run_batch(job: Job) -> Tally:
         target = _target(job, stack)
         tally = Tally()
         try:
-            write(job.target_format, target, _solved(job, source, tally))
+            write(job.target_format, target, _solved(job, source, tally, watch))
         except Unreadable as error:
             raise OSError(f"cannot read {'stdin' if job.source == STREAM else job.source}: {error}") from None
         except pl.exceptions.PolarsError as error:
@@ -116,12 +119,12 @@ def _target(job: Job, stack: ExitStack) -> IO[bytes]:
     return stack.enter_context(open(stack.enter_context(written_beside(Path(job.target), job.force)), "wb"))
 
 
-def _solved(job: Job, source: IO[bytes], tally: Tally) -> "Iterator[tuple[Piece, pl.DataFrame]]":
-    from ..cli.page import watched
-
+def _solved(
+    job: Job, source: IO[bytes], tally: Tally, watch: Watch
+) -> "Iterator[tuple[Piece, pl.DataFrame]]":
     pieces = read(job.source_format, source, COLUMNS if job.target_format == "ndjson" else None)
     if job.target != STREAM or not sys.stdout.isatty():
-        pieces = watched(pieces, _size(job, source), lambda piece: piece.size)
+        pieces = watch(pieces, _size(job, source), lambda piece: piece.size)
     known: Sequence[str] = ()
     for piece in pieces:
         if piece.columns != known:

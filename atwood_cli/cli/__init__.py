@@ -442,6 +442,7 @@ def batch(
     from ..batch.formats import read_format
     from ..batch.run import Job, run_batch
     from ..model.quantities import STANDARD
+    from .page import watched
 
     names = list(dict.fromkeys(only or STANDARD))
     _check_names("only", *names)
@@ -449,7 +450,7 @@ def batch(
         hint = nearest(accuracy, ACCURACIES) or f"; there are {', '.join(ACCURACIES)}"
         raise SceneError("accuracy", accuracy, f"is no accuracy{hint}")
     formats = read_format("from", from_, table), read_format("to", to, output)
-    tally = run_batch(Job(table, formats[0], output, formats[1], names, accuracy, force))
+    tally = run_batch(Job(table, formats[0], output, formats[1], names, accuracy, force), watched)
     for line in tally.lines():
         _say(line)
     return COULD_NOT if tally.errors and not allow_errors else DONE
