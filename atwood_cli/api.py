@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
 
 from .model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from .model.scene import Given, Scene, read_digits
-from .solver.answers import read_answers
 from .solver.messages import notes
+from .solver.reading import read_answers
 
 if TYPE_CHECKING:
     from typing import TypedDict, Unpack
@@ -133,13 +133,8 @@ def solve(
     correctly rounded to N significant digits. Raises SceneError (a ValueError) on bad input.
     """
     given = {key: value for key, value in locals().items() if key != "digits"}
-    answers, uncertain = read_answers(given, read_digits(digits))
+    answers = read_answers(given, read_digits(digits))
     values = {name: answers[name] for name in answers.names}
-    remarks, spreads = notes(answers), {}
-    if uncertain:
-        from .solver.uncertainty import propagate
-
-        found = propagate(answers.case, uncertain, answers.names)
-        remarks, spreads = [*remarks, *found.notes], found.rounded(answers)
+    uncertainty = answers.standard_uncertainties(answers.names)
     kind: type[Solution[Any]] = Solution if answers.names == NAMES else MeasuredSolution
-    return kind(scene=answers.case.scene, notes=tuple(remarks), uncertainty=spreads, **values)
+    return kind(scene=answers.case.scene, notes=tuple(notes(answers)), uncertainty=uncertainty, **values)

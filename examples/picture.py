@@ -6,7 +6,7 @@ from pathlib import Path
 from rich.console import Console
 
 from atwood_cli import Scene
-from atwood_cli.cli.page import print_table
+from atwood_cli.cli.solve import print_table
 from atwood_cli.solver.answers import Answers
 
 

@@ -228,6 +228,7 @@ def test_a_table_without_rows_is_no_table(atwood: Atwood) -> None:
         ("solve --m1 1 --m2 2 --digits 1.5", "--digits '1.5' must be a whole number from 1 to 1000"),
         ("solve --m1 1 --m1 1 --m2 2", "--m1 is given 2 times; give it once"),
         ("solve --m1 1 --m2 2 --M 1 --pulley-mass 2", "--M is given 2 times; give it once"),
+        ("contact --m1 1 --m2 2 --force", "--force needs --figure"),
         ("solve --m1 1 --m2 2 --json --csv", "--json and --csv exclude each other; give one of them"),
         (
             "solve --m1 1 --m2 2 --only tention_1",
@@ -337,7 +338,7 @@ def test_the_door_opens_before_anything_is_loaded() -> None:
     assert not {"atwood_cli.cli", "atwood_cli.solver", "atwood_cli.model", "typer"} & set(loaded)
 
 
-@pytest.mark.parametrize("where", ["atwood_cli.solver.answers.Answers", "atwood_cli.cli.run"])
+@pytest.mark.parametrize("where", ["atwood_cli.solver.reading.Answers", "atwood_cli.cli.run"])
 def test_an_interrupt_ends_it_with_130(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], where: str
 ) -> None:
@@ -368,11 +369,10 @@ def test_the_yardstick_of_start_up_has_the_same_commands_and_options() -> None:
 
     from . import startup_baseline
 
-    def surface(app: typer.Typer) -> dict[str, set[str]]:
-        command: Any = typer.main.get_command(app)
+    def surface(command: Any) -> dict[str, set[str]]:
         return {
             name: {flag for option in sub.params for flag in option.opts}
             for name, sub in command.commands.items()
         }
 
-    assert surface(cli.app) == surface(startup_baseline.app)
+    assert surface(cli.program()) == surface(typer.main.get_command(startup_baseline.app))

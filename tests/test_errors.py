@@ -13,7 +13,7 @@ import atwood_cli
 from .running import Atwood
 
 PACKAGE, TESTS = Path(atwood_cli.__file__).parent, Path(__file__).parent
-SENTENCES = ("SceneError", "Unreadable", "OSError", "FileExistsError", "ArithmeticError")
+SENTENCES = ("SceneError", "Rule", "Unreadable", "OSError", "FileExistsError", "ArithmeticError")
 NOT_REACHED = {
     "not settled within": "no scene is known that fifty thousand digits do not settle",
 }
@@ -33,8 +33,11 @@ def errors() -> Iterator[tuple[str, str]]:
             ".".join(path.relative_to(PACKAGE.parent).with_suffix("").parts).removesuffix(".__init__")
         )
         for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-            if isinstance(node, ast.Call) and getattr(node.func, "id", "") in SENTENCES and node.args:
-                rule = node.args[min(2, len(node.args) - 1)] if node.func.id == "SceneError" else node  # type: ignore[attr-defined]
+            if not isinstance(node, ast.Call) or not node.args:
+                continue
+            kind = getattr(node.func, "id", "")
+            if kind in SENTENCES:
+                rule = node.args[min(2, len(node.args) - 1)] if kind in ("SceneError", "Rule") else node
                 texts = list(fragments(rule))
                 if isinstance(rule, ast.Name):
                     texts = [str(getattr(module, rule.id, ""))]
@@ -56,7 +59,9 @@ def test_errors_are_found() -> None:
     assert {where.split(":")[0] for where, _ in found} >= {
         "model/scene.py",
         "solver/sweep.py",
-        "cli/__init__.py",
+        "cli/options.py",
+        "cli/solve.py",
+        "cli/sweep.py",
         "batch/formats.py",
     }
 

@@ -22,7 +22,7 @@ from examples.help import COMMANDS, pages
 from .running import Atwood, on_terminal, process
 
 TOP = Path(__file__).parent.parent
-GROUP: Any = typer.main.get_command(cli.app)
+GROUP: Any = cli.program()
 PAGES = ["", *(f"{command} -h".strip() for command in COMMANDS)]
 ATWOOD = Path(sys.executable).with_name("atwood")
 

@@ -21,8 +21,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli.arithmetic.interval import LARGEST_EXPONENT
-from atwood_cli.cli import sweep
 from atwood_cli.cli.page import watched
+from atwood_cli.cli.sweep import sweep
 from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import PARAMETERS, SceneError
 from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows

@@ -157,14 +157,13 @@ def test_a_full_disk_is_an_error(command: str, table: str) -> None:
 
 SLOW = """
 import sys, time
-import atwood_cli.cli, atwood_cli.solver.answers, atwood_cli.batch.run
+import atwood_cli.cli.contact, atwood_cli.solver.reading, atwood_cli.solver.sweep, atwood_cli.batch.run
 from atwood_cli.__main__ import main
 def slow(*_, **__):
     print("started", file=sys.stderr, flush=True)
     time.sleep(60)
-atwood_cli.solver.answers.Answers = atwood_cli.batch.run.run_batch = slow
-import atwood_cli.solver.sweep
-atwood_cli.solver.sweep.Answers = slow
+atwood_cli.cli.contact.Answers = atwood_cli.solver.reading.Answers = slow
+atwood_cli.solver.sweep.Answers = atwood_cli.batch.run.run_batch = slow
 sys.exit(main())
 """
 

@@ -24,8 +24,9 @@ from atwood_cli.model.angle import Angle
 from atwood_cli.model.case import Case
 from atwood_cli.model.quantities import NAMES
 from atwood_cli.model.scene import Scene, read_input
-from atwood_cli.solver.answers import read_answers
-from atwood_cli.solver.uncertainty import Spread, propagate
+from atwood_cli.solver.answers import Spread
+from atwood_cli.solver.reading import read_answers
+from atwood_cli.solver.uncertainty import propagate
 
 from . import oracle
 from .running import Atwood, on_terminal, plain, process
@@ -35,8 +36,7 @@ UNCERTAIN = ["solve", "--m1", "1.000(2)", "--m2", "3+/-0.01", "--M", "10"]
 
 
 def spreads(names: str = " ".join(NAMES), **given: str) -> dict[str, Spread]:
-    answers, uncertain = read_answers(given, None)
-    return dict(propagate(answers.case, uncertain, names.split()).spreads)
+    return read_answers(given, None).spreads(names.split())
 
 
 # How they are typed
@@ -318,7 +318,7 @@ def test_every_family_against_flint(family: str) -> None:
         scene = Scene.read(given)
         numbers = scene._asdict() | {"wrap": scene.wrap.number}
         inputs = {x: numbers[x] for x in given if numbers[x] != inf}
-        found = propagate(Case(scene), {x: v / 100 for x, v in inputs.items()}, CLOSED).spreads
+        found = propagate(Case(scene), {x: v / 100 for x, v in inputs.items()})
         variances: dict[str, Any] = {}
         for x, v in inputs.items():
             right, left = (

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from textwrap import wrap
 from typing import Any
 
-from .page import for_stream
+from .text import for_stream
 
 NARROWEST, WIDEST = 24, 100
 LEAST_BESIDE = 40
@@ -55,7 +55,7 @@ def _joined(parts: list[list[str]]) -> str:
 
 
 def _heading(line: str) -> str:
-    """Headings are bold where a terminal can do that; they are told by their colon anyway."""
+    """Headings are bold where a terminal can do that; their colon marks them anyway."""
     bold = sys.stdout.isatty() and os.environ.get("TERM", "dumb") not in ("dumb", "unknown")
     is_heading = line.endswith(":") and not line.startswith(" ")
     return f"\x1b[1m{line}\x1b[0m" if bold and is_heading and os.name != "nt" else line
@@ -68,14 +68,14 @@ def _width() -> int:
 
 def _paragraphs(command: Any, most: int | None = None) -> list[list[str]]:
     """The docstring, of lists at most so many lines."""
-    found = []
+    lines = []
     for paragraph in (command.help or "").split("\n\n"):
         head, *rest = paragraph.replace("\b\n", "").splitlines()
         if head.endswith(":"):
-            found.append([head, *(part for line in rest[:most] for part in _example(line))])
+            lines.append([head, *(part for line in rest[:most] for part in _example(line))])
         else:
-            found.append(_filled(" ".join([head, *rest])))
-    return found
+            lines.append(_filled(" ".join([head, *rest])))
+    return lines
 
 
 def _filled(text: str, indent: str = "") -> list[str]:

@@ -1,20 +1,24 @@
-"""The options of every command: what they are called, say, take and complete; data for `cli`."""
+"""What options are made of: those of a scene, those that several commands share, what excludes what."""
 
 import inspect
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
-from typing import Annotated, Any
+from importlib import import_module
+from typing import Annotated, Any, NamedTuple
 
 import typer
 
-from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
-from ..model.scene import PARAMETERS, parameter_of
+from ..model.quantities import NAMES, QUANTITIES
+from ..model.scene import PARAMETERS, SceneError, parameter_of
+from ..model.units import nearest
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """Set where a shell asks what a word could be."""
 WORDS = "words typed"
 """Where the context of a command keeps them, for completion."""
+DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
+"""Exit status."""
 
 ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
 REMARKS = {
@@ -33,6 +37,7 @@ REMARKS = {
 
 
 def flag(name: str) -> str:
+    """A name as an option is typed: mu_k is --mu-k."""
     return f"--{name.replace('_', '-')}"
 
 
@@ -40,7 +45,7 @@ Words = Callable[[], Mapping[str, str]]
 """Words that a shell may complete, with what they mean."""
 
 
-def _option(group: str, *flags: str, metavar: str = "", words: Words | None = None, **more: Any) -> Any:
+def option(group: str, *flags: str, metavar: str = "", words: Words | None = None, **more: Any) -> Any:
     """An option: the group in which help shows it, and the words it takes.
 
     Where the metavar lists alternatives (a|b), they are the words.
@@ -69,7 +74,8 @@ def _alternatives(metavar: str) -> Mapping[str, str]:
     return dict.fromkeys(metavar.split("|"), "")
 
 
-def _scene_option(name: str, group: str = "Scene") -> Any:
+def scene_option(name: str, group: str = "Scene") -> Any:
+    """The option of a parameter of a scene or of the motion."""
     parameter = parameter_of(name)
     flags = [flag(name), *ALIASES.get(name, [])]
     unit = f" ({parameter.unit})" if parameter.unit not in ("", "°") else ""
@@ -78,7 +84,7 @@ def _scene_option(name: str, group: str = "Scene") -> Any:
     text = f"{meaning}{unit}{names}{REMARKS.get(name, '')}."
     metavar = (parameter.dimension or "number").upper()
     words = {**parameter.names, **({"inf": "a locked pulley"} if parameter.inf else {})}
-    return _option(group, *flags, help=text, metavar=metavar, words=(lambda: words) if words else None)
+    return option(group, *flags, help=text, metavar=metavar, words=(lambda: words) if words else None)
 
 
 def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
@@ -90,7 +96,7 @@ def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
 
     kind = inspect.Parameter.KEYWORD_ONLY
     scene = [
-        inspect.Parameter(n, kind, default=None, annotation=Annotated[str | None, _scene_option(n)])
+        inspect.Parameter(n, kind, default=None, annotation=Annotated[str | None, scene_option(n)])
         for n in PARAMETERS
     ]
     _, *own = inspect.signature(command).parameters.values()
@@ -101,166 +107,95 @@ def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
     return with_scene
 
 
-_output, _files = partial(_option, "Output"), partial(_option, "Files")
-_arc, _measured = partial(_option, "Arc"), partial(_option, "Measurement")
-
-
-def _quantities() -> Mapping[str, str]:
-    return {"regime": "no-slip, verge or slip", **_numbers()}
-
-
-def _answers() -> Mapping[str, str]:
-    return {**_quantities(), **dict.fromkeys(MEASURED_NAMES, "found from what was measured")}
-
-
-def _numbers() -> Mapping[str, str]:
+def numbers() -> Mapping[str, str]:
+    """The quantities that are numbers, with what they mean."""
     return {name: QUANTITIES[name].meaning for name in NAMES[1:]}
 
 
-def _families() -> Mapping[str, str]:
-    from ..tradeoff.scenes import FAMILIES
+def quantities() -> Mapping[str, str]:
+    """The quantities that every scene has, with what they mean."""
+    return {"regime": "no-slip, verge or slip", **numbers()}
 
-    return {name: family.meaning for name, family in FAMILIES.items()}
 
+# Shared by several commands
 
 Digits = Annotated[
-    str | None, _output(metavar="N", help="Significant digits, 1 to 1000 (otherwise doubles).")
+    str | None, option("Output", metavar="N", help="Significant digits, 1 to 1000 (otherwise doubles).")
 ]
-AsJson = Annotated[bool, _output("--json", help="Print JSON: results, scene and notes.")]
-AsCsv = Annotated[bool, _output("--csv", help="Print CSV, with a line of names first.")]
-Only = Annotated[
-    list[str] | None,
-    _output(metavar="NAME", words=_answers, help="Print only this quantity; repeatable."),
-]
-Budget = Annotated[
-    bool,
-    _output("--budget", help="Also print each uncertain input's share of every result's variance."),
-]
-
-A = Annotated[str | None, _scene_option("a", "Measured")]
-Drop = Annotated[str | None, _scene_option("drop", "Measured")]
-Time = Annotated[str | None, _scene_option("time", "Measured")]
-Explain = Annotated[
-    bool, _output("--explain", help="Instead, show how it follows: step by step, with the numbers put in.")
-]
-Markdown = Annotated[
-    bool, _output("--markdown", help="With --explain: a page of Markdown, its mathematics in LaTeX.")
-]
-
-
-DEFAULT_POINTS = 13
-Points = Annotated[
-    str | None,
-    _arc(metavar="N", help=f"Angles along the arc to show, with both ends; {DEFAULT_POINTS} if not given."),
-]
-Profile = Annotated[
-    str | None,
-    _arc(
-        metavar="creep|least",
-        help="Which tension, where friction to spare leaves it open: that of a slightly elastic string"
-        " (creep, if not given), or that with the least net friction.",
-    ),
-]
-Elements = Annotated[
-    str | None,
-    _arc(
-        metavar="N",
-        help="Instead, solve the arc by N elements of string, in doubles, beside the exact values.",
-    ),
-]
-Extrapolate = Annotated[bool, _arc("--extrapolate", help="Extrapolate from N/2 and N elements (Richardson).")]
-
-
-FigureFile = Annotated[
-    str | None, _files(metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure).")
-]
-
+AsJson = Annotated[bool, option("Output", "--json", help="Print JSON: results, scene and notes.")]
+AsCsv = Annotated[bool, option("Output", "--csv", help="Print CSV, with a line of names first.")]
 Columns = Annotated[
     list[str] | None,
-    _output(
+    option(
+        "Output",
         "--only",
         metavar="NAME",
-        words=_quantities,
+        words=quantities,
         help="A column for this quantity, not for the usual seven; repeatable.",
     ),
 ]
-Plot = Annotated[
+FigureFile = Annotated[
     str | None,
-    _output(
-        metavar="NAME", words=_numbers, help="Draw this quantity's curve in place of the table (extra: plot)."
-    ),
+    option("Files", metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure)."),
 ]
-SweepFigure = Annotated[
-    tuple[str, str] | None,
-    _files(
-        "--figure",
-        metavar="FILE NAME",
-        words=_numbers,
-        help="Also draw this quantity's curve to FILE.svg, .png or .pdf (extra: figure).",
-    ),
-]
-OutputFile = Annotated[
-    str | None,
-    _files(
-        "--output",
-        "-o",
-        metavar="FILE",
-        help="Write to FILE, whole or not at all: as CSV (.csv), JSON (.json) or as shown (.txt).",
-    ),
-]
-SWEEP_SUFFIXES = ("", ".txt", ".csv", ".json")
-Force = Annotated[bool, _files("--force", help="Replace a file that is there.")]
+Force = Annotated[bool, option("Files", "--force", help="Replace a file that is there.")]
 
 
-Table = Annotated[
-    str,
-    typer.Argument(
-        metavar="IN",
-        rich_help_panel="Files",
-        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl or .parquet; - for stdin.",
-        show_default=False,
-    ),
-]
-OutTable = Annotated[
-    str, _files("--output", "-o", metavar="OUT", help="Write to this file; - for stdout, if not given.")
-]
-FromFormat = Annotated[
-    str | None,
-    _files("--from", metavar="csv|tsv|ndjson|parquet", help="Format of IN, if not that of its suffix."),
-]
-ToFormat = Annotated[
-    str | None,
-    _files(
-        "--to",
-        metavar="csv|tsv|ndjson|parquet",
-        help="Format of OUT, if not that of its suffix; stdout: csv.",
-    ),
-]
-Accuracy = Annotated[
-    str,
-    _output(
-        metavar="fast|certified|exact",
-        help="How accurate results are; certified, within 4 units in the last place, if not given.",
-    ),
-]
-AllowErrors = Annotated[bool, _output("--allow-errors", help="Exit 0 though rows have errors.")]
+# What excludes what
 
 
-Families = Annotated[
-    list[str] | None,
-    _measured(
-        "--family", metavar="NAME", words=_families, help="Measure this family of scenes only; repeatable."
-    ),
-]
-DEFAULT_SCENES, DEFAULT_SEED, MOST_SEED = 500, 1, 10**9
-Scenes = Annotated[
-    str | None,
-    _measured(metavar="N", help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given."),
-]
-Seed = Annotated[
-    str | None,
-    _measured(metavar="N", help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given."),
-]
-PlotErrors = Annotated[
-    bool, _output("--plot", help="Draw error against time in place of the tables (extra: plot).")
-]
+class Rule(NamedTuple):
+    """Options that are refused beside any of the ``others``, or ``without`` all of them, and why.
+
+    Both are names with blanks between; others may be facts that a command knows of its scene.
+    """
+
+    options: str
+    others: str
+    why: str
+    without: bool = False
+
+
+ONE_FORM = Rule("json", "csv", "and --csv exclude each other; give one of them")
+PLOT_IS_TEXT = (
+    Rule("plot", "json", "draws text, not JSON; leave one of them out"),
+    Rule("plot", "csv", "draws text, not CSV; leave one of them out"),
+)
+FIGURE_TO_REPLACE = Rule("force", "figure", "needs --figure", without=True)
+
+
+def check(rules: Iterable[Rule], given: Mapping[str, object]) -> None:
+    """Raises SceneError by the first rule that what is given breaks."""
+    for rule in rules:
+        beside = any(_is_given(given[name]) for name in rule.others.split())
+        for name in rule.options.split():
+            if beside != rule.without and _is_given(given[name]):
+                value = given[name]
+                shown = value[0] if isinstance(value, list | tuple) else None if value is True else value
+                raise SceneError(name, shown, rule.why)
+
+
+def _is_given(value: object) -> bool:
+    return value not in (None, False, [], ())
+
+
+def check_extras(plot: str | bool | None, figure: str | None, force: bool) -> None:
+    """Raise, before anything is solved, what a picture will run into: SceneError, OSError, ImportError."""
+    if plot:
+        import_module("plotille")
+    if figure is not None:
+        from .figure import check_file
+
+        check_file(figure, force)
+
+
+def check_names(option: str, names: Sequence[str], known: Sequence[str] = NAMES) -> None:
+    """Raises SceneError where a name is that of no quantity."""
+    for name in names:
+        if name not in known:
+            raise SceneError(option, name, f"is no quantity{near_or_all(name, known)}")
+
+
+def near_or_all(word: str, known: Iterable[str]) -> str:
+    """The hint at the word that may have been meant, or else at all there are."""
+    return nearest(word, known) or f"; there are {', '.join(known)}"

@@ -7,14 +7,17 @@ from fractions import Fraction
 from itertools import groupby, pairwise
 from math import ceil, floor, log10
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from plotille import Canvas
 
 from ..arithmetic.rounding import as_typed
-from ..solver.sweep import Curve, Picture, Row, Sweep, picture
-from ..tradeoff.measure import EDGES, Tradeoff, drawable
-from .page import Page, for_stream, sweep_head, sweep_notes, takes_unicode
+from .curves import Curve, Picture
+from .page import Page
+from .text import for_stream, takes_unicode
+
+if TYPE_CHECKING:
+    from ..tradeoff.measure import Tradeoff
 
 PIPE_WIDTH, HEIGHT, SMALL_HEIGHT = 80, 20, 12
 LEAST_WIDTH, LEAST_HEIGHT = 10, 5
@@ -63,13 +66,12 @@ def _decades(low: float, high: float, most: int) -> list[Decimal]:
     return [Decimal(1).scaleb(power) for power in powers[:: ceil(len(powers) / most)]]
 
 
-def print_plot(sweep: Sweep, rows: Sequence[Row], name: str, plain: bool) -> None:
-    """The scene, the curves with their regimes and dotted lines where those change, and the notes."""
-    page, drawn = Page(plain=plain), picture(sweep, rows, "plot", name)
-    page.say(sweep_head(sweep))
+def print_plot(page: Page, head: str, drawn: Picture, notes: Sequence[str]) -> None:
+    """The curves below their head, with dotted lines where regimes change; then the regimes and the notes."""
+    page.say(head)
     height = min(HEIGHT, max(page.console.height - AROUND, LEAST_HEIGHT)) if page.room else HEIGHT
     _show(page, _lines(drawn, page.room or PIPE_WIDTH, height))
-    for note in [*_legend(drawn), *sweep_notes(rows, [name])]:
+    for note in [*_legend(drawn), *notes]:
         page.say(note)
 
 
@@ -81,23 +83,25 @@ def _show(page: Page, lines: list[str]) -> None:
         page.console.print(Text.from_ansi(shown.rstrip()), soft_wrap=True)
 
 
-def print_tradeoff_plot(found: Tradeoff) -> None:
+def print_tradeoff_plot(measured: "Tradeoff") -> None:
     """Error against time, both logarithmic: the settings on each family, then string elements."""
+    from ..tradeoff.measure import EDGES, drawable
+
     page = Page()
     room = page.room or PIPE_WIDTH
-    for family, group in groupby(found.measured, attrgetter("family")):
-        measured = list(group)
-        points = [(one.seconds, drawable(one.worst_ulp)) for one in measured]
+    for family, group in groupby(measured.measured, attrgetter("family")):
+        settings = list(group)
+        points = [(one.seconds, drawable(one.worst_ulp)) for one in settings]
         page.say(family, "bold")
         _show(page, _scatter("worst error (ulp)", [points], room, LETTERS))
-    letters = zip(LETTERS, measured, strict=False)
+    letters = zip(LETTERS, settings, strict=False)
     page.say(f"{', '.join(f'{letter} {one.setting}' for letter, one in letters)}.")
     page.say(f"{EDGES} Times are this machine's, for one scene.")
-    if found.marches:
+    if measured.marches:
         curves = [
             [
                 (one.seconds, one.relative_error)
-                for one in found.marches
+                for one in measured.marches
                 if one.extrapolated == way and one.elements
             ]
             for way in (False, True)
@@ -105,7 +109,7 @@ def print_tradeoff_plot(found: Tradeoff) -> None:
         page.say("String elements", "bold")
         _show(page, _scatter("relative error of e^(μφ)", curves, room, ""))
         page.say("a elements, b extrapolated; from left to right 4 to 10 million of them.")
-    for note in (*found.notes, found.advice):
+    for note in (*measured.notes, measured.advice):
         page.say(note)
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.interval import LARGEST_EXPONENT
 from ..arithmetic.rational import EXACT, Irrational
@@ -23,7 +23,7 @@ from ..arithmetic.rounding import (
 from ..model.case import Case
 from ..model.machine import Machine, Undetermined
 from ..model.quantities import FROM_MOTION, NAMES
-from ..model.scene import MEASURED, PARAMETERS, UNMEASURED, Given, Motion, Scene, read_input
+from ..model.scene import UNMEASURED, Motion, Scene
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, N, Quantity
@@ -37,12 +37,62 @@ BELOW_DOUBLES = "not 0 but below the range of doubles; ask for digits (--digits 
 OnMachine = Callable[[Machine[Any]], Any]
 
 
-class Answers:
-    """The quantities of a scene, settled when asked for: to doubles or to ``digits`` digits."""
+class Spread(NamedTuple):
+    """A quantity's standard uncertainty, and by input the share of its square.
 
-    def __init__(self, scene: Scene, digits: int | None = None, motion: Motion = UNMEASURED) -> None:
+    ``u`` is None where there is none, for the ``reason``, which is empty if the quantity has no value.
+    """
+
+    u: Decimal | None
+    shares: Mapping[str, Decimal] = {}
+    reason: str = ""
+
+
+class Uncertainties:
+    """Standard uncertainties: of the inputs, ``given`` in SI units, and of quantities when asked for.
+
+    ``doubts`` makes the sentences on what may be otherwise within those of the inputs.
+    """
+
+    def __init__(
+        self,
+        given: Mapping[str, Fraction],
+        spread: Callable[[str], Spread],
+        doubts: Callable[[], list[str]],
+    ) -> None:
+        self.given = given
+        self.doubts = doubts
+        self._spread = spread
+        self._spreads: dict[str, Spread] = {}
+
+    def __getitem__(self, name: str) -> Spread:
+        """The spread of a quantity by its name."""
+        if name not in self._spreads:
+            self._spreads[name] = self._spread(name)
+        return self._spreads[name]
+
+    @property
+    def reasons(self) -> dict[str, str]:
+        """Why quantities asked for so far have a value but no uncertainty."""
+        return {name: spread.reason for name, spread in self._spreads.items() if spread.reason}
+
+
+class Answers:
+    """The quantities of a scene, settled when asked for: to doubles or to ``digits`` digits.
+
+    ``uncertainties`` is None where all inputs are exact.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        digits: int | None = None,
+        motion: Motion = UNMEASURED,
+        uncertainties: Uncertainties | None = None,
+    ) -> None:
         self.case = Case(scene, motion)
         self.digits = digits
+        self.uncertainties = uncertainties
         self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._values: dict[str, Any] = {"regime": self.case.regime}
@@ -68,6 +118,19 @@ class Answers:
                 self._values[name] = None
                 self.reasons[name] = str(reason)
         return self._values[name]
+
+    def spreads(self, names: Iterable[str]) -> dict[str, Spread]:
+        """The spreads of those named that are numbers; empty where all inputs are exact."""
+        known = self.uncertainties
+        return {} if known is None else {name: known[name] for name in names if name != "regime"}
+
+    def standard_uncertainties(self, names: Iterable[str]) -> dict[str, Any]:
+        """Standard uncertainties by name, rounded as values are, None where there is none to first order.
+
+        Empty where all inputs are exact.
+        """
+        spreads = self.spreads(names)
+        return {name: None if spread.u is None else self.round(spread.u) for name, spread in spreads.items()}
 
     def cut(self, name: str, place: int) -> Decimal:
         """The value of a quantity that exists, rounded to a multiple of 10^place."""
@@ -117,17 +180,3 @@ class Answers:
     def with_pulley(self, mass: Fraction | float) -> Answers:
         """The answers to this scene on a pulley of that mass (inf: locked), with a string that grips."""
         return Answers(self.case.scene._replace(M=mass, mu=None, mu_k=None), self.digits)
-
-
-def read_answers(
-    given: Mapping[str, Given | None], digits: int | None
-) -> tuple[Answers, dict[str, Fraction]]:
-    """The answers to what is given, and the uncertainties of what in it is not exact. Raises SceneError."""
-    inputs = {name: read_input(name, given.get(name)) for name in (*PARAMETERS, *MEASURED)}
-    uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
-    if all(inputs[name].given is None for name in MEASURED):
-        return Answers(Scene.of(inputs), digits), uncertain
-    from ..model import motion as motions
-
-    scene, motion = motions.read(inputs)
-    return Answers(motions.completed(scene, motion), digits, motion), uncertain

@@ -13,19 +13,24 @@ from .answers import DOUBLE_DIGITS, Answers
 
 
 def notes(answers: Answers) -> list[str]:
-    """Sentences on the regime and why, on conditions (36), and on each value that is missing."""
+    """Sentences on the regime and why, on conditions (36), on what is missing and what is in doubt."""
     return [verdict(answers), *_remarks(answers), *reasons(answers)]
 
 
 def reasons(answers: Answers) -> list[str]:
-    """Why values asked for so far are missing: a sentence a reason, naming them."""
-    return reasons_at(Counter(answers.reasons.items()), 1)
+    """What there is to say of the values asked for so far: why some are missing, what is in doubt."""
+    missing = reasons_at(Counter(answers.reasons.items()), 1)
+    uncertainties = answers.uncertainties
+    if uncertainties is None:
+        return missing
+    unknown = {(f"u_{name}", reason): 1 for name, reason in uncertainties.reasons.items()}
+    return [*missing, *uncertainties.doubts(), *reasons_at(unknown, 1)]
 
 
-def reasons_at(times_missing: Mapping[tuple[str, str], int], points: int) -> list[str]:
-    """Why values are missing at so many points, from how often a name is missing for a reason."""
+def reasons_at(counted: Mapping[tuple[str, str], int], points: int) -> list[str]:
+    """Why values are missing: a sentence a reason, with the names, and at how many of the points."""
     names: dict[tuple[str, int], list[str]] = {}
-    for (name, reason), times in times_missing.items():
+    for (name, reason), times in counted.items():
         names.setdefault((reason, times), []).append(name)
     return [
         f"{', '.join(group)}: {reason}{'' if times == points else f' (at {times} of {points} points)'}."

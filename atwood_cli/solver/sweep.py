@@ -9,13 +9,12 @@ more where they are closer together than those can tell. The ends are hit exactl
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
-from itertools import groupby, pairwise, product
+from itertools import product
 from math import lcm
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from ..arithmetic.interval import decimal_context
-from ..arithmetic.rounding import as_typed, is_infinite, text
-from ..model.quantities import QUANTITIES
+from ..arithmetic.rounding import as_typed, text
 from ..model.scene import PARAMETERS, Scene, SceneError, read_value, read_whole, stated
 from ..model.units import MAX_DIGITS, MAX_MAGNITUDE, NUMBER
 from .answers import DOUBLE_DIGITS, Answers
@@ -23,8 +22,7 @@ from .answers import DOUBLE_DIGITS, Answers
 Point = Decimal | str
 """A value of a swept parameter as it is printed; text where it has a unit (an angle in radians)."""
 
-MAX_POINTS, MAX_RANGES, MAX_CURVES = 1_000_000, 2, 6
-LARGEST_DRAWN = 1e100
+MAX_POINTS, MAX_RANGES = 1_000_000, 2
 FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
 
 
@@ -64,25 +62,6 @@ class Row(NamedTuple):
     regime: str
     values: dict[str, object]
     reasons: dict[str, str]
-
-
-class Curve(NamedTuple):
-    """A quantity along a range, None where it does not exist; the regimes, and where they change."""
-
-    label: str
-    xs: list[float]
-    ys: list[float | None]
-    regimes: list[str]
-    changes: list[int]
-
-
-class Picture(NamedTuple):
-    """Curves, and what their axes say."""
-
-    x: str
-    y: str
-    log: bool
-    curves: list[Curve]
 
 
 def read_sweep(given: Mapping[str, str | None]) -> Sweep:
@@ -188,7 +167,8 @@ def point_text(point: Point) -> str:
     return text(point) if isinstance(point, Decimal) else point
 
 
-def _stated(name: str, point: Point) -> str:
+def stated_point(name: str, point: Point) -> str:
+    """A point with the name and unit of its parameter, for a sentence."""
     return stated(name, text(point)) if isinstance(point, Decimal) else f"{name} = {point}"
 
 
@@ -199,7 +179,7 @@ def _scene_at(given: Mapping[str, str | None], at: Mapping[str, Point]) -> Scene
     except SceneError as error:
         if error.parameter in here or error.value is None:
             raise
-        where = ", ".join(_stated(name, point) for name, point in at.items())
+        where = ", ".join(stated_point(name, point) for name, point in at.items())
         raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
 
 
@@ -211,86 +191,3 @@ def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterat
         answers = Answers(_scene_at(sweep.given, at), digits)
         values = {name: answers[name] for name in names}
         yield Row(at, answers.case.regime, values, answers.reasons)
-
-
-def groups(sweep: Sweep, rows: Sequence[Row]) -> list[list[Row]]:
-    """The rows in the parts that a table shows: by the slow range, or else by the regime."""
-    slow = sweep.ranges[0].name
-    return [
-        list(group)
-        for _, group in groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
-    ]
-
-
-def regimes(rows: Sequence[Row], along: str) -> list[str]:
-    """Each regime with the points between which it holds; what is between two of them is not told."""
-    starts = [0, *_changes(rows)]
-    ends = [*(i - 1 for i in starts[1:]), len(rows) - 1]
-    if len(starts) == 1:
-        return [rows[0].regime]
-    found = []
-    for start, end in zip(starts, ends, strict=True):
-        first, last = (_stated(along, rows[i].at[along]) for i in (start, end))
-        where = f"from {first} to {last}"
-        if start == end:
-            where = f"at {first}"
-        elif not start:
-            where = f"up to {last}"
-        elif end == len(rows) - 1:
-            where = f"from {first} on"
-        found.append(f"{rows[start].regime} {where}")
-    return found
-
-
-def _changes(rows: Sequence[Row]) -> list[int]:
-    return [i for i, (before, row) in enumerate(pairwise(rows), 1) if before.regime != row.regime]
-
-
-def check_drawable(sweep: Sweep, option: str, name: str) -> None:
-    """Raises SceneError where the sweep and the quantity make no curves."""
-    if name == "regime":
-        raise SceneError(option, name, "is not a number to draw; name another quantity")
-    if min(len(range_.points) for range_ in sweep.ranges) > MAX_CURVES and sweep.ranges[1:]:
-        rule = f"would be more than {MAX_CURVES} curves; give one of the ranges at most {MAX_CURVES} points"
-        raise SceneError(option, name, rule)
-
-
-def picture(sweep: Sweep, rows: Sequence[Row], option: str, name: str) -> Picture:
-    """Curves of a quantity along the range of more points, one for each point of the other.
-
-    Raises SceneError where numbers are too large to draw, ArithmeticError where there are none.
-    """
-    x = max(reversed(sweep.ranges), key=lambda range_: len(range_.points))
-    parts: dict[str, list[Row]] = {}
-    for row in rows:
-        label = ", ".join(_stated(other, point) for other, point in row.at.items() if other != x.name)
-        parts.setdefault(label, []).append(row)
-    xs = list(map(float, x.bare()))
-    curves = [
-        Curve(label, xs, [_drawn(row.values[name]) for row in part], regimes(part, x.name), _changes(part))
-        for label, part in parts.items()
-    ]
-    values = [*xs, *(y for curve in curves for y in curve.ys if y is not None)]
-    if len(values) == len(xs):
-        why = "; ".join({row.reasons[name]: None for row in rows})
-        raise ArithmeticError(f"{name} exists at no point, so there is nothing to draw: {why}")
-    if max(map(abs, values)) > LARGEST_DRAWN or (x.log and min(xs) < 1 / LARGEST_DRAWN):
-        rule = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only"
-        raise SceneError(option, name, rule)
-    about = QUANTITIES[name]
-    return Picture(_with_unit(x.name, x.unit), _with_unit(name, about.unit), x.log, curves)
-
-
-def _drawn(value: Any) -> float | None:
-    """A value as a coordinate, None where there is none; doubles overflow to none, too."""
-    return None if value is None or is_infinite(value) else float(value)
-
-
-def _with_unit(name: str, unit: str) -> str:
-    return f"{name} ({unit})" if unit else name
-
-
-def heads(sweep: Sweep, names: Sequence[str]) -> list[str]:
-    """The names of parameters and quantities, with their units."""
-    swept = [_with_unit(range_.name, range_.unit) for range_ in sweep.ranges]
-    return swept + [_with_unit(n, QUANTITIES[n].unit if n in QUANTITIES else "") for n in names]

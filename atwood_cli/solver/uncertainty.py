@@ -32,8 +32,7 @@ from ..arithmetic.rounding import is_infinite, to_place, with_uncertainty
 from ..model.case import Case
 from ..model.machine import Undetermined
 from ..model.scene import Motion, Scene
-from .answers import Answers
-from .messages import reasons_at
+from .answers import Answers, Spread, Uncertainties
 
 SURE = 20
 """Digits to which a slope is right."""
@@ -49,17 +48,6 @@ Uncertain = Mapping[str, Fraction]
 """Standard uncertainties of inputs, in SI units, as they are in the scene."""
 
 
-class Spread(NamedTuple):
-    """A quantity's standard uncertainty, and by input the share of its square.
-
-    ``u`` is None where there is none, for the ``reason``, which is empty if the quantity has no value.
-    """
-
-    u: Decimal | None
-    shares: Mapping[str, Decimal] = {}
-    reason: str = ""
-
-
 class Slope(NamedTuple):
     """A derivative, None at a kink, and the steeper of the slopes to both sides."""
 
@@ -67,20 +55,8 @@ class Slope(NamedTuple):
     steepest: Decimal
 
 
-class Uncertainties(NamedTuple):
-    """Of the inputs as given, of the quantities asked for, and what there is to say about them."""
-
-    given: Uncertain
-    spreads: Mapping[str, Spread]
-    notes: Sequence[str]
-
-    def rounded(self, answers: Answers) -> dict[str, Any]:
-        """The uncertainties by quantity, rounded as values are; None where there is none."""
-        return {n: None if found.u is None else answers.round(found.u) for n, found in self.spreads.items()}
-
-
-def propagate(case: Case, uncertain: Uncertain, names: Sequence[str]) -> Uncertainties:
-    """The uncertainties of the quantities named, with notes on what is missing or in doubt."""
+def propagate(case: Case, uncertain: Uncertain) -> Uncertainties:
+    """The uncertainties of a scene's quantities, each found when asked for."""
     slope = _slopes(case, uncertain)
 
     def spread(name: str) -> Spread:
@@ -97,9 +73,7 @@ def propagate(case: Case, uncertain: Uncertain, names: Sequence[str]) -> Uncerta
         shares = {x: AT.power(AT.divide(part, total), 2) for x, part in parts.items()} if total else {}
         return Spread(total or ZERO, shares)
 
-    spreads = {name: spread(name) for name in names if name != "regime"}
-    missing = {(f"u_{name}", found.reason): 1 for name, found in spreads.items() if found.reason}
-    return Uncertainties(uncertain, spreads, [*doubts(case, uncertain), *reasons_at(missing, 1)])
+    return Uncertainties(uncertain, spread, lambda: doubts(case, uncertain))
 
 
 def doubts(case: Case, uncertain: Uncertain) -> list[str]:
@@ -107,7 +81,7 @@ def doubts(case: Case, uncertain: Uncertain) -> list[str]:
     scene, known = case.scene, case.pulley_known
     spread = {x: decimal(u) for x, u in uncertain.items()}
     masses = [spread[x] for x in ("m1", "m2") if x in spread]
-    found = [_doubt("Which mass is heavier", "m2 - m1", decimal(scene.m2 - scene.m1), masses, " kg")]
+    sentences = [_doubt("Which mass is heavier", "m2 - m1", decimal(scene.m2 - scene.m1), masses, " kg")]
     if scene.mu is not None:
         holding = scene._replace(mu=None, mu_k=None, M=scene.M if known else inf)
         slope = _slopes(Case(holding, case.motion), uncertain)
@@ -119,8 +93,8 @@ def doubts(case: Case, uncertain: Uncertain) -> list[str]:
         margin = AT.subtract(decimal(scene.mu), Answers(holding, AT.prec)["mu_verge"])
         what = "Whether the string slips" if known else "Whether any pulley can make the string slip"
         name = f"mu - mu_verge{'' if known else ' of a locked pulley'}"
-        found.append(_doubt(what, name, margin, parts))
-    return [sentence for sentence in found if sentence]
+        sentences.append(_doubt(what, name, margin, parts))
+    return [sentence for sentence in sentences if sentence]
 
 
 def _doubt(what: str, name: str, value: Decimal, parts: Sequence[Decimal], unit: str = "") -> str:
@@ -165,11 +139,11 @@ def _slopes(case: Case, uncertain: Uncertain) -> Callable[[str, str], Slope]:
         return answers_of(scene, motion._replace(**moved), digits)
 
     def at(name: str, x: str, offset: Fraction, digits: int) -> Decimal:
-        found = answers(x, offset, digits)
-        value = found[name]
+        moved = answers(x, offset, digits)
+        value = moved[name]
         if value is None or is_infinite(value):
             beside = f"unknown, as with another {x} it may have no value: " if offset else ""
-            raise Undetermined(beside and beside + found.reasons[name])
+            raise Undetermined(beside and beside + moved.reasons[name])
         assert isinstance(value, Decimal)
         return value
 

@@ -1,0 +1,86 @@
+"""`atwood batch`: a file of scenes, the same file with their results."""
+
+from typing import Annotated
+
+import typer
+
+from ..model.quantities import STANDARD
+from ..model.scene import SceneError
+from .options import COULD_NOT, DONE, Columns, Force, check_names, near_or_all, option
+from .text import say
+
+Table = Annotated[
+    str,
+    typer.Argument(
+        metavar="IN",
+        rich_help_panel="Files",
+        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl or .parquet; - for stdin.",
+        show_default=False,
+    ),
+]
+OutTable = Annotated[
+    str,
+    option("Files", "--output", "-o", metavar="OUT", help="Write to this file; - for stdout, if not given."),
+]
+FromFormat = Annotated[
+    str | None,
+    option(
+        "Files", "--from", metavar="csv|tsv|ndjson|parquet", help="Format of IN, if not that of its suffix."
+    ),
+]
+ToFormat = Annotated[
+    str | None,
+    option(
+        "Files",
+        "--to",
+        metavar="csv|tsv|ndjson|parquet",
+        help="Format of OUT, if not that of its suffix; stdout: csv.",
+    ),
+]
+Accuracy = Annotated[
+    str,
+    option(
+        "Output",
+        metavar="fast|certified|exact",
+        help="How accurate results are; certified, within 4 units in the last place, if not given.",
+    ),
+]
+AllowErrors = Annotated[bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")]
+
+
+def batch(
+    table: Table,
+    *,
+    output: OutTable = "-",
+    from_: FromFormat = None,
+    to: ToFormat = None,
+    only: Columns = None,
+    accuracy: Accuracy = "certified",
+    allow_errors: AllowErrors = False,
+    force: Force = False,
+) -> int:
+    """Solve a table of scenes: the same table with results appended, and the error of each bad row.
+
+    Examples:
+      atwood batch scenes.csv -o results.csv
+      atwood batch scenes.parquet -o results.parquet --accuracy exact
+      atwood batch scenes.csv --only regime --only acceleration | head
+      generate | atwood batch - --from ndjson --to ndjson --allow-errors
+
+    Columns m1, m2, M, mu, mu_k, g, inertia, R, wrap are the options of solve, in SI units; an empty cell
+    is not given. Other columns stay as they are. A cell is read as the double nearest to it, as is g: so
+    even exact can differ in the last digit from solve, which takes 0.1 for a tenth.
+    """
+    from ..arrays import ACCURACIES
+    from ..batch.formats import read_format
+    from ..batch.run import Job, run_batch
+    from .page import watched
+
+    names = list(dict.fromkeys(only or STANDARD))
+    check_names("only", names)
+    if accuracy not in ACCURACIES:
+        raise SceneError("accuracy", accuracy, f"is no accuracy{near_or_all(accuracy, ACCURACIES)}")
+    formats = read_format("from", from_, table), read_format("to", to, output)
+    tally = run_batch(Job(table, formats[0], output, formats[1], names, accuracy, force), watched)
+    say(*tally.lines())
+    return COULD_NOT if tally.errors and not allow_errors else DONE

@@ -1,0 +1,178 @@
+"""`atwood contact`: what acts along the arc, as a table, JSON, CSV or a figure, or by string elements."""
+
+import sys
+from collections.abc import Mapping
+from typing import Annotated
+
+from ..model.scene import Scene, read_digits
+from ..solver.answers import Answers
+from ..solver.contact import Contact
+from ..solver.contact import contact as solve_contact
+from ..solver.elements import Elements as Solved
+from ..solver.elements import elements as march_elements
+from ..solver.messages import verdict
+from .options import (
+    DONE,
+    FIGURE_TO_REPLACE,
+    ONE_FORM,
+    AsCsv,
+    AsJson,
+    Digits,
+    FigureFile,
+    Force,
+    Rule,
+    check,
+    option,
+    takes_scene,
+)
+from .text import Forms, cell, for_stream, say, scene_record, show
+
+DEFAULT_POINTS = 13
+Points = Annotated[
+    str | None,
+    option(
+        "Arc",
+        metavar="N",
+        help=f"Angles along the arc to show, with both ends; {DEFAULT_POINTS} if not given.",
+    ),
+]
+Profile = Annotated[
+    str | None,
+    option(
+        "Arc",
+        metavar="creep|least",
+        help="Which tension, where friction to spare leaves it open: that of a slightly elastic string"
+        " (creep, if not given), or that with the least net friction.",
+    ),
+]
+Elements = Annotated[
+    str | None,
+    option(
+        "Arc",
+        metavar="N",
+        help="Instead, solve the arc by N elements of string, in doubles, beside the exact values.",
+    ),
+]
+Extrapolate = Annotated[
+    bool, option("Arc", "--extrapolate", help="Extrapolate from N/2 and N elements (Richardson).")
+]
+
+RULES = (
+    Rule("points profile figure", "elements", "has no say beside --elements; leave one of them out"),
+    Rule("extrapolate", "elements", "needs --elements", without=True),
+)
+COLUMN_UNITS = {
+    "angle": "°",
+    "tension": "N",
+    "normal_per_radian": "N/rad",
+    "friction_per_radian": "N/rad",
+    "normal_per_metre": "N/m",
+    "friction_per_metre": "N/m",
+}
+
+
+@takes_scene
+def contact(
+    given: Mapping[str, str | None],
+    *,
+    points: Points = None,
+    profile: Profile = None,
+    elements: Elements = None,
+    extrapolate: Extrapolate = False,
+    figure: FigureFile = None,
+    force: Force = False,
+    digits: Digits = None,
+    json: AsJson = False,
+    csv: AsCsv = False,
+) -> int:
+    """Show what acts along the arc of contact, and that it adds up.
+
+    Examples:
+      atwood contact --m1 1 --m2 3 --mu 0.3 --digits 6
+      atwood contact --m1 1 --m2 3 --M 10 --mu 0.3 --profile least
+      atwood contact --m1 1 --m2 3 --mu 0.3 --elements 1000 --extrapolate
+      atwood contact --m1 1 --m2 200 --M inf --mu 0.2 --wrap 2.5turn --csv
+    """
+    options = dict(locals())
+    check([ONE_FORM, FIGURE_TO_REPLACE], options)
+    answers = Answers(Scene.read(given), read_digits(digits))
+    check(RULES, options)
+    if elements is not None:
+        forms = _forms_of_elements(answers, march_elements(answers, elements, extrapolate))
+    else:
+        forms = _forms(answers, solve_contact(answers, points or DEFAULT_POINTS, profile))
+    if figure is not None:
+        from .figure import save
+
+        save(answers, profile, figure, force)
+    say(*show(forms, json, csv))
+    return DONE
+
+
+def _forms(answers: Answers, arc: Contact) -> Forms:
+    return Forms(
+        json=lambda: {
+            "scene": scene_record(answers.case.scene),
+            "regime": answers.case.regime,
+            "profile": arc.kind,
+            "points": arc.points,
+            "balance": arc.balance,
+            "notes": [verdict(answers), *arc.notes],
+        },
+        records=lambda: arc.points,
+        page=lambda: _print_arc(answers, arc),
+        notes=lambda: arc.notes,
+    )
+
+
+def _forms_of_elements(answers: Answers, solved: Solved) -> Forms:
+    return Forms(
+        json=lambda: {
+            "scene": scene_record(answers.case.scene),
+            "regime": answers.case.regime,
+            "elements": {
+                row.name: {"value": row.value, "exact": row.exact, "error": row.error} for row in solved.rows
+            },
+            "notes": [verdict(answers), *solved.notes],
+        },
+        records=lambda: [row._asdict() for row in solved.rows],
+        page=lambda: _print_elements(answers, solved),
+        notes=lambda: solved.notes,
+    )
+
+
+def _print_arc(answers: Answers, arc: Contact) -> None:
+    """The scene, the verdict, the points along the arc, the balance of forces, and the notes."""
+    from .page import Page, aligned
+
+    page = Page()
+    page.head(answers)
+    heads = [f"{name.partition('_per_')[0]} ({COLUMN_UNITS[name]})" for name in arc.points[0]]
+    columns = [aligned(cell(point[name]) for point in arc.points) for name in arc.points[0]]
+    page.table([for_stream(head, sys.stdout) for head in heads], [list(zip(*columns, strict=True))])
+    names, forces = zip(*((name, row) for name, row in arc.balance.items() if "x" in row), strict=True)
+    xs, ys = (aligned(cell(force[axis]) for force in forces) for axis in "xy")
+    force_rows = list(zip(names, xs, ys, strict=True))
+    page.table(["Force on the pulley", "x (N)", "y (N)"], [force_rows[:2], force_rows[2:]])
+    unit = "N m" if answers.case.scene.R is not None else "N, per unit radius"
+    torques = aligned(map(cell, arc.balance["torque"].values()))
+    kinds = ("friction along the arc", "R (T2 - T1)", "residual")
+    page.table([f"Torque on the pulley ({unit})", ""], [list(zip(kinds, torques, strict=True))])
+    for note in arc.notes:
+        page.say(note)
+
+
+def _print_elements(answers: Answers, solved: Solved) -> None:
+    """What the elements give beside the exact values, and the notes."""
+    from .page import Page, aligned
+
+    page = Page()
+    page.head(answers)
+    names, errors = [row.name for row in solved.rows], [cell(row.error) for row in solved.rows]
+    values, exact = (aligned(cell(row[i]) for row in solved.rows) for i in (1, 2))
+    page.table(
+        ["Quantity", "Elements", "Exact", "Relative error"],
+        [list(zip(names, values, exact, errors, strict=True))],
+    )
+    for note in solved.notes:
+        page.say(note)

@@ -1,0 +1,256 @@
+"""`atwood solve`: one scene, as a table, JSON, CSV, bare values, or with how it follows."""
+
+import sys
+from collections.abc import Mapping, Sequence
+from functools import partial
+from itertools import chain, groupby
+from typing import TYPE_CHECKING, Annotated
+
+from ..arithmetic.rounding import with_uncertainty
+from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
+from ..model.scene import read_digits
+from ..solver.answers import Answers
+from ..solver.messages import notes, reasons
+from ..solver.reading import read_answers
+from .options import (
+    COULD_NOT,
+    DONE,
+    ONE_FORM,
+    AsCsv,
+    AsJson,
+    Digits,
+    Rule,
+    check,
+    check_names,
+    flag,
+    option,
+    quantities,
+    scene_option,
+    takes_scene,
+)
+from .text import Forms, cell, describe, for_stream, say, scene_record, show
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from .page import Page
+
+
+def _answers() -> Mapping[str, str]:
+    return {**quantities(), **dict.fromkeys(MEASURED_NAMES, "found from what was measured")}
+
+
+A = Annotated[str | None, scene_option("a", "Measured")]
+Drop = Annotated[str | None, scene_option("drop", "Measured")]
+Time = Annotated[str | None, scene_option("time", "Measured")]
+Only = Annotated[
+    list[str] | None,
+    option("Output", metavar="NAME", words=_answers, help="Print only this quantity; repeatable."),
+]
+Budget = Annotated[
+    bool,
+    option("Output", "--budget", help="Also print each uncertain input's share of every result's variance."),
+]
+Explain = Annotated[
+    bool,
+    option(
+        "Output",
+        "--explain",
+        help="Instead, show how it follows: step by step, with the numbers put in.",
+    ),
+]
+Markdown = Annotated[
+    bool,
+    option("Output", "--markdown", help="With --explain: a page of Markdown, its mathematics in LaTeX."),
+]
+
+RULES = (
+    Rule("markdown", "explain", "needs --explain", without=True),
+    *(
+        Rule("explain", name, f"has no part in {flag(name)}; leave one of them out")
+        for name in ("json", "csv", "only", "budget", "a", "drop", "time")
+    ),
+)
+RULES_OF_THE_SCENE = (
+    Rule("explain", "uncertain", "shows exact numbers; leave their uncertainties out"),
+    Rule("budget", "uncertain", "needs an input with its uncertainty, like --m1 '1.000(2)'", without=True),
+    Rule("budget", "csv", "has no place in CSV; take --json"),
+    Rule("budget", "bare", "has no place in bare values; take --json"),
+)
+
+
+@takes_scene
+def solve(
+    given: Mapping[str, str | None],
+    *,
+    a: A = None,
+    drop: Drop = None,
+    time: Time = None,
+    digits: Digits = None,
+    json: AsJson = False,
+    csv: AsCsv = False,
+    only: Only = None,
+    budget: Budget = False,
+    explain: Explain = False,
+    markdown: Markdown = False,
+) -> int:
+    """Solve one scene: acceleration, tensions, friction, critical masses.
+
+    Examples:
+      atwood solve --m1 1 --m2 3 --mu 0.3
+      atwood solve --m1 250g --m2 300g --M 100g --R 5cm --digits 6
+      atwood solve --m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --json
+      atwood solve --m1 1 --m2 3 --M 10 --only acceleration --only mu_verge
+      atwood solve --m1 '1.000(2)' --m2 3+/-0.01 --M 10 --budget
+      atwood solve --m1 55g --m2 60g --R 5cm --a 0.380+/-0.004
+      atwood solve --m1 55g --m2 60g --drop 80cm --time '2.05(2)'
+      atwood solve --m1 1 --m2 3 --mu 0.3 --explain
+
+    Any number may have its standard uncertainty, as 1.000+/-0.002 or, in quotes for the shell, '1.000(2)'.
+    Results then have theirs, to first order, and a table ends each value at the second digit of it,
+    whatever --digits.
+    """
+    options, names = dict(locals()), only or []
+    check([ONE_FORM], options)
+    check_names("only", names, known=(*NAMES, *MEASURED_NAMES))
+    check(RULES, options)
+    answers = read_answers({**given, "a": a, "drop": drop, "time": time}, read_digits(digits))
+    bare = bool(names) and not (json or csv)
+    check(RULES_OF_THE_SCENE, {**options, "bare": bare, "uncertain": answers.uncertainties})
+    if explain:
+        print_explanation(answers, markdown)
+        return DONE
+    say(*show(_forms(answers, names, budget), json, csv, bare=bool(names)))
+    return COULD_NOT if bare and not all(cell(answers[name]) for name in names) else DONE
+
+
+def _forms(answers: Answers, only: Sequence[str], budget: bool) -> Forms:
+    names = only or answers.names
+    return Forms(
+        json=lambda: _record(answers, only, budget),
+        records=lambda: [_line(answers, names)],
+        page=lambda: print_only(answers, only) if only else print_table(answers, budget=budget),
+        notes=lambda: reasons(answers),
+    )
+
+
+def _record(answers: Answers, only: Sequence[str], budget: bool) -> dict[str, object]:
+    """For JSON: all quantities with scene and notes, or only those named, and their uncertainties."""
+    names = only or answers.names
+    results: dict[str, object] = {name: answers[name] for name in names}
+    if answers.uncertainties:
+        results["uncertainty"] = answers.standard_uncertainties(names)
+    if budget:
+        results["budget"] = {
+            name: {x: answers.round(100 * share) for x, share in spread.shares.items()} or None
+            for name, spread in answers.spreads(names).items()
+        }
+    if only:
+        return results
+    scene = scene_record(answers.case.scene, answers.case.motion)
+    return {"scene": scene, **results, "notes": notes(answers)}
+
+
+def _line(answers: Answers, names: Sequence[str]) -> dict[str, object]:
+    """For CSV: values, then uncertainties; what does not exist is empty."""
+    values = {name: answers[name] for name in names}
+    return values | {f"u_{name}": u for name, u in answers.standard_uncertainties(names).items()}
+
+
+def print_only(answers: Answers, only: Sequence[str]) -> None:
+    """Bare values, one a line, nothing for one that does not exist."""
+    for name in only:
+        if shown := cell(answers[name]):
+            print(shown)
+
+
+UNCERTAIN_DIGITS = 6
+COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
+
+
+def print_table(answers: Answers, console: "Console | None" = None, budget: bool = False) -> None:
+    """The scene, the verdict, the quantities that exist, the notes, and the budget if asked for."""
+    from .page import Page, table_width
+
+    page, groups, columns = Page(console), _rows(answers), list(COLUMNS)
+    shorter = _in_sentences(answers)
+    _, *others = notes(shorter)
+    page.head(shorter)
+    while page.room and table_width(columns, groups) > page.room:
+        columns.pop()
+        groups = [[row[: len(columns)] for row in group] for group in groups]
+    if groups and "Unit" in columns:
+        page.table(columns, groups)
+    else:  # no number without its unit: a plain line a quantity
+        for name, value, unit, *_ in chain.from_iterable(_rows(answers)):
+            page.console.out(f"{name} = {value.lstrip()} {unit}".rstrip())
+    for note in others:
+        page.say(note)
+    if budget:
+        _print_budget(page, answers)
+
+
+def _in_sentences(answers: Answers) -> Answers:
+    """The answers as sentences state them: of what is uncertain, a double's seventeen digits are too many."""
+    if answers.uncertainties is None or answers.digits is not None:
+        return answers
+    case = answers.case
+    shorter = Answers(case.scene, UNCERTAIN_DIGITS, case.motion, answers.uncertainties)
+    _ = [shorter[name] for name in shorter.names]
+    return shorter
+
+
+def _rows(answers: Answers) -> list[list[list[str]]]:
+    """The cells of the table, a row for each quantity that exists, by group."""
+    from .page import aligned
+
+    spreads = answers.spreads(answers.names)
+    values = {}
+    for name in answers.names[1:]:
+        if shown := cell(answers[name]):
+            u = spreads[name].u if spreads else None
+            values[name] = with_uncertainty(partial(answers.cut, name), u) if u else shown
+    groups: dict[str, list[list[str]]] = {}
+    for name, value in zip(values, aligned(values.values()), strict=True):
+        about = QUANTITIES[name]
+        equation = about.equation
+        if answers.case.regime == "slip" and about.equation_in_slip is not None:
+            equation = about.equation_in_slip
+        row = [name, value, about.unit, about.symbol, equation]
+        groups.setdefault(about.group, []).append([for_stream(word, sys.stdout) for word in row])
+    return list(groups.values())
+
+
+def _print_budget(page: "Page", answers: Answers) -> None:
+    """By quantity, each uncertain input's share of the variance."""
+    from .page import aligned
+
+    page.say("Each input's share of the variance, in percent:")
+    spreads = answers.spreads(answers.names).items()
+    shares = {name: spread.shares for name, spread in spreads if spread.shares}
+    inputs = list(answers.uncertainties.given) if answers.uncertainties else []
+    columns = [aligned(f"{100 * one[x]:.1f}" for one in shares.values()) for x in inputs]
+    rows = ([name, *cells] for name, *cells in zip(shares, *columns, strict=True))
+    by_group = groupby(rows, lambda row: QUANTITIES[row[0]].group)
+    page.table(["Quantity", *inputs], [list(group) for _, group in by_group])
+
+
+READABLE = 80  # columns: longer lines of text are hard to follow
+NARROWEST = 40
+
+
+def print_explanation(answers: Answers, markdown: bool) -> None:
+    """The derivation, step by step: on a terminal in its columns, or as Markdown."""
+    from ..derivation.steps import explain
+    from ..derivation.typeset import as_markdown, as_text
+    from .page import Page
+
+    scene, steps = describe(answers.case.scene), explain(answers)
+    if markdown:
+        for line in as_markdown(scene, steps):
+            print(for_stream(line, sys.stdout))
+        return
+    page = Page()
+    width = max(NARROWEST, min(READABLE, page.room or READABLE))
+    for line, style in as_text(scene, steps, width, lambda words: for_stream(words, sys.stdout)):
+        page.line(line, style)

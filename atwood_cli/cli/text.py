@@ -1,0 +1,150 @@
+"""Results as text, for which rich is not needed: cells, JSON, CSV, sentences on stderr."""
+
+import json
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from decimal import Decimal
+from fractions import Fraction
+from math import inf
+from typing import NamedTuple, TextIO
+
+from ..arithmetic.rounding import as_typed, is_infinite, text
+from ..model.scene import MEASURED, UNMEASURED, Motion, Scene, stated
+
+ASCII = str.maketrans(
+    {"μ": "mu", "µ": "u", "φ": "phi", "β": "beta", "π": "pi", "τ": "tau", "α": "alpha", "θ": "theta"}
+    | {
+        "₁": "1",
+        "₂": "2",
+        "²": "^2",
+        "°": "deg",
+        "·": "*",
+        "±": "+/-",
+        "≤": "<=",
+        "≥": ">=",
+        "≈": "~",
+        "√": "sqrt",
+    }
+)
+
+
+def for_stream(words: str, stream: TextIO | None) -> str:
+    """The words as the stream can take them: symbols are spelled out where it is not Unicode."""
+    return words if takes_unicode(stream) else words.translate(ASCII).encode("ascii", "replace").decode()
+
+
+def takes_unicode(stream: TextIO | None) -> bool:
+    """Whether symbols can be written to the stream."""
+    encoding = getattr(stream, "encoding", None) or "ascii"
+    return encoding.lower().startswith("utf")
+
+
+def say(*messages: str) -> None:
+    """Each message on stderr, as the program's."""
+    for message in messages:
+        line = for_stream(f"atwood: {message}", sys.stderr)
+        if sys.stderr.isatty():  # a line breaks between words, where it must
+            from shutil import get_terminal_size
+            from textwrap import fill
+
+            line = fill(line, get_terminal_size().columns, break_long_words=False, break_on_hyphens=False)
+        with suppress(OSError):  # there is nobody else to tell
+            print(line, file=sys.stderr)
+
+
+class Forms(NamedTuple):
+    """A result in the forms in which it may be asked for: each is made only if it is.
+
+    ``json`` and ``records`` (of which CSV has a line each) give what is to be printed; ``page`` prints.
+    """
+
+    json: Callable[[], Mapping[str, object]]
+    records: Callable[[], Sequence[Mapping[str, object]]]
+    page: Callable[[], None]
+    notes: Callable[[], Sequence[str]]
+
+
+def show(forms: Forms, json: bool, csv: bool, bare: bool = False) -> Sequence[str]:
+    """Print a result as JSON, as CSV or as a page; what comes back is left to say on stderr.
+
+    That is the notes, for which CSV has no place, nor has any form in which a result is ``bare``.
+    """
+    if json:
+        print(as_json(forms.json()))
+    elif csv:
+        print_csv(forms.records())
+    else:
+        forms.page()
+    return forms.notes() if csv or bare else ()
+
+
+def as_json(value: object, indent: str = "\n") -> str:
+    """A value as JSON: numbers as they are printed everywhere, those that no double can hold as null."""
+    inner = indent + "  "
+    match value:
+        case Mapping():
+            items = (f"{json.dumps(key)}: {as_json(item, inner)}" for key, item in value.items())
+            return f"{{{inner}{f',{inner}'.join(items)}{indent}}}"
+        case []:
+            return "[]"
+        case list():
+            items = (as_json(item, inner) for item in value)
+            return f"[{inner}{f',{inner}'.join(items)}{indent}]"
+        case Fraction():
+            return as_typed(value)
+        case float() | Decimal():
+            return "null" if is_infinite(value) else text(value)
+    return json.dumps(value)
+
+
+def print_csv(records: Sequence[Mapping[str, object]]) -> None:
+    """A line of names and a line for each record."""
+    from csv import writer
+
+    rows = [[cell(value) for value in record.values()] for record in records]
+    writer(sys.stdout, lineterminator="\n").writerows([list(records[0]), *rows])
+
+
+def cell(value: object) -> str:
+    """A value as bare text, empty where it does not exist or no double can hold it."""
+    match value:
+        case float() | Decimal():
+            return "" if is_infinite(value) else text(value)
+        case bool():
+            return str(value).lower()
+    return str(value or "")
+
+
+def scene_record(scene: Scene, motion: Motion = UNMEASURED) -> dict[str, object]:
+    """The inputs as JSON has them: numbers in SI units and degrees, or text where JSON has no number."""
+    given: dict[str, object] = scene._asdict()
+    if motion != UNMEASURED:
+        given |= {name: getattr(motion, name) for name in MEASURED}
+        given |= {motion.finds: None} if motion.finds else {}
+    if scene.M == inf:
+        given["M"] = "inf"
+    wrap = scene.wrap
+    given["wrap"] = wrap.number if wrap.unit == "°" else f"{as_typed(wrap.number)}rad"
+    return given
+
+
+def describe(scene: Scene, ranges: Mapping[str, object] = {}, uncertain: Mapping[str, Fraction] = {}) -> str:
+    """The scene in one line, as understood, with uncertainties, and with ranges as typed."""
+    parts = []
+    for name, value in {**scene_record(scene), **ranges}.items():
+        u = as_typed(uncertain[name]) if name in uncertain else ""
+        spread = f" ± {u}" if u else ""
+        if isinstance(value, Fraction):
+            parts.append(stated(name, f"{_as_fine(as_typed(value), u)}{spread}"))
+        elif value is not None:
+            parts.append(f"{name} = {str(value).replace('rad', f'{spread}rad')}")
+    return ", ".join(parts)
+
+
+def _as_fine(number: str, other: str) -> str:
+    """The number with as many decimals as the other, zeros if it has fewer: 3 beside 0.02 is 3.00."""
+    decimals = len(other.partition(".")[2]) - len(number.partition(".")[2])
+    if decimals <= 0 or "e" in number + other or "/" in number + other:
+        return number
+    return f"{number}{'' if '.' in number else '.'}{'0' * decimals}"

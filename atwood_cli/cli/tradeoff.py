@@ -1,0 +1,222 @@
+"""`atwood tradeoff`: time beside error on this machine, as tables, JSON, CSV, plots or a figure."""
+
+import sys
+from collections.abc import Mapping, Sequence
+from itertools import groupby
+from operator import attrgetter
+from typing import TYPE_CHECKING, Annotated
+
+from ..model.scene import Scene, SceneError, read_whole
+from .options import (
+    DONE,
+    FIGURE_TO_REPLACE,
+    ONE_FORM,
+    PLOT_IS_TEXT,
+    AsCsv,
+    AsJson,
+    FigureFile,
+    Force,
+    Rule,
+    check,
+    check_extras,
+    near_or_all,
+    option,
+    takes_scene,
+)
+from .text import Forms, describe, for_stream, say, scene_record, show
+
+if TYPE_CHECKING:
+    from ..tradeoff.measure import March, Measured, Tradeoff
+    from .page import Page
+
+
+def _families() -> Mapping[str, str]:
+    from ..tradeoff.scenes import FAMILIES
+
+    return {name: family.meaning for name, family in FAMILIES.items()}
+
+
+Families = Annotated[
+    list[str] | None,
+    option(
+        "Measurement",
+        "--family",
+        metavar="NAME",
+        words=_families,
+        help="Measure this family of scenes only; repeatable.",
+    ),
+]
+DEFAULT_SCENES, DEFAULT_SEED, MOST_SEED = 500, 1, 10**9
+Scenes = Annotated[
+    str | None,
+    option(
+        "Measurement",
+        metavar="N",
+        help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given.",
+    ),
+]
+Seed = Annotated[
+    str | None,
+    option(
+        "Measurement", metavar="N", help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given."
+    ),
+]
+Plot = Annotated[
+    bool,
+    option("Output", "--plot", help="Draw error against time in place of the tables (extra: plot)."),
+]
+
+RULES = (Rule("family scenes seed", "scene", "has no say where a scene is given; leave one of them out"),)
+
+
+@takes_scene
+def tradeoff(
+    given: Mapping[str, str | None],
+    *,
+    family: Families = None,
+    scenes: Scenes = None,
+    seed: Seed = None,
+    plot: Plot = False,
+    figure: FigureFile = None,
+    force: Force = False,
+    json: AsJson = False,
+    csv: AsCsv = False,
+) -> int:
+    """Measure what accuracy costs on this machine: time beside error, for families of scenes or for one.
+
+    Examples:
+      atwood tradeoff
+      atwood tradeoff --family near-critical --scenes 2000 --plot
+      atwood tradeoff --m1 1 --m2 3 --M 10 --mu 0.3
+      atwood tradeoff --json > measured.json
+    """
+    options = dict(locals())
+    from ..tradeoff.measure import MOST_SCENES
+    from ..tradeoff.measure import tradeoff as measure
+    from ..tradeoff.scenes import FAMILIES
+    from .page import watched
+
+    check([ONE_FORM, FIGURE_TO_REPLACE], options)
+    scene = Scene.read(given) if any(value is not None for value in given.values()) else None
+    check(RULES, {**options, "scene": scene})
+    for name in family or ():
+        if name not in FAMILIES:
+            raise SceneError("family", name, f"is no family of scenes{near_or_all(name, FAMILIES)}")
+    check(PLOT_IS_TEXT, options)
+    check_extras(plot, figure, force)
+    families = list(dict.fromkeys(family or FAMILIES))
+    count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
+    start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
+    measured = measure(families, count, start, scene, watched)
+    if figure is not None:
+        from .figure import save_tradeoff
+
+        save_tradeoff(measured, figure, force)
+    say(*show(_forms(measured, plot), json, csv))
+    return DONE
+
+
+def _forms(measured: "Tradeoff", plot: bool) -> Forms:
+    def page() -> None:
+        if plot:
+            from .plot import print_tradeoff_plot
+
+            print_tradeoff_plot(measured)
+        else:
+            _print_tables(measured)
+
+    return Forms(
+        json=lambda: _record(measured),
+        records=lambda: _records(measured),
+        page=page,
+        notes=lambda: [*measured.notes, measured.advice],
+    )
+
+
+def _record(measured: "Tradeoff") -> dict[str, object]:
+    """For JSON: what was measured, the seed or the scene, the notes and the advice."""
+    about: dict[str, object] = {"scene": scene_record(measured.scene)}
+    if measured.seed is not None:
+        about = {"seed": measured.seed, "scenes": measured.scenes}
+    arithmetic = [one._asdict() for one in measured.measured]
+    elements = [one._asdict() for one in measured.marches]
+    return about | {
+        "arithmetic": arithmetic,
+        "elements": elements,
+        "notes": measured.notes,
+        "advice": measured.advice,
+    }
+
+
+def _records(measured: "Tradeoff") -> list[dict[str, object]]:
+    """For CSV: a line for each setting and family, and for each number of elements."""
+    records = [one._asdict() for one in measured.measured]
+    for one in measured.marches:
+        records.append({"setting": "elements" if one.elements else "closed form"} | one._asdict())
+    names = dict.fromkeys(name for record in records for name in record)
+    return [{name: record.get(name) for name in names} for record in records]
+
+
+def _print_tables(measured: "Tradeoff") -> None:
+    """A table of the settings for each family of scenes, one of string elements, and what follows."""
+    from ..tradeoff.measure import ELEMENTS_LEGEND, LEGEND
+    from ..tradeoff.scenes import FAMILIES
+    from .page import Page
+
+    page = Page()
+    for family, settings in groupby(measured.measured, attrgetter("family")):
+        meaning = FAMILIES[family].meaning if family in FAMILIES else describe(measured.scene)
+        page.say(f"{family}: {meaning}", "bold")
+        _print_measured(page, list(settings))
+    page.say(LEGEND)
+    if measured.marches:
+        page.say(f"String elements: e^(μφ) of {describe(measured.scene)}", "bold")
+        _print_marches(page, measured.marches)
+        page.say(ELEMENTS_LEGEND)
+    for note in measured.notes:
+        page.say(note)
+    page.say(measured.advice, "bold")
+
+
+def _print_measured(page: "Page", settings: "Sequence[Measured]") -> None:
+    from ..tradeoff.measure import in_seconds, percent, short
+
+    columns = {
+        "  Setting": [f"{'*' if one.best else ' '} {one.setting}" for one in settings],
+        "Time": [in_seconds(one.seconds) for one in settings],
+        "±": [percent(one.spread) for one in settings],
+        "Worst": [short(one.worst_ulp) for one in settings],
+        "99 %": [short(one.percentile_99_ulp) for one in settings],
+        "Over 4": [percent(one.share_over_4_ulp) for one in settings],
+        "Regime": [percent(one.share_wrong_regime) for one in settings],
+    }
+    _print_columns(page, list(columns), list(columns.values()))
+
+
+def _print_marches(page: "Page", marches: "Sequence[March]") -> None:
+    from ..tradeoff.measure import in_seconds, scientific
+
+    by_count: dict[int | None, dict[bool, March]] = {}
+    for one in marches:
+        by_count.setdefault(one.elements, {})[one.extrapolated] = one
+    columns = [[str(count or "closed form") for count in by_count]]
+    for extrapolated in (False, True):
+        ones = [both.get(extrapolated) for both in by_count.values()]
+        columns += [
+            [f"{'*' if one.best else ' '} {scientific(one.relative_error)}" if one else "" for one in ones],
+            [f"{one.order:.2f}" if one and one.order is not None else "" for one in ones],
+            [in_seconds(one.seconds) if one else "" for one in ones],
+        ]
+    heads = ["Elements", "Error", "Order", "Time", "Extrapolated", "Order", "Time"]
+    _print_columns(page, heads, columns)
+
+
+def _print_columns(page: "Page", heads: Sequence[str], columns: Sequence[Sequence[str]]) -> None:
+    """A table whose columns but the first are flush right."""
+    words = [
+        [for_stream(word, sys.stdout) for word in column]
+        for column in ([head, *rows] for head, rows in zip(heads, columns, strict=True))
+    ]
+    flush = [words[0], *([word.rjust(max(map(len, column))) for word in column] for column in words[1:])]
+    lines = list(zip(*flush, strict=True))
+    page.table(lines[0], [lines[1:]])
