@@ -17,6 +17,6 @@ def regime(M: np.ndarray, mu: np.ndarray) -> np.ndarray:
 random = da.random.default_rng(2026)
 M = 43 + random.normal(size=1_000_000, chunks=250_000)
 mu = 0.3 + random.normal(size=1_000_000, chunks=250_000) / 100
-found = da.map_blocks(regime, M, mu, dtype="int8")
-share = (found == REGIMES.index("slip")).mean().compute(scheduler="threads")
+codes = da.map_blocks(regime, M, mu, dtype="int8")
+share = (codes == REGIMES.index("slip")).mean().compute(scheduler="threads")
 print(f"slips in {share:.0%} of the scenes")

@@ -15,9 +15,9 @@ runs='0.055 0.060 0.380
 
 echo "m1 (kg)  m2 (kg)  a (m/s^2)  c (g)"
 echo "$runs" | while read -r m1 m2 a; do
-    found=$(atwood solve --m1 $m1 --m2 $m2 --a "$a+/-0.0003" --g 9.81 --inertia hoop \
+    mass=$(atwood solve --m1 $m1 --m2 $m2 --a "$a+/-0.0003" --g 9.81 --inertia hoop \
         --csv --only pulley_mass | tail -1)
-    echo "$m1 $m2 $a $found" | tr , ' ' |
+    echo "$m1 $m2 $a $mass" | tr , ' ' |
         awk '{ printf "%s    %s    %s      %.1f +/- %.1f\n", $1, $2, $3, 1000 * $4, 1000 * $5 }'
 done
 

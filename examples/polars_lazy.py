@@ -13,10 +13,10 @@ NAMES = ("regime", "acceleration")
 
 def solve(scenes: pl.DataFrame) -> pl.DataFrame:
     """A batch of rows with the results as columns."""
-    found = solve_arrays(*(scenes[name].to_numpy() for name in ("m1", "m2", "M", "mu")), quantities=NAMES)
+    results = solve_arrays(*(scenes[name].to_numpy() for name in ("m1", "m2", "M", "mu")), quantities=NAMES)
     return scenes.with_columns(
-        regime=pl.Series(REGIMES).gather(found["regime"].astype(np.uint32)),
-        acceleration=found["acceleration"],
+        regime=pl.Series(REGIMES).gather(results["regime"].astype(np.uint32)),
+        acceleration=results["acceleration"],
     )
 
 
