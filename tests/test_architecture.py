@@ -1,0 +1,90 @@
+"""The folders are the architecture: which may import which, without a circle, and no module unseen."""
+
+import ast
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+TOP = Path(__file__).parent.parent
+PATHS = {
+    ".".join(path.relative_to(TOP).with_suffix("").parts).removesuffix(".__init__"): path
+    for path in (TOP / "atwood_cli").rglob("*.py")
+}
+MAY_IMPORT = {
+    "": "",
+    "files": "",
+    "arithmetic": "",
+    "model": "arithmetic",
+    "solver": "arithmetic model",
+    "api": "arithmetic model solver",
+    "arrays": "arithmetic model solver",
+    "derivation": "arithmetic model solver",
+    "batch": "files arithmetic model solver arrays",
+    "tradeoff": "files arithmetic model solver arrays",
+    "cli": "files arithmetic model solver api arrays derivation batch tradeoff",
+    "__main__": "cli",
+}
+"""What each folder, or module at the top, may import beside itself."""
+
+
+def statements(tree: ast.AST) -> Iterator[ast.AST]:
+    """All of them, those within functions too, but what stands under `if TYPE_CHECKING`."""
+    for node in ast.iter_child_nodes(tree):
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            node = ast.Module(node.orelse, [])
+        yield node
+        yield from statements(node)
+
+
+def imports(module: str, path: Path) -> Iterator[str]:
+    """The modules of ours that a module imports."""
+    package = module.split(".") if path.name == "__init__.py" else module.split(".")[:-1]
+    for node in statements(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in PATHS)
+        elif isinstance(node, ast.ImportFrom):
+            within = package[: len(package) + 1 - node.level] if node.level else []
+            origin = ".".join([*within, *([node.module] if node.module else [])])
+            for alias in node.names:
+                if (name := f"{origin}.{alias.name}") in PATHS or (name := origin) in PATHS:
+                    yield name
+
+
+def place(module: str) -> str:
+    """The folder of a module, or its own name at the top."""
+    return module.split(".")[1] if "." in module else ""
+
+
+IMPORTS = {module: set(imports(module, path)) for module, path in PATHS.items()}
+
+
+def test_every_module_is_seen() -> None:
+    assert {place(module) for module in PATHS} == set(MAY_IMPORT)
+    importing = {place(module) for module, imported in IMPORTS.items() if imported}
+    assert importing == set(MAY_IMPORT) - {"", "files"}
+    assert "atwood_cli.arrays.rows" in IMPORTS["atwood_cli.arrays"]  # by name
+    assert "atwood_cli.model.physics" in IMPORTS["atwood_cli.model.machine"]  # from a package
+    assert "atwood_cli.cli" in IMPORTS["atwood_cli.__main__"]  # within a function
+
+
+def test_imports_point_up_the_table() -> None:
+    wrong = {
+        f"{module} imports {imported}"
+        for module, all_imported in IMPORTS.items()
+        for imported in all_imported
+        if place(imported) not in (place(module), *MAY_IMPORT[place(module)].split())
+        and not (imported == "atwood_cli" and place(module) == "cli")  # its version
+    }
+    assert not wrong
+
+
+def test_no_import_comes_back() -> None:
+    TopologicalSorter(IMPORTS).prepare()  # raises CycleError, which names the circle
+
+
+def test_packages_hold_nothing_but_their_docstring() -> None:
+    for module, path in PATHS.items():
+        if path.name == "__init__.py" and place(module) not in ("", "arrays", "cli"):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            assert [type(node) for node in tree.body] == [ast.Expr], module
+            assert ast.get_docstring(tree), module
