@@ -1,4 +1,4 @@
-"""Measure the trade of speed for accuracy, and put it into README with its picture.
+"""Measure the trade of speed for accuracy, and write it into tradeoff.md with its picture.
 
 From the top of the project: python -m examples.speed "two cores of a cloud machine (Xeon)"
 """
@@ -13,8 +13,8 @@ from atwood_cli.cli.page import watched
 from atwood_cli.tradeoff.measure import Tradeoff, in_seconds, percent, scientific, short, tradeoff
 from atwood_cli.tradeoff.scenes import FAMILIES
 
-TOP = Path(__file__).parent.parent
-README, PICTURE = TOP / "README.md", TOP / "examples" / "tradeoff.svg"
+HERE = Path(__file__).parent
+PAGE, PICTURE = HERE / "tradeoff.md", HERE / "tradeoff.svg"
 PLACE = re.compile(r"(<!-- python -m examples.speed writes this -->\n).*(<!-- to here -->)", re.DOTALL)
 
 
@@ -23,11 +23,11 @@ def table(heads: list[str], rows: list[list[str]]) -> str:
     return "".join(f"| {' | '.join(line)} |\n" for line in lines)
 
 
-def arithmetic(found: Tradeoff) -> str:
+def arithmetic(outcome: Tradeoff) -> str:
     """A row a setting: its time for an ordinary scene, and for each family the worst error."""
     rows = []
-    for setting in dict.fromkeys(one.setting for one in found.measured):
-        by_family = {one.family: one for one in found.measured if one.setting == setting}
+    for setting in dict.fromkeys(one.setting for one in outcome.measured):
+        by_family = {one.family: one for one in outcome.measured if one.setting == setting}
         ordinary = by_family["ordinary"]
         row = [setting, f"{in_seconds(ordinary.seconds)} ± {percent(ordinary.spread)}"]
         for one in by_family.values():
@@ -37,10 +37,10 @@ def arithmetic(found: Tradeoff) -> str:
     return table(["setting", "time of an ordinary scene", *FAMILIES], rows)
 
 
-def elements(found: Tradeoff) -> str:
+def elements(outcome: Tradeoff) -> str:
     """A row a number of elements: error, order and time, plain and extrapolated."""
     rows: dict[str, list[str]] = {}
-    for one in found.marches:
+    for one in outcome.marches:
         order = "" if one.order is None else f"{one.order:.2f}"
         error = f"{'**' * one.best}{scientific(one.relative_error)}{'**' * one.best}"
         rows.setdefault(str(one.elements or "closed form"), []).extend(
@@ -50,22 +50,22 @@ def elements(found: Tradeoff) -> str:
     return table(["elements", "error", "order", "time", "extrapolated", "order", "time"], filled)
 
 
-def section(found: Tradeoff, machine: str) -> str:
+def section(outcome: Tradeoff, machine: str) -> str:
     return (
-        f"Measured on {date.today():%d %B %Y}, on {machine}; {found.scenes} scenes of each family, seed"
-        f" {found.seed}.\n\n{arithmetic(found)}\n![Error against time](examples/{PICTURE.name})\n\n"
-        f"{elements(found)}\n{found.advice}\n"
+        f"Measured on {date.today():%d %B %Y}, on {machine}; {outcome.scenes} scenes of each family, seed"
+        f" {outcome.seed}.\n\n{arithmetic(outcome)}\n![Error against time]({PICTURE.name})\n\n"
+        f"{elements(outcome)}\n{outcome.advice}\n"
     )
 
 
 def main(machine: str) -> None:
-    found = tradeoff(list(FAMILIES), 500, 1, None, watched)
-    readme = README.read_text(encoding="utf-8")
-    written = PLACE.sub(lambda match: match[1] + section(found, machine) + match[2], readme)
-    if PLACE.search(readme) is None:
-        raise SystemExit("README.md holds no place for what is measured")
-    save_tradeoff(found, str(PICTURE), force=True)
-    README.write_text(written, encoding="utf-8")
+    page = PAGE.read_text(encoding="utf-8")
+    if PLACE.search(page) is None:
+        raise SystemExit(f"{PAGE.name} holds no place for what is measured")
+    outcome = tradeoff(list(FAMILIES), 500, 1, None, watched)
+    save_tradeoff(outcome, str(PICTURE), force=True)
+    written = PLACE.sub(lambda match: match[1] + section(outcome, machine) + match[2], page)
+    PAGE.write_text(written, encoding="utf-8")
 
 
 if __name__ == "__main__":

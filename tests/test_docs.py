@@ -1,10 +1,11 @@
-"""What README and examples show is run, and must come out as shown."""
+"""What the README and the examples show is run, and must come out as shown."""
 
 import doctest
 import re
 import runpy
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import pytest
@@ -16,8 +17,21 @@ from atwood_cli.tradeoff.scenes import FAMILIES
 from .running import process
 
 TOP = Path(__file__).parent.parent
-README = (TOP / "README.md").read_text(encoding="utf-8")
-BLOCKS = re.findall(r"```console\n(.*?)```", README, re.DOTALL)
+PAGES = {
+    path.relative_to(TOP).as_posix(): path.read_text(encoding="utf-8")
+    for path in (TOP / "README.md", *sorted((TOP / "examples").glob("*.md")))
+}
+README, TOUR, TRADEOFF = (PAGES[name] for name in ("README.md", "examples/README.md", "examples/tradeoff.md"))
+BLOCKS = [
+    pytest.param(block, id=f"{name}: {block.splitlines()[0]}")
+    for name, page in PAGES.items()
+    for block in re.findall(r"```console\n(.*?)```", page, re.DOTALL)
+]
+PYTHON = {
+    name: "\n".join(blocks)
+    for name, page in PAGES.items()
+    if (blocks := re.findall(r"```python\n(.*?)```", page, re.DOTALL))
+}
 EXAMPLES = sorted((TOP / "examples").glob("*.sh"))
 ENGINES = [TOP / "examples" / name for name in ("dask_blocks.py", "polars_lazy.py")]
 
@@ -31,18 +45,44 @@ def transcript(block: str) -> str:
     return "".join(shown)
 
 
-@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: block.splitlines()[0])
-def test_the_readme_shows_what_happens(block: str) -> None:
+@pytest.mark.parametrize("block", BLOCKS)
+def test_transcripts_show_what_happens(block: str) -> None:
     assert transcript(block) == block
 
 
-def test_the_readmes_python_runs() -> None:
-    python = "\n".join(re.findall(r"```python\n(.*?)```", README, re.DOTALL))
-    examples = doctest.DocTestParser().get_doctest(python, {}, "README.md", "README.md", 0)
+@pytest.mark.parametrize("name", PYTHON)
+def test_the_python_in_the_pages_runs(name: str) -> None:
+    examples = doctest.DocTestParser().get_doctest(PYTHON[name], {}, name, name, 0)
     assert len(examples.examples) >= 4
     report: list[str] = []
     result = doctest.DocTestRunner().run(examples, out=report.append)
     assert result.failed == 0, "".join(report)
+
+
+def test_transcripts_and_python_are_found_in_the_pages() -> None:
+    shown = Counter(str(block.id).split(":")[0] for block in BLOCKS)
+    assert shown["README.md"] == 3
+    assert shown["examples/README.md"] >= 15
+    assert list(PYTHON) == ["README.md", "examples/README.md"]
+
+
+@pytest.mark.parametrize("name", PAGES)
+def test_links_lead_somewhere(name: str) -> None:
+    page = TOP / name
+    anchors = {
+        "#" + re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-")
+        for heading in re.findall(r"^#+ (.*)", PAGES[name], re.MULTILINE)
+    }
+    for target in re.findall(r"\]\((?!https?:)(.*?)\)", PAGES[name]):
+        assert target in anchors or (page.parent / target).exists(), target
+
+
+def test_the_tour_leads_to_every_example() -> None:
+    kept = {path.name for path in (TOP / "examples").iterdir() if path.is_file()}
+    assert {name for name in kept - {"README.md", "__init__.py"} if name not in TOUR} == {
+        "solve.svg",  # the README's picture
+        "tradeoff.svg",  # on its own page
+    }
 
 
 def test_both_setup_commands_are_there() -> None:
@@ -82,7 +122,7 @@ def test_the_picture_shows_todays_table() -> None:
 
 def test_what_was_measured_is_of_todays_settings() -> None:
     """Times are that day's; the names, the promises and the picture are today's."""
-    measured = README.split("<!-- python -m examples.speed writes this -->")[1].split("<!-- to here -->")[0]
+    measured = TRADEOFF.split("<!-- python -m examples.speed writes this -->")[1].split("<!-- to here -->")[0]
     rows = [line.strip("| ").split(" | ") for line in measured.splitlines() if line.startswith("| ")]
     assert rows[0] == ["setting", "time of an ordinary scene", *FAMILIES]
     errors = {row[0]: [cell.replace("*", "") for cell in row[2:]] for row in rows[2 : 2 + len(SETTINGS)]}
@@ -97,8 +137,8 @@ def test_what_was_measured_is_of_todays_settings() -> None:
 
 def test_the_measuring_script_fills_its_place() -> None:
     script = runpy.run_path(str(TOP / "examples" / "speed.py"))
-    assert script["PLACE"].search(README)
-    found = Tradeoff(
+    assert script["PLACE"].search(TRADEOFF)
+    outcome = Tradeoff(
         Scene.read(PAPERS_SCENE),
         6,
         1,
@@ -111,7 +151,8 @@ def test_the_measuring_script_fills_its_place() -> None:
         [March(4, False, 1e-5, 0.1, 1e-3), March(None, False, 1e-8, 0.1, 1e-17, None, True)],
         [],
     )
-    written = script["section"](found, "a machine")
+    written = script["section"](outcome, "a machine")
+    assert "![Error against time](tradeoff.svg)\n" in written
     assert ", on a machine; 6 scenes of each family, seed 1.\n" in written
     assert "| certified | 200 ns ± 10 % | 1.5 | 1.5 | 1.5 | 1.5 | 1.5 |\n" in written
     assert "| closed form | **1.0e-17** |  | 10 ns |  |  |  |\n" in written
