@@ -19,7 +19,11 @@ from .running import process
 TOP = Path(__file__).parent.parent
 PAGES = {
     path.relative_to(TOP).as_posix(): path.read_text(encoding="utf-8")
-    for path in (TOP / "README.md", *sorted((TOP / "examples").glob("*.md")))
+    for path in (
+        TOP / "README.md",
+        *sorted((TOP / "examples").glob("*.md")),
+        TOP / "atwood_cli" / "README.md",
+    )
 }
 README, TOUR, TRADEOFF = (PAGES[name] for name in ("README.md", "examples/README.md", "examples/tradeoff.md"))
 BLOCKS = [
@@ -83,6 +87,15 @@ def test_the_tour_leads_to_every_example() -> None:
         "solve.svg",  # the README's picture
         "tradeoff.svg",  # on its own page
     }
+
+
+def test_the_map_names_every_module() -> None:
+    """The table of `atwood_cli/README.md`: a folder, its modules, its one job."""
+    rows = re.findall(r"^\| (?:top|`(\w+/)`) \| (.*?) \|", PAGES["atwood_cli/README.md"], re.MULTILINE)
+    named = {folder + module for folder, modules in rows for module in re.findall(r"`(\w+)`", modules)}
+    package = TOP / "atwood_cli"
+    modules = {path.relative_to(package).with_suffix("").as_posix() for path in package.rglob("*.py")}
+    assert named == {module for module in modules if not module.endswith("/__init__")}
 
 
 def test_both_setup_commands_are_there() -> None:
