@@ -1,4 +1,4 @@
-"""Running the command line: as a process, in a shell, on a terminal."""
+"""Running the command line, as a process, in a shell, on a terminal, and reading what it shows."""
 
 import os
 import re
@@ -64,4 +64,10 @@ def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: st
 
 
 def plain(seen: str) -> str:
+    """What a terminal got to see, without its colours."""
     return re.sub(r"\x1b\[[0-9;]*m", "", seen)
+
+
+def labels(svg: str) -> list[str]:
+    """The texts of a figure, which matplotlib writes beside their outlines."""
+    return re.findall(r"<!-- (.*?) -->", svg, re.DOTALL)

@@ -1,9 +1,12 @@
 """Seeded scenes of every stress family, as the texts that a user would type."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
+from math import isnan
 from random import Random
 
 import flint
+
+from atwood_cli.model.scene import Scene
 
 Given = dict[str, str]
 
@@ -118,3 +121,8 @@ def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
     rng = Random(f"{family} {seed}")
     for _ in range(count):
         yield _vary(rng, FAMILIES[family](rng))
+
+
+def exact_scene(row: Mapping[str, float]) -> Scene:
+    """The scene that a row of doubles is, exactly; NaN is not given."""
+    return Scene.read({name: value for name, value in row.items() if not isnan(value)})

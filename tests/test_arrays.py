@@ -25,7 +25,7 @@ from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import Scene
 
 from . import oracle
-from .scenes import FAMILIES, scenes
+from .scenes import FAMILIES, exact_scene, scenes
 
 Row = dict[str, float]
 solve_any: Any = solve  # with inputs that are put together here
@@ -55,11 +55,6 @@ def rows(family: str, count: int) -> list[Row]:
 
 def columns(of: list[Row]) -> dict[str, Any]:
     return {name: np.array([row[name] for row in of]) for name in COLUMNS}
-
-
-def exact_scene(row: Row) -> Scene:
-    """The scene that the doubles are, exactly."""
-    return Scene.read({name: value for name, value in row.items() if not isnan(value)})
 
 
 def within_4_ulp(got: float, want: oracle.Value) -> bool:

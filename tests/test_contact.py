@@ -29,7 +29,7 @@ from atwood_cli.solver.contact import Contact, contact
 from atwood_cli.solver.elements import Row, elements
 
 from . import oracle
-from .running import Atwood, on_terminal, plain, process
+from .running import Atwood, labels, on_terminal, plain, process
 
 PAPER = ["contact", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 TOP = Path(__file__).parent.parent
@@ -539,11 +539,6 @@ def test_solving_needs_no_numpy_for_the_arc() -> None:
 
 
 # The figure
-
-
-def labels(svg: str) -> list[str]:
-    """The texts that matplotlib writes beside their outlines."""
-    return re.findall(r"<!-- (.*?) -->", svg, re.DOTALL)
 
 
 def test_figure_is_the_one_in_the_readme_and_the_same_to_the_byte(tmp_path: Path) -> None:

@@ -42,7 +42,7 @@ from atwood_cli.tradeoff.scenes import FAMILIES, draw_scenes
 
 from . import oracle
 from .running import Atwood
-from .test_arrays import exact_scene
+from .scenes import exact_scene
 
 NAMES = [setting.name for setting in SETTINGS]
 SCENE = ["tradeoff", "--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3"]
