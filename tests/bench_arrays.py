@@ -75,9 +75,9 @@ def main(rows: int) -> None:
     taken = statistics.median(seconds(works["certified"]) for _ in range(REPEATS))
     print(f"{rows // 10} near-critical scenes, certified: {rows / 10 / taken / 1e6:.2f} million a second")
     tracemalloc.start()
-    found = solve_arrays(*ordinary(rows // 5))
+    results = solve_arrays(*ordinary(rows // 5))
     _, peak = tracemalloc.get_traced_memory()
-    kept = sum(column.nbytes for column in found.values()) + 6 * 8 * (rows // 5)
+    kept = sum(column.nbytes for column in results.values()) + 6 * 8 * (rows // 5)
     print(
         f"temporaries of a certified run: at most {max(0, peak - kept) / 1e6:.0f} MB beyond inputs and outputs"
     )

@@ -78,11 +78,11 @@ def main(rounds: int, rows: int) -> None:
         }
         for command in commands.values():
             run(command)
-        found = [{name: run(command) for name, command in commands.items()} for _ in range(rounds)]
+        turns = [{name: run(command) for name, command in commands.items()} for _ in range(rounds)]
     for name in commands:
-        seconds = statistics.median(turn[name][0] for turn in found)
-        ratio = statistics.median(turn["atwood"][0] / turn[name][0] for turn in found)
-        memory = max(turn[name][1] for turn in found)
+        seconds = statistics.median(turn[name][0] for turn in turns)
+        ratio = statistics.median(turn["atwood"][0] / turn[name][0] for turn in turns)
+        memory = max(turn[name][1] for turn in turns)
         print(f"{name}: {seconds:.2f} s, {memory} MB; atwood takes {ratio:.2f} of its time")
 
 

@@ -49,8 +49,8 @@ def row_of(given: dict[str, str]) -> Row | None:
 
 @cache
 def rows(family: str, count: int) -> list[Row]:
-    found = (row_of(given) for given in scenes(family, 2 * count))
-    return list(islice((row for row in found if row is not None), count))
+    read = (row_of(given) for given in scenes(family, 2 * count))
+    return list(islice((row for row in read if row is not None), count))
 
 
 def columns(of: list[Row]) -> dict[str, Any]:
@@ -77,9 +77,9 @@ def test_certified_and_exact_values(family: str, part: int) -> None:
     for i, row in enumerate(given):
         want = oracle.expected(exact_scene(row))
         regimes[want["regime"]] += 1
-        for found in (certified, exact):
-            assert found["status"][i] == 0
-            assert REGIMES[found["regime"][i]] == want["regime"], row
+        for results in (certified, exact):
+            assert results["status"][i] == 0
+            assert REGIMES[results["regime"][i]] == want["regime"], row
         for name in STANDARD[1:]:
             value = want[name]
             assert isnan(certified[name][i]) == isnan(exact[name][i]) == (value is None), (row, name)
@@ -92,14 +92,14 @@ def test_certified_and_exact_values(family: str, part: int) -> None:
 @pytest.mark.parametrize("family", FAMILIES)
 def test_exact_is_solve_to_the_bit(family: str) -> None:
     given = rows(family, 150)
-    found = solve_arrays(**columns(given), accuracy="exact", quantities=NAMES)
+    results = solve_arrays(**columns(given), accuracy="exact", quantities=NAMES)
     certified = solve_arrays(**columns(given), quantities=NAMES)
     for i, row in enumerate(given):
         one = solve_any(**{name: value for name, value in row.items() if not isnan(value)})
-        assert REGIMES[found["regime"][i]] == one.regime
+        assert REGIMES[results["regime"][i]] == one.regime
         for name in NAMES[1:]:
             want = getattr(one, name)
-            assert repr(float(found[name][i])) == repr(nan if want is None else want), (row, name)
+            assert repr(float(results[name][i])) == repr(nan if want is None else want), (row, name)
             if want is not None and isfinite(want):
                 assert abs(certified[name][i] - want) <= 4 * ulp(want), (row, name)
             else:
@@ -121,13 +121,15 @@ def test_fast_is_stable(family: str) -> None:
 
 
 def test_the_papers_scene() -> None:
-    found = solve_arrays(1, 3, mu=0.3, accuracy="exact")
+    results = solve_arrays(1, 3, mu=0.3, accuracy="exact")
     one = solve(m1=1.0, m2=3.0, mu=0.3, g=9.80665)  # 0.3 is a double here, not three tenths
-    assert REGIMES[found["regime"]] == one.regime == "verge"
-    assert [found[name].item() for name in STANDARD[1:]] == [getattr(one, name) for name in STANDARD[1:]]
-    assert found["critical_pulley_mass"] == pytest.approx(43.34192486321087, rel=1e-15)
-    assert found["status"] == 0
-    assert {name: column.shape for name, column in found.items()} == dict.fromkeys([*STANDARD, "status"], ())
+    assert REGIMES[results["regime"]] == one.regime == "verge"
+    assert [results[name].item() for name in STANDARD[1:]] == [getattr(one, name) for name in STANDARD[1:]]
+    assert results["critical_pulley_mass"] == pytest.approx(43.34192486321087, rel=1e-15)
+    assert results["status"] == 0
+    assert {name: column.shape for name, column in results.items()} == dict.fromkeys(
+        [*STANDARD, "status"], ()
+    )
 
 
 ODD = [nan, -1.0, -0.0, 0.0, 5e-324, 1e-200, 0.3, 0.5, 1.0, 3.0, 10.0, 1e200, 1.7e308, inf, -inf]
@@ -156,19 +158,19 @@ def test_any_rows_side_by_side(some: list[dict[str, float]], names: list[str]) -
     """Bad rows get a code and stop nobody, and whoever stands beside whom, each gets its own."""
     full = [dict.fromkeys(COLUMNS, nan) | DEFAULTS | row for row in some]
     for accuracy in ACCURACIES[1:]:
-        found = solve_arrays(**columns(full), accuracy=accuracy, quantities=names)
+        results = solve_arrays(**columns(full), accuracy=accuracy, quantities=names)
         for i, row in enumerate(full):
             one, error = _solved(row)
             if one is None:
                 assert error is not None
-                assert _fault(error) == STATUSES[found["status"][i]], (row, error)
-                assert found["regime"][i] == -1
-                assert all(isnan(found[name][i]) for name in NAMES[1:])
+                assert _fault(error) == STATUSES[results["status"][i]], (row, error)
+                assert results["regime"][i] == -1
+                assert all(isnan(results[name][i]) for name in NAMES[1:])
                 continue
-            assert found["status"][i] == 0, row
-            assert REGIMES[found["regime"][i]] == one.regime
+            assert results["status"][i] == 0, row
+            assert REGIMES[results["regime"][i]] == one.regime
             for name in NAMES[1:]:
-                value, got = getattr(one, name), float(found[name][i])
+                value, got = getattr(one, name), float(results[name][i])
                 if accuracy == "exact" or value is None or isinf(value):
                     assert repr(got) == repr(nan if value is None else value), (row, name)
                 else:
@@ -207,11 +209,11 @@ numbers = st.floats(1e-3, 1e3)
 )
 def test_inputs_are_broadcast(m1: list[float], m2: list[float], M: float | None, mu: list[float]) -> None:
     grid = np.array(mu).reshape(3, 4)
-    found = solve_arrays(np.array(m1)[:, None], m2, M, grid)
+    results = solve_arrays(np.array(m1)[:, None], m2, M, grid)
     for i in range(3):
         for j in range(4):
             one = solve_arrays(m1[i], m2[j], M, grid[i, j])
-            for name, column in found.items():
+            for name, column in results.items():
                 assert column.shape == (3, 4)
                 np.testing.assert_array_equal(column[i, j], one[name])
 
@@ -231,9 +233,9 @@ def test_a_number_is_a_column_of_it(accuracy: Any) -> None:
     whole = solve_arrays(**{k: np.full(5, v) for k, v in row.items()}, accuracy=accuracy, quantities=NAMES)
     for name in row:
         mixed: dict[str, Any] = row | {name: np.full(5, row[name])}
-        found = solve_arrays(**mixed, accuracy=accuracy, quantities=NAMES)
+        results = solve_arrays(**mixed, accuracy=accuracy, quantities=NAMES)
         for quantity in NAMES:
-            np.testing.assert_allclose(found[quantity], whole[quantity], rtol=1e-14, atol=0)
+            np.testing.assert_allclose(results[quantity], whole[quantity], rtol=1e-14, atol=0)
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)
@@ -280,10 +282,10 @@ def test_what_leaves_the_doubles_is_infinite() -> None:
     """e^{μφ} is within them and l e^{μφ} is not, by a thorough pair and by one scene."""
     mu, names = 690 / np.pi, ["least_heavier_mass", "least_pulley_mass"]
     for m1 in (2.0**100, 2.0**-100):
-        found = solve_arrays([m1] * 9, 2 * m1, 1.0, mu, quantities=names)
+        results = solve_arrays([m1] * 9, 2 * m1, 1.0, mu, quantities=names)
         one = solve_any(m1=m1, m2=2 * m1, M=1.0, mu=mu)
         for name in names:
-            np.testing.assert_array_max_ulp(found[name], np.full(9, float(getattr(one, name))), 4)
+            np.testing.assert_array_max_ulp(results[name], np.full(9, float(getattr(one, name))), 4)
 
 
 def test_rows_that_go_up_are_solved_wherever_they_wait(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -293,9 +295,9 @@ def test_rows_that_go_up_are_solved_wherever_they_wait(monkeypatch: pytest.Monke
     monkeypatch.setitem(arrays.BLOCK, "certified", 100)
     for leave in (0, 1, 10, 1000):
         monkeypatch.setattr(arrays, "LEAVE", leave)
-        found = solve_arrays(**given)
+        results = solve_arrays(**given)
         for name in exact:
-            np.testing.assert_array_max_ulp(found[name], exact[name], 4)
+            np.testing.assert_array_max_ulp(results[name], exact[name], 4)
 
 
 def test_threads_do_not_wait_for_each_others_attributes() -> None:
@@ -308,8 +310,8 @@ def test_threads_do_not_wait_for_each_others_attributes() -> None:
             return both.wait()
 
     with ThreadPoolExecutor(2) as pool:
-        found = list(pool.map(lambda block: (block.attribute, block.attribute), [Block(), Block()]))
-    assert sorted(found) == [(0, 0), (1, 1)]
+        seen = list(pool.map(lambda block: (block.attribute, block.attribute), [Block(), Block()]))
+    assert sorted(seen) == [(0, 0), (1, 1)]
     assert isinstance(Block.attribute, lazy)
     assert all(isinstance(vars(Case)[name], lazy) for name in ("regime", "slips", "can_slip"))
 
@@ -329,22 +331,22 @@ def test_sums_of_negative_forces() -> None:
     """The smaller in size, not in value, must come second where two operations give a sum's error."""
     row = {"m1": 1.7564649058808377, "m2": 865.29649231545, "mu": 0.7514867515890271, "wrap": 270.0}
     for accuracy in ACCURACIES[1:]:
-        found = solve_arrays(**row, accuracy=accuracy, quantities=NAMES)
+        results = solve_arrays(**row, accuracy=accuracy, quantities=NAMES)
         one = solve_any(**row, g=9.80665)
         for name in ("friction_force_x", "friction_force_y"):
-            assert abs(found[name].item() - getattr(one, name)) <= (0 if accuracy == "exact" else 1e-12)
+            assert abs(results[name].item() - getattr(one, name)) <= (0 if accuracy == "exact" else 1e-12)
 
 
 def test_no_rows() -> None:
-    found = solve_arrays([], [], mu=0.3)
-    assert {column.shape for column in found.values()} == {(0,)}
+    results = solve_arrays([], [], mu=0.3)
+    assert {column.shape for column in results.values()} == {(0,)}
 
 
 def test_only_what_is_asked_for() -> None:
-    found = solve_arrays([1, 3], [3, 1], 10, quantities=["torque", "acceleration"], R=[0.1, nan])
-    assert list(found) == ["torque", "acceleration", "status"]
-    assert found["torque"][0] == pytest.approx(1.0896277777777778, rel=1e-15)
-    assert isnan(found["torque"][1])
+    results = solve_arrays([1, 3], [3, 1], 10, quantities=["torque", "acceleration"], R=[0.1, nan])
+    assert list(results) == ["torque", "acceleration", "status"]
+    assert results["torque"][0] == pytest.approx(1.0896277777777778, rel=1e-15)
+    assert isnan(results["torque"][1])
 
 
 def test_temporaries_are_bounded() -> None:
@@ -353,10 +355,10 @@ def test_temporaries_are_bounded() -> None:
         name: np.full(n, value) for name, value in (("m1", 1.0), ("m2", 3.0), ("M", 10.0), ("mu", 0.3))
     }
     tracemalloc.start()
-    found = solve_arrays(**given)
+    results = solve_arrays(**given)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert peak - sum(column.nbytes for column in found.values()) < 200e6
+    assert peak - sum(column.nbytes for column in results.values()) < 200e6
 
 
 @pytest.mark.parametrize(
@@ -377,12 +379,14 @@ def test_a_mirrored_zero_is_no_negative_zero(accuracy: Any) -> None:
     signed = ["torque", "friction_force_x", "friction_force_y", "rim_acceleration", "angular_acceleration"]
     for masses in ((2.0, 1.0), (1.0, 2.0)):
         for rows_ in (1, 5):
-            found = solve_arrays(
+            results = solve_arrays(
                 np.full(rows_, masses[0]), masses[1], mu=0.0, R=1.0, accuracy=accuracy, quantities=signed
             )
             for name in signed:
-                assert [repr(x) for x in found[name].tolist() if x == 0] == ["0.0"] * sum(found[name] == 0)
-            assert [repr(x) for x in found["torque"].tolist()] == ["0.0"] * rows_
+                assert [repr(x) for x in results[name].tolist() if x == 0] == ["0.0"] * sum(
+                    results[name] == 0
+                )
+            assert [repr(x) for x in results["torque"].tolist()] == ["0.0"] * rows_
 
 
 def test_a_mass_that_is_missing() -> None:

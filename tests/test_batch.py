@@ -76,9 +76,9 @@ def records(ran_or_text: Ran | str) -> list[dict[str, str]]:
     return list(csv.DictReader(io.StringIO(text, newline="")))
 
 
-def near(found: float, exact: float) -> bool:
+def near(value: float, exact: float) -> bool:
     """Within 4 units in the last place."""
-    return abs(found - exact) <= 4 * math.ulp(exact)
+    return abs(value - exact) <= 4 * math.ulp(exact)
 
 
 def doubles(scene: dict[str, str]) -> dict[str, Any]:
@@ -265,8 +265,8 @@ def test_other_columns_pass_through(
     assert ran.err == f"atwood: {len(cells)} row{'s' * (len(cells) != 1)}: " + (
         f"{len(cells)} no-slip; no errors.\n" if cells else "no errors.\n"
     )
-    found = list(csv.reader(io.StringIO(ran.out, newline=""), delimiter=separator))
-    assert found == [
+    printed = list(csv.reader(io.StringIO(ran.out, newline=""), delimiter=separator))
+    assert printed == [
         ["one", "m1", "m2", "two", "regime", "error"],
         *([a, "1.0", "003", b, "no-slip", ""] for a, b in cells),
     ]
@@ -393,13 +393,13 @@ def test_nothing_is_lost_among_bad_rows(
     failed = sum(wrong is not None for _, wrong in rows)
     assert ran.status == (1 if failed else 0)
     if kind == "ndjson":
-        found = [
+        printed = [
             {k: "" if v is None else v for k, v in json.loads(line).items()} for line in ran.out.splitlines()
         ]
     else:
-        found = list(csv.DictReader(io.StringIO(ran.out), delimiter={"csv": ",", "tsv": "\t"}[kind]))
-    assert len(found) == len(rows)
-    for given_row, (_, wrong), row in zip(numbered, rows, found, strict=True):
+        printed = list(csv.DictReader(io.StringIO(ran.out), delimiter={"csv": ",", "tsv": "\t"}[kind]))
+    assert len(printed) == len(rows)
+    for given_row, (_, wrong), row in zip(numbered, rows, printed, strict=True):
         assert {name: row[name] for name in given_row} == given_row
         if wrong is None:
             assert row["error"] == ""
@@ -423,9 +423,9 @@ def test_nan_in_parquet_is_bad_and_null_is_not_given(
     frame = pl.DataFrame(rows, schema=dict.fromkeys(columns, pl.Float64), orient="row")
     frame.write_parquet(tmp_path / "in.parquet")
     atwood("batch", str(tmp_path / "in.parquet"), "-o", str(tmp_path / "out.parquet"), "--force")
-    found = pl.read_parquet(tmp_path / "out.parquet")
-    assert found.select(columns).equals(frame)
-    for values, error, regime in zip(rows, found["error"], found["regime"], strict=True):
+    solved = pl.read_parquet(tmp_path / "out.parquet")
+    assert solved.select(columns).equals(frame)
+    for values, error, regime in zip(rows, solved["error"], solved["regime"], strict=True):
         row = dict(zip(columns, values, strict=True))
         wrong = [
             name

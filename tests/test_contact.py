@@ -135,8 +135,8 @@ def test_bounds_of_the_design_page(M: int, mu: str, least: str, greatest: str) -
 
 def gripping_scenes(count: int, seed: int) -> list[dict[str, Any]]:
     rng = Random(seed)
-    found: list[dict[str, Any]] = []
-    while len(found) < count:
+    drawn: list[dict[str, Any]] = []
+    while len(drawn) < count:
         scene: dict[str, Any] = {
             "m1": round(rng.uniform(0.1, 5), 3),
             "m2": round(rng.uniform(0.1, 5), 3),
@@ -145,8 +145,8 @@ def gripping_scenes(count: int, seed: int) -> list[dict[str, Any]]:
             "wrap": rng.choice([180, 180, 90, 60, 150, 30]),
         }
         if solve(**scene).regime == "no-slip":
-            found.append(scene)
-    return found
+            drawn.append(scene)
+    return drawn
 
 
 @pytest.mark.parametrize("scene", gripping_scenes(50, seed=33), ids=str)

@@ -75,10 +75,10 @@ def simulated(
     }
 
 
-def disagreement(found: dict[str, float], solution: Solution[float]) -> float:
+def disagreement(measured: dict[str, float], solution: Solution[float]) -> float:
     """The greatest relative one."""
-    wanted: dict[str, float] = {name: getattr(solution, name.split(" of ")[0]) for name in found}
-    return max(abs(value / wanted[name] - 1) for name, value in found.items())
+    wanted: dict[str, float] = {name: getattr(solution, name.split(" of ")[0]) for name in measured}
+    return max(abs(value / wanted[name] - 1) for name, value in measured.items())
 
 
 SCENES: dict[str, dict[str, float]] = {
@@ -104,9 +104,9 @@ def test_an_engine_finds_the_same_motion(scene: str, inertia: str) -> None:
 def test_on_the_critical_pulley_the_engines_tensions_are_on_the_verge() -> None:
     verge = solve(m1=1, m2=3, mu="0.3", R=1)
     assert verge.critical_pulley_mass is not None
-    found = simulated(1, 3, verge.critical_pulley_mass)
-    assert disagreement(found, verge) < DISAGREEMENT
-    assert log(found["tension_2"] / found["tension_1"]) / pi == pytest.approx(0.3, rel=DISAGREEMENT)
+    measured = simulated(1, 3, verge.critical_pulley_mass)
+    assert disagreement(measured, verge) < DISAGREEMENT
+    assert log(measured["tension_2"] / measured["tension_1"]) / pi == pytest.approx(0.3, rel=DISAGREEMENT)
 
 
 def test_the_disagreement_is_that_of_a_string_not_yet_settled() -> None:

@@ -52,16 +52,16 @@ def ask(door: str, names: Sequence[str], **given: Any) -> list[Any]:
         return [Fraction(value) if isinstance(value, Decimal) else value for value in values]
     # Three rows or fewer would be solved one by one where doubles are in doubt.
     columns = {name: np.full(5, value, dtype=float) for name, value in given.items()}
-    found = arrays_any(**columns, accuracy=door, quantities=names)
+    results = arrays_any(**columns, accuracy=door, quantities=names)
     values = []
     for name in names:
-        (value,) = {repr(value): value for value in found[name].tolist()}.values()
+        (value,) = {repr(value): value for value in results[name].tolist()}.values()
         values.append(REGIMES[value] if name == "regime" else None if isnan(value) else value)
     return values
 
 
-def assert_near(found: Any, law: Any, within: Any) -> None:
-    assert abs(mp.convert(found) - law) <= within * abs(law), (found, law)
+def assert_near(value: Any, law: Any, within: Any) -> None:
+    assert abs(mp.convert(value) - law) <= within * abs(law), (value, law)
 
 
 def exactly(*numbers: Any) -> list[Any]:
@@ -127,8 +127,8 @@ def test_a_heavy_pulley_comes_to_the_locked_one(door: str, pair: tuple[float, fl
     mu = mp.log(h / l) / mp.pi
     at_rest = [l * g, h * g, mu, mu / mp.sqrt(1 + mu**2) * (l + h) * g]
     for M, slack in ((10.0**power, 8 * h / c), (inf, 0)):
-        *found, a = ask(door, names, m1=pair[0], m2=pair[1], M=M)
-        for value, law in zip(found, at_rest, strict=True):
+        *values, a = ask(door, names, m1=pair[0], m2=pair[1], M=M)
+        for value, law in zip(values, at_rest, strict=True):
             assert_near(value, law, DOORS[door] + slack)
         assert_near(a, g * (h - l) / c if slack else 0, DOORS[door] + slack)
 
@@ -332,9 +332,9 @@ def test_neighbouring_doubles_are_on_either_side_of_the_critical_pulley_mass(
     k = mp.exp(mu * mp.pi)
     l, h = exactly(m1, m2)
     around = doubles_around(4 * l * h * (k - 1) / (h - l * k))
-    found = [ask(door, ["regime", *MOTION], m1=m1, m2=m2, mu=mu, M=M) for M in around]
-    assert [regime for regime, *_ in found] == ["no-slip", "slip"]
-    for grips, slips in zip(*(motion for _, *motion in found), strict=True):
+    answers = [ask(door, ["regime", *MOTION], m1=m1, m2=m2, mu=mu, M=M) for M in around]
+    assert [regime for regime, *_ in answers] == ["no-slip", "slip"]
+    for grips, slips in zip(*(motion for _, *motion in answers), strict=True):
         assert_near(slips, mp.convert(grips), 2 * DOORS[door] + 4 * UNIT)
 
 
@@ -373,10 +373,10 @@ def assert_rises(door: str, values: Sequence[Any]) -> None:
 def test_a_heavier_pulley_slows_the_masses_and_takes_more_friction(
     door: str, pair: tuple[float, float], pulleys: list[float]
 ) -> None:
-    found = [
+    answers = [
         ask(door, [*MOTION[:3], "mu_verge"], m1=pair[1], m2=pair[0], M=M) for M in [*sorted(pulleys), inf]
     ]
-    a, heavy, light, mu = zip(*found, strict=True)
+    a, heavy, light, mu = zip(*answers, strict=True)
     assert_rises(door, a)  # m1 is the heavier here: a is negative
     assert_rises(door, heavy)
     assert_rises(door, [-t for t in light])
@@ -394,13 +394,13 @@ def test_only_the_rim_feels_the_mass_of_a_pulley_on_which_the_string_slips(
     (critical,) = ask("doubles", ["critical_pulley_mass"], m1=m1, m2=m2, mu=mu)
     names = ["regime", *MOTION, "friction_force", "friction_force_x"]
     pulleys = [critical * factor for factor in above]
-    found = [ask(door, names, m1=m1, m2=m2, mu=mu, mu_k=mu_k, M=M) for M in pulleys]
-    assert len({(*values[:4], *values[5:]) for values in found}) == 1
-    assert found[0][0] == "slip"
+    answers = [ask(door, names, m1=m1, m2=m2, mu=mu, mu_k=mu_k, M=M) for M in pulleys]
+    assert len({(*values[:4], *values[5:]) for values in answers}) == 1
+    assert answers[0][0] == "slip"
     k = mp.exp(mu_k * mp.pi)
     l, h, g = exactly(m1, m2, G)
     difference = 2 * l * h * g * (k - 1) / (h + l * k)
-    for M, (_, a, _, _, rim, *_) in zip(pulleys, found, strict=True):
+    for M, (_, a, _, _, rim, *_) in zip(pulleys, answers, strict=True):
         assert_near(rim, difference / M * 2, DOORS[door])
         assert rim < a
 
@@ -415,8 +415,8 @@ def test_more_friction_holds_heavier_pulleys_and_heavier_masses(
     mus = sorted({part * limit for part in parts})
     M = 4 * pair[1]  # condition (36): above 4 l (k - 1) for all of them
     names = ["critical_pulley_mass", "critical_heavier_mass", "least_heavier_mass", "least_pulley_mass"]
-    found = [ask(door, names, m1=pair[0], m2=pair[1], M=M, mu=mu) for mu in mus]
-    for values in zip(*found, strict=True):
+    answers = [ask(door, names, m1=pair[0], m2=pair[1], M=M, mu=mu) for mu in mus]
+    for values in zip(*answers, strict=True):
         assert_rises(door, values)
     slipping = [ask(door, MOTION, m1=pair[0], m2=pair[1], M=inf, mu=limit * 0.999, mu_k=mu) for mu in mus]
     a, light, heavy, _ = zip(*slipping, strict=True)
@@ -543,16 +543,16 @@ def test_masses_at_the_ends_of_the_doubles_move_like_any_others(
     )
     usual = solve_any(m1=m1, m2=m2, M=M, g=G, digits=200, **given)  # with ties between doubles written out
     assert there[0] == usual.regime
-    for name, found in zip(names[1:], there[1:], strict=True):
+    for name, answer in zip(names[1:], there[1:], strict=True):
         value = getattr(usual, name)
         if value is None:
-            assert found is None
+            assert answer is None
             continue
         scaled = Fraction(value) * Fraction(2) ** powers((power, 0, 0), name)
         if door == "digits":
-            assert_near(found, mp.convert(scaled), 2 * DOORS[door])
+            assert_near(answer, mp.convert(scaled), 2 * DOORS[door])
         else:
-            assert found == nearest_double(scaled), name
+            assert answer == nearest_double(scaled), name
 
 
 @everywhere
@@ -596,6 +596,6 @@ def test_a_thousand_digits_are_all_right_and_one_is_their_rounding(
         }
         wanted = {name: Decimal(mp.nstr(law, 1040, strip_zeros=False)) for name, law in laws.items()}
     for digits in (1000, 1):
-        found = solve_any(m1=pair[0], m2=pair[1], M=M, g=G, digits=digits)
+        solution = solve_any(m1=pair[0], m2=pair[1], M=M, g=G, digits=digits)
         for name, value in wanted.items():
-            assert getattr(found, name) == Context(prec=digits).plus(value), name
+            assert getattr(solution, name) == Context(prec=digits).plus(value), name

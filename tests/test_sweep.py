@@ -80,24 +80,24 @@ def test_decimal_steps_are_exact(start: Decimal, step: Decimal, count: int, down
     if down:
         expected.reverse()
     ends = (str(Decimal(q.numerator) / Decimal(q.denominator)).lower() for q in (expected[0], expected[-1]))
-    found = points(f"{':'.join(ends)}:{count}")
-    assert list(map(Fraction, found)) == expected
-    assert max(map(len, found)) < 20
+    texts = points(f"{':'.join(ends)}:{count}")
+    assert list(map(Fraction, texts)) == expected
+    assert max(map(len, texts)) < 20
 
 
 @given(decimals, decimals, st.integers(2, 50), st.booleans())
 def test_ends_are_hit_and_points_advance(start: Decimal, stop: Decimal, count: int, log: bool) -> None:
     if start == stop or (log and 0 in (start, stop)):
         return
-    found = list(map(Fraction, points(f"{start:f}:{stop:f}:{count}{':log' * log}")))
-    assert (found[0], found[-1], len(found)) == (Fraction(start), Fraction(stop), count)
-    assert all((a < b) == (start < stop) and a != b for a, b in pairwise(found))
+    values = list(map(Fraction, points(f"{start:f}:{stop:f}:{count}{':log' * log}")))
+    assert (values[0], values[-1], len(values)) == (Fraction(start), Fraction(stop), count)
+    assert all((a < b) == (start < stop) and a != b for a, b in pairwise(values))
 
 
 @given(st.integers(-30, 30), st.integers(1, 20), st.integers(1, 9))
 def test_powers_are_whole_on_a_log_range(first: int, steps: int, factor: int) -> None:
-    found = points(f"{factor}e{first}:{factor}e{first + steps}:{steps + 1}:log")
-    assert list(map(Fraction, found)) == [factor * Fraction(10) ** (first + i) for i in range(steps + 1)]
+    texts = points(f"{factor}e{first}:{factor}e{first + steps}:{steps + 1}:log")
+    assert list(map(Fraction, texts)) == [factor * Fraction(10) ** (first + i) for i in range(steps + 1)]
 
 
 @given(st.integers(1, 10**6), st.integers(1, 10**6), st.integers(3, 200))
@@ -113,8 +113,8 @@ def test_points_at_equal_ratios_are_the_decimals_next_to_them(start: int, stop: 
 
 def test_points_that_no_double_tells_apart_differ() -> None:
     for kind in ("", ":log"):
-        found = points(f"1:1.{'0' * 60}1:7{kind}")
-        assert len(set(found)) == 7
+        texts = points(f"1:1.{'0' * 60}1:7{kind}")
+        assert len(set(texts)) == 7
 
 
 def test_the_first_range_varies_slowest(atwood: Atwood) -> None:

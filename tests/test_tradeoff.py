@@ -120,25 +120,25 @@ def test_errors_are_those_against_the_oracle(family: str) -> None:
     exact = tradeoff._in_decimals(tradeoff.EXACT_DIGITS)
     right = exact.run(exact.prepare(rows, len(rows)))
     for setting in SETTINGS[:-2]:  # the oracle's balls are as tight as 17 digits take
-        found = setting.read(rows, setting.run(setting.prepare(rows, len(rows))))
+        solved = setting.read(rows, setting.run(setting.prepare(rows, len(rows))))
         want = [
             worst
-            for row, one in zip(rows, found, strict=True)
+            for row, one in zip(rows, solved, strict=True)
             if (worst := oracle_error(row, one)) is not None
         ]
-        assert errors(found, right) == pytest.approx(want, rel=1e-9, abs=1e-12)
+        assert errors(solved, right) == pytest.approx(want, rel=1e-9, abs=1e-12)
 
 
-def oracle_error(row: dict[str, float], found: dict[str, Any]) -> float | None:
+def oracle_error(row: dict[str, float], got: dict[str, Any]) -> float | None:
     want = oracle.expected(exact_scene({"g": G, **row}))
-    if found["regime"] != want["regime"]:
+    if got["regime"] != want["regime"]:
         return None
     worst = 0.0
     for name in VALUES:
         if want[name] is not None:
             nearest: Any = oracle.correctly_rounded(want[name], None)
             precise = Fraction(oracle.correctly_rounded(want[name], 60))
-            value = found[name]
+            value = got[name]
             if nearest == inf or abs(value) == inf or value != value:
                 worst = max(worst, 0.0 if value == nearest else inf)
             else:
@@ -158,8 +158,8 @@ def test_what_is_lost_is_infinitely_wrong() -> None:
 
 
 def solve_row(*scene: float) -> dict[str, Any]:
-    found = solve_arrays(*scene, accuracy="exact")
-    return {"regime": "no-slip"} | {name: found[name].item() for name in VALUES}
+    results = solve_arrays(*scene, accuracy="exact")
+    return {"regime": "no-slip"} | {name: results[name].item() for name in VALUES}
 
 
 def decimals(row: dict[str, Any]) -> dict[str, Any]:
@@ -282,9 +282,9 @@ def test_numbers_are_short() -> None:
 def test_elements_converge_until_rounding_takes_over(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tradeoff, "REPEATS", 1)
     monkeypatch.setattr(tradeoff, "COUNTS", tradeoff.COUNTS[:-2])
-    found = with_orders(list(marches(Scene.read(tradeoff.PAPERS_SCENE))))
+    marched = with_orders(list(marches(Scene.read(tradeoff.PAPERS_SCENE))))
     plain_, extrapolated = (
-        [one for one in found if one.extrapolated == way and one.elements] for way in (0, 1)
+        [one for one in marched if one.extrapolated == way and one.elements] for way in (0, 1)
     )
     orders = {way: {one.elements: one.order for one in by} for way, by in ((2, plain_), (4, extrapolated))}
     assert all(orders[2][count] == pytest.approx(2, abs=0.02) for count in (30, 100, 300, 1000, 3000, 10000))
@@ -293,7 +293,7 @@ def test_elements_converge_until_rounding_takes_over(monkeypatch: pytest.MonkeyP
         (best,) = [one for one in by if one.best]
         assert best.relative_error == min(one.relative_error for one in by)
         assert best is not by[-1]
-    closed = found[-1]
+    closed = marched[-1]
     assert (closed.elements, closed.best) == (None, True)
     assert closed.relative_error < 2**-52
     with mpmath.workdps(30):
@@ -306,9 +306,9 @@ def test_elements_converge_until_rounding_takes_over(monkeypatch: pytest.MonkeyP
 
 def test_orders_are_those_of_the_number_before() -> None:
     errors_ = {4: 1e-2, 40: 1e-4, 400: 0.0, 4000: 1e-3}
-    found = with_orders([March(count, False, 1.0, 0.0, error) for count, error in errors_.items()])
-    assert [one.order for one in found] == [None, pytest.approx(2), None, None]
-    assert [one.best for one in found] == [False, False, True, False]
+    marched = with_orders([March(count, False, 1.0, 0.0, error) for count, error in errors_.items()])
+    assert [one.order for one in marched] == [None, pytest.approx(2), None, None]
+    assert [one.best for one in marched] == [False, False, True, False]
 
 
 # Broken formulas do not pass
@@ -382,19 +382,19 @@ def test_the_table(atwood: Atwood, brief: list[str]) -> None:
 
 def test_json(atwood: Atwood, brief: list[str]) -> None:
     ran = atwood(*brief, "--json", "--seed", "7", "--family", "whole-range", "--family", "ordinary")
-    found = json.loads(ran.out)
-    assert list(found) == ["seed", "scenes", "arithmetic", "elements", "notes", "advice"]
-    assert (found["seed"], found["scenes"], found["notes"]) == (7, 6, [])
-    assert [(one["family"], one["setting"]) for one in found["arithmetic"]] == [
+    printed = json.loads(ran.out)
+    assert list(printed) == ["seed", "scenes", "arithmetic", "elements", "notes", "advice"]
+    assert (printed["seed"], printed["scenes"], printed["notes"]) == (7, 6, [])
+    assert [(one["family"], one["setting"]) for one in printed["arithmetic"]] == [
         (family, name) for family in ("whole-range", "ordinary") for name in NAMES
     ]
-    assert list(found["arithmetic"][0]) == list(Measured._fields)
-    assert [list(one) for one in found["elements"]] == [list(March._fields)] * 9
-    lost = found["arithmetic"][0]
+    assert list(printed["arithmetic"][0]) == list(Measured._fields)
+    assert [list(one) for one in printed["elements"]] == [list(March._fields)] * 9
+    lost = printed["arithmetic"][0]
     assert lost["worst_ulp"] is None  # infinite
     again = json.loads(atwood(*brief, "--json", "--seed", "7", "--family", "ordinary").out)
     kept = [name for name in Measured._fields if name not in ("seconds", "spread", "best")]
-    for one, other in zip(found["arithmetic"][len(NAMES) :], again["arithmetic"], strict=True):
+    for one, other in zip(printed["arithmetic"][len(NAMES) :], again["arithmetic"], strict=True):
         assert [one[name] for name in kept] == [other[name] for name in kept]
 
 
@@ -409,14 +409,14 @@ def test_csv(atwood: Atwood, brief: list[str]) -> None:
 
 @pytest.mark.usefixtures("briefly")
 def test_a_scene_of_ones_own(atwood: Atwood) -> None:
-    found = json.loads(atwood(*SCENE, "--json").out)
-    assert found["scene"]["M"] == 10
-    assert {one["family"] for one in found["arithmetic"]} == {"scene"}
-    by_name = {one["setting"]: one for one in found["arithmetic"]}
+    printed = json.loads(atwood(*SCENE, "--json").out)
+    assert printed["scene"]["M"] == 10
+    assert {one["family"] for one in printed["arithmetic"]} == {"scene"}
+    by_name = {one["setting"]: one for one in printed["arithmetic"]}
     assert by_name["paper, float64"]["worst_ulp"] < 10
     assert by_name["paper, float64"]["share_wrong_regime"] == 0
     mirrored = json.loads(atwood(*"tradeoff --m1 3 --m2 1 --M 10 --mu 0.3 --json".split()).out)
-    for one, other in zip(found["arithmetic"], mirrored["arithmetic"], strict=True):
+    for one, other in zip(printed["arithmetic"], mirrored["arithmetic"], strict=True):
         assert one["worst_ulp"] == other["worst_ulp"]
     table = atwood(*SCENE).out
     assert (
@@ -438,16 +438,16 @@ def test_a_scene_of_ones_own(atwood: Atwood) -> None:
     ],
 )
 def test_scenes_of_every_kind(given: str, atwood: Atwood) -> None:
-    found = json.loads(atwood("tradeoff", *given.split(), "--json").out)
-    for one in found["arithmetic"]:
+    printed = json.loads(atwood("tradeoff", *given.split(), "--json").out)
+    for one in printed["arithmetic"]:
         if one["setting"] in ("certified", "exact") or "digits" in one["setting"]:
             assert one["share_wrong_regime"] == 0
             assert one["worst_ulp"] <= (4 if one["setting"] == "certified" else 0.5)
     if "hoop" in given:
-        assert found["arithmetic"][1]["share_wrong_regime"] == 1  # it slips, which the formulas do not know
-        assert found["arithmetic"][1]["worst_ulp"] is None
+        assert printed["arithmetic"][1]["share_wrong_regime"] == 1  # it slips, which the formulas do not know
+        assert printed["arithmetic"][1]["worst_ulp"] is None
     else:
-        assert found["arithmetic"][1]["share_wrong_regime"] == ("inf" in given)
+        assert printed["arithmetic"][1]["share_wrong_regime"] == ("inf" in given)
 
 
 @pytest.mark.usefixtures("briefly")
@@ -465,8 +465,8 @@ def test_scenes_of_every_kind(given: str, atwood: Atwood) -> None:
     ],
 )
 def test_where_no_elements_can_be(given: str, note: str, atwood: Atwood) -> None:
-    found = json.loads(atwood("tradeoff", *given.split(), "--json").out)
-    assert (found["elements"], found["notes"]) == ([], [note])
+    printed = json.loads(atwood("tradeoff", *given.split(), "--json").out)
+    assert (printed["elements"], printed["notes"]) == ([], [note])
     assert note in atwood("tradeoff", *given.split()).out
 
 
