@@ -3,30 +3,31 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from decimal import Decimal
-from typing import TYPE_CHECKING, Any, Generic, TypeVar, overload
+from inspect import Parameter, Signature
+from typing import Any, Generic, TypedDict, TypeVar, Unpack, overload
 
 from .model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from .model.scene import Given, Scene, read_digits
 from .solver.messages import notes
 from .solver.reading import read_answers
 
-if TYPE_CHECKING:
-    from typing import TypedDict, Unpack
 
-    class Inputs(TypedDict, total=False):
-        m1: Given
-        m2: Given
-        M: Given | None
-        mu: Given | None
-        mu_k: Given | None
-        g: Given
-        inertia: Given | None
-        I: Given | None
-        R: Given | None
-        wrap: Given
-        a: Given | None
-        drop: Given | None
-        time: Given | None
+class Inputs(TypedDict, total=False):
+    """What `solve` takes beside ``digits``; None is not given, as is what is left out."""
+
+    m1: Given | None
+    m2: Given | None
+    M: Given | None
+    mu: Given | None
+    mu_k: Given | None
+    g: Given | None
+    inertia: Given | None
+    I: Given | None
+    R: Given | None
+    wrap: Given | None
+    a: Given | None
+    drop: Given | None
+    time: Given | None
 
 
 T = TypeVar("T", float, Decimal)
@@ -95,26 +96,10 @@ class MeasuredSolution(Solution[T]):
 
 
 @overload
-def solve(*, digits: None = None, **given: "Unpack[Inputs]") -> Solution[float]: ...
+def solve(*, digits: None = None, **given: Unpack[Inputs]) -> Solution[float]: ...
 @overload
-def solve(*, digits: int | str, **given: "Unpack[Inputs]") -> Solution[Decimal]: ...
-def solve(
-    *,
-    m1: Given | None = None,
-    m2: Given | None = None,
-    M: Given | None = None,
-    mu: Given | None = None,
-    mu_k: Given | None = None,
-    g: Given | None = None,
-    inertia: Given | None = None,
-    I: Given | None = None,
-    R: Given | None = None,
-    wrap: Given | None = None,
-    a: Given | None = None,
-    drop: Given | None = None,
-    time: Given | None = None,
-    digits: int | str | None = None,
-) -> Any:
+def solve(*, digits: int | str, **given: Unpack[Inputs]) -> Solution[Decimal]: ...
+def solve(*, digits: int | str | None = None, **given: Unpack[Inputs]) -> Any:
     """The state of Atwood's machine: m1 and m2 on a rough string over a pulley.
 
     Masses in kg, R in m, I in kg m², g in m/s², wrap in degrees; text may carry a unit ("250g",
@@ -132,9 +117,15 @@ def solve(
     Floats come back, each the double nearest to the exact value; with ``digits=N`` Decimals, each
     correctly rounded to N significant digits. Raises SceneError (a ValueError) on bad input.
     """
-    given = {key: value for key, value in locals().items() if key != "digits"}
-    answers = read_answers(given, read_digits(digits))
+    inputs = SIGNATURE.bind(**given).arguments  # raises TypeError where there is no such input
+    answers = read_answers(inputs, read_digits(digits))
     values = {name: answers[name] for name in answers.names}
     uncertainty = answers.standard_uncertainties(answers.names)
     kind: type[Solution[Any]] = Solution if answers.names == NAMES else MeasuredSolution
     return kind(scene=answers.case.scene, notes=tuple(notes(answers)), uncertainty=uncertainty, **values)
+
+
+SIGNATURE = Signature(
+    [Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in (*Inputs.__annotations__, "digits")]
+)
+solve.__dict__["__signature__"] = SIGNATURE  # for help() and editors: the inputs by name

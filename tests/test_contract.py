@@ -1,5 +1,6 @@
 """What is given decides the scene: every line and corner of the contract, through `solve`."""
 
+import inspect
 import subprocess
 import sys
 from decimal import Decimal
@@ -10,6 +11,7 @@ from typing import Any
 import pytest
 
 from atwood_cli import REGIMES, SceneError, Solution, solve
+from atwood_cli.model.scene import MEASURED, PARAMETERS
 
 from . import oracle
 
@@ -347,3 +349,10 @@ def test_the_python_door_needs_neither_typer_nor_rich_nor_numpy() -> None:
         "sys.exit(bool({'typer', 'rich', 'numpy'} & set(sys.modules)))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_solve_names_its_inputs_and_takes_no_others() -> None:
+    assert list(inspect.signature(solve).parameters) == [*PARAMETERS, *MEASURED, "digits"]
+    unknown: Any = {"m1": 1, "m2": 3, "m3": 2}
+    with pytest.raises(TypeError, match="unexpected keyword argument 'm3'"):
+        solve(**unknown)

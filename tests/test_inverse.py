@@ -309,7 +309,14 @@ def test_the_table_has_them_in_a_group_of_their_own(atwood: Atwood) -> None:
 def test_json_and_csv_have_them_only_with_what_they_come_from(atwood: Atwood) -> None:
     bare = json.loads(atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", "--json").out)
     printed = json.loads(atwood(*LAB, "--json").out)
-    assert list(printed) == ["scene", *NAMES, *MEASURED_NAMES[:2], *MEASURED_NAMES[3:], "uncertainty", "notes"]
+    assert list(printed) == [
+        "scene",
+        *NAMES,
+        *MEASURED_NAMES[:2],
+        *MEASURED_NAMES[3:],
+        "uncertainty",
+        "notes",
+    ]
     assert list(printed["scene"]) == [*bare["scene"], "a", "drop", "time"]
     assert printed["scene"]["M"] is None
     assert (printed["scene"]["a"], printed["scene"]["drop"], printed["scene"]["time"]) == (1, 2, None)
