@@ -1,8 +1,10 @@
 """Start-up of `atwood solve` beside a bare typer app: python -m tests.bench_startup [PAIRS]
 
-Whole processes in turn, A B A B ...; what counts is the median of the ratios, pair by pair.
+Whole processes in turn, A B A B ..., in an environment that says nothing of Python; what counts is the
+median of the ratios, pair by pair.
 """
 
+import os
 import statistics
 import subprocess
 import sys
@@ -14,17 +16,19 @@ from .running import PAPER
 OURS = [sys.executable, "-m", "atwood_cli"]
 BARE = [sys.executable, "-m", "tests.startup_baseline"]
 TOP = Path(__file__).parent.parent
+CLEAN = {name: os.environ[name] for name in ("HOME", "PATH") if name in os.environ}
 
 
 def seconds(command: list[str]) -> float:
     start = time.perf_counter()
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, cwd=TOP)
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, cwd=TOP, env=CLEAN)
     return time.perf_counter() - start
 
 
 def main(pairs: int) -> None:
-    for module in ("atwood_cli", "tests"):  # where bytecode is not written, imports compile each time
-        subprocess.run([sys.executable, "-m", "compileall", "-q", module], check=True, cwd=TOP)
+    for module in ("atwood_cli", "tests"):  # else the first imports would compile
+        compiled = [sys.executable, "-m", "compileall", "-q", module]
+        subprocess.run(compiled, check=True, cwd=TOP, env=CLEAN)
     for output in (["--json"], []):
         words = [*PAPER, *output]
         seconds([*OURS, *words]), seconds([*BARE, *words])

@@ -7,7 +7,6 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -15,7 +14,7 @@ from atwood_cli import solve
 from atwood_cli.__main__ import main
 from atwood_cli.model.quantities import MEASURED_NAMES
 
-from . import oracle
+from . import oracle, startup_baseline
 from .running import PAPER, Atwood, on_terminal, plain, process
 
 LOADED = "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
@@ -362,17 +361,50 @@ def test_python_dash_m_and_the_command_are_one() -> None:
     )
 
 
-def test_the_yardstick_of_start_up_has_the_same_commands_and_options() -> None:
-    import typer
+def test_a_command_brings_only_its_own_module() -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", LOADED, *PAPER, "--json"], capture_output=True, text=True, check=True
+    )
+    loaded = {name for name in done.stderr.split() if name.startswith("atwood_cli.cli.")}
+    assert loaded == {"atwood_cli.cli.options", "atwood_cli.cli.solve", "atwood_cli.cli.text"}
 
-    from atwood_cli import cli
 
-    from . import startup_baseline
+@pytest.mark.parametrize("output", ["--json", ""])
+def test_the_baseline_of_start_up_takes_the_same_words(output: str) -> None:
+    words = [sys.executable, "-m", "tests.startup_baseline", *PAPER, *output.split()]
+    done = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert "0.764026672247107" in done.stdout
+    assert len(startup_baseline.OPTIONS) == 11
 
-    def surface(command: Any) -> dict[str, set[str]]:
-        return {
-            name: {flag for option in sub.params for flag in option.opts}
-            for name, sub in command.commands.items()
-        }
 
-    assert surface(cli.program()) == surface(typer.main.get_command(startup_baseline.app))
+# As a program
+
+
+ENDING = """
+import atexit, sys
+from atwood_cli.__main__ import main
+atexit.register(lambda: print("at exit"))
+sys.stdout.write("before ")
+status = main()
+sys.stdout.write("after ")
+sys.exit(status)
+"""
+
+
+@pytest.mark.parametrize(("words", "status", "out"), [("--only regime", 0, "verge\n"), ("--zzz", 2, "")])
+def test_what_is_left_to_do_at_exit_is_done(words: str, status: int, out: str) -> None:
+    """main freezes what the garbage collector would look through; handlers run and streams are flushed."""
+    typed = [sys.executable, "-c", ENDING, *PAPER, *words.split()]
+    done = subprocess.run(typed, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (status, f"before {out}after at exit\n")
+
+
+def test_the_program_collects_garbage_and_a_library_is_left_alone() -> None:
+    code = "import gc, sys; {}; print(gc.isenabled(), gc.get_freeze_count() > 0, file=sys.stderr)"
+    solved = "from atwood_cli import cli, solve; solve(m1=1, m2=3); cli.run(['--version'])"
+    program = "from atwood_cli.__main__ import main; sys.argv[1:] = ['--version']; main()"
+    for what, seen in ((solved, "True False\n"), (program, "True True\n")):
+        done = subprocess.run(
+            [sys.executable, "-c", code.format(what)], capture_output=True, text=True, check=True
+        )
+        assert done.stderr == seen

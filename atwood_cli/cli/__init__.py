@@ -94,12 +94,18 @@ def program(names: Iterable[str] = COMMANDS) -> Any:
     return typer.main.get_command(app)
 
 
+def _needed(arguments: list[str]) -> tuple[str, ...]:
+    """The command named; all where none is, so that help, completion and hints know them."""
+    named = tuple(arguments[:1])
+    return named if named[:1] and named[0] in COMMANDS and COMPLETING not in os.environ else COMMANDS
+
+
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line; every error is a sentence on stderr and an exit status."""
     # A stream closed by the caller is None: what is printed goes nowhere.
     sys.stdout, sys.stderr = sys.stdout or io.StringIO(), sys.stderr or io.StringIO()
     try:
-        command = program()
+        command = program(_needed(sys.argv[1:] if arguments is None else arguments))
         status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
         sys.stdout.flush()
         return status
