@@ -612,6 +612,14 @@ def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:
     assert hash(solve(m1="1", m2="3")) == hash(solve(m1="1", m2="3.0"))
 
 
+def test_bare_values_ask_for_no_uncertainty(atwood: Atwood, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        pytest.fail("nobody sees it")
+
+    monkeypatch.setattr("atwood_cli.solver.answers.Uncertainties.__getitem__", refuse)
+    assert atwood(*UNCERTAIN, "--only", "mu_verge").out == "0.20582781927064067\n"
+
+
 def test_digits_give_decimals() -> None:
     solution = solve(m1="1.000(2)", m2="3", digits=5)
     assert solution.uncertainty["acceleration"] == Decimal("0.0073550")

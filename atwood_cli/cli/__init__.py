@@ -96,8 +96,8 @@ def program(names: Iterable[str] = COMMANDS) -> Any:
 
 def _needed(arguments: list[str]) -> tuple[str, ...]:
     """The command named; all where none is, so that help, completion and hints know them."""
-    named = tuple(arguments[:1])
-    return named if named[:1] and named[0] in COMMANDS and COMPLETING not in os.environ else COMMANDS
+    first = next(iter(arguments), "")
+    return (first,) if first in COMMANDS and COMPLETING not in os.environ else COMMANDS
 
 
 def run(arguments: list[str] | None = None) -> int:

@@ -71,16 +71,16 @@ def save_sweep(picture: "Picture", title: str, path: str, force: bool) -> None:
         figure.suptitle(title, fontsize=10)
 
 
-def save_tradeoff(measured: "Tradeoff", path: str, force: bool) -> None:
+def save_tradeoff(outcome: "Tradeoff", path: str, force: bool) -> None:
     """Draw error against time to a file, whose suffix is its format. Raises SceneError, OSError."""
     from ..tradeoff.measure import EDGES, MARGIN, drawable
 
     with _page(path, force) as figure:
         arithmetic, elements = figure.subplots(1, 2)
-        families = list(dict.fromkeys(one.family for one in measured.measured))
-        settings = list(dict.fromkeys(one.setting for one in measured.measured))
+        families = list(dict.fromkeys(one.family for one in outcome.measured))
+        settings = list(dict.fromkeys(one.setting for one in outcome.measured))
         for family, colour in zip(families, FAMILY_COLOURS, strict=False):
-            points = [one for one in measured.measured if one.family == family]
+            points = [one for one in outcome.measured if one.family == family]
             xs, ys = [one.seconds for one in points], [drawable(one.worst_ulp) for one in points]
             arithmetic.plot(xs, ys, color=colour, lw=0.6, alpha=0.5, label=family)
             for x, y, one in zip(xs, ys, points, strict=True):
@@ -90,7 +90,7 @@ def save_tradeoff(measured: "Tradeoff", path: str, force: bool) -> None:
         arithmetic.axhline(MARGIN, color="#999999", lw=0.8, ls=":", label=f"{MARGIN} ulp")
         arithmetic.set_ylabel("worst error (ulp)")
         for extrapolated, label, colour in ((False, "elements", NORMAL), (True, "extrapolated", FRICTION)):
-            way = [one for one in measured.marches if one.extrapolated == extrapolated and one.elements]
+            way = [one for one in outcome.marches if one.extrapolated == extrapolated and one.elements]
             xs, ys = [one.seconds for one in way], [one.relative_error for one in way]
             elements.plot(xs, ys, color=colour, marker=".", label=label)
         elements.set_ylabel("relative error of $e^{\\mu\\varphi}$")

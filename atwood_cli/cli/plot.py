@@ -83,13 +83,13 @@ def _show(page: Page, lines: list[str]) -> None:
         page.console.print(Text.from_ansi(shown.rstrip()), soft_wrap=True)
 
 
-def print_tradeoff_plot(measured: "Tradeoff") -> None:
+def print_tradeoff_plot(outcome: "Tradeoff") -> None:
     """Error against time, both logarithmic: the settings on each family, then string elements."""
     from ..tradeoff.measure import EDGES, drawable
 
     page = Page()
     room = page.room or PIPE_WIDTH
-    for family, group in groupby(measured.measured, attrgetter("family")):
+    for family, group in groupby(outcome.measured, attrgetter("family")):
         settings = list(group)
         points = [(one.seconds, drawable(one.worst_ulp)) for one in settings]
         page.say(family, "bold")
@@ -97,11 +97,11 @@ def print_tradeoff_plot(measured: "Tradeoff") -> None:
     letters = zip(LETTERS, settings, strict=False)
     page.say(f"{', '.join(f'{letter} {one.setting}' for letter, one in letters)}.")
     page.say(f"{EDGES} Times are this machine's, for one scene.")
-    if measured.marches:
+    if outcome.marches:
         curves = [
             [
                 (one.seconds, one.relative_error)
-                for one in measured.marches
+                for one in outcome.marches
                 if one.extrapolated == way and one.elements
             ]
             for way in (False, True)
@@ -109,7 +109,7 @@ def print_tradeoff_plot(measured: "Tradeoff") -> None:
         page.say("String elements", "bold")
         _show(page, _scatter("relative error of e^(μφ)", curves, room, ""))
         page.say("a elements, b extrapolated; from left to right 4 to 10 million of them.")
-    for note in (*measured.notes, measured.advice):
+    for note in (*outcome.notes, outcome.advice):
         page.say(note)
 
 

@@ -107,75 +107,75 @@ def tradeoff(
     families = list(dict.fromkeys(family or FAMILIES))
     count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
     start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
-    measured = measure(families, count, start, scene, watched)
+    outcome = measure(families, count, start, scene, watched)
     if figure is not None:
         from .figure import save_tradeoff
 
-        save_tradeoff(measured, figure, force)
-    say(*show(_forms(measured, plot), json, csv))
+        save_tradeoff(outcome, figure, force)
+    say(*show(_forms(outcome, plot), json, csv))
     return DONE
 
 
-def _forms(measured: "Tradeoff", plot: bool) -> Forms:
+def _forms(outcome: "Tradeoff", plot: bool) -> Forms:
     def page() -> None:
         if plot:
             from .plot import print_tradeoff_plot
 
-            print_tradeoff_plot(measured)
+            print_tradeoff_plot(outcome)
         else:
-            _print_tables(measured)
+            _print_tables(outcome)
 
     return Forms(
-        json=lambda: _record(measured),
-        records=lambda: _records(measured),
+        json=lambda: _record(outcome),
+        records=lambda: _records(outcome),
         page=page,
-        notes=lambda: [*measured.notes, measured.advice],
+        notes=lambda: [*outcome.notes, outcome.advice],
     )
 
 
-def _record(measured: "Tradeoff") -> dict[str, object]:
+def _record(outcome: "Tradeoff") -> dict[str, object]:
     """For JSON: what was measured, the seed or the scene, the notes and the advice."""
-    about: dict[str, object] = {"scene": scene_record(measured.scene)}
-    if measured.seed is not None:
-        about = {"seed": measured.seed, "scenes": measured.scenes}
-    arithmetic = [one._asdict() for one in measured.measured]
-    elements = [one._asdict() for one in measured.marches]
+    about: dict[str, object] = {"scene": scene_record(outcome.scene)}
+    if outcome.seed is not None:
+        about = {"seed": outcome.seed, "scenes": outcome.scenes}
+    arithmetic = [one._asdict() for one in outcome.measured]
+    elements = [one._asdict() for one in outcome.marches]
     return about | {
         "arithmetic": arithmetic,
         "elements": elements,
-        "notes": measured.notes,
-        "advice": measured.advice,
+        "notes": outcome.notes,
+        "advice": outcome.advice,
     }
 
 
-def _records(measured: "Tradeoff") -> list[dict[str, object]]:
+def _records(outcome: "Tradeoff") -> list[dict[str, object]]:
     """For CSV: a line for each setting and family, and for each number of elements."""
-    records = [one._asdict() for one in measured.measured]
-    for one in measured.marches:
+    records = [one._asdict() for one in outcome.measured]
+    for one in outcome.marches:
         records.append({"setting": "elements" if one.elements else "closed form"} | one._asdict())
     names = dict.fromkeys(name for record in records for name in record)
     return [{name: record.get(name) for name in names} for record in records]
 
 
-def _print_tables(measured: "Tradeoff") -> None:
+def _print_tables(outcome: "Tradeoff") -> None:
     """A table of the settings for each family of scenes, one of string elements, and what follows."""
     from ..tradeoff.measure import ELEMENTS_LEGEND, LEGEND
     from ..tradeoff.scenes import FAMILIES
     from .page import Page
 
     page = Page()
-    for family, settings in groupby(measured.measured, attrgetter("family")):
-        meaning = FAMILIES[family].meaning if family in FAMILIES else describe(measured.scene)
+    for family, settings in groupby(outcome.measured, attrgetter("family")):
+        meaning = FAMILIES[family].meaning if family in FAMILIES else describe(outcome.scene)
         page.say(f"{family}: {meaning}", "bold")
         _print_measured(page, list(settings))
     page.say(LEGEND)
-    if measured.marches:
-        page.say(f"String elements: e^(μφ) of {describe(measured.scene)}", "bold")
-        _print_marches(page, measured.marches)
+    if outcome.marches:
+        page.say(f"String elements: e^(μφ) of {describe(outcome.scene)}", "bold")
+        _print_marches(page, outcome.marches)
         page.say(ELEMENTS_LEGEND)
-    for note in measured.notes:
+    for note in outcome.notes:
         page.say(note)
-    page.say(measured.advice, "bold")
+    page.say(outcome.advice, "bold")
 
 
 def _print_measured(page: "Page", settings: "Sequence[Measured]") -> None:
