@@ -1,7 +1,8 @@
 """Many scenes at once: arrays in, arrays out, by block, on threads.
 
-Here is the door, and what is given row by row: whether it is a scene, and of which kind its inputs
-are. Rows of the same kind are solved together in `rows`, which argues what the accuracies promise.
+`solve_arrays` is the door. Here it is also decided, row by row, whether what is given is a scene, and of
+which kind its inputs are; rows of the same kind are solved together in `rows`, which argues what the
+accuracies promise.
 """
 
 import os
@@ -23,7 +24,7 @@ from .rows import COLUMNS, Accuracy, Index, Rows
 
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
 BLOCK = {"fast": 131_072, "certified": 131_072, "exact": 81_920}  # rows, as measured
-LET_GO = 4_000_000  # doubles; its limit is 32 MB
+LET_GO = 4_000_000  # doubles; the GNU C library's limit is 32 MB
 LEAVE = 1_000  # rows of a block that are better solved with those of others
 THREADS = 4  # more would wait for the interpreter, and hold 30 MB of columns each
 FAST_WINDOW = 2.0**-250, 2.0**250  # beyond it, what comes in between may overflow though results do not
@@ -75,8 +76,8 @@ def solve_arrays(
             raise SceneError(mass, None, MISSING_MASS)
     shape = np.broadcast_shapes(*(column.shape for column in inputs.values()))
     kinds = {"regime": np.int8, "status": np.int8}
-    found = {name: np.empty(shape, kinds.get(name, np.float64)) for name in (*names, "status")}
-    flat = {name: column.reshape(-1) for name, column in found.items()}
+    results = {name: np.empty(shape, kinds.get(name, np.float64)) for name in (*names, "status")}
+    flat = {name: column.reshape(-1) for name, column in results.items()}
     left: dict[tuple[tuple[str, ...], int], list[NDArray[np.intp]]] = {}
 
     def solve_rows(index: Index, names: Sequence[str], rung: int, leave: int) -> None:
@@ -97,7 +98,7 @@ def solve_arrays(
         index = np.sort(np.concatenate(indices))  # whichever thread was first
         for block in _blocks(index.size, BLOCK[accuracy]):
             solve_rows(index[block], some, rung, 0)
-    return found
+    return results
 
 
 def _blocks(size: int, most: int, multiple_of: int = 1) -> list[slice]:
@@ -145,27 +146,27 @@ def _solve(
     rung: int,
     leave: int,
 ) -> Iterator[tuple[tuple[str, ...], int, NDArray[np.intp]]]:
-    """Write quantities of scenes, in an arithmetic on that rung or higher; yields what `Rows` leave."""
-    given = {name: _Given.of(name, column, accuracy) for name, column in columns.items()}
+    """Write quantities of scenes, in the arithmetic on that rung or higher; yields what `Rows` leave."""
+    given = {name: _InputColumn.of(name, column, accuracy) for name, column in columns.items()}
     out["status"][:] = status = _status(given, len(out["status"]))
     for rows in _agreeing(given, status, accuracy):
-        yield from rows.solve(tuple(sorted(names, key=_turn)), out, rung, leave)
+        yield from rows.solve(tuple(sorted(names, key=_order)), out, rung, leave)
     if status.any():
         for name in names:
             out[name][status != 0] = -1 if name == "regime" else nan
 
 
-def _turn(name: str) -> int:
-    """First what is the same for all rows, last what divides them in its own way."""
+def _order(name: str) -> int:
+    """Where a quantity comes in: first what divides no rows, last what divides them in its own way."""
     return 0 if name == "mu_verge" else 2 if name.startswith("critical") else 1
 
 
-# What is given in each row: who agrees with whom before any question is asked
+# What is given in each row: which rows agree before any question is asked
 
 USUAL, ABSENT, ZERO, INFINITE, FAR = range(5)
 
 
-class _Given(NamedTuple):
+class _InputColumn(NamedTuple):
     """A parameter's column, and of which kind each number is: just USUAL if all are."""
 
     name: str
@@ -173,7 +174,7 @@ class _Given(NamedTuple):
     kinds: Any
 
     @classmethod
-    def of(cls, name: str, column: Column, accuracy: Accuracy) -> "_Given":
+    def of(cls, name: str, column: Column, accuracy: Accuracy) -> "_InputColumn":
         low, high = FAST_WINDOW if accuracy == "fast" else WINDOW
         if low < column.min() and column.max() < high:
             return cls(name, column, USUAL)
@@ -203,7 +204,7 @@ class _Given(NamedTuple):
         return self.column
 
 
-def _status(given: Mapping[str, _Given], size: int) -> NDArray[np.int8]:
+def _status(given: Mapping[str, _InputColumn], size: int) -> NDArray[np.int8]:
     """Row by row, whether the inputs are in their domains and go together; see STATUSES."""
     faults = [(name, one.faults) for name, one in given.items() if one.kinds is not USUAL]
     absent = np.array([nan])
@@ -215,12 +216,14 @@ def _status(given: Mapping[str, _Given], size: int) -> NDArray[np.int8]:
         faults.append(("mu_k without mu", ~np.isnan(mu_k) & np.isnan(mu)))
         faults.append(("mu_k above mu", mu_k > mu))
     status = np.zeros(size, np.int8)
-    for fault, rows in reversed(faults):  # the first one found stands
+    for fault, rows in reversed(faults):  # the first one stands
         status[np.broadcast_to(rows, size)] = STATUSES.index(fault)
     return status
 
 
-def _agreeing(given: Mapping[str, _Given], status: NDArray[np.int8], accuracy: Accuracy) -> Iterator[Rows]:
+def _agreeing(
+    given: Mapping[str, _InputColumn], status: NDArray[np.int8], accuracy: Accuracy
+) -> Iterator[Rows]:
     """The rows of a block in parts that agree on what is given and of which kind, and who is heavier."""
     size, (m1, m2) = len(status), (given["m1"].column, given["m2"].column)
     digits = [(5, one.kinds) for one in given.values() if one.kinds is not USUAL]

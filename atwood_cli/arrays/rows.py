@@ -2,7 +2,7 @@
 
 A block of rows is divided, as far as the quantities asked for need it, into rows that agree: on
 what is given, on which mass is heavier, on whether the string slips. Each such part is one `Case`
-and one `Machine`, those of a single scene, in which every number is a column (see `columns`).
+and one `Machine`, those of a single scene, in which every number is a column (see `double_double`).
 
 What the accuracies promise, and why they keep it:
 
@@ -12,7 +12,7 @@ What the accuracies promise, and why they keep it:
   doubles, and every regime is right. A row goes up a ladder until an arithmetic vouches for it: rounded,
   quick, and thorough pairs, and at the end the exact arithmetic of a single scene. What may cancel, the
   lowest rung takes from the one above. A pair vouches where its bound is at most 3.49 · 2^-53 of the
-  value: that is at most 3.49 ulp, and rounding value + rest to a double costs half an ulp more. (Where a
+  value: that is at most 3.49 ulp, and rounding high + low to a double costs half an ulp more. (Where a
   power of two lies between the exact value and the double, an ulp is the larger one.) A question (does
   it slip?) is answered by doubles where the two sides differ by a 2^-40 of them, far more than the few
   roundings they take can amount to; else by the sign of a thorough difference, if its bound is below 1;
@@ -20,12 +20,14 @@ What the accuracies promise, and why they keep it:
 - ``exact``: the double nearest to the exact value. A thorough pair vouches where rounding gives the
   same double at both ends of its bound (Ziv's test), or where it is exact.
 
-Rows with an input beyond `columns.WINDOW` (and not 0), or `FAST_WINDOW`, start at the top of the ladder:
-what could overflow on the way is solved one by one, at about a millisecond a row. So, but when fast,
-is what comes of an e^{μφ} above e^700, and the friction_force_min of all rows.
+Rows with an input beyond `double_double.WINDOW` (and not 0), or `FAST_WINDOW`, start at the top of the
+ladder: what could overflow on the way is solved one by one, at about a millisecond a row. So, but when
+fast, is what comes of an e^{μφ} above e^700, and the friction_force_min of all rows.
 
 Parts wait until those on lower rungs are done, so that what is written last is what was vouched for.
 """
+
+from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
@@ -51,8 +53,8 @@ from ..solver.answers import Answers
 Accuracy = Literal["fast", "certified", "exact"]
 COLUMNS = tuple(name for name in PARAMETERS if name != "I")
 ALONG = {"fast": 1, "certified": 3, "exact": 3}
-"""How many times the others' number rows must be for taking the others along to cost less than parting."""
-FEW = 3  # rows: quicker one by one, at 0.2 ms each, than as columns of pairs
+"""How many times the minority the rows must be for taking it along to cost less than parting."""
+ONE_BY_ONE = 3  # rows: quicker so, at 0.2 ms each, than as columns of pairs
 CERTIFIED = 3.49 * UNIT
 LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
     "fast": (FLOATS,),
@@ -60,15 +62,18 @@ LADDERS: dict[str, tuple[Floats | Pairs, ...]] = {
     "exact": (THOROUGH,),
 }
 IN_ALL_REGIMES = {"mu_verge", "critical_pulley_mass", "critical_heavier_mass"}
-"""The same equations in all regimes: they start on the lowest rung, as does what does not slip."""
+"""Quantities with one equation in all regimes: they start on the lowest rung, as does what does not slip."""
 
 
 class Divided(Exception):
-    """The rows do not agree on the answer to a question: ask most of them, and later the few others."""
+    """The rows do not agree on the answer to a question: go on with the majority, later with the minority.
 
-    def __init__(self, most: "Rows", few: NDArray[np.intp], answers: Mapping[str, bool]) -> None:
-        super().__init__(most, few, answers)
-        self.most, self.few, self.answers = most, few, answers
+    ``minority`` is the place of its rows among those asked, ``answers`` what it has answered so far.
+    """
+
+    def __init__(self, majority: Rows, minority: NDArray[np.intp], answers: Mapping[str, bool]) -> None:
+        super().__init__(majority, minority, answers)
+        self.majority, self.minority, self.answers = majority, minority, answers
 
 
 Index = slice | NDArray[np.intp]
@@ -78,9 +83,10 @@ Waiting = dict[tuple[tuple[str, ...], int, frozenset[tuple[str, bool]]], list[An
 class Rows:
     """Rows that agree on all that was asked of them so far.
 
-    ``given`` are the inputs of many rows: a Fraction, None or inf where all share it, else a column; these
-    are the ones at ``index`` there. ``others`` are rows that came along because to leave them out would
-    cost more; what they get is overwritten.
+    ``given`` are the inputs of many rows, each a Fraction, None or inf where all share it, else a column;
+    these rows are the ones at ``index`` of them. ``sign`` says which mass is heavier (see `Case.sign`),
+    ``far`` that an input is beyond the window. ``others`` are rows of a minority that came along because to
+    leave them out would cost more; what they get is overwritten.
     """
 
     def __init__(
@@ -90,7 +96,7 @@ class Rows:
         accuracy: Accuracy,
         index: Index,
         far: bool = False,
-        waiting: "Waiting | None" = None,
+        waiting: Waiting | None = None,
     ) -> None:
         self._given, self.sign, self.accuracy, self.index, self.far = given, sign, accuracy, index, far
         self.size: int = index.stop - index.start if isinstance(index, slice) else index.size
@@ -102,13 +108,13 @@ class Rows:
         self._machines: dict[Any, Machine[Any]] = {}
         self._singles: dict[int, Answers] = {}
 
-    def _at(self, index: Index, answers: Mapping[str, bool]) -> "Rows":
-        """Rows of the same inputs that agree on so much."""
+    def _at(self, index: Index, answers: Mapping[str, bool]) -> Rows:
+        """Rows of the same inputs, by their place among all, that agree on those answers."""
         rows = Rows(self._given, self.sign, self.accuracy, index, self.far, self._waiting)
         rows._answers = dict(answers)
         return rows
 
-    def part(self, index: NDArray[np.intp] | None = None) -> "Rows":
+    def part(self, index: NDArray[np.intp] | None = None) -> Rows:
         """Some of these rows, or all for another answer."""
         if index is None:
             rows = self._at(self.index, self._answers)
@@ -133,7 +139,7 @@ class Rows:
         return self._fields[name]
 
     def number(self, name: str, arithmetic: Any) -> Any:
-        """The same as an arithmetic takes it; pairs of all arithmetics share what was made of them."""
+        """An input as an arithmetic takes it; pairs of all arithmetics share what was made of it."""
         field = self.field(name)
         if not isinstance(field, np.ndarray) or arithmetic is FLOATS:
             return field
@@ -142,7 +148,7 @@ class Rows:
         return arithmetic.number(self._pairs[name])
 
     def rim_mass(self, arithmetic: Any) -> Any:
-        """That of the pulley, where it has one; an exact product is the same in all arithmetics of pairs."""
+        """The pulley's βM, where it has a mass; an exact product is the same in all arithmetics of pairs."""
         if arithmetic is ROUNDED:
             return self.rim_mass(QUICK).taken_by(ROUNDED)
         if "c" in self._pairs:
@@ -154,13 +160,14 @@ class Rows:
         return rim_mass
 
     def write(self, out: NDArray[Any], values: Any) -> None:
+        """Write values of these rows to their place in ``out``."""
         out[self.index] = values
 
-    def write_sum(self, out: NDArray[Any], values: Any, rests: Any, signed: bool = False) -> Column:
-        """Write sums of values and rests, and return them; 0.0 is what -0 takes to be 0."""
+    def write_sum(self, out: NDArray[Any], high: Any, low: Any, signed: bool = False) -> Column:
+        """Write high + low, and return it; to add 0.0 makes 0 of -0, which only ``signed`` values can be."""
         there = out[self.index] if isinstance(self.index, slice) else None
-        sums: Column = np.add(values, rests, out=there)
-        if signed:  # the rest may be -0 too
+        sums: Column = np.add(high, low, out=there)
+        if signed:  # the low part may be -0 too
             sums = np.add(sums, 0.0, out=sums)
         if there is None:
             out[self.index] = sums
@@ -186,7 +193,7 @@ class Rows:
                 continue
             rows: Rows | None = self._at(index, dict(answers))
             thorough = LADDERS[self.accuracy][higher:] == (THOROUGH,)
-            if thorough and index is not self.index and index.size <= FEW:
+            if thorough and index is not self.index and index.size <= ONE_BY_ONE:
                 higher += 1
             while rows is not None:
                 rows, some = rows._solve_some(some, out, higher)
@@ -197,14 +204,14 @@ class Rows:
 
     def _solve_some(
         self, names: tuple[str, ...], out: Mapping[str, NDArray[Any]], rung: int
-    ) -> "tuple[Rows | None, tuple[str, ...]]":
-        """Write quantities until the rows disagree: then most of them, and what is left to write."""
+    ) -> tuple[Rows | None, tuple[str, ...]]:
+        """Write quantities until the rows disagree; returns the majority then, and what is left to write."""
         for i, name in enumerate(names):
             try:
                 self._solve_one(name, out, rung)
             except Divided as divided:
-                self._wait(names[i:], rung, divided.answers, self._within(divided.few))
-                return divided.most, names[i:]
+                self._wait(names[i:], rung, divided.answers, self._within(divided.minority))
+                return divided.majority, names[i:]
         return None, ()
 
     def _solve_one(self, name: str, out: Mapping[str, NDArray[Any]], rung: int) -> None:
@@ -223,13 +230,13 @@ class Rows:
             self._solve_one(name, out, rung + 1)
 
     def _first_rung(self, name: str, rung: int) -> int:
-        """Higher up where what slips takes too many roundings for the lowest to vouch for it."""
+        """The rung to start on: not the lowest for what slips, which takes too many roundings for it."""
         if self.accuracy != "certified" or name in IN_ALL_REGIMES:
             return rung
         return rung if self.machine(FLOATS).case.regime == "no-slip" else max(rung, 1)
 
     def _write_vouched(self, name: str, out: NDArray[Any], rung: int, value: Any) -> None:
-        """Write a quantity; rows of which it is not what the accuracy promises have to go up."""
+        """Write a quantity; rows in which it may not be what the accuracy promises have to go up."""
         if not isinstance(value, Pair):
             self.write_sum(out, value, 0.0)
             return
@@ -276,31 +283,32 @@ class Rows:
         """The answer of all rows; raises Divided if they differ."""
         if question not in self._answers:
             ask: Any = QUESTIONS.get(question, Rows._beats_friction)
-            found = ask(self, question)
-            if np.size(found) == 1:
-                self._answers[question] = bool(found)
+            answers = ask(self, question)
+            if np.size(answers) == 1:
+                self._answers[question] = bool(answers)
             else:
-                self._agree(question, found)
+                self._agree(question, answers)
         return self._answers[question]
 
     def _agree(self, question: str, answers: NDArray[np.bool_]) -> None:
+        """Keep the answer that all rows give, or raise Divided."""
         others = np.empty(0, np.intp) if self.others is None else self.others
         yes = int(np.count_nonzero(answers) - np.count_nonzero(answers[others]))
         if yes in (0, self.size - others.size):
             self._answers[question] = yes > 0
             return
         rarer = 2 * yes < self.size - others.size
-        found = answers == rarer
-        found[others] = False
-        index = np.flatnonzero(found)
-        if ALONG[self.accuracy] * index.size < self.size:
-            most = self.part()
-            most.others = np.concatenate([others, index])
+        in_minority = answers == rarer
+        in_minority[others] = False
+        minority = np.flatnonzero(in_minority)
+        if ALONG[self.accuracy] * minority.size < self.size:
+            majority = self.part()
+            majority.others = np.concatenate([others, minority])
         else:
-            found[others] = True
-            most = self.part(np.flatnonzero(~found))
-        most._answers[question] = not rarer
-        raise Divided(most, index, self._answers | {question: rarer})
+            in_minority[others] = True
+            majority = self.part(np.flatnonzero(~in_minority))
+        majority._answers[question] = not rarer
+        raise Divided(majority, minority, self._answers | {question: rarer})
 
     def _beats_friction(self, question: Any) -> Any:
         """Whether the excess of the tension ratio is beyond what friction holds, e^{μφ} - 1."""
@@ -365,7 +373,7 @@ class _Inputs:
 
 
 class _RowsCase(Case):
-    """What is decided about rows that agree on it."""
+    """A case whose questions are put to rows, which agree on the answers or are divided."""
 
     def __init__(self, rows: Rows, arithmetic: Any) -> None:
         inputs: Any = _Inputs(rows, arithmetic)
