@@ -33,9 +33,10 @@ class Unreadable(Exception):
 
 
 class Piece(NamedTuple):
-    """Some rows of a table: the columns met so far, and how much of the input it is (bytes, or rows).
+    """Some rows of a table as a frame, the columns met so far, and how much of the input it is.
 
-    ``lines`` are rows of NDJSON as they came; beside them the frame has only the columns asked for.
+    ``size`` is in bytes, or in rows of Parquet. ``lines`` are rows of NDJSON as they came; the frame has then
+    only the columns asked for.
     """
 
     columns: Sequence[str]
@@ -98,6 +99,7 @@ def _last_end(text: bytes, quoted: bool) -> int:
 
 
 def _first_end(text: bytes) -> int:
+    """Behind the first line end that is not within quotation marks."""
     end, marks = 0, 1
     while marks % 2 and end < len(text):
         end = text.find(b"\n", end) + 1 or len(text)
@@ -127,7 +129,7 @@ def _read_csv(file: IO[bytes], separator: str) -> Iterator[Piece]:
         try:
             frame = pl.read_csv(names + rows, separator=separator, infer_schema=False)
         except pl.exceptions.PolarsError as error:
-            _explain(error, rows, len(header), done, separator)
+            _refuse_csv(error, rows, len(header), done, separator)
         if not rows.endswith(b"\n") and rows:
             _check_last(rows, len(header), done + frame.height, separator)
         frame.columns = _distinct(header)
@@ -152,7 +154,7 @@ def _check_separator(header: Sequence[str], separator: str) -> None:
 
 
 def _distinct(names: list[str]) -> list[str]:
-    """The names; where one is there twice, which its reader refuses, numbers."""
+    """The names, or where one is there twice, which `run` refuses later, numbers in their place."""
     return names if len(set(names)) == len(names) else [str(i) for i in range(len(names))]
 
 
@@ -174,8 +176,8 @@ def _decode(text: bytes, row: Callable[[int], str]) -> str:
         ) from None
 
 
-def _explain(error: Exception, rows: bytes, width: int, done: int, separator: str) -> NoReturn:
-    """Say what polars did not like, and in which row."""
+def _refuse_csv(error: Exception, rows: bytes, width: int, done: int, separator: str) -> NoReturn:
+    """Say in which row, and why, polars could not read it. Raises Unreadable."""
 
     def row(at: int) -> str:
         return f"row {done + _count(rows[:at], separator)}"
@@ -251,7 +253,7 @@ def _object(line: str, number: int) -> Mapping[str, object]:
     return row
 
 
-def _pairs(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
+def _members(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
     row = dict(pairs)
     if len(row) < len(pairs):
         names = [name for name, _ in pairs]
@@ -263,7 +265,9 @@ def _refuse(word: str) -> NoReturn:
     raise ValueError(f"{word} is no number in JSON")
 
 
-_DECODER = json.JSONDecoder(object_pairs_hook=_pairs, parse_float=str, parse_int=str, parse_constant=_refuse)
+_DECODER = json.JSONDecoder(
+    object_pairs_hook=_members, parse_float=str, parse_int=str, parse_constant=_refuse
+)
 
 
 def _cell(name: str, row: Mapping[str, object], line: str) -> str | None:
@@ -289,7 +293,7 @@ def _read_parquet(file: IO[bytes]) -> Iterator[Piece]:
 
 
 def write(kind: str, file: IO[bytes], solved: Iterable[tuple[Piece, "pl.DataFrame"]]) -> None:
-    """Write pieces with the columns to append."""
+    """Write a table from its pieces, each with the columns to append. Raises OSError."""
     if kind == "parquet":
         _write_parquet(file, (piece.frame.hstack(results) for piece, results in solved))
         return
@@ -312,7 +316,7 @@ def write(kind: str, file: IO[bytes], solved: Iterable[tuple[Piece, "pl.DataFram
 def _checked(
     kind: str, solved: Iterable[tuple[Piece, "pl.DataFrame"]]
 ) -> Iterator[tuple[Piece, "pl.DataFrame"]]:
-    """The same, all of whose columns the format has a place for. Raises OSError."""
+    """Hand on pieces once it is certain that the format has a place for their columns. Raises OSError."""
     import polars as pl
 
     for piece, results in solved:
@@ -338,7 +342,7 @@ def _as_ndjson(piece: Piece, results: "pl.DataFrame") -> bytes:
 
 
 def _spliced(line: str, end: str) -> str:
-    """An object with the members of a second one behind its own, which stay as they came."""
+    """A JSON object as it came, with the members of a second one behind its own."""
     comma = "," if line[1:-1].strip() else ""
     return f"{line[:-1].rstrip()}{comma}{end[1:]}\n"
 

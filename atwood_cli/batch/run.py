@@ -1,4 +1,4 @@
-"""Many scenes: a table in, the same table with its results out, a row that is no scene among them."""
+"""Many scenes: a table in, the same table with its results out. A row that is no scene gets an error."""
 
 import os
 import shutil
@@ -61,7 +61,7 @@ def _counted(count: int, thing: str) -> str:
 
 @dataclass(frozen=True)
 class Job:
-    """What is to be done: files with their formats, results with their accuracy."""
+    """What is to be done: files with their formats, and the results wanted with their accuracy."""
 
     source: str
     source_format: str
@@ -91,6 +91,7 @@ def run_batch(job: Job, watch: Watch) -> Tally:
 
 
 def _open(job: Job, stack: ExitStack) -> IO[bytes]:
+    """The input; a stream of Parquet, which is not read from front to back, by way of a temporary file."""
     if job.source == STREAM:
         if sys.stdin is None:
             raise OSError("cannot read stdin: it is closed")
@@ -108,6 +109,7 @@ def _open(job: Job, stack: ExitStack) -> IO[bytes]:
 
 
 def _target(job: Job, stack: ExitStack) -> IO[bytes]:
+    """The output, which must not be the input."""
     if job.target == STREAM:
         sys.stdout.flush()
         stream: IO[bytes] | None = getattr(sys.stdout, "buffer", None)
@@ -135,6 +137,7 @@ def _solved(
 
 
 def _size(job: Job, source: IO[bytes]) -> int | None:
+    """How much there is to read, in the unit of `Piece.size`; None if that cannot be known."""
     import polars as pl
 
     if job.source_format == "parquet":
@@ -145,6 +148,7 @@ def _size(job: Job, source: IO[bytes]) -> int | None:
 
 
 def _check_columns(columns: Sequence[str], results: Sequence[str]) -> None:
+    """Refuse a table whose columns come twice, or would with the results, or lack a mass."""
     for name, times in Counter(columns).items():
         if times > 1:
             raise Unreadable(f"column {name!r} is there {times} times")
@@ -162,31 +166,31 @@ def _listed(names: Sequence[str], most: int = 12) -> str:
 
 
 def _remarks(columns: Sequence[str]) -> list[str]:
-    """Of columns that are passed on, though they may have been meant."""
+    """Remarks on columns that are passed on, though they may have been meant as inputs."""
     meant = {name.lower(): name for name in COLUMNS}
-    found = [f"column {'I'!r} is not used; give inertia, I/(M R^2)"] if "I" in columns else []
+    remarks = [f"column {'I'!r} is not used; give inertia, I/(M R^2)"] if "I" in columns else []
     for column in columns:
         name = meant.get(column.strip().partition(" ")[0].lower().replace("-", "_"))
         if name and column not in COLUMNS and name not in columns:
-            found.append(f"column {column!r} is not used; did you mean {name}?")
-    return found
+            remarks.append(f"column {column!r} is not used; did you mean {name}?")
+    return remarks
 
 
 def _solve(frame: "pl.DataFrame", job: Job, tally: Tally) -> "pl.DataFrame":
-    """The columns to append: the results, empty in rows that failed, and what is wrong with those."""
+    """The columns to append: the results, empty in rows that failed, and the error of those."""
     import polars as pl
 
     scenes, errors = _scenes(frame)
     wanted = list(dict.fromkeys(["regime", *job.names]))
-    found = solve_arrays(**scenes, accuracy=job.accuracy, quantities=wanted)
-    for row in found["status"].nonzero()[0].tolist():
+    results = solve_arrays(**scenes, accuracy=job.accuracy, quantities=wanted)
+    for row in results["status"].nonzero()[0].tolist():
         if row not in errors:
             errors[row] = _why(frame.select(list(scenes)).row(row, named=True))
     failed = sorted(errors)
     texts = [errors.get(row) for row in range(frame.height)] if errors else []
     columns = {
-        "regime": _words(found["regime"], failed, tally),
-        **{name: _finite(found[name], failed, tally) for name in wanted[1:]},
+        "regime": _regimes(results["regime"], failed, tally),
+        **{name: _finite(results[name], failed, tally) for name in wanted[1:]},
         ERROR: pl.Series(texts, dtype=pl.String)
         if texts
         else pl.repeat(None, frame.height, dtype=pl.String, eager=True),
@@ -198,11 +202,12 @@ def _solve(frame: "pl.DataFrame", job: Job, tally: Tally) -> "pl.DataFrame":
     return pl.DataFrame({name: columns[name] for name in [*job.names, ERROR]})
 
 
-def _words(regimes: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
+def _regimes(codes: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
+    """A column of the regimes' names, empty in rows that failed; the tally counts them."""
     import numpy as np
     import polars as pl
 
-    codes = regimes.astype(np.uint32)
+    codes = codes.astype(np.uint32)
     codes[failed] = len(REGIMES)
     tally.regimes.update(
         dict(zip(REGIMES, np.bincount(codes, minlength=len(REGIMES)).tolist(), strict=False))
@@ -211,7 +216,7 @@ def _words(regimes: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
 
 
 def _finite(values: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
-    """A column, empty where a value does not exist or no double can hold it."""
+    """A column of results, empty where a value does not exist or no double can hold it."""
     import numpy as np
     import polars as pl
 
@@ -222,7 +227,7 @@ def _finite(values: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
 
 
 def _scenes(frame: "pl.DataFrame") -> tuple[dict[str, Any], dict[int, str]]:
-    """The cells as doubles by column, and by row what is wrong with the first cell that is none."""
+    """The inputs as doubles by column, and by row the error of the first cell that is no double."""
     import polars as pl
 
     inputs = [name for name in COLUMNS if name in frame.columns]
@@ -244,7 +249,7 @@ def _scenes(frame: "pl.DataFrame") -> tuple[dict[str, Any], dict[int, str]]:
 
 
 def _column(cells: "pl.Series", doubles: "pl.Series") -> tuple[Any, dict[int, Any]]:
-    """Cells as doubles, NaN where empty, and by row those that may be no doubles."""
+    """A column's cells as doubles, NaN where empty, and by row those cells that may be no doubles."""
     import numpy as np
     import polars as pl
 
@@ -274,7 +279,7 @@ def _wrong(name: str, cell: str | float) -> str:
 
 
 def _why(row: Mapping[str, Any]) -> str:
-    """What is wrong with a row, by the one door that says so; as typed, if a scene is typed so."""
+    """What is wrong with a row, in the words of `solve`; cells as typed where they are numbers."""
     cells: dict[str, Given | None] = {}
     for name, cell in row.items():
         text = cell.strip(" ") if isinstance(cell, str) else cell

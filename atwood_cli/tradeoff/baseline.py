@@ -1,7 +1,7 @@
-"""The yardstick: the paper's formulas as anybody would type them into NumPy.
+"""The baseline that accuracies are measured against: the paper's formulas as anybody would type them.
 
-Not part of the model. They stand here, outside `physics`, to be measured against (`tradeoff`): they
-know no regime, subtract what is nearly equal, and lose what they form on the way.
+They are no part of the model, which has its equations in `physics`: they know no regime, subtract what is
+nearly equal, and what they form on the way may overflow.
 """
 
 from typing import Any

@@ -28,8 +28,10 @@ from ..model.scene import STANDARD_GRAVITY, Scene, SceneError
 from ..solver.answers import Answers
 from ..solver.elements import MAX_ELEMENTS, TOO_LARGE, balanced, extrapolated, march
 from .baseline import paper_in_numpy
-from .scenes import Row, draw_scenes
+from .scenes import Inputs, draw_scenes
 
+Values = dict[str, Any]
+"""A solution by quantity; None, or NaN, where there is no value."""
 Watch = Callable[[Iterator[Any], int], Iterator[Any]]
 
 VALUES = STANDARD[1:]
@@ -46,22 +48,23 @@ PRECISE = decimal_context(EXACT_DIGITS + 20, ROUND_HALF_EVEN)
 
 
 class Setting(NamedTuple):
-    """A way to solve scenes: what it is given, the run that is timed, and its solutions read off."""
+    """A way to solve scenes: how to prepare its input, the run that is timed, how to read solutions off."""
 
     name: str
-    prepare: Callable[[Sequence[Row], int], Any]
+    prepare: Callable[[Sequence[Inputs], int], Any]
     run: Callable[[Any], Any]
-    read: Callable[[Sequence[Row], Any], list[Row]]
+    read: Callable[[Sequence[Inputs], Any], list[Values]]
 
 
-def _columns(rows: Sequence[Row], size: int, dtype: Any = np.float64) -> dict[str, Any]:
+def _columns(rows: Sequence[Inputs], size: int, dtype: Any = np.float64) -> dict[str, Any]:
     """The scenes as columns, over and over until there are as many rows as that."""
     with np.errstate(over="ignore"):
         return {name: np.resize(np.array([row[name] for row in rows], dtype), size) for name in rows[0]}
 
 
-def _read(found: Mapping[str, Any], regimes: Sequence[str]) -> list[Row]:
-    values = zip(*(np.asarray(found[name], np.float64).tolist() for name in VALUES), strict=True)
+def _by_scene(columns: Mapping[str, Any], regimes: Sequence[str]) -> list[Values]:
+    """The solutions one by one, from a column for each quantity."""
+    values = zip(*(np.asarray(columns[name], np.float64).tolist() for name in VALUES), strict=True)
     return [
         {"regime": regime, **dict(zip(VALUES, row, strict=True))}
         for regime, row in zip(regimes, values, strict=True)
@@ -72,7 +75,7 @@ IN_THE_PAPER = ("m1", "m2", "M", "mu", "g", "inertia", "wrap")  # the last two a
 
 
 def _in_numpy(dtype: Any) -> Setting:
-    def prepare(rows: Sequence[Row], size: int) -> dict[str, Any]:
+    def prepare(rows: Sequence[Inputs], size: int) -> dict[str, Any]:
         columns = {
             name: column for name, column in _columns(rows, size, dtype).items() if name in IN_THE_PAPER
         }
@@ -83,9 +86,9 @@ def _in_numpy(dtype: Any) -> Setting:
         with np.errstate(all="ignore"):
             return paper_in_numpy(**given)
 
-    def read(rows: Sequence[Row], found: Mapping[str, Any]) -> list[Row]:
+    def read(rows: Sequence[Inputs], columns: Mapping[str, Any]) -> list[Values]:
         regime = "verge" if "mu" in rows[0] and "M" not in rows[0] else "no-slip"  # as the formulas assume
-        return _read(found, [regime] * len(rows))
+        return _by_scene(columns, [regime] * len(rows))
 
     return Setting(f"paper, {dtype.__name__}", prepare, run, read)
 
@@ -94,22 +97,22 @@ def _in_arrays(accuracy: Any) -> Setting:
     def run(columns: Mapping[str, Any]) -> dict[str, Any]:
         return solve_arrays(**columns, accuracy=accuracy)
 
-    def read(_: Sequence[Row], found: Mapping[str, Any]) -> list[Row]:
-        return _read(found, [REGIMES[code] for code in found["regime"]])
+    def read(_: Sequence[Inputs], columns: Mapping[str, Any]) -> list[Values]:
+        return _by_scene(columns, [REGIMES[code] for code in columns["regime"]])
 
     return Setting(accuracy, _columns, run, read)
 
 
 def _in_decimals(digits: int) -> Setting:
-    def prepare(rows: Sequence[Row], size: int) -> list[Scene]:
+    def prepare(rows: Sequence[Inputs], size: int) -> list[Scene]:
         scenes = [Scene.read({"g": float(STANDARD_GRAVITY), **row}) for row in rows[:size]]
         return [scenes[i % len(scenes)] for i in range(size)]
 
-    def run(scenes: Sequence[Scene]) -> list[Row]:
+    def run(scenes: Sequence[Scene]) -> list[Values]:
         every = (Answers(scene, digits) for scene in scenes)
         return [{name: answers[name] for name in STANDARD} for answers in every]
 
-    return Setting(f"{digits} digits", prepare, run, lambda _, found: found)
+    return Setting(f"{digits} digits", prepare, run, lambda _, solutions: solutions)
 
 
 SETTINGS = (
@@ -122,21 +125,22 @@ SETTINGS = (
 # Errors
 
 
-def errors(found: Sequence[Row], exact: Sequence[Row]) -> list[float]:
+def errors(solutions: Sequence[Values], exact: Sequence[Values]) -> list[float]:
     """The worst error (ulp) of each scene whose regime is right; infinite where a value is lost."""
     return [
-        max((_ulps(row[name], right[name]) for name in VALUES if right[name] is not None), default=0.0)
-        for row, right in zip(found, exact, strict=True)
-        if row["regime"] == right["regime"]
+        max((_ulps(values[name], right[name]) for name in VALUES if right[name] is not None), default=0.0)
+        for values, right in zip(solutions, exact, strict=True)
+        if values["regime"] == right["regime"]
     ]
 
 
-def _ulps(found: Any, exact: Decimal) -> float:
+def _ulps(value: Any, exact: Decimal) -> float:
+    """How far a value is off, in units in the last place of the double nearest to the exact one."""
     nearest = float(exact)
-    if isinstance(found, float) and not (isfinite(found) and isfinite(nearest)):
-        return 0.0 if found == nearest else inf
+    if isinstance(value, float) and not (isfinite(value) and isfinite(nearest)):
+        return 0.0 if value == nearest else inf
     unit = Decimal(ulp(nearest)) if isfinite(nearest) else PRECISE.multiply(exact, Decimal(ulp(1.0)))
-    return abs(float(PRECISE.divide(PRECISE.subtract(Decimal(found), exact), unit)))
+    return abs(float(PRECISE.divide(PRECISE.subtract(Decimal(value), exact), unit)))
 
 
 # Measuring
@@ -159,7 +163,7 @@ class Measured(NamedTuple):
     """No other setting is both faster and more accurate."""
 
 
-def measure(family: str, rows: Sequence[Row]) -> list[Measured]:
+def measure(family: str, rows: Sequence[Inputs]) -> list[Measured]:
     """Every setting on these scenes, which have the same parameters; ``family`` names them."""
     reference = _in_decimals(EXACT_DIGITS)
     exact = reference.run(reference.prepare(rows, len(rows)))
@@ -176,7 +180,7 @@ def measure(family: str, rows: Sequence[Row]) -> list[Measured]:
     return [one._replace(best=not any(_beats(other, one) for other in measured)) for one in measured]
 
 
-def _size(setting: Setting, rows: Sequence[Row]) -> int:
+def _size(setting: Setting, rows: Sequence[Inputs]) -> int:
     """So many scenes that a run takes long enough to be timed, and not much longer."""
     size = min(len(rows), FEWEST)
     while size < MOST_ROWS:
@@ -199,6 +203,7 @@ def _seconds(run: Callable[[Any], object], given: Any) -> float:
 
 
 def _center(times: Sequence[float]) -> tuple[float, float]:
+    """The median of the repeats, and half of their range as a share of it."""
     middle = median(times)
     return middle, (max(times) - min(times)) / 2 / middle
 
@@ -264,9 +269,9 @@ def marches(scene: Scene) -> Iterator[March]:
         for _ in range(REPEATS):
             start = perf_counter()
             for _ in range(times):
-                found = ratio()
+                reached = ratio()
             taken.append((perf_counter() - start) / times)
-        return March(count, halved, *_center(taken), abs(float((Fraction(found) - exact) / exact)))
+        return March(count, halved, *_center(taken), abs(float((Fraction(reached) - exact) / exact)))
 
     for count in COUNTS:
         if balanced(mu, phi, count):
@@ -276,11 +281,11 @@ def marches(scene: Scene) -> Iterator[March]:
     yield timed(None, False, lambda: exp(mu * phi), 1000)
 
 
-def with_orders(found: Sequence[March]) -> list[March]:
-    """The same, with the order of convergence since the number of elements before, and the best marked."""
+def with_orders(run: Sequence[March]) -> list[March]:
+    """Marches with their order of convergence since the number of elements before, and the best marked."""
     marked = []
-    for one in found:
-        alike = [other for other in found if other.extrapolated == one.extrapolated and other.elements]
+    for one in run:
+        alike = [other for other in run if other.extrapolated == one.extrapolated and other.elements]
         before = max((o for o in alike if (o.elements or 0) < (one.elements or 0)), default=None)
         order = None
         if one.elements and before and before.elements and one.relative_error and before.relative_error:
@@ -296,7 +301,7 @@ def with_orders(found: Sequence[March]) -> list[March]:
 class Tradeoff(NamedTuple):
     """What was measured: of ``scenes`` of each family from the seed, or of one scene (seed None).
 
-    ``scene`` is that whose e^{μφ} the elements approach.
+    ``scene`` is the one whose e^{μφ} the elements approach.
     """
 
     scene: Scene
@@ -334,40 +339,40 @@ def drawable(worst_ulp: float | None) -> float:
 def tradeoff(families: Sequence[str], scenes: int, seed: int, scene: Scene | None, watch: Watch) -> Tradeoff:
     """Measure every setting on so many scenes of each family, or on the one scene given. Raises SceneError.
 
-    ``watch`` is handed the parts of the work, and how many there are, and hands them on.
+    ``watch`` takes the parts of the work, and how many there are, and yields them as they are done.
     """
-    sets: Iterator[tuple[str, list[Row]]] = ((name, draw_scenes(name, scenes, seed)) for name in families)
+    sets: Iterator[tuple[str, list[Inputs]]] = ((name, draw_scenes(name, scenes, seed)) for name in families)
     if scene is not None:
-        sets, families = iter([("scene", [row_of(scene)])]), ["scene"]
+        sets, families = iter([("scene", [inputs_of(scene)])]), ["scene"]
     measured = [one for part in watch((measure(*each) for each in sets), len(families)) for one in part]
     marched = scene or Scene.read(PAPERS_SCENE)
-    found, notes = [], []
+    run, notes = [], []
     try:
-        found = with_orders(list(watch(marches(marched), 2 * len(COUNTS) + 1)))
+        run = with_orders(list(watch(marches(marched), 2 * len(COUNTS) + 1)))
     except SceneError as error:
         notes.append(f"String elements {error.rule}.")
     except Undetermined as reason:
         notes.append(f"String elements: {reason}.")
     if scene is not None:
-        return Tradeoff(marched, 1, None, measured, found, notes)
-    return Tradeoff(marched, scenes, seed, measured, found, notes)
+        return Tradeoff(marched, 1, None, measured, run, notes)
+    return Tradeoff(marched, scenes, seed, measured, run, notes)
 
 
-def row_of(scene: Scene) -> Row:
+def inputs_of(scene: Scene) -> Inputs:
     """A scene as the doubles that it is measured with, m1 the lighter mass. Raises SceneError."""
-    row: Row = {}
+    inputs: Inputs = {}
     given = scene._asdict() | {"wrap": scene.wrap.number}
     for name in COLUMNS:
         if (value := given[name]) is not None:
-            row[name] = double = to_double(value)
+            inputs[name] = double = to_double(value)
             if isinstance(value, Fraction) and (double == inf or (double == 0 and value)):
                 raise SceneError(name, as_typed(value), "is beyond the doubles, which are measured here")
     if scene.I is not None:
         raise SceneError("I", None, "is not measured, as arrays have no such column; give --inertia")
     if scene.wrap.unit == "rad":
-        row["wrap"] = degrees(row["wrap"])
-    row["m1"], row["m2"] = sorted((row["m1"], row["m2"]))
-    return row
+        inputs["wrap"] = degrees(inputs["wrap"])
+    inputs["m1"], inputs["m2"] = sorted((inputs["m1"], inputs["m2"]))
+    return inputs
 
 
 def advice(measured: Sequence[Measured]) -> str:

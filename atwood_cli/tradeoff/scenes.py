@@ -1,7 +1,8 @@
 """Families of scenes that are hard on doubles, drawn from a seed.
 
-Every platform draws the same doubles: mantissas and exponents come apart, so that no library's powers
-or logarithms have a say, and what has to lie near the verge is first solved exactly. All have M and mu.
+Every platform draws the same doubles: mantissas and exponents are drawn one by one, so that no library's
+powers or logarithms have a say, and what has to lie near the verge is first solved exactly. All scenes have
+M and mu.
 """
 
 from collections.abc import Callable
@@ -12,8 +13,8 @@ from typing import Any, NamedTuple
 from ..model.scene import Scene
 from ..solver.answers import Answers
 
-Row = dict[str, Any]
-"""A scene by parameter, or a solution by quantity (None where there is no value)."""
+Inputs = dict[str, Any]
+"""The inputs of a scene by parameter, as doubles."""
 
 
 def _between(rng: Random, low: int, high: int) -> float:
@@ -21,23 +22,23 @@ def _between(rng: Random, low: int, high: int) -> float:
     return ldexp(1 + rng.random(), rng.randrange(low, high))
 
 
-def _ordinary(rng: Random) -> Row:
+def _ordinary(rng: Random) -> Inputs:
     m1 = _between(rng, -7, 7)
     m2 = m1 * (1 + _between(rng, -7, 7))
     return {"m1": m1, "m2": m2, "M": _between(rng, -7, 10), "mu": _between(rng, -7, 1)}
 
 
-def _nearly_equal(rng: Random) -> Row:
+def _nearly_equal(rng: Random) -> Inputs:
     scene = _ordinary(rng)
     return scene | {"m2": scene["m1"] * (1 + _between(rng, -50, -7)), "mu": _between(rng, -60, -7)}
 
 
-def _light_pulley(rng: Random) -> Row:
+def _light_pulley(rng: Random) -> Inputs:
     scene = _ordinary(rng) | {"M": _between(rng, -100, -10)}
     return scene | {"mu": _between(rng, -100, -10)} if rng.random() < 0.5 else scene
 
 
-def _near_critical(rng: Random) -> Row:
+def _near_critical(rng: Random) -> Inputs:
     """Beside the critical pulley mass, or beside the least heavier mass that can slip."""
     m1, mu = _between(rng, -7, 7), _between(rng, -7, 0)
     off = 1 + rng.choice((-1, 1)) * _between(rng, -50, -10)
@@ -49,18 +50,19 @@ def _near_critical(rng: Random) -> Row:
 
 
 def _nearest(name: str, **given: float) -> Any:
+    """The double nearest to a quantity of a scene."""
     return Answers(Scene.read(given))[name]
 
 
-def _whole_range(rng: Random) -> Row:
+def _whole_range(rng: Random) -> Inputs:
     m1, m2, M = (_between(rng, -1074, 1024) for _ in range(3))
     return {"m1": min(m1, m2), "m2": max(m1, m2), "M": M, "mu": _between(rng, -1074, 10)}
 
 
 class Family(NamedTuple):
-    """A kind of scenes, and what it is in words."""
+    """A kind of scenes: the function that draws one, and what they are in words."""
 
-    draw: Callable[[Random], Row]
+    draw: Callable[[Random], Inputs]
     meaning: str
 
 
@@ -75,7 +77,7 @@ FAMILIES = {
 }
 
 
-def draw_scenes(family: str, count: int, seed: int) -> list[Row]:
-    """That many scenes of a family, the same for the same seed."""
+def draw_scenes(family: str, count: int, seed: int) -> list[Inputs]:
+    """So many scenes of a family; the same seed draws the same ones, and fewer the first of them."""
     rng = Random(f"{family} {seed}")
     return [FAMILIES[family].draw(rng) for _ in range(count)]
