@@ -218,7 +218,7 @@ class Pair:
         return whole
 
     def _scaled(self, factor: float) -> Pair:
-        """Times a power of two, or -1."""
+        """This number times a power of two, or -1."""
         low = None if self.low is None else self.low * factor
         positive = self.positive and factor > 0
         scaled = Pair(self.arithmetic, self.high * factor, low, self.loss, self.doubt, positive)
@@ -241,7 +241,7 @@ class Pair:
         return one.arithmetic.quotient(one, two)
 
     def of_factors(self, other: Pair, high: Column, low: Column | None, loss: float) -> Pair:
-        """The product or quotient of two pairs, in which so much is lost."""
+        """The product or quotient of two pairs, from its parts and what is lost in it."""
         doubt = _both(self.doubt, other.doubt, np.add)
         positive = self.positive and other.positive
         return Pair(self.arithmetic, high, low, self.loss + other.loss + loss, doubt, positive)
@@ -251,7 +251,7 @@ class Pair:
         return one / self
 
     def take(self, index: NDArray[np.intp]) -> Pair:
-        """Some of the rows."""
+        """This number in some of its rows."""
         low, doubt = (None if part is None else part.take(index) for part in (self.low, self.doubt))
         return Pair(self.arithmetic, self.high.take(index), low, self.loss, doubt, self.positive)
 
@@ -286,7 +286,7 @@ class Pairs:
         return x.doubt is None or 50 * int(np.count_nonzero(x.doubt > 3 * UNIT)) <= x.doubt.size
 
     def number(self, q: Any) -> Any:
-        """A number, or a column of exact doubles."""
+        """The pair for a number, or for a column of exact doubles."""
         if isinstance(q, Pair):
             return q.taken_by(self) if q.exact else q
         if isinstance(q, np.ndarray):

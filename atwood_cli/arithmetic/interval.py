@@ -50,26 +50,26 @@ def decimal_context(digits: int, rounding: str) -> Context:
 class Enclosure:
     """A pair lo <= value <= hi of decimals, with arithmetic that keeps it so."""
 
-    __slots__ = ("hi", "lo", "within")
+    __slots__ = ("arithmetic", "hi", "lo")
 
-    def __init__(self, within: Enclosures, lo: Decimal, hi: Decimal) -> None:
-        self.within, self.lo, self.hi = within, lo, hi
+    def __init__(self, arithmetic: Enclosures, lo: Decimal, hi: Decimal) -> None:
+        self.arithmetic, self.lo, self.hi = arithmetic, lo, hi
 
     def _lift(self, other: Enclosure | int) -> Enclosure:
-        return self.within.number(other) if isinstance(other, int) else other
+        return self.arithmetic.number(other) if isinstance(other, int) else other
 
     def __add__(self, other: Enclosure | int) -> Enclosure:
-        other, at = self._lift(other), self.within
+        other, at = self._lift(other), self.arithmetic
         return Enclosure(at, at.down.add(self.lo, other.lo), at.up.add(self.hi, other.hi))
 
     __radd__ = __add__
 
     def __sub__(self, other: Enclosure | int) -> Enclosure:
-        other, at = self._lift(other), self.within
+        other, at = self._lift(other), self.arithmetic
         return Enclosure(at, at.down.subtract(self.lo, other.hi), at.up.subtract(self.hi, other.lo))
 
     def __mul__(self, other: Enclosure | int) -> Enclosure:
-        other, at = self._lift(other), self.within
+        other, at = self._lift(other), self.arithmetic
         if self.lo >= 0 and other.lo >= 0:
             lo, hi = at.down.multiply(self.lo, other.lo), at.up.multiply(self.hi, other.hi)
         else:
@@ -85,7 +85,7 @@ class Enclosure:
 
         One that may be zero is too wide: Unsettled.
         """
-        other, at = self._lift(other), self.within
+        other, at = self._lift(other), self.arithmetic
         if other.lo <= 0:
             raise Unsettled
         lo = at.down.divide(self.lo, other.hi if self.lo >= 0 else other.lo)
@@ -110,17 +110,17 @@ class Enclosures:
         return x.lo == x.hi == 0
 
     def _fixed(self, value: int, error: int, bits: int) -> Enclosure:
-        """What is value ± error in units of 2^-bits."""
+        """The enclosure value ± error, both in units of 2^-bits."""
         unit = Decimal(1 << bits)
         lo, hi = Decimal(value - error), Decimal(value + error)
         return Enclosure(self, self.down.divide(lo, unit), self.up.divide(hi, unit))
 
     def _from_zero(self, x: Enclosure) -> Enclosure:
-        """What is left of the enclosure of a value known not to be negative."""
+        """What is left of an enclosure if its value is known not to be negative."""
         return x if x.lo >= 0 else Enclosure(self, ZERO, x.hi)
 
     def _width(self, x: Enclosure) -> Enclosure:
-        """0 <= anything in x less its lower end."""
+        """The enclosure of how far a value in x can be above its lower end."""
         return Enclosure(self, ZERO, self.up.subtract(x.hi, x.lo))
 
     @lazy

@@ -9,10 +9,11 @@ if TYPE_CHECKING or sys.version_info >= (3, 12):
 else:
 
     class lazy(cached_property):  # noqa: N801 - a decorator
-        """As in Python 3.12: until then a lock held all objects of a class back, on whatever thread.
+        """An attribute that is computed when it is first asked for, and kept.
 
-        Threads that each solve a block waited for each other, and for ever where two attributes may
-        need each other (`Case.slips` and `Case.can_slip`).
+        This is `cached_property` of Python 3.12. Until then it held a lock for all objects of a class:
+        threads that each solve a block waited for each other, and for ever where two attributes may need
+        each other (`Case.slips` and `Case.can_slip`).
         """
 
         def __get__(self, instance: Any, owner: Any = None) -> Any:

@@ -115,7 +115,7 @@ class Rows:
         return rows
 
     def part(self, index: NDArray[np.intp] | None = None) -> Rows:
-        """Some of these rows, or all for another answer."""
+        """Some of these rows, or all of them once more, to answer a question in another way."""
         if index is None:
             rows = self._at(self.index, self._answers)
             rows._fields, rows._pairs = self._fields, self._pairs
@@ -420,7 +420,7 @@ def _take(column: Any, index: NDArray[np.intp], size: int) -> Any:
 
 
 def _certified(pair: Pair, rounded: Column) -> Any:
-    """Which rows are within 4 ulp, so rounded."""
+    """Which rows, rounded so, are certain to be within 4 ulp of the exact value."""
     enough = CERTIFIED - pair.loss
     vouched = enough >= 0 if pair.doubt is None else pair.doubt <= enough
     # The lower rungs take no e^{μφ} that could leave the doubles.
@@ -428,7 +428,7 @@ def _certified(pair: Pair, rounded: Column) -> Any:
 
 
 def _nearest(pair: Pair, rounded: Column) -> Any:
-    """Which rows are the nearest doubles, so rounded."""
+    """Which rows, rounded so, are certain to be the doubles nearest to the exact value."""
     if pair.low is None:
         return np.asarray(pair.bound == 0) & np.isfinite(rounded)
     error = np.abs(pair.high) * (pair.bound + 2.0**-104)
