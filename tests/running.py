@@ -2,6 +2,7 @@
 
 import os
 import re
+import shlex
 import subprocess
 import sys
 from collections.abc import Callable
@@ -9,6 +10,7 @@ from typing import NamedTuple
 
 import pytest
 
+PIP = f"{shlex.quote(sys.executable)} -m pip"
 PAPER = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 
 

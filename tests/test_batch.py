@@ -26,7 +26,7 @@ from atwood_cli.batch import formats as tables
 from atwood_cli.batch.formats import FORMATS
 from atwood_cli.model.quantities import NAMES, STANDARD
 
-from .running import Atwood, Ran, on_terminal, plain, process
+from .running import PIP, Atwood, Ran, on_terminal, plain, process
 
 SCENES = [
     {"m1": "1", "m2": "3", "mu": "0.3"},
@@ -640,7 +640,7 @@ def test_without_polars_one_line_says_what_to_install(
     monkeypatch.setitem(sys.modules, "polars", None)
     ran = atwood("batch", table("m1,m2\n1,2\n"))
     assert (ran.status, ran.out) == (1, "")
-    assert ran.err == "atwood: this needs polars; install it with: pip install 'atwood-cli[batch]'\n"
+    assert ran.err == f"atwood: this needs polars; install it with: {PIP} install 'atwood-cli[batch]'\n"
 
 
 # How it ends

@@ -26,10 +26,10 @@ from atwood_cli import Scene, SceneError, solve
 from atwood_cli.arithmetic.rounding import text
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.contact import Contact, contact
-from atwood_cli.solver.elements import Row, elements
+from atwood_cli.solver.elements import Comparison, elements
 
 from . import oracle
-from .running import Atwood, labels, on_terminal, plain, process
+from .running import PIP, Atwood, labels, on_terminal, plain, process
 
 PAPER = ["contact", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 TOP = Path(__file__).parent.parent
@@ -299,7 +299,7 @@ def test_turns_multiply_the_grip() -> None:
 # String elements
 
 
-def rows_of(answers: Answers, count: int, extrapolate: bool = False) -> list[Row]:
+def rows_of(answers: Answers, count: int, extrapolate: bool = False) -> list[Comparison]:
     return elements(answers, count, extrapolate).rows
 
 
@@ -584,4 +584,6 @@ def test_figure_without_its_extra_names_the_pip_command() -> None:
         check=False,
     )
     assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == "atwood: this needs matplotlib; install it with: pip install 'atwood-cli[figure]'\n"
+    assert (
+        done.stderr == f"atwood: this needs matplotlib; install it with: {PIP} install 'atwood-cli[figure]'\n"
+    )

@@ -27,7 +27,7 @@ from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import PARAMETERS, SceneError
 from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows
 
-from .running import Atwood, labels, on_terminal, plain, process
+from .running import PIP, Atwood, labels, on_terminal, plain, process
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]
@@ -647,7 +647,7 @@ def test_without_its_extra_it_names_the_pip_command(missing: str, options: str, 
     )
     assert (done.returncode, done.stdout) == (1, "")
     assert (
-        done.stderr == f"atwood: this needs {missing}; install it with: pip install 'atwood-cli[{extra}]'\n"
+        done.stderr == f"atwood: this needs {missing}; install it with: {PIP} install 'atwood-cli[{extra}]'\n"
     )
 
 

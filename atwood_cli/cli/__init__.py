@@ -127,7 +127,10 @@ def run(arguments: list[str] | None = None) -> int:
     except ModuleNotFoundError as error:
         if error.name not in EXTRAS:
             raise
-        say(f"this needs {error.name}; install it with: pip install 'atwood-cli[{EXTRAS[error.name]}]'")
+        from shlex import quote
+
+        pip = f"{quote(sys.executable or 'python3')} -m pip"  # the one that installs where this runs
+        say(f"this needs {error.name}; install it with: {pip} install 'atwood-cli[{EXTRAS[error.name]}]'")
         return COULD_NOT
     except OSError as error:
         known = error.errno is None  # a sentence of ours

@@ -21,7 +21,7 @@ MAX_ELEMENTS = 10_000_000
 EXACT_DIGITS = 20
 
 
-class Row(NamedTuple):
+class Comparison(NamedTuple):
     """A quantity from the elements, its exact value, and the relative error (absolute if that is 0)."""
 
     name: str
@@ -33,7 +33,7 @@ class Row(NamedTuple):
 class Elements(NamedTuple):
     """What the elements give, and why something is missing."""
 
-    rows: list[Row]
+    rows: list[Comparison]
     notes: list[str]
 
 
@@ -118,7 +118,7 @@ def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> E
         if right and not shown:
             raise SceneError("elements", count, TOO_SMALL)
         error = to_digits(3)((shown - right) / right if right else shown)
-        rows.append(Row(name, answers.round(shown), answers.settle(EXACT[name]), error))
+        rows.append(Comparison(name, answers.round(shown), answers.settle(EXACT[name]), error))
     if "friction_force" not in values:
         notes.append(NOT_LIMITING)
     return Elements(rows, notes)
