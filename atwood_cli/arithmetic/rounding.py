@@ -6,10 +6,13 @@ exponential, logarithm or root was asked for) it is computed in enclosures.
 
 Rounding is monotonic: if both ends of an enclosure round to the same double, or to the same N digits, so
 does everything between them, the true value too. If they differ, the precision is doubled and the quantity
-computed anew (Ziv's strategy). This ends because the width tends to zero and the true value is no tie: for
-rational inputs, what is not rational here is transcendental (e^q and ln q are, for rational q other than 0
-and 1; so is e^{πq}, by Gelfond's theorem). A comparison, such as μφ against ln(T_h/T_l), is decided in the
-same way: once the enclosure of the difference excludes zero.
+computed anew (Ziv's strategy). This ends because the width tends to zero, unless the true value is just the
+tie between two results, or 0. Most of what is not computed in fractions is transcendental, as e^q and ln q
+are for rational q other than 0 and 1, and e^{πq} (A. O. Gelfond), and so no tie. But sines and cosines of
+30° and 60° are rational, so is 4^(1/2), and e^{μφ} can cancel. So where an enclosure closes in on a tie,
+`residue` is asked whether the value is that number, and if it is, that number is rounded.
+
+A comparison, such as μφ against ln(T_h/T_l), is decided once the enclosure of the difference excludes zero.
 """
 
 from __future__ import annotations
@@ -81,10 +84,16 @@ def to_place(place: int) -> Rounding[Decimal]:
 
 def settle(quantity: Quantity, round_: Rounding[T], digits: int) -> T:
     """The correctly rounded value of a quantity; ``digits`` is about how many are wanted."""
+    from_zero = 0
 
     def rounded(value: Enclosure) -> T | None:
+        nonlocal from_zero
         lo, hi = round_(value.lo), round_(value.hi)
-        return lo if lo == hi else None
+        if lo == hi:
+            return lo
+        from_zero += value.lo <= 0 <= value.hi
+        tie = _tie(value, lo, hi, digits) if from_zero != 1 else None
+        return None if tie is None or not _is(quantity, tie) else round_(tie)
 
     try:
         return round_(quantity(EXACT))
@@ -92,16 +101,21 @@ def settle(quantity: Quantity, round_: Rounding[T], digits: int) -> T:
         return _refine(quantity, rounded, digits + 8)
 
 
-def middle(quantity: Quantity, digits: int) -> Fraction:
-    """The middle of an enclosure of a quantity, right to about so many digits."""
+def _tie(value: Enclosure, lo: float | Decimal, hi: float | Decimal, digits: int) -> Fraction | None:
+    """The number between two rounded results that an enclosure seems to close in on, if it is one."""
+    if value.lo <= 0 <= value.hi:
+        return Fraction(0)
+    context = decimal_context(digits, ROUND_HALF_EVEN)
+    width = context.divide(context.subtract(value.hi, value.lo), value.hi)
+    if is_infinite(lo) or is_infinite(hi) or width.adjusted() > -digits or abs(value.hi.adjusted()) > WIDE:
+        return None
+    return (Fraction(lo) + Fraction(hi)) / 2
 
-    def tight(value: Enclosure) -> Fraction | None:
-        if is_infinite(value.hi):
-            return None
-        lo, hi = Fraction(value.lo), Fraction(value.hi)
-        return (lo + hi) / 2 if (hi - lo) * 10**digits <= abs(lo) else None
 
-    return _refine(quantity, tight, digits + 8)
+def _is(quantity: Quantity, value: Fraction) -> bool:
+    from .residue import is_rational
+
+    return is_rational(quantity, value)
 
 
 def is_positive(quantity: Quantity) -> bool:

@@ -14,7 +14,6 @@ from ..arithmetic.rounding import (
     Rounding,
     is_infinite,
     is_positive,
-    middle,
     settle,
     to_digits,
     to_double,
@@ -153,15 +152,6 @@ class Answers:
             value: Fraction = self._on_machines(quantity)(EXACT)
         except Irrational:
             return None
-        return value
-
-    def nearly(self, quantity: OnMachine) -> float | Decimal:
-        """Anything that a machine has and that is rational, though its formula is not.
-
-        A tie would never settle, so the middle of an enclosure with digits to spare is rounded.
-        """
-        digits = 2 * (self.digits or DOUBLE_DIGITS)
-        value: float | Decimal = self.round(middle(self._on_machines(quantity), digits))
         return value
 
     def is_positive(self, quantity: OnMachine) -> bool:

@@ -131,7 +131,7 @@ def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Number]]:
     normal = vector(lambda m: m.seen_from_m1(arc.normal(m.arcs(kind))))
     ends = vector(lambda m: m.resultant_vector)
     together = {axis: _difference(answers, friction[axis], normal[axis], plus=True) for axis in "xy"}
-    by_contact = answers.nearly(
+    by_contact = answers.settle(
         lambda m: arc.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.case.sign
     )
     by_ends = answers.settle(lambda m: m.tension_difference * _radius(m))

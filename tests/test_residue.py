@@ -1,0 +1,186 @@
+"""Values that are rational though their formulas are not: found to be so, and rounded as what they are."""
+
+from collections.abc import Callable
+from decimal import ROUND_HALF_EVEN, Context, Decimal
+from fractions import Fraction
+from math import inf
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from atwood_cli import solve, solve_arrays
+from atwood_cli.arithmetic import residue
+from atwood_cli.arithmetic.residue import is_rational
+from atwood_cli.model.scene import Scene
+from atwood_cli.solver.answers import Answers
+from atwood_cli.solver.contact import contact
+
+from .running import Atwood
+
+F = Fraction
+
+
+def degrees(ar: Any, x: int) -> tuple[Any, Any]:
+    cos, sin = ar.cos_sin_of_degrees(F(x))
+    return cos, sin
+
+
+def root(ar: Any, q: Fraction, share: Fraction) -> Any:
+    """q^share, as tensions along the arc are computed."""
+    return ar.exp(ar.log1p(ar.number(q - 1)) / ar.pi * ar.number(share) * ar.pi)
+
+
+Quantity = Callable[[Any], Any]
+
+RATIONAL: dict[str, tuple[Quantity, Fraction]] = {
+    "cos 60°": (lambda ar: degrees(ar, 60)[0], F(1, 2)),
+    "sin 330°": (lambda ar: degrees(ar, 330)[1], F(-1, 2)),
+    "cos 36° cos 72°": (lambda ar: degrees(ar, 36)[0] * degrees(ar, 72)[0], F(1, 4)),
+    "cos 45° - sin 45°": (lambda ar: degrees(ar, 45)[0] - degrees(ar, 45)[1], F(0)),
+    "cos² + sin² of 1 rad": (lambda ar: sum(x * x for x in ar.cos_sin(ar.number(1))), F(1)),
+    "√(sin² 60°) · sin 60°": (
+        lambda ar: ar.sqrt(degrees(ar, 60)[1] * degrees(ar, 60)[1]) * degrees(ar, 60)[1],
+        F(3, 4),
+    ),
+    "4^(1/2)": (lambda ar: root(ar, F(4), F(1, 2)), F(2)),
+    "(27/8)^(4/3)": (lambda ar: root(ar, F(27, 8), F(4, 3)), F(81, 16)),
+    "e^(0.3π)/e^(0.1π)/e^(0.2π)": (
+        lambda ar: (
+            ar.exp(ar.number(F(3, 10)) * ar.pi)
+            / ar.exp(ar.number(F(1, 10)) * ar.pi)
+            / ar.exp(ar.number(F(1, 5)) * ar.pi)
+        ),
+        F(1),
+    ),
+    "(2 k + 6)/(k + 3)": (lambda ar: (2 * ar.exp(ar.pi) + 6) / (ar.exp(ar.pi) + 3), F(2)),
+}
+IRRATIONAL: dict[str, tuple[Quantity, Fraction]] = {
+    "cos 45°": (lambda ar: degrees(ar, 45)[0], F(707106781186547524400844362105, 10**30)),
+    "2^(1/2)": (lambda ar: root(ar, F(2), F(1, 2)), F(1414213562373095048801688724210, 10**30)),
+    "√2": (lambda ar: ar.sqrt(ar.number(2)), F(1414213562373095048801688724210, 10**30)),
+    "e^π": (lambda ar: ar.exp(ar.pi), F(23140692632779269005729086367949, 10**30)),
+    "ln 2 / π": (lambda ar: ar.log1p(ar.number(1)) / ar.pi, F(220635600152651662, 10**18)),
+    "π": (lambda ar: ar.pi, F(355, 113)),
+    "π - π/2": (lambda ar: ar.pi - ar.pi / 2, F(0)),
+}
+
+
+@pytest.mark.parametrize("name", RATIONAL)
+def test_what_is_rational_is_found_to_be(name: str) -> None:
+    quantity, value = RATIONAL[name]
+    assert is_rational(quantity, value)
+    assert not is_rational(quantity, value + F(1, 10**40))
+
+
+@pytest.mark.parametrize("name", IRRATIONAL)
+def test_what_is_not_is_not(name: str) -> None:
+    assert not is_rational(*IRRATIONAL[name])
+
+
+def test_the_primes_are_primes() -> None:
+    assert residue._is_prime(residue.ORDER)
+    assert [n for n in range(54, 400) if residue._is_prime(n)] == [
+        n for n in range(54, 400) if all(n % d for d in range(2, n))
+    ]
+    for order in (4, 360, 4 * 7919):
+        p = residue._prime(order)
+        assert residue._is_prime(p)
+        assert (p - 1) % order == (p - 1) % residue.ORDER == 0
+
+
+# Ties in what is printed: the oracle has 60 digits, and calls a tie what agrees with one in 45
+
+
+def rounded(value: mpmath.mpf, digits: int) -> Decimal:
+    exact = Context(45).create_decimal(mpmath.nstr(value, 50, strip_zeros=False))
+    return Context(digits, ROUND_HALF_EVEN).plus(exact)
+
+
+def same(found: float | Decimal, value: mpmath.mpf, digits: int) -> bool:
+    if abs(value) < mpmath.mpf(10) ** -50:
+        return found == 0
+    return found == rounded(value, digits)
+
+
+@given(
+    st.sampled_from([30, 45, 60, 90, 120, 135, 150, 210, 240, 300, 330]),
+    st.integers(1, 40),
+    st.integers(1, 40),
+    st.integers(1, 5),
+)
+def test_resultants_at_angles_with_rational_cosines(wrap: int, m1: int, more: int, digits: int) -> None:
+    """On a locked pulley the tensions are rational, and with them half of the resultants."""
+    mpmath.mp.dps = 60
+    g, m2 = F("1.25"), m1 + more
+    balance = contact(Answers(Scene.read({"m1": m1, "m2": m2, "M": inf, "wrap": wrap, "g": g}), digits), 2)
+    t1, t2, phi = m1 * mpmath.mpf(1.25), m2 * mpmath.mpf(1.25), mpmath.radians(wrap)
+    ends = balance.balance["resultant"]
+    assert same(ends["x"], -t2 * mpmath.sin(phi), digits)
+    assert same(ends["y"], t2 * mpmath.cos(phi) - t1, digits)
+
+
+@given(st.integers(1, 9), st.integers(1, 9), st.sampled_from([2, 3, 4]), st.integers(1, 6))
+def test_tensions_that_are_powers_of_a_rational_ratio(a: int, b: int, parts: int, digits: int) -> None:
+    """Where r = (b/a)^n, T_l r^(j/n) is rational."""
+    mpmath.mp.dps = 60
+    m1, m2 = F(a**parts), F(b**parts)
+    answers = Answers(Scene.read({"m1": m1, "m2": m2, "M": inf, "g": "0.5"}), digits)
+    points = contact(answers, parts + 1).points
+    for j, point in enumerate(points):
+        exact = F(1, 2) * F(a) ** (parts - j) * F(b) ** j
+        assert point["tension"] == Context(digits, ROUND_HALF_EVEN).divide(
+            Decimal(exact.numerator), Decimal(exact.denominator)
+        )
+
+
+@given(st.integers(1, 60), st.integers(3, 9), st.integers(1, 3))
+def test_friction_in_which_the_capstan_ratio_cancels(l: int, q: int, digits: int) -> None:
+    """At 90° of wrap with μ = l/h, friction_force_x is -2lgμ/(1 + μ²)."""
+    mu, g = F(1, q), F("5.3125")
+    found = solve(m1=l, m2=l * q, mu=mu, wrap=90, g=g, M="inf", digits=digits).friction_force_x
+    exact = -2 * l * g * mu / (1 + mu * mu)
+    assert found == Context(digits, ROUND_HALF_EVEN).divide(
+        Decimal(exact.numerator), Decimal(exact.denominator)
+    )
+
+
+def test_torque_along_the_arc_is_a_tie_like_that_of_the_ends(atwood: Atwood) -> None:
+    ran = atwood("contact", "--m1", "1", "--m2", "1.5", "--M", "inf", "--digits", "6", "--points", "2")
+    assert "│ friction along the arc                    │ 4.90332 │" in ran.out
+    assert "│ R (T2 - T1)                               │ 4.90332 │" in ran.out
+
+
+def test_a_tie_in_an_array_stops_no_other_row() -> None:
+    g = 6004799503160661 * 2.0**-49
+    found = solve_arrays(
+        [51, 1],
+        [204, 3],
+        M=[inf, 2.0],
+        mu=[0.25, 0.3],
+        wrap=[90, 180],
+        g=g,
+        accuracy="exact",
+        quantities=["friction_force_x"],
+    )["friction_force_x"]
+    exact = -2 * 51 * F(g) * F(1, 4) / (1 + F(1, 16))
+    assert found[0] == float(exact)
+    assert np.isnan(found[1])  # friction to spare
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        "--m1 0.0275 --m2 3e-53 --M 1e-3",
+        "--m1 1e-49 --m2 3 --M 10",
+        "--m1 1 --m2 1 --wrap 60 --digits 6",
+        "--m1 1 --m2 2 --M inf --wrap 60 --points 2 --digits 5",
+        "--m1 1 --m2 2 --mu 0.1 --M inf --wrap 120 --g 1.25 --points 2 --digits 1",
+    ],
+)
+def test_what_ran_for_a_minute_ends(words: str, atwood: Atwood) -> None:
+    ran = atwood("contact", *words.split())
+    assert (ran.status, ran.err) == (0, "")
