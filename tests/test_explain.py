@@ -141,6 +141,26 @@ def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits
     check_markdown([*as_markdown("", found)])
 
 
+@pytest.mark.parametrize(
+    ("given_", "digits"),
+    [
+        ({"M": "15.24191", "mu": "0.5"}, None),
+        ({"M": "4.50179", "mu": "0.24"}, None),
+        ({"M": "6.5", "mu": "0.3"}, 1),
+        ({"M": "6.26534", "mu": "0.3"}, 2),
+    ],
+)
+def test_rounded_numbers_that_turn_a_difference_negative_take_more_digits(
+    given_: Given, digits: int | None
+) -> None:
+    """c - 2 z is positive, but not with z rounded up: this ran on for ever."""
+    explanation = told(Scene.read({"m1": "1", "m2": "3", **given_}), digits)
+    lines = [equation for equation in equations(explanation) if equation.left == "m*"]
+    assert len(lines) == 1
+    for equation in equations(explanation):
+        check_numbers(equation, digits or 6)
+
+
 @kinds
 def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     """The formula as printed, with the oracle's inputs and the results so far, gives each result."""

@@ -29,6 +29,8 @@ DOUBT = 3
 """Significant digits of how much something matters (%)."""
 TYPED = 17
 """Digits up to which an input is put in as it was typed."""
+LONGEST = 1000
+"""Digits more than those of the result that a number put in may take, where much of it cancels."""
 
 
 class Law(NamedTuple):
@@ -173,7 +175,10 @@ class Derivation:
         return LABELS.get(name, QUANTITIES[name].equation if name in QUANTITIES else "")
 
     def worked_out(self, label: str, left: str, formula: Formula, result: Symbol, unit: str) -> Equation:
-        """The equation with numbers put in, each with as many digits as give the result shown."""
+        """The equation with numbers put in, each with as many digits as give the result shown.
+
+        No numbers where they would be too large to write, or longer than anybody reads.
+        """
         value, exact = self.number(result, self.digits, self.digits)
         if is_infinite(value):
             return Equation(label, left, formula, None, "=>", f"10^{LARGEST_EXPONENT}", unit)
@@ -181,7 +186,7 @@ class Derivation:
         while True:
             rounded = {symbol: self.number(symbol, digits, max(digits, TYPED)) for symbol in symbols}
             numbers = {symbol: number for symbol, (number, _) in rounded.items()}
-            if any(map(is_infinite, numbers.values())):
+            if any(map(is_infinite, numbers.values())) or digits > self.digits + LONGEST:
                 return Equation(label, left, formula, None, "=≈", text(value), unit)
             if self._gives(formula, numbers, value):
                 break
@@ -194,13 +199,10 @@ class Derivation:
         """Whether the numbers, worked out, are the result but for half a unit of its last digit."""
         longest = max((len(number.as_tuple().digits) for number in numbers.values()), default=0)
         precision = 2 * (longest + self.digits) + 20
-        while True:
-            try:
-                value = formula.worked_out(enclosures(precision), numbers)
-            except Unsettled:
-                precision *= 2
-                continue
-            break
+        try:
+            value = formula.worked_out(enclosures(precision), numbers)
+        except Unsettled:  # rounded numbers can make a denominator 0 or less, which c - 2z is not
+            return False
         if not result:
             return value.lo == value.hi == 0
         at = enclosures(precision).up
