@@ -66,6 +66,7 @@ IRRATIONAL: dict[str, tuple[Quantity, Fraction]] = {
     "ln 2 / π": (lambda ar: ar.log1p(ar.number(1)) / ar.pi, F(220635600152651662, 10**18)),
     "π": (lambda ar: ar.pi, F(355, 113)),
     "π - π/2": (lambda ar: ar.pi - ar.pi / 2, F(0)),
+    "sin of 10^-300 degrees": (lambda ar: ar.cos_sin_of_degrees(F(1, 10**300))[1], F(0)),
 }
 
 

@@ -61,8 +61,8 @@ def is_rational(quantity: Quantity, value: Fraction) -> bool:
     """Whether a quantity is that rational number, as far as residues can tell; never wrongly true."""
     order, random = 4, Random(0)  # the same everywhere and every time
     for _ in range(TRIALS):
-        field = Residues(order, random)
         try:
+            field = Residues(order, random)
             if quantity(field).residue == field.of(value):
                 return True
         except _NeedsRoots as more:
