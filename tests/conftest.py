@@ -1,5 +1,7 @@
 """The command line, called in process, and the option that has every digit tried."""
 
+import os
+
 import pytest
 
 from atwood_cli.cli import run
@@ -11,6 +13,12 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--every-digit", action="store_true", help="Solve every scene of test_digits at every precision."
     )
+
+
+def pytest_configure() -> None:
+    """What the suite starts is not told how Python is to run: PYTHONUNBUFFERED hides what users meet."""
+    for name in [name for name in os.environ if name.startswith("PYTHON") and name != "PYTHONPATH"]:
+        del os.environ[name]
 
 
 @pytest.fixture

@@ -147,12 +147,48 @@ def test_a_closed_stdout_is_quiet(command: str, table: str) -> None:
     assert ran.err == "" or command == "batch"  # which says what became of the rows
 
 
+BUFFERED = pytest.mark.parametrize("unbuffered", ["", "1"])
+"""Python keeps what is printed until there is more of it, or hands it on at once."""
+
+
 @DISK
+@BUFFERED
 @pytest.mark.parametrize("command", OUTPUTS)
-def test_a_full_disk_is_an_error(command: str, table: str) -> None:
-    ran = process(shell=f"atwood {' '.join(words(command, table))} > /dev/full")
+def test_a_full_disk_is_an_error(command: str, unbuffered: str, table: str) -> None:
+    typed = " ".join(words(command, table))
+    ran = process(shell=f"atwood {typed} > /dev/full", PYTHONUNBUFFERED=unbuffered)
     assert (ran.status, ran.out) == (1, "")
     assert ran.err == "atwood: cannot write the output: No space left on device\n"
+
+
+@DISK
+@BUFFERED
+@pytest.mark.parametrize("command", [*COMMANDS, "version"])
+def test_a_full_stderr_changes_neither_status_nor_output(command: str, unbuffered: str, table: str) -> None:
+    typed = words(command, table) if command in COMMANDS else ["--version"]
+    usual = process(*typed)
+    ran = process(shell=f"atwood {' '.join(typed)} 2> /dev/full", PYTHONUNBUFFERED=unbuffered)
+    assert (ran.status, ran.out, ran.err) == (usual.status, usual.out, "")
+
+
+@DISK
+@BUFFERED
+@pytest.mark.parametrize(("command", "status"), [("json", 1), ("batch", 1), ("error", 2), ("usage", 2)])
+def test_both_streams_full(command: str, status: int, unbuffered: str, table: str) -> None:
+    typed = " ".join(words(command, table))
+    assert process(shell=f"atwood {typed} > /dev/full 2>&1", PYTHONUNBUFFERED=unbuffered).status == status
+
+
+@BUFFERED
+@pytest.mark.parametrize(
+    "typed", ["solve {} --csv", "sweep {} --M 0:9:2 --csv", "contact {} --csv", "batch {table}"]
+)
+def test_notes_follow_their_results_into_one_pipe(typed: str, unbuffered: str, table: str) -> None:
+    typed = typed.format(f"{SCENE} --M 10 --mu 0.3", table=table)
+    ran = process(shell=f"atwood {typed} 2>&1", PYTHONUNBUFFERED=unbuffered)
+    notes = [line.startswith("atwood: ") for line in ran.out.splitlines()]
+    assert True in notes
+    assert notes == sorted(notes)
 
 
 SLOW = """

@@ -14,7 +14,7 @@ from typer.core import TyperCommand, TyperGroup
 from .. import __version__
 from ..model.scene import SceneError
 from .options import COMPLETING, COULD_NOT, DONE, WORDS, WRONG_USAGE, flag
-from .text import say
+from .text import drop, finish, say
 
 COMMANDS = ("solve", "contact", "sweep", "tradeoff", "batch")
 EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
@@ -112,8 +112,7 @@ def run(arguments: list[str] | None = None) -> int:
     except (BrokenPipeError, SystemExit) as error:  # typer and rich exit where the reader of stdout has left
         if isinstance(error, SystemExit) and COMPLETING in os.environ:  # fish goes by the status
             return int(error.code or DONE)
-        # What is still buffered must not fail again when Python closes stdout.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        drop(sys.stdout)
         return DONE
     except SceneError as error:
         say(error.describe(flag(error.parameter)))
@@ -139,3 +138,5 @@ def run(arguments: list[str] | None = None) -> int:
     except ArithmeticError as error:
         say(str(error))
         return COULD_NOT
+    finally:
+        finish()

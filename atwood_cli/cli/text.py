@@ -1,6 +1,7 @@
 """Results as text, for which rich is not needed: cells, JSON, CSV, sentences on stderr."""
 
 import json
+import os
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -53,6 +54,24 @@ def say(*messages: str) -> None:
             print(line, file=sys.stderr)
 
 
+def finish() -> None:
+    """Flush what is left; what cannot be would change the exit status as Python closes the streams."""
+    for stream in (sys.stdout, sys.stderr):
+        try:
+            stream.flush()
+        except OSError:
+            drop(stream)
+
+
+def drop(stream: TextIO) -> None:
+    """Send what is still buffered, and whatever comes, nowhere."""
+    with suppress(OSError):  # no file is behind it
+        number = stream.fileno()
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, number)
+        os.close(nowhere)
+
+
 class Forms(NamedTuple):
     """A result in the forms in which it may be asked for: each is made only if it is.
 
@@ -68,7 +87,8 @@ class Forms(NamedTuple):
 def show(forms: Forms, json: bool, csv: bool, bare: bool = False) -> Sequence[str]:
     """Print a result as JSON, as CSV or as a page; what comes back is left to say on stderr.
 
-    That is the notes, for which CSV has no place, nor has any form in which a result is ``bare``.
+    That is the notes, for which CSV has no place, nor has any form in which a result is ``bare``. The
+    result is out by then, so that they follow it where both go into one pipe. Raises OSError.
     """
     if json:
         print(as_json(forms.json()))
@@ -76,6 +96,7 @@ def show(forms: Forms, json: bool, csv: bool, bare: bool = False) -> Sequence[st
         print_csv(forms.records())
     else:
         forms.page()
+    sys.stdout.flush()
     return forms.notes() if csv or bare else ()
 
 
