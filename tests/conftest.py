@@ -3,10 +3,16 @@
 import os
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 from atwood_cli.cli import run
 
 from .running import Atwood, Ran
+
+# No test fails where a machine is slow.
+ANYWHERE = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
+settings.register_profile("anywhere", deadline=None, suppress_health_check=ANYWHERE)
+settings.load_profile("anywhere")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import pytest
 
 PIP = f"{shlex.quote(sys.executable)} -m pip"
+HANGS = 600  # seconds: nothing takes so long on any machine
 PAPER = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 
 
@@ -32,7 +33,7 @@ def process(*arguments: str, shell: str = "", **environment: str) -> Ran:
     words = [sys.executable, "-m", "atwood_cli", *arguments]
     if shell:
         words = ["bash", "-c", f'atwood() {{ "$PYTHON" -m atwood_cli "$@"; }}; {shell}']
-    done = subprocess.run(words, capture_output=True, env=env, check=False)
+    done = subprocess.run(words, capture_output=True, env=env, check=False, timeout=HANGS)
     return Ran(
         done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
     )
@@ -60,7 +61,7 @@ def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: st
         if not piece:
             break
         seen += piece
-    child.wait()
+    child.wait(HANGS)
     os.close(leader)
     return seen.decode("utf-8").replace("\r\n", "\n")
 

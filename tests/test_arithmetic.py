@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import mpmath
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve
@@ -53,7 +53,6 @@ def test_field_operations_enclose(digits: int, p: Fraction, q: Fraction, n: int)
         assert Fraction(enclosure.lo) <= exact <= Fraction(enclosure.hi)
 
 
-@settings(deadline=None)
 @given(precisions, positive())
 def test_functions_enclose_tightly(digits: int, q: Fraction) -> None:
     at = enclosures(digits)
@@ -71,7 +70,6 @@ def test_functions_enclose_tightly(digits: int, q: Fraction) -> None:
 
 
 @given(precisions, st.integers(5, 8), st.integers(1, 9))
-@settings(deadline=None)
 def test_large_exponentials_enclose(digits: int, power: int, digit: int) -> None:
     at, q = enclosures(digits), digit * 10**power // 10
     with mpmath.workdps(digits + 50):

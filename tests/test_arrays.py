@@ -25,6 +25,7 @@ from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import Scene
 
 from . import oracle
+from .running import HANGS
 from .scenes import FAMILIES, exact_scene, scenes
 
 Row = dict[str, float]
@@ -152,7 +153,7 @@ mixed_rows = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=80, deadline=None)
+@settings(max_examples=80)
 @given(st.lists(odd_rows | mixed_rows, min_size=1, max_size=30), st.permutations(NAMES))
 def test_any_rows_side_by_side(some: list[dict[str, float]], names: list[str]) -> None:
     """Bad rows get a code and stop nobody, and whoever stands beside whom, each gets its own."""
@@ -200,7 +201,7 @@ def _solved(row: Row) -> tuple[Any, SceneError | None]:
 numbers = st.floats(1e-3, 1e3)
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(
     st.lists(numbers, min_size=3, max_size=3),
     st.lists(numbers, min_size=4, max_size=4),
@@ -302,7 +303,7 @@ def test_rows_that_go_up_are_solved_wherever_they_wait(monkeypatch: pytest.Monke
 
 def test_threads_do_not_wait_for_each_others_attributes() -> None:
     """Until Python 3.12 functools' own holds a lock for all objects of a class: blocks waited for ever."""
-    both = Barrier(2, timeout=10)
+    both = Barrier(2, timeout=HANGS)
 
     class Block:
         @lazy

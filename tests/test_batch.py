@@ -16,7 +16,7 @@ from typing import Any
 
 import polars as pl
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from atwood_cli import solve
@@ -26,7 +26,7 @@ from atwood_cli.batch import formats as tables
 from atwood_cli.batch.formats import FORMATS
 from atwood_cli.model.quantities import NAMES, STANDARD
 
-from .running import PIP, Atwood, Ran, on_terminal, plain, process
+from .running import HANGS, PIP, Atwood, Ran, on_terminal, plain, process
 
 SCENES = [
     {"m1": "1", "m2": "3", "mu": "0.3"},
@@ -249,7 +249,7 @@ ODD_TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="
 
 @pytest.mark.parametrize("kind", ["csv", "tsv"])
 @given(cells=st.lists(st.tuples(ODD_TEXT, ODD_TEXT), max_size=12), size=st.sampled_from([16, 64, 1 << 20]))
-@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60)
 def test_other_columns_pass_through(
     atwood: Atwood, table: Table, kind: str, cells: list[tuple[str, str]], size: int
 ) -> None:
@@ -382,7 +382,7 @@ def mixed_rows(draw: st.DrawFn) -> tuple[dict[str, str], str | None]:
     size=st.sampled_from([32, 1 << 20]),
     kind=st.sampled_from(FORMATS[:3]),
 )
-@settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=60)
 def test_nothing_is_lost_among_bad_rows(
     atwood: Atwood, table: Table, rows: list[tuple[dict[str, str], str | None]], size: int, kind: str
 ) -> None:
@@ -415,7 +415,7 @@ def test_nothing_is_lost_among_bad_rows(
         max_size=20,
     )
 )
-@settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=40)
 def test_nan_in_parquet_is_bad_and_null_is_not_given(
     atwood: Atwood, tmp_path: Path, rows: list[tuple[float | None, ...]]
 ) -> None:
@@ -670,7 +670,7 @@ def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blow: signal.Signals) 
         assert child.poll() is None
         time.sleep(0.01)
     child.send_signal(blow)
-    _, err = child.communicate(timeout=20)
+    _, err = child.communicate(timeout=HANGS)
     assert child.returncode == {signal.SIGINT: 130, signal.SIGTERM: 143}.get(blow, -blow)
     assert b"Traceback" not in err
     assert not out.exists()
@@ -740,7 +740,7 @@ def slow_on_terminal(script: Path, words: list[str]) -> str:
             seen += piece
     except OSError:
         pass
-    assert child.wait() == 0
+    assert child.wait(HANGS) == 0
     os.close(leader)
     return seen.decode()
 

@@ -53,7 +53,6 @@ def scenes(draw: st.DrawFn) -> dict[str, str]:
     return scene
 
 
-@settings(deadline=None)
 @given(scenes(), st.sampled_from(["creep", "least"]))
 def test_contact_forces_add_up_to_what_the_tensions_would_do(scene: dict[str, str], kind: str) -> None:
     """(20) and (23), to the last digits, for every profile, regime and mirrored scene."""
@@ -71,7 +70,7 @@ def test_contact_forces_add_up_to_what_the_tensions_would_do(scene: dict[str, st
     assert abs(Fraction(torque["ends"]) - (t2 - t1) * radius) <= 2 * rounding
 
 
-@settings(deadline=None, max_examples=30)
+@settings(max_examples=30)
 @given(scenes(), st.sampled_from(["creep", "least"]))
 def test_profiles_run_from_t1_to_t2_within_the_limits_of_friction(scene: dict[str, str], kind: str) -> None:
     solution = solve(**scene)

@@ -125,7 +125,7 @@ def test_bounds_are_as_tight_as_they_need_be() -> None:
     assert ROUNDED.number(X).high is X  # nothing is copied before it must be
 
 
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(st.floats(2.0**-120, 2.0**120), st.floats(2.0**-120, 2.0**120), st.sampled_from(list(LEVELS.values())))
 def test_sums_and_thorough_products_of_doubles_are_exact(x: float, y: float, ar: Pairs) -> None:
     a, b = ar.number(np.array([x])), ar.number(np.array([y]))

@@ -9,7 +9,7 @@ from typing import Any
 
 import mpmath as mp
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from atwood_cli.derivation.equations import HELD, Equation, Law
@@ -127,7 +127,7 @@ def test_every_line_gives_its_result(kind: str, digits: int | None) -> None:
         check_numbers(equation, digits or 6)
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=list(HealthCheck))
+@settings(max_examples=60)
 @given(st.sampled_from(sorted(FAMILIES)), st.integers(0, 10**9), st.sampled_from([None, 2, 17]))
 def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits: int | None) -> None:
     scene = Scene.read(next(scenes(family, 1, seed)))

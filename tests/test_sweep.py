@@ -27,7 +27,7 @@ from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import PARAMETERS, SceneError
 from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows
 
-from .running import PIP, Atwood, labels, on_terminal, plain, process
+from .running import HANGS, PIP, Atwood, labels, on_terminal, plain, process
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]
@@ -389,10 +389,11 @@ def test_an_interrupt_leaves_no_file(tmp_path: Path) -> None:
     words = [*SWEEP, "--M", "1:2:100000", "-o", str(file)]
     child = subprocess.Popen([sys.executable, "-m", "atwood_cli", *words], stderr=subprocess.PIPE)
     while not list(tmp_path.iterdir()):
+        assert child.poll() is None
         time.sleep(0.01)
     assert not file.exists()
     child.send_signal(signal.SIGINT)
-    _, err = child.communicate(timeout=20)
+    _, err = child.communicate(timeout=HANGS)
     assert (child.returncode, err) == (130, b"")
     assert list(tmp_path.iterdir()) == []
 
@@ -643,7 +644,7 @@ def test_without_its_extra_it_names_the_pip_command(missing: str, options: str, 
     # So many points that it must be told before they are solved.
     words = [*SWEEP, "--M", "1:2:100000", *options.split()]
     done = subprocess.run(
-        [sys.executable, "-c", code, *words], capture_output=True, text=True, check=False, timeout=60
+        [sys.executable, "-c", code, *words], capture_output=True, text=True, check=False, timeout=HANGS
     )
     assert (done.returncode, done.stdout) == (1, "")
     assert (
