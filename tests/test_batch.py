@@ -26,7 +26,7 @@ from atwood_cli.batch import formats as tables
 from atwood_cli.batch.formats import FORMATS
 from atwood_cli.model.quantities import NAMES, STANDARD
 
-from .running import HANGS, PIP, Atwood, Ran, on_terminal, plain, process
+from .running import HANGS, PIP, Atwood, Ran, plain, process
 
 SCENES = [
     {"m1": "1", "m2": "3", "mu": "0.3"},
@@ -706,7 +706,7 @@ import sys
 from atwood_cli.cli import page as output
 from atwood_cli.batch import formats as tables
 tables.PIECE_BYTES = 64
-clock = iter(range(10**6))
+clock = CLOCK
 output.monotonic = lambda: next(clock)
 sys.argv[0] = "atwood"
 from atwood_cli.__main__ import main
@@ -715,19 +715,21 @@ sys.exit(main())
 
 
 def test_a_bar_on_a_terminal_after_a_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    (tmp_path / "atwood_slow.py").write_text(BAR)
-    path = lots(tmp_path / "in.csv", 100)
-    command = ["batch", path, "-o", str(tmp_path / "out.csv")]
-    seen = slow_on_terminal(tmp_path / "atwood_slow.py", command)
+    script, path = tmp_path / "atwood_slow.py", lots(tmp_path / "in.csv", 100)
+
+    def seen_by(clock: str) -> str:
+        script.write_text(BAR.replace("CLOCK", clock))
+        return clocked_on_terminal(script, ["batch", path, "--force", "-o", str(tmp_path / "out.csv")])
+
+    seen = seen_by("iter(range(10**6))")
     assert "━" in seen
     assert "%" in seen
     assert "100 rows: 100 no-slip; no errors." in plain(seen)
-    quick = on_terminal("batch", path, "-o", str(tmp_path / "quick.csv"), columns=80)
-    assert quick == "atwood: 100 rows: 100 no-slip; no errors.\n"
+    assert seen_by("iter([0] * 10**6)") == "atwood: 100 rows: 100 no-slip; no errors.\r\n"
 
 
-def slow_on_terminal(script: Path, words: list[str]) -> str:
-    """What a terminal sees of a run whose clock goes by seconds."""
+def clocked_on_terminal(script: Path, words: list[str]) -> str:
+    """What a terminal sees of a run whose clock is the script's."""
     pty = pytest.importorskip("pty")
     leader, follower = pty.openpty()
     child = subprocess.Popen(
