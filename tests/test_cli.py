@@ -266,6 +266,31 @@ def test_an_unprintable_argument_is_shown_escaped() -> None:
     assert ran.err == "atwood: --m1 '\\x1b[31m' is not a number; write it like 2, 0.5 or 1.5e-3\n"
 
 
+ESCAPE = "\x1b]0;owned\x07\n"
+
+
+@pytest.mark.parametrize(
+    ("words", "status"),
+    [
+        ("batch {}.csv", 1),
+        ("batch {}.pdf", 2),
+        ("batch {}.csv --to csv -o x/{}", 1),
+        ("sweep --m1 1 --m2 3 --M 0:1:2 -o x/{}.csv", 1),
+        ("contact --m1 1 --m2 3 --M 1 --figure x/{}.svg", 1),
+        ("solve {}", 2),
+        ("solve --{}", 2),
+        ("solve --m1 1 --m2 2 --only {}", 2),
+        ("{}", 2),
+    ],
+)
+def test_no_name_that_is_typed_steers_the_terminal(atwood: Atwood, words: str, status: int) -> None:
+    ran = atwood(*(word.format(ESCAPE) for word in words.split()))
+    assert (ran.status, ran.out) == (status, "")
+    assert "\x1b" not in ran.err
+    assert ran.err.count("\n") == 1
+    assert r"\x1b]0;owned\x07\n" in ran.err
+
+
 # How it begins and ends
 
 

@@ -108,6 +108,12 @@ def test_help_needs_neither_rich_nor_numpy() -> None:
     assert not {"rich", "numpy", "polars"} & set(done.stderr.split())
 
 
+@pytest.mark.parametrize("words", PAGES)
+def test_help_is_there_where_docstrings_are_not(words: str) -> None:
+    """`python -OO` has none: help was a traceback."""
+    assert process(*words.split(), PYTHONOPTIMIZE="2") == process(*words.split())
+
+
 # Completion
 
 
@@ -184,6 +190,18 @@ def test_completion_imports_little(words: str) -> None:
     assert done.stdout
     assert "atwood_cli.cli" in done.stderr
     assert not {"rich", "numpy", "polars"} & set(done.stderr.split())
+
+
+@pytest.mark.parametrize(
+    "asked", [{}, {"COMP_WORDS": "atwood"}, {"COMP_WORDS": "atwood s", "COMP_CWORD": "s"}]
+)
+def test_completion_without_the_words_of_the_shell_is_an_error(asked: dict[str, str]) -> None:
+    ran = process("solve", **asked, _ATWOOD_COMPLETE="complete_bash")
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err == (
+        "atwood: _ATWOOD_COMPLETE is set, by which a shell asks for words,"
+        " but not COMP_WORDS and COMP_CWORD; unset it\n"
+    )
 
 
 def in_shell(shell: str, script: str, **environment: str) -> str:

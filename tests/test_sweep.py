@@ -22,7 +22,7 @@ from hypothesis import strategies as st
 
 from atwood_cli.arithmetic.interval import LARGEST_EXPONENT
 from atwood_cli.cli.page import watched
-from atwood_cli.cli.sweep import sweep
+from atwood_cli.cli.sweep import HELP
 from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import PARAMETERS, SceneError
 from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows
@@ -343,7 +343,7 @@ def test_only_what_is_needed_is_imported() -> None:
 def test_help_shows_ranges_as_they_are_typed(atwood: Atwood) -> None:
     """rich would take some words between colons for emoji."""
     out = atwood("sweep", "-h").out
-    examples = re.findall(r"atwood sweep .*", sweep.__doc__ or "")
+    examples = re.findall(r"atwood sweep .*", HELP)
     assert len(examples) >= 5
     assert all(f" {example}\n" in out for example in examples)
 

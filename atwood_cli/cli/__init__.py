@@ -90,7 +90,7 @@ def program(names: Iterable[str] = COMMANDS) -> Any:
     app.callback()(root)
     for name in names:
         module = import_module(f".{name}", __name__)
-        app.command(name, cls=Command)(getattr(module, name))
+        app.command(name, cls=Command, help=module.HELP)(getattr(module, name))
     return typer.main.get_command(app)
 
 
@@ -120,6 +120,13 @@ def run(arguments: list[str] | None = None) -> int:
     except UsageError as error:
         how = f"; {error.ctx.command_path} -h shows how" if error.ctx else ""
         say(f"{error.format_message().rstrip('.')}{how}")
+        return WRONG_USAGE
+    except (KeyError, ValueError):
+        if COMPLETING not in os.environ:
+            raise
+        say(
+            f"{COMPLETING} is set, by which a shell asks for words, but not COMP_WORDS and COMP_CWORD; unset it"
+        )
         return WRONG_USAGE
     except typer.Abort:
         raise KeyboardInterrupt from None

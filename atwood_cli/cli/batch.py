@@ -48,6 +48,20 @@ Accuracy = Annotated[
 AllowErrors = Annotated[bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")]
 
 
+HELP = """Solve a table of scenes: the same table with results appended, and the error of each bad row.
+
+Examples:
+  atwood batch scenes.csv -o results.csv
+  atwood batch scenes.parquet -o results.parquet --accuracy exact
+  atwood batch scenes.csv --only regime --only acceleration | head
+  generate | atwood batch - --from ndjson --to ndjson --allow-errors
+
+Columns m1, m2, M, mu, mu_k, g, inertia, R, wrap are the options of solve, in SI units; an empty cell
+is not given. Other columns stay as they are. A cell is read as the double nearest to it, as is g: so
+even exact can differ in the last digit from solve, which takes 0.1 for a tenth.
+"""
+
+
 def batch(
     table: Table,
     *,
@@ -59,18 +73,6 @@ def batch(
     allow_errors: AllowErrors = False,
     force: Force = False,
 ) -> int:
-    """Solve a table of scenes: the same table with results appended, and the error of each bad row.
-
-    Examples:
-      atwood batch scenes.csv -o results.csv
-      atwood batch scenes.parquet -o results.parquet --accuracy exact
-      atwood batch scenes.csv --only regime --only acceleration | head
-      generate | atwood batch - --from ndjson --to ndjson --allow-errors
-
-    Columns m1, m2, M, mu, mu_k, g, inertia, R, wrap are the options of solve, in SI units; an empty cell
-    is not given. Other columns stay as they are. A cell is read as the double nearest to it, as is g: so
-    even exact can differ in the last digit from solve, which takes 0.1 for a tenth.
-    """
     from ..arrays import ACCURACIES
     from ..batch.formats import read_format
     from ..batch.run import Job, run_batch

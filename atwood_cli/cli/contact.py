@@ -71,6 +71,16 @@ COLUMN_UNITS = {
 }
 
 
+HELP = """Show what acts along the arc of contact, and that it adds up.
+
+Examples:
+  atwood contact --m1 1 --m2 3 --mu 0.3 --digits 6
+  atwood contact --m1 1 --m2 3 --M 10 --mu 0.3 --profile least
+  atwood contact --m1 1 --m2 3 --mu 0.3 --elements 1000 --extrapolate
+  atwood contact --m1 1 --m2 200 --M inf --mu 0.2 --wrap 2.5turn --csv
+"""
+
+
 @takes_scene
 def contact(
     given: Mapping[str, str | None],
@@ -85,14 +95,6 @@ def contact(
     json: AsJson = False,
     csv: AsCsv = False,
 ) -> int:
-    """Show what acts along the arc of contact, and that it adds up.
-
-    Examples:
-      atwood contact --m1 1 --m2 3 --mu 0.3 --digits 6
-      atwood contact --m1 1 --m2 3 --M 10 --mu 0.3 --profile least
-      atwood contact --m1 1 --m2 3 --mu 0.3 --elements 1000 --extrapolate
-      atwood contact --m1 1 --m2 200 --M inf --mu 0.2 --wrap 2.5turn --csv
-    """
     options = dict(locals())
     check([ONE_FORM, FIGURE_TO_REPLACE], options)
     answers = Answers(Scene.read(given), read_digits(digits))

@@ -1,7 +1,8 @@
 """Help as plain text: examples first, options by group, nothing cut off at any width.
 
-The docstring of a command is its text: paragraphs, and after a line that ends in a colon lines that stay
-as they are. An option says itself to which group it belongs (``rich_help_panel``). rich is not imported.
+HELP in the module of a command is its text: paragraphs, and after a line that ends in a colon lines that
+stay as they are. It is no docstring, as ``python -OO`` has none. An option says itself to which group it
+belongs (``rich_help_panel``). rich is not imported.
 """
 
 import os
@@ -67,7 +68,7 @@ def _width() -> int:
 
 
 def _paragraphs(command: Any, most: int | None = None) -> list[list[str]]:
-    """The docstring, of lists at most so many lines."""
+    """The text, of lists at most so many lines."""
     lines = []
     for paragraph in (command.help or "").split("\n\n"):
         head, *rest = paragraph.replace("\b\n", "").splitlines()

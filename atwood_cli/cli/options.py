@@ -103,7 +103,7 @@ def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
     signature = inspect.Signature([*scene, *own])
     with_scene.__dict__["__signature__"] = signature
     with_scene.__annotations__ = {p.name: p.annotation for p in signature.parameters.values()}
-    with_scene.__name__, with_scene.__doc__ = command.__name__, command.__doc__
+    with_scene.__name__ = command.__name__
     return with_scene
 
 

@@ -79,6 +79,24 @@ RULES_OF_THE_SCENE = (
 )
 
 
+HELP = """Solve one scene: acceleration, tensions, friction, critical masses.
+
+Examples:
+  atwood solve --m1 1 --m2 3 --mu 0.3
+  atwood solve --m1 250g --m2 300g --M 100g --R 5cm --digits 6
+  atwood solve --m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --json
+  atwood solve --m1 1 --m2 3 --M 10 --only acceleration --only mu_verge
+  atwood solve --m1 '1.000(2)' --m2 3+/-0.01 --M 10 --budget
+  atwood solve --m1 55g --m2 60g --R 5cm --a 0.380+/-0.004
+  atwood solve --m1 55g --m2 60g --drop 80cm --time '2.05(2)'
+  atwood solve --m1 1 --m2 3 --mu 0.3 --explain
+
+Any number may have its standard uncertainty, as 1.000+/-0.002 or, in quotes for the shell, '1.000(2)'.
+Results then have theirs, to first order, and a table ends each value at the second digit of it,
+whatever --digits.
+"""
+
+
 @takes_scene
 def solve(
     given: Mapping[str, str | None],
@@ -94,22 +112,6 @@ def solve(
     explain: Explain = False,
     markdown: Markdown = False,
 ) -> int:
-    """Solve one scene: acceleration, tensions, friction, critical masses.
-
-    Examples:
-      atwood solve --m1 1 --m2 3 --mu 0.3
-      atwood solve --m1 250g --m2 300g --M 100g --R 5cm --digits 6
-      atwood solve --m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --json
-      atwood solve --m1 1 --m2 3 --M 10 --only acceleration --only mu_verge
-      atwood solve --m1 '1.000(2)' --m2 3+/-0.01 --M 10 --budget
-      atwood solve --m1 55g --m2 60g --R 5cm --a 0.380+/-0.004
-      atwood solve --m1 55g --m2 60g --drop 80cm --time '2.05(2)'
-      atwood solve --m1 1 --m2 3 --mu 0.3 --explain
-
-    Any number may have its standard uncertainty, as 1.000+/-0.002 or, in quotes for the shell, '1.000(2)'.
-    Results then have theirs, to first order, and a table ends each value at the second digit of it,
-    whatever --digits.
-    """
     options, names = dict(locals()), only or []
     check([ONE_FORM], options)
     check_names("only", names, known=(*NAMES, *MEASURED_NAMES))

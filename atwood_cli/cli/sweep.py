@@ -73,6 +73,17 @@ RULES = (
 )
 
 
+HELP = """Solve a range of scenes: one or two options carry start:stop:count or start:stop:count:log.
+
+Examples:
+  atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3 --digits 6
+  atwood sweep --m1 1 --m2 3 --M 1:1000:4:log --mu 0.2:0.4:3 --only regime
+  atwood sweep --m1 100g:500g:5 --m2 300g --M 50g --csv
+  atwood sweep --m1 1 --m2 3 --M 0:60:61 --mu 0.3 --plot acceleration
+  atwood sweep --m1 1 --m2 3 --M 0:60:61 --figure a.svg mu_verge -o a.csv
+"""
+
+
 @takes_scene
 def sweep(
     given: Mapping[str, str | None],
@@ -86,15 +97,6 @@ def sweep(
     csv: AsCsv = False,
     only: Columns = None,
 ) -> int:
-    """Solve a range of scenes: one or two options carry start:stop:count or start:stop:count:log.
-
-    Examples:
-      atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3 --digits 6
-      atwood sweep --m1 1 --m2 3 --M 1:1000:4:log --mu 0.2:0.4:3 --only regime
-      atwood sweep --m1 100g:500g:5 --m2 300g --M 50g --csv
-      atwood sweep --m1 1 --m2 3 --M 0:60:61 --mu 0.3 --plot acceleration
-      atwood sweep --m1 1 --m2 3 --M 0:60:61 --figure a.svg mu_verge -o a.csv
-    """
     options = dict(locals())
     check([ONE_FORM, FILE_TO_REPLACE], options)
     json, csv = _form_for(output, json, csv)

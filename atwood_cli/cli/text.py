@@ -42,9 +42,10 @@ def takes_unicode(stream: TextIO | None) -> bool:
 
 
 def say(*messages: str) -> None:
-    """Each message on stderr, as the program's."""
+    """Each message on stderr, as the program's, a line; what is typed or read steers no terminal."""
     for message in messages:
-        line = for_stream(f"atwood: {message}", sys.stderr)
+        shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in message)
+        line = for_stream(f"atwood: {shown}", sys.stderr)
         if sys.stderr.isatty():  # a line breaks between words, where it must
             from shutil import get_terminal_size
             from textwrap import fill

@@ -69,6 +69,16 @@ Plot = Annotated[
 RULES = (Rule("family scenes seed", "scene", "has no say where a scene is given; leave one of them out"),)
 
 
+HELP = """Measure what accuracy costs on this machine: time beside error, for families of scenes or for one.
+
+Examples:
+  atwood tradeoff
+  atwood tradeoff --family near-critical --scenes 2000 --plot
+  atwood tradeoff --m1 1 --m2 3 --M 10 --mu 0.3
+  atwood tradeoff --json > measured.json
+"""
+
+
 @takes_scene
 def tradeoff(
     given: Mapping[str, str | None],
@@ -82,14 +92,6 @@ def tradeoff(
     json: AsJson = False,
     csv: AsCsv = False,
 ) -> int:
-    """Measure what accuracy costs on this machine: time beside error, for families of scenes or for one.
-
-    Examples:
-      atwood tradeoff
-      atwood tradeoff --family near-critical --scenes 2000 --plot
-      atwood tradeoff --m1 1 --m2 3 --M 10 --mu 0.3
-      atwood tradeoff --json > measured.json
-    """
     options = dict(locals())
     from ..tradeoff.measure import MOST_SCENES
     from ..tradeoff.measure import tradeoff as measure
