@@ -15,7 +15,7 @@ from atwood_cli import Scene, SceneError, solve
 from atwood_cli.model.scene import BODIES
 from atwood_cli.model.units import LENGTH, MASS
 
-NUMBER = re.compile(r"[+-]?(\d+(\.\d+)?|\.\d+)(e[+-]?\d+)?", re.ASCII)
+NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
 
 def error(**given: Any) -> str:
@@ -27,6 +27,7 @@ def error(**given: Any) -> str:
 NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
 BODY_NAMES = "mercury, venus, earth, moon, mars, pluto"
 MASSES = "kg, g, mg, ug, t, lb, lbs, oz, st"
+G = "m/s2, cm/s2, ft/s2, N/kg"
 LENGTHS = "m, km, dm, cm, mm, um, in, ft, yd"
 
 ERRORS: list[tuple[dict[str, Any], str]] = [
@@ -52,8 +53,13 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
     ({"wrap": "-180"}, "wrap '-180' must be above 0, and finite"),
     *(
         ({"m1": bad}, f"m1 {bad!r} {NOT_A_NUMBER}")
-        for bad in ("1,5,0", "1_000", "abc", "", " 1", "1.", "1E3", "0x1F")
+        for bad in ("1,5,0", "1_000", "1 000", "abc", "0x1F", ".", "1e+")
     ),
+    *(({"m1": missing}, f"m1 {missing!r} is empty; give a value, or leave it out") for missing in ("", " ")),
+    ({"m1": "1,000"}, "m1 '1,000' is not a number; write 1000 or 1.000, whichever is meant"),
+    ({"m1": "1,000g"}, "m1 '1,000g' is not a number; write 1000g or 1.000g, whichever is meant"),
+    ({"m1": "1,000.5"}, "m1 '1,000.5' is not a number; write 1000.5, without commas"),
+    ({"m1": "1,5"}, "m1 '1,5' is not a number; write it with a decimal point, 1.5"),
     ({"m1": "१"}, f"m1 '१' {NOT_A_NUMBER}"),
     ({"m1": "１"}, f"m1 '１' {NOT_A_NUMBER}"),
     ({"m1": "1e501"}, "m1 '1e501' has an exponent beyond 500 in magnitude"),
@@ -70,11 +76,18 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
     ({"m1": True}, "m1 True must be text or a number (str, int, float, Decimal, Fraction)"),
     ({"m1": b"1"}, "m1 b'1' must be text or a number (str, int, float, Decimal, Fraction)"),
     ({"m1": 1j}, "m1 1j must be text or a number (str, int, float, Decimal, Fraction)"),
-    ({"m1": "1kgs"}, "m1 '1kgs' has the unknown unit 'kgs'; did you mean kg?"),
+    ({"m1": "1kgg"}, "m1 '1kgg' has the unknown unit 'kgg'; did you mean kg?"),
+    ({"m1": "1ton"}, "m1 '1ton' has the unknown unit 'ton'; did you mean tonne?"),
+    ({"m1": "1slug"}, f"m1 '1slug' has the unknown unit 'slug'; there are {MASSES}"),
+    ({"m1": "1Mg"}, f"m1 '1Mg' has the unknown unit 'Mg'; there are {MASSES}"),
+    ({"m1": "1lbf"}, f"m1 '1lbf' has a unit of force; it takes one of mass ({MASSES})"),
+    ({"m1": "1 kg/m"}, f"m1 '1 kg/m' has a unit of another dimension; it takes one of mass ({MASSES})"),
+    ({"g": "9.81m/s"}, f"g '9.81m/s' has a unit of another dimension; it takes one of acceleration ({G})"),
+    ({"I": "3 kgm2"}, "I '3 kgm2' has the unknown unit 'kgm'; there are kg m2, g cm2, lb ft2"),
     ({"m1": "1 furlong"}, f"m1 '1 furlong' has the unknown unit 'furlong'; there are {MASSES}"),
     ({"m1": "5cm"}, f"m1 '5cm' has a unit of length; it takes one of mass ({MASSES})"),
     ({"wrap": "5cm"}, "wrap '5cm' has a unit of length; it takes one of angle (deg, °, turn, rad)"),
-    ({"wrap": "2 turns"}, "wrap '2 turns' has the unknown unit 'turns'; did you mean turn?"),
+    ({"wrap": "2 tuns"}, "wrap '2 tuns' has the unknown unit 'tuns'; did you mean turn?"),
     ({"wrap": "0rad"}, "wrap '0rad' must be above 0, and finite"),
     ({"R": "5kg"}, f"R '5kg' has a unit of mass; it takes one of length ({LENGTHS})"),
     ({"mu": "0.3kg"}, "mu '0.3kg' must be a plain number, without the 'kg'"),
@@ -114,15 +127,16 @@ def test_error_carries_its_parts() -> None:
 @given(st.text(alphabet="0123456789.+-e ", max_size=12) | st.text(max_size=6))
 def test_the_grammar_of_numbers(text: str) -> None:
     match = NUMBER.fullmatch(text)
-    if match and abs(int((match[3] or "e0")[1:])) <= 500 and not text.startswith("-"):
+    negative = text.strip().startswith("-")
+    if match and abs(int((match[3] or "e0")[1:])) <= 500 and not negative:
         assert Scene.read({"m1": text, "m2": 1}).m1 == Fraction(text)
-    elif match is None or text.startswith("-"):
+    elif match is None or negative:
         try:
             value = Scene.read({"m1": text, "m2": 1}).m1
         except SceneError:
             return
-        # Only a unit, or minus nothing, makes a mass of what is no plain number.
-        assert value == 0 or any(text.endswith(unit) for unit in MASS)
+        # Only a unit, a blank of another script, or minus nothing, makes a mass of what is no plain number.
+        assert value == 0 or not text.isascii() or text.strip().lower().endswith(tuple(MASS))
 
 
 @pytest.mark.parametrize(
@@ -140,10 +154,58 @@ def test_the_grammar_of_numbers(text: str) -> None:
         ("250 g", "1/4"),
         ("2 lb", "0.90718474"),
         ("1e3mg", "1/1000"),
+        ("1.", 1),
+        ("1E-3", "1/1000"),
+        (" 1 ", 1),
+        ("\xa01\u202f", 1),
+        ("250\xa0g", "1/4"),
+        ("1KG", 1),
+        ("1Kg", 1),
+        ("3kgs", 3),
+        ("2 tonnes", 2000),
+        ("500 grams", "1/2"),
+        ("1 Pound", "0.45359237"),
     ],
 )
 def test_text_means_exactly_itself(text: str, value: Any) -> None:
     assert Scene.read({"m1": text, "m2": 1}).m1 == Fraction(value)
+
+
+@pytest.mark.parametrize(
+    ("name", "text", "value"),
+    [
+        *(("g", word, "9.81") for word in ("9.81m/s2", "9.81 m/s²", "9.81 m/s^2", "981cm/s2", "9.81 m/s/s")),
+        *(("g", word, "9.81") for word in ("9.81 m s-2", "9.81 m s⁻²", "9.81N/kg", "9.81 m·s⁻²")),
+        ("g", "32ft/s2", "9.7536"),
+        ("g", "MOON", "1.62"),
+        *(("I", word, "3e-7") for word in ("3g cm2", "3 g cm²", "3 g*cm^2", "3g·cm²", "3e-7 N m s2")),
+        ("R", "2 inches", "0.0508"),
+        ("R", "1 foot", "0.3048"),
+        ("R", "3 Feet", "0.9144"),
+        ("R", "5CM", "0.05"),
+        ("R", "5µm", "5e-6"),
+        ("wrap", "1.5 turns", 540),
+        ("wrap", "90 Degrees", 90),
+        ("inertia", "Hoop", 1),
+        ("M", " INF ", "inf"),
+    ],
+)
+def test_units_and_names_as_people_write_them(name: str, text: str, value: Any) -> None:
+    scene = Scene.read({"m1": 1, "m2": 1, "R": 1, "M": None if name == "I" else 1, name: text})
+    assert getattr(scene, name) == (inf if value == "inf" else Fraction(value))
+
+
+def test_what_was_measured_takes_units_too() -> None:
+    a = solve(m1="55g", m2="60g", a="38cm/s2")
+    assert a == solve(m1="0.055", m2="0.060", a="0.38")
+    fall = solve(m1="55g", m2="60g", drop="2 feet", time="2.05 Secs")
+    assert fall == solve(m1="0.055", m2="0.060", drop="0.6096", time="2.05")
+
+
+@pytest.mark.parametrize("text", ["250±2.5g", "250g±1%", "(250±1%)g", "250 g +/- 1 %", "250g±10E-1%"])
+def test_an_uncertainty_in_percent(text: str) -> None:
+    typed, written = (solve(m1=words, m2="1", M="2") for words in (text, "250g±2.5g"))
+    assert typed == written
 
 
 @pytest.mark.parametrize(

@@ -683,7 +683,7 @@ FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
         ("--wrap 90deg:3rad:3", "--wrap '90deg:3rad:3' has one end in radians; write both in the same unit"),
         ("--M 0:2:3:log", "--M '0:2:3:log' has no equal ratios from or to 0; both ends must be above 0"),
         ("--M 1:2x:3", "--M '2x' has the unknown unit 'x'; there are kg, g, mg, ug, t, lb, lbs, oz, st"),
-        ("--M :2:3", "--M '' is not a number; write it like 2, 0.5 or 1.5e-3"),
+        ("--M :2:3", f"--M ':2:3' is no range; write {FORM}"),
         ("--M -1:2:4", "--M '-1' must be 0 or more (inf locks the pulley)"),
         (
             "--M 1:2:2000 --mu 1:2:2000",

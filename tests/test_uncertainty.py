@@ -93,13 +93,13 @@ FORMS = (
             ({"m1": bad}, f"m1 {bad!r} {FORMS}")
             for bad in (
                 *("1.0(0.2)", "1.0()", "(1.0)", "1±", "±1", "1±-1", "1±1±1", "1.0(2)(3)", "1 (2)", "1.0(2"),
-                *("1g±1", "1kg±1g", "inf±1", "1±inf", "1±5%", "(1e3±1)", "1E3±1", "1,5±1", "sin(1)"),
+                *("1g±1", "1kg±1g", "inf±1", "1±inf", "(1e3±1)", "1,5±1", "1%±1", "1±%", "sin(1)"),
             )
         ),
         ({"g": "moon±0.1"}, f"g 'moon±0.1' {FORMS}"),
         ({"m1": "-1.0(2)"}, "m1 '-1.0(2)' must be 0 or more, and finite"),
         ({"g": "0±1"}, "g '0±1' must be above 0, and finite"),
-        ({"m1": "1.0(2)kgs"}, "m1 '1.0(2)kgs' has the unknown unit 'kgs'; did you mean kg?"),
+        ({"m1": "1.0(2)kgg"}, "m1 '1.0(2)kgg' has the unknown unit 'kgg'; did you mean kg?"),
         ({"mu": "0.30(1)kg"}, "mu '0.30(1)kg' must be a plain number, without the 'kg'"),
         ({"m1": "1±1e501"}, "m1 '1±1e501' has an exponent beyond 500 in magnitude"),
         (

@@ -1,5 +1,6 @@
 """What is given: words and numbers in, an exact and valid `Scene` out. Nothing is computed."""
 
+import re
 from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
@@ -13,11 +14,13 @@ from .units import (
     MAX_DIGITS,
     MAX_MAGNITUDE,
     NUMBER,
+    PERCENT,
     Malformed,
     is_uncertain,
     nearest,
     read_number,
     split_uncertainty,
+    without_blanks,
 )
 
 Given = str | int | float | Decimal | Fraction | Angle
@@ -91,14 +94,16 @@ PARAMETERS = {
     "M": Parameter("mass of the pulley", "kg", zero=True, inf=True, dimension="mass"),
     "mu": Parameter("coefficient of static friction between string and pulley", zero=True),
     "mu_k": Parameter("coefficient of kinetic friction, once the string slips", zero=True),
-    "g": Parameter("gravity", "m/s²", names=BODIES),
+    "g": Parameter("gravity", "m/s²", dimension="acceleration", names=BODIES),
     "inertia": Parameter("inertia factor β = I/(M R²)", names=INERTIA_FACTORS),
-    "I": Parameter("moment of inertia of the pulley", "kg m²"),
+    "I": Parameter("moment of inertia of the pulley", "kg m²", dimension="moment of inertia"),
     "R": Parameter("radius of the pulley", "m", dimension="length"),
     "wrap": Parameter("angle over which the string touches the pulley", "°", dimension="angle"),
 }
 MEASURED = {
-    "a": Parameter("measured acceleration, positive when m2 descends", "m/s²", signed=True),
+    "a": Parameter(
+        "measured acceleration, positive when m2 descends", "m/s²", dimension="acceleration", signed=True
+    ),
     "drop": Parameter("height that the heavier mass falls from rest", "m", dimension="length"),
     "time": Parameter("measured time in which it does", "s", dimension="time"),
 }
@@ -209,9 +214,12 @@ def read_input(name: str, given: Given | None) -> Input:
         texts = split_uncertainty(given)
     except Malformed as error:
         raise SceneError(name, given, str(error)) from None
-    value = _checked(name, given, *_read_text(name, given, texts[0]))
-    uncertainty, _ = _read_text(name, given, texts[1])
-    return Input(value, Fraction(uncertainty), given)
+    number, unit = _read_text(name, given, texts[0])
+    value = _checked(name, given, number, unit)
+    uncertainty = Fraction(_read_text(name, given, texts[1].rstrip(PERCENT))[0])
+    if texts[1].endswith(PERCENT):
+        uncertainty *= abs(Fraction(number)) / 100
+    return Input(value, uncertainty, given)
 
 
 def read_exactly(name: str, given: Given | None) -> Input:
@@ -272,27 +280,36 @@ def _read_text(
 ) -> tuple[Fraction | float, str]:
     """The number that a text, or part of it, stands for, and its unit; errors show all that was given."""
     parameter = parameter or parameter_of(name)
-    if parameter.inf and text == "inf":
+    word = without_blanks(text).lower()
+    if parameter.inf and word == "inf":
         return inf, ""
-    if text in parameter.names:
-        return Fraction(parameter.names[text]), ""
+    if word in parameter.names:
+        return Fraction(parameter.names[word]), ""
     try:
         number = read_number(text, parameter.dimension)
     except Malformed as error:
         raise SceneError(name, given, str(error)) from None
     if number is None:
-        raise SceneError(name, given, _not_a_number(parameter, text))
+        raise SceneError(name, given, _not_a_number(parameter, without_blanks(text)))
     return number
 
 
+THOUSANDS = re.compile(r"[+-]?\d{1,3}(,\d{3})+(\.\d*)?", re.ASCII)
+
+
 def _not_a_number(parameter: Parameter, word: str) -> str:
+    if not word:
+        return "is empty; give a value, or leave it out"
     if word.lower() in ("nan", "inf", "+inf", "-inf", "infinity"):
         return parameter.domain
     if is_uncertain(word):
         return "carries an uncertainty, which only solve takes; give the value alone"
     if ":" in word:
         return "is a range, not a number; atwood sweep takes ranges"
-    pointed = word.replace(",", ".")
+    number, pointed = word.replace(",", ""), word.replace(",", ".")
+    if THOUSANDS.match(word) and NUMBER.fullmatch(number):
+        decimal = f" or {pointed}, whichever is meant" if NUMBER.fullmatch(pointed) else ", without commas"
+        return f"is not a number; write {number}{decimal}"
     if pointed != word and NUMBER.fullmatch(pointed):
         return f"is not a number; write it with a decimal point, {pointed}"
     near = nearest(word, parameter.names)

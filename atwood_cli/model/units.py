@@ -1,7 +1,7 @@
-"""Numbers as people type them: 1.5e-3, 250g, 1.000(2), (250±1)g. All of it exact; nothing is rounded."""
+"""Numbers as people type them: 1.5e-3, 250g, 9.81 m/s2, 1.000(2), (250±1)g. All exact; nothing is rounded."""
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 MASS = {
@@ -28,21 +28,65 @@ LENGTH = {
 }
 ANGLE = {"deg": "1", "°": "1", "turn": "360", "rad": "1"}
 """In degrees, but for radians, which stay what they are."""
-TIME = {"s": "1", "ms": "1e-3", "min": "60"}
-DIMENSIONS = {"mass": MASS, "length": LENGTH, "angle": ANGLE, "time": TIME}
+TIME = {"s": "1", "ms": "1e-3", "min": "60", "h": "3600"}
+FORCE = {"N": "1", "kN": "1e3", "lbf": "4.4482216152605", "kgf": "9.80665"}
+COMPOUND = {
+    "acceleration": ("m/s2", "cm/s2", "ft/s2", "N/kg"),
+    "moment of inertia": ("kg m2", "g cm2", "lb ft2"),
+}
+DIMENSIONS: Mapping[str, Iterable[str]] = {
+    **{"mass": MASS, "length": LENGTH, "angle": ANGLE, "time": TIME, "force": FORCE},
+    **COMPOUND,
+}
+"""The dimensions that units are of, and what units a sentence names; others are made of those, as km/h2."""
+POWERS = {
+    **{"mass": [1, 0, 0, 0], "length": [0, 1, 0, 0], "time": [0, 0, 1, 0], "angle": [0, 0, 0, 1]},
+    **{"force": [1, 1, -2, 0], "acceleration": [0, 1, -2, 0], "moment of inertia": [1, 2, 0, 0]},
+}
+"""By dimension, the powers of mass, length, time and angle in it."""
+SYMBOLS = {
+    symbol: (Fraction(factor), POWERS[dimension])
+    for dimension, factors in (
+        ("mass", MASS),
+        ("length", LENGTH),
+        ("angle", ANGLE),
+        ("time", TIME),
+        ("force", FORCE),
+    )
+    for symbol, factor in factors.items()
+}
+# fmt: off
+WORDS = {
+    "kilogram": "kg", "kilogramme": "kg", "kilo": "kg", "gram": "g", "gramme": "g", "milligram": "mg",
+    "microgram": "ug", "tonne": "t", "pound": "lb", "lbm": "lb", "ounce": "oz", "stone": "st",
+    "metre": "m", "meter": "m", "kilometre": "km", "kilometer": "km", "decimetre": "dm", "decimeter": "dm",
+    "centimetre": "cm", "centimeter": "cm", "millimetre": "mm", "millimeter": "mm", "micrometre": "um",
+    "micrometer": "um", "micron": "um", "inch": "in", "inche": "in", "foot": "ft", "feet": "ft", "yard": "yd",
+    "degree": "deg", "revolution": "turn", "rev": "turn", "radian": "rad", "newton": "N",
+    "second": "s", "sec": "s", "millisecond": "ms", "minute": "min", "hour": "h", "hr": "h",
+}
+# fmt: on
+"""Units written out, in small letters and without the s of a plural."""
 
 MAX_DIGITS, MAX_EXPONENT = 1000, 500
 # No text within those limits is longer as a numerator or denominator.
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 
-NUMBER = re.compile(r"([+-]?)(\d+(?:\.\d+)?|\.\d+)(?:e([+-]?\d+))?(?: *([A-Za-z]+|°))?", re.ASCII)
+_TERM = r"[A-Za-zµμ]+(?:\^?-?[1-9]|⁻?[¹²³])?"
+_UNIT = rf"(?:{_TERM}(?: ?[*·/ ] ?{_TERM})*|°)"
+NUMBER = re.compile(rf"([+-]?)(\d+(?:\.\d*)?|\.\d+)(?:[eE]([+-]?\d+))?(?: ?({_UNIT}))?", re.ASCII)
+MEGA = re.compile("M[a-z]")
+"""Megagrams and megametres are neither milligrams nor millimetres in capitals."""
+_FACTOR = re.compile(r"([*·/ ]*)([A-Za-z]+|°)\^?(-?[1-9])?")
+_PLAIN = str.maketrans("µμ⁻¹²³", "uu-123")
 
-# An uncertainty: in units of the last digit, 1.000(2), or written out, 1.000±0.002, (1.000±0.002)g.
-_DIGITS, _EXPONENT, _UNIT = r"(?:\d+(?:\.\d+)?|\.\d+)", r"(?:e[+-]?\d+)?", r"(?: *(?:[A-Za-z]+|°))?"
-IN_LAST_DIGITS = rf"([+-]?{_DIGITS})\((\d+)\)({_EXPONENT}{_UNIT})"
-IN_BRACKETS = rf"\(([+-]?{_DIGITS}) *(?:±|\+/-) *({_DIGITS})\)({_EXPONENT}{_UNIT})"
-WRITTEN_OUT = rf"([+-]?{_DIGITS}{_EXPONENT})({_UNIT}) *(?:±|\+/-) *({_DIGITS}{_EXPONENT})({_UNIT})"
+# An uncertainty: in units of the last digit, 1.000(2), or written out, 1.000±0.002, (1.000±0.002)g, 1g±2%.
+_DIGITS, _EXPONENT, _TAIL = r"(?:\d+(?:\.\d*)?|\.\d+)", r"(?:[eE][+-]?\d+)?", rf"(?: ?{_UNIT})?"
+IN_LAST_DIGITS = rf"([+-]?{_DIGITS})\((\d+)\)({_EXPONENT}{_TAIL})"
+IN_BRACKETS = rf"\(([+-]?{_DIGITS}) ?(?:±|\+/-) ?({_DIGITS})( ?%)?\)({_EXPONENT}{_TAIL})"
+WRITTEN_OUT = rf"([+-]?{_DIGITS}{_EXPONENT})({_TAIL}) ?(?:±|\+/-) ?({_DIGITS}{_EXPONENT})({_TAIL}| ?%)"
 UNCERTAIN = ("(", "±", "+/-")
+PERCENT = "%"
 NOT_UNCERTAIN = (
     "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+/-0.002 or 1.000(2),"
     " and a unit after that"
@@ -53,13 +97,22 @@ class Malformed(ValueError):
     """A text that is no such number; the message is the rule it breaks."""
 
 
+def without_blanks(text: str) -> str:
+    """The text without blanks around it, and with plain single ones within: a no-break space is a blank."""
+    return " ".join(text.split())
+
+
 def is_uncertain(text: str) -> bool:
     """Whether the text is meant to carry an uncertainty."""
     return any(mark in text for mark in UNCERTAIN)
 
 
 def split_uncertainty(text: str) -> tuple[str, str]:
-    """The texts of a value and of its uncertainty: 0.25(12)g is 0.25g and 0.12g. Raises Malformed."""
+    """The texts of a value and of its uncertainty: 0.25(12)g is 0.25g and 0.12g, 55g±1% is 55g and 1%.
+
+    Raises Malformed.
+    """
+    text = without_blanks(text)
     if match := re.fullmatch(IN_LAST_DIGITS, text, re.ASCII):
         value, digits, tail = match.groups()
         places = len(value.partition(".")[2])
@@ -67,9 +120,11 @@ def split_uncertainty(text: str) -> tuple[str, str]:
         digits = digits.zfill(point + places)
         return value + tail, f"{digits[:point]}{'.' * bool(places)}{digits[point:]}{tail}"
     if match := re.fullmatch(IN_BRACKETS, text, re.ASCII):
-        value, uncertainty, tail = match.groups()
-        return value + tail, uncertainty + tail
+        value, uncertainty, percent, tail = match.groups()
+        return value + tail, uncertainty + (PERCENT if percent else tail)
     match = re.fullmatch(WRITTEN_OUT, text, re.ASCII)
+    if match and match[4].endswith(PERCENT):
+        return match[1] + match[2], match[3] + PERCENT
     if not match or match[2] not in ("", match[4]):
         raise Malformed(NOT_UNCERTAIN)
     return match[1] + match[4], match[3] + match[4]
@@ -80,7 +135,7 @@ def read_number(text: str, dimension: str | None) -> tuple[Fraction, str] | None
 
     ``dimension`` is one of `DIMENSIONS`, or None for a number that takes no unit. Raises Malformed.
     """
-    match = NUMBER.fullmatch(text)
+    match = NUMBER.fullmatch(without_blanks(text))
     if not match:
         return None
     sign, mantissa, exponent, unit = match.groups(default="")
@@ -91,28 +146,55 @@ def read_number(text: str, dimension: str | None) -> tuple[Fraction, str] | None
     if len(power) > 3 or int(power) > MAX_EXPONENT:
         raise Malformed(f"has an exponent beyond {MAX_EXPONENT} in magnitude")
     value = Fraction(f"{sign}{mantissa}e{'-' * exponent.startswith('-')}{power}")
-    return (value * _factor(unit, dimension) if unit else value), unit
-
-
-def _factor(unit: str, wanted: str | None) -> Fraction:
-    """What a unit is in the SI. Raises Malformed where it is unknown, or of another dimension."""
-    if wanted is None:
+    if not unit:
+        return value, ""
+    if dimension is None:
         raise Malformed(f"must be a plain number, without the {unit!r}")
-    factors = DIMENSIONS[wanted]
-    if unit in factors:
-        return Fraction(factors[unit])
-    for dimension, others in DIMENSIONS.items():
-        if unit in others:
-            units = f"{wanted} ({', '.join(factors)})"
-            raise Malformed(f"has a unit of {dimension}; it takes one of {units}")
-    hint = nearest(unit, factors) or f"; there are {', '.join(factors)}"
-    raise Malformed(f"has the unknown unit {unit!r}{hint}")
+    return value * read_unit(unit, dimension), symbol_of(unit) or unit
+
+
+def read_unit(unit: str, wanted: str) -> Fraction:
+    """What a unit is in the SI, or in degrees. Raises Malformed if it is unknown or of another dimension."""
+    factor, powers = Fraction(1), [0, 0, 0, 0]
+    for operator, word, power in _FACTOR.findall(unit.translate(_PLAIN)):
+        symbol = symbol_of(word)
+        if symbol is None:
+            raise Malformed(f"has the unknown unit {word!r}{_near_units(word, wanted)}")
+        times = int(power or 1) * (-1 if "/" in operator else 1)
+        one, its_powers = SYMBOLS[symbol]
+        factor *= one**times
+        powers = [p + times * q for p, q in zip(powers, its_powers, strict=True)]
+    if powers == POWERS[wanted]:
+        return factor
+    other = next((name for name in DIMENSIONS if POWERS[name] == powers), "another dimension")
+    raise Malformed(f"has a unit of {other}; it takes one of {wanted} ({', '.join(DIMENSIONS[wanted])})")
+
+
+def symbol_of(word: str) -> str | None:
+    """The symbol of a unit that may be written out, in the plural or in capitals; None if there is none."""
+    if word in SYMBOLS:
+        return word
+    if MEGA.fullmatch(word):
+        return None
+    small = word.lower()
+    for name in (small, small.removesuffix("s"), small.removesuffix("es")):
+        if symbol := WORDS.get(name) or next((one for one in SYMBOLS if one.lower() == name), None):
+            return symbol
+    return None
+
+
+def _near_units(word: str, wanted: str) -> str:
+    """The hint at a unit of the dimension that begins alike, or else at those there are."""
+    of_it = [name for name, (_, powers) in SYMBOLS.items() if powers == POWERS[wanted]]
+    names = [*of_it, *(name for name, symbol in WORDS.items() if symbol in of_it)]
+    alike = [name for name in names if name[0].lower() == word[0].lower() and not MEGA.fullmatch(word)]
+    return nearest(word, alike) or f"; there are {', '.join(DIMENSIONS[wanted])}"
 
 
 def nearest(word: str, words: Iterable[str]) -> str:
     """The hint that a near word may have been meant, empty if none is near."""
     from difflib import get_close_matches
 
-    words = list(words)
+    words = list(words) if word else []
     near = get_close_matches(word.lower(), words, n=1) or [w for w in words if w.startswith(word.lower())]
     return f"; did you mean {near[0]}?" if near else ""

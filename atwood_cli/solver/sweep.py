@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ..arithmetic.interval import decimal_context
 from ..arithmetic.rounding import as_typed, text
 from ..model.scene import PARAMETERS, Scene, SceneError, read_value, read_whole, stated
-from ..model.units import MAX_DIGITS, MAX_MAGNITUDE, NUMBER
+from ..model.units import MAX_DIGITS, MAX_MAGNITUDE, NUMBER, symbol_of, without_blanks
 from .answers import DOUBLE_DIGITS, Answers
 
 Point = Decimal | str
@@ -90,7 +90,7 @@ def read_sweep(given: Mapping[str, str | None]) -> Sweep:
 def read_range(name: str, typed: str) -> Range:
     """A range of a parameter. Raises SceneError."""
     words = typed.split(":")
-    if len(words) not in (3, 4) or words[3:] not in ([], ["log"]):
+    if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
         raise SceneError(name, typed, f"is no range; write {FORM}")
     (start, unit), (stop, _) = (_read_end(name, typed, word) for word in words[:2])
     _check_units(name, typed, words[:2], start == 0 or stop == 0)
@@ -110,7 +110,7 @@ def read_range(name: str, typed: str) -> Range:
 
 def _read_end(name: str, typed: str, word: str) -> tuple[Fraction, str]:
     """An end of a range, and its unit if it is an angle. Raises SceneError."""
-    if word == "inf" or word in PARAMETERS[name].names:
+    if word.strip().lower() in ("inf", *PARAMETERS[name].names):
         raise SceneError(name, typed, f"has the end {word!r}; a range runs between finite numbers")
     value = read_value(name, word)
     return (value.number, value.unit) if name == "wrap" else (value, "")
@@ -118,7 +118,11 @@ def _read_end(name: str, typed: str, word: str) -> tuple[Fraction, str]:
 
 def _check_units(name: str, typed: str, ends: Sequence[str], has_zero: bool) -> None:
     """100:500g is from 100 kg to half a kilogram: hardly what was meant."""
-    first, second = (match[4] for word in ends if (match := NUMBER.fullmatch(word)))
+    first, second = (
+        match[4] and (symbol_of(match[4]) or match[4])
+        for word in ends
+        if (match := NUMBER.fullmatch(without_blanks(word)))
+    )
     if bool(first) != bool(second) and not has_zero:
         raise SceneError(name, typed, "has a unit at one end only; write it at both")
     if first != second and "rad" in (first, second):
