@@ -12,7 +12,9 @@ import pytest
 
 from atwood_cli import solve
 from atwood_cli.__main__ import main
-from atwood_cli.model.quantities import MEASURED_NAMES
+from atwood_cli.cli.options import read_names
+from atwood_cli.cli.text import ASCII
+from atwood_cli.model.quantities import MEASURED_NAMES, QUANTITIES
 
 from . import oracle, startup_baseline
 from .running import PAPER, Atwood, on_terminal, plain, process
@@ -175,8 +177,31 @@ def test_only_prints_bare_values_one_a_line(atwood: Atwood) -> None:
 
 def test_only_of_a_value_that_does_not_exist_fails(atwood: Atwood) -> None:
     ran = atwood(*PAPER, "--only", "torque", "--only", "mu_verge")
-    assert (ran.status, ran.out) == (1, "0.3\n")
+    assert (ran.status, ran.out) == (1, "\n0.3\n")  # so that each value is on the line of its name
     assert ran.err == "atwood: torque: give R, the pulley's radius.\n"
+    assert atwood(*PAPER, "--only", "torque").out == ""
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--only", "acceleration,tension_1, mu_verge"],
+        ["--only", "a,T₁", "--only", "μ*"],
+        ["--only", "a,T1,mu*"],
+    ],
+)
+def test_only_takes_several_and_the_symbols_that_tables_show(atwood: Atwood, words: list[str]) -> None:
+    ran = atwood(*PAPER, "--digits", "3", *words)
+    assert (ran.status, ran.out, ran.err) == (0, "0.764\n10.6\n0.300\n", "")
+    swept = atwood("sweep", "--m1", "1", "--m2", "3", "--M", "0:1:2", "--mu", "0.3", "--csv", *words)
+    assert swept.out.startswith("M,acceleration,tension_1,mu_verge\n")
+
+
+@pytest.mark.parametrize("ascii_", [False, True])
+@pytest.mark.parametrize("name", [name for name in QUANTITIES if name not in MEASURED_NAMES])
+def test_every_symbol_names_its_quantity(name: str, ascii_: bool) -> None:
+    symbol = QUANTITIES[name].symbol
+    assert read_names("only", [symbol.translate(ASCII) if ascii_ else symbol]) == [name]
 
 
 def test_only_in_a_shell_script() -> None:
@@ -244,6 +269,23 @@ def test_a_table_without_rows_is_no_table(atwood: Atwood) -> None:
         ),
         ("solve --zzz", "No such option: --zzz; atwood solve -h shows how"),
         ("solve --m1", "Option '--m1' requires an argument"),
+        ("solve --m1 1 --m2 3 --M --mu 0.3", "--M lacks its value: what follows is the option --mu"),
+        ("solve --m1 1 --m2 3 --M --mu=0.3", "--M lacks its value: what follows is the option --mu=0.3"),
+        ("solve --m1 1 --m2 3 --only --json", "--only lacks its value: what follows is the option --json"),
+        ("solve --m1 1 --m2 3 --M=", "--M '' is empty; give a value, or leave it out"),
+        (
+            "solve --m1 200 g --m2 300 g",
+            "--m1 '200' is followed by a stray 'g'; write '200 g' if it belongs there",
+        ),
+        (
+            "solve --m1 1 --m2 3 --only acceleration tension_1",
+            "--only 'acceleration' is followed by a stray 'tension_1';"
+            " write 'acceleration,tension_1' if it belongs there",
+        ),
+        ("solve -m1 1 --m2 3", "No such option: -m1. Did you mean --m1?; atwood solve -h shows how"),
+        ("solve --m1 1 -M 3", "No such option: -M. Did you mean --M?; atwood solve -h shows how"),
+        ("solve —m1 1 --m2 3", "No such option: —m1. Did you mean --m1?; atwood solve -h shows how"),
+        ("solve m1=1 m2=3", "No such option: m1. Did you mean --m1?; atwood solve -h shows how"),
         ("solve 1 3", "Got unexpected extra arguments (1 3); atwood solve -h shows how"),
         ("slove", "No such command 'slove'. Did you mean 'solve'?; atwood -h shows how"),
     ],
@@ -253,6 +295,23 @@ def test_wrong_usage(atwood: Atwood, arguments: str, message: str) -> None:
     assert (ran.status, ran.out) == (2, "")
     # typer words its own complaints a little differently from version to version.
     assert ran.err.replace("argument(s)", "arguments") == f"atwood: {message}\n"
+
+
+@pytest.mark.parametrize("wrap", ["3.14159", "3.1", "6.28", " 1.57 ", "1e0"])
+def test_an_angle_that_looks_like_radians_is_remarked_on(atwood: Atwood, wrap: str) -> None:
+    for words in (["solve", "--only", "mu_verge"], ["contact", "--csv"], ["sweep", "--g", "1:2:2", "--csv"]):
+        ran = atwood(*words, "--m1", "1", "--m2", "3", "--M", "10", "--wrap", wrap)
+        assert ran.status == 0
+        assert ran.err.startswith(
+            f"atwood: --wrap {wrap} was taken for degrees; if it is in radians, write rad behind it, as 3.14rad\n"
+        )
+
+
+@pytest.mark.parametrize("wrap", ["180", "3.14159rad", "3deg", "3°", "0.5turn", "12.6", "4e-6", "90:180:3"])
+def test_other_angles_are_not(atwood: Atwood, wrap: str) -> None:
+    command = "sweep" if ":" in wrap else "solve"
+    ran = atwood(command, "--m1", "1", "--m2", "3", "--M", "10", "--wrap", wrap)
+    assert (ran.status, ran.err) == (0, "")
 
 
 def test_every_scene_error_reaches_the_command_line_as_an_option(atwood: Atwood) -> None:
@@ -296,6 +355,10 @@ def test_no_name_that_is_typed_steers_the_terminal(atwood: Atwood, words: str, s
 
 def test_version_and_help(atwood: Atwood) -> None:
     assert re.fullmatch(r"atwood \d+\.\d+\.\d+\n", atwood("--version").out)
+    assert atwood("-V") == atwood("--version")
+    assert atwood("help") == atwood("-h")
+    assert atwood("help", "sweep") == atwood("sweep", "-h")
+    assert atwood("help", "slove").status == 2
     for arguments in (["-h"], ["--help"], []):
         assert "solve" in atwood(*arguments).out
     for flag in ("-h", "--help"):

@@ -4,7 +4,7 @@ import io
 import os
 import sys
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 from typing import Annotated, Any
 
@@ -34,22 +34,56 @@ UsageError: Any = typer.BadParameter.__mro__[1]
 
 
 class Command(TyperCommand):
-    """A command with our help, that refuses a scalar option given twice, rather than take the last."""
+    """A command with our help, that sees how the words typed were divided among its options."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         ctx.meta[WORDS] = list(args)
-        if ctx.resilient_parsing:  # to complete what is typed so far
-            return super().parse_args(ctx, args)
-        _, _, order = self.make_parser(ctx).parse_args(args=list(args))
-        for option, times in Counter(order).items():
-            if times > 1 and not (getattr(option, "multiple", 0) or getattr(option, "is_flag", 0)):
-                raise SceneError(str(option.name), None, f"is given {times} times; give it once")
+        if not ctx.resilient_parsing:  # which completes what is typed so far
+            options = {flag: param for param in self.get_params(ctx) for flag in param.opts}
+            try:
+                values, left, order = self.make_parser(ctx).parse_args(args=list(args))
+            except UsageError:
+                _check_dashes(ctx, args, options)
+                raise
+            _check_dashes(ctx, left, options)
+            _check_values(values, order, options)
+            _check_left(args, left, options)
         return super().parse_args(ctx, args)
 
     def format_help(self, ctx: Any, formatter: Any) -> None:
         from .help import page
 
         formatter.write(page(self, ctx))
+
+
+def _check_dashes(ctx: Any, words: Iterable[str], options: Mapping[str, Any]) -> None:
+    """Refuse -m1 and m1=1, and the dash that word processors make of two, with a hint at --m1."""
+    for word in words:
+        name, equals, _ = word.partition("=")
+        meant = f"--{name.lstrip('-–—')}"
+        if meant in options and name not in options and (equals or meant[2:] != name):
+            raise UsageError(f"No such option: {name}. Did you mean {meant}?", ctx)
+
+
+def _check_values(values: Mapping[str, Any], order: Sequence[Any], options: Mapping[str, Any]) -> None:
+    """Refuse a scalar option given twice, rather than take the last, and another option as a value."""
+    for option, times in Counter(order).items():
+        typed = values[option.name]
+        for value in typed if isinstance(typed, list | tuple) else [typed]:
+            if str(value).partition("=")[0] in options:
+                raise SceneError(option.name, None, f"lacks its value: what follows is the option {value}")
+        if times > 1 and not (getattr(option, "multiple", 0) or getattr(option, "is_flag", 0)):
+            raise SceneError(option.name, None, f"is given {times} times; give it once")
+
+
+def _check_left(args: Sequence[str], left: Sequence[str], options: Mapping[str, Any]) -> None:
+    """Refuse a value that was split into words."""
+    for before, value, word in zip(args, args[1:], args[2:], strict=False):
+        if word in left[:1] and before in options:
+            option = options[before]
+            joined = f"{value}{',' if getattr(option, 'multiple', 0) else ' '}{word}"
+            rule = f"is followed by a stray {word!r}; write {joined!r} if it belongs there"
+            raise SceneError(option.name, value, rule)
 
 
 class Group(TyperGroup):
@@ -66,7 +100,7 @@ def _print_version(wanted: bool) -> None:
 
 Version = Annotated[
     bool,
-    typer.Option("--version", callback=_print_version, is_eager=True, help="Print the version."),
+    typer.Option("--version", "-V", callback=_print_version, is_eager=True, help="Print the version."),
 ]
 
 
@@ -105,7 +139,10 @@ def run(arguments: list[str] | None = None) -> int:
     # A stream closed by the caller is None: what is printed goes nowhere.
     sys.stdout, sys.stderr = sys.stdout or io.StringIO(), sys.stderr or io.StringIO()
     try:
-        command = program(_needed(sys.argv[1:] if arguments is None else arguments))
+        arguments = sys.argv[1:] if arguments is None else arguments
+        if arguments[:1] == ["help"]:
+            arguments = [*arguments[1:], "-h"]
+        command = program(_needed(arguments))
         status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
         sys.stdout.flush()
         return status
@@ -124,9 +161,8 @@ def run(arguments: list[str] | None = None) -> int:
     except (KeyError, ValueError):
         if COMPLETING not in os.environ:
             raise
-        say(
-            f"{COMPLETING} is set, by which a shell asks for words, but not COMP_WORDS and COMP_CWORD; unset it"
-        )
+        how = "by which a shell asks for words, but not COMP_WORDS and COMP_CWORD; unset it"
+        say(f"{COMPLETING} is set, {how}")
         return WRONG_USAGE
     except typer.Abort:
         raise KeyboardInterrupt from None

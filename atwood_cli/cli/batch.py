@@ -6,7 +6,7 @@ import typer
 
 from ..model.quantities import STANDARD
 from ..model.scene import SceneError
-from .options import COULD_NOT, DONE, Columns, Force, check_names, near_or_all, option
+from .options import COULD_NOT, DONE, Columns, Force, near_or_all, option, read_names
 from .text import say
 
 Table = Annotated[
@@ -78,8 +78,7 @@ def batch(
     from ..batch.run import Job, run_batch
     from .page import watched
 
-    names = list(dict.fromkeys(only or STANDARD))
-    check_names("only", names)
+    names = list(dict.fromkeys(read_names("only", only or STANDARD)))
     if accuracy not in ACCURACIES:
         raise SceneError("accuracy", accuracy, f"is no accuracy{near_or_all(accuracy, ACCURACIES)}")
     formats = read_format("from", from_, table), read_format("to", to, output)

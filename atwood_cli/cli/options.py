@@ -11,7 +11,8 @@ import typer
 
 from ..model.quantities import NAMES, QUANTITIES
 from ..model.scene import PARAMETERS, SceneError, parameter_of
-from ..model.units import nearest
+from ..model.units import NUMBER, nearest, without_blanks
+from .text import ASCII, say
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """Set where a shell asks what a word could be."""
@@ -82,7 +83,7 @@ def scene_option(name: str, group: str = "Scene") -> Any:
     names = f", or {', '.join(parameter.names)}" if parameter.names else ""
     meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
     text = f"{meaning}{unit}{names}{REMARKS.get(name, '')}."
-    metavar = (parameter.dimension or "number").upper()
+    metavar = (parameter.dimension or "number").split()[-1].upper()
     words = {**parameter.names, **({"inf": "a locked pulley"} if parameter.inf else {})}
     return option(group, *flags, help=text, metavar=metavar, words=(lambda: words) if words else None)
 
@@ -92,6 +93,8 @@ def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
 
     def with_scene(**options: Any) -> int:
         given = {name: options.pop(name) for name in PARAMETERS}
+        if (wrap := given["wrap"]) and _may_be_radians(wrap):
+            say(f"--wrap {wrap} was taken for degrees; if it is in radians, write rad behind it, as 3.14rad")
         return command(given=given, **options)
 
     kind = inspect.Parameter.KEYWORD_ONLY
@@ -105,6 +108,19 @@ def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
     with_scene.__annotations__ = {p.name: p.annotation for p in signature.parameters.values()}
     with_scene.__name__ = command.__name__
     return with_scene
+
+
+LIKE_RADIANS = (0.3, 12.6)
+"""Numbers that are few degrees, and in radians a wrap that a pulley may have, up to two turns."""
+
+
+def _may_be_radians(typed: str) -> bool:
+    """Whether an angle, or both ends of a range, has no unit and the size of radians."""
+    ends = [NUMBER.fullmatch(without_blanks(word)) for word in typed.split(":")[:2]]
+    least, most = LIKE_RADIANS
+    return (
+        all(end and not end[4] for end in ends) and least < max(float(end[0]) for end in ends if end) < most
+    )
 
 
 def numbers() -> Mapping[str, str]:
@@ -131,7 +147,7 @@ Columns = Annotated[
         "--only",
         metavar="NAME",
         words=quantities,
-        help="A column for this quantity, not for the usual seven; repeatable.",
+        help="A column for this quantity, by name or symbol, not for the usual seven; repeatable, or a,b.",
     ),
 ]
 FigureFile = Annotated[
@@ -189,11 +205,30 @@ def check_extras(plot: str | bool | None, figure: str | None, force: bool) -> No
         check_file(figure, force)
 
 
-def check_names(option: str, names: Sequence[str], known: Sequence[str] = NAMES) -> None:
-    """Raises SceneError where a name is that of no quantity."""
-    for name in names:
-        if name not in known:
-            raise SceneError(option, name, f"is no quantity{near_or_all(name, known)}")
+def read_names(option: str, typed: Iterable[str], known: Sequence[str] = NAMES) -> list[str]:
+    """The quantities named, several in a word with commas between, by name or symbol. Raises SceneError."""
+    return [read_name(option, word, known) for word in divided(typed)]
+
+
+def read_name(option: str, word: str, known: Sequence[str] = NAMES) -> str:
+    """The quantity of that name or symbol. Raises SceneError."""
+    if word in known:
+        return word
+    for name in known:
+        if name in QUANTITIES and word in _symbols(name):
+            return name
+    raise SceneError(option, word, f"is no quantity{near_or_all(word, known)}")
+
+
+def _symbols(name: str) -> tuple[str, str]:
+    """A quantity's symbol as tables show it, and where those are not Unicode."""
+    symbol = QUANTITIES[name].symbol
+    return symbol, symbol.translate(ASCII)
+
+
+def divided(typed: Iterable[str]) -> list[str]:
+    """The words of a repeatable option, of which one may hold several with commas between."""
+    return [word.strip() for words in typed for word in words.split(",")]
 
 
 def near_or_all(word: str, known: Iterable[str]) -> str:

@@ -21,10 +21,10 @@ from .options import (
     Digits,
     Rule,
     check,
-    check_names,
     flag,
     option,
     quantities,
+    read_names,
     scene_option,
     takes_scene,
 )
@@ -45,7 +45,12 @@ Drop = Annotated[str | None, scene_option("drop", "Measured")]
 Time = Annotated[str | None, scene_option("time", "Measured")]
 Only = Annotated[
     list[str] | None,
-    option("Output", metavar="NAME", words=_answers, help="Print only this quantity; repeatable."),
+    option(
+        "Output",
+        metavar="NAME",
+        words=_answers,
+        help="Print only this quantity, by name or symbol; repeatable, or a,b.",
+    ),
 ]
 Budget = Annotated[
     bool,
@@ -112,9 +117,9 @@ def solve(
     explain: Explain = False,
     markdown: Markdown = False,
 ) -> int:
-    options, names = dict(locals()), only or []
+    options = dict(locals())
     check([ONE_FORM], options)
-    check_names("only", names, known=(*NAMES, *MEASURED_NAMES))
+    names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
     check(RULES, options)
     answers = read_answers({**given, "a": a, "drop": drop, "time": time}, read_digits(digits))
     bare = bool(names) and not (json or csv)
@@ -160,10 +165,9 @@ def _line(answers: Answers, names: Sequence[str]) -> dict[str, object]:
 
 
 def print_only(answers: Answers, only: Sequence[str]) -> None:
-    """Bare values, one a line, nothing for one that does not exist."""
-    for name in only:
-        if shown := cell(answers[name]):
-            print(shown)
+    """Bare values, one a line, an empty one for what does not exist; nothing if none does."""
+    if any(values := [cell(answers[name]) for name in only]):
+        print(*values, sep="\n")
 
 
 UNCERTAIN_DIGITS = 6

@@ -27,9 +27,10 @@ from .options import (
     Rule,
     check,
     check_extras,
-    check_names,
     numbers,
     option,
+    read_name,
+    read_names,
     takes_scene,
 )
 from .page import Page, aligned, watched
@@ -100,23 +101,24 @@ def sweep(
     options = dict(locals())
     check([ONE_FORM, FILE_TO_REPLACE], options)
     json, csv = _form_for(output, json, csv)
-    names = list(dict.fromkeys(only or STANDARD))
-    check_names("only", names)
+    names = list(dict.fromkeys(read_names("only", only or STANDARD)))
     swept, precision = read_sweep(given), read_digits(digits)
-    drawn = {"plot": plot, "figure": figure[1]} if figure else {"plot": plot}
+    asked = {"plot": plot, "figure": figure and figure[1]}
+    drawn = {where: read_name(where, word) for where, word in asked.items() if word is not None}
     for where, name in drawn.items():
-        if name is not None:
-            check_names(where, [name])
-            check_drawable(swept, where, name)
+        check_drawable(swept, where, name)
+    plot = drawn.get("plot")
     check(RULES, {**options, "json": json, "csv": csv})
     check_extras(plot, figure and figure[0], force)
     if plot is not None:
         names = [plot]
-    wanted = list(dict.fromkeys([*names, *filter(None, drawn.values())]))
+    wanted = list(dict.fromkeys([*names, *drawn.values()]))
     with stdout_into(output, force):
         rows = list(watched(solve_rows(swept, wanted, precision), swept.total))
         if figure is not None:
-            _save(swept, rows, figure, force)
+            from .figure import save_sweep
+
+            save_sweep(picture(swept, rows, "figure", drawn["figure"]), _head(swept), figure[0], force)
         aside = show(_forms(swept, rows, names, plot, _is_file(output)), json, csv)
     say(*aside)
     return DONE
@@ -135,13 +137,6 @@ def _form_for(output: str | None, json: bool, csv: bool) -> tuple[bool, bool]:
         rule = f"must end in one of {', '.join(filter(None, SUFFIXES))}, or name --json or --csv"
         raise SceneError("output", output, rule)
     return suffix == ".json", suffix == ".csv"
-
-
-def _save(sweep: Sweep, rows: Sequence[Row], figure: tuple[str, str], force: bool) -> None:
-    from .figure import save_sweep
-
-    file, name = figure
-    save_sweep(picture(sweep, rows, "figure", name), _head(sweep), file, force)
 
 
 def _forms(sweep: Sweep, rows: Sequence[Row], names: Sequence[str], plot: str | None, plain: bool) -> Forms:

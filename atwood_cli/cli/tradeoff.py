@@ -19,6 +19,7 @@ from .options import (
     Rule,
     check,
     check_extras,
+    divided,
     near_or_all,
     option,
     takes_scene,
@@ -101,12 +102,13 @@ def tradeoff(
     check([ONE_FORM, FIGURE_TO_REPLACE], options)
     scene = Scene.read(given) if any(value is not None for value in given.values()) else None
     check(RULES, {**options, "scene": scene})
-    for name in family or ():
+    chosen = divided(family or FAMILIES)
+    for name in chosen:
         if name not in FAMILIES:
             raise SceneError("family", name, f"is no family of scenes{near_or_all(name, FAMILIES)}")
     check(PLOT_IS_TEXT, options)
     check_extras(plot, figure, force)
-    families = list(dict.fromkeys(family or FAMILIES))
+    families = list(dict.fromkeys(chosen))
     count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
     start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
     outcome = measure(families, count, start, scene, watched)
