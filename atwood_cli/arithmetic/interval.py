@@ -83,11 +83,11 @@ class Enclosure:
     def __truediv__(self, other: Enclosure | int) -> Enclosure:
         """The quotient by what is positive, as every denominator of the equations is.
 
-        One that may be zero is too wide: Unsettled.
+        One that may be zero is too wide: Unsettled. One that is, is an error as everywhere.
         """
         other, at = self._lift(other), self.arithmetic
         if other.lo <= 0:
-            raise Unsettled
+            raise ZeroDivisionError if other.hi == 0 == other.lo else Unsettled
         lo = at.down.divide(self.lo, other.hi if self.lo >= 0 else other.lo)
         return Enclosure(at, lo, at.up.divide(self.hi, other.lo if self.hi >= 0 else other.hi))
 
@@ -130,11 +130,11 @@ class Enclosures:
 
     def sqrt(self, x: Enclosure) -> Enclosure:
         """Square root of x >= 0; `decimal` rounds it correctly, so one step outwards encloses it."""
-        lo = self._from_zero(x).lo
+        lo, hi = self._from_zero(x).lo, x.hi
         return Enclosure(
             self,
             self.down.next_minus(self.down.sqrt(lo)) if lo else ZERO,
-            self.up.next_plus(self.up.sqrt(x.hi)),
+            self.up.next_plus(self.up.sqrt(hi)) if hi else ZERO,
         )
 
     def hypot(self, x: Enclosure, y: Enclosure | int) -> Enclosure:
@@ -148,6 +148,8 @@ class Enclosures:
         doublings: 4 (w + n) units cover the error.
         """
         x = self._from_zero(x)
+        if self.is_zero(x):
+            return self.number(1), x
         n, d = x.lo.as_integer_ratio()
         bits = _bits(self.digits + max(0, -x.lo.adjusted()))
         w = bits + 2 * bits.bit_length() + (n // d).bit_length() + 8

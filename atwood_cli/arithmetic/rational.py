@@ -13,7 +13,7 @@ class Rationals:
     """Exact fractions; whatever would leave them raises `Irrational`."""
 
     def number(self, q: Fraction | int) -> Fraction:
-        return Fraction(q)
+        return Fraction(q) if isinstance(q, int) else q
 
     def is_zero(self, x: Fraction) -> bool:
         return x == 0

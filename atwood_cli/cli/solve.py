@@ -6,7 +6,7 @@ from functools import partial
 from itertools import chain, groupby
 from typing import TYPE_CHECKING, Annotated
 
-from ..arithmetic.rounding import with_uncertainty
+from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from ..model.scene import read_digits
 from ..solver.answers import Answers
@@ -148,10 +148,7 @@ def _record(answers: Answers, only: Sequence[str], budget: bool) -> dict[str, ob
     if answers.uncertainties:
         results["uncertainty"] = answers.standard_uncertainties(names)
     if budget:
-        results["budget"] = {
-            name: {x: answers.round(100 * share) for x, share in spread.shares.items()} or None
-            for name, spread in answers.spreads(names).items()
-        }
+        results["budget"] = {name: answers.budget(name) or None for name in names if name != "regime"}
     if only:
         return results
     scene = scene_record(answers.case.scene, answers.case.motion)
@@ -202,7 +199,7 @@ def _in_sentences(answers: Answers) -> Answers:
         return answers
     case = answers.case
     shorter = Answers(case.scene, UNCERTAIN_DIGITS, case.motion, answers.uncertainties)
-    _ = [shorter[name] for name in shorter.names]
+    _ = [_with_uncertainty(shorter, name) for name in shorter.names[1:]]
     return shorter
 
 
@@ -210,12 +207,7 @@ def _rows(answers: Answers) -> list[list[list[str]]]:
     """The cells of the table, a row for each quantity that exists, by group."""
     from .page import aligned
 
-    spreads = answers.spreads(answers.names)
-    values = {}
-    for name in answers.names[1:]:
-        if shown := cell(answers[name]):
-            u = spreads[name].u if spreads else None
-            values[name] = with_uncertainty(partial(answers.cut, name), u) if u else shown
+    values = {name: shown for name in answers.names[1:] if (shown := _with_uncertainty(answers, name))}
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
         about = QUANTITIES[name]
@@ -227,15 +219,21 @@ def _rows(answers: Answers) -> list[list[list[str]]]:
     return list(groups.values())
 
 
+def _with_uncertainty(answers: Answers, name: str) -> str:
+    """A value, and its uncertainty if it has one; empty if it does not exist."""
+    shown = cell(answers[name])
+    u = answers.uncertainty(name, to_digits(2)) if shown else None
+    return with_uncertainty(partial(answers.cut, name), u) if u else shown
+
+
 def _print_budget(page: "Page", answers: Answers) -> None:
     """By quantity, each uncertain input's share of the variance."""
     from .page import aligned
 
     page.say("Each input's share of the variance, in percent:")
-    spreads = answers.spreads(answers.names).items()
-    shares = {name: spread.shares for name, spread in spreads if spread.shares}
+    shares = {name: one for name in answers.names[1:] if (one := answers.budget(name, to_place(-1)))}
     inputs = list(answers.uncertainties.given) if answers.uncertainties else []
-    columns = [aligned(f"{100 * one[x]:.1f}" for one in shares.values()) for x in inputs]
+    columns = [aligned(str(one[x]) for one in shares.values()) for x in inputs]
     rows = ([name, *cells] for name, *cells in zip(shares, *columns, strict=True))
     by_group = groupby(rows, lambda row: QUANTITIES[row[0]].group)
     page.table(["Quantity", *inputs], [list(group) for _, group in by_group])

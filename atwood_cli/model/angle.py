@@ -32,10 +32,6 @@ class Angle:
     def __repr__(self) -> str:
         return f"Angle({self.number!r}, {self.unit!r})"
 
-    def __add__(self, more: Any) -> Angle:
-        """The angle plus a number in its own unit."""
-        return Angle(self.number + more, self.unit)
-
     def radians(self, ar: Arithmetic[N]) -> N:
         """The angle in radians."""
         if self.unit == "rad":

@@ -19,7 +19,7 @@ Excess = Literal["excess_ratio", "locked_excess", "heaviest_excess"]
 
 def is_zero(value: object) -> bool:
     """Whether an input is exactly 0. Columns are not: rows with a zero are solved apart."""
-    return isinstance(value, Fraction) and not value
+    return hasattr(value, "numerator") and not value
 
 
 class Case:
@@ -61,7 +61,7 @@ class Case:
         """The pulley's inertia as a mass at the rim, c = βM; none where it is locked or not known."""
         scene, mass = self.scene, self.pulley_mass
         if scene.I is not None and scene.R is not None:
-            return scene.I / scene.R**2
+            return scene.I / (scene.R * scene.R)
         if mass is None or scene.inertia is None:
             return mass
         return scene.inertia * mass

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from decimal import Decimal
 from fractions import Fraction
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.interval import LARGEST_EXPONENT
 from ..arithmetic.rational import EXACT, Irrational
@@ -26,6 +26,7 @@ from ..model.scene import UNMEASURED, Motion, Scene
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, N, Quantity
+    from .uncertainty import Uncertainties
 
 DOUBLE_DIGITS = 17
 
@@ -36,49 +37,10 @@ BELOW_DOUBLES = "not 0 but below the range of doubles; ask for digits (--digits 
 OnMachine = Callable[[Machine[Any]], Any]
 
 
-class Spread(NamedTuple):
-    """A quantity's standard uncertainty, and by input the share of its square.
-
-    ``u`` is None where there is none, for the ``reason``, which is empty if the quantity has no value.
-    """
-
-    u: Decimal | None
-    shares: Mapping[str, Decimal] = {}
-    reason: str = ""
-
-
-class Uncertainties:
-    """Standard uncertainties: of the inputs, ``given`` in SI units, and of quantities when asked for.
-
-    ``doubts`` makes the sentences on what may be otherwise within those of the inputs.
-    """
-
-    def __init__(
-        self,
-        given: Mapping[str, Fraction],
-        spread: Callable[[str], Spread],
-        doubts: Callable[[], list[str]],
-    ) -> None:
-        self.given = given
-        self.doubts = doubts
-        self._spread = spread
-        self._spreads: dict[str, Spread] = {}
-
-    def __getitem__(self, name: str) -> Spread:
-        """The spread of a quantity by its name."""
-        if name not in self._spreads:
-            self._spreads[name] = self._spread(name)
-        return self._spreads[name]
-
-    @property
-    def reasons(self) -> dict[str, str]:
-        """Why quantities asked for so far have a value but no uncertainty."""
-        return {name: spread.reason for name, spread in self._spreads.items() if spread.reason}
-
-
 class Answers:
     """The quantities of a scene, settled when asked for: to doubles or to ``digits`` digits.
 
+    ``reasons`` says why one asked for has no value, ``unsure`` why one has no uncertainty, by its name.
     ``uncertainties`` is None where all inputs are exact.
     """
 
@@ -96,6 +58,7 @@ class Answers:
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._values: dict[str, Any] = {"regime": self.case.regime}
         self.reasons: dict[str, str] = {}
+        self.unsure: dict[str, str] = {}
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -118,18 +81,38 @@ class Answers:
                 self.reasons[name] = str(reason)
         return self._values[name]
 
-    def spreads(self, names: Iterable[str]) -> dict[str, Spread]:
-        """The spreads of those named that are numbers; empty where all inputs are exact."""
-        known = self.uncertainties
-        return {} if known is None else {name: known[name] for name in names if name != "regime"}
+    def uncertainty(self, name: str, round_: Rounding[Any] | None = None) -> Any:
+        """The standard uncertainty of a quantity, None where ``unsure`` says why there is none.
+
+        It says nothing of what has no value either.
+        """
+        value, known, quantity = self[name], self.uncertainties, attrgetter(name)
+        if known is None or value is None:
+            return None
+        if is_infinite(value) and is_infinite(self._settle(quantity, to_digits(1))):
+            return None
+        try:
+            return settle(known.of(quantity), round_ or self.round, self.digits or DOUBLE_DIGITS)
+        except Undetermined as reason:
+            self.unsure[name] = str(reason)
+        return None
 
     def standard_uncertainties(self, names: Iterable[str]) -> dict[str, Any]:
-        """Standard uncertainties by name, rounded as values are, None where there is none to first order.
+        """Those of the quantities named that are numbers; empty where all inputs are exact."""
+        if self.uncertainties is None:
+            return {}
+        return {name: self.uncertainty(name) for name in names if name != "regime"}
 
-        Empty where all inputs are exact.
-        """
-        spreads = self.spreads(names)
-        return {name: None if spread.u is None else self.round(spread.u) for name, spread in spreads.items()}
+    def budget(self, name: str, round_: Rounding[Any] | None = None) -> dict[str, Any]:
+        """By uncertain input, its share in the variance of a quantity, in percent; empty if that is 0."""
+        known, quantity, digits = self.uncertainties, attrgetter(name), self.digits or DOUBLE_DIGITS
+        if known is None or not self.uncertainty(name, to_digits(1)):
+            return {}
+        shares = {x: known.share(quantity, x) for x in known.given}
+        return {
+            x: settle(lambda ar, of=share: 100 * of(ar), round_ or self.round, digits)
+            for x, share in shares.items()
+        }
 
     def cut(self, name: str, place: int) -> Decimal:
         """The value of a quantity that exists, rounded to a multiple of 10^place."""

@@ -23,8 +23,8 @@ def reasons(answers: Answers) -> list[str]:
     uncertainties = answers.uncertainties
     if uncertainties is None:
         return missing
-    unknown = {(f"u_{name}", reason): 1 for name, reason in uncertainties.reasons.items()}
-    return [*missing, *uncertainties.doubts(), *reasons_at(unknown, 1)]
+    unsure = {(f"u_{name}", reason): 1 for name, reason in answers.unsure.items()}
+    return [*missing, *uncertainties.doubts(), *reasons_at(unsure, 1)]
 
 
 def reasons_at(counted: Mapping[tuple[str, str], int], points: int) -> list[str]:

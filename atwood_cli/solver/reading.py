@@ -18,7 +18,7 @@ def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answe
         scene = motions.completed(scene, motion)
     answers = Answers(scene, digits, motion)
     if uncertain := {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}:
-        from .uncertainty import propagate
+        from .uncertainty import Uncertainties
 
-        answers.uncertainties = propagate(answers.case, uncertain)
+        answers.uncertainties = Uncertainties(answers.case, uncertain)
     return answers
