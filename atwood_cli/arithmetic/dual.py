@@ -38,7 +38,7 @@ class Dual(Generic[N]):
 
     def __sub__(self, other: Dual[N] | Any) -> Dual[N]:
         other = _dual(other)
-        return Dual(self.value - other.value, _sum(self.slope, _times(-1, other.slope)))
+        return Dual(self.value - other.value, _difference(self.slope, other.slope))
 
     def __rsub__(self, other: Any) -> Dual[N]:
         return _dual(other) - self
@@ -53,8 +53,9 @@ class Dual(Generic[N]):
     def __truediv__(self, other: Dual[N] | Any) -> Dual[N]:
         other = _dual(other)
         quotient = self.value / other.value
-        slope = _sum(self.slope, _times(-1 * quotient, other.slope))
-        return Dual(quotient, None if slope is None else slope / other.value)
+        if self.slope is other.slope is None:
+            return Dual(quotient)
+        return Dual(quotient, _difference(self.slope, _times(quotient, other.slope)) / other.value)
 
     def __rtruediv__(self, other: Any) -> Dual[N]:
         return _dual(other) / self
@@ -99,6 +100,13 @@ def _sum(one: Any, other: Any) -> Any:
     if one is None or other is None:
         return other if one is None else one
     return one + other
+
+
+def _difference(one: Any, other: Any) -> Any:
+    """A difference of slopes."""
+    if one is None or other is None:
+        return _times(-1, other) if one is None else one
+    return one - other
 
 
 def _times(factor: Any, slope: Any) -> Any:
@@ -169,4 +177,4 @@ class Duals(Generic[N]):
         value = end.value if nowhere else self.base.root(lambda s: f(Dual(s)).value, end.value)
         alone = f(Dual(value)).slope
         along = f(Dual(value, self.base.number(1))).slope
-        return Dual(value, None if alone is None else -1 * alone / _sum(along, _times(-1, alone)))
+        return Dual(value, None if alone is None else -1 * alone / _difference(along, alone))

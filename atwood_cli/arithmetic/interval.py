@@ -30,6 +30,7 @@ from .rational import EXACT, Irrational
 LARGEST_EXPONENT = 10**8
 LARGEST_ARGUMENT = LARGEST_EXPONENT * 2_302_585_092 // 10**9  # of an exponential: times ln 10
 ZERO, ONE, TWO = Decimal(0), Decimal(1), Decimal(2)
+KEPT = 256  # values of a function: a quantity and its slopes ask for the same ones
 LOG10_E = Decimal("0.434294481903")  # rounded down, so that what remains is not negative
 
 
@@ -70,12 +71,16 @@ class Enclosure:
 
     def __mul__(self, other: Enclosure | int) -> Enclosure:
         other, at = self._lift(other), self.arithmetic
-        if self.lo >= 0 and other.lo >= 0:
-            lo, hi = at.down.multiply(self.lo, other.lo), at.up.multiply(self.hi, other.hi)
+        one, two = (other, self) if self.lo < 0 < self.hi else (self, other)
+        if one.lo >= 0:
+            lo = at.down.multiply(one.lo if two.lo >= 0 else one.hi, two.lo)
+            hi = at.up.multiply(one.hi if two.hi >= 0 else one.lo, two.hi)
+        elif one.hi <= 0:
+            lo = at.down.multiply(one.lo if two.hi >= 0 else one.hi, two.hi)
+            hi = at.up.multiply(one.hi if two.lo >= 0 else one.lo, two.lo)
         else:
-            pairs = [(a, b) for a in (self.lo, self.hi) for b in (other.lo, other.hi)]
-            lo = min(at.down.multiply(a, b) for a, b in pairs)
-            hi = max(at.up.multiply(a, b) for a, b in pairs)
+            lo = min(at.down.multiply(one.lo, two.hi), at.down.multiply(one.hi, two.lo))
+            hi = max(at.up.multiply(one.lo, two.lo), at.up.multiply(one.hi, two.hi))
         return Enclosure(at, lo, hi)
 
     __rmul__ = __mul__
@@ -142,24 +147,29 @@ class Enclosures:
         return self.sqrt(x * x + y * y)
 
     def cos_sin(self, x: Enclosure) -> tuple[Enclosure, Enclosure]:
-        """Cosine and sine of x >= 0.
+        """Cosine and sine of x >= 0."""
+        x = self._from_zero(x)
+        if self.is_zero(x):
+            return self.number(1), x
+        (cos, sin), slack = self._cos_sin(x.lo), self._width(x)
+        return cos + slack - slack, sin + slack - slack
+
+    @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
+    def _cos_sin(self, x: Decimal) -> tuple[Enclosure, Enclosure]:
+        """Cosine and sine of a number x >= 0.
 
         The series are summed for what n quarter turns leave, within ±π/4. As in `_expm1`, but without
         doublings: 4 (w + n) units cover the error.
         """
-        x = self._from_zero(x)
-        if self.is_zero(x):
-            return self.number(1), x
-        n, d = x.lo.as_integer_ratio()
-        bits = _bits(self.digits + max(0, -x.lo.adjusted()))
+        n, d = x.as_integer_ratio()
+        bits = _bits(self.digits + max(0, -x.adjusted()))
         w = bits + 2 * bits.bit_length() + (n // d).bit_length() + 8
         angle, quarter = (n << w) // d, _pi(w) >> 1
         turns = (angle + (quarter >> 1)) // quarter
         c, s = _cos_sin_series(angle - turns * quarter, w)
         c, s = ((c, s), (-s, c), (-c, -s), (s, -c))[turns % 4]
-        slack = self._width(x)
         error = 4 * (w + turns)
-        return self._fixed(c, error, w) + slack - slack, self._fixed(s, error, w) + slack - slack
+        return self._fixed(c, error, w), self._fixed(s, error, w)
 
     def cos_sin_of_degrees(self, x: Fraction) -> tuple[Enclosure, Enclosure]:
         """Cosine and sine of x >= 0, exact at multiples of 90°."""
@@ -226,6 +236,7 @@ class Enclosures:
             return Enclosure(self, at_lo.lo, self._expm1(x.hi).hi)
         return Enclosure(self, at_lo.lo, (at_lo + 2 * width * (at_lo + 1)).hi)
 
+    @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _expm1(self, x: Decimal, scale: Decimal | None = None) -> Enclosure:
         """e^x - 1 for a number x, to all the digits of itself, or of what is of that scale.
 
@@ -260,6 +271,7 @@ class Enclosures:
         at_lo = self._log1p(x.lo)
         return Enclosure(self, at_lo.lo, (at_lo + self._width(x)).hi)
 
+    @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _log1p(self, y: Decimal) -> Enclosure:
         """ln(1 + y) for a number y >= 0, from a guess y0, with no series.
 
