@@ -174,9 +174,9 @@ def _steepest(slopes: list[N]) -> N:
 
 
 def _size(x: Any, least: bool = False) -> Fraction | Decimal:
-    """How far from 0 a number may be; or is, at least."""
+    """How far from 0 a number may be; or is, at least. Residues are told from 0, and that is all."""
     if not isinstance(x, Enclosure):
-        return Fraction(abs(x))
+        return Fraction(abs(getattr(x, "residue", x)))
     if least and x.lo <= 0 <= x.hi:
         return ZERO
     return (min if least else max)(x.lo.copy_abs(), x.hi.copy_abs())
