@@ -5,6 +5,7 @@ Cells of CSV and NDJSON stay the text they were, the columns of Parquet keep the
 
 import csv
 import json
+import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 FORMATS = ("csv", "tsv", "ndjson", "parquet")
 SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
 SEPARATORS = {"csv": ",", "tsv": "\t"}
+PARTED_BY = {",": "commas", "\t": "tabs", ";": "semicolons"}
 PIECE_BYTES, PIECE_ROWS = 1 << 21, 1 << 16
 LONGEST_RECORD = 1 << 26
 """Bytes: a quotation mark that is never closed must not make one record of the whole file."""
@@ -32,41 +34,54 @@ class Unreadable(Exception):
     """What was given is no table; the message says why."""
 
 
+Inputs = Callable[[Sequence[str]], Sequence[str]]
+"""Which of some columns are inputs."""
+
+
 class Piece(NamedTuple):
     """Some rows of a table as a frame, the columns met so far, and how much of the input it is.
 
     ``size`` is in bytes, or in rows of Parquet. ``lines`` are rows of NDJSON as they came; the frame has then
-    only the columns asked for.
+    only the columns of inputs. ``short`` says of rows that lack cells how many they have, and ``separator``
+    what parts the cells of CSV.
     """
 
     columns: Sequence[str]
     frame: "pl.DataFrame"
     size: int
     lines: Sequence[str] = ()
+    short: Mapping[int, int] = {}
+    separator: str = ""
 
 
 def read_format(option: str, given: str | None, path: str) -> str:
-    """The format named, or that of the suffix; CSV for a stream. Raises SceneError."""
-    if given is not None and given not in FORMATS:
-        raise SceneError(option, given, f"is no format; there are {', '.join(FORMATS)}")
-    if given is not None or path == STREAM:
-        return given or "csv"
-    suffix = Path(path).suffix.lower()
-    if suffix not in SUFFIXES:
-        raise SceneError(option, None, f"is needed: {path!r} ends in none of {', '.join(SUFFIXES)}")
-    return SUFFIXES[suffix]
+    """The format named, or that of the suffix; CSV for a stream, a pipe or a device. Raises SceneError."""
+    if given is not None:
+        if given not in FORMATS:
+            raise SceneError(option, given, f"is no format; there are {', '.join(FORMATS)}")
+        return given
+    if suffix := SUFFIXES.get(Path(path).suffix.lower()):
+        return suffix
+    if path == STREAM or is_stream(path):
+        return "csv"
+    raise SceneError(option, None, f"is needed: {path!r} ends in none of {', '.join(SUFFIXES)}")
 
 
-def read(kind: str, file: IO[bytes], as_lines: Sequence[str] | None) -> Iterator[Piece]:
+def is_stream(path: str) -> bool:
+    """Whether the path is that of a pipe or a device, not of a file."""
+    return os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path))
+
+
+def read(kind: str, file: IO[bytes], inputs: Inputs, as_lines: bool) -> Iterator[Piece]:
     """The pieces of a table, at least one, which may have no rows. Raises Unreadable.
 
-    With ``as_lines`` NDJSON comes as lines, and a frame of the columns named there.
+    With ``as_lines`` NDJSON comes as lines, and a frame of the inputs.
     """
     if kind == "parquet":
         return _read_parquet(file)
     if kind == "ndjson":
-        return _read_ndjson(file, as_lines)
-    return _read_csv(file, SEPARATORS[kind])
+        return _read_ndjson(file, inputs if as_lines else None)
+    return _read_csv(file, SEPARATORS[kind], inputs)
 
 
 def _records(file: IO[bytes], quoted: bool) -> Iterator[bytes]:
@@ -107,11 +122,11 @@ def _first_end(text: bytes) -> int:
     return end
 
 
-def _read_csv(file: IO[bytes], separator: str) -> Iterator[Piece]:
+def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
     import polars as pl
 
     header: list[str] = []
-    names, done = b"", 0
+    names, done, separator = b"", 0, usual
     for text in _records(file, quoted=True):
         rows = text
         if not header:
@@ -121,8 +136,12 @@ def _read_csv(file: IO[bytes], separator: str) -> Iterator[Piece]:
                 raise Unreadable("the header ends within quotation marks: one is left open")
             if b"\r" in rows[:end].rstrip(b"\r\n"):
                 raise Unreadable("its lines end in carriage returns alone; save it with line feeds")
-            header = next(_cells(_decode(rows[:end], lambda _: "the header"), separator))
-            _check_separator(header, separator)
+            line = _decode(rows[:end], lambda _: "the header")
+            headers = {mark: next(_cells(line, mark)) for mark in (usual, *PARTED_BY)}
+            separator = max(
+                headers, key=lambda mark: len(inputs(headers[mark]))
+            )  # the usual one, if it will do
+            header = headers[separator]
             # Stand-ins, as polars renames what is there twice and drops what is empty.
             names = separator.join(map(str, range(len(header)))).encode() + b"\n"
             rows = rows[end:]
@@ -133,24 +152,35 @@ def _read_csv(file: IO[bytes], separator: str) -> Iterator[Piece]:
         if not rows.endswith(b"\n") and rows:
             _check_last(rows, len(header), done + frame.height, separator)
         frame.columns = _distinct(header)
+        frame, short = _without_blank_lines(frame, rows, separator)
         done += frame.height
         for start in range(0, max(frame.height, 1), PIECE_ROWS):
-            yield Piece(header, frame.slice(start, PIECE_ROWS), 0 if start else len(text))
+            here = {row - start: cells for row, cells in short.items() if 0 <= row - start < PIECE_ROWS}
+            part, size = frame.slice(start, PIECE_ROWS), 0 if start else len(text)
+            yield Piece(header, part, size, short=here, separator=separator)
     if not header:
         raise Unreadable("it is empty")
 
 
-def _check_separator(header: Sequence[str], separator: str) -> None:
-    """Refuse a header of one column that holds several by another separator; no table has one column."""
-    if len(header) > 1:
-        return
-    for other, how in (
-        ("\t", "tabs; give --from tsv"),
-        (",", "commas; give --from csv"),
-        (";", "semicolons; save it with commas or tabs, and decimal points"),
+def _without_blank_lines(
+    frame: "pl.DataFrame", rows: bytes, separator: str
+) -> "tuple[pl.DataFrame, dict[int, int]]":
+    """The frame without the rows that polars makes of blank lines, and by row how many cells a short one has.
+
+    Either ends in an empty cell, so that most tables need no second look.
+    """
+    import polars as pl
+
+    mark = separator.encode()
+    if not frame[:, -1].null_count() or (
+        b'"' not in rows and rows.count(mark) == (frame.width - 1) * frame.height
     ):
-        if other in header[0] and other != separator:
-            raise Unreadable(f"its cells are parted by {how}")
+        return frame, {}
+    lines = re.sub(b'"[^"]*"', b'""', rows).split(b"\n")[: frame.height]
+    full = [bool(line.strip()) or mark in line for line in lines]
+    counts = [line.count(mark) + 1 for line, is_full in zip(lines, full, strict=True) if is_full]
+    short = {row: cells for row, cells in enumerate(counts) if cells < frame.width}
+    return frame if all(full) else frame.filter(pl.Series(full)), short
 
 
 def _distinct(names: list[str]) -> list[str]:
@@ -164,7 +194,7 @@ def _cells(text: str, separator: str) -> Iterator[list[str]]:
 
 def _count(text: bytes, separator: str) -> int:
     """How many rows the text begins."""
-    return sum(1 for _ in _cells(f"{text.decode(errors='replace')}.", separator))
+    return sum(1 for cells in _cells(f"{text.decode(errors='replace')}.", separator) if cells)
 
 
 def _decode(text: bytes, row: Callable[[int], str]) -> str:
@@ -189,7 +219,7 @@ def _refuse_csv(error: Exception, rows: bytes, width: int, done: int, separator:
         raise Unreadable(f'{row(len(before))} has a quotation mark out of place; write it "like ""this"""')
     if rows.count(b'"') % 2:
         raise Unreadable("it ends within quotation marks: it is truncated, or one is left open")
-    for number, cells in enumerate(_cells(text, separator), done + 1):
+    for number, cells in enumerate(filter(None, _cells(text, separator)), done + 1):
         if len(cells) > width:
             how = "; is there a decimal comma? write a point" if separator == "," else ""
             raise Unreadable(f"row {number} has {len(cells)} cells, and the header {width}{how}")
@@ -199,14 +229,14 @@ def _refuse_csv(error: Exception, rows: bytes, width: int, done: int, separator:
 def _check_last(rows: bytes, width: int, number: int, separator: str) -> None:
     """Refuse a last row that stops short: cut off, it could be read as another scene."""
     *_, cells = _cells(rows[_last_end(rows, quoted=True) :].decode(), separator)
-    if len(cells) < width:
+    if len(cells) < width and "".join(cells).strip():
         raise Unreadable(
             f"row {number}, the last, stops after {len(cells)} of {width} cells, without a line end:"
             " it is truncated"
         )
 
 
-def _read_ndjson(file: IO[bytes], as_lines: Sequence[str] | None) -> Iterator[Piece]:
+def _read_ndjson(file: IO[bytes], inputs: Inputs | None) -> Iterator[Piece]:
     import polars as pl
 
     columns: dict[str, None] = {}
@@ -218,17 +248,17 @@ def _read_ndjson(file: IO[bytes], as_lines: Sequence[str] | None) -> Iterator[Pi
         rows = [_object(line, number) for number, line in enumerate(lines, done + 1)]
         for number, object_ in enumerate(rows, done + 1):
             if not object_.keys() <= columns.keys():
-                if done and as_lines is None:
+                if done and inputs is None:
                     new = next(name for name in object_ if name not in columns)
                     raise Unreadable(
                         f"row {number} has {new!r}, for which there is no column by now; give --to ndjson"
                     )
                 columns |= dict.fromkeys(object_)
-        wanted = columns if as_lines is None else [name for name in as_lines if name in columns]
+        wanted = list(columns) if inputs is None else inputs(list(columns))
         cells = {name: list(map(partial(_cell, name), rows, lines)) for name in wanted}
         frame = pl.DataFrame(cells, schema=dict.fromkeys(wanted, pl.String))
         done += len(rows)
-        yield Piece(list(columns), frame, len(text), [] if as_lines is None else lines)
+        yield Piece(list(columns), frame, len(text), [] if inputs is None else lines)
     if not done:
         raise Unreadable("it is empty")
 

@@ -9,18 +9,19 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
 from inspect import signature
-from math import inf, nan
+from math import isfinite, nan
 from pathlib import Path
 from tempfile import NamedTemporaryFile
 from typing import IO, TYPE_CHECKING, Any
 
 from ..arrays import solve_arrays
-from ..arrays.rows import COLUMNS, Accuracy
+from ..arrays.rows import Accuracy
 from ..files import STREAM, written_beside
 from ..model.quantities import REGIMES
-from ..model.scene import PARAMETERS, Given, Scene, SceneError, read_plain, read_value
+from ..model.scene import Given, Scene, SceneError
 from ..model.units import NUMBER
-from .formats import Piece, Unreadable, read, write
+from .formats import SEPARATORS, Piece, Unreadable, is_stream, read, write
+from .layout import Layout, inputs_among, read_layout
 
 if TYPE_CHECKING:
     import polars as pl
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 Watch = Callable[[Iterator[Piece], int | None, Callable[[Piece], int]], Iterator[Piece]]
 """Hands on the pieces, of a table of that size if it is known, and may show how far they have come."""
 
-REQUIRED = COLUMNS[:2]
 ERROR = "error"
 
 
@@ -70,6 +70,7 @@ class Job:
     names: Sequence[str]
     accuracy: Accuracy
     force: bool
+    labels: Sequence[str] = ()
 
 
 def run_batch(job: Job, watch: Watch) -> Tally:
@@ -96,16 +97,17 @@ def _open(job: Job, stack: ExitStack) -> IO[bytes]:
         if sys.stdin is None:
             raise OSError("cannot read stdin: it is closed")
         stream: IO[bytes] = sys.stdin.buffer
-        if job.source_format != "parquet":
-            return stream
-        spool = stack.enter_context(NamedTemporaryFile())  # noqa: SIM115
-        shutil.copyfileobj(stream, spool)
-        spool.flush()
-        return spool
-    try:
-        return stack.enter_context(open(job.source, "rb"))
-    except OSError as error:
-        raise OSError(f"cannot read {job.source}: {error.strerror}") from None
+    else:
+        try:
+            stream = stack.enter_context(open(job.source, "rb"))  # noqa: SIM115
+        except OSError as error:
+            raise OSError(f"cannot read {job.source}: {error.strerror}") from None
+    if job.source_format != "parquet" or not (job.source == STREAM or is_stream(job.source)):
+        return stream
+    spool = stack.enter_context(NamedTemporaryFile())  # noqa: SIM115
+    shutil.copyfileobj(stream, spool)
+    spool.flush()
+    return spool
 
 
 def _target(job: Job, stack: ExitStack) -> IO[bytes]:
@@ -124,16 +126,20 @@ def _target(job: Job, stack: ExitStack) -> IO[bytes]:
 def _solved(
     job: Job, source: IO[bytes], tally: Tally, watch: Watch
 ) -> "Iterator[tuple[Piece, pl.DataFrame]]":
-    pieces = read(job.source_format, source, COLUMNS if job.target_format == "ndjson" else None)
+    def inputs(columns: Sequence[str]) -> Sequence[str]:
+        return inputs_among(columns, job.labels)
+
+    pieces = read(job.source_format, source, inputs, as_lines=job.target_format == "ndjson")
     if job.target != STREAM or not sys.stdout.isatty():
         pieces = watch(pieces, _size(job, source), lambda piece: piece.size)
     known: Sequence[str] = ()
     for piece in pieces:
         if piece.columns != known:
             _check_columns(piece.columns, [*job.names, ERROR])
-            tally.remarks = _remarks(piece.columns)
+            layout = read_layout(piece, job.labels)
+            tally.remarks = layout.remarks(SEPARATORS.get(job.source_format, ""))
             known = piece.columns
-        yield piece, _solve(piece.frame, job, tally)
+        yield piece, _solve(piece, layout, job, tally)
 
 
 def _size(job: Job, source: IO[bytes]) -> int | None:
@@ -148,44 +154,31 @@ def _size(job: Job, source: IO[bytes]) -> int | None:
 
 
 def _check_columns(columns: Sequence[str], results: Sequence[str]) -> None:
-    """Refuse a table whose columns come twice, or would with the results, or lack a mass."""
+    """Refuse a table whose columns come twice, or would with the results."""
     for name, times in Counter(columns).items():
         if times > 1:
             raise Unreadable(f"column {name!r} is there {times} times")
         if name in results:
             how = "rename it" if name == ERROR else "rename it, or name other results by --only"
             raise Unreadable(f"column {name!r} would be there twice, as a result is named so; {how}")
-    for name in REQUIRED:
-        if name not in columns:
-            raise Unreadable(f"column {name} is missing; there are {_listed(columns)}")
 
 
-def _listed(names: Sequence[str], most: int = 12) -> str:
-    more = f" and {len(names) - most} more" if len(names) > most else ""
-    return f"{', '.join(map(repr, names[:most]))}{more}"
-
-
-def _remarks(columns: Sequence[str]) -> list[str]:
-    """Remarks on columns that are passed on, though they may have been meant as inputs."""
-    meant = {name.lower(): name for name in COLUMNS}
-    remarks = [f"column {'I'!r} is not used; give inertia, I/(M R^2)"] if "I" in columns else []
-    for column in columns:
-        name = meant.get(column.strip().partition(" ")[0].lower().replace("-", "_"))
-        if name and column not in COLUMNS and name not in columns:
-            remarks.append(f"column {column!r} is not used; did you mean {name}?")
-    return remarks
-
-
-def _solve(frame: "pl.DataFrame", job: Job, tally: Tally) -> "pl.DataFrame":
+def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "pl.DataFrame":
     """The columns to append: the results, empty in rows that failed, and the error of those."""
     import polars as pl
 
-    scenes, errors = _scenes(frame)
+    frame = piece.frame
+    scenes, errors = _scenes(frame, layout)
+    width = len(piece.columns)
+    errors |= {
+        row: f"the row has {cells} cells, and the header {width}" for row, cells in piece.short.items()
+    }
     wanted = list(dict.fromkeys(["regime", *job.names]))
     results = solve_arrays(**scenes, accuracy=job.accuracy, quantities=wanted)
     for row in results["status"].nonzero()[0].tolist():
         if row not in errors:
-            errors[row] = _why(frame.select(list(scenes)).row(row, named=True))
+            cells = {name: frame[heading.column][row] for name, heading in layout.headings.items()}
+            errors[row] = _why(cells, layout)
     failed = sorted(errors)
     texts = [errors.get(row) for row in range(frame.height)] if errors else []
     columns = {
@@ -226,37 +219,42 @@ def _finite(values: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
     return pl.Series(np.where(exists, values, nan), nan_to_null=True)
 
 
-def _scenes(frame: "pl.DataFrame") -> tuple[dict[str, Any], dict[int, str]]:
-    """The inputs as doubles by column, and by row the error of the first cell that is no double."""
+def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict[int, str]]:
+    """The inputs as doubles by name, and by row the error of the first cell that is no double."""
     import polars as pl
 
-    inputs = [name for name in COLUMNS if name in frame.columns]
-    for name in inputs:
-        if not (frame[name].dtype.is_numeric() or frame[name].dtype in (pl.String, pl.Null)):
-            raise Unreadable(f"column {name} holds {frame[name].dtype}, not numbers")
-    doubles = frame.select(pl.col(inputs).cast(pl.Float64, strict=False))  # all at once: in parallel
+    for name, heading in layout.headings.items():
+        kind = frame[heading.column].dtype
+        if not (kind.is_numeric() or kind in (pl.String, pl.Null)):
+            raise Unreadable(f"column {name} holds {kind}, not numbers")
+    cells = frame.select(pl.col(heading.column).alias(name) for name, heading in layout.headings.items())
+    doubles = cells.select(
+        layout.as_doubles(name, cells[name].dtype) for name in cells.columns
+    )  # in parallel
     scenes: dict[str, Any] = {}
     errors: dict[int, str] = {}
-    for name in inputs:
-        scenes[name], odd = _column(frame[name], doubles[name])
+    for name in cells.columns:
+        scenes[name], odd = _column(cells[name], doubles[name], layout.as_doubles(name, cells[name].dtype))
         for row, cell in odd.items():
-            if error := _wrong(name, cell):
-                errors.setdefault(row, error)
+            try:
+                scenes[name][row] = layout.double(name, cell)
+            except SceneError as error:
+                errors.setdefault(row, str(error))
         default = signature(solve_arrays).parameters[name].default
         if isinstance(default, float):
             scenes[name][scenes[name] != scenes[name]] = default
     return scenes, errors
 
 
-def _column(cells: "pl.Series", doubles: "pl.Series") -> tuple[Any, dict[int, Any]]:
+def _column(cells: "pl.Series", doubles: "pl.Series", as_doubles: "pl.Expr") -> tuple[Any, dict[int, Any]]:
     """A column's cells as doubles, NaN where empty, and by row those cells that may be no doubles."""
     import numpy as np
     import polars as pl
 
     text = cells.dtype == pl.String
-    if doubles.null_count() > cells.null_count():
-        cells = cells.str.strip_chars(" ")
-        doubles = cells.cast(pl.Float64, strict=False)
+    if doubles.null_count() > cells.null_count() and text:
+        cells = cells.str.strip_chars()
+        doubles = cells.to_frame().select(as_doubles).to_series()
     array = doubles.to_numpy(writable=True)
     odd = ~np.isfinite(array)
     if odd.any():
@@ -267,25 +265,18 @@ def _column(cells: "pl.Series", doubles: "pl.Series") -> tuple[Any, dict[int, An
     return array, dict(zip(rows.tolist(), cells.gather(rows).to_list(), strict=True)) if len(rows) else {}
 
 
-def _wrong(name: str, cell: str | float) -> str:
-    """What is wrong with a cell that may be no double; nothing if it is empty, or locks the pulley."""
-    if cell in ("", "inf", inf) and (cell == "" or PARAMETERS[name].inf):
-        return ""
-    try:
-        read_plain(name, cell) if isinstance(cell, str) else read_value(name, cell)
-    except SceneError as error:
-        return str(error)
-    return str(SceneError(name, cell, "is beyond the range of doubles, 4.9e-324 to 1.8e308"))
-
-
-def _why(row: Mapping[str, Any]) -> str:
+def _why(row: Mapping[str, Any], layout: Layout) -> str:
     """What is wrong with a row, in the words of `solve`; cells as typed where they are numbers."""
     cells: dict[str, Given | None] = {}
     for name, cell in row.items():
-        text = cell.strip(" ") if isinstance(cell, str) else cell
+        unit = layout.headings[name].unit
+        text = layout.pointed(cell).strip() if isinstance(cell, str) else cell
         if text is None or text == "":
             continue
-        cells[name] = text if isinstance(text, str) and NUMBER.fullmatch(text) else float(text)
+        if unit and isfinite(float(text)):
+            cells[name] = f"{text}{unit}"
+        else:
+            cells[name] = text if isinstance(text, str) and NUMBER.fullmatch(text) else float(text)
     try:
         Scene.read(cells)
     except SceneError as error:

@@ -14,7 +14,7 @@ Table = Annotated[
     typer.Argument(
         metavar="IN",
         rich_help_panel="Files",
-        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl or .parquet; - for stdin.",
+        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl or .parquet; - for stdin; a pipe is read as CSV.",
         show_default=False,
     ),
 ]
@@ -45,6 +45,15 @@ Accuracy = Annotated[
         help="How accurate results are; certified, within 4 units in the last place, if not given.",
     ),
 ]
+Labels = Annotated[
+    list[str] | None,
+    option(
+        "Files",
+        "--label",
+        metavar="COLUMN",
+        help="Pass this column on as it is, though it may be meant for an input; repeatable.",
+    ),
+]
 AllowErrors = Annotated[bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")]
 
 
@@ -56,9 +65,11 @@ Examples:
   atwood batch scenes.csv --only regime --only acceleration | head
   generate | atwood batch - --from ndjson --to ndjson --allow-errors
 
-Columns m1, m2, M, mu, mu_k, g, inertia, R, wrap are the options of solve, in SI units; an empty cell
-is not given. Other columns stay as they are. A cell is read as the double nearest to it, as is g: so
-even exact can differ in the last digit from solve, which takes 0.1 for a tenth.
+Columns m1, m2, M, mu, mu_k, g, inertia, R, wrap are the options of solve, in SI units or in those
+of the heading, as m1 (g) or M [kg]; an empty cell is not given. Other columns stay as they are, but
+what could be meant for an input, like radius, is refused. Cells may be parted by semicolons or tabs,
+and have decimal commas then. A cell is read as the double nearest to it, as is g: so even exact can
+differ in the last digit from solve, which takes 0.1 for a tenth.
 """
 
 
@@ -68,6 +79,7 @@ def batch(
     output: OutTable = "-",
     from_: FromFormat = None,
     to: ToFormat = None,
+    label: Labels = None,
     only: Columns = None,
     accuracy: Accuracy = "certified",
     allow_errors: AllowErrors = False,
@@ -82,6 +94,7 @@ def batch(
     if accuracy not in ACCURACIES:
         raise SceneError("accuracy", accuracy, f"is no accuracy{near_or_all(accuracy, ACCURACIES)}")
     formats = read_format("from", from_, table), read_format("to", to, output)
-    tally = run_batch(Job(table, formats[0], output, formats[1], names, accuracy, force), watched)
+    job = Job(table, formats[0], output, formats[1], names, accuracy, force, label or ())
+    tally = run_batch(job, watched)
     say(*tally.lines())
     return COULD_NOT if tally.errors and not allow_errors else DONE

@@ -241,9 +241,9 @@ def read_value(name: str, given: Given | None) -> Any:
     return read_exactly(name, given).value
 
 
-def read_plain(name: str, given: str) -> None:
-    """Raise SceneError unless a cell of a table is a number without unit or name."""
-    _read_text(name, given, given, PARAMETERS[name]._replace(dimension=None, names={}))
+def read_plain(name: str, given: str, text: str) -> Fraction | float:
+    """The number that a cell of a table stands for, by a text without unit or name. Raises SceneError."""
+    return _read_text(name, given, text, PARAMETERS[name]._replace(dimension=None, names={}))[0]
 
 
 def read_whole(name: str, given: int | str, least: int, most: int) -> int:

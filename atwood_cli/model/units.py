@@ -155,6 +155,8 @@ def read_number(text: str, dimension: str | None) -> tuple[Fraction, str] | None
 
 def read_unit(unit: str, wanted: str) -> Fraction:
     """What a unit is in the SI, or in degrees. Raises Malformed if it is unknown or of another dimension."""
+    if not re.fullmatch(_UNIT, unit):
+        raise Malformed(f"has the unknown unit {unit!r}; there are {', '.join(DIMENSIONS[wanted])}")
     factor, powers = Fraction(1), [0, 0, 0, 0]
     for operator, word, power in _FACTOR.findall(unit.translate(_PLAIN)):
         symbol = symbol_of(word)

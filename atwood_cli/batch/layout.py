@@ -1,0 +1,211 @@
+"""How a table is to be read: what its columns and their units are, and whether commas are decimal.
+
+`m1`, `M [kg]` and `m1 (g)` are inputs; `pulley_mass` could be meant for one, and is refused with a hint.
+"""
+
+import re
+from collections.abc import Collection, Mapping, Sequence
+from fractions import Fraction
+from math import inf, isfinite, nan
+from typing import TYPE_CHECKING, NamedTuple
+from unicodedata import normalize
+
+from ..arithmetic.rounding import to_double
+from ..arrays.rows import COLUMNS
+from ..model.scene import MEASURED, PARAMETERS, SceneError, parameter_of, read_plain, read_value
+from ..model.units import Malformed, read_unit, symbol_of, without_blanks
+from .formats import PARTED_BY, Piece, Unreadable
+
+if TYPE_CHECKING:
+    import polars as pl
+
+REQUIRED = COLUMNS[:2]
+
+IN_BRACKETS = re.compile(r"(.*?)\s*(?:\((.*)\)|\[(.*)\])")
+NO_UNIT = ("", "-", "1")
+
+# fmt: off
+OTHER_NAMES = {
+    **{"m_1": "m1", "mass1": "m1", "mass_1": "m1", "m_2": "m2", "mass2": "m2", "mass_2": "m2"},
+    **dict.fromkeys(("m", "mp", "m_p", "m_pulley", "pulley", "pulley_mass", "mass_pulley"), "M"),
+    **dict.fromkeys(("mu_s", "mus", "mu_static", "friction", "static_friction"), "mu"),
+    **dict.fromkeys(("friction_coefficient", "coefficient_of_friction"), "mu"),
+    **dict.fromkeys(("muk", "mu_kinetic", "kinetic_friction"), "mu_k"),
+    **{"gravity": "g", "beta": "inertia", "inertia_factor": "inertia", "moment_of_inertia": "I"},
+    **{"r": "R", "radius": "R", "pulley_radius": "R", "wrap_angle": "wrap", "angle": "wrap", "phi": "wrap"},
+}
+# fmt: on
+"""In small ASCII letters, what else people call the inputs."""
+GREEK = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
+
+
+class Heading(NamedTuple):
+    """The column of an input, and the unit of its cells, which is a factor in the SI (or in degrees)."""
+
+    column: str
+    unit: str = ""
+    factor: Fraction = Fraction(1)
+
+
+class Layout(NamedTuple):
+    """How a table is to be read: by input its column and unit, and whether its commas are decimal ones."""
+
+    headings: Mapping[str, Heading]
+    separator: str = ""
+    comma: bool = False
+
+    def remarks(self, usual: str) -> list[str]:
+        """What was understood, in a line, unless it is just the names of inputs and the usual separator."""
+        parts = [f"cells parted by {PARTED_BY[self.separator]}"] if self.separator != usual else []
+        parts += ["decimal commas"] if self.comma else []
+        for name, (column, unit, _) in self.headings.items():
+            if column != name:
+                parts.append(f"{column!r} as {name}{f' in {unit}' if unit else ''}")
+        return [f"read as: {', '.join(parts)}."] if parts else []
+
+    def pointed(self, cell: str) -> str:
+        """A cell with a decimal point."""
+        return cell.replace(",", ".") if self.comma else cell
+
+    def as_doubles(self, name: str, kind: "pl.DataType") -> "pl.Expr":
+        """A column's cells as the doubles nearest to them; null are those that must be asked of `double`."""
+        import polars as pl
+
+        cells, factor = pl.col(name), self.headings[name].factor
+        if kind == pl.String and self.comma:
+            pointed = cells.str.replace(",", ".", literal=True)
+            cells = pl.when(~cells.str.contains(".", literal=True)).then(pointed)
+        power = len(str(max(factor, 1 / factor))) - 1
+        if max(factor, 1 / factor) != 10**power:
+            return cells.cast(pl.Float64, strict=False) * pl.lit(None, pl.Float64)
+        if power and kind == pl.String:
+            cells = cells + f"e{power if factor > 1 else -power}"
+        doubles = cells.cast(pl.Float64, strict=False)
+        if power and kind != pl.String:  # a power of ten that is a double: rounded once
+            doubles = doubles * float(10**power) if factor > 1 else doubles / float(10**power)
+        return doubles
+
+    def double(self, name: str, cell: str | float) -> float:
+        """A cell as the double nearest to it in the SI, NaN if it is empty. Raises SceneError."""
+        if isinstance(cell, str):
+            if not cell.strip():
+                return nan
+            if self.comma and "." in cell:
+                raise SceneError(name, cell, "has a point in a table of decimal commas; write all alike")
+            exact = read_plain(name, cell, self.pointed(cell))
+        else:
+            read_value(name, cell)  # raises where it is NaN, or infinite and must not be
+            exact = Fraction(cell) if isfinite(cell) else inf
+        if exact == inf and PARAMETERS[name].inf:
+            return inf
+        value = to_double(Fraction(exact) * self.headings[name].factor)
+        if abs(value) == inf or (exact and not value):
+            raise SceneError(name, cell, "is beyond the range of doubles, 4.9e-324 to 1.8e308")
+        return value
+
+
+def read_layout(piece: Piece, labels: Collection[str] = ()) -> Layout:
+    """How to read a table, by its columns and first rows. Raises Unreadable.
+
+    A column that could be meant for an input and is none must be among the ``labels``.
+    """
+    headings = _headings(piece.columns, labels)
+    others = {column: _meant(column) for column in piece.columns if column not in (*labels, *COLUMNS)}
+    for column, name in others.items():
+        if name in COLUMNS and name not in headings:
+            raise _refused(column, f"could be meant for {name}; name it so, with a unit like 'm1 (g)'")
+    for name in REQUIRED:
+        if name not in headings:
+            raise Unreadable(f"column {name} is missing; there are {_listed(piece.columns)}")
+    for column, name in others.items():
+        if name == "I":
+            raise _refused(column, "is not taken here; give inertia, I/(M R^2)")
+        if name in MEASURED:
+            raise _refused(column, "tells of a motion, which only solve takes")
+    columns = [heading.column for heading in headings.values()]
+    return Layout(headings, piece.separator, _has_decimal_commas(piece, columns))
+
+
+def _has_decimal_commas(piece: Piece, columns: Sequence[str]) -> bool:
+    """Whether commas in cells are decimal: beside semicolons, and beside tabs unless all part thousands."""
+    import polars as pl
+
+    if piece.separator in ("", ","):
+        return False
+
+    part_thousands = pl.all().str.contains(r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$")
+    has_comma = pl.all().str.contains(",", literal=True)
+    decimal = has_comma if piece.separator == ";" else has_comma & ~part_thousands
+    return any(piece.frame.select(columns).select(decimal.any()).row(0))
+
+
+def inputs_among(columns: Sequence[str], labels: Collection[str] = ()) -> list[str]:
+    """The columns that are named as an input is, whatever their unit, and not to pass as labels."""
+    return [column for column in columns if column not in labels and _divided(column)[0] in COLUMNS]
+
+
+def _headings(columns: Sequence[str], labels: Collection[str]) -> dict[str, Heading]:
+    """The inputs among the columns, by name. Raises Unreadable."""
+    headings: dict[str, Heading] = {}
+    for column in inputs_among(columns, labels):
+        name, unit = _divided(column)
+        if name in headings:
+            raise Unreadable(f"columns {headings[name].column!r} and {column!r} are both {name}")
+        headings[name] = Heading(column, unit, _factor(name, unit, column))
+    return headings
+
+
+def _divided(column: str) -> tuple[str, str]:
+    """The name in a heading and the unit in brackets behind it, empty if there is none."""
+    word = without_blanks(column)
+    match = IN_BRACKETS.fullmatch(word)
+    name, *units = match.groups(default="") if match else (word,)
+    unit = "".join(units).strip()
+    return name, "" if unit in NO_UNIT else unit
+
+
+def _factor(name: str, unit: str, column: str) -> Fraction:
+    """What the unit of a column is in the SI, or in degrees. Raises Unreadable."""
+    if not unit:
+        return Fraction(1)
+    dimension = PARAMETERS[name].dimension
+    try:
+        if dimension is None:
+            raise Malformed(f"must hold plain numbers, without the {unit!r}")
+        if symbol_of(unit) == "rad":
+            raise Malformed("has angles in radians; give degrees or turns")
+        return read_unit(unit, dimension)
+    except Malformed as error:
+        raise _refused(column, str(error)) from None
+
+
+def _meant(column: str) -> str | None:
+    """The input that a heading could be meant for: in other letters, by another name, with a unit behind."""
+    name = _divided(column)[0]
+    if name == "I":  # i may count rows
+        return name
+    letters = normalize("NFKC", name).casefold().translate(GREEK)
+    words = [word for word in re.split("[^0-9a-z]+", letters) if word]
+    for key in ("_".join(words), "_".join(words[:-1])):
+        known = {one.lower(): one for one in (*reversed(COLUMNS), *MEASURED)}
+        meant = OTHER_NAMES.get(key) or known.get(key)
+        if meant and (key == "_".join(words) or _is_unit(words[-1], meant)):
+            return meant
+    return None
+
+
+def _is_unit(word: str, name: str) -> bool:
+    dimension = parameter_of(name).dimension
+    try:
+        return dimension is not None and bool(read_unit(word, dimension))
+    except Malformed:
+        return False
+
+
+def _refused(column: str, why: str) -> Unreadable:
+    return Unreadable(f"column {column!r} {why}; or let it pass by --label {column!r}")
+
+
+def _listed(names: Sequence[str], most: int = 12) -> str:
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return f"{', '.join(map(repr, names[:most]))}{more}"
