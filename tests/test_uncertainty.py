@@ -502,6 +502,19 @@ def test_half_a_turn_that_may_be_more() -> None:
         ),
         ({"m2": "1", "m1": "1.0(5)", "M": "10", "mu": "0.1"}, "mu - mu_verge = 0.10 ± 0.11 is within"),
         ({"mu": "0.30(1)", "m1": "1(1)e-40", "m2": "1"}, ""),
+        # What exists only if something can make the string slip: the first mass is 2.57 ± 0.13 away.
+        *(
+            (
+                {"m1": "1.00(5)", "m2": heavier, "M": "10", "mu": "0.3"},
+                f"Whether there is a critical_pulley_mass is in doubt: mu - mu_verge of a locked pulley = {margin}",
+            )
+            for heavier, margin in (("2.5", "0.008 ± 0.016 is"), ("2.6", "-0.004 ± 0.016 is"))
+        ),
+        (
+            {"m1": "1.00(1)", "M": "6.3(1)", "mu": "0.3"},
+            "Whether there is a critical_heavier_mass is in doubt: mu - mu_verge under a heavier mass beyond all"
+            " bounds = -0.0011 ± 0.0037 is",
+        ),
     ],
 )
 def test_what_is_in_doubt_is_said(given: dict[str, str], words: str) -> None:
@@ -516,6 +529,15 @@ def test_what_is_in_doubt_is_said(given: dict[str, str], words: str) -> None:
             " inputs as given."
         )
         for note in notes
+    )
+
+
+def test_existence_is_in_doubt_only_of_what_is_asked_for(atwood: Atwood) -> None:
+    given = ["solve", "--m1", "1.00(5)", "--m2", "2.6", "--M", "10", "--mu", "0.3"]
+    assert "in doubt" not in atwood(*given, "--only", "acceleration").err
+    ran = atwood(*given, "--only", "critical_pulley_mass")
+    assert ran.err.startswith(
+        "atwood: critical_pulley_mass = 500 ± 1900 kg\natwood: Whether there is a critical_pulley_mass is in doubt:"
     )
 
 
@@ -612,8 +634,9 @@ def test_csv_has_columns_after(atwood: Atwood) -> None:
 
 
 def test_only_gives_scripts_the_value_and_people_the_doubt(atwood: Atwood) -> None:
-    ran = atwood(*UNCERTAIN, "--only", "acceleration")
-    assert (ran.status, ran.out, ran.err) == (0, "2.1792555555555557\n", "")
+    ran = atwood(*UNCERTAIN, "--only", "acceleration", "--only", "mu_verge", "--only", "regime")
+    assert (ran.status, ran.out) == (0, "2.1792555555555557\n0.20582781927064067\nno-slip\n")
+    assert ran.err == "atwood: acceleration = 2.1793 ± 0.0089 m/s²\natwood: mu_verge = 0.20583 ± 0.00066\n"
     doubtful = atwood(*UNCERTAIN, "--mu", "0.21(1)", "--only", "regime")
     assert (doubtful.status, doubtful.out) == (0, "no-slip\n")
     assert doubtful.err.startswith("atwood: Whether the string slips is in doubt: mu - mu_verge = ")

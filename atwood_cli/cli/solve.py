@@ -127,17 +127,17 @@ def solve(
     if explain:
         print_explanation(answers, markdown)
         return DONE
-    say(*show(_forms(answers, names, budget), json, csv, bare=bool(names)))
+    say(*show(_forms(answers, names, budget, bare), json, csv, bare=bool(names)))
     return COULD_NOT if bare and not all(cell(answers[name]) for name in names) else DONE
 
 
-def _forms(answers: Answers, only: Sequence[str], budget: bool) -> Forms:
+def _forms(answers: Answers, only: Sequence[str], budget: bool, bare: bool) -> Forms:
     names = only or answers.names
     return Forms(
         json=lambda: _record(answers, only, budget),
         records=lambda: [_line(answers, names)],
         page=lambda: print_only(answers, only) if only else print_table(answers, budget=budget),
-        notes=lambda: reasons(answers),
+        notes=lambda: [*(_beside_bare(answers, names) if bare else ()), *reasons(answers)],
     )
 
 
@@ -165,6 +165,14 @@ def print_only(answers: Answers, only: Sequence[str]) -> None:
     """Bare values, one a line, an empty one for what does not exist; nothing if none does."""
     if any(values := [cell(answers[name]) for name in only]):
         print(*values, sep="\n")
+
+
+def _beside_bare(answers: Answers, only: Sequence[str]) -> list[str]:
+    """What bare values leave out: those that are uncertain, with their uncertainties."""
+    uncertain = [name for name in only if answers.standard_uncertainties([name]).get(name)]
+    return [
+        f"{name} = {_with_uncertainty(answers, name)} {QUANTITIES[name].unit}".rstrip() for name in uncertain
+    ]
 
 
 UNCERTAIN_DIGITS = 6

@@ -396,18 +396,22 @@ class Machine(Generic[N]):
             raise Undetermined(NOT_APPLICABLE)
         return physics.least_pulley_mass(transfer, self._given(self.case.beta, UNKNOWN_SHAPE))
 
+    def _check_found(self) -> None:
+        """Raise Undetermined unless the motion tells of the pulley."""
+        motion = self.case.motion
+        if motion.finds != "M" or motion.beyond:
+            raise Undetermined(motion.beyond or NEEDS_A)
+
     @property
     def pulley_mass(self) -> N:
         """Pulley mass that gives the measured acceleration (kg)."""
-        if self.case.motion.finds != "M":
-            raise Undetermined(NEEDS_A)
+        self._check_found()
         return self._given(self.case.pulley_mass, NEEDS_M)
 
     @property
     def moment_of_inertia(self) -> N:
         """Moment of inertia of the pulley that gives the measured acceleration (kg m²)."""
-        if self.case.motion.finds != "M":
-            raise Undetermined(NEEDS_A)
+        self._check_found()
         R = self._given(self.scene.R, NEEDS_R)
         return physics.moment_of_inertia(self._given(self.case.rim_mass, NEEDS_M), R)
 

@@ -7,12 +7,18 @@ and with friction at its limit, the pulley's mass has no part in the motion, so 
 from collections.abc import Mapping
 from fractions import Fraction
 from math import inf
+from typing import Any
 
-from ..arithmetic.rounding import text, to_double
+from ..arithmetic.dual import Dual
+from ..arithmetic.rounding import settle, text, to_digits, to_double
 from . import physics
+from .angle import Angle
 from .case import Case
 from .machine import Undetermined
 from .scene import MEASURED, Input, Motion, Scene, SceneError
+
+AGREES = 3
+"""Beyond how many standard uncertainties (99.7 % of a normal distribution) what cannot be is refused."""
 
 NO_PULLEY = "unknown, as inputs a little different fit no pulley"
 
@@ -30,7 +36,12 @@ def read(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     name = "a" if time is None else "time"
     motion = motion._replace(finds="M" if scene.M is None else "g")
     g_given = inputs["g"].given is not None
-    if rule := _contradiction(scene, g_given) or _impossible(Case(scene, motion), name):
+    rule = _contradiction(scene, g_given)
+    if not rule and (rule := _impossible(Case(scene, motion), name)):
+        uncertain = {x: one.uncertainty for x, one in inputs.items() if one.uncertainty}
+        if beyond := _beyond(scene, motion, uncertain):
+            return scene, motion._replace(beyond=beyond)
+    if rule:
         raise SceneError(name, inputs[name].given, rule)
     return scene, motion
 
@@ -52,11 +63,7 @@ def _contradiction(scene: Scene, g_given: bool) -> str:
 
 def _impossible(case: Case, name: str) -> str:
     """Why no pulley, or no gravity, gives the acceleration; empty if one does."""
-    scene, motion = case.scene, case.motion
-    a = _signed(case)
-    most = physics.acceleration(
-        case.heavy - case.light, physics.load(case.light, case.heavy, Fraction(0)), scene.g
-    )
+    motion, a, most = case.motion, _signed(case), _most(case)
     downhill = case.sign * a > 0
     if downhill and (motion.finds == "g" or case.sign * a <= most):
         return ""
@@ -68,6 +75,44 @@ def _impossible(case: Case, name: str) -> str:
     return (
         f"{implied}must be between 0 (a locked pulley: M = inf) and {limit} m/s² (a massless one), {heavier}"
     )
+
+
+def _most(case: Case) -> Fraction:
+    """The magnitude of the acceleration on a massless pulley."""
+    l, h = case.light, case.heavy
+    return physics.acceleration(h - l, physics.load(l, h, Fraction(0)), case.scene.g)
+
+
+def _beyond(scene: Scene, motion: Motion, uncertain: Mapping[str, Fraction]) -> str:
+    """How far a measured acceleration is beyond what it can be, if that is little enough; else empty."""
+    case = Case(scene, motion)
+    over, variance = case.sign * _signed(case) - _most(case), Fraction(0)
+    if motion.finds != "M" or over <= 0:
+        return ""
+    for x, u in uncertain.items():
+        near = Case(*moved(scene, motion, x, 1))
+        slope = getattr(near.sign * _signed(near) - _most(near), "slope", None)
+        variance += (u * (slope or 0)) ** 2
+    if over**2 > AGREES**2 * variance:
+        return ""
+    times = settle(lambda ar: ar.sqrt(ar.number(over**2 / variance)), to_digits(2), 2)
+    a, most = (text(to_double(value)) for value in (_signed(case), case.sign * _most(case)))
+    return (
+        f"none, as a = {a} m/s² is beyond the {most} m/s² of a massless pulley; it agrees with M = 0, which"
+        f" the other results are for, within {text(times)} standard uncertainties"
+    )
+
+
+def moved(scene: Scene, motion: Motion, x: str, side: int) -> tuple[Scene, Motion]:
+    """The scene, and what was measured, with an input that is infinitesimally more, or less."""
+    of_scene = x in Scene._fields
+    value = getattr(scene if of_scene else motion, x)
+    beside: Any = Dual(value.number if isinstance(value, Angle) else value, Fraction(side))
+    if isinstance(value, Angle):
+        beside = Angle(beside, value.unit)
+    if of_scene:
+        return scene._replace(**{x: beside}), motion
+    return scene, motion._replace(**{x: beside})
 
 
 def _signed(case: Case) -> Fraction:
@@ -84,6 +129,8 @@ def completed(scene: Scene, motion: Motion) -> Scene:
     """The scene with what follows from the motion in it. Raises Undetermined."""
     if motion.finds is None:
         return scene
+    if motion.beyond:
+        return scene._replace(M=Fraction(0))
     case = Case(scene, motion)
     l, h, a = case.light, case.heavy, case.sign * _signed(case)
     if motion.finds == "g":

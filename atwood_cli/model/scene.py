@@ -194,13 +194,15 @@ class Scene(NamedTuple):
 class Motion(NamedTuple):
     """What was measured of the motion, in SI units, exact; None where not given.
 
-    ``finds`` is the parameter of the scene, "M" or "g", that follows from it and was not given.
+    ``finds`` is the parameter of the scene, "M" or "g", that follows from it and was not given. ``beyond``
+    says that no pulley is light enough, where the uncertainties leave room for one without mass.
     """
 
     a: Fraction | None = None
     drop: Fraction | None = None
     time: Fraction | None = None
     finds: str | None = None
+    beyond: str = ""
 
 
 UNMEASURED = Motion()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Container, Iterable
 from decimal import Decimal
 from fractions import Fraction
 from operator import attrgetter
@@ -66,6 +66,11 @@ class Answers:
         motion = self.case.motion
         drop = "drop" if motion.drop is not None else None
         return (*NAMES, *FROM_MOTION.get(motion.finds, ()), *FROM_MOTION.get(drop, ()))
+
+    @property
+    def asked(self) -> Container[str]:
+        """The quantities asked for so far."""
+        return self._values.keys()
 
     def __getitem__(self, name: str) -> Any:
         """The value of a quantity by its name, None where ``reasons`` says why there is none."""

@@ -24,7 +24,7 @@ def reasons(answers: Answers) -> list[str]:
     if uncertainties is None:
         return missing
     unsure = {(f"u_{name}", reason): 1 for name, reason in answers.unsure.items()}
-    return [*missing, *uncertainties.doubts(), *reasons_at(unsure, 1)]
+    return [*missing, *uncertainties.doubts(answers.asked), *reasons_at(unsure, 1)]
 
 
 def reasons_at(counted: Mapping[tuple[str, str], int], points: int) -> list[str]:

@@ -13,7 +13,7 @@ has a right side only, and what has no value to one side has no slope.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache, partial
@@ -25,10 +25,9 @@ from ..arithmetic.lazy import lazy
 from ..arithmetic.protocol import N
 from ..arithmetic.rounding import settle, to_digits, to_place, with_uncertainty
 from ..model import physics
-from ..model.angle import Angle
 from ..model.case import Case, Excess
 from ..model.machine import Machine, Undetermined
-from ..model.scene import Scene
+from ..model.motion import completed, moved
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, Quantity
@@ -110,8 +109,11 @@ class Uncertainties:
                 raise Undetermined(JUMP.format(x)) from None
             yield None if slope is None else side * slope
 
-    def doubts(self) -> list[str]:
-        """Sentences on what may be otherwise: which mass is heavier, whether the string slips, or can."""
+    def doubts(self, asked: Container[str]) -> list[str]:
+        """Sentences on what may be otherwise: which mass is heavier, whether the string slips.
+
+        And whether it can, where a quantity is asked for that exists only then.
+        """
         scene = self.case.scene
         masses = [self.given[x] for x in ("m1", "m2") if x in self.given]
         sentences = [
@@ -123,7 +125,7 @@ class Uncertainties:
                 " kg",
             )
         ]
-        for excess, what, where in self._ways_to_slip() if scene.mu is not None else ():
+        for excess, what, where in self._ways_to_slip(asked) if scene.mu is not None else ():
 
             def margin(machine: Machine[N], excess: Excess = excess) -> N:
                 """What friction there is above what is needed at that excess of the tension ratio."""
@@ -141,18 +143,18 @@ class Uncertainties:
             sentences.append(_doubt(what, f"mu - mu_verge{where}", value, u))
         return [sentence for sentence in sentences if sentence]
 
-    def _ways_to_slip(self) -> Iterator[tuple[Excess, str, str]]:
-        """By the excess of the tension ratio it depends on: what is asked, and where it slips."""
-        if self.case.pulley_known:
+    def _ways_to_slip(self, asked: Container[str]) -> Iterator[tuple[Excess, str, str]]:
+        """By the excess of the tension ratio it depends on: what is in question, and where it slips."""
+        case = self.case
+        locked, heaviest = " of a locked pulley", " under a heavier mass beyond all bounds"
+        if case.pulley_known:
             yield "excess_ratio", "Whether the string slips", ""
-        if not self.case.locked:
-            yield "locked_excess", "Whether any pulley can make the string slip", " of a locked pulley"
-        if self.case.rim_mass is not None:
-            yield (
-                "heaviest_excess",
-                "Whether any heavier mass can make the string slip",
-                " under a heavier mass beyond all bounds",
-            )
+        else:
+            yield "locked_excess", "Whether any pulley can make the string slip", locked
+        if case.pulley_known and not case.locked and "critical_pulley_mass" in asked:
+            yield "locked_excess", "Whether there is a critical_pulley_mass", locked
+        if case.rim_mass is not None and "critical_heavier_mass" in asked:
+            yield "heaviest_excess", "Whether there is a critical_heavier_mass", heaviest
 
 
 def _sum_of_squares(ar: Arithmetic[N], parts: Iterable[N]) -> N:
@@ -195,27 +197,15 @@ def _doubt(what: str, name: str, value: Quantity, u: Quantity, unit: str = "") -
 
 
 def beside(case: Case, x: str) -> list[tuple[int, Case]]:
-    """The cases of scenes in which an input is an infinitesimal more, and less where that may differ.
+    """The cases of scenes in which an input is infinitesimally more, and less where that may differ.
 
     Raises Undetermined where no pulley fits what was measured.
     """
     scene, motion = case.scene, case.motion
-    of_scene = x in Scene._fields
-    value = getattr(scene if of_scene else motion, x)
-    number = value.number if isinstance(value, Angle) else value
     bends = scene.m1 == scene.m2 or scene.M == 0 or x == "wrap"
+    ends = 0 in (getattr(scene, x, None), getattr(motion, x, None))
     cases = []
-    for side in (1, -1) if bends and number else (1,):
-        moved: Any = Dual(number, Fraction(side))
-        if isinstance(value, Angle):
-            moved = Angle(moved, value.unit)
-        if of_scene:
-            here, there = scene._replace(**{x: moved}), motion
-        else:
-            here, there = scene, motion._replace(**{x: moved})
-        if motion.finds is not None:
-            from ..model.motion import completed
-
-            here = completed(here, there)
-        cases.append((side, Case(here, there)))
+    for side in (1, -1) if bends and not ends else (1,):
+        near, measured = moved(scene, motion, x, side)
+        cases.append((side, Case(completed(near, measured), measured)))
     return cases
