@@ -6,7 +6,7 @@ import json
 import re
 import subprocess
 import sys
-from decimal import Decimal
+from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import pairwise
 from math import log2, pi
@@ -586,3 +586,23 @@ def test_figure_without_its_extra_names_the_pip_command() -> None:
     assert (
         done.stderr == f"atwood: this needs matplotlib; install it with: {PIP} install 'atwood-cli[figure]'\n"
     )
+
+
+@pytest.mark.parametrize(
+    "given",
+    [{"wrap": "4e-6"}, {"wrap": "1e-4"}, {"wrap": "120"}, {"wrap": "1e-9", "mu_k": "0.2"}, {"wrap": "1rad"}],
+)
+@pytest.mark.parametrize("count", [1, 2, 100])
+def test_errors_of_elements_are_right_to_their_last_digit(given: dict[str, str], count: int) -> None:
+    """They rested on 20 digits of the exact value, too few for errors below 1e-16."""
+    scene = Scene.read({"m1": "1", "m2": "3", "M": "100", "mu": "0.3", **given})
+    rows, precise = (
+        elements(Answers(scene), count).rows,
+        {row.name: row.exact for row in elements(Answers(scene, 80), count).rows},
+    )
+    assert rows
+    for row in rows:
+        exact = Fraction(precise[row.name])
+        with localcontext(prec=3):
+            off = (Fraction(row.value) - exact) / exact
+            assert row.error == Decimal(off.numerator) / Decimal(off.denominator), row.name

@@ -1,6 +1,7 @@
 """What is given decides the scene: every line and corner of the contract, through `solve`."""
 
 import inspect
+import re
 import subprocess
 import sys
 from decimal import Decimal
@@ -202,27 +203,113 @@ def test_inertia_factor_above_one_is_questioned(given: dict[str, Any]) -> None:
 @pytest.mark.parametrize(
     ("mu", "M", "met"),
     [
-        (
-            "0.3",
-            None,
-            "3 kg > 2.566332395208135 kg, met; pulley's mass > 6.2653295808325415 kg, met by the critical one",
-        ),
-        ("0.3", "5", "3 kg > 2.566332395208135 kg, met; pulley's mass 5 kg > 6.2653295808325415 kg, not met"),
-        (
-            "0.3",
-            "inf",
-            "3 kg > 2.566332395208135 kg, met; pulley's mass, infinite, > 6.2653295808325415 kg, met",
-        ),
-        (
-            "0.4",
-            "100",
-            "3 kg > 3.5135856242857337 kg, not met; pulley's mass 100 kg > 10.054342497142935 kg, met",
-        ),
+        ("0.3", None, "2.56633 kg (met); the pulley's mass must exceed 6.26532 kg (met by the critical one)"),
+        ("0.5", None, "4.81047 kg (not met); the pulley's mass must exceed 15.2419 kg (open without M)"),
+        ("0.3", "5", "2.56633 kg (met); the pulley's mass, 5 kg, must exceed 6.26532 kg (not met)"),
+        ("0.3", "inf", "2.56633 kg (met); the pulley's mass, infinite, must exceed 6.26532 kg (met)"),
+        ("0.4", "100", "3.51358 kg (not met); the pulley's mass, 100 kg, must exceed 10.0543 kg (met)"),
     ],
 )
 def test_both_necessary_conditions_are_reported(mu: str, M: str | None, met: str) -> None:
-    notes = solve(m1=1, m2=3, mu=mu, M=M).notes
-    assert f"Conditions (36) for the verge: heavier mass {met}." in notes
+    notes = solve(m1=1, m2=3, mu=mu, M=M, digits=6).notes
+    assert f"Conditions (36) for the verge: the heavier mass, 3 kg, must exceed {met}." in notes
+
+
+EXTREME = [
+    {"m2": "3"},
+    {"m2": "1.0001"},
+    {"m1": "1e-9"},
+    {"M": "1e-7"},
+    {"M": "1e9"},
+    {"M": "7.3", "g": "moon"},
+]
+
+
+@pytest.mark.parametrize("digits", [None, 1, 2, 5, 17])
+@pytest.mark.parametrize("given", EXTREME)
+def test_the_least_mu_that_a_sentence_names_holds(given: dict[str, Any], digits: int | None) -> None:
+    """With mu = 0.20582781927064067, which was said to be enough on a pulley of 10 kg, it slips."""
+    scene = {"m1": "1", "m2": "3", "M": "10", **given}
+    solution: Any = solve(**scene, digits=digits)
+    match = re.fullmatch("Assumed to hold, without mu: it does if mu is at least (.*).", solution.notes[0])
+    assert match
+    assert solve(**scene, mu=match[1]).regime == "no-slip"
+    last = Decimal(1).scaleb(Decimal(match[1]).as_tuple().exponent)  # type: ignore[arg-type]
+    assert digits is None or solve(**scene, mu=Decimal(match[1]) - last).regime == "slip"
+
+
+@pytest.mark.parametrize("digits", [None, 1, 2, 5, 17])
+@pytest.mark.parametrize("mu", ["0.3", "0.2", "1.3", "1e-9"])
+def test_thresholds_in_sentences_are_true_as_printed(mu: str, digits: int | None) -> None:
+    slips: Any = solve(m1=1, m2="1.5e9", M="1e12", mu=mu, digits=digits)
+    match = re.fullmatch(f"Slips: mu = {mu} is below the (.*) that would hold it.", slips.notes[0])
+    assert match
+    assert solve(m1=1, m2="1.5e9", M="1e12", mu=match[1]).regime == "no-slip"
+    holds: Any = solve(m1=1, m2="1.0001", M="1e-12", mu=mu, digits=digits)
+    match = re.fullmatch(f"Holds: mu = {mu}, and (.*) is enough.", holds.notes[0])
+    assert match
+    assert solve(m1=1, m2="1.0001", M="1e-12", mu=match[1]).regime == "no-slip"
+    least: Any = solve(m1=1, m2="1.000000001", mu=mu, digits=digits)
+    match = re.search("would have to exceed (.*) kg to slip", least.notes[0])
+    assert match
+    assert solve(m1=1, m2=match[1], M="inf", mu=mu).regime == "no-slip"
+
+
+def test_the_greatest_acceleration_that_an_error_names_is_taken() -> None:
+    for m1, m2 in (("1", "3"), ("3", "1"), ("1", "1.1"), ("7", "2.9"), ("0.1", "0.3")):
+        sign = 1 if Fraction(m2) > Fraction(m1) else -1
+        with pytest.raises(SceneError) as caught:
+            solve(m1=m1, m2=m2, a=sign * 9)
+        match = re.search("between 0 .* and (.*) m/s² \\(a massless one\\)", str(caught.value))
+        assert match
+        assert solve(m1=m1, m2=m2, a=match[1]).pulley_mass is not None  # type: ignore[attr-defined]
+
+
+def test_an_inertia_factor_just_above_one_is_not_shown_as_one() -> None:
+    notes = solve(m1=1, m2=3, M=2, inertia="1.0000000000000000001").notes
+    assert any("I/(M R^2) is 1.0000000000000002, above 1" in note for note in notes)
+
+
+def test_a_free_end_is_not_told_to_give_mu() -> None:
+    """It was, and mu is refused there."""
+    for scene in ({"m1": 0, "m2": 3}, {"m1": 3, "m2": 0, "M": 2}, {"m1": 0, "m2": 1, "M": "inf"}):
+        notes = " ".join(solve(**scene).notes)
+        assert "give mu" not in notes
+        assert "least_pulley_mass: not defined for a free end" in notes
+
+
+@pytest.mark.parametrize(
+    ("given", "verdict", "note"),
+    [
+        (
+            {"M": 50, "mu": "0.31", "mu_k": "0.1"},
+            "Holds from rest: mu = 0.31, and 0.305725 is enough.",
+            "A string that slides already goes on sliding, as mu_k = 0.1 is below 0.305724:"
+            " the masses then have the acceleration 3.66061 m/s².",
+        ),
+        (
+            {"M": 50, "mu": "0.31", "mu_k": "0.306"},
+            "Holds: mu = 0.31, and 0.305725 is enough.",
+            "mu_k = 0.306 is enough, too: a string that slides already is caught by the pulley.",
+        ),
+        (
+            {"mu": "0.5", "mu_k": "0.1"},
+            "Holds on any pulley: the heavier mass, 3 kg, would have to exceed 4.81047 kg to slip.",
+            "mu_k has no part in this, which starts from rest; what a sliding string does depends on M.",
+        ),
+        (
+            {"mu": "0.3", "mu_k": "0.1"},
+            "On the verge of slipping if the pulley has the critical mass, 43.3419 kg: on a heavier one the string slips.",
+            "mu_k has no part in this, which starts from rest; what a sliding string does depends on M.",
+        ),
+    ],
+)
+def test_what_mu_k_does_where_the_string_holds_is_said(
+    given: dict[str, Any], verdict: str, note: str
+) -> None:
+    notes = solve(m1=1, m2=3, digits=6, **given).notes
+    assert notes[0] == verdict
+    assert note in notes
 
 
 def test_critical_heavier_mass_is_where_the_regime_changes() -> None:
@@ -321,7 +408,7 @@ def test_a_verdict_on_a_number_of_millions_of_digits_makes_no_fraction_of_it() -
     s = solve(m1=1, m2="1.5", M=10, mu="2.6e7", wrap=60, digits=40)
     assert s.least_heavier_mass is not None
     assert s.least_heavier_mass.adjusted() == 11824595
-    assert "e11824595 kg, not met" in s.notes[1]
+    assert "e11824595 kg (not met)" in s.notes[1]
 
 
 def test_a_huge_wrap_in_radians_settles() -> None:

@@ -709,4 +709,4 @@ def test_sentences_beside_uncertainties_are_short(atwood: Atwood) -> None:
     assert ran.out.splitlines()[1] == "Assumed to hold, without mu: it does if mu is at least 0.205828."
     assert "torque, angular_acceleration: give R, the pulley's radius.\n" in ran.out
     exactly = atwood("solve", "--m1", "1.000(2)", "--m2", "3", "--M", "10", "--digits", "9")
-    assert exactly.out.splitlines()[1].endswith(" at least 0.205827819.")
+    assert exactly.out.splitlines()[1].endswith(" at least 0.205827820.")

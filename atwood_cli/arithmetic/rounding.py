@@ -18,10 +18,10 @@ A comparison, such as μφ against ln(T_h/T_l), is decided once the enclosure of
 from __future__ import annotations
 
 from collections.abc import Callable
-from decimal import ROUND_HALF_EVEN, Decimal, Inexact
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal, Inexact
 from fractions import Fraction
-from math import inf
-from typing import TYPE_CHECKING, TypeVar
+from math import inf, isfinite, nextafter
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from .interval import ZERO, Enclosure, Unsettled, decimal_context, enclosures
 from .rational import EXACT, Irrational
@@ -51,9 +51,9 @@ def is_infinite(value: float | Decimal) -> bool:
     return value in (inf, -inf)
 
 
-def to_digits(digits: int) -> Rounding[Decimal]:
+def to_digits(digits: int, rounding: str = ROUND_HALF_EVEN) -> Rounding[Decimal]:
     """Rounding to that many significant digits, half to even, trailing zeros kept, never -0."""
-    context = decimal_context(digits, ROUND_HALF_EVEN)
+    context = decimal_context(digits, rounding)
 
     def round_(x: Fraction | Decimal) -> Decimal:
         if isinstance(x, Fraction):
@@ -65,6 +65,20 @@ def to_digits(digits: int) -> Rounding[Decimal]:
         if not value.is_finite():
             return value
         return context.quantize(value, Decimal((0, (1,), value.adjusted() - digits + 1)))
+
+    return round_
+
+
+def to_side(digits: int | None, up: bool) -> Rounding[Any]:
+    """Rounding up or down, to that many digits or to the next double whose text is not beyond the value."""
+    if digits is not None:
+        return to_digits(digits, ROUND_CEILING if up else ROUND_FLOOR)
+
+    def round_(x: Fraction | Decimal) -> float:
+        value = to_double(x)
+        while isfinite(value) and (shown := type(x)(text(value))) != x and (shown < x) == up:
+            value = nextafter(value, inf if up else -inf)
+        return value
 
     return round_
 

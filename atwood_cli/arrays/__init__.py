@@ -51,8 +51,9 @@ def solve_arrays(
 
     Masses in kg, g in m/s², R in m, wrap in degrees; M = inf locks the pulley. NaN in M, mu, mu_k or R
     means not given for that row. ``accuracy`` is "fast" (doubles), "certified" (every value within 4
-    units in the last place of the exact one, every regime right), or "exact" (the nearest double, and so
-    the same everywhere; else the last place may differ between NumPy's builds, or by the rows beside).
+    units in the last place of the exact one, or 4.5 just below a power of two; every regime right), or
+    "exact" (the nearest double, and so the same everywhere; else the last place may differ between
+    NumPy's builds, or by the rows beside).
 
     Returns arrays by name, of the inputs' common shape: the ``quantities`` asked for (those of
     `quantities.STANDARD` if None), NaN where undetermined, ±inf beyond the doubles; ``regime`` is an

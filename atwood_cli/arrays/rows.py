@@ -12,11 +12,11 @@ What the accuracies promise, and why they keep it:
   doubles, and every regime is right. A row goes up a ladder until an arithmetic vouches for it: rounded,
   quick, and thorough pairs, and at the end the exact arithmetic of a single scene. What may cancel, the
   lowest rung takes from the one above. A pair vouches where its bound is at most 3.49 · 2^-53 of the
-  value: that is at most 3.49 ulp, and rounding high + low to a double costs half an ulp more. (Where a
-  power of two lies between the exact value and the double, an ulp is the larger one.) A question (does
-  it slip?) is answered by doubles where the two sides differ by a 2^-40 of them, far more than the few
-  roundings they take can amount to; else by the sign of a thorough difference, if its bound is below 1;
-  else by the exact comparison.
+  value: that is at most 3.49 ulp, and rounding high + low to a double costs half an ulp more. (Just below
+  a power of two half an ulp of the double may be a whole one of the exact value: there it is 4.49 ulp.)
+  A question (does it slip?) is answered by doubles where the two sides differ by a 2^-40 of them, far
+  more than the few roundings they take can amount to; else by the sign of a thorough difference, if its
+  bound is below 1; else by the exact comparison.
 - ``exact``: the double nearest to the exact value. A thorough pair vouches where rounding gives the
   same double at both ends of its bound (Ziv's test), or where it is exact.
 

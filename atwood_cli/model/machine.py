@@ -95,11 +95,16 @@ class Machine(Generic[N]):
             return self.ar.number(0)
         return self.ar.expm1(self.ar.number(mu) * self.phi)
 
+    @property
+    def _needs_mu(self) -> str:
+        """What is said where mu is not given: a free end takes none."""
+        return FREE_END if is_zero(self.case.light) else NEEDS_MU
+
     @lazy
     def k1(self) -> N:
         """Excess k - 1 of the capstan ratio of static friction."""
         if self.scene.mu is None:
-            raise Undetermined(NEEDS_MU)
+            raise Undetermined(self._needs_mu)
         return self._capstan_excess(self.scene.mu)
 
     @lazy
@@ -169,7 +174,7 @@ class Machine(Generic[N]):
     def alpha(self) -> N:
         """The arc (rad) that friction at its limit needs, where the string grips with some to spare."""
         if self.scene.mu is None:
-            raise Undetermined(NEEDS_MU)
+            raise Undetermined(self._needs_mu)
         log_ratio = self.mu_verge * self.phi
         return physics.limiting_arc(log_ratio, self.ar.number(self.scene.mu))
 
@@ -196,7 +201,7 @@ class Machine(Generic[N]):
 
     def arc_mu(self, kind: arc.Kind) -> N:
         """The coefficient that the friction of a profile is at, where it is at its limit."""
-        return self.friction_mu if kind == "exponential" else self._given(self.scene.mu, NEEDS_MU)
+        return self.friction_mu if kind == "exponential" else self._given(self.scene.mu, self._needs_mu)
 
     @property
     def reference_mu(self) -> N:
@@ -253,7 +258,7 @@ class Machine(Generic[N]):
         if self.case.tensions_equal:
             return False
         if self.scene.mu is None:
-            raise Undetermined(NEEDS_MU)
+            raise Undetermined(self._needs_mu)
         if self.case.long_wrap:
             raise Undetermined(LONG_WRAP)
         return True
@@ -362,7 +367,7 @@ class Machine(Generic[N]):
     def critical_pulley_mass(self) -> N:
         """Pulley mass above which the string slips (kg) (34)."""
         if self.scene.mu is None:
-            raise Undetermined(NEEDS_MU)
+            raise Undetermined(self._needs_mu)
         if not self.case.can_slip:
             raise Undetermined(NO_CRITICAL_MASS)
         transfer = self.transfer

@@ -10,7 +10,7 @@ from math import inf
 from typing import Any
 
 from ..arithmetic.dual import Dual
-from ..arithmetic.rounding import settle, text, to_digits, to_double
+from ..arithmetic.rounding import settle, text, to_digits, to_double, to_side
 from . import physics
 from .angle import Angle
 from .case import Case
@@ -71,7 +71,7 @@ def _impossible(case: Case, name: str) -> str:
     heavier = f"as {'m2' if case.sign > 0 else 'm1'} is the heavier mass"
     if motion.finds == "g":
         return f"{implied}must be {'above' if case.sign > 0 else 'below'} 0, {heavier}"
-    limit = text(to_double(case.sign * most))
+    limit = text(to_side(None, up=case.sign < 0)(case.sign * most))  # so that the limit itself is taken
     return (
         f"{implied}must be between 0 (a locked pulley: M = inf) and {limit} m/s² (a massless one), {heavier}"
     )

@@ -18,6 +18,7 @@ from ..arithmetic.rounding import (
     to_digits,
     to_double,
     to_place,
+    to_side,
 )
 from ..model.case import Case
 from ..model.machine import Machine, Undetermined
@@ -124,6 +125,10 @@ class Answers:
         value = self._settle(attrgetter(name), to_place(place))
         assert isinstance(value, Decimal)
         return value
+
+    def bound(self, name: str, up: bool) -> float | Decimal:
+        """The value of a quantity that exists, rounded up or down: for sentences, a threshold."""
+        return self._settle(attrgetter(name), to_side(self.digits, up))
 
     def settle(self, quantity: OnMachine) -> float | Decimal:
         """Anything that a machine has, correctly rounded. Raises Undetermined."""

@@ -9,16 +9,17 @@ takes. The error falls as N^-2, with Richardson's extrapolation as N^-4, until r
 from decimal import Decimal
 from fractions import Fraction
 from math import atan2, cos, floor, hypot, inf, isfinite, tan
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..arithmetic.rounding import to_digits
 from ..model import physics
+from ..model.machine import Machine
 from ..model.scene import SceneError, read_whole
 from .answers import Answers, OnMachine
 
 BLOCK = 1 << 16  # elements at a time: arrays of half a megabyte, which stay in the cache
 MAX_ELEMENTS = 10_000_000
-EXACT_DIGITS = 20
+ERROR_DIGITS = 3
 
 
 class Comparison(NamedTuple):
@@ -102,8 +103,7 @@ def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> E
     count = read_whole("elements", count, 1, MAX_ELEMENTS)
     if extrapolate and count % 2:
         raise SceneError("elements", count, "must be even, to extrapolate from half as many")
-    doubles, exact = Answers(answers.case.scene), Answers(answers.case.scene, EXACT_DIGITS)
-    machine = _Doubles(doubles, count)
+    machine, rough = _Doubles(Answers(answers.case.scene), count), Answers(answers.case.scene, ERROR_DIGITS)
     _check_count(machine.mu, machine.phi, count, extrapolate)
     values = machine.solve(count)
     if extrapolate:
@@ -114,14 +114,27 @@ def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> E
         if not isfinite(value):
             notes.append(NO_MASS)
             continue
-        right, shown = Fraction(exact.settle(EXACT[name])), Fraction(value)
-        if right and not shown:
+        shown, exact = Fraction(value), EXACT[name]
+        if not shown and rough.settle(exact):
             raise SceneError("elements", count, TOO_SMALL)
-        error = to_digits(3)((shown - right) / right if right else shown)
-        rows.append(Comparison(name, answers.round(shown), answers.settle(EXACT[name]), error))
+        rows.append(
+            Comparison(name, answers.round(shown), answers.settle(exact), _error(rough, exact, shown))
+        )
     if "friction_force" not in values:
         notes.append(NOT_LIMITING)
     return Elements(rows, notes)
+
+
+def _error(rough: Answers, exact: OnMachine, shown: Fraction) -> Decimal:
+    """The relative error of a value, correctly rounded: that of the error, not of two rounded numbers."""
+    if not rough.settle(exact):
+        return to_digits(ERROR_DIGITS)(shown)
+
+    def error(machine: Machine[Any]) -> Any:
+        right = exact(machine)
+        return (machine.ar.number(shown) - right) / right
+
+    return Decimal(rough.settle(error))
 
 
 EXACT: dict[str, OnMachine] = {

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import inf
 
 from ..arithmetic.interval import LARGEST_EXPONENT
-from ..arithmetic.rounding import as_typed, is_infinite, text, to_double
+from ..arithmetic.rounding import as_typed, is_infinite, text, to_double, to_side
 from ..model.units import MAX_DIGITS, MAX_MAGNITUDE
 from .answers import DOUBLE_DIGITS, Answers
 
@@ -53,23 +53,26 @@ def verdict(answers: Answers) -> str:
         )
     if case.regime == "slip" and scene.mu is not None:
         kinetic = "" if scene.mu_k is None else f", and slides with mu_k = {as_typed(scene.mu_k)}"
-        verge = _apart(answers, "mu_verge", scene.mu, above=True)
+        verge = _apart(answers, "mu_verge", scene.mu, above=True, up=True)
         return f"Slips: mu = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
     if case.tensions_equal:
         return "Holds: a pulley without mass needs no friction to turn, so both tensions are equal."
     if not case.light:
         return "Holds: the string's end is fixed to the pulley."
     if scene.mu is None:
-        return f"Assumed to hold, without mu: it does if mu is at least {_say(answers, 'mu_verge')}."
+        return (
+            f"Assumed to hold, without mu: it does if mu is at least {_bound(answers, 'mu_verge', up=True)}."
+        )
     if case.pulley_known:
-        verge = _apart(answers, "mu_verge", scene.mu, above=False)
-        return f"Holds: mu = {as_typed(scene.mu)}, and {verge} is enough."
-    least = _apart(answers, "least_heavier_mass", case.heavy, above=True)
+        verge = _apart(answers, "mu_verge", scene.mu, above=False, up=True)
+        at_rest = " from rest" * (_sliding(answers) is not None)
+        return f"Holds{at_rest}: mu = {as_typed(scene.mu)}, and {verge} is enough."
+    least = _apart(answers, "least_heavier_mass", case.heavy, above=True, up=False)
     return f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {least} kg to slip."
 
 
 def _remarks(answers: Answers) -> list[str]:
-    return [*odd_inertia(answers), *conditions(answers), *open_range(answers)]
+    return [*odd_inertia(answers), *kinetic(answers), *conditions(answers), *open_range(answers)]
 
 
 def odd_inertia(answers: Answers) -> list[str]:
@@ -77,8 +80,11 @@ def odd_inertia(answers: Answers) -> list[str]:
     beta = answers.case.beta
     if beta is None or beta <= 1:
         return []
+    shown = f"{to_double(beta):.6g}"
+    if shown == "1":
+        shown = text(to_side(None, up=True)(beta))
     return [
-        f"The inertia factor I/(M R^2) is {to_double(beta):.6g}, above 1: the mass lies outside"
+        f"The inertia factor I/(M R^2) is {shown}, above 1: the mass lies outside"
         " the rim the string runs on. If that is not so, check inertia, I and R."
     ]
 
@@ -96,41 +102,78 @@ def open_range(answers: Answers) -> list[str]:
     return [f"From a massless to a locked pulley: {', '.join(ranges)}."]
 
 
+def kinetic(answers: Answers) -> list[str]:
+    """What mu_k does though the string does not slip: whether one that slides already goes on sliding."""
+    case, mu_k = answers.case, answers.case.scene.mu_k
+    if mu_k is None or case.regime == "slip" or case.tensions_equal:
+        return []
+    if not case.pulley_known:
+        return ["mu_k has no part in this, which starts from rest; what a sliding string does depends on M."]
+    sliding = _sliding(answers)
+    if sliding is None:
+        return [
+            f"mu_k = {as_typed(mu_k)} is enough, too: a string that slides already is caught by the pulley."
+        ]
+    verge = _apart(answers, "mu_verge", mu_k, above=True, up=False)
+    return [
+        f"A string that slides already goes on sliding, as mu_k = {as_typed(mu_k)} is below {verge}:"
+        f" the masses then have the acceleration {_say(sliding, 'acceleration')} m/s²."
+    ]
+
+
+def _sliding(answers: Answers) -> Answers | None:
+    """The answers to a scene that holds from rest, were the string sliding; None where it would not go on."""
+    scene = answers.case.scene
+    if scene.mu_k is None or not answers.case.pulley_known:
+        return None
+    sliding = Answers(scene._replace(mu=scene.mu_k), answers.digits)
+    return sliding if sliding.case.regime == "slip" else None
+
+
 def conditions(answers: Answers) -> list[str]:
     """Both conditions of (36), necessary for the verge: threshold, and whether it is met."""
     if answers.case.scene.mu is None or answers["least_heavier_mass"] is None:
         return []
     case, mass = answers.case, answers.case.scene.M
     met = {True: "met", False: "not met"}
-    least = _apart(answers, "least_heavier_mass", case.heavy, above=not case.can_slip)
-    parts = [f"heavier mass {as_typed(case.heavy)} kg > {least} kg, {met[case.can_slip]}"]
+    least = _apart(answers, "least_heavier_mass", case.heavy, above=not case.can_slip, up=False)
+    parts = [f"the heavier mass, {as_typed(case.heavy)} kg, must exceed {least} kg ({met[case.can_slip]})"]
     if answers["least_pulley_mass"] is None:
         pass  # the pulley's shape is not known
     elif mass is None:
-        answer = "met by the critical one" if case.can_slip else "open without M"
-        parts.append(f"pulley's mass > {_say(answers, 'least_pulley_mass')} kg, {answer}")
+        least, answer = _bound(answers, "least_pulley_mass", up=False), "open without M"
+        if case.can_slip:
+            answer = "met by the critical one"
+        parts.append(f"the pulley's mass must exceed {least} kg ({answer})")
     elif isinstance(mass, Fraction):
-        least = _apart(answers, "least_pulley_mass", mass, above=not case.can_be_made_slip)
-        parts.append(f"pulley's mass {as_typed(mass)} kg > {least} kg, {met[case.can_be_made_slip]}")
+        heavy = case.can_be_made_slip
+        least = _apart(answers, "least_pulley_mass", mass, above=not heavy, up=False)
+        parts.append(f"the pulley's mass, {as_typed(mass)} kg, must exceed {least} kg ({met[heavy]})")
     else:
-        parts.append(f"pulley's mass, infinite, > {_say(answers, 'least_pulley_mass')} kg, met")
+        least = _bound(answers, "least_pulley_mass", up=False)
+        parts.append(f"the pulley's mass, infinite, must exceed {least} kg (met)")
     return [f"Conditions (36) for the verge: {'; '.join(parts)}."]
 
 
-def _apart(answers: Answers, name: str, other: Fraction, above: bool) -> str:
-    """A value with as many digits as show that it is above another one, or below it."""
+def _apart(answers: Answers, name: str, other: Fraction, above: bool, up: bool) -> str:
+    """A threshold, rounded up or down, with digits enough to show on which side of another number it is."""
     finer, digits = answers, answers.digits or DOUBLE_DIGITS
     while not is_infinite(value := finer[name]):
-        shown = text(value)
+        near, shown = text(value), text(finer.bound(name, up))
         # Beyond any input it is above; a fraction of it might have millions of digits.
         huge = Decimal(shown).adjusted() > MAX_MAGNITUDE
-        if huge or (Fraction(shown) != other and (Fraction(shown) > other) == above):
+        if huge or all(Fraction(one) != other and (Fraction(one) > other) == above for one in (near, shown)):
             return shown
         if digits == MAX_DIGITS:  # the same number, or as good as
             break
         digits = min(2 * digits, MAX_DIGITS)
         finer = Answers(answers.case.scene, digits)
-    return _say(answers, name)
+    return _bound(answers, name, up)
+
+
+def _bound(answers: Answers, name: str, up: bool) -> str:
+    """A threshold, rounded to the side on which the sentence is true of the number shown."""
+    return _say(answers, name) if is_infinite(answers[name]) else text(answers.bound(name, up))
 
 
 def _say(answers: Answers, name: str) -> str:
