@@ -59,14 +59,36 @@ def test_functions_enclose_tightly(digits: int, q: Fraction) -> None:
     x = at.number(q)
     with mpmath.workdps(digits + 900):
         exact = mpmath.mpf(q.numerator) / q.denominator
-        for name in ("exp", "expm1", "log1p", "sqrt"):
+        for name in ("exp", "expm1", "log1p"):
             enclosure = getattr(at, name)(x)
             assert contains(enclosure, getattr(mpmath, name)(exact)), name
             # The argument's own width counts too, times the exponential's condition, |x|.
             slack = max(0, x.hi.adjusted() + 1) if "exp" in name else 0
             assert tight(enclosure, digits - slack), name
+        root = at.sqrt(x)  # may be exact, which no power of two is
+        assert Fraction(root.lo) ** 2 <= q <= Fraction(root.hi) ** 2
+        assert tight(root, digits)
         for enclosure, value in zip(at.cos_sin(x), (mpmath.cos(exact), mpmath.sin(exact)), strict=True):
             assert contains(enclosure, value)
+
+
+@pytest.mark.parametrize("root", ["0", "0.0125", "345", "1e-400"])
+def test_roots_are_exact_where_they_can_be(root: str) -> None:
+    at = enclosures(30)
+    found = at.sqrt(at.number(Fraction(root) ** 2))
+    assert found.lo == found.hi == Decimal(root)
+
+
+@pytest.mark.parametrize("factor", ["-3", "0", "2"])
+@pytest.mark.parametrize("signs", [(-5, -2), (-5, 2), (2, 5)])
+@pytest.mark.parametrize("others", [(-7, -1), (-7, 1), (1, 7), (0, 0)])
+def test_products_of_every_sign(signs: tuple[int, int], others: tuple[int, int], factor: str) -> None:
+    at = enclosures(9)
+    one, other = (Enclosure(at, Decimal(lo), Decimal(hi)) for lo, hi in (signs, others))
+    products, product = [a * b for a in signs for b in others], one * other
+    assert [product.lo, product.hi] == [min(products), max(products)]
+    scaled = sorted(int(factor) * end for end in signs)
+    assert [(int(factor) * one).lo, (int(factor) * one).hi] == scaled
 
 
 @given(precisions, st.integers(5, 8), st.integers(1, 9))

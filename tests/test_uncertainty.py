@@ -541,6 +541,13 @@ def test_existence_is_in_doubt_only_of_what_is_asked_for(atwood: Atwood) -> None
     )
 
 
+@pytest.mark.parametrize("typed", ["0.3±0.0125", "0.3±0.125", "0.3±345"])
+def test_an_uncertainty_between_two_of_two_digits(typed: str) -> None:
+    """Of the margin to the verge it is that of mu, a tie, though the margin is irrational."""
+    notes = solve(m1="1", m2="3", M="50", mu=typed).notes
+    assert any("Whether the string slips is in doubt" in note for note in notes)
+
+
 # How they are shown
 
 

@@ -134,13 +134,14 @@ class Enclosures:
         return self._fixed(_pi(bits), 2, bits)
 
     def sqrt(self, x: Enclosure) -> Enclosure:
-        """Square root of x >= 0; `decimal` rounds it correctly, so one step outwards encloses it."""
-        lo, hi = self._from_zero(x).lo, x.hi
-        return Enclosure(
-            self,
-            self.down.next_minus(self.down.sqrt(lo)) if lo else ZERO,
-            self.up.next_plus(self.up.sqrt(hi)) if hi else ZERO,
-        )
+        """Square root of x >= 0, exact where it can be.
+
+        `decimal` rounds it correctly, so one step outwards encloses it, if what is squared shows the need.
+        """
+        x = self._from_zero(x)
+        lo, hi = self.down.sqrt(x.lo), self.up.sqrt(x.hi)
+        lo = lo if self.up.multiply(lo, lo) <= x.lo else self.down.next_minus(lo)
+        return Enclosure(self, lo, hi if self.down.multiply(hi, hi) >= x.hi else self.up.next_plus(hi))
 
     def hypot(self, x: Enclosure, y: Enclosure | int) -> Enclosure:
         """√(x² + y²)."""
