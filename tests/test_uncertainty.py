@@ -450,6 +450,36 @@ def test_a_slope_however_small_is_not_zero() -> None:
         assert float(u or 0) == pytest.approx(float(abs(slope) * mpmath.mpf("2e-17")), rel=1e-15)
 
 
+def test_an_uncertainty_beyond_doubles_is_said_to_be() -> None:
+    solution = solve(m1="1", m2="3", M="10±1e-400", g="9.8±1e400", R="1±1e400")
+    assert solution.uncertainty["mu_verge"] == 0
+    assert solution.uncertainty["torque"] == inf
+    notes = [note for note in solution.notes if note.startswith("u_")]
+    assert (
+        "u_mu_verge: not 0 but below the range of doubles; ask for digits (--digits 17) to see it." in notes
+    )
+    assert any("u_torque" in note and "beyond the range of doubles" in note for note in notes)
+
+
+HOSTILE = {"m1": "1e500", "m2": "3e500", "M": "1e-500", "mu": "1e-500", "R": "1e500", "g": "1e500"}
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        {"m1": "13.36", "m2": "1e-500", "M": "1.79", "R": "710", "wrap": "1e-5", "mu": "4.01e500±1e-500"},
+        {"m1": "0.115", "m2": "9.9766", "mu": "0.104438", "M": "0±0.00508", "mu_k": "0±0.0048"},
+        {x: f"{v}±1e-500" for x, v in {**HOSTILE, "inertia": "1e-500", "wrap": "1e-500"}.items()},
+        {x: f"{v}±1e500" for x, v in {**HOSTILE, "inertia": "1e500", "wrap": "1e500"}.items()},
+    ],
+)
+def test_hostile_uncertainties_come_to_an_end(given: dict[str, str]) -> None:
+    """Took up to 53 s."""
+    solution = solve(**given, digits=17)
+    assert all(value is None or not value < 0 for value in solution.uncertainty.values())
+    assert solution.uncertainty["acceleration"] is not None
+
+
 def test_shares_that_are_rational() -> None:
     """k = e^{μφ} grows alike with the relative errors of both, whatever it is."""
     both = {"m1": "1", "m2": "3", "mu": "0.30±0.03", "wrap": "180±18"}

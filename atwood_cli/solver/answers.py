@@ -41,7 +41,7 @@ OnMachine = Callable[[Machine[Any]], Any]
 class Answers:
     """The quantities of a scene, settled when asked for: to doubles or to ``digits`` digits.
 
-    ``reasons`` says why one asked for has no value, ``unsure`` why one has no uncertainty, by its name.
+    ``reasons`` says by name why one asked for shows no value, ``unsure`` why one shows no uncertainty.
     ``uncertainties`` is None where all inputs are exact.
     """
 
@@ -78,30 +78,36 @@ class Answers:
         if name not in self._values:
             try:
                 value = self._values[name] = self.settle(attrgetter(name))
-                if is_infinite(value):
-                    self.reasons[name] = ABOVE_DOUBLES if self.digits is None else TOO_LARGE
-                elif value == 0 and self.digits is None and self._settle(attrgetter(name), to_digits(1)):
-                    self.reasons[name] = BELOW_DOUBLES
-            except Undetermined as reason:
+                if reason := self._out_of_range(value, self._on_machines(attrgetter(name))):
+                    self.reasons[name] = reason
+            except Undetermined as undetermined:
                 self._values[name] = None
-                self.reasons[name] = str(reason)
+                self.reasons[name] = str(undetermined)
         return self._values[name]
 
-    def uncertainty(self, name: str, round_: Rounding[Any] | None = None) -> Any:
-        """The standard uncertainty of a quantity, None where ``unsure`` says why there is none.
+    def _out_of_range(self, value: float | Decimal, quantity: Quantity) -> str:
+        """Why what a quantity was rounded to does not show it; empty if it does."""
+        if is_infinite(value):
+            return ABOVE_DOUBLES if self.digits is None else TOO_LARGE
+        below = value == 0 and self.digits is None and settle(quantity, to_digits(1), DOUBLE_DIGITS)
+        return BELOW_DOUBLES if below else ""
 
-        It says nothing of what has no value either.
-        """
+    def uncertainty(self, name: str, round_: Rounding[Any] | None = None) -> Any:
+        """The standard uncertainty of a quantity; None where there is none, or no value either."""
         value, known, quantity = self[name], self.uncertainties, attrgetter(name)
         if known is None or value is None:
             return None
         if is_infinite(value) and is_infinite(self._settle(quantity, to_digits(1))):
             return None
+        of, digits = known.of(quantity), self.digits or DOUBLE_DIGITS
         try:
-            return settle(known.of(quantity), round_ or self.round, self.digits or DOUBLE_DIGITS)
-        except Undetermined as reason:
-            self.unsure[name] = str(reason)
-        return None
+            u = settle(of, round_ or self.round, digits)
+        except Undetermined as undetermined:
+            self.unsure[name] = str(undetermined)
+            return None
+        if not round_ and (reason := self._out_of_range(u, of)):
+            self.unsure[name] = reason
+        return u
 
     def standard_uncertainties(self, names: Iterable[str]) -> dict[str, Any]:
         """Those of the quantities named that are numbers; empty where all inputs are exact."""
