@@ -3,6 +3,7 @@
 import tracemalloc
 from collections import Counter
 from concurrent.futures import ThreadPoolExecutor
+from datetime import date
 from fractions import Fraction
 from functools import cache
 from itertools import islice
@@ -18,8 +19,8 @@ from hypothesis import strategies as st
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
 from atwood_cli.arithmetic.lazy import lazy
-from atwood_cli.arrays import ACCURACIES, STATUSES
-from atwood_cli.arrays.rows import COLUMNS
+from atwood_cli.arrays import ACCURACIES, MAY_BE_ABSENT, STATUSES
+from atwood_cli.arrays.rows import COLUMNS, Accuracy
 from atwood_cli.model.case import Case
 from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import Scene
@@ -315,6 +316,52 @@ def test_threads_do_not_wait_for_each_others_attributes() -> None:
     assert sorted(seen) == [(0, 0), (1, 1)]
     assert isinstance(Block.attribute, lazy)
     assert all(isinstance(vars(Case)[name], lazy) for name in ("regime", "slips", "can_slip"))
+
+
+NO_NUMBERS = [
+    [1 + 2j],
+    np.complex64(3),
+    np.array([3 + 0j], dtype=object),
+    np.array(["2020-01-01"], dtype="M8[D]"),
+    np.timedelta64(3, "s"),
+    [date(2020, 1, 1)],
+    np.array([(1.0,)], dtype=[("kg", float)]),
+    [1, [2, 3]],
+    "heavy",
+    10**400,
+    {1: 2},
+]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("name", [name for name in COLUMNS if name != "mu_k"])
+@pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
+def test_what_is_no_real_number_is_an_error_that_names_it(name: str, value: Any) -> None:
+    """NumPy takes the real part of a complex number, the days of a date, the only field of a record."""
+    with pytest.raises(SceneError) as error:
+        solve_arrays(**{"m1": 1.0, "m2": 3.0, name: value})
+    assert error.value.parameter == name
+    assert error.value.rule.startswith(("must be real numbers, not ", "must be real numbers: "))
+
+
+@pytest.mark.parametrize("name", ["g", "inertia", "wrap"])
+def test_none_is_no_default(name: str) -> None:
+    none: Any = None
+    with pytest.raises(SceneError, match=f"^{name} is None; give it, or leave it out for the default$"):
+        solve_arrays(1, 3, **{name: none})
+
+
+@pytest.mark.parametrize("name", COLUMNS)
+@pytest.mark.parametrize("accuracy", ACCURACIES)
+def test_what_is_masked_is_not_given(name: str, accuracy: Accuracy) -> None:
+    given: dict[str, Any] = {"m1": 1.0, "m2": 3.0, "M": 5.0, "mu": 0.5}
+    masked = np.ma.array([0.25, 0.125], mask=[False, True])
+    usual = solve_arrays(**given | {name: [0.25, nan]}, accuracy=accuracy)
+    found = solve_arrays(**given | {name: masked}, accuracy=accuracy)
+    assert list(found["status"]) == [0, 0 if name in MAY_BE_ABSENT else 1 + COLUMNS.index(name)]
+    for quantity, values in found.items():
+        assert not isinstance(values, np.ma.MaskedArray)
+        np.testing.assert_array_equal(values, usual[quantity])
 
 
 def test_inputs_are_left_alone() -> None:

@@ -28,7 +28,10 @@ LET_GO = 4_000_000  # doubles; the GNU C library's limit is 32 MB
 LEAVE = 1_000  # rows of a block that are better solved with those of others
 THREADS = 4  # more would wait for the interpreter, and hold 30 MB of columns each
 FAST_WINDOW = 2.0**-250, 2.0**250  # beyond it, what comes in between may overflow though results do not
-MAY_BE_ABSENT = ("M", "mu", "mu_k", "R")
+NO_DEFAULT = "is None; give it, or leave it out for the default"
+MASSES, MAY_BE_ABSENT = ("m1", "m2"), ("M", "mu", "mu_k", "R")
+REAL = "biufOSU"
+"""Kinds of arrays: those of real numbers, and those whose elements may be; NumPy takes others for numbers."""
 STATUSES = ("valid", *COLUMNS, "no mass", "friction at a free end", "mu_k without mu", "mu_k above mu")
 """What the codes in ``status`` mean: the parameter outside its domain, or what does not go together."""
 
@@ -49,17 +52,18 @@ def solve_arrays(
 ) -> dict[str, NDArray[Any]]:
     """`solve` for arrays of scenes, broadcast against each other; all numbers are doubles.
 
-    Masses in kg, g in m/s², R in m, wrap in degrees; M = inf locks the pulley. NaN in M, mu, mu_k or R
-    means not given for that row. ``accuracy`` is "fast" (doubles), "certified" (every value within 4
-    units in the last place of the exact one, or 4.5 just below a power of two; every regime right), or
-    "exact" (the nearest double, and so the same everywhere; else the last place may differ between
-    NumPy's builds, or by the rows beside).
+    Masses in kg, g in m/s², R in m, wrap in degrees; M = inf locks the pulley. What is masked or NaN is
+    not given for that row, which M, mu, mu_k and R may be. ``accuracy`` is "fast" (doubles), "certified"
+    (every value within 4 units in the last place of the exact one, or 4.5 just below a power of two; every
+    regime right), or "exact" (the nearest double, and so the same everywhere; else the last place may
+    differ between NumPy's builds, or by the rows beside).
 
     Returns arrays by name, of the inputs' common shape: the ``quantities`` asked for (those of
     `quantities.STANDARD` if None), NaN where undetermined, ±inf beyond the doubles; ``regime`` is an
     int8 index into `REGIMES`, -1 where the row is invalid; and always ``status``, an int8 index into
     `STATUSES`, 0 where it is valid. An invalid row never stops the others. Raises SceneError for a
-    missing mass, an unknown accuracy or quantity, ValueError for shapes that do not broadcast.
+    missing mass, what is no real number, an unknown accuracy or quantity, ValueError for shapes that do
+    not broadcast.
     """
     names = list(STANDARD if quantities is None else dict.fromkeys(quantities))
     for name in names:
@@ -67,14 +71,15 @@ def solve_arrays(
             raise SceneError("quantities", name, f"is no quantity{nearest(str(name), NAMES)}")
     if accuracy not in ACCURACIES:
         raise SceneError("accuracy", accuracy, f"must be one of {', '.join(ACCURACIES)}")
-    inputs = {
-        name: np.asarray(value, dtype=np.float64)
-        for name, value in zip(COLUMNS, (m1, m2, M, mu, mu_k, g, inertia, R, wrap), strict=True)
-        if value is not None
-    }
-    for mass in ("m1", "m2"):
-        if mass not in inputs:
-            raise SceneError(mass, None, MISSING_MASS)
+    given = dict(zip(COLUMNS, (m1, m2, M, mu, mu_k, g, inertia, R, wrap), strict=True))
+    for name, value in given.items():
+        if value is None and name not in MAY_BE_ABSENT:
+            raise SceneError(
+                name,
+                None,
+                MISSING_MASS if name in MASSES else "is None; give it, or leave it out for the default",
+            )
+    inputs = {name: _doubles(name, value) for name, value in given.items() if value is not None}
     shape = np.broadcast_shapes(*(column.shape for column in inputs.values()))
     kinds = {"regime": np.int8, "status": np.int8}
     results = {name: np.empty(shape, kinds.get(name, np.float64)) for name in (*names, "status")}
@@ -100,6 +105,18 @@ def solve_arrays(
         for block in _blocks(index.size, BLOCK[accuracy]):
             solve_rows(index[block], some, rung, 0)
     return results
+
+
+def _doubles(name: str, value: ArrayLike) -> Column:
+    """A parameter's numbers as doubles, NaN where masked. Raises SceneError for what is no real number."""
+    try:
+        array = value if isinstance(value, np.ma.MaskedArray) else np.asarray(value)
+        doubles: Any = array.astype(np.float64, copy=False) if array.dtype.kind in REAL else None
+    except (TypeError, ValueError, OverflowError) as error:
+        raise SceneError(name, None, f"must be real numbers: {error}") from None
+    if doubles is None:
+        raise SceneError(name, None, f"must be real numbers, not {array.dtype}")
+    return np.asarray(doubles.filled(nan) if isinstance(doubles, np.ma.MaskedArray) else doubles)
 
 
 def _blocks(size: int, most: int, multiple_of: int = 1) -> list[slice]:
