@@ -567,6 +567,32 @@ def test_figures_of_every_kind(atwood: Atwood, tmp_path: Path, suffix: str, word
     assert file.read_bytes().startswith(starts[suffix])
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    ("words", "error"),
+    [
+        ("--m1 62.7 --m2 7e463 --mu 0 --wrap 3e460 --R 1e5", "draws forces between 1e-100 and 1e+100 N"),
+        ("--m1 1 --m2 7e463 --mu 0", "draws forces between 1e-100 and 1e+100 N"),
+        ("--m1 1 --m2 2 --mu 0 --wrap 3e460", "draws wraps between 1e-100 and 1e+09 degrees"),
+        ("--m1 1 --m2 2 --M 1 --wrap 1e300turn", "draws wraps between 1e-100 and 1e+09 degrees"),
+        ("--m1 1 --m2 2 --M 1 --wrap 1e300rad", "draws wraps between 1e-100 and 1e+09 degrees"),
+        ("--m1 1 --m2 2 --M 1 --wrap 1e-400", "draws wraps between 1e-100 and 1e+09 degrees"),
+        ("--m1 1 --m2 2 --M 1 --wrap 1e9", ""),
+        ("--m1 1 --m2 2 --M 1 --wrap 1e-99rad", ""),
+    ],
+)
+def test_a_figure_of_the_extremes_is_drawn_or_refused(
+    atwood: Atwood, tmp_path: Path, words: str, error: str
+) -> None:
+    """Cosines of infinite angles were tracebacks."""
+    pytest.importorskip("matplotlib")
+    file = tmp_path / "arc.svg"
+    ran = atwood("contact", *words.split(), "--figure", str(file))
+    assert ran.status == (2 if error else 0)
+    assert ran.err.endswith(f" {error} only\n" if error else "")
+    assert file.exists() == (not error)
+
+
 def test_figure_that_cannot_be_written(atwood: Atwood, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     ran = atwood("contact", *FIGURE, "--figure", str(tmp_path / "nowhere" / "arc.svg"))

@@ -493,6 +493,22 @@ def test_the_figure(atwood: Atwood, brief: list[str], tmp_path: Path) -> None:
         assert f"<!-- {name} -->" in drawn
 
 
+@pytest.mark.filterwarnings("error")
+@pytest.mark.usefixtures("briefly")
+@pytest.mark.parametrize("more", ["--M 10 --wrap 1e-300 --mu 1e-300", "--mu 0", ""])
+def test_elements_without_an_error_have_no_place_on_a_logarithmic_axis(
+    atwood: Atwood, tmp_path: Path, more: str
+) -> None:
+    """Zeros there were a traceback in plots, and warnings about figures."""
+    words = ["tradeoff", "--m1", "1", "--m2", "3", *more.split()]
+    plot = atwood(*words, "--plot")
+    assert (plot.status, plot.err) == (0, "")
+    assert "String elements\n" not in plot.out
+    figure = atwood(*words, "--figure", str(tmp_path / "a.svg"))
+    assert (figure.status, figure.err) == (0, "")
+    assert "relative error of" not in (tmp_path / "a.svg").read_text(encoding="utf-8")
+
+
 @pytest.mark.parametrize(
     ("arguments", "error"),
     [

@@ -11,6 +11,7 @@ from math import cos, degrees, hypot, nan, radians, sin
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..arithmetic.rounding import to_double
 from ..files import check_free, written_beside
 from ..model.scene import SceneError
 from ..solver.answers import Answers
@@ -29,6 +30,7 @@ FORMATS = (".svg", ".png", ".pdf")
 NORMAL, FRICTION, STRING, WEIGHT = "#1f5fa8", "#c23b22", "#222222", "#5a7d2a"
 LONGEST = 0.75  # radii: the arrow of the greatest force
 DRAWABLE = (1e-100, 1e100)
+WRAPS = (1e-100, 1e9)  # degrees: of more, doubles no longer say where the end of the arc is
 CURVE_POINTS, ARROWS, TITLE_DIGITS = 361, 13, 6
 MARKED = 60  # points: of more, only the line is drawn
 STYLE: Any = {
@@ -43,9 +45,13 @@ def save(answers: Answers, kind: str | None, path: str, force: bool) -> None:
     """Draw the arc to a file, whose suffix is its format. Raises SceneError, OSError."""
     check_file(path, force)
     doubles = Answers(answers.case.scene)
-    forces = [float(doubles[name] or 0) for name in ("tension_1", "tension_2")]
-    if not DRAWABLE[0] < max(forces) < DRAWABLE[1]:
+    scene = answers.case.scene
+    tensions = [float(doubles[name] or 0) for name in ("tension_1", "tension_2")]
+    weights = [to_double(mass * scene.g) for mass in (scene.m1, scene.m2)]
+    if max(tensions) < DRAWABLE[0] or max(*tensions, *weights) > DRAWABLE[1]:
         raise SceneError("figure", path, f"draws forces between {DRAWABLE[0]} and {DRAWABLE[1]} N only")
+    if not WRAPS[0] <= doubles.settle(lambda m: m.case.scene.wrap.degrees(m.ar)) <= WRAPS[1]:
+        raise SceneError("figure", path, f"draws wraps between {WRAPS[0]} and {WRAPS[1]:.0e} degrees only")
     with _page(path, force) as figure:
         machine, curve = figure.subplots(1, 2, width_ratios=[1.1, 1])
         _draw_machine(machine, doubles, contact(doubles, ARROWS, kind))
@@ -65,7 +71,8 @@ def save_sweep(picture: "Picture", title: str, path: str, force: bool) -> None:
         axes.spines[["top", "right"]].set_visible(False)
         for curve in picture.curves:
             _draw_curve(axes, curve)
-        axes.set_xlim(min(curve.xs), max(curve.xs))  # where the curve has gaps, too
+        if min(curve.xs) < max(curve.xs):
+            axes.set_xlim(min(curve.xs), max(curve.xs))  # where the curve has gaps, too
         if len(picture.curves) > 1:
             axes.legend(frameon=False)
         figure.suptitle(title, fontsize=10)
@@ -73,10 +80,11 @@ def save_sweep(picture: "Picture", title: str, path: str, force: bool) -> None:
 
 def save_tradeoff(outcome: "Tradeoff", path: str, force: bool) -> None:
     """Draw error against time to a file, whose suffix is its format. Raises SceneError, OSError."""
-    from ..tradeoff.measure import EDGES, MARGIN, drawable
+    from ..tradeoff.measure import EDGES, MARGIN, drawable, drawable_marches
 
+    marches = drawable_marches(outcome.marches)
     with _page(path, force) as figure:
-        arithmetic, elements = figure.subplots(1, 2)
+        arithmetic, *rest = figure.subplots(1, 1 + any(marches), squeeze=False)[0]
         families = list(dict.fromkeys(one.family for one in outcome.measured))
         settings = list(dict.fromkeys(one.setting for one in outcome.measured))
         for family, colour in zip(families, FAMILY_COLOURS, strict=False):
@@ -89,12 +97,13 @@ def save_tradeoff(outcome: "Tradeoff", path: str, force: bool) -> None:
             arithmetic.plot([], [], marker, color="#444444", label=setting)
         arithmetic.axhline(MARGIN, color="#999999", lw=0.8, ls=":", label=f"{MARGIN} ulp")
         arithmetic.set_ylabel("worst error (ulp)")
-        for extrapolated, label, colour in ((False, "elements", NORMAL), (True, "extrapolated", FRICTION)):
-            way = [one for one in outcome.marches if one.extrapolated == extrapolated and one.elements]
-            xs, ys = [one.seconds for one in way], [one.relative_error for one in way]
-            elements.plot(xs, ys, color=colour, marker=".", label=label)
-        elements.set_ylabel("relative error of $e^{\\mu\\varphi}$")
-        for axes in (arithmetic, elements):
+        for elements in rest:
+            kinds = (("elements", NORMAL), ("extrapolated", FRICTION))
+            for way, (label, colour) in zip(marches, kinds, strict=True):
+                if way:
+                    elements.plot(*zip(*way, strict=True), color=colour, marker=".", label=label)
+            elements.set_ylabel("relative error of $e^{\\mu\\varphi}$")
+        for axes in (arithmetic, *rest):
             axes.loglog()
             axes.set_xlabel("time (s)")
             axes.spines[["top", "right"]].set_visible(False)

@@ -85,7 +85,7 @@ def _show(page: Page, lines: list[str]) -> None:
 
 def print_tradeoff_plot(outcome: "Tradeoff") -> None:
     """Error against time, both logarithmic: the settings on each family, then string elements."""
-    from ..tradeoff.measure import EDGES, drawable
+    from ..tradeoff.measure import EDGES, drawable, drawable_marches
 
     page = Page()
     room = page.room or PIPE_WIDTH
@@ -97,15 +97,7 @@ def print_tradeoff_plot(outcome: "Tradeoff") -> None:
     letters = zip(LETTERS, settings, strict=False)
     page.say(f"{', '.join(f'{letter} {one.setting}' for letter, one in letters)}.")
     page.say(f"{EDGES} Times are this machine's, for one scene.")
-    if outcome.marches:
-        curves = [
-            [
-                (one.seconds, one.relative_error)
-                for one in outcome.marches
-                if one.extrapolated == way and one.elements
-            ]
-            for way in (False, True)
-        ]
+    if any(curves := drawable_marches(outcome.marches)):
         page.say("String elements", "bold")
         _show(page, _scatter("relative error of e^(μφ)", curves, room, ""))
         page.say("a elements, b extrapolated; from left to right 4 to 10 million of them.")
@@ -124,7 +116,8 @@ def _scatter(title: str, curves: list[list[tuple[float, float]]], room: int, mar
             if not marks:
                 for start, end in pairwise(dots):
                     canvas.line(*start, *end, color=COLOURS[number])
-                canvas.point(*dots[len(dots) // 2], color=COLOURS[number], marker=LETTERS[number])
+                for dot in dots[len(dots) // 2 :][:1]:
+                    canvas.point(*dot, color=COLOURS[number], marker=LETTERS[number])
 
     xs, ys = ([point[i] for curve in curves for point in curve] for i in (0, 1))
     return _framed(("time (s)", title), (xs, ys), (True, True), room, SMALL_HEIGHT, draw)

@@ -336,6 +336,18 @@ def drawable(worst_ulp: float | None) -> float:
     return GREATEST_DRAWN if worst_ulp is None else min(max(worst_ulp, LEAST_DRAWN), GREATEST_DRAWN)
 
 
+def drawable_marches(marches: Sequence[March]) -> list[list[tuple[float, float]]]:
+    """Times and errors of elements, then of extrapolated ones; where there is none, no logarithm of it."""
+    return [
+        [
+            (one.seconds, one.relative_error)
+            for one in marches
+            if one.extrapolated == way and one.elements and one.relative_error
+        ]
+        for way in (False, True)
+    ]
+
+
 def tradeoff(families: Sequence[str], scenes: int, seed: int, scene: Scene | None, watch: Watch) -> Tradeoff:
     """Measure every setting on so many scenes of each family, or on the one scene given. Raises SceneError.
 
