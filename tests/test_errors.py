@@ -75,6 +75,7 @@ def test_every_error_text_is_expected_by_a_test(where: str, text: str) -> None:
     ("content", "error"),
     [
         (b'm1,"m2\n1,2\n', "the header ends within quotation marks: one is left open"),
+        (b"\xef\xbb\xbf", "it is empty"),
         (b"m1,m2\r1,2\r", "its lines end in carriage returns alone; save it with line feeds"),
     ],
 )

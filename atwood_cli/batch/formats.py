@@ -131,6 +131,8 @@ def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
         rows = text
         if not header:
             rows = text.removeprefix(b"\xef\xbb\xbf").lstrip(b"\r\n")
+            if not rows:  # but a byte order mark
+                continue
             end = _first_end(rows)
             if rows.count(b'"', 0, end) % 2:
                 raise Unreadable("the header ends within quotation marks: one is left open")

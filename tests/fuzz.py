@@ -1,0 +1,313 @@
+"""Command lines, files and arguments at random, and what is wrong with the runs: python -m tests.fuzz [RUNS [FIRST]]
+
+A run is made from its number alone, so that it can be had again: python -m tests.fuzz 1 NUMBER. Whatever
+is typed, a run ends within the limit, without a traceback or a warning, with a status of ours, with stdout
+empty on an error and with sentences on stderr.
+"""
+
+import io
+import json
+import os
+import re
+import signal
+import sys
+import traceback
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
+from decimal import Decimal
+from fractions import Fraction
+from functools import partial
+from math import inf, nan
+from pathlib import Path
+from random import Random
+from tempfile import TemporaryDirectory
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import polars as pl
+import typer
+
+from atwood_cli import SceneError, cli, solve, solve_arrays
+from atwood_cli.arrays.rows import COLUMNS
+from atwood_cli.batch.formats import FORMATS
+from atwood_cli.model.quantities import NAMES
+from atwood_cli.model.scene import MEASURED, PARAMETERS
+from atwood_cli.tradeoff import measure
+
+LIMIT = 120  # seconds, for a run; on a quiet machine the longest take a tenth of it
+STATUSES = (0, 1, 2, 130)
+COMMANDS: dict[str, Any] = cli.program().commands
+WEIGHTS = {"solve": 40, "contact": 20, "sweep": 20, "batch": 20, "tradeoff": 1}
+RARE = {
+    "--figure": 0.02,
+    "--plot": 0.05,
+    "--help": 0.01,
+    "--explain": 0.1,
+    "--elements": 0.15,
+    "--digits": 0.3,
+}
+OFTEN = {"--m1": 0.97, "--m2": 0.97, "--M": 0.6, "--mu": 0.6}
+
+GOOD = "1 3 2 0.3 10 0.25 1.5e-3 100 0.1 90 180 4 0.5".split()
+FREE = "1 3 2.5 0.3 1e-300 1e300 1.0000000000000001 0.99 1e-9 7e463".split()
+EDGES = [
+    *"0 -0 -1 inf -inf INF nan 1e500 1e-500 1e501 1e-501 1e9999999 1e308 1.8e308 4.9e-324 1e-400 .5 5. +2".split(),
+    *"1e 1e+ 0x10 1_000 1,5 1,000 1.2.3 １ ٣ −1 ½ -- - = : ( ) ± % '' \" \\ moon disk hoop None".split(),
+    *(
+        "",
+        " ",
+        " 1 ",
+        "1\xa0kg",
+        "\x1b[31m",
+        "\udcff",
+        "1\n",
+        "1\t2",
+        "9" * 1000,
+        "9" * 1001,
+        "0." + "3" * 500,
+    ),
+]
+UNITS = "kg g lb t mg µg m cm mm in ft deg rad turn ° % s ms N m/s2 m/s² x µ kgg".split()
+TEXTS = [*"x µ =1+1 regime tension_1 ' \" , ;".split(), "", "a b", "M (kg)", "m1 ", "\t", "\x1b]0;a\x07"]
+FILES = [
+    "in.csv",
+    "a",
+    *(f"a.{kind}" for kind in (*FORMATS, "svg", "json", "txt")),
+    "-",
+    "no/a.svg",
+    "\x1b.csv",
+]
+COUNTS = "1 2 5 17 33 40 100 0 -1 10000001 1.5".split()
+SHAPES = "{} {} {}{u} {}_{u} {}+/-{} {}({}) {}±{} {}:{}:{} {}:{}:5:log {}/{} -{}".split()
+ODD_VALUES: list[Any] = [
+    *(None, True, 1 + 2j, "x", b"1", [], [1, 2], {}, object(), nan, inf, -inf, 5e-324, 1e308, 10**400, -1, 0),
+    *(Decimal("sNaN"), Decimal("1e400"), Decimal("Infinity"), Fraction(1, 3), np.float32(0.1), np.int64(2)),
+    *(np.datetime64("2020"), np.timedelta64(1, "s"), np.ma.masked, np.array(2.0), np.array([1.0, nan, 0.0])),
+    *(
+        np.ma.array([1.0, 2.0, 3.0], mask=[False, True, False]),
+        np.array([(1.0,)], dtype=[("a", float)]),
+        [[1], [2, 3]],
+    ),
+]
+
+
+class Dice(Random):
+    """Some runs are to get far, in others much is wrong."""
+
+    def __init__(self, run: int) -> None:
+        super().__init__(run)
+        self.odd = self.choice([0.0, 0.03, 0.2])
+        self.given = self.choice([0.04, 0.1, 0.2])
+
+    def is_odd(self) -> bool:
+        return self.random() < self.odd
+
+
+def number(random: Dice) -> str:
+    """A number as it may be typed, mostly one that is."""
+    if not random.is_odd():
+        return random.choice(GOOD if random.random() < 0.7 else FREE)
+    text = random.choice(EDGES)
+    if random.random() < 0.5:
+        exponent = random.choice([0, 3, 20, 300, 500]) * random.choice([1, -1])
+        text = f"{random.randrange(10 ** random.choice([1, 3, 20]))}e{exponent}"
+    shape = random.choice(SHAPES).replace("_", " ")
+    return shape.format(text, random.choice(GOOD), random.choice(GOOD), u=random.choice(UNITS))
+
+
+def value(random: Dice, command: str, metavar: str) -> list[str]:
+    """What may stand behind an option."""
+    if metavar == "FILE NAME":
+        return [*value(random, command, "FILE"), *value(random, command, "NAME")]
+    if random.random() < random.odd / 5:
+        return [random.choice([*EDGES, *TEXTS])]
+    if metavar in ("FILE", "OUT"):
+        return [random.choice(FILES)]
+    if metavar == "NAME":
+        return [random.choice([*NAMES, *MEASURED, "ordinary", "accel"])]
+    if metavar == "N":
+        return [random.choice(COUNTS)]
+    if "|" in metavar:
+        return [random.choice(metavar.split("|"))]
+    if command == "sweep" and random.random() < 0.3:
+        return [f"{number(random)}:{number(random)}:{random.choice('1234')}{random.choice(['', ':log'])}"]
+    return [number(random)]
+
+
+def command_line(random: Dice) -> list[str]:
+    """A command with options, nearly all of them its own."""
+    command = random.choices(list(WEIGHTS), list(WEIGHTS.values()))[0]
+    words = []
+    for param in COMMANDS[command].get_params(typer.Context(COMMANDS[command])):
+        flag = random.choice(param.opts)
+        while random.random() < OFTEN.get(param.opts[0], RARE.get(param.opts[0], random.given)):
+            is_flag = getattr(param, "is_flag", False)
+            words.append([flag, *([] if is_flag else value(random, command, param.metavar or ""))])
+            if not getattr(param, "multiple", False) and random.random() < 0.99:
+                break
+    random.shuffle(words)
+    if command == "batch":
+        words.append([random.choice([*(f"in.{kind}" for kind in FORMATS), "-", "in"])])
+    line = [command, *(word for option in words for word in option)]
+    if random.random() < random.odd / 3:
+        line.insert(
+            random.randrange(len(line)), random.choice([*EDGES, *TEXTS, "--m", "-m1", "-h", "--version"])
+        )
+    return line
+
+
+def table(random: Dice, kind: str) -> bytes:
+    """A table of scenes, more or less whole."""
+    columns = [*COLUMNS[:2], *(name for name in COLUMNS[2:] if random.random() < 0.2)]
+    columns += [name for name in (*TEXTS, "I", "mu_K", "a", "time") if random.is_odd()]
+    random.shuffle(columns)
+    rows = [
+        [number(random) if name in COLUMNS else random.choice(TEXTS) for name in columns]
+        for _ in range(random.choice([0, 1, 2, 5, 30]))
+    ]
+    kind = random.choice(FORMATS) if random.is_odd() else kind
+    if kind == "parquet":
+        buffer = io.BytesIO()
+        texts = [[cell.encode("utf-8", "replace").decode() for cell in row] for row in rows]
+        frame = pl.DataFrame({name: [row[i] for row in texts] for i, name in enumerate(columns)})
+        frame.cast(random.choice([pl.String, pl.Float64]), strict=False).write_parquet(buffer)
+        data = bytearray(buffer.getvalue())
+    else:
+        separator = random.choice(",\t;|") if random.is_odd() else {"tsv": "\t"}.get(kind, ",")
+        lines = [separator.join(row) for row in [columns, *rows]]
+        if kind == "ndjson":
+            lines = [json.dumps(dict(zip(columns, row, strict=True))) for row in rows]
+        end = random.choice(["\r\n", "\n\n", "\r"]) if random.is_odd() else "\n"
+        text = random.choice(["", "\ufeff"]) + end.join(lines) + random.choice(["", end])
+        data = bytearray(text.encode("utf-8", "replace"))
+    while data and random.is_odd():
+        at = random.randrange(len(data))
+        data[at : at + random.choice([0, 1, 5])] = random.randbytes(random.choice([0, 1, 3]))
+    return bytes(data)
+
+
+@contextmanager
+def limited(seconds: float) -> Iterator[None]:
+    """Raises TimeoutError in what takes longer, where the system has alarms."""
+    if not hasattr(signal, "setitimer"):
+        yield
+        return
+
+    def ring(*_: object) -> None:
+        raise TimeoutError(f"it takes more than {seconds} s")
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def wrong_with_line(words: Sequence[str]) -> str:
+    """What is wrong with a run of the program, here; nothing if it ends as it should."""
+    out, err = (io.TextIOWrapper(io.BytesIO(), "utf-8", "surrogateescape", newline="") for _ in range(2))
+    with (
+        open("in.csv", encoding="utf-8", errors="replace") as stdin,
+        redirect_stdout(out),
+        redirect_stderr(err),patch("sys.stdin", stdin)
+    ):
+        status = cli.run(list(words))
+    printed, said = (stream.detach().getvalue().decode("utf-8", "replace") for stream in (out, err))
+    if status not in STATUSES:
+        return f"status {status}"
+    partly = words[0] == "batch" or "--only" in words  # rows that failed, values that do not exist
+    if printed and (status == 2 or (status == 1 and not partly)):
+        return f"status {status} beside {printed[:80]!r} on stdout"
+    if strange := [line for line in said.splitlines() if not re.match("atwood: .", line)]:
+        return f"on stderr: {strange[0]!r}"
+    if status and not said:
+        return f"status {status} without a word"
+    if "\x1b" in said:
+        return f"an escape sequence on stderr: {said!r}"
+    if (
+        words[0] != "batch"
+        and status == 0
+        and "--json" in words
+        and not {"-h", "--help", "-o", "--output"} & {*words}
+    ):
+        json.loads(printed, parse_constant=lambda word: 1 / 0)
+    return ""
+
+
+def wrong_with_arguments(random: Dice) -> str:
+    """What is wrong with a call from Python: all but results and errors that are promised."""
+
+    def odd(good: float) -> Any:
+        if random.random() < good:
+            return random.choice([float, str, Decimal])(random.choice(GOOD))
+        return random.choice([*ODD_VALUES, *EDGES, [float(random.choice(GOOD)) for _ in range(3)]])
+
+    def call(function: Callable[..., object], more: dict[str, Any], names: Sequence[str]) -> str:
+        given = {name: odd(0.8) for name in names if name in ("m1", "m2") or random.random() < 0.3} | more
+        try:
+            function(**given)
+        except SceneError as error:
+            str(error)
+        except Exception as error:
+            if not (isinstance(error, ValueError) and "broadcast" in str(error)):
+                return f"{function.__name__}(**{given!r}): {traceback.format_exc()}"
+        return ""
+
+    if random.random() < 0.5:
+        return call(
+            solve,
+            random.choice([{}, {"digits": random.choice([3, 30, *ODD_VALUES])}]),
+            [*PARAMETERS, *MEASURED],
+        )
+    accuracy = random.choice(["fast", "certified", "exact", "x", None])
+    quantities = random.choice([None, random.sample(NAMES, 3), ["x"], []])
+    return call(solve_arrays, {"accuracy": accuracy, "quantities": quantities}, COLUMNS)
+
+
+def wrong_with(run: int) -> str:
+    """What is wrong with the run of that number, and the run itself."""
+    random = Dice(run)
+    if random.random() < 0.2:
+        what, try_it = "a call", partial(wrong_with_arguments, random)
+    else:
+        words = command_line(random)
+        for kind in FORMATS:
+            Path(f"in.{kind}").write_bytes(table(random, kind) if words[0] == "batch" else b"")
+        what, try_it = repr(words), partial(wrong_with_line, words)
+    try:
+        with limited(LIMIT):
+            wrong = try_it()
+    except BaseException as error:
+        if isinstance(error, KeyboardInterrupt):
+            raise
+        wrong = traceback.format_exc()
+    return wrong and f"run {run}, {what}: {wrong}"
+
+
+def faults(runs: Sequence[int]) -> Iterator[str]:
+    """What is wrong with runs, each in a folder of its own; measurements are cut short."""
+    short = patch.multiple(measure, RUN_SECONDS=1e-5, REPEATS=1, COUNTS=(4, 10), MOST_SCENES=20, FEWEST=2)
+    for run in runs:
+        with TemporaryDirectory() as folder, chdir(folder), short, warnings.catch_warnings():
+            warnings.simplefilter("always")
+            if wrong := wrong_with(run):
+                yield wrong
+
+
+def main(runs: int = 1000, first: int = 0) -> int:
+    """Report every fault; the status says whether there is one."""
+    count = 0
+    for fault in faults(range(first, first + runs)):
+        print(fault, flush=True)
+        count += 1
+    print(f"{runs} runs, {count} faults")
+    return min(count, 1)
+
+
+if __name__ == "__main__":
+    os.environ.pop("COLUMNS", None)
+    sys.exit(main(*map(int, sys.argv[1:])))
