@@ -213,7 +213,8 @@ def wrong_with_line(words: Sequence[str]) -> str:
     with (
         open("in.csv", encoding="utf-8", errors="replace") as stdin,
         redirect_stdout(out),
-        redirect_stderr(err),patch("sys.stdin", stdin)
+        redirect_stderr(err),
+        patch("sys.stdin", stdin),
     ):
         status = cli.run(list(words))
     printed, said = (stream.detach().getvalue().decode("utf-8", "replace") for stream in (out, err))

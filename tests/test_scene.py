@@ -75,6 +75,10 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
     ),
     ({"m1": True}, "m1 True must be text or a number (str, int, float, Decimal, Fraction)"),
     ({"m1": b"1"}, "m1 b'1' must be text or a number (str, int, float, Decimal, Fraction)"),
+    *(
+        ({"m1": one}, f"m1 {one!r} must be text or a number (str, int, float, Decimal, Fraction)")
+        for one in (np.timedelta64(1, "s"), np.timedelta64(1), np.datetime64("2020"))
+    ),
     ({"m1": 1j}, "m1 1j must be text or a number (str, int, float, Decimal, Fraction)"),
     ({"m1": "1kgg"}, "m1 '1kgg' has the unknown unit 'kgg'; did you mean kg?"),
     ({"m1": "1ton"}, "m1 '1ton' has the unknown unit 'ton'; did you mean tonne?"),

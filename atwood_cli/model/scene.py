@@ -323,7 +323,8 @@ def _or_one_of(names: Mapping[str, str]) -> str:
 
 
 def _read_number(name: str, given: object) -> Fraction | float:
-    if isinstance(given, bool) or not isinstance(given, Real | Decimal):
+    is_duration = getattr(getattr(given, "dtype", None), "kind", "") == "m"  # NumPy's pass for integers
+    if isinstance(given, bool) or is_duration or not isinstance(given, Real | Decimal):
         raise SceneError(name, given, "must be text or a number (str, int, float, Decimal, Fraction)")
     if given.is_nan() if isinstance(given, Decimal) else given != given:
         raise SceneError(name, given, parameter_of(name).domain)
