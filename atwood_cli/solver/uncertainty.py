@@ -31,6 +31,7 @@ from ..model.motion import completed, moved
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, Quantity
+    from .answers import OnMachine
 
 SURE = 20
 """Digits to which it is told whether a case is in doubt."""
@@ -39,8 +40,6 @@ COVERAGE = 2
 
 KINK = "unknown where the masses are equal, as there it has a kink"
 JUMP = "unknown, as with another {} it may jump"
-
-OnMachine = Callable[[Machine[Any]], Any]
 
 
 class MachineBeside(Machine[Dual[N]]):
