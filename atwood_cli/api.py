@@ -103,7 +103,7 @@ def solve(*, digits: int | str | None = None, **given: Unpack[Inputs]) -> Any:
     """The state of Atwood's machine: m1 and m2 on a rough string over a pulley.
 
     Masses in kg, R in m, I in kg m², g in m/s², wrap in degrees; text may carry a unit ("250g",
-    "5cm") or name a body or shape (g="moon", inertia="hoop"). What is given decides the model:
+    "5cm", "9.81m/s2") or name a body or shape (g="moon", inertia="hoop"). What is given decides the model:
     no M, a massless pulley, or with mu the one that brings the string to the verge of slipping.
     Defaults: g standard gravity, inertia that of a disk (1/2), wrap 180, mu_k = mu.
 

@@ -13,6 +13,7 @@ import time
 from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import polars as pl
@@ -25,6 +26,7 @@ from atwood_cli.arrays import solve_arrays
 from atwood_cli.arrays.rows import COLUMNS
 from atwood_cli.batch import formats as tables
 from atwood_cli.batch.formats import FORMATS
+from atwood_cli.batch.layout import inputs_among
 from atwood_cli.model.quantities import NAMES, STANDARD
 
 from .running import HANGS, PIP, Atwood, Ran, plain, process
@@ -764,6 +766,24 @@ def test_a_short_row_is_an_error_of_that_row_and_blank_lines_are_none(
         ("w", "", "the row has 1 cells, and the header 5"),
     ]
     assert ran.err.endswith("first error, in row 3: the row has 4 cells, and the header 5\n")
+
+
+def test_no_cell_hides_a_short_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever stands in quotation marks, and however the file comes in pieces."""
+    rng = Random(14)
+    cells = ["1", "", '""', '"a,b"', '"x\ny"', '"q""r"', " 1", '"\n"', '";"']
+    for _ in range(1000):
+        mark, end = rng.choice(",;\t"), rng.choice(["\n", "\r\n"])
+        rows = [
+            [rng.choice(cells) for _ in range(rng.choice([1, 2, 3, 4, 4, 4]))]
+            for _ in range(rng.randint(0, 8))
+        ]
+        lines = [mark.join(row) or " " for row in rows]
+        text = end.join([mark.join(["m1", "m2", "M", "n"]), *lines, ""]).encode()
+        monkeypatch.setattr(tables, "PIECE_BYTES", rng.choice([4, 17, 1 << 20]))
+        pieces = list(tables.read("csv", io.BytesIO(text), inputs_among, as_lines=False))
+        widths = [piece.short.get(row, 4) for piece in pieces for row in range(piece.frame.height)]
+        assert widths == [len(row) for row, line in zip(rows, lines, strict=True) if line.strip(" ")], text
 
 
 def test_a_pipe_by_any_name_is_csv(tmp_path: Path) -> None:
