@@ -661,6 +661,13 @@ def test_units_in_headings(
         assert ran.err.startswith(f"{said}atwood: 1 row")
 
 
+def test_what_a_unit_takes_beyond_the_doubles_is_an_error_of_the_row(atwood: Atwood, tmp_path: Path) -> None:
+    for factor, cell in (("ug", 1e-323), ("t", 1e308)):
+        pl.DataFrame({f"m1 ({factor})": [cell, 0.0], "m2": [1.0, 1.0]}).write_parquet(tmp_path / "in.parquet")
+        ran = atwood("batch", str(tmp_path / "in.parquet"))
+        assert [row["error"] for row in records(ran)] == [f"m1 {cell!r} {BEYOND}", ""]
+
+
 LABEL = "; or let it pass by --label "
 
 

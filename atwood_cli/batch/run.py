@@ -259,8 +259,9 @@ def _column(cells: "pl.Series", doubles: "pl.Series", as_doubles: "pl.Expr") -> 
     odd = ~np.isfinite(array)
     if odd.any():
         odd &= cells.is_not_null().to_numpy()
-    if text and (zero := array == 0).any():  # what is too small for a double would be another scene
-        odd |= zero & cells.str.contains("^[^eE]*[1-9]").fill_null(False).to_numpy()
+    if (zero := array == 0).any():  # what is too small for a double would be another scene
+        some = cells.str.contains("^[^eE]*[1-9]") if text else cells != 0
+        odd |= zero & some.fill_null(False).to_numpy()
     rows = odd.nonzero()[0]
     return array, dict(zip(rows.tolist(), cells.gather(rows).to_list(), strict=True)) if len(rows) else {}
 
