@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 REQUIRED = COLUMNS[:2]
 
-IN_BRACKETS = re.compile(r"(.*?)\s*(?:\((.*)\)|\[(.*)\])")
 NO_UNIT = ("", "-", "1")
 
 # fmt: off
@@ -158,10 +157,11 @@ def _headings(columns: Sequence[str], labels: Collection[str]) -> dict[str, Head
 def _divided(column: str) -> tuple[str, str]:
     """The name in a heading and the unit in brackets behind it, empty if there is none."""
     word = without_blanks(column)
-    match = IN_BRACKETS.fullmatch(word)
-    name, *units = match.groups(default="") if match else (word,)
-    unit = "".join(units).strip()
-    return name, "" if unit in NO_UNIT else unit
+    for opening, closing in ("()", "[]"):
+        name, bracket, unit = word.removesuffix(closing).partition(opening)
+        if bracket and word.endswith(closing):
+            return name.strip(), "" if unit.strip() in NO_UNIT else unit.strip()
+    return word, ""
 
 
 def _factor(name: str, unit: str, column: str) -> Fraction:
