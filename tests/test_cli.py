@@ -347,7 +347,7 @@ def test_no_name_that_is_typed_steers_the_terminal(atwood: Atwood, words: str, s
     assert (ran.status, ran.out) == (status, "")
     assert "\x1b" not in ran.err
     assert ran.err.count("\n") == 1
-    assert r"\x1b]0;owned\x07\n" in ran.err
+    assert r"\x1b]0;owned\x07" in ran.err
 
 
 # How it begins and ends
