@@ -93,6 +93,24 @@ def test_the_primes_are_primes() -> None:
         assert (p - 1) % order == (p - 1) % residue.ORDER == 0
 
 
+@pytest.mark.parametrize(
+    ("base", "power"),
+    [
+        (F(2), 1),
+        (F(3, 2), 1),
+        (F(6), 7),
+        (F(27, 10), 1),
+        (F(12, 5), 4),
+        (F(59), 6),
+        (F(61, 59), 5),
+        (F(10007, 10), 3),
+        (F(10**40 + 1, 7), 1),
+    ],
+)
+def test_powers_are_told_from_their_least_base(base: Fraction, power: int) -> None:
+    assert residue._as_power(base**power) == (base, power)
+
+
 # Ties in what is printed: the oracle has 60 digits, and calls a tie what agrees with one in 45
 
 

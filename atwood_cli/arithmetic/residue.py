@@ -22,7 +22,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
 from itertools import count
-from math import isqrt, lcm
+from math import gcd, isqrt, lcm
 from random import Random
 from typing import TYPE_CHECKING, NoReturn
 
@@ -33,6 +33,7 @@ ORDER = 2**127 - 1  # a prime (É. Lucas, 1876)
 MOST_ORDER = 2**256
 """Roots of unity of higher order, from angles with that many digits, are not looked for."""
 MOST_TERMS = 8
+SMALL_PRIMES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53)
 TRIALS = 32
 """So often square roots that are none modulo p, or have the other sign, are tried with other unknowns."""
 
@@ -267,11 +268,10 @@ def _prime(order: int) -> int:
 
 def _is_prime(n: int) -> bool:
     """Whether none of the first primes shows n > 53 to be composite (G. L. Miller, M. O. Rabin)."""
-    small = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41, 43, 47, 53)
-    if any(n % prime == 0 for prime in small):
+    if any(n % prime == 0 for prime in SMALL_PRIMES):
         return False
     twos = ((n - 1) & (1 - n)).bit_length() - 1
-    for base in small:
+    for base in SMALL_PRIMES:
         x = pow(base, n - 1 >> twos, n)
         if x != 1 and all(pow(x, 1 << k, n) != n - 1 for k in range(twos)):
             return False
@@ -315,14 +315,22 @@ def _square_root(x: int, p: int, random: Random) -> int:
 @lru_cache
 def _as_power(q: Fraction) -> tuple[Fraction, int]:
     """q >= 1 as a power of the least base."""
-    power = 1
-    n, d = q.numerator, q.denominator
-    for exponent in range(2, n.bit_length() + 1):
-        while n > 1 and (roots := (_root(n, exponent), _root(d, exponent))):
-            if (roots[0] ** exponent, roots[1] ** exponent) != (n, d):
-                break
-            (n, d), power = roots, power * exponent
-    return Fraction(n, d), power
+    times = gcd(*(_times_divisible(part, prime) for part in q.as_integer_ratio() for prime in SMALL_PRIMES))
+    # Without a small factor the base is at least 59.
+    most = times or q.numerator.bit_length() // 5
+    for power in range(most, 1, -1):
+        if times % power == 0:
+            base = Fraction(_root(q.numerator, power), _root(q.denominator, power))
+            if base**power == q:
+                return base, power
+    return q, 1
+
+
+def _times_divisible(n: int, prime: int) -> int:
+    times = 0
+    while n % prime == 0:
+        n, times = n // prime, times + 1
+    return times
 
 
 def _root(n: int, k: int) -> int:
