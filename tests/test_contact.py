@@ -567,7 +567,7 @@ def test_figures_of_every_kind(atwood: Atwood, tmp_path: Path, suffix: str, word
     assert file.read_bytes().startswith(starts[suffix])
 
 
-@pytest.mark.filterwarnings("error")
+@pytest.mark.filterwarnings("error", "ignore::DeprecationWarning")  # of a matplotlib older than its parser
 @pytest.mark.parametrize(
     ("words", "error"),
     [

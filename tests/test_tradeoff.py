@@ -493,7 +493,7 @@ def test_the_figure(atwood: Atwood, brief: list[str], tmp_path: Path) -> None:
         assert f"<!-- {name} -->" in drawn
 
 
-@pytest.mark.filterwarnings("error")
+@pytest.mark.filterwarnings("error", "ignore::DeprecationWarning")  # of a matplotlib older than its parser
 @pytest.mark.usefixtures("briefly")
 @pytest.mark.parametrize("more", ["--M 10 --wrap 1e-300 --mu 1e-300", "--mu 0", ""])
 def test_elements_without_an_error_have_no_place_on_a_logarithmic_axis(
