@@ -15,6 +15,7 @@ from hypothesis import strategies as st
 from atwood_cli import solve, solve_arrays
 from atwood_cli.arithmetic import residue
 from atwood_cli.arithmetic.residue import is_rational
+from atwood_cli.arithmetic.rounding import settle, to_digits
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.contact import contact
@@ -109,6 +110,18 @@ def test_the_primes_are_primes() -> None:
 )
 def test_powers_are_told_from_their_least_base(base: Fraction, power: int) -> None:
     assert residue._as_power(base**power) == (base, power)
+
+
+def test_a_tie_that_residues_cannot_tell_takes_bounded_time() -> None:
+    """A root found by search has no formula: what agrees with a tie in 6,000 digits is taken for one."""
+
+    def quantity(ar: Any) -> Any:
+        root = ar.root(lambda s: s * s - 2, ar.number(2))
+        return root * root + ar.number(F(1, 2))
+
+    assert not is_rational(quantity, F(5, 2))
+    assert settle(quantity, to_digits(1), 1) == 2
+    assert settle(quantity, to_digits(3), 3) == Decimal("2.50")
 
 
 # Ties in what is printed: the oracle has 60 digits, and calls a tie what agrees with one in 45

@@ -10,7 +10,8 @@ computed anew (Ziv's strategy). This ends because the width tends to zero, unles
 tie between two results, or 0. Most of what is not computed in fractions is transcendental, as e^q and ln q
 are for rational q other than 0 and 1, and e^{πq} (A. O. Gelfond), and so no tie. But sines and cosines of
 30° and 60° are rational, so is 4^(1/2), and e^{μφ} can cancel. So where an enclosure closes in on a tie,
-`residue` is asked whether the value is that number, and if it is, that number is rounded.
+`residue` is asked whether the value is that number, and if it is, that number is rounded. Where it has no
+answer (a root found by search), what agrees with a tie to `CLOSEST` digits is taken for it, so that all ends.
 
 A comparison, such as μφ against ln(T_h/T_l), is decided once the enclosure of the difference excludes zero.
 """
@@ -35,6 +36,8 @@ Rounding = Callable[[Fraction | Decimal], T]
 
 # Far more than any valid input was found to need (about 6000): a bug must not become a hang.
 LARGEST_PRECISION = 50_000
+# Closer to a tie than valid inputs can bring a value that is none; where residues cannot tell, it is one.
+CLOSEST = 6000
 WIDE = 5000  # digits, more than the ratio of any two numbers written beside each other has
 
 
@@ -107,7 +110,9 @@ def settle(quantity: Quantity, round_: Rounding[T], digits: int) -> T:
             return lo
         from_zero += value.lo <= 0 <= value.hi
         tie = _tie(value, lo, hi, digits) if from_zero != 1 else None
-        return None if tie is None or not _is(quantity, tie) else round_(tie)
+        if tie is None or not (_is(quantity, tie) or _is_narrow(value, CLOSEST)):
+            return None
+        return round_(tie)
 
     try:
         return round_(quantity(EXACT))
@@ -119,11 +124,16 @@ def _tie(value: Enclosure, lo: float | Decimal, hi: float | Decimal, digits: int
     """The number between two rounded results that an enclosure seems to close in on, if it is one."""
     if value.lo <= 0 <= value.hi:
         return Fraction(0)
+    if is_infinite(lo) or is_infinite(hi) or abs(value.hi.adjusted()) > WIDE:
+        return None
+    return (Fraction(lo) + Fraction(hi)) / 2 if _is_narrow(value, digits) else None
+
+
+def _is_narrow(value: Enclosure, digits: int) -> bool:
+    """Whether the ends of an enclosure beside 0 agree to about so many digits."""
     context = decimal_context(digits, ROUND_HALF_EVEN)
     width = context.divide(context.subtract(value.hi, value.lo), value.hi)
-    if is_infinite(lo) or is_infinite(hi) or width.adjusted() > -digits or abs(value.hi.adjusted()) > WIDE:
-        return None
-    return (Fraction(lo) + Fraction(hi)) / 2
+    return value.lo * value.hi > 0 and width.adjusted() <= -digits
 
 
 def _is(quantity: Quantity, value: Fraction) -> bool:
