@@ -131,9 +131,11 @@ def _tie(value: Enclosure, lo: float | Decimal, hi: float | Decimal, digits: int
 
 def _is_narrow(value: Enclosure, digits: int) -> bool:
     """Whether the ends of an enclosure beside 0 agree to about so many digits."""
+    if value.lo <= 0 <= value.hi:
+        return False
     context = decimal_context(digits, ROUND_HALF_EVEN)
     width = context.divide(context.subtract(value.hi, value.lo), value.hi)
-    return value.lo * value.hi > 0 and width.adjusted() <= -digits
+    return width.adjusted() <= -digits
 
 
 def _is(quantity: Quantity, value: Fraction) -> bool:
