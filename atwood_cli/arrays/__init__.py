@@ -28,7 +28,6 @@ LET_GO = 4_000_000  # doubles; the GNU C library's limit is 32 MB
 LEAVE = 1_000  # rows of a block that are better solved with those of others
 THREADS = 4  # more would wait for the interpreter, and hold 30 MB of columns each
 FAST_WINDOW = 2.0**-250, 2.0**250  # beyond it, what comes in between may overflow though results do not
-NO_DEFAULT = "is None; give it, or leave it out for the default"
 MASSES, MAY_BE_ABSENT = ("m1", "m2"), ("M", "mu", "mu_k", "R")
 REAL = "biufOSU"
 """Kinds of arrays: those of real numbers, and those whose elements may be; NumPy takes others for numbers."""
