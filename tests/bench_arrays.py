@@ -1,6 +1,7 @@
 """solve_arrays beside the paper's formulas in plain NumPy: python -m tests.bench_arrays [ROWS]
 
-One run in turn, medians of the repeats. What counts are the ratios; the cold first calls stand apart.
+One run in turn, medians of the repeats. What counts are the ratios; the cold first calls stand apart. Then
+the families of rows that are hard, in rows a second.
 """
 
 import statistics
@@ -8,7 +9,7 @@ import sys
 import time
 import tracemalloc
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -19,11 +20,15 @@ REPEATS = 5
 Columns = tuple[Any, Any, Any, Any]
 
 
-def ordinary(rows: int) -> Columns:
+def ordinary(rows: int, mu: Any = None) -> Columns:
     rng = np.random.default_rng(2026)
     m1 = 10 ** rng.uniform(-2, 2, rows)
     m2 = m1 * (1 + 10 ** rng.uniform(-2, 2, rows))
-    return m1, m2, 10 ** rng.uniform(-2, 3, rows), 10 ** rng.uniform(-2, 0.3, rows)
+    return m1, m2, 10 ** rng.uniform(-2, 3, rows), 10 ** rng.uniform(-2, 0.3, rows) if mu is None else mu
+
+
+def more_slip(rows: int) -> Columns:
+    return ordinary(rows, np.random.default_rng(27).uniform(0, 1, rows))
 
 
 def near_critical(rows: int) -> Columns:
@@ -42,6 +47,111 @@ def near_critical(rows: int) -> Columns:
     return m1, m2, M, mu
 
 
+def at_the_threshold(rows: int, least: float = -15.0, most: float = -3.0) -> Columns:
+    """Within that power of ten of m2 = m1 e^{μπ}."""
+    rng = np.random.default_rng(5)
+    m1, mu = 10 ** rng.uniform(-2, 2, rows), rng.uniform(0.01, 2, rows)
+    off = 1 + rng.choice([-1, 1], rows) * 10 ** rng.uniform(least, most, rows)
+    return m1, m1 * np.exp(mu * np.pi) * off, 10 ** rng.uniform(-2, 3, rows), mu
+
+
+class Family(NamedTuple):
+    """A kind of rows that is hard: how they are drawn, what is asked for, how accurately."""
+
+    draw: Callable[[int], dict[str, Any]]
+    accuracy: Any = "exact"
+    quantities: tuple[str, ...] | None = None
+
+
+def _named(columns: Columns) -> dict[str, Any]:
+    return dict(zip(("m1", "m2", "M", "mu"), columns, strict=True))
+
+
+def _with(**more: Callable[[Any, int], Any]) -> Callable[[int], dict[str, Any]]:
+    """Ordinary rows with other columns beside, or without some."""
+
+    def draw(rows: int) -> dict[str, Any]:
+        rng = np.random.default_rng(3)
+        given = _named(ordinary(rows)) | {name: of(rng, rows) for name, of in more.items()}
+        return {name: column for name, column in given.items() if column is not None}
+
+    return draw
+
+
+def _anything(rng: Any, rows: int) -> Any:
+    return 10.0 ** rng.uniform(-300, 300, rows)
+
+
+def _whole(least: int, most: int) -> Callable[[Any, int], Any]:
+    return lambda rng, rows: rng.integers(least, most, rows).astype(float)
+
+
+def _nearly_equal(rows: int) -> dict[str, Any]:
+    rng = np.random.default_rng(4)
+    m1 = 10 ** rng.uniform(-2, 2, rows)
+    m2 = m1 * (1 + 10 ** rng.uniform(-15, -2, rows))
+    return {"m1": m1, "m2": m2, "M": 10 ** rng.uniform(-2, 3, rows), "wrap": 360.0}
+
+
+def _strong(rows: int) -> dict[str, Any]:
+    """μφ above 700."""
+    rng = np.random.default_rng(6)
+    m1, m2, M, _ = ordinary(rows)
+    return {"m1": m1, "m2": m2, "M": M, "mu": rng.uniform(225, 400, rows)}
+
+
+VECTOR = ("friction_force_x", "friction_force_y")
+FAMILIES = {
+    "near-critical": Family(lambda rows: _named(near_critical(rows)), "certified"),
+    "m2 within 1e-15 to 1e-3 of m1 e^{μπ}": Family(lambda rows: _named(at_the_threshold(rows)), "certified"),
+    "m2 within 1e-17 to 1e-12 of m1 e^{μπ}": Family(
+        lambda rows: _named(at_the_threshold(rows, -17, -12)), "certified"
+    ),
+    "masses and M over 1e±300": Family(_with(m1=_anything, m2=_anything, M=_anything), "certified"),
+    "the same, exact": Family(_with(m1=_anything, m2=_anything, M=_anything)),
+    "μφ above 700": Family(_strong, "certified"),
+    "ordinary, exact": Family(_with()),
+    "exact, wrap a column": Family(_with(wrap=lambda rng, rows: rng.uniform(1, 720, rows))),
+    "the same, all quantities": Family(
+        _with(
+            wrap=lambda rng, rows: rng.uniform(1, 720, rows), R=lambda rng, rows: rng.uniform(0.01, 1, rows)
+        ),
+        quantities=(
+            "acceleration",
+            *VECTOR,
+            "axle_force",
+            "torque",
+            "rim_acceleration",
+            "angular_acceleration",
+            "critical_heavier_mass",
+            "least_heavier_mass",
+            "least_pulley_mass",
+        ),
+    ),
+    "exact, wrap a column of 180, friction_force_x, y, no mu": Family(
+        _with(mu=lambda rng, rows: None, wrap=lambda rng, rows: np.full(rows, 180.0)), quantities=VECTOR
+    ),
+    "nearly equal masses, wrap 360, friction_force_x, y": Family(_nearly_equal, quantities=VECTOR),
+    "exact, friction_force_max": Family(_with(), quantities=("friction_force_max",)),
+    "exact, friction_force_min": Family(_with(), quantities=("friction_force_min",)),
+    "certified, friction_force_min and max": Family(
+        _with(), "certified", ("friction_force_min", "friction_force_max")
+    ),
+    "exact rows of small integers": Family(
+        _with(m1=_whole(1, 20), m2=_whole(1, 20), M=_whole(0, 20), mu=lambda rng, rows: None)
+    ),
+    "the same, g = 10": Family(
+        _with(
+            m1=_whole(1, 20),
+            m2=_whole(1, 20),
+            M=_whole(0, 20),
+            mu=lambda rng, rows: None,
+            g=lambda rng, rows: 10.0,
+        )
+    ),
+}
+
+
 def copied(*columns: Any) -> Any:
     """The ceiling: inputs copied into as many outputs."""
     return [column.copy() for column in (*columns, *columns[:2])], np.zeros(len(columns[0]), np.int8)
@@ -55,8 +165,17 @@ def seconds(work: Callable[[], Any]) -> float:
     return taken
 
 
-def main(rows: int) -> None:
-    scenes = ordinary(rows)
+def warm(given: dict[str, Any], accuracy: Any, quantities: Any, times: int) -> float:
+    """The median of runs but for the first."""
+
+    def work() -> object:
+        return solve_arrays(**given, accuracy=accuracy, quantities=quantities)
+
+    work()
+    return statistics.median(seconds(work) for _ in range(times))
+
+
+def beside_the_paper(what: str, scenes: Columns) -> None:
     works: dict[str, Callable[[], Any]] = {
         "paper": lambda: paper_in_numpy(*scenes),
         "fast": lambda: solve_arrays(*scenes, accuracy="fast"),
@@ -66,14 +185,24 @@ def main(rows: int) -> None:
     with np.errstate(all="ignore"):
         cold = {name: seconds(work) for name, work in works.items()}
         times = [{name: seconds(work) for name, work in works.items()} for _ in range(REPEATS)]
-    print(f"{rows} ordinary scenes, the seven standard quantities:")
+    print(f"{scenes[0].size} {what} scenes, the seven standard quantities:")
     for name in works:
         warm = statistics.median(one[name] for one in times)
         ratio = statistics.median(one["paper"] / one[name] for one in times)
         print(f"  {name:9}  {warm:6.3f} s, {ratio:5.2f} x the paper's throughput, cold {cold[name]:6.3f} s")
-    scenes = near_critical(rows // 10)
-    taken = statistics.median(seconds(works["certified"]) for _ in range(REPEATS))
-    print(f"{rows // 10} near-critical scenes, certified: {rows / 10 / taken / 1e6:.2f} million a second")
+
+
+def main(rows: int) -> None:
+    beside_the_paper("ordinary", ordinary(rows))
+    beside_the_paper("ordinary (mu uniform in 0 to 1)", more_slip(rows))
+    print("Rows a second, in families that are hard:")
+    for name, family in FAMILIES.items():
+        given = family.draw(rows // 50)
+        taken = warm(given, family.accuracy, family.quantities, 3)
+        print(f"  {name:56} {rows // 50 / taken:12,.0f}")
+    few = _named(ordinary(100))
+    for accuracy in ("fast", "certified", "exact"):
+        print(f"100 rows, {accuracy}: {warm(few, accuracy, None, 99) * 1e3:.2f} ms")
     tracemalloc.start()
     results = solve_arrays(*ordinary(rows // 5))
     _, peak = tracemalloc.get_traced_memory()

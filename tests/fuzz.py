@@ -30,7 +30,7 @@ import polars as pl
 import typer
 
 from atwood_cli import SceneError, cli, solve, solve_arrays
-from atwood_cli.arrays.rows import COLUMNS
+from atwood_cli.arrays.plan import COLUMNS
 from atwood_cli.batch.formats import FORMATS
 from atwood_cli.model.quantities import NAMES
 from atwood_cli.model.scene import MEASURED, PARAMETERS

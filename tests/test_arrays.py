@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
 from atwood_cli.arithmetic.lazy import lazy
 from atwood_cli.arrays import ACCURACIES, MAY_BE_ABSENT, STATUSES
-from atwood_cli.arrays.rows import COLUMNS, Accuracy
+from atwood_cli.arrays.plan import COLUMNS, Accuracy
 from atwood_cli.model.case import Case
 from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import Scene
@@ -246,7 +246,9 @@ def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> N
     whole = solve_arrays(**given, accuracy=accuracy)
     every_other: dict[str, Any] = {name: np.repeat(c, 2)[::2] for name, c in given.items()}
     strided = solve_arrays(**every_other, accuracy=accuracy)
-    monkeypatch.setitem(arrays.BLOCK, accuracy, 7)
+    monkeypatch.setattr(arrays, "BLOCK", 7)
+    monkeypatch.setattr(arrays.rows, "SMALLEST", 3)
+    monkeypatch.setattr(arrays.rows, "ROOM", 0)
     in_blocks = solve_arrays(**given, accuracy=accuracy)
     for name in whole:
         np.testing.assert_array_equal(whole[name], in_blocks[name])
@@ -254,14 +256,14 @@ def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_blocks_are_the_same_on_any_number_of_processors(monkeypatch: pytest.MonkeyPatch) -> None:
-    """As the last place of a row that goes up the ladder may depend on the rows of its block."""
-    monkeypatch.setitem(arrays.BLOCK, "certified", 7)
+    """And so is which rows are solved together: the last place could depend on it."""
+    monkeypatch.setattr(arrays, "BLOCK", 7)
     on_threads = Mock(wraps=arrays._on_threads)
     monkeypatch.setattr(arrays, "_on_threads", on_threads)
     for count in (None, 1, 3, 16):
         monkeypatch.setattr("os.cpu_count", Mock(return_value=count))
         solve_arrays(np.ones(100), 3.0, 10.0, 0.3)
-    first, *others = (call.args[1] for call in on_threads.call_args_list)
+    first, *others = (call.args[1] for call in on_threads.call_args_list if call.args[1])
     assert len(first) == 16
     assert others == [first] * 3
 
@@ -294,9 +296,9 @@ def test_rows_that_go_up_are_solved_wherever_they_wait(monkeypatch: pytest.Monke
     """With those of their block, where they are many, or of all blocks; and some go up twice."""
     given = columns(rows("ordinary", 200) + rows("near_critical", 800))
     exact = solve_arrays(**given, accuracy="exact")
-    monkeypatch.setitem(arrays.BLOCK, "certified", 100)
+    monkeypatch.setattr(arrays, "BLOCK", 100)
     for leave in (0, 1, 10, 1000):
-        monkeypatch.setattr(arrays, "LEAVE", leave)
+        monkeypatch.setattr(arrays.rows, "LEAVE", leave)
         results = solve_arrays(**given)
         for name in exact:
             np.testing.assert_array_max_ulp(results[name], exact[name], 4)

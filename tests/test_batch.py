@@ -23,7 +23,7 @@ from hypothesis import strategies as st
 
 from atwood_cli import solve
 from atwood_cli.arrays import solve_arrays
-from atwood_cli.arrays.rows import COLUMNS
+from atwood_cli.arrays.plan import COLUMNS
 from atwood_cli.batch import formats as tables
 from atwood_cli.batch.formats import FORMATS
 from atwood_cli.batch.layout import inputs_among

@@ -1,77 +1,137 @@
-"""The arithmetic of doubles, in NumPy: single numbers or columns, a row a scene."""
+"""The arithmetic of doubles, as formulas of columns, a row a scene; and what all formulas of columns use."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from functools import cache
 from math import pi
 from typing import Any
 
 import numpy as np
 
-from .error_free import Column
-from .interval import enclosures
-from .rational import EXACT, Irrational
-
-ENOUGH = enclosures(80)
-"""The arithmetic that constants and tables are computed in, once, before they are rounded."""
+from .symbolic import Formula, Formulas, Part, formula
+from .tables import precise_cos_sin
 
 
-class Floats:
+class Unvouched(ArithmeticError):
+    """This arithmetic has no bound for the operation: take a more accurate one."""
+
+
+def maximum(x: Part, y: Part) -> Any:
+    """The larger of the two."""
+    return Formula("maximum", formula(x), formula(y))
+
+
+def minimum(x: Part, y: Part) -> Any:
+    """The smaller of the two."""
+    return Formula("minimum", formula(x), formula(y))
+
+
+def absolute(x: Part) -> Any:
+    """The size of x."""
+    return Formula("abs", x) if isinstance(x, Formula) else abs(x)
+
+
+Conditions = tuple[Formula, ...]
+
+
+def with_all(*many: Conditions) -> Conditions:
+    """All of the conditions, each once."""
+    return tuple({id(one): one for some in many for one in some}.values())
+
+
+def at_most(x: Part, y: Part) -> Formula:
+    """Whether x <= y; not where either is no number."""
+    return Formula("<=", formula(x), formula(y))
+
+
+def less(x: Part, y: Part) -> Formula:
+    """Whether x < y."""
+    return Formula("<", formula(x), formula(y))
+
+
+def equal(x: Part, y: Part) -> Formula:
+    """Whether x = y."""
+    return Formula("==", formula(x), formula(y))
+
+
+def both(x: Formula, y: Formula) -> Formula:
+    """Whether both conditions hold."""
+    return Formula("and", x, y)
+
+
+def is_finite(x: Part) -> Formula:
+    """Whether x is a number."""
+    return Formula("finite", formula(x))
+
+
+def joined(x: Part | None, y: Part | None) -> Any:
+    """The sum of two columns, either of which may be None."""
+    return y if x is None else x if y is None else x + y
+
+
+def where(condition: Formula, x: Part, y: Part) -> Formula:
+    """x where the condition holds, else y."""
+    return Formula("where", condition, formula(x), formula(y))
+
+
+def looked_up(table: Any, index: Formula) -> Formula:
+    """The entries of a table of doubles at a column of indices; beyond its ends, those at its ends."""
+    return Formula("take", index, table)
+
+
+class Doubles(Formulas):
     """Doubles, as they come."""
 
-    pi = pi
+    pi = formula(pi)
 
-    def number(self, q: Any) -> Any:
-        return float(q) if isinstance(q, Fraction | int) else q
+    def number(self, q: Any) -> Formula:
+        return formula(q)
 
-    def is_zero(self, x: Any) -> bool:
-        return isinstance(x, float) and x == 0
+    def is_zero(self, x: Formula) -> bool:
+        return bool(x.op == "number" and x.parts[0] == 0)
 
-    exp, expm1, log1p, sqrt = np.exp, np.expm1, np.log1p, np.sqrt
+    def hypot(self, x: Formula, y: Formula | int) -> Formula:
+        """NumPy's own, which minds overflow, takes ten times as long."""
+        return self.sqrt(x * x + y * y)
 
-    def hypot(self, x: Any, y: Any) -> Any:
-        return np.sqrt(x * x + y * y)  # NumPy's own, which minds overflow, takes ten times as long
-
-    def cos_sin(self, x: Any) -> tuple[Any, Any]:
-        return np.cos(x), np.sin(x)
-
-    def cos_sin_of_degrees(self, x: Any) -> tuple[Any, Any]:
+    def cos_sin_of_degrees(self, x: Any) -> tuple[Formula, Formula]:
         if isinstance(x, Fraction):
             cos, sin = precise_cos_sin(x)
-            return float(cos), float(sin)
+            return formula(cos), formula(sin)
         folded, turn = fold(x)
         return turn(*self.cos_sin(folded * (pi / 180)))
 
-    def root(self, f: Callable[[Any], Any], end: Any) -> Any:
+    def root(self, f: Callable[[Formula], Formula], end: Formula) -> Formula:
         """By bisection, to the last place but one."""
-        low, high = np.zeros_like(end), np.array(end)
+        low, high = formula(0.0), end
         for _ in range(54):
             half = (low + high) / 2
-            before = f(half) < 0
-            low, high = np.where(before, half, low), np.where(before, high, half)
+            before = less(f(half), 0.0)
+            low, high = where(before, half, low), where(before, high, half)
         return (low + high) / 2
 
 
-FLOATS = Floats()
+DOUBLES = Doubles()
 
 
-def fold(degrees: Column) -> tuple[Column, Callable[[Any, Any], tuple[Any, Any]]]:
-    """The angle less its quarter turns, exactly, and what they do to its cosine and sine."""
-    degrees = np.fmod(degrees, 360.0)
-    quarters = np.rint(degrees / 90)
-    which = quarters.astype(np.int64) % 4
+def fold(degrees: Formula) -> tuple[Formula, Callable[..., tuple[Any, Any]]]:
+    """The angle less its quarter turns, exactly, and what they do to its cosine and sine.
 
-    def turn(cos: Any, sin: Any) -> tuple[Any, Any]:
-        return np.choose(which, [cos, -sin, -cos, sin]), np.choose(which, [sin, cos, -sin, -cos])
+    That is to exchange them, and to turn their signs round where they are ``signed``.
+    """
+    degrees = Formula("fmod", degrees, formula(360.0))
+    quarters = Formula("rint", degrees / 90)
+    which = Formula("int", quarters)
+    odd = Formula("==", Formula("bits", which, 1), formula(1.0))
+    signs = [looked_up(table, Formula("bits", which, 3)) for table in SIGNS]
+
+    def turn(cos: Part, sin: Part, signed: bool = True) -> tuple[Any, Any]:
+        x, y = where(odd, sin, cos), where(odd, cos, sin)
+        return (x * signs[0], y * signs[1]) if signed else (x, y)
 
     return degrees - 90 * quarters, turn
 
 
-@cache
-def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
-    """Cosine and sine to 70 digits, more than twice those of a double-double; exact where rational."""
-    try:
-        return EXACT.cos_sin_of_degrees(degrees)
-    except Irrational:
-        cos, sin = ENOUGH.cos_sin_of_degrees(degrees % 360)
-        return Fraction(cos.lo), Fraction(sin.lo)
+SIGNS = np.array([1.0, -1.0, -1.0, 1.0]), np.array([1.0, 1.0, -1.0, -1.0])
+"""Of cosine and sine, by the number of quarter turns."""

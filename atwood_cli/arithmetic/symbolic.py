@@ -26,29 +26,46 @@ class Symbol(NamedTuple):
 
 
 class Formula:
-    """An operation ``op`` on its ``parts``, which are formulas; or a ``"symbol"`` or ``"integer"``."""
+    """An operation ``op`` on its ``parts``, formulas or what else it takes; or a symbol or a number.
+
+    A ``"symbol"`` has a `Symbol`, or the name of a column, a ``"number"`` an int or a float.
+    """
+
+    __slots__ = ("op", "parts")
 
     def __init__(self, op: str, *parts: Any) -> None:
         self.op, self.parts = op, parts
 
-    def __add__(self, other: Formula | int) -> Formula:
-        return Formula("+", self, _formula(other))
+    def __add__(self, other: Part) -> Formula:
+        return Formula("+", self, formula(other))
 
-    def __sub__(self, other: Formula) -> Formula:
-        return Formula("-", self, other)
+    def __radd__(self, other: float) -> Formula:
+        return Formula("+", formula(other), self)
 
-    def __mul__(self, other: Formula | int) -> Formula:
-        return self if other == 1 else Formula("*", self, _formula(other))
+    def __sub__(self, other: Part) -> Formula:
+        return Formula("-", self, formula(other))
 
-    def __rmul__(self, other: int) -> Formula:
-        return Formula("*", _formula(other), self)
+    def __rsub__(self, other: float) -> Formula:
+        return Formula("-", formula(other), self)
 
-    def __truediv__(self, other: Formula | int) -> Formula:
-        return Formula("/", self, _formula(other))
+    def __mul__(self, other: Part) -> Formula:
+        return self if other == 1 else Formula("*", self, formula(other))
+
+    def __rmul__(self, other: float) -> Formula:
+        return self if other == 1 else Formula("*", formula(other), self)
+
+    def __truediv__(self, other: Part) -> Formula:
+        return Formula("/", self, formula(other))
+
+    def __rtruediv__(self, other: float) -> Formula:
+        return Formula("/", formula(other), self)
+
+    def __neg__(self) -> Formula:
+        return Formula("*", self, formula(-1.0))
 
     def symbols(self) -> set[Symbol]:
         """The symbols that the formula is made of."""
-        if self.op in ("symbol", "integer"):
+        if self.op in ("symbol", "number"):
             return {self.parts[0]} if self.op == "symbol" else set()
         return set().union(*(part.symbols() for part in self.parts))
 
@@ -56,7 +73,7 @@ class Formula:
         """The enclosure of its value, with exactly those numbers for the symbols. Raises Unsettled."""
         if self.op == "symbol":
             return Enclosure(ar, values[self.parts[0]], values[self.parts[0]])
-        if self.op == "integer":
+        if self.op == "number":
             return ar.number(self.parts[0])
         parts = [part.worked_out(ar, values) for part in self.parts]
         if self.op == "square":
@@ -66,12 +83,41 @@ class Formula:
         return cast(Enclosure, ar.cos_sin(*parts)[1] if self.op == "sin" else getattr(ar, self.op)(*parts))
 
 
-def _formula(part: Formula | int) -> Formula:
-    return Formula("integer", part) if isinstance(part, int) else part
+Part = Formula | float
+"""What formulas of columns are made of: a column's formula, or a number that is the same in all rows."""
 
 
-class Symbols:
-    """The arithmetic of formulas: as much of `Arithmetic` as the equations that are written out need."""
+def formula(part: Part | Fraction) -> Formula:
+    """A formula, of a number too."""
+    if isinstance(part, Formula):
+        return part
+    return Formula("number", float(part) if isinstance(part, Fraction) else part)
+
+
+class Formulas:
+    """The arithmetic of formulas: each function is recorded under its name."""
+
+    def exp(self, x: Formula) -> Formula:
+        return Formula("exp", x)
+
+    def expm1(self, x: Formula) -> Formula:
+        return Formula("expm1", x)
+
+    def log1p(self, x: Formula) -> Formula:
+        return Formula("log1p", x)
+
+    def sqrt(self, x: Formula) -> Formula:
+        return Formula("sqrt", x)
+
+    def hypot(self, x: Formula, y: Formula | int) -> Formula:
+        return Formula("hypot", x, formula(y))
+
+    def cos_sin(self, x: Formula) -> tuple[Formula, Formula]:
+        return Formula("cos", x), Formula("sin", x)
+
+
+class Symbols(Formulas):
+    """As much of `Arithmetic` as the equations that are written out need: inputs are symbols."""
 
     def __init__(self, inputs: Sequence[Symbol]) -> None:
         self.inputs = inputs
@@ -85,18 +131,3 @@ class Symbols:
 
     def is_zero(self, x: Formula) -> bool:
         return bool(x.op == "symbol" and x.parts[0].of == 0)
-
-    def expm1(self, x: Formula) -> Formula:
-        return Formula("expm1", x)
-
-    def log1p(self, x: Formula) -> Formula:
-        return Formula("log1p", x)
-
-    def sqrt(self, x: Formula) -> Formula:
-        return Formula("sqrt", x)
-
-    def hypot(self, x: Formula, y: Formula | int) -> Formula:
-        return Formula("hypot", x, _formula(y))
-
-    def cos_sin(self, x: Formula) -> tuple[Formula, Formula]:
-        return Formula("cos", x), Formula("sin", x)

@@ -10,24 +10,27 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from fractions import Fraction
 from math import inf, nan, prod
+from threading import Lock
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..arithmetic.double_double import WINDOW
-from ..arithmetic.error_free import Column
+from ..arithmetic.tables import Column
 from ..model.quantities import NAMES, STANDARD
 from ..model.scene import MISSING_MASS, PARAMETERS, SceneError
 from ..model.units import nearest
-from .rows import COLUMNS, Accuracy, Index, Rows
+from .plan import COLUMN, COLUMNS, LADDERS, Accuracy, Given
+from .program import Room
+from .rows import Index, Left, Rows
 
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
-BLOCK = {"fast": 131_072, "certified": 131_072, "exact": 81_920}  # rows, as measured
-LET_GO = 4_000_000  # doubles; the GNU C library's limit is 32 MB
-LEAVE = 1_000  # rows of a block that are better solved with those of others
-THREADS = 4  # more would wait for the interpreter, and hold 30 MB of columns each
+BLOCK = 131_072  # rows, as measured
+THREADS = 4  # more would wait for the interpreter
 FAST_WINDOW = 2.0**-250, 2.0**250  # beyond it, what comes in between may overflow though results do not
+SHAPES = ("inertia", "wrap")
+"""Inputs that a program is made for, where all rows share them: 1/2 and π are no mere numbers."""
 MASSES, MAY_BE_ABSENT = ("m1", "m2"), ("M", "mu", "mu_k", "R")
 REAL = "biufOSU"
 """Kinds of arrays: those of real numbers, and those whose elements may be; NumPy takes others for numbers."""
@@ -83,26 +86,32 @@ def solve_arrays(
     kinds = {"regime": np.int8, "status": np.int8}
     results = {name: np.empty(shape, kinds.get(name, np.float64)) for name in (*names, "status")}
     flat = {name: column.reshape(-1) for name, column in results.items()}
-    left: dict[tuple[tuple[str, ...], int], list[NDArray[np.intp]]] = {}
+    left: dict[Left, list[NDArray[np.intp]]] = {}
 
-    def solve_rows(index: Index, names: Sequence[str], rung: int, leave: int) -> None:
-        given = {name: _cut(column, shape, index) for name, column in inputs.items()}
-        out = {name: flat[name][index] for name in (*names, "status")}
-        with np.errstate(all="ignore"):
-            for some, higher, within in _solve(given, out, names, accuracy, rung, leave):
-                assert isinstance(index, slice)
-                left.setdefault((some, higher), []).append(within + index.start)
-        if not isinstance(index, slice):
-            for name, column in out.items():
-                flat[name][index] = column
+    def solve_block(block: Index, room: Room, what: Left | None) -> None:
+        """All of a block's rows, or what was left of rows that agree."""
+        given = {name: _cut(column, shape, block) for name, column in inputs.items()}
+        out = {name: flat[name][block] for name in results}
+        rows = Rows(given, out, accuracy, room)
+        if what is None:
+            assert isinstance(block, slice)
+            rows.left = {} if len(blocks) > 1 else None
+            _solve(rows, tuple(names))
+            for left_rows, some in (rows.left or {}).items():
+                left.setdefault(left_rows, []).extend(index + block.start for index in some)
+        else:
+            rows.solve(slice(0, _length(block)), *what)
+        if not isinstance(block, slice):
+            for name in what[2] if what else ():
+                flat[name][block] = out[name]
 
-    blocks = _blocks(prod(shape), BLOCK[accuracy], THREADS)
-    leave = LEAVE if len(blocks) > 1 else 0
-    _on_threads(lambda block: solve_rows(block, names, 0, leave), blocks)
-    for (some, rung), indices in sorted(left.items()):
+    blocks = _blocks(prod(shape), BLOCK, THREADS)
+    _on_threads(solve_block, [(block, None) for block in blocks])
+    again: list[tuple[Index, Left | None]] = []
+    for what, indices in left.items():
         index = np.sort(np.concatenate(indices))  # whichever thread was first
-        for block in _blocks(index.size, BLOCK[accuracy]):
-            solve_rows(index[block], some, rung, 0)
+        again += [(index[block], what) for block in _blocks(index.size, BLOCK)]
+    _on_threads(solve_block, again)
     return results
 
 
@@ -137,45 +146,52 @@ def _cut(column: Column, shape: tuple[int, ...], rows: Index) -> Column:
     return np.broadcast_to(column, shape).flat[rows]
 
 
-def _on_threads(work: Callable[[slice], None], blocks: Sequence[slice]) -> None:
-    """NumPy lets go of the interpreter while it computes, so threads share the blocks."""
-    if len(blocks) < 2:
-        for block in blocks:
-            work(block)
+def _length(index: Index) -> int:
+    return index.stop - index.start if isinstance(index, slice) else index.size
+
+
+def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> None:
+    """NumPy lets go of the interpreter while it computes, so threads share the parts.
+
+    Each keeps a room of its own from part to part.
+    """
+    waiting = iter(parts)
+    taking = Lock()
+
+    def share() -> None:
+        room = Room()
+        with np.errstate(all="ignore"):
+            while True:
+                with taking:
+                    part = next(waiting, None)
+                if part is None:
+                    return
+                block, what = part
+                work(block, room, what)
+
+    count = min(THREADS, os.cpu_count() or 1, len(parts))
+    if count < 2:
+        share()
         return
-    # The GNU C library takes the largest array that was let go of as its measure of what is small. After
-    # this one, whose memory is never touched, it keeps a block's memory for the next one, which saves a
-    # quarter of a second of page faults in 10 million rows. Others need no such hint.
-    np.empty(LET_GO)
-    pool = ThreadPoolExecutor(min(THREADS, os.cpu_count() or 1))
+    pool = ThreadPoolExecutor(count)
     try:
-        for _ in pool.map(work, blocks):
-            pass
+        for done in [pool.submit(share) for _ in range(count)]:
+            done.result()
     finally:
-        pool.shutdown(cancel_futures=True)
+        waiting = iter(())
+        pool.shutdown()
 
 
-def _solve(
-    columns: Mapping[str, Column],
-    out: dict[str, NDArray[Any]],
-    names: Sequence[str],
-    accuracy: Accuracy,
-    rung: int,
-    leave: int,
-) -> Iterator[tuple[tuple[str, ...], int, NDArray[np.intp]]]:
-    """Write quantities of scenes, in the arithmetic on that rung or higher; yields what `Rows` leave."""
-    given = {name: _InputColumn.of(name, column, accuracy) for name, column in columns.items()}
-    out["status"][:] = status = _status(given, len(out["status"]))
-    for rows in _agreeing(given, status, accuracy):
-        yield from rows.solve(tuple(sorted(names, key=_order)), out, rung, leave)
+def _solve(rows: Rows, names: tuple[str, ...]) -> None:
+    """Write quantities of all rows, and their status."""
+    given = {name: _InputColumn.of(name, column, rows.accuracy) for name, column in rows.inputs.items()}
+    rows.results["status"][:] = status = _status(given, len(rows.results["status"]))
+    for index, agreed, far in _agreeing(given, status):
+        rung = len(LADDERS[rows.accuracy]) - 1 if far else 0
+        rows.solve(index, agreed, frozenset(), names, rung)
     if status.any():
         for name in names:
-            out[name][status != 0] = -1 if name == "regime" else nan
-
-
-def _order(name: str) -> int:
-    """Where a quantity comes in: first what divides no rows, last what divides them in its own way."""
-    return 0 if name == "mu_verge" else 2 if name.startswith("critical") else 1
+            rows.results[name][status != 0] = -1 if name == "regime" else nan
 
 
 # What is given in each row: which rows agree before any question is asked
@@ -208,17 +224,17 @@ class _InputColumn(NamedTuple):
         )
         return ~np.isin(self.kinds, may_be) | (self.column < 0)
 
-    def field(self, row: int) -> Any:
-        """The parameter for the rows of the same kind as this one: a number, or the column."""
+    def agreed(self, row: int) -> Any:
+        """What the rows of the same kind as this one agree on: see `Given`."""
         single = self.column.size == 1
         kind = self.kinds if self.kinds is USUAL else self.kinds[0 if single else row]
         if kind == ABSENT:
             return None
         if kind == INFINITE:
             return inf
-        if single or kind == ZERO:
-            return Fraction(float(self.column[0 if single else row]))
-        return self.column
+        if kind == ZERO:
+            return Fraction(0)
+        return Fraction(float(self.column[0])) if single and self.name in SHAPES else COLUMN
 
 
 def _status(given: Mapping[str, _InputColumn], size: int) -> NDArray[np.int8]:
@@ -239,9 +255,9 @@ def _status(given: Mapping[str, _InputColumn], size: int) -> NDArray[np.int8]:
 
 
 def _agreeing(
-    given: Mapping[str, _InputColumn], status: NDArray[np.int8], accuracy: Accuracy
-) -> Iterator[Rows]:
-    """The rows of a block in parts that agree on what is given and of which kind, and who is heavier."""
+    given: Mapping[str, _InputColumn], status: NDArray[np.int8]
+) -> Iterator[tuple[Index, Given, bool]]:
+    """The rows of a block in parts that agree on what is given; and whether that is beyond the window."""
     size, (m1, m2) = len(status), (given["m1"].column, given["m2"].column)
     digits = [(5, one.kinds) for one in given.values() if one.kinds is not USUAL]
     if not (m2 > m1).all():
@@ -257,10 +273,9 @@ def _agreeing(
         row = 0 if isinstance(index, slice) else int(index[0])
         if status[row]:
             continue
-        fields = dict.fromkeys(COLUMNS) | {name: of.field(row) for name, of in given.items()}
+        inputs = dict.fromkeys(COLUMNS) | {name: of.agreed(row) for name, of in given.items()}
         far = any(
             of.kinds is not USUAL and np.broadcast_to(of.kinds, size)[row] == FAR for of in given.values()
         )
         light, heavy = (float(np.broadcast_to(mass, size)[row]) for mass in (m1, m2))
-        sign = (heavy > light) - (heavy < light)
-        yield Rows(fields, sign, accuracy, index, far)
+        yield index, Given((heavy > light) - (heavy < light), tuple(inputs.values())), far

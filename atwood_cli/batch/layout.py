@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from unicodedata import normalize
 
 from ..arithmetic.rounding import to_double
-from ..arrays.rows import COLUMNS
+from ..arrays.plan import COLUMNS
 from ..model.scene import MEASURED, PARAMETERS, SceneError, parameter_of, read_plain, read_value
 from ..model.units import Malformed, read_unit, symbol_of, without_blanks
 from .formats import PARTED_BY, Piece, Unreadable

@@ -15,7 +15,7 @@ from tempfile import NamedTemporaryFile
 from typing import IO, TYPE_CHECKING, Any
 
 from ..arrays import solve_arrays
-from ..arrays.rows import Accuracy
+from ..arrays.plan import Accuracy
 from ..files import STREAM, written_beside
 from ..model.quantities import REGIMES
 from ..model.scene import Given, Scene, SceneError

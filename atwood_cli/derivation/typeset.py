@@ -47,7 +47,7 @@ def _write(f: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) ->
                 return _write_number(text(numbers[f.parts[0]]), latex)
             name = f.parts[0].name
             return in_math(name) if latex else name, SUM if " " in name else ATOM
-        case "integer":
+        case "number":
             return _write_number(str(f.parts[0]), latex)
         case "+" | "-":
             left, right = f.parts
@@ -57,7 +57,7 @@ def _write(f: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) ->
         case "square":
             return f"{tight(f.parts[0])}^2", ATOM
         case "hypot":
-            inside = " + ".join(tight(part) + "^2" * (part.op != "integer") for part in f.parts)
+            inside = " + ".join(tight(part) + "^2" * (part.op != "number") for part in f.parts)
             return (rf"\sqrt{{{inside}}}" if latex else f"√({inside})"), ATOM
         case "expm1":
             power = write(f.parts[0])[0]
@@ -72,7 +72,7 @@ def _write(f: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) ->
 def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, latex: bool) -> Written:
     """A product or quotient of all its factors: a minus in front, what divides below one line."""
     above, below = _factors(f)
-    minus = above[0].op == "integer" and above[0].parts[0] < 0
+    minus = above[0].op == "number" and above[0].parts[0] < 0
     if minus:
         above = above[1:]
     times = (r" \cdot " if latex else " · ") if numbers else (r" \, " if latex else " ")
@@ -96,7 +96,7 @@ def _factors(f: Formula) -> tuple[list[Formula], list[Formula]]:
         return [f], []
     (a, b), (c, d) = map(_factors, f.parts)
     above, below = (a + c, b + d) if f.op == "*" else (a + d, b + c)
-    return sorted(above, key=lambda part: part.op != "integer"), below
+    return sorted(above, key=lambda part: part.op != "number"), below
 
 
 def _write_number(digits: str, latex: bool) -> Written:

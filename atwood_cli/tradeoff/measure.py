@@ -21,7 +21,7 @@ import numpy as np
 from ..arithmetic.interval import decimal_context
 from ..arithmetic.rounding import as_typed, text, to_double
 from ..arrays import ACCURACIES, solve_arrays
-from ..arrays.rows import COLUMNS
+from ..arrays.plan import COLUMNS
 from ..model.machine import Undetermined
 from ..model.quantities import REGIMES, STANDARD
 from ..model.scene import STANDARD_GRAVITY, Scene, SceneError

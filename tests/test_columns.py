@@ -1,0 +1,338 @@
+"""The arithmetics of columns: every bound holds, and what is assumed of NumPy does; and their programs."""
+
+from collections.abc import Callable, Sequence
+from fractions import Fraction
+from math import isfinite
+from random import Random
+from typing import Any
+
+import flint
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from atwood_cli.arithmetic.double import DOUBLES, joined
+from atwood_cli.arithmetic.double_double import QUICK, ROUNDED, Pair, Pairs
+from atwood_cli.arithmetic.error_free import UNIT, head_of, two_product
+from atwood_cli.arithmetic.expansion import PAIRS, TRIPLES, Expansion
+from atwood_cli.arithmetic.symbolic import Formula, Part
+from atwood_cli.arithmetic.tables import cosines_and_sines, powers
+from atwood_cli.arrays.program import OPERATIONS, Program, Room
+
+LEVELS: dict[str, Any] = {
+    "rounded": ROUNDED,
+    "quick": QUICK,
+    "pairs": PAIRS,
+    "triples": TRIPLES,
+}
+EXPANSIONS = {"pairs": PAIRS, "triples": TRIPLES}
+rng = np.random.default_rng(2026)
+X, Y = 10 ** rng.uniform(-9, 9, (2, 400))
+SMALL = 10 ** rng.uniform(-30, 0.8, 400)
+USUAL = 10 ** rng.uniform(-1.5, 0.8, 400)
+# The whole range of doubles, subnormal ones too:
+FAR_X, FAR_Y = rng.uniform(1, 2, (2, 400)) * 2.0 ** rng.integers(-1074, 1023, (2, 400))
+DEGREES = np.concatenate(
+    [rng.uniform(0, 800, 390), [90.0, 180.0, 270.0, 360.0, 450.0, 30.0, 60.0, 150.0, 1e-9, 720.0]]
+)
+
+
+def arb(x: Any) -> flint.arb:
+    q = Fraction(x)
+    return flint.arb(flint.fmpq(q.numerator, q.denominator))
+
+
+def worked_out(formulas: Sequence[Part], **columns: Any) -> list[Any]:
+    """The columns of formulas."""
+    program = Program(formulas)
+    size = max((column.size for column in columns.values()), default=1)
+    results = [np.empty(size) for _ in formulas]
+    with np.errstate(all="ignore"):
+        inputs = [columns[name] for name in program.inputs]
+        program.run(inputs, results, Room().columns(program.between, size))
+    return results
+
+
+def symbols(ar: Any, count: int) -> list[Any]:
+    return [ar.number(Formula("symbol", f"x{i}")) for i in range(count)]
+
+
+def values(number: Pair | Expansion, *columns: Any) -> tuple[list[Fraction], list[float]]:
+    """The exact values that rows of a number stand for, and their bounds; infinite where it is not sure."""
+    if isinstance(number, Pair):
+        parts: list[Any] = [number.high] if number.low is None else [number.high, number.low]
+        exponent: Part = 0.0
+        bound = joined(number.loss, number.doubt)
+    else:
+        parts, exponent, bound = list(number.parts), number.exponent, number.bound
+    sure = number.sure if isinstance(number, Pair) else ()
+    for one in sure:
+        bound = Formula("where", one, Formula("+", *map(_formula, (bound, 0.0))), Formula("number", np.inf))
+    *columns_, powers_, bounds = worked_out(
+        [*parts, exponent, bound], **{f"x{i}": column for i, column in enumerate(columns)}
+    )
+    exact = []
+    for *row, power in zip(*columns_, powers_, strict=True):
+        total = sum((Fraction(float(part)) for part in row), Fraction(0)) if all(map(isfinite, row)) else 0
+        exact.append(total * Fraction(2) ** int(max(power, -5000)))
+    return exact, bounds.tolist()
+
+
+def _formula(part: Part) -> Formula:
+    return part if isinstance(part, Formula) else Formula("number", part)
+
+
+def off(number: Pair | Expansion, exact: Callable[..., flint.arb], *columns: Any, sure: float = 1.0) -> None:
+    """Assert that each row is within its bound, and how many at least have one."""
+    flint.ctx.prec = 1400
+    exactly, bounds = values(number, *columns)
+    for got, bound, *row in zip(exactly, bounds, *columns, strict=True):
+        if isfinite(bound):
+            want = exact(*(arb(float(x)) for x in row))
+            assert abs(arb(got) - want) <= arb(bound) * abs(want) + arb(Fraction(1, 10**400)), row
+    assert np.mean(np.isfinite(bounds)) >= sure
+
+
+def _many(x: Any, y: Any) -> Any:
+    """As many products and quotients as a quantity may take, 60: tails grow with each."""
+    z = x + y
+    for _ in range(15):
+        z = z / (x + y) * x / y * (x + y)
+    return z
+
+
+OPERATIONS_: dict[str, tuple[Callable[[Any, Any, Any], Any], Callable[..., flint.arb]]] = {
+    "sum": (lambda ar, x, y: x / y + y, lambda x, y: x / y + y),
+    "difference": (lambda ar, x, y: x / y - y, lambda x, y: x / y - y),
+    "of both signs": (
+        lambda ar, x, y: (y - x) + (x - 2 * y) / 3 - x,
+        lambda x, y: y - x + (x - 2 * y) / 3 - x,
+    ),
+    "cancelling": (lambda ar, x, y: (x + y) - x, lambda x, y: y),
+    "product": (lambda ar, x, y: x * y * (x / y), lambda x, y: x * x),
+    "quotient": (lambda ar, x, y: x / (x + y) / (x * y), lambda x, y: x / (x + y) / (x * y)),
+    "scaled": (lambda ar, x, y: -1 * (2 * x / 8) - y / 4, lambda x, y: -x / 4 - y / 4),
+    "root": (lambda ar, x, y: ar.sqrt(x / y), lambda x, y: (x / y).sqrt()),
+    "hypotenuse": (lambda ar, x, y: ar.hypot(x, y), lambda x, y: (x * x + y * y).sqrt()),
+    "log1p": (lambda ar, x, y: ar.log1p(x / y), lambda x, y: (x / y).log1p()),
+    "many": (lambda ar, x, y: _many(x, y), lambda x, y: _many(x, y)),
+    "pi": (lambda ar, x, y: ar.pi * x + y, lambda x, y: flint.arb.pi() * x + y),
+}
+UNSURE = {("rounded", "difference"), ("rounded", "of both signs"), ("quick", "of both signs")}
+"""What cancels once more than these tell."""
+
+
+@pytest.mark.parametrize("level", LEVELS)
+@pytest.mark.parametrize("operation", OPERATIONS_)
+def test_bounds_hold(level: str, operation: str) -> None:
+    ar = LEVELS[level]
+    ours, exact = OPERATIONS_[operation]
+    least = 0.0 if (level, operation) in UNSURE else 0.5 if operation == "cancelling" else 0.95
+    off(ours(ar, *symbols(ar, 2)), exact, X, Y, sure=least)
+
+
+@pytest.mark.parametrize("operation", OPERATIONS_)
+def test_triples_have_no_range(operation: str) -> None:
+    ours, exact = OPERATIONS_[operation]
+    off(ours(TRIPLES, *symbols(TRIPLES, 2)), exact, FAR_X, FAR_Y, sure=0.85)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_bounds_of_ordered_terms_hold(level: str) -> None:
+    """Where roundings weigh most: products just above 1, beside terms that are larger in all rows."""
+    ar = LEVELS[level]
+    x, y = rng.uniform(1, 1.01, 400), rng.uniform(1, 1.01, 400)
+    z = x * y * (1 + 1e-9)
+    a, b, c = symbols(ar, 3)
+    product = a * b
+    c.covers = product
+    off(c + product, lambda x, y, z: z + x * y, x, y, z)
+    off(ar.number(Fraction(3)) - a * b, lambda x, y: 3 - x * y, x, y, sure=float(ar is not ROUNDED))
+    near = Fraction(21, 10)  # off its double by 0.38 units
+    off(a / ar.number(near), lambda x: x / arb(near), 2.1 * x)
+    if isinstance(ar, Pairs):
+        assert (c + product).loss <= product.loss / 2 + ar.sum_loss
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_bounds_of_exponentials_hold(level: str) -> None:
+    ar = LEVELS[level]
+    most = {"pairs": 220, "triples": 1500}.get(level, 11)  # π times which is below 700, 5000, or 36
+    (x,) = symbols(ar, 1)
+    for column in (SMALL, USUAL, rng.uniform(0, most, 400)):
+        off(ar.expm1(x * ar.pi), lambda x: (x * flint.arb.pi()).expm1(), column)
+        off(ar.exp(x), lambda x: x.exp(), column, sure=0.9)
+    off(ar.log1p(x), lambda x: x.log1p(), SMALL)
+
+
+@pytest.mark.parametrize("level", ["quick", "pairs"])
+def test_there_is_no_bound_where_an_exponential_is_too_large(level: str) -> None:
+    ar = LEVELS[level]
+    (x,) = symbols(ar, 1)
+    _, bounds = values(ar.expm1(x) + 1, np.array([1.0, 800.0, 1e300]))
+    assert [isfinite(bound) for bound in bounds] == [True, False, False]
+
+
+def test_tiny_and_huge_arguments_of_triples() -> None:
+    (x,) = symbols(TRIPLES, 1)
+    tiny = rng.uniform(1, 2, 400) * 2.0 ** rng.integers(-1074, -100, 400)
+    off(TRIPLES.expm1(x), lambda x: x.expm1(), tiny)
+    off(TRIPLES.log1p(x), lambda x: x.log1p(), FAR_X)
+    off(TRIPLES.cos_sin(x)[1], lambda x: x.sin(), tiny)
+
+
+@pytest.mark.parametrize("level", EXPANSIONS)
+def test_bounds_of_angles_hold(level: str) -> None:
+    ar = EXPANSIONS[level]
+    (x,) = symbols(ar, 1)
+    cos, sin = ar.cos_sin_of_degrees(x)
+    off(cos, lambda x: _straight(x / 180 + arb(Fraction(1, 2))), DEGREES)
+    off(sin, lambda x: _straight(x / 180), DEGREES)
+    radians = np.concatenate([rng.uniform(0, 4, 300), 10 ** rng.uniform(-30, 0, 100)])
+    cos, sin = ar.cos_sin(x)
+    off(cos, lambda x: x.cos(), radians)
+    off(sin, lambda x: x.sin(), radians)
+    turns = np.array([90.0, 180.0, 270.0, 360.0, 450.0, 810.0])
+    for which, wanted in zip(
+        ar.cos_sin_of_degrees(x), ([0, -1, 0, 1, 0, 0], [1, 0, -1, 0, 1, 1]), strict=True
+    ):
+        exactly, bounds = values(which, turns)
+        assert exactly == wanted
+        if ar is PAIRS:
+            assert not any(bound for bound, value in zip(bounds, wanted, strict=True) if not value)
+
+
+def _straight(half_turns: flint.arb) -> flint.arb:
+    """sin πx, exactly 0 where it is."""
+    return flint.arb.sin_pi(half_turns)
+
+
+def test_a_root_is_where_the_signs_change() -> None:
+    x, end = symbols(PAIRS, 2)
+    root = PAIRS.root(lambda s: PAIRS.expm1(s) - x, end)
+    ends = 10 ** rng.uniform(-8, 0.5, 200)
+    off(root, lambda x, end: x.log1p(), np.expm1(ends * rng.uniform(0.05, 0.95, 200)), ends)
+
+
+def test_bounds_are_as_tight_as_they_need_be() -> None:
+    x, y = symbols(QUICK, 2)
+    assert (x * y).loss < 2.0**-66
+    assert QUICK.expm1(x).loss < 2.0**-61
+    for ar, least in ((PAIRS, 2.0**-90), (TRIPLES, 2.0**-137)):
+        x, y = symbols(ar, 2)
+        for number in (ar.expm1(x * ar.pi), ar.log1p(x / y), ar.sqrt(x / y)):
+            assert max(values(number, SMALL, Y)[1]) < least
+
+
+doubles = st.floats(2.0**-120, 2.0**120)
+
+
+@settings(max_examples=100)
+@given(doubles, doubles, st.sampled_from([ROUNDED, QUICK, PAIRS]))
+def test_sums_and_products_of_doubles_are_exact(x: float, y: float, ar: Any) -> None:
+    a, b = symbols(ar, 2)
+    numbers = [(a + b, Fraction(x) + Fraction(y)), (a - b, Fraction(x) - Fraction(y))]
+    numbers += [(a * b, Fraction(x) * Fraction(y))] if ar is PAIRS else []
+    for number, exact in numbers:
+        assert values(number, np.array([x]), np.array([y])) == ([exact], [0.0])
+
+
+@given(doubles | doubles.map(lambda x: -x), doubles)
+def test_numbers_are_as_columns_of_them(x: float, y: float) -> None:
+    """What is the same in all rows is computed once, with Python's doubles."""
+    product, error = two_product(x, y)
+    assert Fraction(product) + Fraction(error) == Fraction(x) * Fraction(y)
+    (head,) = worked_out([head_of(Formula("symbol", "x0"))], x0=np.array([x]))
+    assert head_of(x) == head[0]
+
+
+def test_the_library_is_within_its_assumed_bound() -> None:
+    """log1p of NumPy, on this machine, within one unit in the last place."""
+    flint.ctx.prec = 200
+    columns = 10 ** rng.uniform(-300, 300, 20_000)
+    worst = max(
+        float(abs(arb(got) - arb(x).log1p()) / np.spacing(abs(got)))
+        for x, got in zip(columns.tolist(), np.log1p(columns).tolist(), strict=True)
+    )
+    assert worst <= 1
+
+
+def test_tables_are_what_they_say() -> None:
+    flint.ctx.prec = 300
+    for n in (2, 3):
+        for steps, count in ((16_384, 16_384), (65_536, 4)):
+            for i in (0, 1, 3, count - 1):
+                got = sum(Fraction(float(column[i])) for column in powers(steps, n))
+                assert abs(arb(got) - (arb(Fraction(i, steps)) * arb(2).log()).expm1()) <= 2.0 ** (-53 * n)
+        for i in (0, 1, 180, 300, 420, 1260):
+            for column, function in zip(cosines_and_sines(n), ("cos_pi", "sin_pi"), strict=True):
+                got = sum(Fraction(float(part[i])) for part in column)
+                exact = getattr(flint.arb, function)(arb(Fraction(i - 180, 720)))
+                assert abs(arb(got) - exact) <= 2.0 ** (-53 * n)
+
+
+def test_doubles_have_the_same_names() -> None:
+    (x,) = symbols(DOUBLES, 1)
+    cos, sin = worked_out(DOUBLES.cos_sin_of_degrees(x), x0=DEGREES)
+    np.testing.assert_allclose(cos, np.cos(np.radians(DEGREES)), atol=1e-14)
+    np.testing.assert_allclose(sin, np.sin(np.radians(DEGREES)), atol=1e-14)
+    exact: Any = DOUBLES.cos_sin_of_degrees(Fraction(180))
+    assert [one.parts for one in exact] == [(-1.0,), (0.0,)]
+    (root,) = worked_out([DOUBLES.root(lambda s: s * s - x, x)], x0=np.array([2.0, 3.0]))
+    assert root == pytest.approx([2**0.5, 3**0.5], rel=1e-15)
+    assert np.finfo(float).eps / 2 == UNIT
+
+
+# Programs
+
+
+BINARY, UNARY = ["+", "-", "*", "/", "maximum"], ["abs", "rint", "sqrt"]
+
+
+def random_formulas(rng: Random, count: int) -> list[Formula]:
+    """Formulas that share what they are made of, some of them twice the same."""
+    made = [Formula("symbol", "x0"), Formula("symbol", "x1"), Formula("number", 3.0)]
+    for _ in range(count):
+        op = rng.choice([*BINARY, *UNARY, "where"])
+        one, two, three = (rng.choice(made[-12:]) for _ in range(3))
+        if op == "where":
+            made.append(Formula(op, Formula("<", one, two), two, three))
+        else:
+            made.append(Formula(op, one, two) if op in BINARY else Formula(op, one))
+    return [rng.choice(made) for _ in range(6)]
+
+
+def plainly(one: Any, columns: dict[str, Any]) -> Any:
+    if one.op == "symbol":
+        return columns[one.parts[0]]
+    if one.op == "number":
+        return np.full(5, one.parts[0])
+    parts = [plainly(part, columns) for part in one.parts]
+    out: Any = np.empty(5, np.bool_ if one.op == "<" else np.float64)
+    OPERATIONS[one.op](*parts, out)
+    return out
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_programs_compute_what_formulas_say(seed: int) -> None:
+    """Whatever is shared, written over or written in place."""
+    chance = Random(seed)
+    formulas = random_formulas(chance, chance.choice([1, 5, 14]))
+    columns = {name: np.array([chance.uniform(-9, 9) for _ in range(5)]) for name in ("x0", "x1")}
+    with np.errstate(all="ignore"):
+        for one, got in zip(formulas, worked_out(formulas, **columns), strict=True):
+            np.testing.assert_array_equal(got, plainly(one, columns))
+
+
+def test_programs_do_nothing_twice_and_nothing_in_vain() -> None:
+    x, y = Formula("symbol", "x0"), Formula("symbol", "x1")
+    program = Program([(x + y) * (y + x), (x + y) * (x + y), x * 2.0])
+    assert [operation.__name__ for operation, _ in program.operations] == [
+        "add",
+        "multiply",
+        "multiply",
+        "_copy",
+    ]
+    assert len(program.between) == 1
+    assert program.inputs == ["x0", "x1"]
