@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
+from functools import reduce
 from math import pi
 from typing import Any
 
@@ -58,6 +59,11 @@ def equal(x: Part, y: Part) -> Formula:
 def both(x: Formula, y: Formula) -> Formula:
     """Whether both conditions hold."""
     return Formula("and", x, y)
+
+
+def either(*conditions: Formula) -> Formula:
+    """Whether one of the conditions holds."""
+    return reduce(lambda x, y: Formula("or", x, y), conditions)
 
 
 def is_finite(x: Part) -> Formula:

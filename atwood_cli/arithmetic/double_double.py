@@ -202,6 +202,8 @@ class Pair:
     def __mul__(self, other: Pair | Fraction | int) -> Pair:
         one, two = self._meet(other)
         for factor, of in ((one, two), (two, one)):
+            if factor.is_zero:
+                return factor
             if factor.power:
                 return of if factor.power == 1 else of._scaled(factor.power)
         return one.arithmetic.product(one, two)

@@ -122,8 +122,10 @@ class Expansion:
 
     def __mul__(self, other: Expansion | Fraction | float) -> Expansion:
         one, two = self, self.arithmetic.number(other)
-        if one.power:
+        if one.power or self.arithmetic.is_zero(two):
             one, two = two, one
+        if self.arithmetic.is_zero(one):
+            return one
         return one._scaled(two.power) if two.power else one.arithmetic.product(one, two)
 
     __rmul__ = __mul__
@@ -142,6 +144,8 @@ class Expansion:
 
     def __truediv__(self, other: Expansion | int) -> Expansion:
         two = self.arithmetic.number(other)
+        if self.arithmetic.is_zero(self):
+            return self
         return self._scaled(1 / two.power) if two.power else self.arithmetic.quotient(self, two)
 
     def __rtruediv__(self, other: int) -> Expansion:
@@ -530,6 +534,12 @@ def _normal(parts: Sequence[Any]) -> Parts:
 def power_of_two(exponent: Part) -> Any:
     """2 to the power of a column of whole numbers; 0 below the range of doubles."""
     return Formula("power", exponent) if isinstance(exponent, Formula) else 2.0**exponent
+
+
+def times_power_of_two(x: Part, exponent: Part) -> Any:
+    """x 2^exponent, at once to a subnormal double, to 0 or to infinity."""
+    half = Formula("floor", formula(exponent * 0.5))
+    return x * power_of_two(half) * power_of_two(exponent - half)
 
 
 def _times(factor: Part, doubt: Part | None) -> Any:

@@ -39,13 +39,14 @@ from ..arithmetic.double import (
     absolute,
     at_most,
     both,
+    either,
     equal,
     is_finite,
     less,
 )
 from ..arithmetic.double_double import QUICK, ROUNDED, Pair
 from ..arithmetic.error_free import UNIT
-from ..arithmetic.expansion import PAIRS, TRIPLES, Expansion, power_of_two
+from ..arithmetic.expansion import PAIRS, TRIPLES, Expansion, times_power_of_two
 from ..arithmetic.lazy import lazy
 from ..arithmetic.symbolic import Formula, Part, formula
 from ..model.angle import Angle
@@ -262,9 +263,8 @@ def _double(value: Pair | Expansion) -> Part:
         double = value.rounded()
     else:
         double = value.parts[0]
-        if value.arithmetic.wide:  # at once to a subnormal double
-            half = Formula("floor", value.exponent * 0.5)
-            double = double * power_of_two(half) * power_of_two(value.exponent - half)
+        if value.arithmetic.wide:
+            double = times_power_of_two(double, value.exponent)
     result: Part = double if value.positive else double + 0.0
     return result
 
@@ -283,8 +283,13 @@ def _is_nearest(value: Expansion, double: Part) -> Formula:
         ends = [second - error, second + error]
     same = both(*(equal(first + end, first) for end in ends))
     exact = both(equal(value.bound, 0.0), equal(third, 0.0))
-    sure = both(Formula("or", same, exact), is_finite(double))
-    return both(sure, less(NORMAL, value.exponent)) if wide else sure
+    sure = either(same, exact)
+    if not wide:  # e^{μφ} may leave the doubles
+        return both(sure, is_finite(double))
+    # What is below the normal doubles is rounded once more, which is right but on a tie.
+    left = absolute(first - times_power_of_two(double, -1.0 * value.exponent))
+    half_a_step = times_power_of_two(0.5, -1074.0 - value.exponent)
+    return both(sure, either(less(NORMAL, value.exponent), less(left, half_a_step), less(half_a_step, left)))
 
 
 @lru_cache(1024)
@@ -304,4 +309,4 @@ def questioning(given: Given, answers: Answers, question: str, accuracy: Accurac
     if accuracy == "fast":
         return Program([less(held, excess), equal(0.0, 0.0)])
     beaten = less(held * (1 + CLEAR), excess)
-    return Program([beaten, Formula("or", beaten, less(excess, held * (1 - CLEAR)))])
+    return Program([beaten, either(beaten, less(excess, held * (1 - CLEAR)))])

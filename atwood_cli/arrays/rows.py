@@ -80,7 +80,8 @@ class Rows:
                     up = _among(rows, np.concatenate(some))
                     if along is not None and not isinstance(index, slice):
                         up = np.intersect1d(up, index, assume_unique=True)
-                    self._go_up(up, given, answers, name, rung + 1)
+                    if up.size:
+                        self._go_up(up, given, answers, name, rung + 1)
         if how.later:
             self.solve(index, given, answers, how.later, rung + 1)
         if how.asking:
