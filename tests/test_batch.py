@@ -292,7 +292,7 @@ def test_ndjson_as_csv_keeps_the_text_of_numbers(atwood: Atwood, table: Table) -
     ran = atwood("batch", table(rows, "in.ndjson"), "--only", "regime")
     assert [*csv.reader(io.StringIO(ran.out))] == [
         ["m1", "m2", "tags", "new", "regime", "error"],
-        ["1.0", "3", '[1, {"q": "é"}]', "", "no-slip", ""],
+        ["1.0", "3", '[1,{"q":"é"}]', "", "no-slip", ""],
         ["1", "3", "", "true", "no-slip", ""],
     ]
 
@@ -475,12 +475,10 @@ def test_exit_status_with_allow_errors(atwood: Atwood, table: Table) -> None:
         ),
         (b"m1,m2,n\n1,2,3\n1,2,\xe9\n", "row 2 is not UTF-8: byte 0xe9; save it as UTF-8"),
         (b"m1,m2,\xe9\n1,2,3\n", "the header is not UTF-8: byte 0xe9; save it as UTF-8"),
-        (b'm1,m2,n\n1,2,"x\ny', "it ends within quotation marks: it is truncated, or one is left open"),
         (
-            b'm1,m2,n\n1,2,3\n1,2,5" wide\n1,2,"p"q\n',
-            'row 2 has a quotation mark out of place; write it "like ""this"""',
+            b",".join([b"m1,m2", *(b"x%d" % i for i in range(1023))]),
+            "it has more than 1024 columns, the most taken",
         ),
-        (b'm1,m2,n\n1,2,"p"q\n', 'row 1 has a quotation mark out of place; write it "like ""this"""'),
     ],
 )
 def test_unreadable_csv(atwood: Atwood, table: Table, tmp_path: Path, content: bytes, why: str) -> None:
@@ -517,6 +515,118 @@ def test_unreadable_ndjson(atwood: Atwood, table: Table, tmp_path: Path, content
     assert list(tmp_path.iterdir()) == [Path(path)]
 
 
+OUT_OF_PLACE = 'line {} has a quotation mark out of place; write it "like ""this"""'
+LEFT_OPEN = "it ends within quotation marks opened in line {}: it is truncated, or one is left open"
+
+
+@pytest.mark.parametrize(
+    ("rows", "why", "line"),
+    [
+        ('1,3,"said "no" and\n1,3,b\n1,3,c"\n1,3,d\n', OUT_OF_PLACE, 2),
+        ('1,3,a\n\n1,3,"p\nq"\n1,3,5" wide\n1,3,"p"q\n', OUT_OF_PLACE, 6),
+        ('1,3,"a"\n1,3,"p"q\n', OUT_OF_PLACE, 3),
+        ('1,3,"p" \n', OUT_OF_PLACE, 2),
+        ('1,3, "p"\n', OUT_OF_PLACE, 2),
+        ('1,3,a"\n1,3,"b\n', OUT_OF_PLACE, 2),
+        ('1,3,"a","b"\n'.replace(",", ";").replace('";"', '","'), OUT_OF_PLACE, 2),
+        ('1,3,"x\ny', LEFT_OPEN, 2),
+        ('1,3,"x"\n1,3,"x""\n1,3,y\n', LEFT_OPEN, 3),
+    ],
+)
+@pytest.mark.parametrize("size", [4, 1 << 20])
+def test_malformed_quoting_swallows_no_rows(
+    atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch, rows: str, why: str, line: int, size: int
+) -> None:
+    monkeypatch.setattr(tables, "PIECE_BYTES", size)
+    path = table(("m1;m2;n\n" if ";" in rows else "m1,m2,n\n") + rows)
+    ran = atwood("batch", path, "-o", f"{path}.csv")
+    assert (ran.status, ran.err) == (1, f"atwood: cannot read {path}: {why.format(line)}\n")
+
+
+@pytest.mark.parametrize("size", [8, 1 << 20])
+def test_carriage_returns_in_cells_stay(
+    atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch, size: int
+) -> None:
+    monkeypatch.setattr(tables, "PIECE_BYTES", size)
+    rows = ["x\r,1,3,p\rq", '\r,1,3,"a,\rb\r"', "\rx,1,3,y\r", "z,1\r,3,"]
+    ran = atwood("batch", table("\r\n".join(["id,m1,m2,n", *rows, "\r", ""])), "--only", "regime")
+    got = [[row["id"], row["m1"], row["n"], row["error"]] for row in records(ran)]
+    assert got == [
+        ["x\r", "1", "p\rq", ""],
+        ["\r", "1", "a,\rb\r", ""],
+        ["\rx", "1", "y\r", ""],
+        ["z", "1\r", "", ""],
+    ]
+
+
+def test_a_long_cell_is_read(atwood: Atwood, table: Table) -> None:
+    """Python's own reader of CSV takes 131,072 characters at most, which is no concern of ours."""
+    long = "x" * 200_000
+    ran = atwood("batch", table(f"m1,m2,{long}\n1,3,{long}\n"), "--only", "regime")
+    assert (ran.status, ran.out) == (0, f"m1,m2,{long},regime,error\n1,3,{long},no-slip,\n")
+    ran = atwood("batch", table(f'm1,m2,n\n1,3,{long}\n1,3,"x"y\n'))
+    assert ran.err.endswith(f"{OUT_OF_PLACE.format(3)}\n")
+
+
+def test_what_json_holds_comes_into_csv_as_typed(atwood: Atwood, table: Table) -> None:
+    values = [
+        "[1.10,1e400]",
+        '{"m1" : [ {"k":1.0} , "}" ],"b":-0}',
+        "9" * 5000,
+        "true",
+        "[" + "9" * 5000 + "]",
+    ]
+    rows = [f'{{ "m1":1, "x{{,\\"" : [2] ,"m2":3,"x" :  {value} , "y":0}}' for value in values]
+    ran = atwood("batch", table("\n".join(rows), "in.ndjson"), "--only", "regime")
+    assert ran.status == 0
+    assert [row["x"] for row in records(ran)] == values
+
+
+@pytest.mark.parametrize(
+    ("row", "why"),
+    [
+        ('{"m1":1,"m2":3,"\\ud800":1}', "the key '\\ud800', which is not Unicode; give --to ndjson"),
+        ('{"m1":1,"m2":3,"x":"a\\ud800"}', "a value of 'x' that is not Unicode; give --to ndjson"),
+    ],
+)
+@pytest.mark.parametrize("target", ["csv", "parquet"])
+def test_what_is_not_unicode_stays_in_json(
+    atwood: Atwood, table: Table, tmp_path: Path, row: str, why: str, target: str
+) -> None:
+    path = table(f'{{"m1":1,"m2":3}}\n{row}\n', "in.ndjson")
+    ran = atwood("batch", path, "-o", str(tmp_path / f"out.{target}"))
+    assert (ran.status, ran.err) == (1, f"atwood: cannot read {path}: row 2 has {why}\n")
+    ran = atwood("batch", path, "--to", "ndjson", "--only", "regime")
+    assert ran.out.splitlines()[1] == f'{row[:-1]},"regime":"no-slip","error":null}}'
+
+
+def test_keys_that_differ_do_not_fill_the_memory(
+    atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path = table("".join(f'{{"m1":1,"m2":3,"k{i}":1}}\n' for i in range(2000)), "in.ndjson")
+    for target in FORMATS[:3]:
+        ran = atwood("batch", path, "--to", target)
+        why = "it has more than 1024 columns, the most taken"
+        assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: cannot read {path}: {why}\n")
+    sizes = []
+
+    @functools.wraps(solve_arrays)
+    def spy(*args: Any, **more: Any) -> Any:
+        sizes.append(len(more["m1"]))
+        return solve_arrays(*args, **more)
+
+    monkeypatch.setattr("atwood_cli.batch.run.solve_arrays", spy)
+    monkeypatch.setattr(tables, "PIECE_CELLS", 40)
+    keyed = table("".join(f'{{"m1":1,"m2":3,"k{i}":{i}}}\n' for i in range(8)), "in.ndjson")
+    short = table("m1,m2," + ",".join(f"k{i}" for i in range(8)) + "\n" + '1,3,"\n"\n\n1,3\n' * 4)
+    for path in (keyed, short):
+        sizes.clear()
+        ran = atwood("batch", path, "--only", "regime")
+        assert len(records(ran)) == 8
+        assert (max(sizes), sum(sizes)) == (4 if path == keyed else 3, 8)
+    assert [row["k3"] for row in records(atwood("batch", keyed))] == ["", "", "", "3", "", "", "", ""]
+
+
 def test_a_key_that_comes_too_late_for_a_column(
     atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -541,6 +651,42 @@ def test_unreadable_parquet(atwood: Atwood, table: Table, tmp_path: Path) -> Non
         assert ran.err.count("\n") == 1
 
 
+def test_a_damaged_parquet_file_is_an_error(atwood: Atwood, tmp_path: Path) -> None:
+    """Whatever byte of it is another: no row is lost in silence, nothing of polars' reaches stderr."""
+    path = tmp_path / "in.parquet"
+    columns = {"m1": [1] * 300, "m2": [3] * 300, "s": [None if i % 7 else "abc" for i in range(300)]}
+    pl.DataFrame(columns).write_parquet(path)
+    whole = path.read_bytes()
+    said: dict[str, bytes] = {}
+    for at in range(5, len(whole), 5):
+        path.write_bytes(whole[:at] + b"\0" + whole[at + 1 :])
+        ran = atwood("batch", str(path), "--only", "regime", "--allow-errors")
+        if ran.status == 0:
+            assert ran.err.startswith("atwood: 300 rows: "), at
+        else:
+            assert ran.err.startswith("atwood: cannot read "), at
+            said[ran.err.removeprefix(f"atwood: cannot read {path}: ")] = path.read_bytes()
+    assert "it is damaged: it should have 300 rows, and has 0\n" in said
+    panics = "it is damaged: polars cannot decode it\n"
+    path.write_bytes(said[panics])
+    assert process("batch", str(path)).err == f"atwood: cannot read {path}: {panics}"
+
+
+@pytest.mark.parametrize("rows", [1, 16, 17, 300])
+def test_rows_of_parquet_come_in_slices(
+    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, rows: int
+) -> None:
+    monkeypatch.setattr(tables, "ROWS_BYTES", 1 << 11)
+    monkeypatch.setattr(tables, "GROUP_BYTES", 1 << 12)
+    frame = pl.DataFrame(
+        {"m1": [1.0] * rows, "m2": [3.0] * rows, "n": [f"{i}{'x' * 99}" for i in range(rows)]}
+    )
+    frame.write_parquet(tmp_path / "in.parquet")
+    ran = atwood("batch", str(tmp_path / "in.parquet"), "-o", str(tmp_path / "out.parquet"))
+    assert (ran.status, ran.err) == (0, f"atwood: {rows} row{'s' * (rows > 1)}: {rows} no-slip; no errors.\n")
+    assert pl.read_parquet(tmp_path / "out.parquet").select(frame.columns).equals(frame)
+
+
 def test_a_quotation_mark_left_open_does_not_fill_the_memory(
     atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -548,7 +694,8 @@ def test_a_quotation_mark_left_open_does_not_fill_the_memory(
     monkeypatch.setattr(tables, "LONGEST_RECORD", 1 << 20)
     ran = atwood("batch", table('m1,m2\n"1,2\n' + "1,2\n" * 300_000))
     assert ran.status == 1
-    assert ran.err.endswith(": a row is longer than 1 MB; is a quotation mark left open?\n")
+    why = "the row that begins in line 2 is longer than 1 MB, the most taken; is a quotation mark left open?"
+    assert ran.err.endswith(f": {why}\n")
 
 
 def test_nested_columns_do_not_go_into_csv(atwood: Atwood, tmp_path: Path) -> None:
@@ -864,6 +1011,22 @@ def test_the_input_is_never_overwritten(atwood: Atwood, table: Table, tmp_path: 
     assert ran.err.startswith("atwood: --output ")
     assert ran.err.endswith(message[-55:])
     assert Path(path).read_text() == "m1,m2\n1,2\n"
+
+
+@pytest.mark.parametrize("line", ["in.csv >> in.csv", "- < in.csv >> in.csv", "in.csv 1<> in.csv"])
+def test_an_input_that_is_stdout_is_not_overwritten(table: Table, tmp_path: Path, line: str) -> None:
+    path = table("m1,m2\n1,2\n")
+    ran = process(shell=f'cd "{tmp_path}"; atwood batch {line}')
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err == "atwood: --output '-' is the input, which is never overwritten; name another\n"
+    assert Path(path).read_text() == "m1,m2\n1,2\n"
+
+
+def test_an_error_while_reading_says_so(atwood: Atwood) -> None:
+    if not Path("/proc/self/mem").exists():
+        pytest.skip("needs a file that cannot be read")
+    ran = atwood("batch", "/proc/self/mem", "--from", "csv")
+    assert (ran.status, ran.err) == (1, "atwood: cannot read /proc/self/mem: Input/output error\n")
 
 
 def test_without_polars_one_line_says_what_to_install(

@@ -3,20 +3,21 @@
 Cells of CSV and NDJSON stay the text they were, the columns of Parquet keep their types.
 """
 
-import csv
 import json
 import os
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import contextmanager
 from functools import partial
-from io import BytesIO, StringIO
-from itertools import chain
+from io import BytesIO
+from itertools import chain, islice
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn
 
 from ..files import STREAM
 from ..model.scene import SceneError
+from .quoted import Unreadable, checked, first_end, last_end, portions, split, widths
 
 if TYPE_CHECKING:
     import polars as pl
@@ -26,12 +27,13 @@ SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
 SEPARATORS = {"csv": ",", "tsv": "\t"}
 PARTED_BY = {",": "commas", "\t": "tabs", ";": "semicolons"}
 PIECE_BYTES, PIECE_ROWS = 1 << 21, 1 << 16
-LONGEST_RECORD = 1 << 26
+"""What of a table is in memory at a time, some times over."""
+PIECE_CELLS = 1 << 20
+"""Cells in memory at a time: rows may be short, and have keys that no other row has."""
+MOST_COLUMNS = 1024
+"""Each column of a piece takes a kilobyte and some microseconds, whatever is in it."""
+LONGEST_RECORD = 1 << 20
 """Bytes: a quotation mark that is never closed must not make one record of the whole file."""
-
-
-class Unreadable(Exception):
-    """What was given is no table; the message says why."""
 
 
 Inputs = Callable[[Sequence[str]], Sequence[str]]
@@ -84,84 +86,97 @@ def read(kind: str, file: IO[bytes], inputs: Inputs, as_lines: bool) -> Iterator
     return _read_csv(file, SEPARATORS[kind], inputs)
 
 
+def block_of(file: IO[bytes]) -> bytes:
+    """The next bytes of a file, none at its end. Raises Unreadable."""
+    try:
+        return file.read(PIECE_BYTES)
+    except OSError as error:
+        raise Unreadable(error.strerror or str(error)) from None
+
+
 def _records(file: IO[bytes], quoted: bool) -> Iterator[bytes]:
-    """A file in pieces that end where a record ends, without blank lines at its end."""
-    rest = b""
-    while block := file.read(PIECE_BYTES):
+    """A file in pieces that end where a record ends."""
+    rest, line = b"", 1
+    while block := block_of(file):
         rest += block
-        whole = rest[: _last_end(rest, quoted)].rstrip(b"\r\n")
-        if whole:
-            end = rest.index(b"\n", len(whole)) + 1
+        end = last_end(rest) if quoted else rest.rfind(b"\n") + 1
+        if end:
             yield rest[:end]
+            line += rest.count(b"\n", 0, end)
             rest = rest[end:]
         elif len(rest) > LONGEST_RECORD:
-            raise Unreadable(
-                f"a row is longer than {LONGEST_RECORD >> 20} MB; is a quotation mark left open?"
-            )
+            hint = "; is a quotation mark left open?" if quoted else ""
+            most = f"{LONGEST_RECORD >> 20} MB, the most taken"
+            raise Unreadable(f"the row that begins in line {line} is longer than {most}{hint}")
     if rest.strip(b"\r\n"):
         yield rest
 
 
-def _last_end(text: bytes, quoted: bool) -> int:
-    """Behind the last line end that is not within quotation marks."""
-    end = text.rfind(b"\n") + 1
-    marks = text.count(b'"', 0, end) if quoted else 0
-    while marks % 2:
-        before = text.rfind(b"\n", 0, text.rfind(b'"', 0, end)) + 1
-        marks -= text.count(b'"', before, end)
-        end = before
-    return end
-
-
-def _first_end(text: bytes) -> int:
-    """Behind the first line end that is not within quotation marks."""
-    end, marks = 0, 1
-    while marks % 2 and end < len(text):
-        end = text.find(b"\n", end) + 1 or len(text)
-        marks = text.count(b'"', 0, end)
-    return end
+def _check_count(columns: Collection[str]) -> None:
+    if len(columns) > MOST_COLUMNS:
+        raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
 
 
 def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
     import polars as pl
 
     header: list[str] = []
-    names, done, separator = b"", 0, usual
+    names, done, line, separator = b"", 0, 1, usual
     for text in _records(file, quoted=True):
         rows = text
         if not header:
             rows = text.removeprefix(b"\xef\xbb\xbf").lstrip(b"\r\n")
-            if not rows:  # but a byte order mark
+            line += text.count(b"\n") - rows.count(b"\n")
+            if not rows:
                 continue
-            end = _first_end(rows)
-            if rows.count(b'"', 0, end) % 2:
-                raise Unreadable("the header ends within quotation marks: one is left open")
-            if b"\r" in rows[:end].rstrip(b"\r\n"):
-                raise Unreadable("its lines end in carriage returns alone; save it with line feeds")
-            line = _decode(rows[:end], lambda _: "the header")
-            headers = {mark: next(_cells(line, mark)) for mark in (usual, *PARTED_BY)}
-            separator = max(
-                headers, key=lambda mark: len(inputs(headers[mark]))
-            )  # the usual one, if it will do
-            header = headers[separator]
+            end = first_end(rows)
+            header, separator = _header(rows[:end], line, usual, inputs)
             # Stand-ins, as polars renames what is there twice and drops what is empty.
             names = separator.join(map(str, range(len(header)))).encode() + b"\n"
+            line += rows.count(b"\n", 0, end)
             rows = rows[end:]
-        try:
-            frame = pl.read_csv(names + rows, separator=separator, infer_schema=False)
-        except pl.exceptions.PolarsError as error:
-            _refuse_csv(error, rows, len(header), done, separator)
-        if not rows.endswith(b"\n") and rows:
-            _check_last(rows, len(header), done + frame.height, separator)
-        frame.columns = _distinct(header)
-        frame, short = _without_blank_lines(frame, rows, separator)
-        done += frame.height
-        for start in range(0, max(frame.height, 1), PIECE_ROWS):
-            here = {row - start: cells for row, cells in short.items() if 0 <= row - start < PIECE_ROWS}
-            part, size = frame.slice(start, PIECE_ROWS), 0 if start else len(text)
-            yield Piece(header, part, size, short=here, separator=separator)
+        lines = rows.count(b"\n")
+        rows = checked(rows, separator, line)
+        line += lines
+        size = len(text)
+        for part in portions(rows, PIECE_CELLS // len(header)):
+            try:
+                frame = pl.read_csv(names + part, separator=separator, infer_schema=False)
+            except pl.exceptions.PolarsError as error:
+                _refuse_csv(error, part, len(header), done, separator)
+            if not part.endswith(b"\n") and part:
+                _check_last(part, len(header), done + frame.height, separator)
+            frame.columns = _distinct(header)
+            frame, short = _without_blank_lines(frame, part, separator)
+            done += frame.height
+            for start in range(0, max(frame.height, 1), PIECE_ROWS):
+                here = {row - start: cells for row, cells in short.items() if 0 <= row - start < PIECE_ROWS}
+                yield Piece(header, frame.slice(start, PIECE_ROWS), size, short=here, separator=separator)
+                size = 0
     if not header:
         raise Unreadable("it is empty")
+
+
+def _header(row: bytes, line: int, usual: str, inputs: Inputs) -> tuple[list[str], str]:
+    """The columns, and what parts them: the usual separator, unless another one makes more inputs."""
+    if row.count(b'"') % 2:
+        raise Unreadable("the header ends within quotation marks: one is left open")
+    if b"\r" in row.rstrip(b"\r\n"):
+        raise Unreadable("its lines end in carriage returns alone; save it with line feeds")
+    text = _decode(row, lambda _: "the header")
+
+    def columns(separator: str) -> list[str]:
+        try:
+            checked(row, separator, line)
+        except Unreadable:
+            return []
+        return split(text, separator)
+
+    separator = max((usual, *PARTED_BY), key=lambda mark: len(inputs(columns(mark))))
+    checked(row, separator, line)
+    header = split(text, separator)
+    _check_count(header)
+    return header, separator
 
 
 def _without_blank_lines(
@@ -178,25 +193,14 @@ def _without_blank_lines(
         b'"' not in rows and rows.count(mark) == (frame.width - 1) * frame.height
     ):
         return frame, {}
-    lines = re.sub(b'"[^"]*"', b'""', rows).split(b"\n")[: frame.height]
-    full = [bool(line.strip()) or mark in line for line in lines]
-    counts = [line.count(mark) + 1 for line, is_full in zip(lines, full, strict=True) if is_full]
-    short = {row: cells for row, cells in enumerate(counts) if cells < frame.width}
-    return frame if all(full) else frame.filter(pl.Series(full)), short
+    counts = widths(rows, separator)[: frame.height]
+    short = {row: cells for row, cells in enumerate(filter(None, counts)) if cells < frame.width}
+    return frame if all(counts) else frame.filter(pl.Series(counts) > 0), short
 
 
 def _distinct(names: list[str]) -> list[str]:
     """The names, or where one is there twice, which `run` refuses later, numbers in their place."""
     return names if len(set(names)) == len(names) else [str(i) for i in range(len(names))]
-
-
-def _cells(text: str, separator: str) -> Iterator[list[str]]:
-    return csv.reader(StringIO(text, newline=""), delimiter=separator)
-
-
-def _count(text: bytes, separator: str) -> int:
-    """How many rows the text begins."""
-    return sum(1 for cells in _cells(f"{text.decode(errors='replace')}.", separator) if cells)
 
 
 def _decode(text: bytes, row: Callable[[int], str]) -> str:
@@ -212,28 +216,22 @@ def _refuse_csv(error: Exception, rows: bytes, width: int, done: int, separator:
     """Say in which row, and why, polars could not read it. Raises Unreadable."""
 
     def row(at: int) -> str:
-        return f"row {done + _count(rows[:at], separator)}"
+        return f"row {done + sum(map(bool, widths(rows[:at] + b'.', separator)))}"
 
-    text = _decode(rows, row)
-    mark = rf'[^{separator}\n"]"[^{separator}\r\n"]'
-    if stray := re.search(mark, text):
-        before = text[: stray.start() + 1].encode()
-        raise Unreadable(f'{row(len(before))} has a quotation mark out of place; write it "like ""this"""')
-    if rows.count(b'"') % 2:
-        raise Unreadable("it ends within quotation marks: it is truncated, or one is left open")
-    for number, cells in enumerate(filter(None, _cells(text, separator)), done + 1):
-        if len(cells) > width:
+    _decode(rows, row)
+    for number, cells in enumerate(filter(None, widths(rows, separator)), done + 1):
+        if cells > width:
             how = "; is there a decimal comma? write a point" if separator == "," else ""
-            raise Unreadable(f"row {number} has {len(cells)} cells, and the header {width}{how}")
+            raise Unreadable(f"row {number} has {cells} cells, and the header {width}{how}")
     raise Unreadable(str(error).splitlines()[0])
 
 
 def _check_last(rows: bytes, width: int, number: int, separator: str) -> None:
     """Refuse a last row that stops short: cut off, it could be read as another scene."""
-    *_, cells = _cells(rows[_last_end(rows, quoted=True) :].decode(), separator)
-    if len(cells) < width and "".join(cells).strip():
+    *_, cells = widths(rows, separator)
+    if 0 < cells < width:
         raise Unreadable(
-            f"row {number}, the last, stops after {len(cells)} of {width} cells, without a line end:"
+            f"row {number}, the last, stops after {cells} of {width} cells, without a line end:"
             " it is truncated"
         )
 
@@ -250,23 +248,82 @@ def _read_ndjson(file: IO[bytes], inputs: Inputs | None) -> Iterator[Piece]:
         rows = [_object(line, number) for number, line in enumerate(lines, done + 1)]
         for number, object_ in enumerate(rows, done + 1):
             if not object_.keys() <= columns.keys():
-                if done and inputs is None:
-                    new = next(name for name in object_ if name not in columns)
-                    raise Unreadable(
-                        f"row {number} has {new!r}, for which there is no column by now; give --to ndjson"
-                    )
-                columns |= dict.fromkeys(object_)
+                new = [name for name in object_ if name not in columns]
+                if inputs is None:
+                    _check_keys(new, number, late=done > 0)
+                columns |= dict.fromkeys(new)
+                _check_count(columns)
         wanted = list(columns) if inputs is None else inputs(list(columns))
-        cells = {name: list(map(partial(_cell, name), rows, lines)) for name in wanted}
-        frame = pl.DataFrame(cells, schema=dict.fromkeys(wanted, pl.String))
-        done += len(rows)
-        yield Piece(list(columns), frame, len(text), [] if inputs is None else lines)
+        most, size = min(PIECE_ROWS, max(1, PIECE_CELLS // max(1, len(wanted)))), len(text)
+        for start in range(0, len(rows), most):
+            part = slice(start, start + most)
+            cells = _columns(wanted, rows[part], lines[part], done + 1, inputs is None)
+            frame = pl.DataFrame(cells, schema=dict.fromkeys(wanted, pl.String))
+            done += frame.height
+            yield Piece(list(columns), frame, size, [] if inputs is None else lines[part])
+            size = 0
     if not done:
         raise Unreadable("it is empty")
 
 
 def _row(text: bytes, done: int, at: int) -> str:
-    return f"row {done + sum(1 for line in (text[:at] + b'.').splitlines() if line.strip())}"
+    lines = (text[:at] + b".").split(b"\n")
+    return f"row {done + sum(1 for line in lines if line.strip())}"
+
+
+def _check_keys(names: Sequence[str], number: int, late: bool) -> None:
+    """Refuse keys that make no columns of a table other than NDJSON."""
+    for name in names:
+        if not _is_unicode(name):
+            raise Unreadable(f"row {number} has the key {name!r}, which is not Unicode; give --to ndjson")
+    if late:
+        how = "for which there is no column by now; give --to ndjson"
+        raise Unreadable(f"row {number} has {names[0]!r}, {how}")
+
+
+def _is_unicode(text: str) -> bool:
+    """Whether there is no half of a pair of surrogates in it, which JSON takes."""
+    try:
+        return text.isascii() or bool(text.encode())
+    except UnicodeEncodeError:
+        return False
+
+
+def _columns(
+    wanted: Sequence[str], rows: Sequence[Mapping[str, object]], lines: Sequence[str], first: int, all_: bool
+) -> dict[str, list[str | None]]:
+    """The cells of rows; if they are ``all_``, they must be what they were."""
+    columns: dict[str, list[str | None]] = {name: [None] * len(rows) for name in wanted}
+    for number, row in enumerate(rows):
+        for name, value in row.items():
+            if value is None or name not in columns:
+                continue
+            cell = value if isinstance(value, str) else _typed(lines[number], name)
+            if not _is_unicode(cell):
+                if all_:
+                    why = f"a value of {name!r} that is not Unicode; give --to ndjson"
+                    raise Unreadable(f"row {first + number} has {why}")
+                cell = cell.encode(errors="replace").decode()
+            columns[name][number] = cell
+    return columns
+
+
+def _typed(line: str, name: str) -> str:
+    """The value of a member of a JSON object, as it is written there."""
+    at = line.index("{") + 1
+    while True:
+        key, at = _next(line, at)
+        start = line.index(":", at) + 1
+        _, end = _next(line, start)
+        if key == name:
+            return line[start:end].strip()
+        at = line.index(",", end) + 1
+
+
+def _next(line: str, at: int) -> tuple[object, int]:
+    """The JSON value there, behind blanks, and where it ends."""
+    start = re.compile("[ \t\r]*").match(line, at)
+    return _DECODER.raw_decode(line, start.end() if start else at)
 
 
 def _object(line: str, number: int) -> Mapping[str, object]:
@@ -302,26 +359,99 @@ _DECODER = json.JSONDecoder(
 )
 
 
-def _cell(name: str, row: Mapping[str, object], line: str) -> str | None:
-    """A value as the text of a cell; what is neither text nor number stays JSON."""
-    value = row.get(name)
-    if value is None:
-        return None
-    text = value if isinstance(value, str) else json.dumps(json.loads(line)[name], ensure_ascii=False)
-    return text if text.isascii() else text.encode(errors="replace").decode()
+ROWS_BYTES, GROUP_BYTES = 1 << 22, 1 << 23
+FIRST_ROWS, MOST_ROWS = 16, 1 << 17
+"""Of Parquet, about the bytes of a piece and of a group of rows that is written; and the rows that are read
+at first, when it is not known how long they are, and at most."""
+
+
+@contextmanager
+def _decoding() -> Iterator[None]:
+    """Whatever polars makes of damaged Parquet is Unreadable, and nothing of it goes to stderr."""
+    import polars as pl
+
+    with _nothing_on_stderr():
+        try:
+            yield
+        except (pl.exceptions.PolarsError, OSError) as error:
+            raise Unreadable(f"it is not Parquet, or truncated: {str(error).splitlines()[0]}") from None
+        except pl.exceptions.PanicException:
+            raise Unreadable("it is damaged: polars cannot decode it") from None
+
+
+@contextmanager
+def _nothing_on_stderr() -> Iterator[None]:
+    """Threads of Rust that panic write to the descriptor, and know no sys.stderr."""
+    try:
+        kept = os.dup(2)
+    except OSError:  # it is closed
+        yield
+        return
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 2)
+    os.close(nowhere)
+    try:
+        yield
+    finally:
+        os.dup2(kept, 2)
+        os.close(kept)
+
+
+def _row_bytes(frame: "pl.DataFrame") -> int:
+    """About how long the rows are; a text that is in memory once counts in each of its cells."""
+    import polars as pl
+
+    size = sum(
+        int(column.str.len_bytes().sum()) if column.dtype == pl.String else int(column.estimated_size())
+        for column in frame
+    )
+    return size // max(1, frame.height)
+
+
+def count_rows(file: IO[bytes]) -> int:
+    """How many rows a file of Parquet says that it has. Raises Unreadable."""
+    import polars as pl
+
+    with _decoding():
+        return int(_scanned(file).select(pl.len()).collect().item())
+
+
+def _scanned(file: IO[bytes]) -> "pl.LazyFrame":
+    import polars as pl
+
+    return pl.scan_parquet(os.path.abspath(file.name), glob=False)  # else it may begin with ~
 
 
 def _read_parquet(file: IO[bytes]) -> Iterator[Piece]:
+    """In slices, each read by itself: polars would hold a whole row group, which may be all of the file."""
     import polars as pl
 
-    try:
-        table = pl.scan_parquet(file.name, glob=False)
-        columns = table.collect_schema().names()
-        yield Piece(columns, table.head(0).collect(), 0)
-        for frame in table.collect_batches(chunk_size=PIECE_ROWS):
-            yield Piece(columns, frame, frame.height)
-    except pl.exceptions.PolarsError as error:
-        raise Unreadable(f"it is not Parquet, or truncated: {str(error).splitlines()[0]}") from None
+    total = count_rows(file)
+    with _decoding():
+        table = _scanned(file)
+        schema = table.collect_schema()
+        columns = schema.names()
+        _check_count(columns)
+        head = table.head(0).collect()
+    yield Piece(columns, head, 0)
+    with _decoding():
+        short = next((name for name in columns if schema[name].is_numeric()), columns[0])
+        # Counted in the column, not taken from where the file says how many rows it has.
+        there = table.select(pl.col(short).is_null().count()).collect().item()
+    start, most = 0, FIRST_ROWS
+    while there == total and start < total:
+        with _decoding():
+            frame = table.slice(start, most).collect()
+        if frame.height != min(most, total - start):
+            there = start + frame.height
+            break
+        start += frame.height
+        fit = min(PIECE_ROWS, PIECE_CELLS // len(columns), ROWS_BYTES // max(1, _row_bytes(frame)))
+        fit = max(1, fit)
+        yield from (Piece(columns, part, part.height) for part in frame.iter_slices(fit))
+        most = min(16 * most, MOST_ROWS // PIECE_ROWS * fit)
+    if there != total:
+        raise Unreadable(f"it is damaged: it should have {total} rows, and has {there}")
 
 
 def write(kind: str, file: IO[bytes], solved: Iterable[tuple[Piece, "pl.DataFrame"]]) -> None:
@@ -382,14 +512,19 @@ def _spliced(line: str, end: str) -> str:
 def _write_parquet(file: IO[bytes], frames: Iterator["pl.DataFrame"]) -> None:
     from polars.io.plugins import register_io_source
 
-    first, failed = next(frames), []
+    begun, failed = [next(frames)], []
+    if not begun[0].height:  # as that of Parquet is, which comes before any is read
+        begun += islice(frames, 1)
 
     def source(*_: object) -> Iterator["pl.DataFrame"]:
         try:
-            yield from chain([first], frames)
+            yield from chain(begun, frames)
         except BaseException as error:  # polars would make another one of it
             failed.append(error)
 
-    register_io_source(source, schema=first.schema).sink_parquet(file)
+    width, size = begun[-1].width, max(1, _row_bytes(begun[-1]))
+    rows = max(1, min(MOST_ROWS, PIECE_CELLS // width, GROUP_BYTES // size))
+    table = register_io_source(source, schema=begun[0].schema)
+    table.sink_parquet(file, compression="snappy", row_group_size=rows)  # the fastest that all can read
     for error in failed:
         raise error

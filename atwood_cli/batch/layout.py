@@ -14,7 +14,8 @@ from ..arithmetic.rounding import to_double
 from ..arrays.plan import COLUMNS
 from ..model.scene import MEASURED, PARAMETERS, SceneError, parameter_of, read_plain, read_value
 from ..model.units import Malformed, read_unit, symbol_of, without_blanks
-from .formats import PARTED_BY, Piece, Unreadable
+from .formats import PARTED_BY, Piece
+from .quoted import Unreadable
 
 if TYPE_CHECKING:
     import polars as pl

@@ -1,12 +1,11 @@
 """Many scenes: a table in, the same table with its results out. A row that is no scene gets an error."""
 
 import os
-import shutil
 import stat
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, suppress
+from contextlib import ExitStack
 from dataclasses import dataclass, field
 from inspect import signature
 from math import isfinite, nan
@@ -20,8 +19,9 @@ from ..files import STREAM, written_beside
 from ..model.quantities import REGIMES
 from ..model.scene import Given, Scene, SceneError
 from ..model.units import NUMBER
-from .formats import SEPARATORS, Piece, Unreadable, is_stream, read, write
+from .formats import SEPARATORS, Piece, block_of, count_rows, is_stream, read, write
 from .layout import Layout, inputs_among, read_layout
+from .quoted import Unreadable
 
 if TYPE_CHECKING:
     import polars as pl
@@ -77,11 +77,12 @@ def run_batch(job: Job, watch: Watch) -> Tally:
     """Solve a table of scenes, under ``watch`` unless results go to a terminal. Raises OSError."""
     import polars as pl
 
+    _check_apart(job)
     with ExitStack() as stack:
-        source = _open(job, stack)
-        target = _target(job, stack)
         tally = Tally()
         try:
+            source = _open(job, stack)
+            target = _target(job, stack)
             write(job.target_format, target, _solved(job, source, tally, watch))
         except Unreadable as error:
             raise OSError(f"cannot read {'stdin' if job.source == STREAM else job.source}: {error}") from None
@@ -91,35 +92,49 @@ def run_batch(job: Job, watch: Watch) -> Tally:
     return tally
 
 
+def _check_apart(job: Job) -> None:
+    """Refuse an output that is the input, by whatever name. Raises SceneError."""
+    try:
+        source = os.stat(job.source) if job.source != STREAM else os.fstat(sys.stdin.fileno())
+        target = os.stat(job.target) if job.target != STREAM else os.fstat(sys.stdout.fileno())
+    except (OSError, ValueError, AttributeError):  # one is closed, or not there yet
+        return
+    if stat.S_ISREG(target.st_mode) and os.path.samestat(source, target):
+        raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
+
+
 def _open(job: Job, stack: ExitStack) -> IO[bytes]:
-    """The input; a stream of Parquet, which is not read from front to back, by way of a temporary file."""
+    """The input; a stream of Parquet, which is not read from front to back, by way of a temporary file.
+
+    Raises Unreadable.
+    """
     if job.source == STREAM:
         if sys.stdin is None:
-            raise OSError("cannot read stdin: it is closed")
+            raise Unreadable("it is closed")
         stream: IO[bytes] = sys.stdin.buffer
     else:
         try:
             stream = stack.enter_context(open(job.source, "rb"))  # noqa: SIM115
         except OSError as error:
-            raise OSError(f"cannot read {job.source}: {error.strerror}") from None
+            raise Unreadable(error.strerror) from None
     if job.source_format != "parquet" or not (job.source == STREAM or is_stream(job.source)):
         return stream
     spool = stack.enter_context(NamedTemporaryFile())  # noqa: SIM115
-    shutil.copyfileobj(stream, spool)
-    spool.flush()
+    try:
+        while block := block_of(stream):
+            spool.write(block)
+        spool.flush()
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, spool.name) from None
     return spool
 
 
 def _target(job: Job, stack: ExitStack) -> IO[bytes]:
-    """The output, which must not be the input."""
+    """The output."""
     if job.target == STREAM:
         sys.stdout.flush()
         stream: IO[bytes] | None = getattr(sys.stdout, "buffer", None)
         return stream or stack.enter_context(open(os.devnull, "wb"))
-    with suppress(OSError):
-        source = os.fstat(sys.stdin.fileno()) if job.source == STREAM else os.stat(job.source)
-        if os.path.isfile(job.target) and os.path.samestat(source, os.stat(job.target)):
-            raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
     return stack.enter_context(open(stack.enter_context(written_beside(Path(job.target), job.force)), "wb"))
 
 
@@ -143,12 +158,9 @@ def _solved(
 
 
 def _size(job: Job, source: IO[bytes]) -> int | None:
-    """How much there is to read, in the unit of `Piece.size`; None if that cannot be known."""
-    import polars as pl
-
+    """How much there is to read, in the unit of `Piece.size`; None if it is not known. Raises Unreadable."""
     if job.source_format == "parquet":
-        with suppress(pl.exceptions.PolarsError):
-            return int(pl.scan_parquet(source.name, glob=False).select(pl.len()).collect().item())
+        return count_rows(source)
     about = os.fstat(source.fileno())
     return about.st_size if stat.S_ISREG(about.st_mode) else None
 
