@@ -2,6 +2,7 @@
 
 import errno
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
@@ -20,26 +21,56 @@ def check_free(path: Path, force: bool) -> None:
 def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
     """A file to write beside ``path``, which takes its name once all went well.
 
-    A run that fails or is killed leaves ``path`` as it was. A file that is there is replaced only by
-    ``force``; what is no file (a device, a pipe) is written to directly. Raises OSError.
+    A run that fails or is killed leaves ``path`` as it was. A file that is there, or comes to be there
+    meanwhile, is replaced only by ``force``, and keeps its mode; what is no file (a device, a pipe) is
+    written to directly. Raises OSError.
     """
     if path.exists() and not path.is_file():
         yield path
         return
     check_free(path, force)
-    target = path.resolve()  # a link stays a link
-    # The suffix stays, for those who tell the format by it.
-    beside = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
+    target = Path(os.path.realpath(path))  # a link stays a link
+    # A name that nobody can foresee, and of no more than 255 bytes however long the other is.
+    beside = target.with_name(f".atwood-{os.urandom(8).hex()}")
     try:
-        beside.touch()
+        mode = _mode(target)
+        os.close(os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666 if mode is None else 0o600))
         yield beside
-        os.replace(beside, target)
+        if mode is not None:
+            beside.chmod(mode)
+        if force:
+            os.replace(beside, target)
+        else:
+            _take_name(beside, target, path)
     except OSError as error:
-        if error.filename == str(beside):  # not the name that was asked for
+        if error.filename in (str(beside), str(target)):  # not the name that was asked for
             raise type(error)(error.errno, error.strerror, str(path)) from None
         raise
     finally:
         beside.unlink(missing_ok=True)
+
+
+def _mode(target: Path) -> int | None:
+    """The permissions of a file, None if there is none. Raises OSError, as where a link leads to itself."""
+    try:
+        return stat.S_IMODE(target.stat().st_mode)
+    except FileNotFoundError:
+        return None
+
+
+def _take_name(beside: Path, target: Path, asked: Path) -> None:
+    """Give a file its name, unless there is one of that name by now. Raises FileExistsError."""
+    try:
+        try:
+            os.link(beside, target)
+        except FileExistsError:
+            raise
+        except OSError:  # a file system without links
+            target.touch(exist_ok=False)
+            os.replace(beside, target)
+    except FileExistsError:
+        how = "a file of that name came to be meanwhile; --force replaces it"
+        raise FileExistsError(errno.EEXIST, how, str(asked)) from None
 
 
 @contextmanager

@@ -1,5 +1,6 @@
 """Files are there whole or not at all."""
 
+import os
 from pathlib import Path
 
 import pytest
@@ -44,7 +45,7 @@ def test_written_beside_replaces_only_by_force(tmp_path: Path) -> None:
     assert file.read_text() == "kept"
     with written_beside(file, force=True) as beside:
         assert file.read_text() == "kept"
-        assert (beside.parent, beside.suffix) == (tmp_path, ".txt")
+        assert beside.parent == tmp_path
         beside.write_text("new")
     assert file.read_text() == "new"
     assert list(tmp_path.iterdir()) == [file]
@@ -55,3 +56,82 @@ def test_written_beside_names_the_file_asked_for(tmp_path: Path) -> None:
     with pytest.raises(FileNotFoundError) as caught, written_beside(file):
         pass
     assert caught.value.filename == str(file)
+
+
+@pytest.mark.parametrize("links", [True, False])
+def test_a_file_that_appears_meanwhile_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, links: bool
+) -> None:
+    file = tmp_path / "a.txt"
+
+    def no_links(*_: object) -> None:
+        raise PermissionError
+
+    def run() -> None:
+        with written_beside(file) as beside:
+            beside.write_text("ours")
+            file.write_text("theirs")
+
+    if not links:
+        monkeypatch.setattr(os, "link", no_links)
+    with pytest.raises(FileExistsError) as caught:
+        run()
+    assert caught.value.strerror == "a file of that name came to be meanwhile; --force replaces it"
+    assert caught.value.filename == str(file)
+    assert file.read_text() == "theirs"
+    assert list(tmp_path.iterdir()) == [file]
+    file.unlink()
+    with written_beside(file) as beside:
+        beside.write_text("ours")
+    assert file.read_text() == "ours"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs modes")
+@pytest.mark.parametrize("mode", [0o600, 0o640, 0o444])
+def test_what_is_replaced_keeps_its_mode(tmp_path: Path, mode: int) -> None:
+    file = tmp_path / "a.txt"
+    file.write_text("before")
+    file.chmod(mode)
+    with written_beside(file, force=True) as beside:
+        assert beside.stat().st_mode & 0o777 == 0o600  # nobody else reads it before it is there
+        beside.write_text("after")
+    assert (file.read_text(), file.stat().st_mode & 0o777) == ("after", mode)
+    with written_beside(tmp_path / "new.txt") as beside:
+        pass
+    (tmp_path / "usual.txt").touch()
+    assert (tmp_path / "new.txt").stat().st_mode == (tmp_path / "usual.txt").stat().st_mode
+
+
+def test_the_name_beside_is_foreseen_by_nobody(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    names = []
+    for _ in range(2):
+        with written_beside(tmp_path / "a.txt", force=True) as beside:
+            names.append(beside)
+    assert names[0] != names[1]
+    monkeypatch.setattr(os, "urandom", bytes)
+    with written_beside(tmp_path / "a.txt", force=True) as beside:
+        pass
+    beside.symlink_to(tmp_path / "precious")
+    with pytest.raises(FileExistsError), written_beside(tmp_path / "a.txt", force=True):
+        pass
+    assert not (tmp_path / "precious").exists()
+
+
+@pytest.mark.parametrize("suffix", [".txt", "." + "x" * 240])
+def test_a_name_of_any_length_is_taken(tmp_path: Path, suffix: str) -> None:
+    file = tmp_path / f"{'a' * (255 - len(suffix))}{suffix}"
+    with written_beside(file) as beside:
+        beside.write_text("whole")
+    assert file.read_text() == "whole"
+
+
+def test_a_link_to_itself_is_an_error(tmp_path: Path) -> None:
+    link = tmp_path / "a.txt"
+    try:
+        link.symlink_to(link)
+    except OSError:
+        pytest.skip("no links here")
+    with pytest.raises(OSError, match="symbolic links") as caught, written_beside(link):
+        pass
+    assert caught.value.filename == str(link)

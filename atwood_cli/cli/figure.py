@@ -142,7 +142,8 @@ def _page(path: str, force: bool) -> Iterator["Figure"]:
     with written_beside(Path(path), force) as beside, rc_context(STYLE):
         figure = Figure(figsize=(11, 6), layout="constrained")
         yield figure
-        figure.savefig(beside, dpi=200, metadata={"Date": None} if path.lower().endswith(".svg") else None)
+        kind = Path(path).suffix[1:].lower()
+        figure.savefig(beside, format=kind, dpi=200, metadata={"Date": None} if kind == "svg" else None)
 
 
 def _draw_machine(axes: "Axes", answers: Answers, arc: Contact) -> None:
