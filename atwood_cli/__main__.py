@@ -4,20 +4,26 @@ import gc
 import signal
 import sys
 
-INTERRUPTED, TERMINATED = 130, 143
+INTERRUPTED = 130
+STATUSES = {"SIGINT": INTERRUPTED, "SIGTERM": 143, "SIGHUP": 129}
+"""Signals that end a run, where the system has them, with the exit status of each."""
 
 
 def main() -> int:
-    """Run the command line and return its exit status."""
-    terminated = False
+    """Run the command line and return its exit status. What comes after is the end of the process."""
+    ended_by, heeded = 0, True
+    statuses = {getattr(signal, name): status for name, status in STATUSES.items() if hasattr(signal, name)}
 
-    def terminate(*_: object) -> None:
+    def end(number: int, _: object) -> None:
         """Stop as on Ctrl-C, which cleans up: nothing half-written stays beside a file."""
-        nonlocal terminated
-        terminated = True
-        raise KeyboardInterrupt
+        nonlocal ended_by, heeded
+        if heeded:  # a second signal would stop the cleaning up
+            ended_by, heeded = statuses[number], False
+            raise KeyboardInterrupt
 
-    before = signal.signal(signal.SIGTERM, terminate)
+    for number in statuses:
+        if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
+            signal.signal(number, end)
     gc.disable()  # what is imported stays: looking through it for garbage is a seventh of a short run
     try:
         # Imported here, so that Ctrl-C during start-up shows no traceback either.
@@ -27,12 +33,12 @@ def main() -> int:
         gc.enable()
         status = run()
     except KeyboardInterrupt:
-        status = INTERRUPTED
+        status = ended_by or INTERRUPTED
     finally:
-        signal.signal(signal.SIGTERM, before)
+        heeded = False  # all is done, and Python would show a traceback of what interrupts its end
         gc.enable()
         gc.freeze()  # so that it is not looked through at the end either
-    return TERMINATED if terminated else status
+    return status
 
 
 if __name__ == "__main__":

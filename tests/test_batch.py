@@ -1057,20 +1057,51 @@ def waiting(*words: str) -> "subprocess.Popen[bytes]":
 
 
 @pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
-@pytest.mark.parametrize("blow", [signal.SIGKILL, signal.SIGINT, signal.SIGTERM])
-def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blow: signal.Signals) -> None:
+@pytest.mark.parametrize("blows", ["SIGKILL", "SIGINT", "SIGTERM", "SIGHUP", "SIGINT SIGINT"])
+def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str) -> None:
     out = tmp_path / "out.csv"
     child = waiting("-o", str(out))
     while not any(path.stat().st_size for path in tmp_path.iterdir()):
         assert child.poll() is None
         time.sleep(0.01)
-    child.send_signal(blow)
+    for blow in blows.split():
+        child.send_signal(signal.Signals[blow])
     _, err = child.communicate(timeout=HANGS)
-    assert child.returncode == {signal.SIGINT: 130, signal.SIGTERM: 143}.get(blow, -blow)
-    assert b"Traceback" not in err
+    status = {"SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129, "SIGKILL": -9}[blows.split()[0]]
+    assert (child.returncode, err) == (status, b"")
     assert not out.exists()
-    if blow != signal.SIGKILL:
+    if blows != "SIGKILL":
         assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
+def test_what_is_to_outlive_its_terminal_does(tmp_path: Path) -> None:
+    """Under nohup, which has SIGHUP ignored."""
+    code = "import signal, runpy; signal.signal(signal.SIGHUP, signal.SIG_IGN); runpy.run_module('atwood_cli', run_name='__main__')"
+    out = tmp_path / "out.csv"
+    words = [sys.executable, "-c", code, "batch", "-", "-o", str(out)]
+    child = subprocess.Popen(words, stdin=subprocess.PIPE, stderr=subprocess.PIPE)
+    while not list(tmp_path.iterdir()):
+        time.sleep(0.01)
+    child.send_signal(signal.SIGHUP)
+    _, err = child.communicate(b"m1,m2\n1,3\n", timeout=HANGS)
+    assert (child.returncode, err) == (0, b"atwood: 1 row: 1 no-slip; no errors.\n")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
+@pytest.mark.parametrize("kind", ["csv", "parquet"])
+def test_a_pipe_that_brings_nothing_is_waited_for_until_it_is_stopped(tmp_path: Path, kind: str) -> None:
+    os.mkfifo(tmp_path / "in")
+    for number, writers in ((signal.SIGTERM, 0), (signal.SIGINT, 0), (signal.SIGINT, 1)):
+        words = [sys.executable, "-m", "atwood_cli", "batch", str(tmp_path / "in"), "--from", kind]
+        child = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        writer = os.open(tmp_path / "in", os.O_RDWR) if writers else None
+        time.sleep(1)
+        child.send_signal(number)
+        assert child.communicate(timeout=HANGS) == (b"", b"")
+        assert child.returncode == {signal.SIGTERM: 143, signal.SIGINT: 130}[number]
+        if writer is not None:
+            os.close(writer)
 
 
 def test_a_reader_that_leaves_early_ends_it_quietly(tmp_path: Path) -> None:

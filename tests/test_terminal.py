@@ -205,7 +205,9 @@ sys.exit(main())
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
-@pytest.mark.parametrize(("blow", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(
+    ("blow", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
+)
 @pytest.mark.parametrize("command", ["solve", "contact", "sweep", "batch"])
 def test_what_ends_it_ends_it_quietly(command: str, blow: signal.Signals, status: int, table: str) -> None:
     typed = [sys.executable, "-c", SLOW, *words(command, table)]

@@ -1,6 +1,7 @@
 """Many scenes: a table in, the same table with its results out. A row that is no scene gets an error."""
 
 import os
+import signal
 import stat
 import sys
 from collections import Counter
@@ -78,6 +79,8 @@ def run_batch(job: Job, watch: Watch) -> Tally:
     import polars as pl
 
     _check_apart(job)
+    if hasattr(signal, "siginterrupt"):  # as it is imported, polars has Ctrl-C wait for a pipe
+        signal.siginterrupt(signal.SIGINT, True)
     with ExitStack() as stack:
         tally = Tally()
         try:

@@ -33,6 +33,10 @@ Examples:
 UsageError: Any = typer.BadParameter.__mro__[1]
 
 
+ON_CTRL_C = 130
+"""What typer returns for a command that was interrupted."""
+
+
 class Command(TyperCommand):
     """A command with our help, that sees how the words typed were divided among its options."""
 
@@ -144,6 +148,8 @@ def run(arguments: list[str] | None = None) -> int:
             arguments = [*arguments[1:], "-h"]
         command = program(_needed(arguments))
         status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
+        if status == ON_CTRL_C:
+            raise KeyboardInterrupt
         sys.stdout.flush()
         return status
     except (BrokenPipeError, SystemExit) as error:  # typer and rich exit where the reader of stdout has left
@@ -164,7 +170,8 @@ def run(arguments: list[str] | None = None) -> int:
         how = "by which a shell asks for words, but not COMP_WORDS and COMP_CWORD; unset it"
         say(f"{COMPLETING} is set, {how}")
         return WRONG_USAGE
-    except typer.Abort:
+    except (KeyboardInterrupt, typer.Abort):
+        drop(sys.stdout)  # who reads it may have stopped, and writing would wait for ever
         raise KeyboardInterrupt from None
     except ModuleNotFoundError as error:
         if error.name not in EXTRAS:
