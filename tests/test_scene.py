@@ -117,6 +117,8 @@ def test_error(given: dict[str, Any], message: str) -> None:
 
 
 def test_an_int_too_long_to_write_out_is_still_an_error_that_can_be_shown() -> None:
+    for long in (Decimal("1." + "0" * 10**6), Decimal("1." + "3" * 10**6), Decimal("3" * 10**6)):
+        assert error(m1=long).endswith("is too long; numerator and denominator may have 1500 digits")
     assert error(m1=10**5000) == "m1 <int> is too long; numerator and denominator may have 1500 digits"
 
 

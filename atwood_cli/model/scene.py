@@ -322,6 +322,11 @@ def _or_one_of(names: Mapping[str, str]) -> str:
     return f", or one of {', '.join(names)}" if names else ""
 
 
+def _longest(number: Decimal) -> int:
+    """The digits before the point, or behind it, whichever are more."""
+    return max(abs(number.adjusted()), -int(number.as_tuple().exponent))
+
+
 def _read_number(name: str, given: object) -> Fraction | float:
     is_duration = getattr(getattr(given, "dtype", None), "kind", "") == "m"  # NumPy's pass for integers
     if isinstance(given, bool) or is_duration or not isinstance(given, Real | Decimal):
@@ -330,8 +335,8 @@ def _read_number(name: str, given: object) -> Fraction | float:
         raise SceneError(name, given, parameter_of(name).domain)
     if given in (inf, -inf):
         return float(given)
-    # A huge exponent is refused before it becomes a huge integer.
-    if not isinstance(given, Decimal) or not given or abs(given.adjusted()) <= MAX_MAGNITUDE:
+    # What is too long is refused before it becomes a huge integer.
+    if not isinstance(given, Decimal) or not given or _longest(given) <= MAX_MAGNITUDE:
         if isinstance(given, Rational):  # NumPy's integers among them, whose parts are no ints
             value = Fraction(int(given.numerator), int(given.denominator))
         else:
