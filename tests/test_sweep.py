@@ -698,6 +698,10 @@ FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
         ),
         ("--M 1:2:3 --only accel", "--only 'accel' is no quantity; did you mean acceleration?"),
         ("--M 1:2:3 --plot accel", "--plot 'accel' is no quantity; did you mean acceleration?"),
+        (
+            "--M 1:2:3 --csv -o ./a.svg --figure a.svg acceleration",
+            "--figure 'a.svg' is the file of --output; name another",
+        ),
         ("--M 1:2:3 --figure a.svg accel", "--figure 'accel' is no quantity; did you mean acceleration?"),
         ("--M 1:2:3 --plot regime", "--plot 'regime' is not a number to draw; name another quantity"),
         (
@@ -791,3 +795,13 @@ def test_huge_numbers_are_drawn_nowhere_but_printed(atwood: Atwood) -> None:
         "3",
     )
     assert exact.out == "M,tension_1\n1,1.47e401\n2,1.47e401\n"
+
+
+@pytest.mark.parametrize("count", ["1000000:log", "999998"])
+def test_points_that_no_digits_tell_apart_are_refused_at_once(atwood: Atwood, count: str) -> None:
+    start, stop = (f"1.{'3' * 993}{last}" for last in (1, 2))
+    ran = atwood(*HELD, "--M", f"{start}:{stop}:{count}", "--csv")
+    why = "has points closer together than 1000 digits can tell; take fewer points, or ends further apart"
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err.endswith(f" {why}\n")
+    assert atwood(*HELD, "--M", f"{start}:{stop}:3:log", "--csv").status == 0

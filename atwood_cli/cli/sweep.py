@@ -110,6 +110,8 @@ def sweep(
     plot = drawn.get("plot")
     check(RULES, {**options, "json": json, "csv": csv})
     check_extras(plot, figure and figure[0], force)
+    if figure and output and os.path.realpath(figure[0]) == os.path.realpath(output):
+        raise SceneError("figure", figure[0], "is the file of --output; name another")
     if plot is not None:
         names = [plot]
     wanted = list(dict.fromkeys([*names, *drawn.values()]))

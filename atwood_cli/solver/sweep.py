@@ -16,7 +16,7 @@ from typing import NamedTuple
 from ..arithmetic.interval import decimal_context
 from ..arithmetic.rounding import as_typed, text
 from ..model.scene import PARAMETERS, Scene, SceneError, read_value, read_whole, stated
-from ..model.units import MAX_DIGITS, MAX_MAGNITUDE, NUMBER, symbol_of, without_blanks
+from ..model.units import MAX_DIGITS, MAX_MAGNITUDE, NUMBER, Malformed, symbol_of, without_blanks
 from .answers import DOUBLE_DIGITS, Answers
 
 Point = Decimal | str
@@ -104,7 +104,10 @@ def read_range(name: str, typed: str) -> Range:
     except SceneError as error:
         raise SceneError(name, typed, f"has the count {words[2]!r}, which {error.rule}") from None
     ends = [_tidy(Decimal(as_typed(end))) for end in (start, stop)]
-    points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last), ends[1]]
+    try:
+        points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last), ends[1]]
+    except Malformed as error:
+        raise SceneError(name, typed, str(error)) from None
     return Range(name, typed, [f"{text(point)}rad" if unit == "rad" else point for point in points], log)
 
 
@@ -153,8 +156,12 @@ def _equal_ratios(start: Fraction, stop: Fraction, last: int) -> Iterator[Decima
 
 
 def _digits(steps: Fraction) -> int:
-    """The significant digits that tell values apart which are so many steps from 0."""
-    return max(DOUBLE_DIGITS, len(str(int(steps))) + 3)
+    """The significant digits that tell values apart which are so many steps from 0. Raises Malformed."""
+    digits = max(DOUBLE_DIGITS, len(str(int(steps))) + 3)
+    if digits > MAX_DIGITS:
+        rule = f"has points closer together than {MAX_DIGITS} digits can tell"
+        raise Malformed(f"{rule}; take fewer points, or ends further apart")
+    return digits
 
 
 def _tidy(value: Decimal) -> Decimal:
