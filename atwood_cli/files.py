@@ -43,7 +43,7 @@ def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
         else:
             _take_name(beside, target, path)
     except OSError as error:
-        if error.filename in (str(beside), str(target)):  # not the name that was asked for
+        if error.errno and error.filename in (None, str(beside), str(target)):  # not the name asked for
             raise type(error)(error.errno, error.strerror, str(path)) from None
         raise
     finally:

@@ -6,6 +6,7 @@ import json
 import re
 import subprocess
 import sys
+import warnings
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import pairwise
@@ -465,6 +466,14 @@ def test_elements_in_every_output(atwood: Atwood) -> None:
             "--m1 0 --m2 3",
             "--m1 0 leaves no arc: not defined for a free end: the string is fixed to the pulley and no friction holds it",
         ),
+        (
+            "--m1 0 --m2 3 --elements 2",
+            "--m1 0 leaves no arc: not defined for a free end: the string is fixed to the pulley and no friction holds it",
+        ),
+        (
+            "--m1 1 --m2 3 --M 10 --wrap 1e500 --figure x.svg",
+            "--figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only",
+        ),
         ("--m1 1 --m2 3 --points 1", "--points '1' must be a whole number from 2 to 100000"),
         ("--m1 1 --m2 3 --profile exponential", "--profile 'exponential' must be creep or least"),
         (
@@ -598,6 +607,53 @@ def test_figure_that_cannot_be_written(atwood: Atwood, tmp_path: Path) -> None:
     ran = atwood("contact", *FIGURE, "--figure", str(tmp_path / "nowhere" / "arc.svg"))
     assert (ran.status, ran.out) == (1, "")
     assert ran.err == f"atwood: cannot write {tmp_path / 'nowhere' / 'arc.svg'}: No such file or directory\n"
+
+
+def test_figures_know_no_settings_but_ours(tmp_path: Path) -> None:
+    """Neither those of the folder, which may be anybody's and run latex, nor of the environment, nor broken ones."""
+    pytest.importorskip("matplotlib")
+    words = " ".join(["contact", *FIGURE, "--figure"])
+    assert process(shell=f'cd "{tmp_path}"; atwood {words} plain.svg').status == 0
+    for content in (b"text.usetex: True\nlines.linewidth: 9\n", b"nonsense: 1\nbackend: bad\n", b"\xff"):
+        (tmp_path / "matplotlibrc").write_bytes(content)
+        ran = process(shell=f'cd "{tmp_path}"; atwood {words} a.svg --force', MPLBACKEND="nonsense")
+        assert (ran.status, ran.err) == (0, "")
+        assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "plain.svg").read_bytes()
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_matplotlib_warns_of_reaches_nobody(
+    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    figure = pytest.importorskip("atwood_cli.cli.figure")
+
+    def warn(*_: object) -> None:
+        warnings.warn("a source line", UserWarning, stacklevel=1)
+
+    monkeypatch.setattr(figure, "_draw_tension", warn)
+    ran = atwood("contact", *FIGURE, "--figure", str(tmp_path / "a.svg"))
+    assert (ran.status, ran.err) == (0, "")
+
+
+SMALL_DISK = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
+from atwood_cli.__main__ import main
+sys.exit(main())
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs limits of resources")
+@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
+def test_a_figure_for_which_the_disk_is_too_small(tmp_path: Path, suffix: str) -> None:
+    pytest.importorskip("matplotlib")
+    file = tmp_path / f"a.{suffix}"
+    words = [sys.executable, "-c", SMALL_DISK, "contact", *FIGURE, "--figure", str(file)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"atwood: cannot write {file}: File too large\n"
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_figure_without_its_extra_names_the_pip_command() -> None:

@@ -477,9 +477,12 @@ def test_scenes_of_every_kind(given: str, atwood: Atwood) -> None:
             "--m1 0 --m2 3 --M 1",
             "String elements: not defined for a free end: the string is fixed to the pulley and no friction holds it.",
         ),
-        (
-            "--m1 1 --m2 3 --M 1 --mu 700",
-            "String elements run in doubles, which this scene is too large for.",
+        *(
+            (
+                f"--m1 1 --m2 3 --M 1 --mu {mu}",
+                "String elements run in doubles, which this scene is too large for.",
+            )
+            for mu in ("700", "7e7", "1e9")
         ),
     ],
 )
@@ -514,7 +517,9 @@ def test_the_figure(atwood: Atwood, brief: list[str], tmp_path: Path) -> None:
 
 @pytest.mark.filterwarnings("error", "ignore::DeprecationWarning")  # of a matplotlib older than its parser
 @pytest.mark.usefixtures("briefly")
-@pytest.mark.parametrize("more", ["--M 10 --wrap 1e-300 --mu 1e-300", "--mu 0", ""])
+@pytest.mark.parametrize(
+    "more", ["--M 10 --wrap 1e-300 --mu 1e-300", "--mu 0", "--M 0", "--M 10 --mu 400", ""]
+)
 def test_elements_without_an_error_have_no_place_on_a_logarithmic_axis(
     atwood: Atwood, tmp_path: Path, more: str
 ) -> None:

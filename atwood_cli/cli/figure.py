@@ -3,9 +3,14 @@
 No pyplot, no display; the same scene gives the same SVG to the byte.
 """
 
+import os
+import sys
+import warnings
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import chdir, contextmanager
 from importlib import import_module
+from importlib.util import find_spec
+from io import BytesIO
 from itertools import pairwise
 from math import cos, degrees, hypot, nan, radians, sin
 from pathlib import Path
@@ -129,21 +134,39 @@ def check_file(path: str, force: bool) -> None:
     """Raises in time: SceneError where the suffix is no format, ImportError, or OSError if it exists."""
     if Path(path).suffix.lower() not in FORMATS:
         raise SceneError("figure", path, f"must end in one of {', '.join(FORMATS)}")
-    import_module("matplotlib")
+    _load()
     check_free(Path(path), force)
+
+
+def _load() -> None:
+    """Import matplotlib without any settings but its own: neither the user's nor those of the folder.
+
+    It takes those of the folder it is in first; in its own, these are as it came. Raises ImportError.
+    """
+    spec = find_spec("matplotlib")
+    if "matplotlib" not in sys.modules and spec and spec.origin:
+        os.environ.pop("MPLBACKEND", None)
+        with chdir(Path(spec.origin).with_name("mpl-data")):
+            import_module("matplotlib")
+    import_module("matplotlib").set_loglevel("error")
 
 
 @contextmanager
 def _page(path: str, force: bool) -> Iterator["Figure"]:
     """A figure to draw on, which is then saved."""
-    from matplotlib import rc_context
+    _load()
+    from matplotlib import rc_context, rcParamsDefault
     from matplotlib.figure import Figure
 
-    with written_beside(Path(path), force) as beside, rc_context(STYLE):
-        figure = Figure(figsize=(11, 6), layout="constrained")
-        yield figure
-        kind = Path(path).suffix[1:].lower()
-        figure.savefig(beside, format=kind, dpi=200, metadata={"Date": None} if kind == "svg" else None)
+    kind = Path(path).suffix[1:].lower()
+    drawn = BytesIO()  # a full disk is none of matplotlib's business
+    with written_beside(Path(path), force) as beside:
+        with warnings.catch_warnings(), rc_context({**rcParamsDefault, **STYLE}):
+            warnings.simplefilter("ignore")
+            figure = Figure(figsize=(11, 6), layout="constrained")
+            yield figure
+            figure.savefig(drawn, format=kind, dpi=200, metadata={"Date": None} if kind == "svg" else None)
+        beside.write_bytes(drawn.getbuffer())
 
 
 def _draw_machine(axes: "Axes", answers: Answers, arc: Contact) -> None:

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 from ..arithmetic.rounding import is_infinite
 from ..model import arc
 from ..model.arc import Kind
+from ..model.case import Case
 from ..model.machine import FREE_END, NEEDS_M, Machine
 from ..model.scene import SceneError, read_whole
 from .answers import Answers
@@ -49,6 +50,12 @@ class Contact(NamedTuple):
     notes: list[str]
 
 
+def check_arc(case: Case) -> None:
+    """Raises SceneError where the string touches nothing, as one of its ends is free."""
+    if not case.light:
+        raise SceneError("m1" if case.scene.m1 == 0 else "m2", 0, f"leaves no arc: {FREE_END}")
+
+
 def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -> Contact:
     """The arc of contact of a scene at so many equally spaced angles.
 
@@ -56,8 +63,7 @@ def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -
     Raises SceneError where the scene does not determine the arc.
     """
     case = answers.case
-    if not case.light:
-        raise SceneError("m1" if case.scene.m1 == 0 else "m2", 0, f"leaves no arc: {FREE_END}")
+    check_arc(case)
     if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
         raise SceneError("M", None, f"is missing: {NEEDS_M}")
     if kind not in (None, "creep", "least"):

@@ -16,6 +16,7 @@ from ..model import physics
 from ..model.machine import Machine
 from ..model.scene import SceneError, read_whole
 from .answers import Answers, OnMachine
+from .contact import check_arc
 
 BLOCK = 1 << 16  # elements at a time: arrays of half a megabyte, which stay in the cache
 MAX_ELEMENTS = 10_000_000
@@ -103,6 +104,7 @@ def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> E
     count = read_whole("elements", count, 1, MAX_ELEMENTS)
     if extrapolate and count % 2:
         raise SceneError("elements", count, "must be even, to extrapolate from half as many")
+    check_arc(answers.case)
     machine, rough = _Doubles(Answers(answers.case.scene), count), Answers(answers.case.scene, ERROR_DIGITS)
     _check_count(machine.mu, machine.phi, count, extrapolate)
     values = machine.solve(count)

@@ -253,10 +253,11 @@ def marches(scene: Scene) -> Iterator[March]:
     """
     answers = Answers(scene, EXACT_DIGITS)
     mu = float(answers.settle(attrgetter("reference_mu")))
-    exact = Fraction(answers.settle(attrgetter("capstan_ratio")))
+    ratio = Decimal(answers.settle(attrgetter("capstan_ratio")))
     phi = float(answers.settle(lambda machine: machine.phi))
-    if to_double(exact) == inf:
+    if to_double(ratio) == inf:  # before a fraction of a hundred million digits is made of it
         raise SceneError("elements", None, TOO_LARGE)
+    exact = Fraction(ratio)
 
     def k(count: int) -> float:
         return march(mu, phi, count)[0]
