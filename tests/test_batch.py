@@ -21,7 +21,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atwood_cli import solve
+from atwood_cli import SceneError, solve
 from atwood_cli.arrays import solve_arrays
 from atwood_cli.arrays.plan import COLUMNS
 from atwood_cli.batch import formats as tables
@@ -346,6 +346,35 @@ def test_a_bad_row_says_what_is_wrong(atwood: Atwood, table: Table, row: dict[st
     assert bad == dict.fromkeys((*COLUMNS, *STANDARD), "") | rows[1] | {"error": error}
     assert (before["error"], after["error"]) == ("", "")
     assert float(before["acceleration"]) == -float(after["acceleration"]) != 0
+
+
+def test_a_cell_is_a_number_where_solve_takes_it_for_one(atwood: Atwood, table: Table) -> None:
+    rng = Random(19)
+    words = [
+        *"0e501 0e-501 -0 -0.0e501 0e0000501 1e501 1E-501 1e0000000001 +.5e+05 5. .5 . e 1e 1e+ 1f 1_0 0x1".split()
+    ]
+    words += [
+        *"inf INF +inf infinity nan NaN \u0663 \uff11 true 1e5e5 1..5 --1 ١".split(),
+        "1 e5",
+        "\xa01",
+        "1\u2009",
+    ]
+    words += [
+        "0." + "0" * 600 + "1e600",
+        "1" * 1001,
+        "0" * 1001 + "1",
+        "1." + "0" * 1000,
+        "1" + "0" * 300 + "e-501",
+    ]
+    words += ["".join(rng.choices("0159.e-+ _", k=rng.randint(1, 9))).strip() or "0" for _ in range(3000)]
+    path = table("\n".join(["m1,m2,M", *(f"1,3,{word}" for word in words), ""]))
+    for word, row in zip(words, records(atwood("batch", path, "--accuracy", "fast")), strict=True):
+        try:
+            solve(m1=1, m2=3, M=word)
+            taken = True
+        except SceneError:
+            taken = False
+        assert taken == (not row["error"]) or row["error"].endswith(BEYOND), word
 
 
 @pytest.mark.parametrize("value", ["true", "[1, 2]", '{"kg": 1}', '"250 g"'])

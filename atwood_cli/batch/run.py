@@ -261,6 +261,11 @@ def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict
     return scenes, errors
 
 
+LONG = 100
+"""Characters: a shorter text that is a double other than 0 has no more digits and no larger exponent than are
+taken."""
+
+
 def _column(cells: "pl.Series", doubles: "pl.Series", as_doubles: "pl.Expr") -> tuple[Any, dict[int, Any]]:
     """A column's cells as doubles, NaN where empty, and by row those cells that may be no doubles."""
     import numpy as np
@@ -275,8 +280,10 @@ def _column(cells: "pl.Series", doubles: "pl.Series", as_doubles: "pl.Expr") -> 
     if odd.any():
         odd &= cells.is_not_null().to_numpy()
     if (zero := array == 0).any():  # what is too small for a double would be another scene
-        some = cells.str.contains("^[^eE]*[1-9]") if text else cells != 0
+        some = cells.str.contains("[1-9]") if text else cells != 0  # in an exponent it may be beyond bounds
         odd |= zero & some.fill_null(False).to_numpy()
+    if text and (cells.str.len_bytes().max() or 0) > LONG:  # type: ignore[operator]
+        odd |= (cells.str.len_bytes() > LONG).fill_null(False).to_numpy()
     rows = odd.nonzero()[0]
     return array, dict(zip(rows.tolist(), cells.gather(rows).to_list(), strict=True)) if len(rows) else {}
 
