@@ -24,6 +24,9 @@ def main() -> int:
     for number in statuses:
         if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
             signal.signal(number, end)
+    sys.set_int_max_str_digits(
+        sys.int_info.default_max_str_digits
+    )  # the environment may allow fewer than we do
     gc.disable()  # what is imported stays: looking through it for garbage is a seventh of a short run
     try:
         # Imported here, so that Ctrl-C during start-up shows no traceback either.

@@ -1058,6 +1058,21 @@ def test_an_error_while_reading_says_so(atwood: Atwood) -> None:
     assert (ran.status, ran.err) == (1, "atwood: cannot read /proc/self/mem: Input/output error\n")
 
 
+@pytest.mark.parametrize("threads", ["x", "0", "-1", ""])
+def test_threads_that_polars_panics_over(
+    atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch, threads: str
+) -> None:
+    monkeypatch.setenv("POLARS_MAX_THREADS", threads)
+    ran = atwood("batch", table("m1,m2\n1,2\n"))
+    why = f"POLARS_MAX_THREADS is set to {threads!r}; it must be a whole number from 1, or unset"
+    assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: {why}\n")
+
+
+def test_what_polars_warns_of_reaches_nobody(table: Table) -> None:
+    ran = process("batch", table("m1,m2\n1,2\n"), POLARS_ENGINE_AFFINITY="x")
+    assert (ran.status, ran.err) == (0, "atwood: 1 row: 1 no-slip; no errors.\n")
+
+
 def test_without_polars_one_line_says_what_to_install(
     atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -425,6 +425,12 @@ def test_the_door_opens_before_anything_is_loaded() -> None:
     assert not {"atwood_cli.cli", "atwood_cli.solver", "atwood_cli.model", "typer"} & set(loaded)
 
 
+def test_numbers_may_be_as_long_in_any_environment() -> None:
+    words = ["solve", "--m1", f"1.{'3' * 900}", "--m2", "3", "--digits", "1000", "--csv"]
+    ran = process(*words, PYTHONINTMAXSTRDIGITS="640")
+    assert (ran.status, ran.err) == (0, process(*words).err)
+
+
 @pytest.mark.parametrize("where", ["atwood_cli.solver.reading.Answers", "atwood_cli.cli.run"])
 def test_an_interrupt_ends_it_with_130(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], where: str

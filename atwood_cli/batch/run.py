@@ -4,6 +4,7 @@ import os
 import signal
 import stat
 import sys
+import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
@@ -76,12 +77,15 @@ class Job:
 
 def run_batch(job: Job, watch: Watch) -> Tally:
     """Solve a table of scenes, under ``watch`` unless results go to a terminal. Raises OSError."""
-    import polars as pl
-
+    _check_environment()
     _check_apart(job)
-    if hasattr(signal, "siginterrupt"):  # as it is imported, polars has Ctrl-C wait for a pipe
-        signal.siginterrupt(signal.SIGINT, True)
     with ExitStack() as stack:
+        stack.enter_context(warnings.catch_warnings())
+        warnings.simplefilter("ignore", UserWarning)  # of polars, about its other settings
+        import polars as pl
+
+        if hasattr(signal, "siginterrupt"):  # as it is imported, polars has Ctrl-C wait for a pipe
+            signal.siginterrupt(signal.SIGINT, True)
         tally = Tally()
         try:
             source = _open(job, stack)
@@ -93,6 +97,16 @@ def run_batch(job: Job, watch: Watch) -> Tally:
             raise OSError(f"cannot write {job.target_format}: {str(error).splitlines()[0]}") from None
         target.flush()
     return tally
+
+
+THREADS = "POLARS_MAX_THREADS"
+
+
+def _check_environment() -> None:
+    """Refuse a number of threads over which polars would panic. Raises OSError."""
+    threads = os.environ.get(THREADS, "1")
+    if not (threads.isascii() and threads.isdigit() and int(threads)):
+        raise OSError(f"{THREADS} is set to {threads!r}; it must be a whole number from 1, or unset")
 
 
 def _check_apart(job: Job) -> None:
