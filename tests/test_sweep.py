@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
@@ -805,3 +806,23 @@ def test_points_that_no_digits_tell_apart_are_refused_at_once(atwood: Atwood, co
     assert (ran.status, ran.out) == (2, "")
     assert ran.err.endswith(f" {why}\n")
     assert atwood(*HELD, "--M", f"{start}:{stop}:3:log", "--csv").status == 0
+
+
+def test_rows_of_csv_are_written_as_they_come(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], atwood: Atwood
+) -> None:
+    """None is held: of a million rows there is one at a time."""
+    words = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3", "--M", "0:50:6"]
+    whole = atwood(*words, "--csv")
+    seen = []
+
+    def watching(*given: Any) -> Iterator[Row]:
+        for row in solve_rows(*given):
+            seen.append(capsys.readouterr().out)
+            yield row
+
+    monkeypatch.setattr("atwood_cli.cli.sweep.solve_rows", watching)
+    rest = atwood(*words, "--csv")
+    assert [text.count("\n") for text in seen] == [0, 2, 1, 1, 1, 1]
+    assert ("".join(seen) + rest.out, rest.err) == (whole.out, whole.err)
+    assert "(at 5 of 6 points)" in whole.err

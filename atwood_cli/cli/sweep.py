@@ -3,7 +3,7 @@
 import os
 import sys
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby, product
 from operator import itemgetter
 from typing import Annotated, Any
@@ -115,15 +115,31 @@ def sweep(
     if plot is not None:
         names = [plot]
     wanted = list(dict.fromkeys([*names, *drawn.values()]))
+    reasons: Reasons = Counter()
+    solved = _noted(solve_rows(swept, wanted, precision), reasons)
     with stdout_into(output, force):
-        rows = list(watched(solve_rows(swept, wanted, precision), swept.total))
+        if not (csv and output is None and sys.stdout.isatty()):  # where rows would run into the bar
+            solved = watched(solved, swept.total)
+        rows: Iterable[Row] = solved if csv else list(solved)
         if figure is not None:
             from .figure import save_sweep
 
-            save_sweep(picture(swept, rows, "figure", drawn["figure"]), _head(swept), figure[0], force)
-        aside = show(_forms(swept, rows, names, plot, _is_file(output)), json, csv)
+            rows = held = list(rows)
+            save_sweep(picture(swept, held, "figure", drawn["figure"]), _head(swept), figure[0], force)
+        aside = show(_forms(swept, rows, reasons, names, plot, _is_file(output)), json, csv)
     say(*aside)
     return DONE
+
+
+Reasons = Counter[tuple[str, str]]
+"""By quantity and why it has no value, at how many points."""
+
+
+def _noted(rows: Iterable[Row], reasons: Reasons) -> Iterator[Row]:
+    """The rows, while reasons are counted."""
+    for row in rows:
+        reasons.update(row.reasons.items())
+        yield row
 
 
 def _is_file(output: str | None) -> bool:
@@ -141,32 +157,42 @@ def _form_for(output: str | None, json: bool, csv: bool) -> tuple[bool, bool]:
     return suffix == ".json", suffix == ".csv"
 
 
-def _forms(sweep: Sweep, rows: Sequence[Row], names: Sequence[str], plot: str | None, plain: bool) -> Forms:
-    """``plain``: what is printed goes to a file, though stdout may be a terminal."""
+def _forms(
+    sweep: Sweep, rows: Iterable[Row], reasons: Reasons, names: Sequence[str], plot: str | None, plain: bool
+) -> Forms:
+    """``plain``: what is printed goes to a file, though stdout may be a terminal.
+
+    Rows that come one by one, for CSV, are those of which no other form can be had.
+    """
+
+    def notes() -> list[str]:
+        """Why values are missing, and at how many points."""
+        counted = Counter({about: count for about, count in reasons.items() if about[0] in names})
+        return reasons_at(counted, sweep.total)
 
     def page() -> None:
         if plot is None:
-            _print_table(sweep, rows, names, plain)
+            _print_table(sweep, list(rows), names, notes(), plain)
         else:
             from .plot import print_plot
 
-            curves = picture(sweep, rows, "plot", plot)
-            print_plot(Page(plain=plain), _head(sweep), curves, _notes(rows, [plot]))
+            curves = picture(sweep, list(rows), "plot", plot)
+            print_plot(Page(plain=plain), _head(sweep), curves, notes())
 
     return Forms(
         json=lambda: {
             "scene": scene_record(sweep.scene) | _typed_ranges(sweep),
-            "rows": _records(sweep, rows, names),
-            "notes": _notes(rows, names),
+            "rows": list(_records(rows, names)),
+            "notes": notes(),
         },
-        records=lambda: _records(sweep, rows, names),
+        records=lambda: _records(rows, names),
         page=page,
-        notes=lambda: _notes(rows, names),
+        notes=notes,
     )
 
 
-def _records(sweep: Sweep, rows: Sequence[Row], names: Sequence[str]) -> list[dict[str, object]]:
-    return [{**row.at, **{name: row.values[name] for name in names}} for row in rows]
+def _records(rows: Iterable[Row], names: Sequence[str]) -> Iterator[dict[str, object]]:
+    return ({**row.at, **{name: row.values[name] for name in names}} for row in rows)
 
 
 def _head(sweep: Sweep) -> str:
@@ -178,15 +204,11 @@ def _typed_ranges(sweep: Sweep) -> dict[str, str]:
     return {range_.name: range_.typed for range_ in sweep.ranges}
 
 
-def _notes(rows: Sequence[Row], names: Sequence[str]) -> list[str]:
-    """Why values are missing, and at how many points."""
-    reasons = Counter(item for row in rows for item in row.reasons.items() if item[0] in names)
-    return reasons_at(reasons, len(rows))
-
-
-def _print_table(sweep: Sweep, rows: Sequence[Row], names: Sequence[str], plain: bool) -> None:
+def _print_table(
+    sweep: Sweep, rows: Sequence[Row], names: Sequence[str], notes: Sequence[str], plain: bool
+) -> None:
     """The scene, its regimes, a row a point, and the notes; columns without a value are left out."""
-    page, scene, notes = Page(plain=plain), _head(sweep), _notes(rows, names)
+    page, scene = Page(plain=plain), _head(sweep)
     shown = [name for name in names if any(cell(row.values[name]) for row in rows)]
     columns = [
         aligned(map(text, points)) for points in zip(*product(*(r.bare() for r in sweep.ranges)), strict=True)

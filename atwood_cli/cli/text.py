@@ -3,7 +3,7 @@
 import json
 import os
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
@@ -80,7 +80,7 @@ class Forms(NamedTuple):
     """
 
     json: Callable[[], Mapping[str, object]]
-    records: Callable[[], Sequence[Mapping[str, object]]]
+    records: Callable[[], Iterable[Mapping[str, object]]]
     page: Callable[[], None]
     notes: Callable[[], Sequence[str]]
 
@@ -120,12 +120,15 @@ def as_json(value: object, indent: str = "\n") -> str:
     return json.dumps(value)
 
 
-def print_csv(records: Sequence[Mapping[str, object]]) -> None:
-    """A line of names and a line for each record."""
+def print_csv(records: Iterable[Mapping[str, object]]) -> None:
+    """A line of names and a line for each record, as they come."""
     from csv import writer
 
-    rows = [[cell(value) for value in record.values()] for record in records]
-    writer(sys.stdout, lineterminator="\n").writerows([list(records[0]), *rows])
+    table = writer(sys.stdout, lineterminator="\n")
+    for number, record in enumerate(records):
+        if not number:
+            table.writerow(record)
+        table.writerow(map(cell, record.values()))
 
 
 def cell(value: object) -> str:
