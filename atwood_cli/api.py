@@ -78,6 +78,7 @@ class Solution(Generic[T]):
     critical_heavier_mass: T | None
     least_heavier_mass: T | None
     least_pulley_mass: T | None
+    least_wrap: T | None
     uncertainty: Mapping[str, T | None] = field(default_factory=dict, hash=False)
 
 
@@ -91,6 +92,9 @@ class MeasuredSolution(Solution[T]):
     pulley_mass: T | None = None
     moment_of_inertia: T | None = None
     gravity: T | None = None
+    m1: T | None = None
+    m2: T | None = None
+    mu_k: T | None = None
     fall_time: T | None = None
     final_speed: T | None = None
 
@@ -107,9 +111,10 @@ def solve(*, digits: int | str | None = None, **given: Unpack[Inputs]) -> Any:
     no M, a massless pulley, or with mu the one that brings the string to the verge of slipping.
     Defaults: g standard gravity, inertia that of a disk (1/2), wrap 180, mu_k = mu.
 
-    ``a``, a measured acceleration, stands in place of M, or beside M of g, and finds it; ``drop``, a
-    height, gives the time and speed of the fall, and with ``time`` stands for the ``a`` it implies. A
-    MeasuredSolution comes back, which has these results too.
+    ``a``, a measured acceleration, stands in place of M, or beside M of a mass or g, and finds it; of a
+    string that slips, as it must on M="inf", it finds mu_k. ``drop``, a height, gives the time and speed
+    of the fall, and with ``time`` stands for the ``a`` it implies. A MeasuredSolution comes back, which
+    has these results too.
 
     Text may carry a standard uncertainty, as "1.000(2)", "1.000±0.002" or "(250±1)g"; the solution's
     ``uncertainty`` then has those of the quantities by name, to first order.

@@ -198,6 +198,12 @@ def expected(scene: Scene) -> dict[str, Any]:
     elif grip is not None:
         out["mu_verge"] = lambda: ball(grip).log() / phi()
     if mu is not None:
+        if l and equal:
+            out["least_wrap"] = Fraction(0)
+        elif regime == "verge":
+            out["least_wrap"] = scene.wrap.number
+        elif grip is not None and mu:
+            out["least_wrap"] = lambda: ball(grip).log() / ball(mu) * 180 / flint.arb.pi()
         if slips_locked and beta is not None:
             out["critical_pulley_mass"] = (
                 Fraction(0)
@@ -232,5 +238,5 @@ def c_as(like: Any, q: Fraction) -> Any:
 NAMES = """
     regime acceleration tension_1 tension_2 mu_verge friction_force friction_force_min friction_force_max
     friction_force_x friction_force_y axle_force torque rim_acceleration angular_acceleration
-    critical_pulley_mass critical_heavier_mass least_heavier_mass least_pulley_mass
+    critical_pulley_mass critical_heavier_mass least_heavier_mass least_pulley_mass least_wrap
 """.split()

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from decimal import Decimal
 from fractions import Fraction
-from math import sqrt
+from math import pi, sqrt
 from typing import Any
 
 import pytest
@@ -15,6 +15,7 @@ import sympy as sp
 import uncertainties as unc
 from hypothesis import given
 from hypothesis import strategies as st
+from uncertainties import umath
 
 from atwood_cli import Scene, SceneError, Solution, solve
 from atwood_cli.api import MeasuredSolution
@@ -61,6 +62,14 @@ def test_they_undo_the_acceleration_and_the_load() -> None:
     assert sp.simplify(a * t**2 / 2 - H) == 0
     assert sp.simplify(v - a * t) == 0
     assert sp.simplify(physics.acceleration_of_fall(H, t) - a) == 0
+    # (1) on either side.
+    T = sp.symbols("T", positive=True)
+    mass = physics.hanging_mass(T, a, g)
+    assert sp.simplify(mass * g - T - mass * a) == 0
+    k1 = sp.symbols("k1", positive=True)
+    z = physics.transfer_at_limit(l, k1)
+    slide = physics.acceleration(physics.drive_at_limit(l, h, z), physics.load(l, h, z), g)
+    assert sp.simplify(physics.slide_excess(l, h, slide, g) - k1) == 0
     R = sp.symbols("R", positive=True)
     # A disk: I = M R²/2, c = M/2.
     assert physics.moment_of_inertia(c, R) == c * R**2
@@ -84,6 +93,74 @@ def test_what_is_found_gives_the_measured_acceleration_exactly(
         assert getattr(for_pulley, name) == getattr(for_gravity, name) == getattr(exact, name)
 
 
+@given(masses, masses, st.fractions(min_value=0, max_value=10**6), masses, masses)
+def test_a_mass_that_is_found_is_the_one_that_was_taken_away(
+    m1: Fraction, m2: Fraction, M: Fraction, g: Fraction, beta: Fraction
+) -> None:
+    a = (m2 - m1) * g / (m1 + m2 + beta * M)
+    exact = solve(m1=m1, m2=m2, M=M, g=g, inertia=beta, digits=30)
+    for unknown, known in (("m1", {"m2": m2}), ("m2", {"m1": m1})):
+        for pulley in ({"M": M, "inertia": beta}, {"I": beta * M, "R": 1}):
+            if pulley.get("I") != 0:
+                found = measured(**{"m1": None, "m2": None, **known}, **pulley, a=a, g=g)
+                assert getattr(found.scene, unknown) == {"m1": m1, "m2": m2}[unknown]
+        again = solve(**known, M=M, inertia=beta, a=a, g=g, digits=30)
+        assert all(getattr(again, name) == getattr(exact, name) for name in NAMES)
+
+
+def test_a_free_end_is_found_where_nothing_else_moves_so() -> None:
+    free = measured(m2=None, M="10", a=Fraction("-9.80665") / 6)
+    assert (free.m2, free.tension_2, free.mu_verge) == (0, 0, None)
+
+
+def test_a_slide_finds_kinetic_friction_and_moves_as_that_does() -> None:
+    """The issue's: 100 g and 400 g over a locked pulley at 2.141 m/s²."""
+    found = measured(m1="100g", m2="400g", M="inf", a="2.141", digits=30)
+    assert f"{found.mu_k:.3f}" == "0.300"
+    for m1, m2, sign in (("100g", "400g", 1), ("400g", "100g", -1)):
+        for more in ({"M": "inf"}, {"M": "inf", "mu": "0.4"}, {"M": "7", "mu": "0.39"}):
+            found = measured(m1=m1, m2=m2, a=Decimal("2.141") * sign, digits=30, **more)
+            again: Any = solve(m1=m1, m2=m2, **{"mu": found.mu_k, **more}, mu_k=found.mu_k, digits=25)
+            assert again.regime == found.regime == "slip"
+            for name in NAMES[1:]:
+                one, other = getattr(found, name), getattr(again, name)
+                if one is not None and name != "least_wrap":
+                    assert float(one) == pytest.approx(float(other), rel=1e-15), name
+    # The massless acceleration is that of no friction.
+    assert measured(m1="1", m2="3", M="inf", a="4.903325").mu_k == 0
+    assert measured(m1="1", m2="3", M="inf", a="4.903325").friction_force == 0
+
+
+def test_a_slide_with_uncertainties_against_uncertainties() -> None:
+    m1, m2, a, g = (unc.ufloat(*x) for x in ((0.1, 1e-3), (0.4, 2e-3), (2.141, 5e-3), (9.81, 0.01)))
+    wanted = umath.log(m2 * (g - a) / (m1 * (g + a))) / pi
+    s = measured(m1="0.100(1)", m2="0.400(2)", a="2.141(5)", g="9.81(1)", M="inf")
+    assert s.mu_k == pytest.approx(wanted.nominal_value, rel=1e-14)
+    assert s.uncertainty["mu_k"] == pytest.approx(wanted.std_dev, rel=1e-12)
+
+
+def test_the_wrap_that_just_holds() -> None:
+    assert solve(m1="1", m2="400", M="inf", mu="0.3").least_wrap == 1144.285438838495
+    for scene in ({"M": "inf"}, {"M": "100"}, {"M": "10"}, {"M": "10", "wrap": "90"}):
+        given_: dict[str, Any] = {"m1": "1", "m2": "3", "mu": "0.2", **scene}
+        wrap = Fraction(solve(**given_, digits=30).least_wrap or 0)
+        for off, regime in ((Fraction("1e-20"), "no-slip"), (Fraction("-1e-20"), "slip")):
+            assert solve(**{**given_, "wrap": wrap + off}).regime == regime
+    assert solve(m1="1", m2="3", mu="0.3", wrap="170").least_wrap == 170  # the verge itself
+    assert solve(m1="1", m2="3", mu="0.3", wrap="3rad", digits=5).least_wrap == Decimal("171.89")
+    assert solve(m1="1", m2="3", mu="0.3", M="0").least_wrap == 0
+    without: list[tuple[dict[str, Any], str]] = [
+        ({"M": "10"}, "give mu"),
+        ({"mu": "0.4"}, "give M"),
+        ({"mu": "0", "M": "1"}, "does not exist, as without friction no wrap holds"),
+        ({"m1": "0"}, "not defined for a free end"),
+    ]
+    for scene, why in without:
+        s = solve(**{"m1": "1", "m2": "3", **scene})
+        assert s.least_wrap is None
+        assert any("least_wrap" in note and why in note for note in s.notes)
+
+
 def test_the_results_that_are_found() -> None:
     # c = 2 g - 4 = 15.6133, M = c/β.
     s = measured(a="1", R="0.1", drop="2")
@@ -93,6 +170,8 @@ def test_the_results_that_are_found() -> None:
     # g = 1 (1 + 3 + 5)/2
     s = measured(a="1", M="10")
     assert (s.gravity, s.pulley_mass, s.moment_of_inertia, s.fall_time) == (4.5, None, None, None)
+    s = measured(a="1", I="0.2", R="0.2")
+    assert (s.gravity, s.pulley_mass) == (4.5, None)
     # A free end on a pulley: a = m2 g/(m2 + c).
     assert measured(m1="0", m2="1", a="4.903325").pulley_mass == 2
     # The massless pulley itself.
@@ -243,11 +322,65 @@ def test_a_fall_in_doubt_of_slipping() -> None:
             "a '1' has no place beside mu, as a string that slips moves alike on any pulley; leave mu out",
         ),
         (
-            {"a": "1", "I": "1", "R": "1"},
-            "a '1' has no place beside I, which already tells how the pulley turns; leave I out",
+            {"a": "1", "I": "1", "R": "1", "g": "9.8"},
+            "a '1' leaves nothing to find beside both I and g; leave one of them out",
+        ),
+        ({"a": "1", "m2": None}, "m2 is missing; give it, or M, beside which a finds it"),
+        ({"a": "1", "m2": None, "m1": None}, "m1 is missing; give both masses, m1 and m2"),
+        ({"m2": None, "M": "1"}, "m2 is missing; give both masses, m1 and m2"),
+        (
+            {"a": "1", "m2": None, "M": "1", "mu": "0.3"},
+            "a '1' has no place beside mu, as a string that slips moves alike on any pulley; leave mu out",
         ),
         (
-            {"a": "1", "M": "inf"},
+            {"drop": "1", "time": "1", "m2": None, "M": "1"},
+            "time '1' does not tell which way m2 moves; give a in its place, positive when m2 descends",
+        ),
+        (
+            {"a": "1", "m1": "0", "m2": None, "M": "0"},
+            "a '1' tells nothing of m2, which falls freely; give the other mass or M above 0",
+        ),
+        *(
+            (
+                {"a": a, "m2": None, "M": "10"},
+                f"a {a!r} must be between -1.6344416666666666 (no m2 at all) and 9.80665 m/s² (m2 in free fall)",
+            )
+            for a in ("9.80665", "11", "-1.7")
+        ),
+        (
+            {"a": "-9.9", "m1": None, "M": "10"},
+            "a '-9.9' must be between 3.67749375 (no m1 at all) and -9.80665 m/s² (m1 in free fall)",
+        ),
+        (
+            {"a": "0", "m1": "0", "m2": None, "M": "10"},
+            "a '0' must be between 0 (no m2 at all) and 9.80665 m/s² (m2 in free fall)",
+        ),
+        *(
+            (
+                {"a": a, "M": "inf"},
+                f"a {a!r} must be between 0 (a string that holds) and 4.903325 m/s² (no friction), as m2 is"
+                " the heavier mass",
+            )
+            for a in ("0", "5", "-1")
+        ),
+        (
+            {"a": "1", "M": "inf", "m1": "0"},
+            "a '1' has no place beside M = inf and a free end, which is fixed to the pulley; leave it out",
+        ),
+        (
+            {"a": "1", "M": "inf", "mu": "0.3", "mu_k": "0.2"},
+            "a '1' and mu_k both tell how the string slides; leave one of them out",
+        ),
+        (
+            {"a": "1", "M": "10", "mu": "0.3"},
+            "a '1' has no place beside mu = 0.3, with which the string does not slip; leave mu out",
+        ),
+        (
+            {"a": "0.7", "M": "inf", "mu": "0.3"},
+            "a '0.7' is that of a string with more kinetic friction than mu; check both",
+        ),
+        (
+            {"a": "1", "M": "inf", "m2": None},
             "a '1' has no place beside M = inf, which lets nothing move; leave one of them out",
         ),
         (
@@ -298,6 +431,9 @@ def test_only_of_what_the_scene_does_not_ask_names_the_option(atwood: Atwood) ->
     assert ran.err.splitlines() == [
         "atwood: pulley_mass, moment_of_inertia: give a, a measured acceleration, in place of M.",
         "atwood: gravity: give a, a measured acceleration, beside M and in place of g.",
+        "atwood: m1: give a, a measured acceleration, and M in place of m1.",
+        "atwood: m2: give a, a measured acceleration, and M in place of m2.",
+        "atwood: mu_k: give a, a measured acceleration, beside M = inf, or beside M and a mu that is too small.",
         "atwood: fall_time, final_speed: give drop, the height that the heavier mass falls from rest.",
     ]
 
@@ -317,6 +453,7 @@ def test_a_fall_that_needs_the_pulley(atwood: Atwood) -> None:
 # How they are shown
 
 
+FROM_PULLEY_AND_FALL = ("pulley_mass", "moment_of_inertia", "fall_time", "final_speed")
 LAB = ["solve", "--m1", "1", "--m2", "3", "--a", "1.00(1)", "--R", "10cm", "--drop", "2"]
 
 
@@ -340,8 +477,7 @@ def test_json_and_csv_have_them_only_with_what_they_come_from(atwood: Atwood) ->
     assert list(printed) == [
         "scene",
         *NAMES,
-        *MEASURED_NAMES[:2],
-        *MEASURED_NAMES[3:],
+        *FROM_PULLEY_AND_FALL,
         "uncertainty",
         "notes",
     ]
@@ -352,7 +488,7 @@ def test_json_and_csv_have_them_only_with_what_they_come_from(atwood: Atwood) ->
     assert list(gravity) == ["scene", *NAMES, "gravity", "notes"]
     assert (gravity["scene"]["g"], gravity["gravity"]) == (None, 5.625)
     names, values = csv.reader(io.StringIO(atwood(*LAB, "--csv").out))
-    here = [*NAMES, *MEASURED_NAMES[:2], *MEASURED_NAMES[3:]]
+    here = [*NAMES, *FROM_PULLEY_AND_FALL]
     assert names == [*here, *(f"u_{name}" for name in here[1:])]
     assert dict(zip(names, values, strict=True))["pulley_mass"] == "31.2266"
 

@@ -31,7 +31,7 @@ REMARKS = {
     "I": ", in place of inertia; needs R",
     "R": ", as 0.1 or 5cm",
     "wrap": ", in degrees, or as 1.5turn or 3rad; 180 if not given",
-    "a": ": finds M, or beside M gravity",
+    "a": ": finds M; beside M, a mass or gravity; of a string that slips, mu_k",
     "drop": ": gives the time and the speed",
     "time": ", with drop in place of a",
 }

@@ -14,7 +14,7 @@ from .scene import UNMEASURED, Motion, Scene
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, N, Quantity
 
-Excess = Literal["excess_ratio", "locked_excess", "heaviest_excess"]
+Excess = Literal["excess_ratio", "locked_excess", "heaviest_excess", "slide_excess"]
 
 
 def is_zero(value: object) -> bool:
@@ -90,6 +90,8 @@ class Case:
     @lazy
     def regime(self) -> Literal["no-slip", "verge", "slip"]:
         """What the string does; it is assumed to grip where nothing is said of friction."""
+        if self.slide_measured:
+            return "slip"
         if self.scene.mu is None or self.tensions_equal:
             return "no-slip"
         if not self.pulley_known:
@@ -103,14 +105,36 @@ class Case:
 
     @property
     def limiting_mu(self) -> Fraction:
-        """The coefficient that friction is at on the verge (static) and in slip (kinetic)."""
+        """The coefficient that friction is at on the verge (static) and in slip (kinetic), if it is given."""
         mu, mu_k = self.scene.mu, self.scene.mu_k
         limit = mu if mu_k is None or self.regime == "verge" else mu_k
         return Fraction(0) if limit is None else limit
 
     @property
+    def at_static_limit(self) -> bool:
+        """Whether the friction that acts, where it is at its limit, is static friction's."""
+        return not self.slide_measured and self.limiting_mu is self.scene.mu
+
+    @property
+    def slide_measured(self) -> bool:
+        """Whether kinetic friction follows from the acceleration of a string that slides."""
+        return self.motion.finds == "mu_k"
+
+    @property
+    def measured_acceleration(self) -> Fraction:
+        """The acceleration that was measured (m/s²), positive when the heavier mass descends."""
+        motion = self.motion
+        if motion.a is not None:
+            return self.sign * motion.a
+        assert motion.drop is not None
+        assert motion.time is not None
+        return physics.acceleration_of_fall(motion.drop, motion.time)
+
+    @property
     def frictionless(self) -> bool:
         """Whether the string moves, or rests, without friction."""
+        if self.slide_measured:
+            return not self.slide_excess(EXACT)
         return self.tensions_equal or (self.regime != "no-slip" and is_zero(self.limiting_mu))
 
     @lazy
@@ -150,6 +174,11 @@ class Case:
         """T_h/T_l - 1 under a heavier mass beyond all bounds, on a pulley that is not locked."""
         assert self.rim_mass is not None
         return physics.heaviest_excess(ar.number(self.light), ar.number(self.rim_mass))
+
+    def slide_excess(self, ar: Arithmetic[N]) -> N:
+        """T_h/T_l - 1 of a string that slides with the measured acceleration."""
+        a = self.measured_acceleration
+        return physics.slide_excess(*map(ar.number, (self.light, self.heavy, a, self.scene.g)))
 
     def beats_friction(self, which: Excess) -> bool:
         """Whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed."""

@@ -32,11 +32,14 @@ NOT_DEFINITE = (
     " widens that range"
 )
 DEFINITE = "bounds are for a string that grips with friction to spare; here friction_force is definite"
+NO_WRAP = "does not exist, as without friction no wrap holds"
 NOT_APPLICABLE = "conditions (36) do not apply without friction"
 LOCKED_AXLE = "not defined for a locked pulley: M = inf is not its weight"
 ONE_SIDED = "defined for half a turn of wrap (and whole turns more), where both ends pull downwards"
 NEEDS_A = "give a, a measured acceleration, in place of M"
 NEEDS_A_BESIDE_M = "give a, a measured acceleration, beside M and in place of g"
+NEEDS_A_AND_M = "give a, a measured acceleration, and M in place of {}"
+NEEDS_A_OF_A_SLIDE = "give a, a measured acceleration, beside M = inf, or beside M and a mu that is too small"
 NEEDS_DROP = "give drop, the height that the heavier mass falls from rest"
 AT_REST = "does not exist, as nothing moves"
 LONG_WRAP = "bounds are known for up to half a turn of wrap (180 degrees)"
@@ -125,20 +128,23 @@ class Machine(Generic[N]):
     @lazy
     def limiting_k1(self) -> N:
         """The excess of the tension ratio in a regime where friction is at its limit."""
-        mu = self.case.limiting_mu
-        return self.k1 if mu is self.scene.mu else self._capstan_excess(mu)
+        if self.case.slide_measured:
+            return self.case.slide_excess(self.ar)
+        return self.k1 if self.case.at_static_limit else self._capstan_excess(self.case.limiting_mu)
 
     @lazy
     def limiting_transfer(self) -> N:
         """Transfer z at the limit of the friction that acts, kinetic in slip (kg)."""
-        static = self.case.limiting_mu is self.scene.mu
-        return self.transfer if static else physics.transfer_at_limit(self.l, self.limiting_k1)
+        if self.case.at_static_limit:
+            return self.transfer
+        return physics.transfer_at_limit(self.l, self.limiting_k1)
 
     @lazy
     def limiting_drive(self) -> N:
         """Drive d at the limit of the friction that acts, kinetic in slip (kg)."""
-        static = self.case.limiting_mu is self.scene.mu
-        return self.drive if static else physics.drive_at_limit(self.l, self.h, self.limiting_transfer)
+        if self.case.at_static_limit:
+            return self.drive
+        return physics.drive_at_limit(self.l, self.h, self.limiting_transfer)
 
     @lazy
     def magnitude(self) -> N:
@@ -155,6 +161,8 @@ class Machine(Generic[N]):
     @lazy
     def friction_mu(self) -> N:
         """The μ with which T(θ) = T1 e^{±μθ}, where that is so."""
+        if self.case.slide_measured:
+            return self.mu_k
         if self.case.regime != "no-slip":
             return self.ar.number(self.case.limiting_mu)
         if self.scene.mu is None or self.case.tensions_equal or not self.case.pulley_known:
@@ -401,6 +409,22 @@ class Machine(Generic[N]):
             raise Undetermined(NOT_APPLICABLE)
         return physics.least_pulley_mass(transfer, self._given(self.case.beta, UNKNOWN_SHAPE))
 
+    @lazy
+    def least_wrap(self) -> N:
+        """Angle of wrap below which the string slips (°): (27), solved for the angle."""
+        if self.scene.mu is None:
+            raise Undetermined(self._needs_mu)
+        if self.case.tensions_equal:
+            return self.ar.number(0)
+        if not self.case.pulley_known:
+            if self.case.regime == "verge":
+                return self.scene.wrap.degrees(self.ar)
+            raise Undetermined(NEEDS_M)
+        if is_zero(self.scene.mu):
+            raise Undetermined(NO_WRAP)
+        arc = physics.limiting_arc(self.ar.log1p(self.excess), self.ar.number(self.scene.mu))
+        return arc * 180 / self.ar.pi
+
     def _check_found(self) -> None:
         """Raise Undetermined unless the motion tells of the pulley."""
         motion = self.case.motion
@@ -426,6 +450,28 @@ class Machine(Generic[N]):
         if self.case.motion.finds != "g":
             raise Undetermined(NEEDS_A_BESIDE_M)
         return self.g
+
+    @property
+    def m1(self) -> N:
+        """Mass m1 that gives the measured acceleration (kg)."""
+        return self._found_mass("m1")
+
+    @property
+    def m2(self) -> N:
+        """Mass m2 that gives the measured acceleration (kg)."""
+        return self._found_mass("m2")
+
+    def _found_mass(self, name: str) -> N:
+        if self.case.motion.finds != name:
+            raise Undetermined(NEEDS_A_AND_M.format(name))
+        return self.ar.number(getattr(self.scene, name))
+
+    @lazy
+    def mu_k(self) -> N:
+        """Coefficient of kinetic friction that gives the measured acceleration, from (26)."""
+        if not self.case.slide_measured:
+            raise Undetermined(NEEDS_A_OF_A_SLIDE)
+        return physics.verge_coefficient(self.ar.log1p(self.limiting_k1), self.phi)
 
     @property
     def fall_time(self) -> N:

@@ -1,7 +1,7 @@
-"""From a measured acceleration back to the pulley's mass, or to gravity; all of it is rational.
+"""From a measured acceleration back to what was not given; all of it is rational, but kinetic friction.
 
-Without slip a = g d/s, with the load s = l + h + c: what of M and g is not given follows from a. In slip,
-and with friction at its limit, the pulley's mass has no part in the motion, so that a tells nothing of it.
+Without slip a = g d/s, with the load s = l + h + c: what of M, g and a mass is not given follows from a. In
+slip the pulley's mass has no part in the motion, so that a tells nothing of it, but of the friction.
 """
 
 from collections.abc import Mapping
@@ -10,7 +10,7 @@ from math import inf
 from typing import Any
 
 from ..arithmetic.dual import Dual
-from ..arithmetic.rounding import settle, text, to_digits, to_double, to_side
+from ..arithmetic.rounding import as_typed, settle, text, to_digits, to_double, to_side
 from . import physics
 from .angle import Angle
 from .case import Case
@@ -21,22 +21,29 @@ AGREES = 3
 """Beyond how many standard uncertainties (99.7 % of a normal distribution) what cannot be is refused."""
 
 NO_PULLEY = "unknown, as inputs a little different fit no pulley"
+NO_MASS = "unknown, as inputs a little different fit no mass"
 
 
 def read(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     """The scene, without what is to be found, and what was measured. Raises SceneError."""
     a, drop, time = (inputs[name].value for name in MEASURED)
-    motion, scene = Motion(a, drop, time), Scene.of(inputs)
+    motion, measured = Motion(a, drop, time), a is not None or time is not None
+    missing = [mass for mass in ("m1", "m2") if inputs[mass].value is None]
+    name = "a" if time is None else "time"
+    if measured and len(missing) == 1:
+        if inputs["M"].value is None is inputs["I"].value:
+            raise SceneError(missing[0], None, f"is missing; give it, or M, beside which {name} finds it")
+        motion = motion._replace(finds=missing[0])
+        inputs = {**inputs, missing[0]: SOME_MASS}
+    scene = Scene.of(inputs)
     if time is not None and drop is None:
         raise SceneError("time", inputs["time"].given, "needs drop, the height fallen in it")
     if time is not None and a is not None:
         raise SceneError("time", inputs["time"].given, "and a both tell the acceleration; give one of them")
-    if a is None and time is None:
+    if not measured:
         return scene, motion
-    name = "a" if time is None else "time"
-    motion = motion._replace(finds="M" if scene.M is None else "g")
-    g_given = inputs["g"].given is not None
-    rule = _contradiction(scene, g_given)
+    motion = motion._replace(finds=motion.finds or _what_follows(scene))
+    rule = _contradiction(scene, motion, inputs["g"].given is not None)
     if not rule and (rule := _impossible(Case(scene, motion), name)):
         uncertain = {x: one.uncertainty for x, one in inputs.items() if one.uncertainty}
         if beyond := _beyond(scene, motion, uncertain):
@@ -46,35 +53,101 @@ def read(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     return scene, motion
 
 
-def _contradiction(scene: Scene, g_given: bool) -> str:
+SOME_MASS = Input(Fraction(1), Fraction(0), None)
+"""In place of the mass that is to be found."""
+
+
+def _what_follows(scene: Scene) -> str:
+    """The parameter that an acceleration tells of, where both masses are given."""
+    if scene.M == inf or (scene.mu is not None and scene.M is not None):
+        return "mu_k"
+    return "M" if scene.M is None and scene.I is None else "g"
+
+
+def _contradiction(scene: Scene, motion: Motion, g_given: bool) -> str:
     """Why an acceleration has no place beside what else is given; empty if it has."""
-    if scene.mu is not None:
+    finds, pulley = motion.finds, "M" if scene.M is not None else "I"
+    if scene.mu is not None and finds != "mu_k":
         return "has no place beside mu, as a string that slips moves alike on any pulley; leave mu out"
-    if scene.I is not None:
-        return "has no place beside I, which already tells how the pulley turns; leave I out"
-    if scene.M == inf:
-        return "has no place beside M = inf, which lets nothing move; leave one of them out"
-    if scene.M is not None and g_given:
-        return "leaves nothing to find beside both M and g; leave one of them out"
+    if finds in ("m1", "m2"):
+        if scene.M == inf:
+            return "has no place beside M = inf, which lets nothing move; leave one of them out"
+        if motion.time is not None:
+            return f"does not tell which way {finds} moves; give a in its place, positive when m2 descends"
+        if not _known_mass(scene, finds) and not Case(scene).rim_mass:
+            return f"tells nothing of {finds}, which falls freely; give the other mass or M above 0"
+        return ""
+    if finds == "g" and g_given:
+        return f"leaves nothing to find beside both {pulley} and g; leave one of them out"
     if scene.m1 == scene.m2:
         return "tells nothing of equal masses, which rest on any pulley; leave it out"
+    if finds == "mu_k" and not scene.m1 * scene.m2:
+        return "has no place beside M = inf and a free end, which is fixed to the pulley; leave it out"
+    if scene.mu_k is not None:
+        return "and mu_k both tell how the string slides; leave one of them out"
+    if scene.mu is not None and not Case(scene).slips:
+        mu = as_typed(scene.mu)
+        return f"has no place beside mu = {mu}, with which the string does not slip; leave mu out"
     return ""
 
 
+def _known_mass(scene: Scene, unknown: str) -> Fraction:
+    """The other mass than the one to be found."""
+    return scene.m1 if unknown == "m2" else scene.m2
+
+
 def _impossible(case: Case, name: str) -> str:
-    """Why no pulley, or no gravity, gives the acceleration; empty if one does."""
-    motion, a, most = case.motion, _signed(case), _most(case)
-    downhill = case.sign * a > 0
-    if downhill and (motion.finds == "g" or case.sign * a <= most):
+    """Why nothing that is to be found gives the acceleration; empty if something does."""
+    motion = case.motion
+    if motion.finds in ("m1", "m2"):
+        return _impossible_for_a_mass(case, motion.finds)
+    a, most = case.measured_acceleration, _most(case)
+    if a > 0 and (motion.finds == "g" or a <= most):
+        if motion.finds == "mu_k" and case.scene.mu is not None and case.beats_friction("slide_excess"):
+            return "is that of a string with more kinetic friction than mu; check both"
         return ""
-    implied = f"implies a = {text(to_double(a))} m/s², which " * (name == "time")
+    implied = f"implies a = {text(to_double(case.sign * a))} m/s², which " * (name == "time")
     heavier = f"as {'m2' if case.sign > 0 else 'm1'} is the heavier mass"
     if motion.finds == "g":
         return f"{implied}must be {'above' if case.sign > 0 else 'below'} 0, {heavier}"
     limit = text(to_side(None, up=case.sign < 0)(case.sign * most))  # so that the limit itself is taken
-    return (
-        f"{implied}must be between 0 (a locked pulley: M = inf) and {limit} m/s² (a massless one), {heavier}"
-    )
+    least, greatest = ENDS[motion.finds]
+    return f"{implied}must be between 0 ({least}) and {limit} m/s² ({greatest}), {heavier}"
+
+
+ENDS: Mapping[str | None, tuple[str, str]] = {
+    "M": ("a locked pulley: M = inf", "a massless one"),
+    "mu_k": ("a string that holds", "no friction"),
+}
+"""By what is found, the scenes between which an acceleration is possible."""
+
+
+def _impossible_for_a_mass(case: Case, unknown: str) -> str:
+    """Why no mass in place of the unknown one gives the acceleration; empty if one does."""
+    scene, known = case.scene, _known_mass(case.scene, unknown)
+    found = _mass(case, unknown)
+    if found is not None and (found > 0 or (found == 0 and known)):
+        return ""
+    assert case.rim_mass is not None
+    lifted = 1 if unknown == "m2" else -1
+    least = physics.acceleration(known, physics.load(known, Fraction(0), case.rim_mass), scene.g)
+    ends = [
+        f"{text(to_side(None, up=lifted > 0)(-lifted * least))} (no {unknown} at all)",
+        f"{text(to_double(lifted * scene.g))} m/s² ({unknown} in free fall)",
+    ]
+    return f"must be between {ends[0]} and {ends[1]}"
+
+
+def _mass(case: Case, unknown: str) -> Fraction | None:
+    """The mass that moves with the measured acceleration; None beyond its free fall."""
+    scene, known, a = case.scene, _known_mass(case.scene, unknown), case.motion.a
+    assert a is not None
+    assert case.rim_mass is not None
+    down = a if unknown == "m2" else -1 * a
+    if not scene.g > down:
+        return None
+    tension = physics.light_tension(known, down, scene.g)
+    return physics.hanging_mass(tension + physics.difference_of_a_pulley(case.rim_mass, down), down, scene.g)
 
 
 def _most(case: Case) -> Fraction:
@@ -86,17 +159,17 @@ def _most(case: Case) -> Fraction:
 def _beyond(scene: Scene, motion: Motion, uncertain: Mapping[str, Fraction]) -> str:
     """How far a measured acceleration is beyond what it can be, if that is little enough; else empty."""
     case = Case(scene, motion)
-    over, variance = case.sign * _signed(case) - _most(case), Fraction(0)
+    over, variance = case.measured_acceleration - _most(case), Fraction(0)
     if motion.finds != "M" or over <= 0:
         return ""
     for x, u in uncertain.items():
         near = Case(*moved(scene, motion, x, 1))
-        slope = getattr(near.sign * _signed(near) - _most(near), "slope", None)
+        slope = getattr(near.measured_acceleration - _most(near), "slope", None)
         variance += (u * (slope or 0)) ** 2
     if over**2 > AGREES**2 * variance:
         return ""
     times = settle(lambda ar: ar.sqrt(ar.number(over**2 / variance)), to_digits(2), 2)
-    a, most = (text(to_double(value)) for value in (_signed(case), case.sign * _most(case)))
+    a, most = (text(to_double(case.sign * one)) for one in (case.measured_acceleration, _most(case)))
     return (
         f"none, as a = {a} m/s² is beyond the {most} m/s² of a massless pulley; it agrees with M = 0, which"
         f" the other results are for, within {text(times)} standard uncertainties"
@@ -115,24 +188,19 @@ def moved(scene: Scene, motion: Motion, x: str, side: int) -> tuple[Scene, Motio
     return scene, motion._replace(**{x: beside})
 
 
-def _signed(case: Case) -> Fraction:
-    """The measured acceleration, positive when m2 descends."""
-    motion = case.motion
-    if motion.a is not None:
-        return motion.a
-    assert motion.drop is not None
-    assert motion.time is not None
-    return case.sign * physics.acceleration_of_fall(motion.drop, motion.time)
-
-
 def completed(scene: Scene, motion: Motion) -> Scene:
     """The scene with what follows from the motion in it. Raises Undetermined."""
-    if motion.finds is None:
+    if motion.finds in (None, "mu_k"):
         return scene
     if motion.beyond:
         return scene._replace(M=Fraction(0))
     case = Case(scene, motion)
-    l, h, a = case.light, case.heavy, case.sign * _signed(case)
+    if motion.finds in ("m1", "m2"):
+        mass = _mass(case, motion.finds)
+        if mass is None or mass < 0:
+            raise Undetermined(NO_MASS)
+        return scene._replace(m1=mass) if motion.finds == "m1" else scene._replace(m2=mass)
+    l, h, a = case.light, case.heavy, case.measured_acceleration
     if motion.finds == "g":
         assert case.rim_mass is not None
         return scene._replace(g=physics.gravity_under(h - l, physics.load(l, h, case.rim_mass), a))

@@ -58,6 +58,16 @@ def gravity_under(drive: N, load: N, a: N) -> N:
     return a * (load / drive)
 
 
+def hanging_mass(tension: N, a: N, g: N) -> N:
+    """Mass (kg) that descends with the acceleration a, or rises with -a, under a tension (N); from (1)."""
+    return tension / (g - a)
+
+
+def slide_excess(l: N, h: N, a: N, g: N) -> N:
+    """T_h/T_l - 1 under which the masses have a measured acceleration, from (1)."""
+    return (g * (h - l) - a * (h + l)) / (l * (g + a))
+
+
 def added_load(l: N, h: N, load: N) -> N:
     """What is added to the masses in a load (kg), c where the string grips; inverse of `load`."""
     return load - l - h

@@ -36,10 +36,14 @@ QUANTITIES = {
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
     "least_heavier_mass": About("limits", "m min", "kg", "(36)", "what the heavier mass must exceed to slip"),
     "least_pulley_mass": About("limits", "M min", "kg", "(36)", "what the pulley's mass must exceed to slip"),
+    "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
     # Of a scene whose motion was measured:
     "pulley_mass": About("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration"),
     "moment_of_inertia": About("measured", "I", "kg m²", "", "moment of inertia that gives the measured acceleration"),
     "gravity": About("measured", "g", "m/s²", "(4)", "gravity that gives the measured acceleration"),
+    "m1": About("measured", "m₁", "kg", "(1), (3)", "mass m1 that gives the measured acceleration"),
+    "m2": About("measured", "m₂", "kg", "(1), (3)", "mass m2 that gives the measured acceleration"),
+    "mu_k": About("measured", "μ kin", "", "(26)", "kinetic friction that gives the measured acceleration"),
     "fall_time": About("measured", "t", "s", "", "time to fall the height from rest"),
     "final_speed": About("measured", "v", "m/s", "", "speed after that"),
 }
@@ -48,6 +52,9 @@ QUANTITIES = {
 FROM_MOTION: dict[str | None, tuple[str, ...]] = {
     "M": ("pulley_mass", "moment_of_inertia"),
     "g": ("gravity",),
+    "m1": ("m1",),
+    "m2": ("m2",),
+    "mu_k": ("mu_k",),
     "drop": ("fall_time", "final_speed"),
 }
 """Quantities that only some scenes have, by the parameter that is found there, or given."""

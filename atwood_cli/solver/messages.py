@@ -51,8 +51,11 @@ def verdict(answers: Answers) -> str:
             "On the verge of slipping if the pulley has the critical mass,"
             f" {_say(answers, 'critical_pulley_mass')} kg: on a heavier one the string slips."
         )
+    if case.slide_measured and scene.mu is None:
+        return f"Slides over the locked pulley, with mu_k = {_say(answers, 'mu_k')}."
     if case.regime == "slip" and scene.mu is not None:
-        kinetic = "" if scene.mu_k is None else f", and slides with mu_k = {as_typed(scene.mu_k)}"
+        mu_k = _say(answers, "mu_k") if case.slide_measured else scene.mu_k and as_typed(scene.mu_k)
+        kinetic = "" if mu_k is None else f", and slides with mu_k = {mu_k}"
         verge = _apart(answers, "mu_verge", scene.mu, above=True, up=True)
         return f"Slips: mu = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
     if case.tensions_equal:
