@@ -25,6 +25,7 @@ class Inputs(TypedDict, total=False):
     I: Given | None
     R: Given | None
     wrap: Given | None
+    axle: Given | None
     a: Given | None
     drop: Given | None
     time: Given | None
@@ -109,7 +110,8 @@ def solve(*, digits: int | str | None = None, **given: Unpack[Inputs]) -> Any:
     Masses in kg, R in m, I in kg m², g in m/s², wrap in degrees; text may carry a unit ("250g",
     "5cm", "9.81m/s2") or name a body or shape (g="moon", inertia="hoop"). What is given decides the model:
     no M, a massless pulley, or with mu the one that brings the string to the verge of slipping.
-    Defaults: g standard gravity, inertia that of a disk (1/2), wrap 180, mu_k = mu.
+    Defaults: g standard gravity, inertia that of a disk (1/2), wrap 180, mu_k = mu, no friction in the axle.
+    That is ``axle``, in N at the rim; as text it may be a torque ("0.4mNm").
 
     ``a``, a measured acceleration, stands in place of M, or beside M of a mass or g, and finds it; of a
     string that slips, as it must on M="inf", it finds mu_k. ``drop``, a height, gives the time and speed

@@ -33,7 +33,7 @@ from atwood_cli import SceneError, cli, solve, solve_arrays
 from atwood_cli.arrays.plan import COLUMNS
 from atwood_cli.batch.formats import FORMATS
 from atwood_cli.model.quantities import NAMES
-from atwood_cli.model.scene import MEASURED, PARAMETERS
+from atwood_cli.model.scene import INPUTS, MEASURED
 from atwood_cli.tradeoff import measure
 
 LIMIT = 120  # seconds, for a run; on a quiet machine the longest take a tenth of it
@@ -262,7 +262,7 @@ def wrong_with_arguments(random: Dice) -> str:
         return call(
             solve,
             random.choice([{}, {"digits": random.choice([3, 30, *ODD_VALUES])}]),
-            [*PARAMETERS, *MEASURED],
+            [*INPUTS, *MEASURED],
         )
     accuracy = random.choice(["fast", "certified", "exact", "x", None])
     quantities = random.choice([None, random.sample(NAMES, 3), ["x"], []])

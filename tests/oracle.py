@@ -94,8 +94,13 @@ def expected(scene: Scene) -> dict[str, Any]:
         c = beta * mass
     elif mu is None and not locked:
         c = mass = Fraction(0)
-    known = locked or c is not None
-    equal = s == 0 or c == 0
+    f = Fraction(0)
+    if scene.axle is not None:
+        f = scene.axle.number if scene.axle.unit == "N" else scene.axle.number / (scene.R or 1)
+    rests = 0 < (h - l) * g <= f  # the axle holds the pulley
+    held = locked or rests
+    known = held or c is not None
+    equal = s == 0 or (c == 0 and f == 0)
 
     def phi() -> flint.arb:
         return flint.arb.pi() * ball(scene.wrap.number) / 180
@@ -113,13 +118,21 @@ def expected(scene: Scene) -> dict[str, Any]:
     # T_h/T_l of a string that grips, from (4) with M/2 = c.
     grip = None
     if l and known:
-        grip = h / l if c is None else (2 * l + c) * h / ((2 * h + c) * l)
+        grip = h / l if held or c is None else (2 * l + c) * h / ((2 * h + c) * l)
+    turning = None  # of one that turns a pulley without mass against the axle, by (1)
+    if f and l and s and not rests:
+        b = ((h - l) * g - f) / (h + l)
+        turning = h * (g - b) / (l * (g + b))
+        if c is not None and not locked:
+            moves = ((h - l) * g - f) / (h + l + c)
+            grip = h * (g - moves) / (l * (g + moves))
+    always = bool(turning is not None and mu is not None and beats(turning))
     out: dict[str, Any] = dict.fromkeys(NAMES)
     slips_locked = bool(l and s and mu is not None and beats(h / l))
     if mu is None or equal:
         regime = "no-slip"
     elif not known:
-        regime = "verge" if slips_locked else "no-slip"
+        regime = ("slip" if always else "verge") if slips_locked else "no-slip"
     else:
         assert grip is not None
         regime = "slip" if beats(grip) else "no-slip"
@@ -130,8 +143,11 @@ def expected(scene: Scene) -> dict[str, Any]:
     if regime == "no-slip":
         if s == 0:
             state = Fraction(0), l * g, l * g
-        elif locked:
+        elif held:
             state = Fraction(0), l * g, h * g
+        elif c is not None and f:
+            moves = ((h - l) * g - f) / (h + l + c)
+            state = moves, l * (g + moves), h * (g - moves)
         elif c is not None:
             total = l + h + c
             state = (h - l) * g / total, (2 * h + c) * l * g / total, (2 * l + c) * h * g / total
@@ -185,7 +201,13 @@ def expected(scene: Scene) -> dict[str, Any]:
             out["friction_force"] = lambda: (integral("real") ** 2 + integral("imag") ** 2).sqrt()
         rim = a
         if regime == "slip":
-            rim = Fraction(0) if c is None else combine(lambda hi, lo: (hi - lo) / c_as(hi, c), t_h, t_l)
+            # The axle takes f of what turns the pulley, or all of it.
+            left = combine(lambda hi, lo: hi - lo - c_as(hi, f), t_h, t_l)
+            turns = left > 0 if isinstance(left, Fraction) else sign(left) > 0
+            if rests or c is None or (f and not turns):
+                rim = Fraction(0)
+            else:
+                rim = combine(lambda x: x / c_as(x, c), left)
         out["rim_acceleration"] = combine(lambda v: s * v, rim)
         if scene.R is not None:
             R = scene.R
@@ -204,7 +226,16 @@ def expected(scene: Scene) -> dict[str, Any]:
             out["least_wrap"] = scene.wrap.number
         elif grip is not None and mu:
             out["least_wrap"] = lambda: ball(grip).log() / ball(mu) * 180 / flint.arb.pi()
-        if slips_locked and beta is not None:
+        if f and s:
+            # (1) at T_h = k T_l gives a; (3) with f gives c.
+            def verge_rim_mass() -> flint.arb:
+                z = ball(l) * (k(mu) - 1)
+                a = ball(g) * (ball(h) - ball(l) - z) / (ball(h) + ball(l) + z)
+                return (z * (ball(g) + a) - ball(f)) / a
+
+            if slips_locked and not always and not rests and beta is not None:
+                out["critical_pulley_mass"] = lambda: verge_rim_mass() / ball(beta)
+        elif slips_locked and beta is not None:
             out["critical_pulley_mass"] = (
                 Fraction(0)
                 if mu == 0
@@ -213,12 +244,27 @@ def expected(scene: Scene) -> dict[str, Any]:
         applicable = mu > 0 or known
         if applicable:
             out["least_heavier_mass"] = l if mu == 0 else lambda: ball(l) * k(mu)
-            if beta is not None:
+            if f:
+                if beta is not None and not beats(1 + f / g / l):
+                    out["least_pulley_mass"] = lambda: (
+                        (2 * ball(l) * (k(mu) - 1) - ball(f) / ball(g)) / ball(beta)
+                    )
+            elif beta is not None:
                 out["least_pulley_mass"] = (
                     Fraction(0) if mu == 0 else lambda: 2 * ball(l) * (k(mu) - 1) / ball(beta)
                 )
-        if locked:
-            out["critical_heavier_mass"] = out["least_heavier_mass"]
+        if locked or (f and beats(1 + f / g / l)):
+            out["critical_heavier_mass"] = l if mu == 0 else lambda: ball(l) * k(mu)
+        elif f and c is not None and beats(1 + (c + f / g) / (2 * l)):
+
+            def verge_heavier_mass() -> flint.arb:
+                z = ball(l) * (k(mu) - 1)
+                a = (z * ball(g) - ball(f)) / (ball(c) - z)  # (3) with f, at T_h = k T_l
+                return ball(l) * k(mu) * (ball(g) + a) / (ball(g) - a)
+
+            out["critical_heavier_mass"] = verge_heavier_mass
+        elif f:
+            pass
         elif c is not None and l and beats(1 + c / (2 * l)):
             out["critical_heavier_mass"] = (
                 l if mu == 0 else lambda: ball(c) * ball(l) * k(mu) / (ball(c) - 2 * ball(l) * (k(mu) - 1))

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 
 from atwood_cli import REGIMES, SceneError, Solution, solve
-from atwood_cli.model.scene import MEASURED, PARAMETERS
+from atwood_cli.model.scene import INPUTS, MEASURED
 
 from . import oracle
 
@@ -439,7 +439,7 @@ def test_the_python_door_needs_neither_typer_nor_rich_nor_numpy() -> None:
 
 
 def test_solve_names_its_inputs_and_takes_no_others() -> None:
-    assert list(inspect.signature(solve).parameters) == [*PARAMETERS, *MEASURED, "digits"]
+    assert list(inspect.signature(solve).parameters) == [*INPUTS, *MEASURED, "digits"]
     unknown: Any = {"m1": 1, "m2": 3, "m3": 2}
     with pytest.raises(TypeError, match="unexpected keyword argument 'm3'"):
         solve(**unknown)

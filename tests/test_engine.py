@@ -40,7 +40,7 @@ MACHINE = """
   <worldbody>
     <body> <joint name="m1" type="slide" axis="0 1 0"/> <geom size="0.1" mass="{m1!r}"/> </body>
     <body> <joint name="m2" type="slide" axis="0 -1 0"/> <geom size="0.1" mass="{m2!r}"/> </body>
-    <body> <joint name="pulley" type="hinge" axis="0 0 1"/> {pulley} </body>
+    <body> <joint name="pulley" type="hinge" axis="0 0 1" frictionloss="{axle!r}"/> {pulley} </body>
   </worldbody>
   <equality>
     <joint joint1="m1" joint2="pulley" polycoef="0 1 0 0 0"/>
@@ -51,27 +51,33 @@ MACHINE = """
 
 
 def simulated(
-    m1: float, m2: float, M: float, g: float = 9.80665, inertia: str = "disk", settled: int = SETTLED
+    m1: float,
+    m2: float,
+    M: float,
+    g: float = 9.80665,
+    inertia: str = "disk",
+    axle: float = 0,
+    settled: int = SETTLED,
 ) -> dict[str, float]:
     """What the engine finds; m1 counts upwards, m2 downwards, the pulley the way that m2 descends."""
     pulley = PULLEYS[inertia].format(M=M, half=M / 2)
     step = TIME / STEPS_PER_TIME
     model = mujoco.MjModel.from_xml_string(
-        MACHINE.format(m1=m1, m2=m2, pulley=pulley, down=-g, time=TIME, step=step)
+        MACHINE.format(m1=m1, m2=m2, pulley=pulley, axle=axle, down=-g, time=TIME, step=step)
     )
     data = mujoco.MjData(model)
     for _ in range(settled * STEPS_PER_TIME):
         mujoco.mj_step(model, data)
     mujoco.mj_forward(model, data)
     up, down, rim = map(float, data.qacc)
-    pull_1, push_2, torque = map(float, data.qfrc_constraint)  # by the string alone
+    pull_1, push_2, torque = map(float, data.qfrc_constraint)  # by the string, and the axle's friction
     return {
         "acceleration of m1": up,
         "acceleration of m2": down,
         "rim_acceleration": rim,
         "tension_1": pull_1,
         "tension_2": -push_2,
-        "torque": torque,
+        "torque": torque + (axle if m2 > m1 else -axle),
     }
 
 
@@ -88,6 +94,8 @@ SCENES: dict[str, dict[str, float]] = {
     "a heavy pulley": {"m1": 1, "m2": 3, "M": 1e4},
     "masses nearly equal": {"m1": 1, "m2": 1.01, "M": 2},
     "masses unlike": {"m1": 0.02, "m2": 5, "M": 0.3},
+    "an axle that rubs": {"m1": 1, "m2": 3, "M": 10, "axle": 5},
+    "one that rubs against m1": {"m1": 0.207, "m2": 0.2, "M": 0.084, "axle": 0.0153},
     "on the moon": {"m1": 0.2, "m2": 0.25, "M": 0.1, "g": 1.62},
 }
 

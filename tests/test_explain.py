@@ -46,6 +46,15 @@ KINDS: dict[str, Given] = {
     "inertia": {"M": "50", "mu": "0.3", "R": "0.1", "I": "0.8", "wrap": "100"},
     "inertia alone": {"mu": "0.3", "R": "0.1", "I": "0.3"},
     "hoop": {"M": "10", "inertia": "hoop", "g": "moon"},
+    "an axle that rubs": {"M": "10", "axle": "5", "R": "0.1"},
+    "an axle that holds": {"M": "10", "R": "0.1", "axle": "2.5Nm"},
+    "an axle that holds a free end": {"m1": "0", "m2": "1", "axle": "12"},
+    "an axle alone": {"axle": "5"},
+    "grips beside an axle": {"M": "10", "mu": "0.3", "axle": "5"},
+    "verge beside an axle": {"mu": "0.2", "axle": "5"},
+    "always slips beside an axle": {"mu": "0.05", "axle": "5"},
+    "slips on an axle that holds": {"mu": "0.05", "axle": "1.2Nm", "R": "0.05", "M": "1"},
+    "slips beside an axle": {"m1": "3", "m2": "1", "M": "300", "mu": "0.2", "axle": "5"},
 }
 kinds = pytest.mark.parametrize("kind", KINDS)
 
@@ -172,6 +181,9 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
         "μ_k": scene.mu_k,
         "M": scene.M if isinstance(scene.M, Fraction) else Fraction(0),
     }
+    if scene.axle is not None:
+        f: Fraction = scene.axle.force(scene.R)
+        inputs |= {"τ_axle": scene.axle.number, "f": f, "b": f / scene.g}
     inputs["β"] = scene.inertia
     if scene.inertia is None and scene.M is not None and scene.I is not None and scene.R is not None:
         inputs["β"] = scene.I / (Fraction(scene.M) * scene.R**2)

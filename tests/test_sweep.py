@@ -681,7 +681,10 @@ FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
         ),
         ("--M 2:2000g:3", "--M '2:2000g:3' has a unit at one end only; write it at both"),
         ("--M 2kg:2000g:3", "--M '2kg:2000g:3' has equal ends; a range runs from one value to another"),
-        ("--wrap 90deg:3rad:3", "--wrap '90deg:3rad:3' has one end in radians; write both in the same unit"),
+        (
+            "--wrap 90deg:3rad:3",
+            "--wrap '90deg:3rad:3' has ends in units of two kinds; write both in the same unit",
+        ),
         ("--M 0:2:3:log", "--M '0:2:3:log' has no equal ratios from or to 0; both ends must be above 0"),
         ("--M 1:2x:3", "--M '2x' has the unknown unit 'x'; there are kg, g, mg, ug, t, lb, lbs, oz, st"),
         ("--M :2:3", f"--M ':2:3' is no range; write {FORM}"),

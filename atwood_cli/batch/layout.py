@@ -120,6 +120,8 @@ def read_layout(piece: Piece, labels: Collection[str] = ()) -> Layout:
     for column, name in others.items():
         if name == "I":
             raise _refused(column, "is not taken here; give inertia, I/(M R^2)")
+        if name == "axle":
+            raise _refused(column, "is not taken here; solve and sweep take --axle")
         if name in MEASURED:
             raise _refused(column, "tells of a motion, which only solve takes")
     columns = [heading.column for heading in headings.values()]
@@ -188,7 +190,7 @@ def _meant(column: str) -> str | None:
     letters = normalize("NFKC", name).casefold().translate(GREEK)
     words = [word for word in re.split("[^0-9a-z]+", letters) if word]
     for key in ("_".join(words), "_".join(words[:-1])):
-        known = {one.lower(): one for one in (*reversed(COLUMNS), *MEASURED)}
+        known = {one.lower(): one for one in (*reversed(COLUMNS), *MEASURED, "axle")}
         meant = OTHER_NAMES.get(key) or known.get(key)
         if meant and (key == "_".join(words) or _is_unit(words[-1], meant)):
             return meant

@@ -10,7 +10,7 @@ from typing import Annotated, Any, NamedTuple
 import typer
 
 from ..model.quantities import NAMES, QUANTITIES
-from ..model.scene import PARAMETERS, SceneError, parameter_of
+from ..model.scene import INPUTS, SceneError, parameter_of
 from ..model.units import NUMBER, nearest, without_blanks
 from .text import ASCII, say
 
@@ -31,6 +31,7 @@ REMARKS = {
     "I": ", in place of inertia; needs R",
     "R": ", as 0.1 or 5cm",
     "wrap": ", in degrees, or as 1.5turn or 3rad; 180 if not given",
+    "axle": ", as 15mN or 0.4mNm",
     "a": ": finds M; beside M, a mass or gravity; of a string that slips, mu_k",
     "drop": ": gives the time and the speed",
     "time": ", with drop in place of a",
@@ -92,7 +93,7 @@ def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
     """Give a command an option for every parameter of a scene, handed to it as ``given``."""
 
     def with_scene(**options: Any) -> int:
-        given = {name: options.pop(name) for name in PARAMETERS}
+        given = {name: options.pop(name) for name in INPUTS}
         if (wrap := given["wrap"]) and _may_be_radians(wrap):
             say(f"--wrap {wrap} was taken for degrees; if it is in radians, write rad behind it, as 3.14rad")
         return command(given=given, **options)
@@ -100,7 +101,7 @@ def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
     kind = inspect.Parameter.KEYWORD_ONLY
     scene = [
         inspect.Parameter(n, kind, default=None, annotation=Annotated[str | None, scene_option(n)])
-        for n in PARAMETERS
+        for n in INPUTS
     ]
     _, *own = inspect.signature(command).parameters.values()
     signature = inspect.Signature([*scene, *own])

@@ -149,8 +149,12 @@ def scene_record(scene: Scene, motion: Motion = UNMEASURED) -> dict[str, object]
         given |= {motion.finds: None} if motion.finds else {}
     if scene.M == inf:
         given["M"] = "inf"
-    wrap = scene.wrap
+    wrap, axle = scene.wrap, scene.axle
     given["wrap"] = wrap.number if wrap.unit == "°" else f"{as_typed(wrap.number)}rad"
+    if axle is None:
+        del given["axle"]  # nothing of it shows
+    else:
+        given["axle"] = axle.number if axle.unit == "N" else f"{as_typed(axle.number)} Nm"
     return given
 
 
@@ -163,7 +167,11 @@ def describe(scene: Scene, ranges: Mapping[str, object] = {}, uncertain: Mapping
         if isinstance(value, Fraction):
             parts.append(stated(name, f"{_as_fine(as_typed(value), u)}{spread}"))
         elif value is not None:
-            parts.append(f"{name} = {str(value).replace('rad', f'{spread}rad')}")
+            number, unit = str(value), ""
+            for one in ("rad", " Nm") if u else ():
+                if number.endswith(one):
+                    number, unit = _as_fine(number.removesuffix(one), u), one
+            parts.append(f"{name} = {number}{spread}{unit}")
     return ", ".join(parts)
 
 

@@ -67,7 +67,10 @@ Plot = Annotated[
     option("Output", "--plot", help="Draw error against time in place of the tables (extra: plot)."),
 ]
 
-RULES = (Rule("family scenes seed", "scene", "has no say where a scene is given; leave one of them out"),)
+RULES = (
+    Rule("family scenes seed", "scene", "has no say where a scene is given; leave one of them out"),
+    Rule("axle", "scene", "is not measured, as arrays have no such column; leave it out"),
+)
 
 
 HELP = """Measure what accuracy costs on this machine: time beside error, for families of scenes or for one.
@@ -101,7 +104,7 @@ def tradeoff(
 
     check([ONE_FORM, FIGURE_TO_REPLACE], options)
     scene = Scene.read(given) if any(value is not None for value in given.values()) else None
-    check(RULES, {**options, "scene": scene})
+    check(RULES, {**options, "scene": scene, "axle": given["axle"]})
     chosen = divided(family or FAMILIES)
     for name in chosen:
         if name not in FAMILIES:

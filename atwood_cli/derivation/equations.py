@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..arithmetic.interval import LARGEST_EXPONENT, Unsettled, enclosures
 from ..arithmetic.rounding import as_typed, is_infinite, settle, text, to_digits
 from ..arithmetic.symbolic import Formula, Symbol, Symbols
+from ..model import physics
 from ..model.machine import Machine
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene
@@ -70,6 +71,7 @@ LABELS = {
     "drive": "(33)",
     "limiting_drive": "(33)",
     "excess": "(33)",
+    "massless_verge": "(27)",
 }
 UNITS = {
     "transfer": "kg",
@@ -110,6 +112,8 @@ class Derivation:
             "g": scene.g,
             "I": scene.I,
             "R": scene.R,
+            "f": case.axle_friction,
+            "b": case.axle_mass,
         }
         self.inputs = {name: Symbol(name, value) for name, value in values.items() if value is not None}
         names = {
@@ -122,6 +126,7 @@ class Derivation:
             "rim_acceleration": "a_rim" if case.regime == "slip" else "a",
             "excess": "x",
             "mu_verge": "μ*",
+            "massless_verge": "μ_0",
             "k1": "k - 1",
             "transfer": "z",
             "drive": "d",
@@ -171,7 +176,7 @@ class Derivation:
             case "difference" if self.case.regime != "no-slip":
                 return "(26)"
             case "difference":
-                return "(1)" if self.case.locked else "(3)"
+                return "(1)" if self.case.stands else "(3)"
         return LABELS.get(name, QUANTITIES[name].equation if name in QUANTITIES else "")
 
     def worked_out(self, label: str, left: str, formula: Formula, result: Symbol, unit: str) -> Equation:
@@ -249,6 +254,16 @@ class Derivation:
         formula = one / Formula("square", other) if self.scene.I is not None else one * other
         yield self.worked_out("", "c", formula, given["c"], "kg")
 
+    def axle(self) -> Iterator[Part]:
+        """The equations of the axle's friction as a force at the rim, and as a mass."""
+        given, axle = self.inputs, self.scene.axle
+        if axle is not None and axle.unit == "N m":
+            torque, R = (Formula("symbol", one) for one in (Symbol("τ_axle", axle.number), given["R"]))
+            yield self.worked_out("", "f", torque / R, given["f"], "N")
+        symbols: list[Any] = [Formula("symbol", given[name]) for name in "fg"]
+        mass: Any = physics.axle_mass(*symbols)
+        yield self.worked_out("", "b", mass, given["b"], "kg")
+
     def direction(self) -> Iterator[Part]:
         """The sign of the acceleration, where it is not the magnitude."""
         if self.case.sign < 0:
@@ -266,8 +281,9 @@ class Derivation:
         """The torque and angular acceleration, if a radius is given, and the force on the axle."""
         if self.scene.R is not None and self.case.sign:
             yield "On the pulley, that makes"
-            yield from self.lines("torque", "angular_acceleration")
-        if self.case.ends_hang_down and not self.case.locked:
+            stands = self.case.regime == "slip" and self.case.rim_stands
+            yield from self.lines("torque", *["angular_acceleration"] * (not stands))
+        if self.answers["axle_force"] is not None:
             yield "The axle bears both tensions, as (20) says, and the pulley's weight:"
             yield from self.lines("axle_force")
 

@@ -78,7 +78,7 @@ def _masses(derivation: Derivation) -> Step:
 
 def _pulley(derivation: Derivation) -> Step:
     case = derivation.case
-    difference = derivation.names["difference"]
+    difference, rubs = derivation.names["difference"], case.axle_friction is not None
     body: list[Part] = [
         "`T1` and `T2` do not act on the pulley. They act on the string, at the two points where it"
         " leaves the pulley. What acts on the pulley is the contact force of the string, all along the"
@@ -99,9 +99,10 @@ def _pulley(derivation: Derivation) -> Step:
             "Here the string is fixed to the pulley and nothing hangs from its free end. It pulls where it is"
             " fixed, too, and with that the torque is the same."
         )
-    body.append("The pulley's weight and the force of the axle act at the axle and do not turn it. So")
-    body.append(Law("(2)", f"({difference}) R = I α"))
-    if case.sign == 0:
+    body += _turning(derivation)
+    if case.axle_holds and not case.locked:
+        body.append("The axle holds the difference of the masses, which is no more than `b`: `α = 0`.")
+    elif case.sign == 0:
         body.append("The masses are at rest, and the pulley with them: equal tensions do not turn it.")
     elif case.locked:
         body.append("M = inf is a pulley that is locked: `α = 0`, whatever the torque.")
@@ -119,11 +120,27 @@ def _pulley(derivation: Derivation) -> Step:
         body += [
             f"{grips}, the rim has the acceleration of the masses, `α = a/R`. With `c = I/R^2`, the pulley's"
             " inertia as a mass at the rim (`M/2` for the disk of the paper),",
-            Law("(3)", f"{difference} = c {derivation.names['magnitude']}"),
+            Law("(3)", f"{difference} = c {derivation.names['magnitude']}{' + f' * rubs}"),
             *derivation.rim_mass(),
             *odd_inertia(derivation.answers),
         ]
     return Step("The pulley", body)
+
+
+def _turning(derivation: Derivation) -> Iterator[Part]:
+    """What turns the pulley, (2), and what the friction of its axle takes of that."""
+    difference = derivation.names["difference"]
+    if derivation.case.axle_friction is None:
+        yield "The pulley's weight and the force of the axle act at the axle and do not turn it. So"
+        yield Law("(2)", f"({difference}) R = I α")
+        return
+    yield (
+        "The pulley's weight acts at the axle and does not turn it. The axle rubs: its friction opposes the"
+        " turning like a force `f` at the rim. So, while the pulley turns,"
+    )
+    yield Law("(2)", f"({difference} - f) R = I α")
+    yield "and it stands while the tensions differ by no more than `f`, the weight of a mass `b`:"
+    yield from derivation.axle()
 
 
 def _motion(derivation: Derivation) -> Step:
@@ -136,7 +153,7 @@ def _motion(derivation: Derivation) -> Step:
             "The motion",
             ["The motion depends on the pulley's mass, which is not given.", *open_range(answers)],
         )
-    if case.sign == 0 or case.locked:
+    if case.sign == 0 or case.stands:
         body += ["At rest, `a` = 0, each tension is the weight that hangs on it."]
     else:
         body += ["The sum of (1) and (3) has only the acceleration left. It gives the tensions."]
@@ -176,8 +193,10 @@ def _motion_at_the_limit(derivation: Derivation) -> Iterator["Part"]:
     yield from derivation.direction()
     yield from derivation.tensions()
     if case.regime == "slip" and case.limiting_mu:
-        if case.rim_mass is None:
+        if case.locked:
             yield "The pulley is locked: its rim stands still."
+        elif case.rim_stands:
+            yield "The tensions differ by less than `f`: the axle holds the pulley."
         else:
             yield "Friction turns the pulley by (3), but its rim falls behind the string:"
             yield from derivation.lines("rim_acceleration")
@@ -210,11 +229,10 @@ def _grip(derivation: Derivation) -> Step:
             if case.regime == "no-slip"
             else "If the string held, the tensions would by (4) have"
         )
-        locked = (
-            f"On a locked pulley the tensions are the weights. Their ratio is `T{h}/T{l}` = `1 + x`, with"
-        )
+        held = "a locked pulley" if case.locked else "a pulley that the axle holds"
+        standing = f"On {held} the tensions are the weights. Their ratio is `T{h}/T{l}` = `1 + x`, with"
         moving = f"{if_held} the ratio `T{h}/T{l}` = `1 + x`, with"
-        body += [locked if case.locked else moving, *derivation.lines("excess")]
+        body += [standing if case.stands else moving, *derivation.lines("excess")]
         body += ["and the least coefficient that allows it is", *derivation.lines("mu_verge")]
     else:
         body += [*derivation.lines("k1", "transfer")]
@@ -223,7 +241,13 @@ def _grip(derivation: Derivation) -> Step:
             f" If it is to slip on any pulley at all, `m{h}` must exceed `m{l} k` = `m{l} + z`.",
             *derivation.lines("least_heavier_mass"),
         ]
-        if case.can_slip:
+        if case.always_slips:
+            body += [
+                "It does. But the axle takes a ratio of its own: even on a pulley without mass, the least"
+                " coefficient that holds the string is",
+                *derivation.lines("massless_verge"),
+            ]
+        elif case.can_slip:
             body += ["It does, by", *derivation.lines("drive")]
             body += [
                 "The ratio (33) is `k` on a pulley of the critical mass,",
@@ -294,10 +318,14 @@ def _simpler(derivation: Derivation) -> Iterator[Step]:
     case, scene = derivation.case, derivation.scene
     if case.sign == 0 or derivation.answers["acceleration"] is None:
         return
-    if not case.frictionless:
+    held = case.axle_friction is not None and not case.locked and (case.axle_holds or not case.pulley_known)
+    if not (case.frictionless or (held and case.regime != "verge")):
         massless = scene._replace(M=Fraction(0), I=None, inertia=Fraction(1), mu=None, mu_k=None)
         yield Step("What if the pulley's mass is ignored?", [*derivation.compared(massless)])
-    if case.regime == "slip":
+    if case.axle_friction is not None and case.regime == "no-slip" and not case.locked:
+        freely = scene._replace(axle=None)
+        yield Step("What if the axle did not rub?", [*derivation.compared(freely)])
+    if case.regime == "slip" and case.pulley_known:
         holding = scene._replace(mu=None, mu_k=None)
         yield Step("What if slipping is ignored?", [*derivation.compared(holding)])
 
@@ -311,13 +339,15 @@ def _model(derivation: Derivation) -> Step:
     )
     sheaves = "" if case.ends_hang_down else ", guide sheaves without mass or friction"
     friction = ", Coulomb friction between the two" if scene.mu is not None else ""
+    rubs = case.axle_friction is not None
+    axle = "an axle with constant friction" if rubs else "an axle without friction"
+    missing_axle = "" if rubs else " friction in the axle,"
     missing = {item: 1 for item in derivation.answers.reasons.items() if item[0] not in derivation.explained}
     return Step(
         "What is modelled and what is not",
         [
-            f"Modelled: a string without mass that does not stretch, {pulley}, an axle without"
-            f" friction{sheaves}{friction}.",
-            "Not modelled: the string's mass, stretch and stiffness, friction in the axle, air."
+            f"Modelled: a string without mass that does not stretch, {pulley}, {axle}{sheaves}{friction}.",
+            f"Not modelled: the string's mass, stretch and stiffness,{missing_axle} air."
             " Nothing in these numbers says how much they matter.",
             *reasons_at(missing, 1),
         ],

@@ -14,7 +14,9 @@ from .scene import UNMEASURED, Motion, Scene
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, N, Quantity
 
-Excess = Literal["excess_ratio", "locked_excess", "heaviest_excess", "slide_excess"]
+Excess = Literal[
+    "excess_ratio", "locked_excess", "heaviest_excess", "slide_excess", "massless_excess", "held_excess"
+]
 
 
 def is_zero(value: object) -> bool:
@@ -27,6 +29,8 @@ class Case:
 
     def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
         self.scene, self.motion = scene, motion
+        # Arrays, whose scenes are columns, have no axle yet.
+        self.axle = scene.axle if isinstance(scene, Scene) else None
 
     @lazy
     def sign(self) -> int:
@@ -73,6 +77,31 @@ class Case:
             return self.scene.inertia
         return self.rim_mass / self.pulley_mass if self.rim_mass and self.pulley_mass else None
 
+    @lazy
+    def axle_friction(self) -> Fraction | None:
+        """The axle's friction as a force at the rim (N), f; none where there is none."""
+        if self.axle is None or is_zero(self.axle.number):
+            return None
+        force: Fraction = self.axle.force(self.scene.R)
+        return force
+
+    @lazy
+    def axle_mass(self) -> Fraction | None:
+        """That friction as a mass, b = f/g."""
+        f = self.axle_friction
+        return None if f is None else physics.axle_mass(f, self.scene.g)
+
+    @lazy
+    def axle_holds(self) -> bool:
+        """Whether the axle holds the difference of unequal masses, and so the pulley at rest."""
+        b = self.axle_mass
+        return b is not None and self.sign != 0 and not self.heavy - self.light > b
+
+    @property
+    def stands(self) -> bool:
+        """Whether nothing that the string does turns the pulley."""
+        return self.locked or self.axle_holds
+
     def by_side(self, one: N, other: N) -> tuple[N, N]:
         """What belongs to the lighter and the heavier mass from what belongs to m1 and m2, or back."""
         return (one, other) if self.sign >= 0 else (other, one)
@@ -80,12 +109,12 @@ class Case:
     @property
     def pulley_known(self) -> bool:
         """Whether the pulley is known enough for the motion of a string that grips."""
-        return self.locked or self.rim_mass is not None
+        return self.stands or self.rim_mass is not None
 
     @property
     def tensions_equal(self) -> bool:
         """Whether a string that grips needs no friction."""
-        return self.sign == 0 or is_zero(self.rim_mass)
+        return self.sign == 0 or (is_zero(self.rim_mass) and self.axle_friction is None)
 
     @lazy
     def regime(self) -> Literal["no-slip", "verge", "slip"]:
@@ -95,13 +124,15 @@ class Case:
         if self.scene.mu is None or self.tensions_equal:
             return "no-slip"
         if not self.pulley_known:
-            return "verge" if self.can_slip else "no-slip"
+            if not self.can_slip:
+                return "no-slip"
+            return "slip" if self.always_slips else "verge"
         return "slip" if self.slips else "no-slip"
 
     @lazy
     def slips(self) -> bool:
         """Whether the string slips on a pulley that is known and friction that is given."""
-        return self.can_slip if self.locked else self.beats_friction("excess_ratio")
+        return self.can_slip if self.stands else self.beats_friction("excess_ratio")
 
     @property
     def limiting_mu(self) -> Fraction:
@@ -143,12 +174,44 @@ class Case:
         if self.sign == 0:
             return False
         # Whatever slips on a pulley that turns slips on a heavier one.
-        return (self.rim_mass is not None and self.slips) or self.beats_friction("locked_excess")
+        slips = not self.stands and self.rim_mass is not None and self.slips
+        return slips or self.beats_friction("locked_excess")
+
+    @lazy
+    def always_slips(self) -> bool:
+        """Whether the string slips on any pulley that turns, however light, for the friction of its axle."""
+        if self.axle_friction is None or self.sign == 0 or self.axle_holds:
+            return False
+        return self.beats_friction("massless_excess")
+
+    @lazy
+    def slips_once_it_moves(self) -> bool:
+        """Whether the string slips under the least mass that the axle does not hold, on any pulley."""
+        return self.axle_friction is not None and self.beats_friction("held_excess")
 
     @lazy
     def can_be_made_slip(self) -> bool:
-        """Whether the string slips under a heavier mass that is heavy enough: second condition of (36)."""
-        return self.rim_mass is None or self.beats_friction("heaviest_excess")
+        """Whether the string slips under some heavier mass: second condition of (36)."""
+        return self.rim_mass is None or self.slips_once_it_moves or self.beats_friction("heaviest_excess")
+
+    @lazy
+    def holds_again(self) -> bool:
+        """Whether it slips under such a mass, but holds under much heavier ones: the axle outweighs c."""
+        if self.rim_mass is None or self.axle_mass is None or not self.slips_once_it_moves:
+            return False
+        return self.rim_mass < self.axle_mass and not self.beats_friction("heaviest_excess")
+
+    @lazy
+    def rim_stands(self) -> bool:
+        """Whether the pulley stands still while the string slips over it."""
+        if self.stands or self.rim_mass is None:
+            return True
+        if self.axle_friction is None:
+            return False
+        # On a pulley without mass the axle takes all that friction makes up.
+        if self.slide_measured:
+            return not self.slide_excess(EXACT) > self.massless_excess(EXACT)
+        return self._exceeds("massless_excess", self.limiting_mu)
 
     @lazy
     def long_wrap(self) -> bool:
@@ -162,9 +225,22 @@ class Case:
 
     def excess_ratio(self, ar: Arithmetic[N]) -> N:
         """T_h/T_l - 1 of a string that grips."""
-        if self.rim_mass is None:
+        if self.stands or self.rim_mass is None:
             return self.locked_excess(ar)
+        if self.axle_mass is not None:
+            given = (self.light, self.heavy, self.rim_mass, self.axle_mass)
+            return physics.excess_ratio_beside_axle(*map(ar.number, given))
         return physics.excess_ratio(*map(ar.number, (self.light, self.heavy, self.rim_mass)))
+
+    def massless_excess(self, ar: Arithmetic[N]) -> N:
+        """T_h/T_l - 1 on a pulley without mass that turns an axle that rubs."""
+        assert self.axle_mass is not None
+        return physics.massless_excess(*map(ar.number, (self.light, self.heavy, self.axle_mass)))
+
+    def held_excess(self, ar: Arithmetic[N]) -> N:
+        """T_h/T_l - 1 under the greatest difference that the axle holds."""
+        assert self.axle_mass is not None
+        return physics.held_excess(ar.number(self.light), ar.number(self.axle_mass))
 
     def locked_excess(self, ar: Arithmetic[N]) -> N:
         """T_h/T_l - 1 on a locked pulley."""
@@ -173,7 +249,8 @@ class Case:
     def heaviest_excess(self, ar: Arithmetic[N]) -> N:
         """T_h/T_l - 1 under a heavier mass beyond all bounds, on a pulley that is not locked."""
         assert self.rim_mass is not None
-        return physics.heaviest_excess(ar.number(self.light), ar.number(self.rim_mass))
+        c = self.rim_mass if self.axle_mass is None else self.rim_mass + self.axle_mass
+        return physics.heaviest_excess(ar.number(self.light), ar.number(c))
 
     def slide_excess(self, ar: Arithmetic[N]) -> N:
         """T_h/T_l - 1 of a string that slides with the measured acceleration."""
@@ -182,8 +259,11 @@ class Case:
 
     def beats_friction(self, which: Excess) -> bool:
         """Whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed."""
+        return self._exceeds(which, self.scene.mu)
+
+    def _exceeds(self, which: Excess, mu: Fraction | None) -> bool:
         excess: Quantity = getattr(self, which)
-        mu, exactly = self.scene.mu, excess(EXACT)
+        exactly = excess(EXACT)
         if not mu or not exactly:
             return exactly > 0
 

@@ -32,6 +32,9 @@ NOT_DEFINITE = (
     " widens that range"
 )
 DEFINITE = "bounds are for a string that grips with friction to spare; here friction_force is definite"
+AXLE_HOLDS = "does not exist, as the axle holds the difference on any pulley"
+ALWAYS_SLIPS = "does not exist, as for the friction of the axle the string slips on any pulley, however light"
+AXLE_ENOUGH = "no condition here, as the friction of the axle is enough to make the string slip on any pulley"
 NO_WRAP = "does not exist, as without friction no wrap holds"
 NOT_APPLICABLE = "conditions (36) do not apply without friction"
 LOCKED_AXLE = "not defined for a locked pulley: M = inf is not its weight"
@@ -79,6 +82,18 @@ class Machine(Generic[N]):
     def g(self) -> N:
         """Gravity (m/s²)."""
         return self.ar.number(self.scene.g)
+
+    @property
+    def f(self) -> N:
+        """The axle's friction as a force at the rim (N), where there is some."""
+        assert self.case.axle_friction is not None
+        return self.ar.number(self.case.axle_friction)
+
+    @property
+    def b(self) -> N:
+        """That friction as a mass (kg)."""
+        assert self.case.axle_mass is not None
+        return self.ar.number(self.case.axle_mass)
 
     @lazy
     def phi(self) -> N:
@@ -152,10 +167,11 @@ class Machine(Generic[N]):
         l, h, case = self.l, self.h, self.case
         if case.regime != "no-slip":
             drive, load = self.limiting_drive, physics.load(l, h, self.limiting_transfer)
-        elif case.sign == 0 or case.locked:
+        elif case.sign == 0 or case.stands:
             return self.ar.number(0)
         else:
-            drive, load = h - l, physics.load(l, h, self._given(case.rim_mass, NEEDS_M))
+            drive = h - l if case.axle_friction is None else physics.drive_beside_axle(l, h, self.b)
+            load = physics.load(l, h, self._given(case.rim_mass, NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
     @lazy
@@ -249,9 +265,12 @@ class Machine(Generic[N]):
             return physics.difference_of_friction(self.light_tension, self.limiting_k1)
         if case.tensions_equal:
             return self.ar.number(0)
-        if case.locked:
+        if case.stands:
             return physics.difference_of_a_locked_pulley(self.l, self.h, self.g)
-        return physics.difference_of_a_pulley(self._given(case.rim_mass, NEEDS_M), self.magnitude)
+        c = self._given(case.rim_mass, NEEDS_M)
+        if case.axle_friction is not None:
+            return physics.difference_beside_axle(c, self.magnitude, self.f)
+        return physics.difference_of_a_pulley(c, self.magnitude)
 
     @property
     def tension_difference(self) -> N:
@@ -313,6 +332,11 @@ class Machine(Generic[N]):
         return physics.verge_coefficient(self.ar.log1p(self.excess), self.phi)
 
     @lazy
+    def massless_verge(self) -> N:
+        """Friction coefficient at which a string that turns an axle without a pulley is on the verge."""
+        return physics.verge_coefficient(self.ar.log1p(self.case.massless_excess(self.ar)), self.phi)
+
+    @lazy
     def friction_force(self) -> N:
         """Magnitude of the net friction force on the pulley (N), where it is one number (32)."""
         mu = self.friction_mu
@@ -362,9 +386,12 @@ class Machine(Generic[N]):
         """Acceleration of the pulley's rim (m/s²), which falls behind the string in slip (3)."""
         if self.case.regime != "slip":
             return self.acceleration
-        if self.case.rim_mass is None:
+        if self.case.rim_stands:
             return self.ar.number(0)
-        return self.tension_difference / self.ar.number(self.case.rim_mass)
+        c = self._given(self.case.rim_mass, NEEDS_M)
+        if self.case.axle_friction is not None:
+            return physics.rim_acceleration_beside_axle(self.difference, c, self.f) * self.case.sign
+        return physics.rim_acceleration(self.tension_difference, c)
 
     @lazy
     def angular_acceleration(self) -> N:
@@ -376,22 +403,38 @@ class Machine(Generic[N]):
         """Pulley mass above which the string slips (kg) (34)."""
         if self.scene.mu is None:
             raise Undetermined(self._needs_mu)
+        if self.case.axle_holds:
+            raise Undetermined(AXLE_HOLDS)
         if not self.case.can_slip:
             raise Undetermined(NO_CRITICAL_MASS)
+        if self.case.always_slips:
+            raise Undetermined(ALWAYS_SLIPS)
         transfer = self.transfer
         beta = self._given(self.case.beta, UNKNOWN_SHAPE)
+        if self.case.axle_friction is not None:
+            return physics.critical_pulley_mass_beside_axle(
+                self.l, self.h, transfer, self.drive, beta, self.b
+            )
         return physics.critical_pulley_mass(self.h, transfer, self.drive, beta)
 
     @lazy
     def critical_heavier_mass(self) -> N:
         """Heavier mass above which the string slips on this pulley (kg) (35)."""
         transfer = self.transfer
-        if self.case.locked:
+        if self.case.locked or self.case.slips_once_it_moves:
             return self.least_heavier_mass
         c = self._given(self.case.rim_mass, NEEDS_M)
         if not self.case.can_be_made_slip:
             raise Undetermined(NO_CRITICAL_HEAVIER_MASS)
+        if self.case.axle_friction is not None:
+            return physics.critical_heavier_mass_beside_axle(self.l, c, transfer, self.b, 1)
         return physics.critical_heavier_mass(self.l, c, transfer)
+
+    @lazy
+    def holding_heavier_mass(self) -> N:
+        """Heavier mass above which a string that slips under the critical one holds again (kg)."""
+        c = self._given(self.case.rim_mass, NEEDS_M)
+        return physics.critical_heavier_mass_beside_axle(self.l, c, self.transfer, self.b, -1)
 
     @lazy
     def least_heavier_mass(self) -> N:
@@ -407,7 +450,12 @@ class Machine(Generic[N]):
         transfer = self.transfer
         if is_zero(self.scene.mu) and not self.case.pulley_known:
             raise Undetermined(NOT_APPLICABLE)
-        return physics.least_pulley_mass(transfer, self._given(self.case.beta, UNKNOWN_SHAPE))
+        if self.case.slips_once_it_moves:
+            raise Undetermined(AXLE_ENOUGH)
+        beta = self._given(self.case.beta, UNKNOWN_SHAPE)
+        if self.case.axle_friction is not None:
+            return physics.least_pulley_mass_beside_axle(transfer, beta, self.b)
+        return physics.least_pulley_mass(transfer, beta)
 
     @lazy
     def least_wrap(self) -> N:

@@ -13,6 +13,7 @@ from ..arithmetic.dual import Dual
 from ..arithmetic.rounding import as_typed, settle, text, to_digits, to_double, to_side
 from . import physics
 from .angle import Angle
+from .axle import Axle
 from .case import Case
 from .machine import Undetermined
 from .scene import MEASURED, Input, Motion, Scene, SceneError
@@ -72,11 +73,15 @@ def _contradiction(scene: Scene, motion: Motion, g_given: bool) -> str:
     if finds in ("m1", "m2"):
         if scene.M == inf:
             return "has no place beside M = inf, which lets nothing move; leave one of them out"
+        if not motion.a and scene.axle is not None:
+            return f"tells nothing of {finds}, as the axle holds a difference at rest; leave one of them out"
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a in its place, positive when m2 descends"
         if not _known_mass(scene, finds) and not Case(scene).rim_mass:
             return f"tells nothing of {finds}, which falls freely; give the other mass or M above 0"
         return ""
+    if finds == "M" and Case(scene).axle_holds:
+        return "has no place beside an axle whose friction holds the masses at rest; leave one of them out"
     if finds == "g" and g_given:
         return f"leaves nothing to find beside both {pulley} and g; leave one of them out"
     if scene.m1 == scene.m2:
@@ -130,7 +135,8 @@ def _impossible_for_a_mass(case: Case, unknown: str) -> str:
         return ""
     assert case.rim_mass is not None
     lifted = 1 if unknown == "m2" else -1
-    least = physics.acceleration(known, physics.load(known, Fraction(0), case.rim_mass), scene.g)
+    drive = known if case.axle_mass is None else max(known - case.axle_mass, Fraction(0))
+    least = physics.acceleration(drive, physics.load(known, Fraction(0), case.rim_mass), scene.g)
     ends = [
         f"{text(to_side(None, up=lifted > 0)(-lifted * least))} (no {unknown} at all)",
         f"{text(to_double(lifted * scene.g))} m/s² ({unknown} in free fall)",
@@ -146,14 +152,24 @@ def _mass(case: Case, unknown: str) -> Fraction | None:
     down = a if unknown == "m2" else -1 * a
     if not scene.g > down:
         return None
-    tension = physics.light_tension(known, down, scene.g)
-    return physics.hanging_mass(tension + physics.difference_of_a_pulley(case.rim_mass, down), down, scene.g)
+    difference = physics.difference_of_a_pulley(case.rim_mass, down)
+    if case.axle_friction is not None:
+        against = case.axle_friction * (1 if down > 0 else -1)
+        difference = physics.difference_beside_axle(case.rim_mass, down, against)
+    return physics.hanging_mass(physics.light_tension(known, down, scene.g) + difference, down, scene.g)
 
 
 def _most(case: Case) -> Fraction:
-    """The magnitude of the acceleration on a massless pulley."""
+    """The magnitude of the acceleration on a massless pulley, or of a slide without friction."""
     l, h = case.light, case.heavy
-    return physics.acceleration(h - l, physics.load(l, h, Fraction(0)), case.scene.g)
+    drive = h - l if case.slide_measured else _drive(case)
+    return physics.acceleration(drive, physics.load(l, h, Fraction(0)), case.scene.g)
+
+
+def _drive(case: Case) -> Fraction:
+    """The drive of a string that grips."""
+    l, h, b = case.light, case.heavy, case.axle_mass
+    return h - l if b is None else physics.drive_beside_axle(l, h, b)
 
 
 def _beyond(scene: Scene, motion: Motion, uncertain: Mapping[str, Fraction]) -> str:
@@ -180,9 +196,11 @@ def moved(scene: Scene, motion: Motion, x: str, side: int) -> tuple[Scene, Motio
     """The scene, and what was measured, with an input that is infinitesimally more, or less."""
     of_scene = x in Scene._fields
     value = getattr(scene if of_scene else motion, x)
-    beside: Any = Dual(value.number if isinstance(value, Angle) else value, Fraction(side))
+    beside: Any = Dual(getattr(value, "number", value), Fraction(side))
     if isinstance(value, Angle):
         beside = Angle(beside, value.unit)
+    elif isinstance(value, Axle):
+        beside = Axle(beside, value.unit)
     if of_scene:
         return scene._replace(**{x: beside}), motion
     return scene, motion._replace(**{x: beside})
@@ -203,8 +221,11 @@ def completed(scene: Scene, motion: Motion) -> Scene:
     l, h, a = case.light, case.heavy, case.measured_acceleration
     if motion.finds == "g":
         assert case.rim_mass is not None
-        return scene._replace(g=physics.gravity_under(h - l, physics.load(l, h, case.rim_mass), a))
-    c = physics.added_load(l, h, physics.load_under(h - l, a, scene.g))
+        load, f = physics.load(l, h, case.rim_mass), case.axle_friction
+        if f is not None:
+            return scene._replace(g=physics.gravity_under_beside_axle(l, h, load, a, f))
+        return scene._replace(g=physics.gravity_under(h - l, load, a))
+    c = physics.added_load(l, h, physics.load_under(_drive(case), a, scene.g))
     if c < 0:
         raise Undetermined(NO_PULLEY)
     assert scene.inertia is not None

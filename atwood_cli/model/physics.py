@@ -17,6 +17,11 @@ side's tension and what friction makes up. What differs between regimes is only 
 - verge (33) and slip: friction at its limit lets l count k-fold, d = h - l k and s = h + l k, and
   T_h - T_l = (k - 1) T_l (26). The *transfer* z = l (k - 1) is the mass that friction adds.
 
+An axle that rubs takes a constant force f at the rim from what turns the pulley, so (3) becomes
+T_h - T_l = c a + f. As a mass it is ``b`` = f/g: without slip d = h - l - b, and for h - l <= b all rests.
+These equations are apart, as a scene without friction of the axle must not pay for it; with b = 0 they are
+the ones above them.
+
 Divisions come before products where a product could leave the range of doubles and the result not.
 """
 
@@ -38,6 +43,16 @@ def drive_at_limit(l: N, h: N, transfer: N) -> N:
     return h - l - transfer
 
 
+def axle_mass(f: N, g: N) -> N:
+    """The axle's friction f at the rim (N) as a mass b (kg): what the axle just holds of a difference."""
+    return f / g
+
+
+def drive_beside_axle(l: N, h: N, b: N) -> N:
+    """Drive d = h - l - b (kg) of a string that grips, where the axle takes b of it."""
+    return h - l - b
+
+
 def load(l: N, h: N, added: N) -> N:
     """Load s (kg) that the drive sets moving; friction adds the pulley's c, or at its limit the transfer."""
     return l + h + added
@@ -56,6 +71,11 @@ def load_under(drive: N, a: N, g: N) -> N:
 def gravity_under(drive: N, load: N, a: N) -> N:
     """Gravity (m/s²) under which the drive sets the load moving with a; inverse of `acceleration`."""
     return a * (load / drive)
+
+
+def gravity_under_beside_axle(l: N, h: N, load: N, a: N, f: N) -> N:
+    """Gravity (m/s²) under which the masses move with a, with f (N) for the axle."""
+    return (a * load + f) / (h - l)
 
 
 def hanging_mass(tension: N, a: N, g: N) -> N:
@@ -103,6 +123,21 @@ def difference_of_a_pulley(c: N, a: N) -> N:
     return c * a
 
 
+def difference_beside_axle(c: N, a: N, f: N) -> N:
+    """T_h - T_l (N) that turns a pulley, and its axle against the friction f (N); (3) with f."""
+    return c * a + f
+
+
+def rim_acceleration(difference: N, c: N) -> N:
+    """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns (3)."""
+    return difference / c
+
+
+def rim_acceleration_beside_axle(difference: N, c: N, f: N) -> N:
+    """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns against the axle; (3) with f."""
+    return (difference - f) / c
+
+
 def difference_of_a_locked_pulley(l: N, h: N, g: N) -> N:
     """T_h - T_l (N) of masses at rest: that of their weights."""
     return g * (h - l)
@@ -118,13 +153,28 @@ def excess_ratio(l: N, h: N, c: N) -> N:
     return locked_excess(l, h) * (c / (2 * h + c))
 
 
+def excess_ratio_beside_axle(l: N, h: N, c: N, b: N) -> N:
+    """T_h/T_l - 1 of a string that grips and turns an axle that rubs; h - l > b."""
+    return (c * (h - l) + b * (h + l)) / (l * (2 * h - b + c))
+
+
+def massless_excess(l: N, h: N, b: N) -> N:
+    """T_h/T_l - 1 of a string that grips and turns an axle that rubs, but no mass, c = 0; h - l > b."""
+    return b * (h + l) / (l * (2 * h - b))
+
+
+def held_excess(l: N, b: N) -> N:
+    """T_h/T_l - 1 where the axle just holds the difference, h = l + b."""
+    return b / l
+
+
 def locked_excess(l: N, h: N) -> N:
     """T_h/T_l - 1 of a string that grips a locked pulley, c = ∞."""
     return (h - l) / l
 
 
 def heaviest_excess(l: N, c: N) -> N:
-    """T_h/T_l - 1 of a string that grips under a heavier mass beyond all bounds, h = ∞."""
+    """T_h/T_l - 1 of a string that grips under a heavier mass beyond all bounds, h = ∞; c + b for c."""
     return c / (2 * l)
 
 
@@ -138,9 +188,22 @@ def critical_pulley_mass(h: N, transfer: N, drive: N, beta: N) -> N:
     return transfer / drive * (2 * h / beta)
 
 
+def critical_pulley_mass_beside_axle(l: N, h: N, transfer: N, drive: N, beta: N, b: N) -> N:
+    """Pulley mass (kg) above which the string slips, where it turns an axle that rubs; (34) with b."""
+    return (2 * h * transfer - b * (h + l + transfer)) / (drive * beta)
+
+
 def critical_heavier_mass(l: N, c: N, transfer: N) -> N:
     """Heavier mass (kg) at which the string is on the verge (35); needs c > 2 l (k - 1)."""
     return c / (c - 2 * transfer) * least_heavier_mass(l, transfer)
+
+
+def critical_heavier_mass_beside_axle(l: N, c: N, transfer: N, b: N, side: int) -> N:
+    """Heavier mass (kg) at which the string that turns an axle that rubs is on the verge; (35) with b.
+
+    ``side`` is 1 for c > b, where it slips above that mass, and -1 for c < b, where it slips below.
+    """
+    return (c - b) * side / ((c + b - 2 * transfer) * side) * least_heavier_mass(l, transfer)
 
 
 def least_heavier_mass(l: N, transfer: N) -> N:
@@ -151,6 +214,11 @@ def least_heavier_mass(l: N, transfer: N) -> N:
 def least_pulley_mass(transfer: N, beta: N) -> N:
     """What the pulley's mass (kg) must exceed for any mass to slip: second condition of (36)."""
     return 2 * transfer / beta
+
+
+def least_pulley_mass_beside_axle(transfer: N, beta: N, b: N) -> N:
+    """What the pulley's mass (kg) must exceed for any mass to slip, beside an axle that rubs; z >= b."""
+    return (2 * transfer - b) / beta
 
 
 def half_turn_resultant(t1: N, t2: N) -> N:

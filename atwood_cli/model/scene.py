@@ -10,12 +10,14 @@ from typing import Any, NamedTuple
 
 from ..arithmetic.rounding import as_typed
 from .angle import Angle
+from .axle import Axle
 from .units import (
     MAX_DIGITS,
     MAX_MAGNITUDE,
     NUMBER,
     PERCENT,
     Malformed,
+    dimension_of,
     is_uncertain,
     nearest,
     read_number,
@@ -23,7 +25,7 @@ from .units import (
     without_blanks,
 )
 
-Given = str | int | float | Decimal | Fraction | Angle
+Given = str | int | float | Decimal | Fraction | Angle | Axle
 """An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
 
 INERTIA_FACTORS = {"disk": "0.5", "hoop": "1"}
@@ -100,6 +102,15 @@ PARAMETERS = {
     "R": Parameter("radius of the pulley", "m", dimension="length"),
     "wrap": Parameter("angle over which the string touches the pulley", "°", dimension="angle"),
 }
+INPUTS = PARAMETERS | {
+    "axle": Parameter(
+        "friction of the axle, as a torque or as a force at the rim",
+        "N",
+        zero=True,
+        dimension="torque or force",
+    )
+}
+"""What a scene is made of: the parameters, which arrays take too, and an axle, which they do not yet."""
 MEASURED = {
     "a": Parameter(
         "measured acceleration, positive when m2 descends", "m/s²", dimension="acceleration", signed=True
@@ -112,7 +123,7 @@ MEASURED = {
 
 def parameter_of(name: str) -> Parameter:
     """What an input may be, of the scene or of the motion."""
-    return PARAMETERS.get(name) or MEASURED[name]
+    return INPUTS.get(name) or MEASURED[name]
 
 
 def stated(name: str, value: str) -> str:
@@ -125,7 +136,7 @@ class Input(NamedTuple):
     """An input as it was read: its exact value in SI units, its standard uncertainty, and what was given.
 
     ``value`` is None if nothing was given and there is no default, inf for a locked pulley, an `Angle`
-    for the wrap. The uncertainty is in the unit of the value, and 0 if that is exact.
+    for the wrap, an `Axle`. The uncertainty is in the unit of the value, and 0 if that is exact.
     """
 
     value: Any
@@ -149,16 +160,17 @@ class Scene(NamedTuple):
     I: Fraction | None
     R: Fraction | None
     wrap: Angle
+    axle: Axle | None = None
 
     @classmethod
     def read(cls, given: Mapping[str, Given | None]) -> "Scene":
         """The scene given, by parameter; absent or None is not given. Raises SceneError."""
-        return cls.of({name: read_exactly(name, given.get(name)) for name in PARAMETERS})
+        return cls.of({name: read_exactly(name, given.get(name)) for name in INPUTS})
 
     @classmethod
     def of(cls, inputs: Mapping[str, Input]) -> "Scene":
         """The scene of inputs that were read one by one. Raises SceneError if they do not go together."""
-        values = {name: inputs[name].value for name in PARAMETERS}
+        values = {name: inputs[name].value for name in INPUTS}
         for mass in ("m1", "m2"):
             if values[mass] is None:
                 raise SceneError(mass, None, MISSING_MASS)
@@ -187,6 +199,8 @@ class Scene(NamedTuple):
             )
         if self.I is not None and self.R is None:
             raise SceneError("I", given["I"], "needs the radius R as well")
+        if self.axle is not None and self.axle.unit == "N m" and self.R is None:
+            raise SceneError("axle", given["axle"], "is a torque, which needs the radius R as well")
         if self.I is not None and self.M is not None and not 0 < self.M < inf:
             raise SceneError("I", given["I"], f"contradicts M = {given['M']}; leave one of them out")
 
@@ -231,7 +245,7 @@ def read_exactly(name: str, given: Given | None) -> Input:
         return Input(default and read_value(name, default), Fraction(0), None)
     if isinstance(given, str):
         number, unit = _read_text(name, given, given)
-    elif isinstance(given, Angle) and parameter_of(name).dimension == "angle":
+    elif (isinstance(given, Angle) and name == "wrap") or (isinstance(given, Axle) and name == "axle"):
         number, unit = _read_number(name, given.number), given.unit
     else:
         number, unit = _read_number(name, given), ""
@@ -274,6 +288,8 @@ def _checked(name: str, given: Given, number: Fraction | float, unit: str) -> An
         raise SceneError(name, given, parameter.domain)
     if parameter.dimension == "angle":
         return Angle(number, "rad" if unit == "rad" else "°")
+    if name == "axle":
+        return Axle(number, "N m" if unit and dimension_of(unit) == "torque" else "N")
     return number
 
 

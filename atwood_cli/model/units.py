@@ -29,19 +29,21 @@ LENGTH = {
 ANGLE = {"deg": "1", "°": "1", "turn": "360", "rad": "1"}
 """In degrees, but for radians, which stay what they are."""
 TIME = {"s": "1", "ms": "1e-3", "min": "60", "h": "3600"}
-FORCE = {"N": "1", "kN": "1e3", "lbf": "4.4482216152605", "kgf": "9.80665"}
+FORCE = {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": "4.4482216152605", "kgf": "9.80665"}
+TORQUE = {"Nm": "1", "mNm": "1e-3"}
 COMPOUND = {
     "acceleration": ("m/s2", "cm/s2", "ft/s2", "N/kg"),
     "moment of inertia": ("kg m2", "g cm2", "lb ft2"),
 }
 DIMENSIONS: Mapping[str, Iterable[str]] = {
-    **{"mass": MASS, "length": LENGTH, "angle": ANGLE, "time": TIME, "force": FORCE},
+    **{"mass": MASS, "length": LENGTH, "angle": ANGLE, "time": TIME, "force": FORCE, "torque": TORQUE},
     **COMPOUND,
 }
 """The dimensions that units are of, and what units a sentence names; others are made of those, as km/h2."""
 POWERS = {
     **{"mass": [1, 0, 0, 0], "length": [0, 1, 0, 0], "time": [0, 0, 1, 0], "angle": [0, 0, 0, 1]},
-    **{"force": [1, 1, -2, 0], "acceleration": [0, 1, -2, 0], "moment of inertia": [1, 2, 0, 0]},
+    **{"force": [1, 1, -2, 0], "torque": [1, 2, -2, 0]},
+    **{"acceleration": [0, 1, -2, 0], "moment of inertia": [1, 2, 0, 0]},
 }
 """By dimension, the powers of mass, length, time and angle in it."""
 SYMBOLS = {
@@ -52,6 +54,7 @@ SYMBOLS = {
         ("angle", ANGLE),
         ("time", TIME),
         ("force", FORCE),
+        ("torque", TORQUE),
     )
     for symbol, factor in factors.items()
 }
@@ -75,8 +78,8 @@ MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 _TERM = r"[A-Za-zµμ]+(?:\^?-?[1-9]|⁻?[¹²³])?"
 _UNIT = rf"(?:{_TERM}(?: ?[*·/ ] ?{_TERM})*|°)"
 NUMBER = re.compile(rf"([+-]?)(\d+(?:\.\d*)?|\.\d+)(?:[eE]([+-]?\d+))?(?: ?({_UNIT}))?", re.ASCII)
-MEGA = re.compile("M[a-z]")
-"""Megagrams and megametres are neither milligrams nor millimetres in capitals."""
+MEGA = re.compile("M[a-z]|MN.*")
+"""Megagrams, megametres and meganewtons are no thousandths in capitals."""
 _FACTOR = re.compile(r"([*·/ ]*)([A-Za-z]+|°)\^?(-?[1-9])?")
 _PLAIN = str.maketrans("µμ⁻¹²³", "uu-123")
 
@@ -133,7 +136,8 @@ def split_uncertainty(text: str) -> tuple[str, str]:
 def read_number(text: str, dimension: str | None) -> tuple[Fraction, str] | None:
     """A number in SI units, degrees or radians, and the unit typed; None if it is no number at all.
 
-    ``dimension`` is one of `DIMENSIONS`, or None for a number that takes no unit. Raises Malformed.
+    ``dimension`` is one of `DIMENSIONS`, or two with an "or" between, or None for a number that takes no
+    unit. Raises Malformed.
     """
     match = NUMBER.fullmatch(without_blanks(text))
     if not match:
@@ -156,7 +160,29 @@ def read_number(text: str, dimension: str | None) -> tuple[Fraction, str] | None
 def read_unit(unit: str, wanted: str) -> Fraction:
     """What a unit is in the SI, or in degrees. Raises Malformed if it is unknown or of another dimension."""
     if not re.fullmatch(_UNIT, unit):
-        raise Malformed(f"has the unknown unit {unit!r}; there are {', '.join(DIMENSIONS[wanted])}")
+        raise Malformed(f"has the unknown unit {unit!r}; there are {_names(wanted)}")
+    factor, powers = _measure(unit, wanted)
+    if powers in [POWERS[one] for one in wanted.split(" or ")]:
+        return factor
+    raise Malformed(f"has a unit of {_dimension(powers)}; it takes one of {wanted} ({_names(wanted)})")
+
+
+def dimension_of(unit: str) -> str:
+    """The dimension of a unit that `read_number` took."""
+    return _dimension(_measure(unit, "")[1])
+
+
+def _dimension(powers: list[int]) -> str:
+    return next((name for name in DIMENSIONS if POWERS[name] == powers), "another dimension")
+
+
+def _names(wanted: str) -> str:
+    """The units that a sentence names."""
+    return ", ".join(unit for one in wanted.split(" or ") for unit in DIMENSIONS[one])
+
+
+def _measure(unit: str, wanted: str) -> tuple[Fraction, list[int]]:
+    """What a unit is in the SI, or in degrees, and its powers. Raises Malformed."""
     factor, powers = Fraction(1), [0, 0, 0, 0]
     for operator, word, power in _FACTOR.findall(unit.translate(_PLAIN)):
         symbol = symbol_of(word)
@@ -166,10 +192,7 @@ def read_unit(unit: str, wanted: str) -> Fraction:
         one, its_powers = SYMBOLS[symbol]
         factor *= one**times
         powers = [p + times * q for p, q in zip(powers, its_powers, strict=True)]
-    if powers == POWERS[wanted]:
-        return factor
-    other = next((name for name in DIMENSIONS if POWERS[name] == powers), "another dimension")
-    raise Malformed(f"has a unit of {other}; it takes one of {wanted} ({', '.join(DIMENSIONS[wanted])})")
+    return factor, powers
 
 
 def symbol_of(word: str) -> str | None:
@@ -187,10 +210,11 @@ def symbol_of(word: str) -> str | None:
 
 def _near_units(word: str, wanted: str) -> str:
     """The hint at a unit of the dimension that begins alike, or else at those there are."""
-    of_it = [name for name, (_, powers) in SYMBOLS.items() if powers == POWERS[wanted]]
+    accepted = [POWERS[one] for one in wanted.split(" or ")]
+    of_it = [name for name, (_, powers) in SYMBOLS.items() if powers in accepted]
     names = [*of_it, *(name for name, symbol in WORDS.items() if symbol in of_it)]
     alike = [name for name in names if name[0].lower() == word[0].lower() and not MEGA.fullmatch(word)]
-    return nearest(word, alike) or f"; there are {', '.join(DIMENSIONS[wanted])}"
+    return nearest(word, alike) or f"; there are {_names(wanted)}"
 
 
 def nearest(word: str, words: Iterable[str]) -> str:

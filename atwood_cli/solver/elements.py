@@ -170,8 +170,13 @@ class _Doubles:
             beta = self._double(lambda machine: machine.ar.number(case.beta or 0))
             transfer = physics.transfer_at_limit(l, k - 1)
             drive = physics.drive_at_limit(l, h, transfer)
-            mass = physics.critical_pulley_mass(h, transfer, drive, beta) if drive > 0 else inf
-            values["critical_pulley_mass"] = mass
+            values["critical_pulley_mass"] = inf
+            if drive > 0 and case.axle_friction is None:
+                values["critical_pulley_mass"] = physics.critical_pulley_mass(h, transfer, drive, beta)
+            elif drive > 0:
+                b = self._double(lambda machine: machine.b)
+                mass = physics.critical_pulley_mass_beside_axle(l, h, transfer, drive, beta, b)
+                values["critical_pulley_mass"] = mass
         if answers["friction_force"] is None:
             return values
         if case.regime == "slip" and case.scene.mu_k is not None:

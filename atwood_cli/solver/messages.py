@@ -8,6 +8,7 @@ from math import inf
 
 from ..arithmetic.interval import LARGEST_EXPONENT
 from ..arithmetic.rounding import as_typed, is_infinite, text, to_double, to_side
+from ..model.case import Case
 from ..model.units import MAX_DIGITS, MAX_MAGNITUDE
 from .answers import DOUBLE_DIGITS, Answers
 
@@ -44,6 +45,8 @@ def verdict(answers: Answers) -> str:
     heavy = as_typed(case.heavy)
     if case.sign == 0:
         return "At rest: the masses are equal, so no friction is needed."
+    if case.axle_holds and case.regime == "no-slip":
+        return f"At rest: the axle holds up to {_held(case)} of difference.{_string_at_rest(answers)}"
     if case.regime == "verge" and not scene.mu:
         return "Slips on any pulley that has mass, for want of friction; the values are for one without."
     if case.regime == "verge":
@@ -56,8 +59,15 @@ def verdict(answers: Answers) -> str:
     if case.regime == "slip" and scene.mu is not None:
         mu_k = _say(answers, "mu_k") if case.slide_measured else scene.mu_k and as_typed(scene.mu_k)
         kinetic = "" if mu_k is None else f", and slides with mu_k = {mu_k}"
+        if not case.pulley_known:
+            verge = _apart(answers, "massless_verge", scene.mu, above=True, up=True)
+            return (
+                f"Slips on any pulley, for the friction of its axle: mu = {as_typed(scene.mu)} is below the"
+                f" {verge} that would hold it on one without mass{kinetic}."
+            )
         verge = _apart(answers, "mu_verge", scene.mu, above=True, up=True)
-        return f"Slips: mu = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
+        where = " over a pulley that its axle holds" * (case.rim_stands and not case.locked)
+        return f"Slips{where}: mu = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
     if case.tensions_equal:
         return "Holds: a pulley without mass needs no friction to turn, so both tensions are equal."
     if not case.light:
@@ -74,8 +84,39 @@ def verdict(answers: Answers) -> str:
     return f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {least} kg to slip."
 
 
+HELD_DIGITS = 3
+"""Significant digits of what an axle holds, where those tell it from the difference of the masses."""
+
+
+def _held(case: Case) -> str:
+    """The difference that the axle just holds, rounded down, but not below what it does hold."""
+    b, difference, digits = case.axle_mass or Fraction(0), case.heavy - case.light, HELD_DIGITS
+    times, unit = (1000, "g") if b < 1 else (1, "kg")
+    while (held := to_side(digits, up=False)(times * b)) < times * difference and digits < MAX_DIGITS:
+        digits *= 2
+    return f"{text(held)} {unit}"
+
+
+def _string_at_rest(answers: Answers) -> str:
+    """The sentence on the string of masses that an axle holds; empty if its end is fixed."""
+    mu = answers.case.scene.mu
+    if not answers.case.light:
+        return ""
+    if mu is None:
+        least = _bound(answers, "mu_verge", up=True)
+        return f" The string is assumed to hold, without mu: it does if mu is at least {least}."
+    verge = _apart(answers, "mu_verge", mu, above=False, up=True)
+    return f" The string holds: mu = {as_typed(mu)}, and {verge} is enough."
+
+
 def _remarks(answers: Answers) -> list[str]:
-    return [*odd_inertia(answers), *kinetic(answers), *conditions(answers), *open_range(answers)]
+    return [
+        *odd_inertia(answers),
+        *kinetic(answers),
+        *conditions(answers),
+        *holding_again(answers),
+        *open_range(answers),
+    ]
 
 
 def odd_inertia(answers: Answers) -> list[str]:
@@ -89,6 +130,16 @@ def odd_inertia(answers: Answers) -> list[str]:
     return [
         f"The inertia factor I/(M R^2) is {shown}, above 1: the mass lies outside"
         " the rim the string runs on. If that is not so, check inertia, I and R."
+    ]
+
+
+def holding_again(answers: Answers) -> list[str]:
+    """That a string which slips under the critical mass holds under much heavier ones, if it does."""
+    if answers.case.scene.mu is None or not answers.case.holds_again:
+        return []
+    return [
+        f"Under more than {_say(answers, 'holding_heavier_mass')} kg it holds again: the more the heavier"
+        " mass weighs, the less the friction of the axle counts beside it."
     ]
 
 

@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 
-from ..model.scene import MEASURED, PARAMETERS, UNMEASURED, Given, Scene, read_input
+from ..model.scene import INPUTS, MEASURED, UNMEASURED, Given, Scene, read_input
 from .answers import Answers
 
 
 def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answers:
     """The answers to what is given, with uncertainties where an input has one. Raises SceneError."""
-    inputs = {name: read_input(name, given.get(name)) for name in (*PARAMETERS, *MEASURED)}
+    inputs = {name: read_input(name, given.get(name)) for name in (*INPUTS, *MEASURED)}
     if all(inputs[name].given is None for name in MEASURED):
         scene, motion = Scene.of(inputs), UNMEASURED
     else:

@@ -15,13 +15,15 @@ from typing import NamedTuple
 
 from ..arithmetic.interval import decimal_context
 from ..arithmetic.rounding import as_typed, text
-from ..model.scene import PARAMETERS, Scene, SceneError, read_value, read_whole, stated
+from ..model.scene import INPUTS, Scene, SceneError, read_value, read_whole, stated
 from ..model.units import MAX_DIGITS, MAX_MAGNITUDE, NUMBER, Malformed, symbol_of, without_blanks
 from .answers import DOUBLE_DIGITS, Answers
 
 Point = Decimal | str
-"""A value of a swept parameter as it is printed; text where it has a unit (an angle in radians)."""
+"""A value of a swept parameter as it is printed; text where it has a unit (an angle in radians, a torque)."""
 
+UNUSUAL = {"rad": "rad", "N m": "Nm"}
+"""The units that points carry, as there are others for the same parameter."""
 MAX_POINTS, MAX_RANGES = 1_000_000, 2
 FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
 
@@ -36,11 +38,12 @@ class Range(NamedTuple):
 
     @property
     def unit(self) -> str:
-        return "rad" if isinstance(self.points[0], str) else PARAMETERS[self.name].unit
+        first = self.points[0]
+        return first.lstrip("-+.e0123456789") if isinstance(first, str) else INPUTS[self.name].unit
 
     def bare(self) -> list[Decimal]:
         """The points without their unit."""
-        return [Decimal(str(point).removesuffix("rad")) for point in self.points]
+        return [Decimal(str(point).removesuffix(self.unit)) for point in self.points]
 
 
 class Sweep(NamedTuple):
@@ -66,14 +69,14 @@ class Row(NamedTuple):
 
 def read_sweep(given: Mapping[str, str | None]) -> Sweep:
     """The sweep given: values, of which one or two are ranges. Raises SceneError."""
-    typed = {name: words for name in PARAMETERS if ":" in (words := given.get(name) or "")}
+    typed = {name: words for name in INPUTS if ":" in (words := given.get(name) or "")}
     if not typed:
         raise SceneError("M", None, f"or another option of the scene must carry a range: {FORM}")
     names = list(typed)
     if len(names) > MAX_RANGES:
         third = names[MAX_RANGES]
         raise SceneError(third, typed[third], f"is a third range, after {' and '.join(names[:2])}; give two")
-    for name in PARAMETERS:
+    for name in INPUTS:
         if name not in typed:
             read_value(name, given.get(name))  # what is wrong everywhere is not the first point's fault
     ranges = [read_range(name, words) for name, words in typed.items()]
@@ -92,8 +95,12 @@ def read_range(name: str, typed: str) -> Range:
     words = typed.split(":")
     if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
         raise SceneError(name, typed, f"is no range; write {FORM}")
-    (start, unit), (stop, _) = (_read_end(name, typed, word) for word in words[:2])
+    (start, unit), (stop, other) = (_read_end(name, typed, word) for word in words[:2])
     _check_units(name, typed, words[:2], start == 0 or stop == 0)
+    if unit != other:
+        if start and stop:
+            raise SceneError(name, typed, "has ends in units of two kinds; write both in the same unit")
+        unit = unit if start else other
     if start == stop:
         raise SceneError(name, typed, "has equal ends; a range runs from one value to another")
     log = len(words) == 4
@@ -108,15 +115,15 @@ def read_range(name: str, typed: str) -> Range:
         points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last), ends[1]]
     except Malformed as error:
         raise SceneError(name, typed, str(error)) from None
-    return Range(name, typed, [f"{text(point)}rad" if unit == "rad" else point for point in points], log)
+    return Range(name, typed, [f"{text(point)}{unit}" if unit else point for point in points], log)
 
 
 def _read_end(name: str, typed: str, word: str) -> tuple[Fraction, str]:
-    """An end of a range, and its unit if it is an angle. Raises SceneError."""
-    if word.strip().lower() in ("inf", *PARAMETERS[name].names):
+    """An end of a range, and its unit if that is not the usual one. Raises SceneError."""
+    if word.strip().lower() in ("inf", *INPUTS[name].names):
         raise SceneError(name, typed, f"has the end {word!r}; a range runs between finite numbers")
     value = read_value(name, word)
-    return (value.number, value.unit) if name == "wrap" else (value, "")
+    return (value.number, UNUSUAL.get(value.unit, "")) if name in ("wrap", "axle") else (value, "")
 
 
 def _check_units(name: str, typed: str, ends: Sequence[str], has_zero: bool) -> None:
@@ -128,8 +135,6 @@ def _check_units(name: str, typed: str, ends: Sequence[str], has_zero: bool) -> 
     )
     if bool(first) != bool(second) and not has_zero:
         raise SceneError(name, typed, "has a unit at one end only; write it at both")
-    if first != second and "rad" in (first, second):
-        raise SceneError(name, typed, "has one end in radians; write both in the same unit")
 
 
 def _equal_steps(start: Fraction, stop: Fraction, last: int) -> Iterator[Decimal]:

@@ -28,6 +28,7 @@ from ..model import physics
 from ..model.case import Case, Excess
 from ..model.machine import Machine, Undetermined
 from ..model.motion import completed, moved
+from ..model.scene import Scene
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, Quantity
@@ -39,6 +40,7 @@ COVERAGE = 2
 """How many standard uncertainties from the line between two cases leave the case in doubt."""
 
 KINK = "unknown where the masses are equal, as there it has a kink"
+KINK_OF_AXLE = "unknown where the axle just holds the difference, as there it has a kink"
 JUMP = "unknown, as with another {} it may jump"
 
 
@@ -94,7 +96,9 @@ class Uncertainties:
             slopes = list(self._slopes(quantity, x, ar))
             if slopes != [None] * len(slopes):
                 two = [ar.number(0) if slope is None else slope for slope in slopes]
-                parts[x] = (choose or _only)(two) * ar.number(u)
+                if choose is None and not _agree(two):
+                    raise Undetermined(KINK_OF_AXLE if self.case.axle_holds else KINK)
+                parts[x] = (choose or _first)(two) * ar.number(u)
         return parts
 
     def _slopes(self, quantity: OnMachine, x: str, ar: Arithmetic[N]) -> Iterator[N | None]:
@@ -124,6 +128,8 @@ class Uncertainties:
                 " kg",
             )
         ]
+        if self.case.axle_mass is not None:
+            sentences.append(self._doubt_of_axle())
         for excess, what, where in self._ways_to_slip(asked) if scene.mu is not None else ():
 
             def margin(machine: Machine[N], excess: Excess = excess) -> N:
@@ -142,6 +148,21 @@ class Uncertainties:
             sentences.append(_doubt(what, f"mu - mu_verge{where}", value, u))
         return [sentence for sentence in sentences if sentence]
 
+    def _doubt_of_axle(self) -> str:
+        """The sentence that the axle may hold the difference, or not, if that is in doubt."""
+
+        def margin(machine: Machine[N]) -> N:
+            """What the masses drive with once the axle has its part."""
+            return physics.drive_beside_axle(machine.l, machine.h, machine.b)
+
+        return _doubt(
+            "Whether the axle holds the difference",
+            f"{'m1 - m2' if self.case.sign < 0 else 'm2 - m1'} - axle/g",
+            lambda ar: margin(Machine(self.case, ar)),
+            lambda ar: ar.sqrt(_sum_of_squares(ar, self._parts(margin, ar, _steepest).values())),
+            " kg",
+        )
+
     def _ways_to_slip(self, asked: Container[str]) -> Iterator[tuple[Excess, str, str]]:
         """By the excess of the tension ratio it depends on: what is in question, and where it slips."""
         case = self.case
@@ -150,8 +171,10 @@ class Uncertainties:
             yield "excess_ratio", "Whether the string slips", ""
         else:
             yield "locked_excess", "Whether any pulley can make the string slip", locked
-        if case.pulley_known and not case.locked and "critical_pulley_mass" in asked:
+        if case.pulley_known and not case.stands and "critical_pulley_mass" in asked:
             yield "locked_excess", "Whether there is a critical_pulley_mass", locked
+        if case.axle_friction is not None and case.sign and not case.axle_holds:
+            yield "massless_excess", "Whether the string slips on any pulley", " of a massless pulley"
         if case.rim_mass is not None and "critical_heavier_mass" in asked:
             yield "heaviest_excess", "Whether there is a critical_heavier_mass", heaviest
 
@@ -163,10 +186,12 @@ def _sum_of_squares(ar: Arithmetic[N], parts: Iterable[N]) -> N:
     return total
 
 
-def _only(slopes: list[N]) -> N:
-    """The slope, if it is the same to all sides."""
-    if any(_size(slope - slopes[0], least=True) for slope in slopes):
-        raise Undetermined(KINK)
+def _agree(slopes: list[N]) -> bool:
+    """Whether the slope is the same to all sides."""
+    return not any(_size(slope - slopes[0], least=True) for slope in slopes)
+
+
+def _first(slopes: list[N]) -> N:
     return slopes[0]
 
 
@@ -195,14 +220,20 @@ def _doubt(what: str, name: str, value: Quantity, u: Quantity, unit: str = "") -
     )
 
 
+def _just_held(case: Case) -> bool:
+    """Whether the axle holds just the difference of the masses."""
+    return case.axle_mass is not None and case.heavy - case.light == case.axle_mass
+
+
 def beside(case: Case, x: str) -> list[tuple[int, Case]]:
     """The cases of scenes in which an input is infinitesimally more, and less where that may differ.
 
     Raises Undetermined where no pulley fits what was measured.
     """
     scene, motion = case.scene, case.motion
-    bends = scene.m1 == scene.m2 or scene.M == 0 or x == "wrap"
-    ends = 0 in (getattr(scene, x, None), getattr(motion, x, None))
+    bends = scene.m1 == scene.m2 or scene.M == 0 or x == "wrap" or _just_held(case)
+    given = getattr(scene if x in Scene._fields else motion, x)
+    ends = getattr(given, "number", given) == 0 and x != "a"
     cases = []
     for side in (1, -1) if bends and not ends else (1,):
         near, measured = moved(scene, motion, x, side)

@@ -1,0 +1,513 @@
+"""Friction in the axle: Newton's laws in exact fractions, every digit, and what is said of it."""
+
+import json
+from collections import Counter
+from decimal import Context, Decimal
+from fractions import Fraction
+from itertools import pairwise
+from math import inf, pi
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+import uncertainties as unc
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from uncertainties import umath
+
+from atwood_cli import SceneError, solve, solve_arrays
+from atwood_cli.model import physics
+from atwood_cli.model.axle import Axle
+from atwood_cli.model.case import Case
+from atwood_cli.model.scene import Scene
+from atwood_cli.solver.answers import Answers
+
+from . import oracle
+from .running import Atwood
+from .scenes import FAMILIES, Given, scenes
+
+masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
+ratios = st.fractions(min_value=Fraction(1), max_value=20)
+forces = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
+NAMES = [name for name in oracle.NAMES[1:] if name not in ("friction_force_min", "friction_force_max")]
+
+
+# The equations
+
+
+@given(masses, masses, st.fractions(min_value=0, max_value=10**6), masses, forces)
+def test_newtons_equations_hold_exactly_while_the_pulley_turns(
+    l: Fraction, more: Fraction, c: Fraction, g: Fraction, f: Fraction
+) -> None:
+    b = physics.axle_mass(f, g)
+    h = l + b + more
+    a = physics.acceleration(physics.drive_beside_axle(l, h, b), physics.load(l, h, c), g)
+    t_l = physics.light_tension(l, a, g)
+    t_h = t_l + physics.difference_beside_axle(c, a, f)
+    assert a > 0
+    assert t_l - l * g == l * a  # (1a)
+    assert h * g - t_h == h * a  # (1b)
+    assert t_h - t_l == c * a + f  # (3) with f
+    assert t_l * (1 + physics.excess_ratio_beside_axle(l, h, c, b)) == t_h
+    if not c:
+        assert t_l * (1 + physics.massless_excess(l, h, b)) == t_h
+    assert physics.gravity_under_beside_axle(l, h, physics.load(l, h, c), a, f) == g
+    # Just held: the weights differ by f.
+    assert l * g * (1 + physics.held_excess(l, b)) == (l + b) * g
+
+
+@given(masses, masses, ratios, masses, forces, masses)
+def test_verge_and_slip_solve_newtons_equations_exactly(
+    l: Fraction, more: Fraction, k: Fraction, g: Fraction, f: Fraction, beta: Fraction
+) -> None:
+    b, z = physics.axle_mass(f, g), physics.transfer_at_limit(l, k - 1)
+    h = l * k + more
+    d = physics.drive_at_limit(l, h, z)
+    a = physics.acceleration(d, physics.load(l, h, z), g)
+    t_l = physics.light_tension(l, a, g)
+    difference = physics.difference_of_friction(t_l, k - 1)
+    assert h * g - (t_l + difference) == h * a
+    c = beta * physics.critical_pulley_mass_beside_axle(l, h, z, d, beta, b)
+    assert difference == c * a + f  # (3) with f: what is left for the pulley is its inertia
+    assert (c > 0) == (difference > f)
+    if c > 0:
+        assert physics.rim_acceleration_beside_axle(difference, c, f) == a
+        assert c * physics.rim_acceleration_beside_axle(difference, 2 * c, f) * 2 == difference - f
+
+
+@given(masses, ratios, masses, masses)
+def test_the_critical_heavier_mass_is_where_the_ratio_is_the_capstans(
+    l: Fraction, k: Fraction, c: Fraction, b: Fraction
+) -> None:
+    z = l * (k - 1)
+    assume(c != b and c + b != 2 * z)
+    for side in (1, -1):
+        h = physics.critical_heavier_mass_beside_axle(l, c, z, b, side)
+        if h - l > b:
+            assert physics.excess_ratio_beside_axle(l, h, c, b) == k - 1
+    if 2 * z > b:
+        pulley = physics.least_pulley_mass_beside_axle(z, Fraction(1, 2), b)
+        assert physics.heaviest_excess(l, pulley / 2 + b) == k - 1
+
+
+def test_without_friction_they_are_the_papers() -> None:
+    l, h, c, g, z, beta = sp.symbols("l h c g z beta", positive=True)
+    d = physics.drive_at_limit(l, h, z)
+    none = sp.Integer(0)
+    for beside, freely in (
+        (physics.drive_beside_axle(l, h, none), h - l),
+        (physics.difference_beside_axle(c, g, none), physics.difference_of_a_pulley(c, g)),
+        (physics.excess_ratio_beside_axle(l, h, c, none), physics.excess_ratio(l, h, c)),
+        (
+            physics.critical_pulley_mass_beside_axle(l, h, z, d, beta, none),
+            physics.critical_pulley_mass(h, z, d, beta),
+        ),
+        (
+            physics.critical_heavier_mass_beside_axle(l, c, z, none, 1),
+            physics.critical_heavier_mass(l, c, z),
+        ),
+        (physics.least_pulley_mass_beside_axle(z, beta, none), physics.least_pulley_mass(z, beta)),
+        (physics.rim_acceleration_beside_axle(d, c, none), physics.rim_acceleration(d, c)),
+        (physics.gravity_under_beside_axle(l, h, z, d, none), physics.gravity_under(h - l, z, d)),
+    ):
+        assert sp.simplify(beside - freely) == 0
+
+
+def test_the_ratio_grows_with_the_pulley_and_bends_where_the_axle_lets_go() -> None:
+    l, b = Fraction(1), Fraction(1, 2)
+    for c in (Fraction(1, 4), Fraction(1, 2), Fraction(3)):
+        steps = [
+            Case(Scene.read({"m1": l, "m2": l + b * h, "M": c, "inertia": "1", "g": 1, "axle": b}))
+            for h in (Fraction(1, 2), 1, Fraction(3, 2), 10, 10**6)
+        ]
+        ratios_ = [case.excess_ratio(RATIONAL) for case in steps]
+        assert ratios_[:2] == [b / 2, b]  # the axle holds
+        falls = [later < earlier for earlier, later in pairwise(ratios_[1:])]
+        assert falls == [c < b] * 3
+        assert abs(ratios_[-1] - (c + b) / 2) < Fraction(1, 10**5)
+
+
+class _Rational:
+    """Fractions, as `EXACT` takes them."""
+
+    def number(self, q: Fraction) -> Fraction:
+        return Fraction(q)
+
+
+RATIONAL: Any = _Rational()
+
+
+# Every digit
+
+
+def with_axle(rng: Random, given: Given) -> Given:
+    """The scene with an axle: of no matter, or such that it decides; as a torque now and then."""
+    scene = Scene.read(given)
+    l, h = sorted((scene.m1, scene.m2))
+    g = scene.g
+    limits = [g * (h - l), g * l, g * h]
+    if isinstance(scene.M, Fraction) and scene.inertia is not None:
+        limits.append(g * scene.M * scene.inertia)
+    f = rng.choice(limits) * Fraction(10 ** rng.uniform(-3, 0.5))
+    if rng.random() < 0.3:  # just about what it holds
+        f = g * (h - l) * (1 + rng.choice([-1, 0, 1]) * Fraction(10 ** rng.uniform(-25, -2)))
+    if scene.mu and scene.mu < 1 and h > l and rng.random() < 0.3:
+        # The verge of a massless pulley: where b (h + l) = (k - 1) l (2 h - b).
+        k1 = Fraction(Answers(Scene.read({**given, "M": "1", "I": None}), 30).settle(lambda m: m.k1))
+        f = (
+            g
+            * 2
+            * h
+            * l
+            * k1
+            / (h + l + l * k1)
+            * (1 + Fraction(rng.choice([-1, 1]) * 10 ** rng.uniform(-15, -3)))
+        )
+    context = Context(prec=rng.choice([3, 17, 40]), Emin=-5000, Emax=5000)
+    shown = context.divide(Decimal(f.numerator), Decimal(f.denominator))
+    text = str(max(min(shown, Decimal("1e450")), Decimal("1e-450")))  # as far as a number may be typed
+    return given | {"axle": f"{text} N" if rng.random() < 0.8 or "R" not in given else f"{text} Nm"}
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_every_digit_beside_an_axle(family: str) -> None:
+    rng = Random(family)
+    wrong = []
+    regimes: Counter[str] = Counter()
+    for given_ in scenes(family, 150, seed=16):
+        scene = Scene.read(with_axle(rng, given_))
+        expected, case = oracle.expected(scene), Case(scene)
+        regimes[f"{expected['regime']}{' at rest' * case.axle_holds}{' always' * case.always_slips}"] += 1
+        for digits in (None, 6, 40):
+            answers = Answers(scene, digits)
+            assert answers["regime"] == expected["regime"], given_
+            for name in NAMES:
+                got, want = answers[name], expected[name]
+                if (got is None) != (want is None):
+                    wrong.append((scene, digits, name, got, want))
+                elif got is not None and got != (rounded := oracle.correctly_rounded(want, digits)):
+                    wrong.append((scene, digits, name, got, rounded))
+    assert not wrong, f"{len(wrong)} wrong, such as {wrong[0]}"
+    assert regimes["no-slip at rest"] > 5
+    assert sum(count for regime, count in regimes.items() if "slip" in regime.split("-")[0]) > 10, regimes
+
+
+# What is said of it
+
+
+@pytest.mark.parametrize(
+    ("given_", "verdict"),
+    [
+        (
+            {"m1": "200g", "m2": "201g", "axle": "16mN"},
+            "At rest: the axle holds up to 1.63 g of difference. The string is assumed to hold, without mu: it"
+            " does if mu is at least 0.00158759.",
+        ),
+        (
+            {"m1": "200g", "m2": "201g", "axle": "16mN", "mu": "0.1"},
+            "At rest: the axle holds up to 1.63 g of difference. The string holds: mu = 0.1, and 0.00158759 is enough.",
+        ),
+        ({"m1": "0", "m2": "1g", "axle": "16mN"}, "At rest: the axle holds up to 1.63 g of difference."),
+        ({"m1": "0", "m2": "2g", "axle": "16mN"}, "Holds: the string's end is fixed to the pulley."),
+        # Not 1.63, which would not hold it; and just held.
+        (
+            {"m1": "0", "m2": "1.63153g", "axle": "16mN"},
+            "At rest: the axle holds up to 1.63154 g of difference.",
+        ),
+        ({"m1": "0", "m2": "1", "axle": "9.80665"}, "At rest: the axle holds up to 1.00 kg of difference."),
+        (
+            {"m1": "1", "m2": "3", "M": "inf", "axle": "5N", "mu": "0.2"},
+            "Slips: mu = 0.2 is below the 0.349700 that would hold it.",
+        ),
+        (
+            {"m1": "1", "m2": "1.2", "axle": "5N", "mu": "0.01", "mu_k": "0.005"},
+            "Slips over a pulley that its axle holds: mu = 0.01 is below the 0.0580348 that would hold it, and"
+            " slides with mu_k = 0.005.",
+        ),
+        (
+            {"m1": "1", "m2": "3", "M": "300", "axle": "5N", "mu": "0.2", "mu_k": "0.1"},
+            "Slips over a pulley that its axle holds: mu = 0.2 is below the 0.343539 that would hold it, and"
+            " slides with mu_k = 0.1.",
+        ),
+        (
+            {"m1": "1", "m2": "3", "M": "300", "axle": "5N", "mu": "0.2"},
+            "Slips: mu = 0.2 is below the 0.343539 that would hold it.",
+        ),
+        (
+            {"m1": "1", "m2": "3", "axle": "5N", "mu": "0.05"},
+            "Slips on any pulley, for the friction of its axle: mu = 0.05 is below the 0.100550 that would hold"
+            " it on one without mass.",
+        ),
+        (
+            {"m1": "1", "m2": "3", "axle": "5N", "mu": "0"},
+            "Slips on any pulley, for the friction of its axle: mu = 0 is below the 0.100550 that would hold it"
+            " on one without mass.",
+        ),
+        ({"m1": "1", "m2": "1", "axle": "5N"}, "At rest: the masses are equal, so no friction is needed."),
+    ],
+)
+def test_verdicts(given_: dict[str, Any], verdict: str) -> None:
+    assert solve(**given_, digits=6).notes[0] == verdict
+
+
+def test_the_rim_turns_or_is_held_in_slip() -> None:
+    turning, held = (
+        solve(m1="1", m2="3", M="300", axle="5N", mu="0.2", mu_k=mu_k, R="0.1") for mu_k in ("0.2", "0.1")
+    )
+    assert turning.torque is not None
+    assert turning.rim_acceleration == pytest.approx((turning.torque / 0.1 - 5) / 150, rel=1e-12)
+    assert held.torque is not None
+    assert held.torque < 0.5
+    assert held.rim_acceleration == held.angular_acceleration == 0
+    mirrored = solve(m1="3", m2="1", M="300", axle="5N", mu="0.2", R="0.1")
+    assert mirrored.rim_acceleration == -(turning.rim_acceleration or 0)
+    a = (turning.acceleration or 0) + 1e-9
+    measured: Any = solve(m1="1", m2="3", M="300", axle="5N", mu="0.2", a=a)
+    assert measured.mu_k == pytest.approx(0.2)
+    assert measured.rim_acceleration == pytest.approx(turning.rim_acceleration)
+    measured = solve(m1="1", m2="3", M="300", axle="5N", mu="0.2", a=held.acceleration)
+    assert measured.rim_acceleration == 0
+
+
+@pytest.mark.parametrize(
+    ("given_", "missing", "why"),
+    [
+        (
+            {"m2": "1.2", "mu": "0.3", "M": "1"},
+            "critical_pulley_mass",
+            "the axle holds the difference on any",
+        ),
+        ({"m2": "3", "mu": "0.05"}, "critical_pulley_mass", "slips on any pulley, however light"),
+        ({"m2": "3", "mu": "0.05"}, "least_pulley_mass", "no condition here, as the friction of the axle"),
+        ({"m2": "3", "mu": "0.05"}, "mu_verge", "give M"),
+        ({"m2": "3", "mu": "0.3", "M": "1"}, "critical_heavier_mass", "holds under any heavier mass"),
+    ],
+)
+def test_what_does_not_exist_beside_an_axle(given_: dict[str, Any], missing: str, why: str) -> None:
+    s = solve(m1="1", axle="5N", **given_)
+    assert getattr(s, missing) is None
+    assert any(missing in note and why in note for note in s.notes), s.notes
+
+
+def test_a_light_pulley_slips_only_under_middling_masses() -> None:
+    """The axle outweighs the pulley: the ratio falls with the heavier mass, once that moves."""
+    given_: dict[str, Any] = {"m1": "1", "M": "0.1", "axle": "3", "mu": "0.08"}
+    s: Any = solve(**given_, m2="1.5", digits=20)
+    assert s.critical_heavier_mass == s.least_heavier_mass
+    holding = Answers(s.scene, 20).settle(lambda m: m.holding_heavier_mass)
+    assert any(f"Under more than {holding} kg it holds again" in note for note in s.notes)
+    for mass, regime in (
+        (s.critical_heavier_mass * Decimal("0.999999"), "no-slip"),
+        (s.critical_heavier_mass * Decimal("1.000001"), "slip"),
+        (Fraction(holding) * Fraction("0.999999"), "slip"),
+        (Fraction(holding) * Fraction("1.000001"), "no-slip"),
+        (1000, "no-slip"),
+    ):
+        assert solve(**given_, m2=mass).regime == regime
+    assert not any("holds again" in note for note in solve(**{**given_, "M": "10"}, m2="1.5").notes)
+
+
+def test_an_axle_of_no_friction_is_none() -> None:
+    freely, zero = (solve(m1="1", m2="3", M="50", mu="0.3", axle=axle) for axle in (None, "0"))
+    assert all(getattr(freely, name) == getattr(zero, name) for name in oracle.NAMES)
+    assert freely.notes == zero.notes
+    assert zero.scene.axle == Axle(Fraction(0))
+
+
+# How it is given
+
+
+@pytest.mark.parametrize(
+    ("axle", "newtons"),
+    [
+        ("0.0153", "0.0153"),
+        ("15.3mN", "0.0153"),
+        ("2 N", "2"),
+        ("0.001kN", "1"),
+        ("1kgf", "9.80665"),
+        ("1 lbf", "4.4482216152605"),
+        ("0.5Nm", "10"),
+        ("0.5 N m", "10"),
+        ("20mNm", "0.4"),
+        ("20 mN·m", "0.4"),
+        ("1 lbf in", Fraction("4.4482216152605") * Fraction("0.0254") / Fraction("0.05")),
+        (Decimal("0.5"), "0.5"),
+        (Axle(Fraction(1, 2), "N m"), "10"),
+    ],
+)
+def test_it_is_a_force_at_the_rim_or_a_torque(axle: Any, newtons: Any) -> None:
+    scene = solve(m1="1", m2="3", R="5cm", axle=axle).scene
+    assert Case(scene).axle_friction == Fraction(newtons)
+
+
+@pytest.mark.parametrize(
+    ("given_", "message"),
+    [
+        ({"axle": "-1"}, "axle '-1' must be 0 or more, and finite"),
+        ({"axle": "0.5Nm"}, "axle '0.5Nm' is a torque, which needs the radius R as well"),
+        (
+            {"axle": "5g"},
+            "axle '5g' has a unit of mass; it takes one of torque or force (Nm, mNm, N, mN, kN, lbf, kgf)",
+        ),
+        ({"axle": "1MN"}, "axle '1MN' has the unknown unit 'MN'; there are Nm, mNm, N, mN, kN, lbf, kgf"),
+        ({"axle": (1, "N")}, "axle (1, 'N') must be text or a number (str, int, float, Decimal, Fraction)"),
+        (
+            {"R": Axle(1)},
+            "R Axle(number=1, unit='N') must be text or a number (str, int, float, Decimal, Fraction)",
+        ),
+        (
+            {"axle": "30", "a": "1"},
+            "a '1' has no place beside an axle whose friction holds the masses at rest; leave one of them out",
+        ),
+        (
+            {"axle": "1", "a": "0", "M": "1", "m2": None},
+            "a '0' tells nothing of m2, as the axle holds a difference at rest; leave one of them out",
+        ),
+    ],
+)
+def test_errors(given_: dict[str, Any], message: str) -> None:
+    with pytest.raises(SceneError) as caught:
+        solve(**{"m1": "1", "m2": "3", **given_})
+    assert str(caught.value) == message
+
+
+def test_not_given_nothing_of_it_shows(atwood: Atwood) -> None:
+    words = ["--m1", "1", "--m2", "3", "--M", "10", "--R", "5cm"]
+    for more in ([], ["--json"], ["--csv"], ["--explain"]):
+        # "friction of the axle" is what the last step of an explanation says is not modelled.
+        shown = (
+            atwood("solve", *words, *more).out.replace("axle_force", "").replace("friction in the axle", "")
+        )
+        assert '"axle"' not in shown
+        assert "axle = " not in shown
+    assert json.loads(atwood("solve", *words, "--axle", "1N", "--json").out)["scene"]["axle"] == 1
+    record = json.loads(atwood("solve", *words, "--axle", "20mNm", "--json").out)["scene"]
+    assert list(record)[-1] == "axle"
+    assert record["axle"] == "0.02 Nm"
+    assert solve(**{name: value for name, value in record.items() if value is not None}).scene.axle == Axle(
+        Fraction("0.02"), "N m"
+    )
+
+
+def test_it_is_swept(atwood: Atwood) -> None:
+    ran = atwood("sweep", "--m1", "1", "--m2", "3", "--axle", "0:30:4", "--only", "acceleration", "--csv")
+    assert ran.out.splitlines() == [
+        "axle,acceleration",
+        "0,4.903325",
+        "10,2.403325",
+        "20,0",
+        "30,0",
+    ]
+    ran = atwood(
+        "sweep", "--m1", "1", "--m2", "3", "--R", "5cm", "--axle", "0:1Nm:3", "--only", "a", "--digits", "5"
+    )
+    assert "│ axle (Nm) │ acceleration (m/s²) │" in ran.out
+    assert "│ 0.5       │ 2.4033              │" in ran.out
+    ran = atwood("sweep", "--m1", "1", "--m2", "3", "--R", "5cm", "--axle", "1N:1Nm:3")
+    assert ran.err == (
+        "atwood: --axle '1N:1Nm:3' has ends in units of two kinds; write both in the same unit\n"
+    )
+
+
+def test_the_arc_beside_it_is_in_balance(atwood: Atwood) -> None:
+    ran = atwood(
+        *("contact", "--m1", "1", "--m2", "1.2", "--M", "1", "--axle", "5N", "--mu", "0.3", "--json"),
+        *("--digits", "10"),
+    )
+    balance = json.loads(ran.out)["balance"]
+    assert balance["torque"]["ends"] == pytest.approx(0.2 * 9.80665)  # held: the weights differ by that
+    assert abs(balance["torque"]["residual"]) < 1e-8
+
+
+def test_elements_find_the_critical_pulley_beside_it(atwood: Atwood) -> None:
+    words = "--m1 1 --m2 3 --axle 5N --mu 0.2 --elements 10000 --json".split()
+    found = json.loads(atwood("contact", *words).out)["elements"]["critical_pulley_mass"]
+    assert found["exact"] == solve(m1="1", m2="3", axle="5N", mu="0.2").critical_pulley_mass
+    assert found["value"] == pytest.approx(found["exact"], rel=1e-7)
+
+
+def test_arrays_refuse_it_by_name(atwood: Atwood) -> None:
+    unknown: Any = {"axle": np.array([1.0])}
+    with pytest.raises(TypeError, match="'axle'"):
+        solve_arrays(1, 3, **unknown)
+    ran = atwood("tradeoff", "--m1", "1", "--m2", "3", "--axle", "5N")
+    assert ran.err == "atwood: --axle '5N' is not measured, as arrays have no such column; leave it out\n"
+
+
+# The inverse, and uncertainties
+
+
+@given(masses, masses, st.fractions(min_value=0, max_value=10**6), masses, forces, st.booleans())
+def test_what_is_found_beside_it_gives_the_measured_acceleration_exactly(
+    l: Fraction, more: Fraction, c: Fraction, g: Fraction, f: Fraction, mirrored: bool
+) -> None:
+    h = l + f / g + more
+    m1, m2 = (h, l) if mirrored else (l, h)
+    a = (1 if m2 > m1 else -1) * (g * (h - l) - f) / (h + l + c)
+    known: dict[str, Any] = {"m1": m1, "m2": m2, "M": c, "g": g, "axle": f, "inertia": 1}
+    exact = solve(**known, digits=30)
+    assert exact.acceleration == Answers(Scene.read(known), 30).round(a)
+    for unknown in ("m1", "m2", "M", "g"):
+        found: Any = solve(**{**known, unknown: None}, a=a, digits=30)
+        assert getattr(found.scene, unknown) == known[unknown]
+        assert all(getattr(found, name) == getattr(exact, name) for name in oracle.NAMES)
+
+
+def test_uncertainties_against_uncertainties() -> None:
+    m1, m2, M, g, torque, R = (
+        unc.ufloat(*pair)
+        for pair in ((0.2, 1e-4), (0.21, 2e-4), (0.08, 1e-3), (9.8, 0.01), (8e-4, 1e-5), (0.05, 1e-3))
+    )
+    f = torque / R
+    a = (g * (m2 - m1) - f) / (m1 + m2 + M / 2)
+    ratio = m2 * (g - a) / (m1 * (g + a))
+    s = solve(m1="0.2000(1)", m2="0.2100(2)", M="0.080(1)", g="9.80(1)", axle="0.80(1)mNm", R="5.0(1)cm")
+    for name, wanted in {
+        "acceleration": a,
+        "tension_1": m1 * (g + a),
+        "mu_verge": umath.log(ratio) / pi,
+        "torque": (m2 * (g - a) - m1 * (g + a)) * R,
+    }.items():
+        assert getattr(s, name) == pytest.approx(wanted.nominal_value, rel=1e-12), name
+        assert s.uncertainty[name] == pytest.approx(wanted.std_dev, rel=1e-9), name
+    assert s.scene.axle == Axle(Fraction("0.0008"), "N m")
+
+
+def test_whether_the_axle_holds_may_be_in_doubt() -> None:
+    s = solve(m1="200g", m2="201.5(1)g", axle="16(2)mN")
+    assert s.acceleration == 0
+    assert s.uncertainty["acceleration"] == 0
+    assert any(
+        "Whether the axle holds the difference is in doubt: m2 - m1 - axle/g = -0.00013 ± 0.00023 kg" in note
+        for note in s.notes
+    )
+    kink = solve(m1="1", m2="2.0(1)", g="10", axle="10N")
+    assert kink.uncertainty["acceleration"] is None
+    assert any("unknown where the axle just holds the difference" in note for note in kink.notes)
+    none = solve(m1="1", m2="3", M="10", axle="0.0(1)N")
+    assert none.uncertainty["acceleration"] == pytest.approx(0.1 / 9)
+
+
+def test_the_scene_shows_it_with_its_uncertainty(atwood: Atwood) -> None:
+    words = ["solve", "--m1", "1", "--m2", "3", "--R", "5cm", "--axle"]
+    assert ", axle = 0.50 ± 0.01 Nm\n" in atwood(*words, "0.50(1)Nm").out
+    assert ", axle = 0.50 ± 0.01 N\n" in atwood(*words, "0.50(1)N").out
+    assert atwood(*words, "inf").status == 2
+    assert inf > solve(m1="1", m2="3", axle="1e400").tension_1 > 0  # type: ignore[operator]
+
+
+@pytest.mark.parametrize("column", ["axle", "Axle (N)", "axle_mN", "axle [mNm]"])
+def test_batch_refuses_it_by_name(atwood: Atwood, tmp_path: Path, column: str) -> None:
+    file = tmp_path / "in.csv"
+    file.write_text(f"m1,m2,{column}\n1,3,7\n")
+    ran = atwood("batch", str(file))
+    assert (ran.status, ran.out, ran.err) == (
+        1,
+        "",
+        f"atwood: cannot read {file}: column {column!r} is not taken here; solve and sweep take --axle;"
+        f" or let it pass by --label {column!r}\n",
+    )
+    assert atwood("batch", str(file), "--label", column).status == 0
