@@ -3,14 +3,16 @@
 Cells of CSV and NDJSON stay the text they were, the columns of Parquet keep their types.
 """
 
+import csv
 import json
 import os
 import re
+import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import partial
-from io import BytesIO
+from io import BytesIO, StringIO
 from itertools import chain, islice
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn
@@ -34,6 +36,14 @@ MOST_COLUMNS = 1024
 """Each column of a piece takes a kilobyte and some microseconds, whatever is in it."""
 LONGEST_RECORD = 1 << 20
 """Bytes: a quotation mark that is never closed must not make one record of the whole file."""
+
+
+class Cells(NamedTuple):
+    """A small table of CSV, all of it: its columns, its rows of as many cells each, and what parts them."""
+
+    columns: Sequence[str]
+    rows: Sequence[Sequence[str]]
+    separator: str
 
 
 Inputs = Callable[[Sequence[str]], Sequence[str]]
@@ -86,6 +96,18 @@ def read(kind: str, file: IO[bytes], inputs: Inputs, as_lines: bool) -> Iterator
     return _read_csv(file, SEPARATORS[kind], inputs)
 
 
+def opened(source: str, stack: ExitStack) -> IO[bytes]:
+    """The file of that name, or stdin. Raises Unreadable."""
+    if source == STREAM:
+        if sys.stdin is None:
+            raise Unreadable("it is closed")
+        return sys.stdin.buffer
+    try:
+        return stack.enter_context(open(source, "rb"))
+    except OSError as error:
+        raise Unreadable(error.strerror) from None
+
+
 def block_of(file: IO[bytes]) -> bytes:
     """The next bytes of a file, none at its end. Raises Unreadable."""
     try:
@@ -117,11 +139,28 @@ def _check_count(columns: Collection[str]) -> None:
         raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
 
 
-def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
-    import polars as pl
+def read_cells(file: IO[bytes], usual: str, inputs: Inputs) -> Cells:
+    """A small table of CSV, for which polars is not needed. Raises Unreadable."""
+    rows: list[list[str]] = []
+    columns: list[str] = []
+    separator = usual
+    for columns, separator, piece, _ in _rows_of_csv(file, usual, inputs):
+        text = _decode(piece, partial(_row_of_csv, piece, len(rows), separator))
+        for row in csv.reader(StringIO(text, newline=""), delimiter=separator):
+            if not "".join(row).strip() and len(row) < 2:  # a blank line
+                continue
+            rows.append(row)
+            if len(row) > len(columns):
+                _refuse_long(len(rows), len(row), len(columns), separator)
+            if len(row) < len(columns):
+                raise Unreadable(f"row {len(rows)} has {len(row)} cells, and the header {len(columns)}")
+    return Cells(columns, rows, separator)
 
+
+def _rows_of_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[tuple[list[str], str, bytes, int]]:
+    """The columns, what parts them, and rows as a parser takes them, with how much of the file they are."""
     header: list[str] = []
-    names, done, line, separator = b"", 0, 1, usual
+    line, separator = 1, usual
     for text in _records(file, quoted=True):
         rows = text
         if not header:
@@ -131,14 +170,21 @@ def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
                 continue
             end = first_end(rows)
             header, separator = _header(rows[:end], line, usual, inputs)
-            # Stand-ins, as polars renames what is there twice and drops what is empty.
-            names = separator.join(map(str, range(len(header)))).encode() + b"\n"
             line += rows.count(b"\n", 0, end)
             rows = rows[end:]
-        lines = rows.count(b"\n")
-        rows = checked(rows, separator, line)
-        line += lines
-        size = len(text)
+        yield header, separator, checked(rows, separator, line), len(text)
+        line += rows.count(b"\n")
+    if not header:
+        raise Unreadable("it is empty")
+
+
+def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
+    import polars as pl
+
+    done = 0
+    for header, separator, rows, size in _rows_of_csv(file, usual, inputs):
+        # Stand-ins, as polars renames what is there twice and drops what is empty.
+        names = separator.join(map(str, range(len(header)))).encode() + b"\n"
         for part in portions(rows, PIECE_CELLS // len(header)):
             try:
                 frame = pl.read_csv(names + part, separator=separator, infer_schema=False)
@@ -153,8 +199,6 @@ def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
                 here = {row - start: cells for row, cells in short.items() if 0 <= row - start < PIECE_ROWS}
                 yield Piece(header, frame.slice(start, PIECE_ROWS), size, short=here, separator=separator)
                 size = 0
-    if not header:
-        raise Unreadable("it is empty")
 
 
 def _header(row: bytes, line: int, usual: str, inputs: Inputs) -> tuple[list[str], str]:
@@ -214,16 +258,21 @@ def _decode(text: bytes, row: Callable[[int], str]) -> str:
 
 def _refuse_csv(error: Exception, rows: bytes, width: int, done: int, separator: str) -> NoReturn:
     """Say in which row, and why, polars could not read it. Raises Unreadable."""
-
-    def row(at: int) -> str:
-        return f"row {done + sum(map(bool, widths(rows[:at] + b'.', separator)))}"
-
-    _decode(rows, row)
+    _decode(rows, partial(_row_of_csv, rows, done, separator))
     for number, cells in enumerate(filter(None, widths(rows, separator)), done + 1):
         if cells > width:
-            how = "; is there a decimal comma? write a point" if separator == "," else ""
-            raise Unreadable(f"row {number} has {cells} cells, and the header {width}{how}")
+            _refuse_long(number, cells, width, separator)
     raise Unreadable(str(error).splitlines()[0])
+
+
+def _row_of_csv(rows: bytes, done: int, separator: str, at: int) -> str:
+    """The row in which a byte is."""
+    return f"row {done + sum(map(bool, widths(rows[:at] + b'.', separator)))}"
+
+
+def _refuse_long(number: int, cells: int, width: int, separator: str) -> NoReturn:
+    how = "; is there a decimal comma? write a point" if separator == "," else ""
+    raise Unreadable(f"row {number} has {cells} cells, and the header {width}{how}")
 
 
 def _check_last(rows: bytes, width: int, number: int, separator: str) -> None:

@@ -4,7 +4,7 @@
 """
 
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
 from math import inf, isfinite, nan
 from typing import TYPE_CHECKING, NamedTuple
@@ -14,7 +14,7 @@ from ..arithmetic.rounding import to_double
 from ..arrays.plan import COLUMNS
 from ..model.scene import MEASURED, PARAMETERS, SceneError, parameter_of, read_plain, read_value
 from ..model.units import Malformed, read_unit, symbol_of, without_blanks
-from .formats import PARTED_BY, Piece
+from .formats import PARTED_BY, Cells, Piece
 from .quoted import Unreadable
 
 if TYPE_CHECKING:
@@ -56,12 +56,7 @@ class Layout(NamedTuple):
 
     def remarks(self, usual: str) -> list[str]:
         """What was understood, in a line, unless it is just the names of inputs and the usual separator."""
-        parts = [f"cells parted by {PARTED_BY[self.separator]}"] if self.separator != usual else []
-        parts += ["decimal commas"] if self.comma else []
-        for name, (column, unit, _) in self.headings.items():
-            if column != name:
-                parts.append(f"{column!r} as {name}{f' in {unit}' if unit else ''}")
-        return [f"read as: {', '.join(parts)}."] if parts else []
+        return read_as(self.headings.items(), self.separator, usual, self.comma)
 
     def pointed(self, cell: str) -> str:
         """A cell with a decimal point."""
@@ -110,22 +105,44 @@ def read_layout(piece: Piece, labels: Collection[str] = ()) -> Layout:
     A column that could be meant for an input and is none must be among the ``labels``.
     """
     headings = _headings(piece.columns, labels)
-    others = {column: _meant(column) for column in piece.columns if column not in (*labels, *COLUMNS)}
+    others = {column: meant(column) for column in piece.columns if column not in (*labels, *COLUMNS)}
     for column, name in others.items():
         if name in COLUMNS and name not in headings:
-            raise _refused(column, f"could be meant for {name}; name it so, with a unit like 'm1 (g)'")
+            raise refused(column, f"could be meant for {name}; name it so, with a unit like 'm1 (g)'")
     for name in REQUIRED:
         if name not in headings:
-            raise Unreadable(f"column {name} is missing; there are {_listed(piece.columns)}")
+            raise Unreadable(f"column {name} is missing; there are {listed(piece.columns)}")
     for column, name in others.items():
         if name == "I":
-            raise _refused(column, "is not taken here; give inertia, I/(M R^2)")
+            raise refused(column, "is not taken here; give inertia, I/(M R^2)")
         if name == "axle":
-            raise _refused(column, "is not taken here; solve and sweep take --axle")
+            raise refused(column, "is not taken here; solve and sweep take --axle")
         if name in MEASURED:
-            raise _refused(column, "tells of a motion, which only solve takes")
+            raise refused(column, "tells of a motion, which only solve takes")
     columns = [heading.column for heading in headings.values()]
     return Layout(headings, piece.separator, _has_decimal_commas(piece, columns))
+
+
+def read_as(headings: Iterable[tuple[str, Heading]], separator: str, usual: str, comma: bool) -> list[str]:
+    """What was understood of a table, in a line; none if it is as usual."""
+    parts = [f"cells parted by {PARTED_BY[separator]}"] if separator != usual else []
+    parts += ["decimal commas"] if comma else []
+    for name, (column, unit, _) in headings:
+        if column != name:
+            parts.append(f"{column!r} as {name}{f' in {unit}' if unit else ''}")
+    return [f"read as: {', '.join(parts)}."] if parts else []
+
+
+PART_THOUSANDS = r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$"
+
+
+def decimal_commas_in(cells: Cells, columns: Collection[str]) -> bool:
+    """As `_has_decimal_commas`, of a small table."""
+    if cells.separator == ",":
+        return False
+    taken = [i for i, column in enumerate(cells.columns) if column in columns]
+    with_comma = [row[i] for row in cells.rows for i in taken if "," in row[i]]
+    return any(cells.separator == ";" or not re.match(PART_THOUSANDS, cell) for cell in with_comma)
 
 
 def _has_decimal_commas(piece: Piece, columns: Sequence[str]) -> bool:
@@ -135,7 +152,7 @@ def _has_decimal_commas(piece: Piece, columns: Sequence[str]) -> bool:
     if piece.separator in ("", ","):
         return False
 
-    part_thousands = pl.all().str.contains(r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$")
+    part_thousands = pl.all().str.contains(PART_THOUSANDS)
     has_comma = pl.all().str.contains(",", literal=True)
     decimal = has_comma if piece.separator == ";" else has_comma & ~part_thousands
     return any(piece.frame.select(columns).select(decimal.any()).row(0))
@@ -143,21 +160,21 @@ def _has_decimal_commas(piece: Piece, columns: Sequence[str]) -> bool:
 
 def inputs_among(columns: Sequence[str], labels: Collection[str] = ()) -> list[str]:
     """The columns that are named as an input is, whatever their unit, and not to pass as labels."""
-    return [column for column in columns if column not in labels and _divided(column)[0] in COLUMNS]
+    return [column for column in columns if column not in labels and divided(column)[0] in COLUMNS]
 
 
 def _headings(columns: Sequence[str], labels: Collection[str]) -> dict[str, Heading]:
     """The inputs among the columns, by name. Raises Unreadable."""
     headings: dict[str, Heading] = {}
     for column in inputs_among(columns, labels):
-        name, unit = _divided(column)
+        name, unit = divided(column)
         if name in headings:
             raise Unreadable(f"columns {headings[name].column!r} and {column!r} are both {name}")
-        headings[name] = Heading(column, unit, _factor(name, unit, column))
+        headings[name] = Heading(column, unit, unit_factor(name, unit, column))
     return headings
 
 
-def _divided(column: str) -> tuple[str, str]:
+def divided(column: str) -> tuple[str, str]:
     """The name in a heading and the unit in brackets behind it, empty if there is none."""
     word = without_blanks(column)
     for opening, closing in ("()", "[]"):
@@ -167,11 +184,11 @@ def _divided(column: str) -> tuple[str, str]:
     return word, ""
 
 
-def _factor(name: str, unit: str, column: str) -> Fraction:
+def unit_factor(name: str, unit: str, column: str) -> Fraction:
     """What the unit of a column is in the SI, or in degrees. Raises Unreadable."""
     if not unit:
         return Fraction(1)
-    dimension = PARAMETERS[name].dimension
+    dimension = parameter_of(name).dimension
     try:
         if dimension is None:
             raise Malformed(f"must hold plain numbers, without the {unit!r}")
@@ -179,12 +196,12 @@ def _factor(name: str, unit: str, column: str) -> Fraction:
             raise Malformed("has angles in radians; give degrees or turns")
         return read_unit(unit, dimension)
     except Malformed as error:
-        raise _refused(column, str(error)) from None
+        raise refused(column, str(error)) from None
 
 
-def _meant(column: str) -> str | None:
+def meant(column: str) -> str | None:
     """The input that a heading could be meant for: in other letters, by another name, with a unit behind."""
-    name = _divided(column)[0]
+    name = divided(column)[0]
     if name == "I":  # i may count rows
         return name
     letters = normalize("NFKC", name).casefold().translate(GREEK)
@@ -205,10 +222,10 @@ def _is_unit(word: str, name: str) -> bool:
         return False
 
 
-def _refused(column: str, why: str) -> Unreadable:
+def refused(column: str, why: str) -> Unreadable:
     return Unreadable(f"column {column!r} {why}; or let it pass by --label {column!r}")
 
 
-def _listed(names: Sequence[str], most: int = 12) -> str:
+def listed(names: Sequence[str], most: int = 12) -> str:
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return f"{', '.join(map(repr, names[:most]))}{more}"

@@ -21,7 +21,7 @@ from ..files import STREAM, written_beside
 from ..model.quantities import REGIMES
 from ..model.scene import Given, Scene, SceneError
 from ..model.units import NUMBER
-from .formats import SEPARATORS, Piece, block_of, count_rows, is_stream, read, write
+from .formats import SEPARATORS, Piece, block_of, count_rows, is_stream, opened, read, write
 from .layout import Layout, inputs_among, read_layout
 from .quoted import Unreadable
 
@@ -125,15 +125,7 @@ def _open(job: Job, stack: ExitStack) -> IO[bytes]:
 
     Raises Unreadable.
     """
-    if job.source == STREAM:
-        if sys.stdin is None:
-            raise Unreadable("it is closed")
-        stream: IO[bytes] = sys.stdin.buffer
-    else:
-        try:
-            stream = stack.enter_context(open(job.source, "rb"))  # noqa: SIM115
-        except OSError as error:
-            raise Unreadable(error.strerror) from None
+    stream = opened(job.source, stack)
     if job.source_format != "parquet" or not (job.source == STREAM or is_stream(job.source)):
         return stream
     spool = stack.enter_context(NamedTemporaryFile())  # noqa: SIM115
