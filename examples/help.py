@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-COMMANDS = ("", "solve", "contact", "sweep", "tradeoff", "batch")
+COMMANDS = ("", "solve", "contact", "sweep", "fit", "tradeoff", "batch")
 
 
 def pages() -> str:

@@ -39,7 +39,7 @@ from atwood_cli.tradeoff import measure
 LIMIT = 120  # seconds, for a run; on a quiet machine the longest take a tenth of it
 STATUSES = (0, 1, 2, 130)
 COMMANDS: dict[str, Any] = cli.program().commands
-WEIGHTS = {"solve": 40, "contact": 20, "sweep": 20, "batch": 20, "tradeoff": 1}
+WEIGHTS = {"solve": 40, "contact": 20, "sweep": 20, "batch": 20, "fit": 20, "tradeoff": 1}
 RARE = {
     "--figure": 0.02,
     "--plot": 0.05,
@@ -150,6 +150,8 @@ def command_line(random: Dice) -> list[str]:
     random.shuffle(words)
     if command == "batch":
         words.append([random.choice([*(f"in.{kind}" for kind in FORMATS), "-", "in"])])
+    if command == "fit":
+        words.append([random.choice(["in.csv"] * 8 + ["in.tsv", "-", "in"])])
     line = [command, *(word for option in words for word in option)]
     if random.random() < random.odd / 3:
         line.insert(
@@ -186,6 +188,25 @@ def table(random: Dice, kind: str) -> bytes:
         at = random.randrange(len(data))
         data[at : at + random.choice([0, 1, 5])] = random.randbytes(random.choice([0, 1, 3]))
     return bytes(data)
+
+
+def table_of_runs(random: Dice) -> bytes:
+    """A table of runs of one pulley and axle, more or less whole and true."""
+    c, f, timed = random.random(), random.random(), random.random() < 0.5
+    names = ["m1", "m2", "time" if timed else "a", *["drop"] * (random.random() < 0.5)]
+    names += [random.choice([*TEXTS, "M", "time 2", "a1"]) for _ in range(2) if random.is_odd()]
+    rows = []
+    for _ in range(random.choice([1, 2, 3, 5, 30])):
+        l = 1 + random.random()
+        h = l + 0.1 + random.choice([0.01, 1, 1, 1]) * random.random()
+        a = (9.80665 * (h - l) - f) / (h + l + c) + random.gauss(0, random.choice([0, 0.01, 0.3]))
+        measured = abs(2 / a) ** 0.5 if timed else a
+        cells = [*random.choice([[l, h], [l, h], [h, l]]), measured, 1.0, 1.0, 1.0][: len(names)]
+        spread = random.choice(["", "", "+/-0.01"])
+        rows.append([number(random) if random.is_odd() else f"{cell!r}{spread}" for cell in cells])
+    separator = random.choice(",;\t")
+    text = "\n".join(separator.join(row) for row in [names, *rows])
+    return text.encode("utf-8", "replace")
 
 
 @contextmanager
@@ -277,7 +298,8 @@ def wrong_with(run: int) -> str:
     else:
         words = command_line(random)
         for kind in FORMATS:
-            Path(f"in.{kind}").write_bytes(table(random, kind) if words[0] == "batch" else b"")
+            made = table(random, kind) if words[0] == "batch" else b""
+            Path(f"in.{kind}").write_bytes(table_of_runs(random) if words[0] == "fit" else made)
         what, try_it = repr(words), partial(wrong_with_line, words)
     try:
         with limited(LIMIT):

@@ -20,8 +20,9 @@ MAY_IMPORT = {
     "arrays": "arithmetic model solver",
     "derivation": "arithmetic model solver",
     "batch": "files arithmetic model solver arrays",
+    "fit": "files arithmetic model solver arrays derivation batch",
     "tradeoff": "files arithmetic model solver arrays",
-    "cli": "files arithmetic model solver api arrays derivation batch tradeoff",
+    "cli": "files arithmetic model solver api arrays derivation batch fit tradeoff",
     "__main__": "cli",
 }
 """What each folder, or module at the top, may import beside itself."""

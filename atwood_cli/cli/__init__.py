@@ -16,7 +16,7 @@ from ..model.scene import SceneError
 from .options import COMPLETING, COULD_NOT, DONE, WORDS, WRONG_USAGE, flag
 from .text import drop, finish, say
 
-COMMANDS = ("solve", "contact", "sweep", "tradeoff", "batch")
+COMMANDS = ("solve", "contact", "sweep", "fit", "tradeoff", "batch")
 EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
 HELP = """Atwood's machine with a massive pulley and a rough string, every digit right.
 
@@ -25,6 +25,7 @@ Examples:
   atwood solve --m1 250g --m2 300g --M 100g --only acceleration
   atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3
   atwood contact --m1 1 --m2 3 --M 10 --mu 0.3
+  atwood fit runs.csv --drop 98cm
   atwood batch scenes.csv -o results.csv
   atwood tradeoff
 """

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+    from ..fit.fitting import Fit
     from ..tradeoff.measure import Tradeoff
     from .curves import Curve, Picture
 
@@ -114,6 +115,44 @@ def save_tradeoff(outcome: "Tradeoff", path: str, force: bool) -> None:
             axes.spines[["top", "right"]].set_visible(False)
             axes.legend(frameon=False, fontsize=8)
         figure.suptitle(EDGES, fontsize=10)
+
+
+def save_fit(fit: "Fit", head: str, path: str, force: bool) -> None:
+    """Draw runs and their line to a file, whose suffix is its format. Raises SceneError, OSError."""
+    from ..fit.line import points
+    from ..fit.sentences import shown, verdict
+
+    check_file(path, force)
+    at = points(fit)
+    with _page(path, force) as figure:
+        line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
+        end = 1.06 * float(max(at.x))
+        line.plot([0, end], [at.intercept, at.intercept + at.slope * end], color=NORMAL, lw=1.5)
+        bars: Any = {"fmt": "o", "ms": 5, "capsize": 3, "lw": 1.2, "color": STRING}
+        line.errorbar(at.x, at.y, yerr=at.u_y, xerr=at.u_x, **bars)
+        rest.axhline(0, color=NORMAL, lw=1.5)
+        rest.errorbar(at.x, at.residual, yerr=at.u_residual, **bars)
+        for run, x, y in zip(fit.used, at.x, at.y, strict=True) if len(fit.used) <= MARKED else ():
+            number = ",".join(map(str, run.rows))
+            line.annotate(
+                number, (x, y), xytext=(6, -12), textcoords="offset points", size=9, color="#777777"
+            )
+        said = [
+            f"{label} = {shown(fit.estimate.values[name], fit.uncertainty(name))} {unit}"
+            if name in fit.values
+            else f"{label} = {fit.estimate.values[name]:.4g} {unit}"
+            for name, label, unit in (("rim_mass", "slope $c$", "kg"), ("axle", "intercept $f$", "N"))
+        ]
+        line.text(0.03, 0.95, "\n".join(said), transform=line.transAxes, va="top", color=NORMAL)
+        line.set_ylabel("$T_h - T_l = (m_h - m_l)\\,g - a\\,(m_h + m_l)$  (N)")
+        rest.set_ylabel("residual (N)")
+        rest.set_xlabel("acceleration $a$ (m/s²)")
+        line.set_xlim(0, end)
+        low, high = min(0.0, float(min(at.y - at.u_y)), at.intercept), float(max(at.y + at.u_y))
+        line.set_ylim(low, high + 0.2 * (high - low))
+        for axes in (line, rest):
+            axes.spines[["top", "right"]].set_visible(False)
+        figure.suptitle(f"{head}\n{verdict(fit)}", fontsize=10)
 
 
 FAMILY_COLOURS = (NORMAL, FRICTION, WEIGHT, "#8a5a9e", STRING)

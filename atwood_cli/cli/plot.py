@@ -17,6 +17,7 @@ from .page import Page
 from .text import for_stream, takes_unicode
 
 if TYPE_CHECKING:
+    from ..fit.fitting import Fit
     from ..tradeoff.measure import Tradeoff
 
 PIPE_WIDTH, HEIGHT, SMALL_HEIGHT = 80, 20, 12
@@ -103,6 +104,34 @@ def print_tradeoff_plot(outcome: "Tradeoff") -> None:
         page.say("a elements, b extrapolated; from left to right 4 to 10 million of them.")
     for note in (*outcome.notes, outcome.advice):
         page.say(note)
+
+
+def print_fit_plot(page: Page, head: str, fit: "Fit") -> None:
+    """Runs as points, and their line; then what it is."""
+    from ..fit.line import points
+    from ..fit.sentences import shown, verdict
+
+    at = points(fit)
+    end = 1.06 * float(max(at.x))
+    ends = [(0.0, at.intercept), (end, at.intercept + at.slope * end)]
+
+    def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
+        start, stop = ((x_axis.dot(x), y_axis.dot(y)) for x, y in ends)
+        canvas.line(*start, *stop, color=COLOURS[0])
+        for run, x, y in zip(fit.used, at.x, at.y, strict=True):
+            canvas.point(x_axis.dot(float(x)), y_axis.dot(float(y)), marker=str(run.rows[0])[-1], color=MARK)
+
+    values = [x for x, _ in ends], [y for _, y in ends]
+    xs, ys = (list(map(float, [*one, *other])) for one, other in zip(values, (at.x, at.y), strict=True))
+    page.say(head)
+    page.say(verdict(fit), "bold")
+    titles = ("a (m/s²)", "T_h - T_l (N)")
+    _show(page, _framed(titles, (xs, [0.0, *ys]), (False, False), page.room or PIPE_WIDTH, HEIGHT, draw))
+    for name, what, unit in (("rim_mass", "slope c", "kg"), ("axle", "intercept f", "N")):
+        value = fit.estimate.values[name]
+        spread = fit.uncertainty(name) if name in fit.values else None
+        page.say(f"{what} = {shown(value, spread)} {unit}.")
+    page.say("Points are the last digits of their rows.")
 
 
 def _scatter(title: str, curves: list[list[tuple[float, float]]], room: int, marks: str) -> list[str]:

@@ -14,7 +14,17 @@ from ..arithmetic.rounding import as_typed, is_infinite, text
 from ..model.scene import MEASURED, UNMEASURED, Motion, Scene, stated
 
 ASCII = str.maketrans(
-    {"μ": "mu", "µ": "u", "φ": "phi", "β": "beta", "π": "pi", "τ": "tau", "α": "alpha", "θ": "theta"}
+    {
+        "μ": "mu",
+        "µ": "u",
+        "φ": "phi",
+        "β": "beta",
+        "π": "pi",
+        "τ": "tau",
+        "α": "alpha",
+        "θ": "theta",
+        "χ": "chi",
+    }
     | {
         "₁": "1",
         "₂": "2",

@@ -85,7 +85,7 @@ def hanging_mass(tension: N, a: N, g: N) -> N:
 
 def slide_excess(l: N, h: N, a: N, g: N) -> N:
     """T_h/T_l - 1 under which the masses have a measured acceleration, from (1)."""
-    return (g * (h - l) - a * (h + l)) / (l * (g + a))
+    return difference_of_moving_masses(l, h, a, g) / light_tension(l, a, g)
 
 
 def added_load(l: N, h: N, load: N) -> N:
@@ -141,6 +141,11 @@ def rim_acceleration_beside_axle(difference: N, c: N, f: N) -> N:
 def difference_of_a_locked_pulley(l: N, h: N, g: N) -> N:
     """T_h - T_l (N) of masses at rest: that of their weights."""
     return g * (h - l)
+
+
+def difference_of_moving_masses(l: N, h: N, a: N, g: N) -> N:
+    """T_h - T_l (N) of masses with a measured acceleration, from (1): c a + f where the string grips."""
+    return g * (h - l) - a * (h + l)
 
 
 def difference_of_friction(light: N, k1: N) -> N:

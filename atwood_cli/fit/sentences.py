@@ -1,0 +1,240 @@
+"""A fit in words: what the runs require, what is odd about them, and what to vary."""
+
+from collections.abc import Iterator, Sequence
+from decimal import Decimal
+from fractions import Fraction
+from math import isfinite
+
+import numpy as np
+
+from ..arithmetic.rounding import text, to_digits, to_place, with_uncertainty
+from ..model import physics
+from ..model.axle import Axle
+from ..model.case import Case
+from .fitting import CLEAR, FOUND, SAME, UNITS, WORDS, Fit, to_vary, unusable
+from .runs import Run
+from .student import SURE, fisher_beyond
+
+MUCH = 0.95
+"""A correlation beyond which two things are hardly told apart."""
+
+
+def shown(value: float, uncertainty: float | None) -> str:
+    """A value cut at the second digit of its uncertainty, with that; to six digits if it has none."""
+    exact = Fraction(value)
+    if not uncertainty or not isfinite(uncertainty):
+        return text(to_digits(6)(exact))
+    return with_uncertainty(
+        lambda place: to_place(place)(exact), Decimal(to_digits(2)(Fraction(uncertainty)))
+    )
+
+
+def cut(value: float, uncertainty: float | None) -> str:
+    """A value cut at the second digit of an uncertainty; to six digits if there is none."""
+    exact = Fraction(value)
+    if not uncertainty or not isfinite(uncertainty):
+        return text(to_digits(6)(exact))
+    return f"{to_place(to_digits(2)(Fraction(uncertainty)).adjusted() - 1)(exact):f}"
+
+
+def few(value: float, digits: int = 2) -> str:
+    """A value to a few digits, as people write it."""
+    return f"{to_digits(digits)(Fraction(value)):f}"
+
+
+def verdict(fit: Fit) -> str:
+    """What the runs require, in a sentence or two."""
+    kind = {"a": "acceleration", "time": "time"}[fit.runs.kind]
+    count = f"{_counted(len(fit.used), 'run')}, {_counted(int(fit.data.times.sum()), kind)}."
+    found = sorted(fit.estimate.found, key=lambda name: -_away(fit.values[name], fit.uncertainty(name)))
+    figures = [_figure(fit.values[name], fit.uncertainty(name)) for name in found]
+    if fit.asked:
+        of = ", ".join(f"{WORDS[name]} ({figure})" for name, figure in zip(found, figures, strict=True))
+        return f"{count} Fitted, as asked: {of}."
+    parts = [count]
+    if found:
+        first, *more = (f"({figure})" for figure in figures)
+        parts.append(_sentence(f"{WORDS[found[0]]} is needed {first}"))
+        if more:
+            parts[-1] = f"{parts[-1][:-1]}; so is {WORDS[found[1]]} {more[0]}."
+    left = [f"{WORDS[one.name]} ({_figure(one.value, one.uncertainty)})" for one in fit.dropped]
+    if found and left:
+        parts.append(_sentence(f"{left[0].replace(' (', ' is not (', 1)}, and left out"))
+    elif left:
+        parts.append(
+            _sentence(f"neither {' nor '.join(left)} is needed" if left[1:] else f"{left[0]} is not needed")
+        )
+    if not found and not left:
+        parts.append("Nothing is left to find: the pulley and its axle are known.")
+    return " ".join(parts)
+
+
+def _away(value: float, uncertainty: float | None) -> float:
+    return abs(value) / uncertainty if uncertainty else 0.0
+
+
+def _figure(value: float, uncertainty: float | None) -> str:
+    if not uncertainty or not isfinite(uncertainty):
+        return "how well, nothing tells"
+    return f"{few(_away(value, uncertainty))} standard uncertainties from 0"
+
+
+def _counted(count: int, thing: str) -> str:
+    return f"{count} {thing}{'s' * (count != 1)}"
+
+
+def _sentence(words: str) -> str:
+    return f"{words[0].upper()}{words[1:]}."
+
+
+def notes(fit: Fit) -> list[str]:
+    """What else there is to say."""
+    return [*_odd_values(fit), *_spread(fit), *_told_apart(fit), *_odd_runs(fit)]
+
+
+def _odd_values(fit: Fit) -> Iterator[str]:
+    nothing = [name for name in FOUND[:2] if name not in fit.values and name not in fit.known.values]
+    if fit.asked and nothing:
+        yield f"Neither fitted nor given, and so taken to be 0: {', '.join(nothing)}."
+    for name, value in fit.values.items():
+        u = fit.uncertainty(name)
+        if value < 0 and u is not None and -value > fit.times * u:
+            what = {
+                "rim_mass": "No pulley has a negative inertia: masses, heights or gravity are not what they"
+                " are said to be, or something drives the masses",
+                "axle": "No axle has a negative friction: there is more mass on the heavier side than the"
+                " table says, or something drives the masses",
+                "gravity": "Gravity is found upwards: m1 and m2, or the sign of a, change places",
+            }[name]
+            yield f"{what}."
+    if fit.values.get("axle") and one_sided(fit):
+        mass = fit.values["axle"] / fit.estimate.values["gravity"]
+        yield (
+            f"The friction of the axle may as well be {few(1000 * abs(mass))} g of mass unaccounted for on"
+            f" the {'lighter' if mass > 0 else 'heavier'} side, as the same side is the heavier in all runs:"
+            " swap the sides to tell."
+        )
+
+
+def one_sided(fit: Fit) -> bool:
+    """Whether the same side is the heavier in all runs."""
+    return len({run.m2.value > run.m1.value for run in fit.used}) == 1
+
+
+def _spread(fit: Fit) -> Iterator[str]:
+    data, runs = fit.data, len(fit.used) - len(fit.estimate.found)
+    if not isfinite(fit.scale):
+        yield "The runs are no more than what is fitted: nothing tells how well it is known."
+    elif fit.spread_known and fit.scale != 1:
+        yield (
+            f"The runs scatter {few(fit.scale)} times as much as their uncertainties say (chi-squared"
+            f" {few(fit.estimate.chi2, 3)} for {fit.dof} degrees of freedom): those found are scaled by that."
+        )
+    elif not fit.spread_known and data.within and runs > 0:
+        between = (fit.estimate.chi2 - data.within) / runs
+        if (chance := fisher_beyond(between, runs, int(data.within))) < 1 - SURE:
+            yield (
+                f"The means of the runs scatter {few(between**0.5)} times as much as their repeats explain,"
+                f" which chance would do in {few(100 * chance)} % of all cases: something else varies from"
+                " run to run, as masses may."
+            )
+
+
+def _told_apart(fit: Fit) -> Iterator[str]:
+    sums = np.array([float(run.m1.value + run.m2.value) for run in fit.used])
+    constant, vary = np.ptp(sums) < SAME * sums.max(), to_vary(fit.used)
+    pair = fit.correlation
+    if pair and abs(pair[2]) > MUCH:
+        yield (
+            f"The runs hardly tell {WORDS[pair[0]]} from {WORDS[pair[1]]} (their correlation is"
+            f" {few(pair[2], 3)}): {vary}."
+        )
+    elif (other := fit.alternative) is not None:
+        name = other.estimate.found[0]
+        yield (
+            f"The runs do not tell {WORDS['rim_mass']} from {WORDS['axle']}: {WORDS[name]} alone would do,"
+            f" too, {name} = {shown(other.values[name], other.uncertainty(name))} {UNITS[name]}"
+            f". To tell, {vary}."
+        )
+    elif constant and "rim_mass" in fit.values:
+        more = 0.001 * (sums.mean() + fit.values["rim_mass"])
+        if "gravity" not in fit.values:
+            yield (
+                "m1 + m2 is the same in all runs, so that an error of 0.1 % in g, or in all masses, is one"
+                f" of {few(1000 * more)} g in rim_mass: vary m1 + m2 as well."
+            )
+
+
+def _odd_runs(fit: Fit) -> Iterator[str]:
+    for run in fit.runs.runs:
+        if why := unusable(fit.runs, run, fit.known, fit.estimate.found):
+            yield f"{_named(run)} could not be used: {why}."
+    named: list[Run] = []
+    for i, run in enumerate(fit.used):
+        if why := _impossible(fit, i):
+            named.append(run)
+            yield f"{_named(run)} cannot be: {why}."
+    for run, size in fit.outliers:
+        if not any(run is one for one in named):
+            named.append(run)
+            away = few(abs(size)) if isfinite(size) else "far more than any number of"
+            yield f"{_named(run)} stands out: {away} standard uncertainties from what the others say."
+    if named:
+        names = _joined([run.name for run in named])
+        without = fit.without(named)
+        if without is None:
+            yield f"Without {names} too few runs are left to fit."
+        else:
+            values = [
+                f"{name} = {shown(value, without.uncertainty(name))} {UNITS[name]}"
+                for name, value in without.values.items()
+            ]
+            yield f"Without {names}: {', '.join(values) or 'nothing is fitted'}. None was left out above."
+
+
+def _named(run: Run) -> str:
+    return f"{run.name[0].upper()}{run.name[1:]}"
+
+
+def _joined(names: Sequence[str]) -> str:
+    return names[0] if not names[1:] else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _impossible(fit: Fit, i: int) -> str:
+    """Why a run that was used cannot have been as it is said; empty if it can."""
+    data, values, run = fit.data, fit.estimate.values, fit.used[i]
+    l, h, g = float(data.l[i]), float(data.h[i]), values["gravity"]
+    most = physics.acceleration(h - l, physics.load(l, h, 0.0), g)
+    measured = float(data.measured[i])
+    limit, beyond = most, measured - most
+    if data.kind == "time" and data.drop is not None:
+        limit = physics.fall_time(float(data.drop[i]), most, lambda x: x**0.5)
+        beyond = limit - measured
+    if beyond > 0 and beyond > CLEAR * fit.spread_without(run, i):
+        unit = {"a": "m/s^2", "time": "s"}[data.kind]
+        most_words = {"a": "at most", "time": "at least"}[data.kind]
+        return (
+            f"it is faster than a massless pulley without friction allows, whose {_quantity(fit)} is"
+            f" {most_words} {few(limit, 4)} {unit}"
+        )
+    b = physics.axle_mass(values["axle"], g)
+    if h - l <= b:
+        return f"by the friction that was found, the axle would hold its masses (up to {few(1000 * b)} g)"
+    scene = fit.known.scene
+    if scene.mu is not None:
+        here = scene._replace(
+            m1=run.m1.value,
+            m2=run.m2.value,
+            M=Fraction(max(values["rim_mass"], 0.0)),
+            inertia=Fraction(1),
+            I=None,
+            g=Fraction(g),
+            axle=Axle(Fraction(max(values["axle"], 0.0))),
+        )
+        if Case(here).regime == "slip":
+            return f"the string would slip, as its mu = {text(float(scene.mu))} is too small for these masses"
+    return ""
+
+
+def _quantity(fit: Fit) -> str:
+    return {"a": "acceleration", "time": "time"}[fit.runs.kind]
