@@ -6,14 +6,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic.double import FLOATS
 from ..arithmetic.dual import Dual, Duals
 from ..model import physics
 from .runs import Kind
 
 Column = NDArray[np.float64]
 
-DUALS: Duals[Any] = Duals(FLOATS)
+NUMPY: Any = np
+DUALS: Duals[Any] = Duals(NUMPY)
+"""Of columns of doubles, for as much as the equation of a run needs."""
 
 
 def expected(kind: Kind, given: Mapping[str, Any], to: Sequence[str]) -> tuple[Column, dict[str, Column]]:
