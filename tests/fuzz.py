@@ -313,7 +313,9 @@ def wrong_with(run: int) -> str:
 
 def faults(runs: Sequence[int]) -> Iterator[str]:
     """What is wrong with runs, each in a folder of its own; measurements are cut short."""
-    short = patch.multiple(measure, RUN_SECONDS=1e-5, REPEATS=1, COUNTS=(4, 10), MOST_SCENES=20, FEWEST=2)
+    short = patch.multiple(
+        measure, RUN_SECONDS=1e-5, REPEATS=1, COUNTS=(4, 10), MOST_SCENES=20, FEWEST=2, TABLE=2
+    )
     for run in runs:
         with TemporaryDirectory() as folder, chdir(folder), short, warnings.catch_warnings():
             warnings.simplefilter("always")

@@ -58,6 +58,7 @@ def briefly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few repeats of short runs: these tests are about the errors."""
     monkeypatch.setattr(tradeoff, "REPEATS", 2)
     monkeypatch.setattr(tradeoff, "RUN_SECONDS", 1e-4)
+    monkeypatch.setattr(tradeoff, "TABLE", 30)
     monkeypatch.setattr(tradeoff, "COUNTS", (4, 10, 100, 1000))
 
 
@@ -212,7 +213,7 @@ def test_an_interruption_makes_no_run_too_short(
         clock[0] += size * 1e-6 + (next(runs) == interrupted)
 
     monkeypatch.setattr(tradeoff, "perf_counter", lambda: clock[0])
-    setting = Setting("slow now and then", lambda _, size: size, run, lambda *_: [])
+    setting = Setting("slow now and then", lambda _, size: size, run, lambda *_: [], at_once=False)
     assert 0.01 <= 1e-6 * _size(setting, [{}] * 1000) <= 0.03
 
 
@@ -258,6 +259,10 @@ def test_the_advice_is_from_the_numbers() -> None:
         for one in measured
     ]
     assert advice([*measured, *wrong]).endswith("39 ulp off and took up to 0.8 % of the regimes wrongly.")
+    hard = [
+        one._replace(family="hard", seconds=6 * one.seconds) for one in measured if one.setting == "exact"
+    ]
+    assert "exact for the nearest double (500 ns, 3 µs if hard)," in advice([*measured, *hard])
     better = [one._replace(worst_ulp=0.3) if one.setting == "fast" else one for one in measured]
     assert advice(better) == (
         "Take fast for results within 4 ulp and the nearest double (40 ns a scene), 50 digits for more digits (350 µs)."
