@@ -559,6 +559,7 @@ LEFT_OPEN = "it ends within quotation marks opened in line {}: it is truncated, 
         ('1,3,a"\n1,3,"b\n', OUT_OF_PLACE, 2),
         ('1,3,"a","b"\n'.replace(",", ";").replace('";"', '","'), OUT_OF_PLACE, 2),
         ('1,3,"x\ny', LEFT_OPEN, 2),
+        ('\n"m1"x,m2\n1,3\n', OUT_OF_PLACE, 2),
         ('1,3,"x"\n1,3,"x""\n1,3,y\n', LEFT_OPEN, 3),
     ],
 )
@@ -567,7 +568,8 @@ def test_malformed_quoting_swallows_no_rows(
     atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch, rows: str, why: str, line: int, size: int
 ) -> None:
     monkeypatch.setattr(tables, "PIECE_BYTES", size)
-    path = table(("m1;m2;n\n" if ";" in rows else "m1,m2,n\n") + rows)
+    header = "" if "m1" in rows else "m1;m2;n\n" if ";" in rows else "m1,m2,n\n"
+    path = table(header + rows)
     ran = atwood("batch", path, "-o", f"{path}.csv")
     assert (ran.status, ran.err) == (1, f"atwood: cannot read {path}: {why.format(line)}\n")
 

@@ -116,22 +116,23 @@ def block_of(file: IO[bytes]) -> bytes:
         raise Unreadable(error.strerror or str(error)) from None
 
 
-def _records(file: IO[bytes], quoted: bool) -> Iterator[bytes]:
-    """A file in pieces that end where a record ends."""
+def _records(file: IO[bytes], quoted: bool) -> Iterator[tuple[bytes, int, int]]:
+    """A file in pieces that end where a record ends, with the line each begins in and its line ends."""
     rest, line = b"", 1
     while block := block_of(file):
         rest += block
         end = last_end(rest) if quoted else rest.rfind(b"\n") + 1
         if end:
-            yield rest[:end]
-            line += rest.count(b"\n", 0, end)
+            lines = rest.count(b"\n", 0, end)
+            yield rest[:end], line, lines
+            line += lines
             rest = rest[end:]
         elif len(rest) > LONGEST_RECORD:
             hint = "; is a quotation mark left open?" if quoted else ""
             most = f"{LONGEST_RECORD >> 20} MB, the most taken"
             raise Unreadable(f"the row that begins in line {line} is longer than {most}{hint}")
     if rest.strip(b"\r\n"):
-        yield rest
+        yield rest, line, rest.count(b"\n")
 
 
 def _check_count(columns: Collection[str]) -> None:
@@ -144,7 +145,7 @@ def read_cells(file: IO[bytes], usual: str, inputs: Inputs) -> Cells:
     rows: list[list[str]] = []
     columns: list[str] = []
     separator = usual
-    for columns, separator, piece, _ in _rows_of_csv(file, usual, inputs):
+    for columns, separator, piece, _, _ in _rows_of_csv(file, usual, inputs):
         text = _decode(piece, partial(_row_of_csv, piece, len(rows), separator))
         for row in csv.reader(StringIO(text, newline=""), delimiter=separator):
             if not "".join(row).strip() and len(row) < 2:  # a blank line
@@ -157,23 +158,23 @@ def read_cells(file: IO[bytes], usual: str, inputs: Inputs) -> Cells:
     return Cells(columns, rows, separator)
 
 
-def _rows_of_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[tuple[list[str], str, bytes, int]]:
-    """The columns, what parts them, and rows as a parser takes them, with how much of the file they are."""
+def _rows_of_csv(
+    file: IO[bytes], usual: str, inputs: Inputs
+) -> Iterator[tuple[list[str], str, bytes, int, int]]:
+    """The columns, what parts them, rows as a parser takes them; how much of the file it is, and lines."""
     header: list[str] = []
-    line, separator = 1, usual
-    for text in _records(file, quoted=True):
-        rows = text
+    separator = usual
+    for text, line, lines in _records(file, quoted=True):
+        rows, before = text, 0
         if not header:
             rows = text.removeprefix(b"\xef\xbb\xbf").lstrip(b"\r\n")
-            line += text.count(b"\n") - rows.count(b"\n")
             if not rows:
                 continue
-            end = first_end(rows)
-            header, separator = _header(rows[:end], line, usual, inputs)
-            line += rows.count(b"\n", 0, end)
+            end, before = first_end(rows), lines - rows.count(b"\n")
+            header, separator = _header(rows[:end], line + before, usual, inputs)
+            before += rows.count(b"\n", 0, end)
             rows = rows[end:]
-        yield header, separator, checked(rows, separator, line), len(text)
-        line += rows.count(b"\n")
+        yield header, separator, checked(rows, separator, line + before), len(text), lines
     if not header:
         raise Unreadable("it is empty")
 
@@ -182,10 +183,11 @@ def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
     import polars as pl
 
     done = 0
-    for header, separator, rows, size in _rows_of_csv(file, usual, inputs):
+    for header, separator, rows, size, lines in _rows_of_csv(file, usual, inputs):
         # Stand-ins, as polars renames what is there twice and drops what is empty.
         names = separator.join(map(str, range(len(header)))).encode() + b"\n"
-        for part in portions(rows, PIECE_CELLS // len(header)):
+        most = PIECE_CELLS // len(header)
+        for part in [rows] if lines <= most else portions(rows, most):
             try:
                 frame = pl.read_csv(names + part, separator=separator, infer_schema=False)
             except pl.exceptions.PolarsError as error:
@@ -290,7 +292,7 @@ def _read_ndjson(file: IO[bytes], inputs: Inputs | None) -> Iterator[Piece]:
 
     columns: dict[str, None] = {}
     done = 0
-    for text in _records(file, quoted=False):
+    for text, _, _ in _records(file, quoted=False):
         lines = [
             line for line in map(str.strip, _decode(text, partial(_row, text, done)).split("\n")) if line
         ]

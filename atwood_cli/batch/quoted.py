@@ -48,7 +48,7 @@ def checked(rows: bytes, separator: str, line: int) -> bytes:
                 how = "it is truncated, or one is left open"
                 raise Unreadable(f"it ends within quotation marks opened in line {line}: {how}")
             raise Unreadable(f'line {line} has a quotation mark out of place; write it "like ""this"""')
-    if rows.count(b"\r") > rows.count(b"\r\n"):
+    if b"\r" in rows and rows.count(b"\r") > rows.count(b"\r\n"):
         no_blank_line = rb"(?:(?<=%b)|(?<![^\n])(?!\r+\n))" % mark
         bare = rb'[^"%b\r\n]*+(?:\r(?!\n|\Z)[^"%b\r\n]*+)++' % (mark, mark)
         either = rb"%b%b|%b(%b)" % (start, QUOTED, no_blank_line, bare)
@@ -58,8 +58,6 @@ def checked(rows: bytes, separator: str, line: int) -> bytes:
 
 def portions(rows: bytes, lines: int) -> list[bytes]:
     """The rows in parts of so many lines at most, or more where they are in one cell."""
-    if rows.count(b"\n") <= lines:
-        return [rows]
     row = rb'(?:[^"\n]++|"[^"]*+")*+\n'
     parts = [found[0] for found in re.finditer(rb"(?:%b){1,%d}+" % (row, lines), rows)]
     rest = rows[sum(map(len, parts)) :]

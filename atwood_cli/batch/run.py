@@ -236,6 +236,8 @@ def _finite(values: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
 
     exists = np.isfinite(values)
     exists[failed] = False
+    if exists.all():
+        return pl.Series(values)
     tally.beyond += int(np.isinf(np.delete(values, failed)).sum())
     return pl.Series(np.where(exists, values, nan), nan_to_null=True)
 
