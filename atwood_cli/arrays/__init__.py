@@ -23,7 +23,7 @@ from ..model.scene import MISSING_MASS, PARAMETERS, SceneError
 from ..model.units import nearest
 from .plan import COLUMN, COLUMNS, LADDERS, Accuracy, Given
 from .program import Room
-from .rows import Index, Left, Rows
+from .rows import Index, Left, Rows, size_of
 
 ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
 BLOCK = 131_072  # rows, as measured
@@ -100,7 +100,7 @@ def solve_arrays(
             for left_rows, some in (rows.left or {}).items():
                 left.setdefault(left_rows, []).extend(index + block.start for index in some)
         else:
-            rows.solve(slice(0, _length(block)), *what)
+            rows.solve(slice(0, size_of(block)), *what)
         if not isinstance(block, slice):
             for name in what[2] if what else ():
                 flat[name][block] = out[name]
@@ -146,10 +146,6 @@ def _cut(column: Column, shape: tuple[int, ...], rows: Index) -> Column:
     return np.broadcast_to(column, shape).flat[rows]
 
 
-def _length(index: Index) -> int:
-    return index.stop - index.start if isinstance(index, slice) else index.size
-
-
 def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> None:
     """NumPy lets go of the interpreter while it computes, so threads share the parts.
 
@@ -178,7 +174,7 @@ def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> 
         for done in [pool.submit(share) for _ in range(count)]:
             done.result()
     finally:
-        waiting = iter(())
+        waiting = iter(())  # for all threads, should one have failed or Ctrl-C come
         pool.shutdown()
 
 

@@ -62,7 +62,7 @@ class Rows:
         Rows ``along`` with them are written over later, and come along where parting would cost more.
         """
         ladder = LADDERS[self.accuracy]
-        if rung == len(ladder) or (ladder[rung] == (TRIPLES,) and _size(index) <= FEW):
+        if rung == len(ladder) or (ladder[rung] == (TRIPLES,) and size_of(index) <= FEW):
             self._solve_one_by_one(index, names, given)
             return
         how = plan(given, answers, names, self.accuracy, rung)
@@ -101,11 +101,11 @@ class Rows:
         self, program: Program, index: Index, names: Sequence[str], more: int
     ) -> Iterator[tuple[Any, ...]]:
         """Run a program on tiles of rows; yields where each starts, and ``more`` columns of yes and no."""
-        size, columns_ = _size(index), len(program.between) + len(program.inputs) + len(names)
+        size, columns_ = size_of(index), len(program.between) + len(program.inputs) + len(names)
         most = min(max(SMALLEST, ROOM // (8 * columns_)), LARGEST)
         for start in range(0, size, most):
             tile = _among(index, slice(start, min(start + most, size)))
-            rows = _size(tile)
+            rows = size_of(tile)
             inputs = [self.inputs[name] for name in program.inputs]
             direct = isinstance(tile, slice)
             kinds: list[Any] = [] if direct else [np.float64] * (len(inputs) + len(names))
@@ -130,13 +130,13 @@ class Rows:
         self, index: Index, given: Given, answers: Answers, question: str, rung: int
     ) -> NDArray[np.bool_]:
         """The rows' answers to a question."""
-        size = _size(index)
+        size = size_of(index)
         yes = np.empty(size, np.bool_)
         far = LADDERS[self.accuracy][rung] == (TRIPLES,)
         ladder = (DOUBLES, PAIRS, TRIPLES)[2 * far :]
         open_: Any = slice(0, size)
         for ar in ladder:
-            if ar is not DOUBLES and _size(open_) <= FEW:
+            if ar is not DOUBLES and size_of(open_) <= FEW:
                 break
             program = questioning(given, answers, question, self.accuracy, ar)
             rows, unsure = _among(index, open_), []
@@ -154,14 +154,14 @@ class Rows:
         return yes
 
     def _go_up(self, index: Index, given: Given, answers: Answers, name: str, rung: int) -> None:
-        if self.left is not None and _size(index) <= LEAVE:
+        if self.left is not None and size_of(index) <= LEAVE:
             assert not isinstance(index, slice)
             self.left.setdefault((given, answers, (name,), rung), []).append(index)
         else:
             self.solve(index, given, answers, (name,), rung)
 
     def _solve_one_by_one(self, index: Index, names: tuple[str, ...], given: Given) -> None:
-        for row in range(_size(index)):
+        for row in range(size_of(index)):
             single = Single(self._scene(index, row, given))
             place = row + index.start if isinstance(index, slice) else index[row]
             for name in names:
@@ -184,7 +184,8 @@ class Rows:
         return Scene(**fields, I=None)
 
 
-def _size(index: Index) -> int:
+def size_of(index: Index) -> int:
+    """How many rows that are."""
     return index.stop - index.start if isinstance(index, slice) else index.size
 
 
