@@ -182,6 +182,14 @@ def test_tiny_and_huge_arguments_of_triples() -> None:
     off(TRIPLES.cos_sin(x)[1], lambda x: x.sin(), tiny)
 
 
+def test_an_exponential_beyond_all_results_is_larger_than_any_of_them() -> None:
+    (x,) = symbols(TRIPLES, 1)
+    k = TRIPLES.expm1(x * TRIPLES.pi)
+    first, exponent = worked_out([k.parts[0], k.exponent], x0=np.array([2e3, 1e17 / 3, 1e300 / 3]))
+    assert (first >= 0.5).all()
+    assert (exponent > 7000).all()
+
+
 @pytest.mark.parametrize("level", EXPANSIONS)
 def test_bounds_of_angles_hold(level: str) -> None:
     ar = EXPANSIONS[level]
