@@ -104,7 +104,7 @@ def made(
         values = tuple(exact(measured + random.gauss(0, u), u * given) for _ in range(repeats))
         m1, m2 = (exact(mass, u_mass) for mass in masses)
         runs.append(Run((number,), {}, m1, m2, exact(DROP) if kind == "time" else None, values))
-    return Runs(kind, runs, True, [], [])
+    return Runs(kind, runs, True, False, [], [])
 
 
 @pytest.mark.parametrize("kind", ["a", "time"])
@@ -727,3 +727,30 @@ def test_the_line_is_plotted(atwood: Atwood) -> None:
     assert "slope c = 0.042 ± 0.011 kg.\nintercept f = 0.01529 ± 0.00047 N.\n" in out
     drawn = out[out.index("(N)") : out.index("slope")]
     assert all(digit in drawn for digit in "12345")
+
+
+def test_of_many_odd_runs_five_have_a_sentence(fit: Any) -> None:
+    notes = found(
+        fit(SIMMONS + 8 * "0.1,0.1,0\n" + "".join(f"0.1,0.10{i},0\n" for i in range(1, 9)), "--json")
+    )["notes"]
+    assert sum("could not be used" in note for note in notes) == 6
+    assert "4 more could not be used: rows 21, 22, 23, 24." in notes
+
+
+def test_many_runs_are_not_compared_with_each_other() -> None:
+    """20,000 rows took five minutes: whether any run has a sign was asked for each of them."""
+    random = Random(20_000)
+    runs = [made("a", random, 0.002, False) for _ in range(600)]
+    many = runs[0]._replace(runs=[run._replace(rows=(i,)) for i, one in enumerate(runs) for run in one.runs])
+    best = fitted(many, known_of(NOTHING, many), [])
+    assert len(best.lines) == 4200
+    assert best.values["rim_mass"] == pytest.approx(C, abs=4 * (best.uncertainty("rim_mass") or 0))
+
+
+def test_a_label_may_look_like_an_input(fit: Any) -> None:
+    table = (
+        SIMMONS.replace("m1,m2,a", "m1,m2,a,M").replace("\n0", ",heavy\n0").replace("M,heavy", "M").rstrip()
+        + ",light\n"
+    )
+    result = found(fit(table, "--label", "M", "--json"))
+    assert [run["M"] for run in result["runs"]] == ["heavy"] * 7 + ["light"]

@@ -76,14 +76,14 @@ def _alternatives(metavar: str) -> Mapping[str, str]:
     return dict.fromkeys(metavar.split("|"), "")
 
 
-def scene_option(name: str, group: str = "Scene") -> Any:
-    """The option of a parameter of a scene or of the motion."""
+def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> Any:
+    """The option of a parameter of a scene or of the motion, with a remark of a command's own."""
     parameter = parameter_of(name)
     flags = [flag(name), *ALIASES.get(name, [])]
     unit = f" ({parameter.unit})" if parameter.unit not in ("", "°") else ""
     names = f", or {', '.join(parameter.names)}" if parameter.names else ""
     meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
-    text = f"{meaning}{unit}{names}{REMARKS.get(name, '')}."
+    text = f"{meaning}{unit}{names}{REMARKS.get(name, '') if remark is None else remark}."
     metavar = (parameter.dimension or "number").split()[-1].upper()
     words = {**parameter.names, **({"inf": "a locked pulley"} if parameter.inf else {})}
     return option(group, *flags, help=text, metavar=metavar, words=(lambda: words) if words else None)

@@ -5,14 +5,15 @@ Uncertainties are those given, or where none is, the scatter's; what is known an
 for all runs together. Nothing is left out of the runs silently.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 from math import inf, isfinite, sqrt
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..batch.quoted import Unreadable
+from ..model import physics
 from ..model.case import Case
 from ..model.motion import moved
 from ..model.scene import UNMEASURED, Input, Scene, SceneError
@@ -24,7 +25,7 @@ FOUND = ("rim_mass", "axle", "gravity")
 """What may be fitted."""
 UNITS = {"rim_mass": "kg", "axle": "N", "gravity": "m/s²"}
 WORDS = {"rim_mass": "the pulley's inertia", "axle": "axle friction", "gravity": "gravity"}
-CLEAR = 2
+CLEAR = 3
 """Standard uncertainties beyond which a run is faster than a massless pulley lets it be."""
 SAME = 0.01
 """The spread of m1 + m2, as a share of it, below which it is as good as constant."""
@@ -139,41 +140,46 @@ class Fit(NamedTuple):
             )
         return lines
 
-    def without(self, runs: Sequence[Run]) -> "Fit | None":
-        """The same done without some runs; None where the others do not tell it."""
-        left = [run for run in self.used if not any(run is one for one in runs)]
+    def without(self, indices: Collection[int]) -> "Fit | None":
+        """The same done without some of the runs used; None where the others do not tell it."""
+        left = [run for i, run in enumerate(self.used) if i not in indices]
         try:
             return _required(self.runs, left, self.known, self.estimate.found if self.asked else ())
         except (Alike, TooFew):
             return None
 
-    def spread_without(self, run: Run, i: int) -> float:
-        """The standard uncertainty of a run's measurement, by the scatter of the others; 0 without any."""
-        sigma = float(self.estimate.sigma[i])
-        if self.spread_known and self.scale == 1:
-            return sigma
-        others = self.without([run])
-        return sigma * others.scale if others is not None and isfinite(others.scale) else 0.0
+    @property
+    def outliers(self) -> dict[int, float]:
+        """Runs further from what the others say than one of so many is in 5 % of all cases, and how far."""
+        if self.dof < (2 if self.scatters else 1):
+            return {}
+        away = (self.data.measured - self.estimate.expected) / self.estimate.sigma
+        sizes = away / np.sqrt(np.maximum(1 - self.estimate.leverage, 1e-9))
+        dof: float = inf
+        if self.scatters:  # by the scatter of the others alone
+            dof = self.dof - 1
+            with np.errstate(divide="ignore", invalid="ignore"):
+                sizes = sizes / np.sqrt(np.maximum(self.estimate.chi2 - sizes**2, 0.0) / dof)
+        chance = (1 - SURE) / len(self.used)
+        return {i: size for i, size in enumerate(sizes.tolist()) if student_beyond(size, dof) < chance}
 
     @property
-    def outliers(self) -> list[tuple[Run, float]]:
-        """Runs further from what the others say than one of so many is in 5 % of all cases, and how far."""
-        if not self.dof:
-            return []
-        away = (self.data.measured - self.estimate.expected) / self.estimate.sigma
-        found = []
-        for run, z, leverage in zip(self.used, away, self.estimate.leverage, strict=True):
-            size = float(z) / sqrt(max(1 - float(leverage), 1e-9))
-            beyond = student_beyond(size, inf)
-            if self.scatters:  # as if the run had no part in the scatter
-                left = self.dof - size**2 * self.dof / self.estimate.chi2 if self.estimate.chi2 else 0.0
-                if self.dof < 2 or not self.estimate.chi2:
-                    continue
-                size *= sqrt((self.dof - 1) * self.dof / self.estimate.chi2 / left) if left > 0 else inf
-                beyond = student_beyond(size, self.dof - 1)
-            if beyond * len(self.used) < 1 - SURE:
-                found.append((run, size))
-        return found
+    def too_fast(self) -> dict[int, float]:
+        """Runs that are clearly faster than a massless pulley without friction allows, and that limit."""
+        data, g = self.data, self.estimate.values["gravity"]
+        drive = physics.drive_beside_axle(data.l, data.h, np.float64(0))
+        limits: Any = physics.acceleration(drive, physics.load(data.l, data.h, np.float64(0)), np.float64(g))
+        beyond = data.measured - limits
+        if data.kind == "time" and data.drop is not None:
+            limits = physics.fall_time(data.drop, limits, np.sqrt)
+            beyond = limits - data.measured
+        some = np.flatnonzero(beyond > 0).tolist()
+        if not some:
+            return {}
+        others = self.without(some) if self.scatters else self
+        scale = others.scale if others is not None and isfinite(others.scale) else 0.0
+        clear = CLEAR * scale * self.estimate.sigma
+        return {i: float(limits[i]) for i in some if beyond[i] > clear[i]}
 
     @property
     def alternative(self) -> "Fit | None":
@@ -308,10 +314,9 @@ def as_data(runs: Runs, used: Sequence[Run], known: Known) -> tuple[Data, bool]:
     values = [np.array([abs(float(one.value)) for one in run.measured]) for run in used]
     times = np.array([float(len(some)) for some in values])
     given = [np.array([float(one.uncertainty) for one in run.measured]) for run in used]
-    with_u = [run for run, u in zip(used, given, strict=True) if u.all()]
     if any(u.any() for u in given):
-        for run in used:
-            if not any(run is one for one in with_u):
+        for run, u in zip(used, given, strict=True):
+            if not u.all():
                 raise Unreadable(
                     f"{run.name} has no uncertainty of its {runs.kind}, as others have; give all"
                 )
@@ -350,14 +355,9 @@ def unusable(runs: Runs, run: Run, known: Known, find: Sequence[str]) -> str:
     mean = sum(one.value for one in run.measured)
     if mean == 0:
         return "nothing moved"
-    if runs.kind == "a" and signed(runs) and (mean > 0) != (run.m2.value > run.m1.value):
+    if runs.signed and (mean > 0) != (run.m2.value > run.m1.value):
         return "the lighter side falls"
     drive = abs(float(run.m2.value - run.m1.value)) * known.values["gravity"]
     if "gravity" not in find and drive <= known.values.get("axle", 0):
         return "an axle with the friction given holds its masses"
     return ""
-
-
-def signed(runs: Runs) -> bool:
-    """Whether accelerations have a sign, as one of them is negative: positive when m2 descends."""
-    return runs.kind == "a" and any(one.value < 0 for run in runs.runs for one in run.measured)

@@ -56,11 +56,16 @@ class Run(NamedTuple):
 
 
 class Runs(NamedTuple):
-    """The runs of a table, and how it was read; ``one_drop`` if they share their height of fall."""
+    """The runs of a table, and how it was read.
+
+    ``one_drop`` says that they share their height of fall, ``signed`` that accelerations have signs, as one
+    of them is negative: they are positive when m2 descends.
+    """
 
     kind: Kind
     runs: Sequence[Run]
     one_drop: bool
+    signed: bool
     labels: Sequence[str]
     remarks: Sequence[str]
 
@@ -121,7 +126,7 @@ def read_runs(cells: Cells, usual: str, labels: Collection[str] = (), drop: Inpu
         remarks.append(
             "accelerations have no sign here: none is negative, though m1 is the heavier at times."
         )
-    return Runs(kind, list(runs.values()), one_drop, others, remarks)
+    return Runs(kind, list(runs.values()), one_drop, negative, others, remarks)
 
 
 def _headings(columns: Sequence[str], labels: Collection[str]) -> list[tuple[str, Heading]]:

@@ -11,7 +11,7 @@ from ..arithmetic.rounding import text, to_digits, to_place, with_uncertainty
 from ..model import physics
 from ..model.axle import Axle
 from ..model.case import Case
-from .fitting import CLEAR, FOUND, SAME, UNITS, WORDS, Fit, to_vary, unusable
+from .fitting import FOUND, SAME, UNITS, WORDS, Fit, to_vary, unusable
 from .runs import Run
 from .student import SURE, fisher_beyond
 
@@ -165,31 +165,43 @@ def _told_apart(fit: Fit) -> Iterator[str]:
             )
 
 
+MOST_NAMED = 5
+"""Runs of which each has a sentence; of more, the numbers."""
+
+
 def _odd_runs(fit: Fit) -> Iterator[str]:
-    for run in fit.runs.runs:
-        if why := unusable(fit.runs, run, fit.known, fit.estimate.found):
-            yield f"{_named(run)} could not be used: {why}."
-    named: list[Run] = []
-    for i, run in enumerate(fit.used):
-        if why := _impossible(fit, i):
-            named.append(run)
-            yield f"{_named(run)} cannot be: {why}."
-    for run, size in fit.outliers:
-        if not any(run is one for one in named):
-            named.append(run)
-            away = few(abs(size)) if isfinite(size) else "far more than any number of"
-            yield f"{_named(run)} stands out: {away} standard uncertainties from what the others say."
-    if named:
-        names = _joined([run.name for run in named])
-        without = fit.without(named)
+    found, known = fit.estimate.found, fit.known
+    unused = [(run, why) for run in fit.runs.runs if (why := unusable(fit.runs, run, known, found))]
+    yield from (f"{_named(run)} could not be used: {why}." for run, why in unused[:MOST_NAMED])
+    yield from _more([run for run, _ in unused], "could not be used")
+    too_fast = fit.too_fast
+    impossible = {i: why for i in range(len(fit.used)) if (why := _impossible(fit, i, too_fast.get(i)))}
+    for i in list(impossible)[:MOST_NAMED]:
+        yield f"{_named(fit.used[i])} cannot be: {impossible[i]}."
+    yield from _more([fit.used[i] for i in impossible], "cannot be either")
+    outliers = {i: size for i, size in fit.outliers.items() if i not in impossible}
+    for i in list(outliers)[:MOST_NAMED]:
+        far = few(abs(outliers[i])) if isfinite(outliers[i]) else "more than any number of"
+        yield f"{_named(fit.used[i])} stands out: {far} standard uncertainties from what the others say."
+    yield from _more([fit.used[i] for i in outliers], "stand out, too")
+    if odd := [*impossible, *outliers]:
+        names = _joined([fit.used[i].name for i in odd]) if len(odd) <= MOST_NAMED else "them all"
+        without = fit.without(odd)
         if without is None:
             yield f"Without {names} too few runs are left to fit."
-        else:
-            values = [
-                f"{name} = {shown(value, without.uncertainty(name))} {UNITS[name]}"
-                for name, value in without.values.items()
-            ]
-            yield f"Without {names}: {', '.join(values) or 'nothing is fitted'}. None was left out above."
+            return
+        values = [
+            f"{name} = {shown(value, without.uncertainty(name))} {UNITS[name]}"
+            for name, value in without.values.items()
+        ]
+        yield f"Without {names}: {', '.join(values) or 'nothing is fitted'}. None was left out above."
+
+
+def _more(runs: Sequence[Run], what: str) -> Iterator[str]:
+    """The sentence on those that have none of their own."""
+    if more := runs[MOST_NAMED:]:
+        numbers = ", ".join(str(run.rows[0]) for run in more[: 4 * MOST_NAMED])
+        yield f"{len(more)} more {what}: rows {numbers}{', ...' * (len(more) > 4 * MOST_NAMED)}."
 
 
 def _named(run: Run) -> str:
@@ -200,22 +212,15 @@ def _joined(names: Sequence[str]) -> str:
     return names[0] if not names[1:] else f"{', '.join(names[:-1])} and {names[-1]}"
 
 
-def _impossible(fit: Fit, i: int) -> str:
+def _impossible(fit: Fit, i: int, limit: float | None) -> str:
     """Why a run that was used cannot have been as it is said; empty if it can."""
     data, values, run = fit.data, fit.estimate.values, fit.used[i]
     l, h, g = float(data.l[i]), float(data.h[i]), values["gravity"]
-    most = physics.acceleration(h - l, physics.load(l, h, 0.0), g)
-    measured = float(data.measured[i])
-    limit, beyond = most, measured - most
-    if data.kind == "time" and data.drop is not None:
-        limit = physics.fall_time(float(data.drop[i]), most, lambda x: x**0.5)
-        beyond = limit - measured
-    if beyond > 0 and beyond > CLEAR * fit.spread_without(run, i):
-        unit = {"a": "m/s^2", "time": "s"}[data.kind]
-        most_words = {"a": "at most", "time": "at least"}[data.kind]
+    if limit is not None:
+        unit, bound = {"a": ("m/s^2", "most"), "time": ("s", "least")}[data.kind]
         return (
-            f"it is faster than a massless pulley without friction allows, whose {_quantity(fit)} is"
-            f" {most_words} {few(limit, 4)} {unit}"
+            "it is faster than a massless pulley without friction allows, whose"
+            f" {_quantity(fit)} is at {bound} {few(limit, 4)} {unit}"
         )
     b = physics.axle_mass(values["axle"], g)
     if h - l <= b:
