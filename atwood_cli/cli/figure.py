@@ -14,6 +14,7 @@ from io import BytesIO
 from itertools import pairwise
 from math import cos, degrees, hypot, nan, radians, sin
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.rounding import to_double
@@ -38,6 +39,7 @@ LONGEST = 0.75  # radii: the arrow of the greatest force
 DRAWABLE = (1e-100, 1e100)
 WRAPS = (1e-100, 1e9)  # degrees: of more, doubles no longer say where the end of the arc is
 CURVE_POINTS, ARROWS, TITLE_DIGITS = 361, 13, 6
+TITLE_WIDTH = 130  # characters: more do not fit the page
 MARKED = 60  # points: of more, only the line is drawn
 STYLE: Any = {
     "svg.hashsalt": "atwood",  # else the SVG's ids are random
@@ -137,12 +139,13 @@ def save_fit(fit: "Fit", head: str, path: str, force: bool) -> None:
             line.annotate(
                 number, (x, y), xytext=(6, -12), textcoords="offset points", size=9, color="#777777"
             )
-        said = [
-            f"{label} = {shown(fit.estimate.values[name], fit.uncertainty(name))} {unit}"
-            if name in fit.values
-            else f"{label} = {fit.estimate.values[name]:.4g} {unit}"
-            for name, label, unit in (("rim_mass", "slope $c$", "kg"), ("axle", "intercept $f$", "N"))
-        ]
+        said = []
+        for name, label, unit in (("rim_mass", "slope $c$", "kg"), ("axle", "intercept $f$", "N")):
+            spread = fit.uncertainty(name) if name in fit.values else None
+            why = (
+                "" if name in fit.values else ", given" if name in fit.known.values else ", as none is needed"
+            )
+            said.append(f"{label} = {shown(fit.estimate.values[name], spread)} {unit}{why}")
         line.text(0.03, 0.95, "\n".join(said), transform=line.transAxes, va="top", color=NORMAL)
         line.set_ylabel("$T_h - T_l = (m_h - m_l)\\,g - a\\,(m_h + m_l)$  (N)")
         rest.set_ylabel("residual (N)")
@@ -152,7 +155,7 @@ def save_fit(fit: "Fit", head: str, path: str, force: bool) -> None:
         line.set_ylim(low, high + 0.2 * (high - low))
         for axes in (line, rest):
             axes.spines[["top", "right"]].set_visible(False)
-        figure.suptitle(f"{head}\n{verdict(fit)}", fontsize=10)
+        figure.suptitle("\n".join([head, *wrap(verdict(fit), TITLE_WIDTH)]), fontsize=10)
 
 
 FAMILY_COLOURS = (NORMAL, FRICTION, WEIGHT, "#8a5a9e", STRING)

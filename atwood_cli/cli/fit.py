@@ -300,10 +300,10 @@ class _Forms:
     def _range(self, one: "Result") -> str:
         if not one.uncertainty:
             return ""
-        from ..fit.sentences import cut
+        from ..fit.sentences import interval
 
         half = self.fit.times * one.uncertainty
-        return " to ".join(cut(end, one.uncertainty) for end in (one.value - half, one.value + half))
+        return interval(one.value - half, one.value + half, one.uncertainty)
 
     def _runs(self, page: "Page") -> None:
         """Run by run: what was measured, what is expected, and what is left."""

@@ -37,6 +37,16 @@ def cut(value: float, uncertainty: float | None) -> str:
     return f"{to_place(to_digits(2)(Fraction(uncertainty)).adjusted() - 1)(exact):f}"
 
 
+def interval(low: float, high: float, uncertainty: float) -> str:
+    """The ends of an interval, cut at the second digit of an uncertainty."""
+    place = to_digits(2)(Fraction(uncertainty)).adjusted() - 1
+    ends = [to_place(place)(Fraction(end)) for end in (low, high)]
+    power = max((end.adjusted() for end in ends if end), default=0)
+    if -4 <= power < 16:
+        return "{:f} to {:f}".format(*ends)
+    return "({:f} to {:f})e{}".format(*(end.scaleb(-power) for end in ends), power)
+
+
 def few(value: float, digits: int = 2) -> str:
     """A value to a few digits, as people write it."""
     return f"{to_digits(digits)(Fraction(value)):f}"
@@ -44,29 +54,27 @@ def few(value: float, digits: int = 2) -> str:
 
 def verdict(fit: Fit) -> str:
     """What the runs require, in a sentence or two."""
-    kind = {"a": "acceleration", "time": "time"}[fit.runs.kind]
-    count = f"{_counted(len(fit.used), 'run')}, {_counted(int(fit.data.times.sum()), kind)}."
-    found = sorted(fit.estimate.found, key=lambda name: -_away(fit.values[name], fit.uncertainty(name)))
-    figures = [_figure(fit.values[name], fit.uncertainty(name)) for name in found]
+    count = f"{_counted(len(fit.used), 'run')}, {_counted(int(fit.data.times.sum()), _quantity(fit))}."
+    names = sorted(fit.estimate.found, key=lambda name: -_away(fit.values[name], fit.uncertainty(name)))
+    away = [_figure(fit.values[name], fit.uncertainty(name)) for name in names]
+    away += [_figure(one.value, one.uncertainty) for one in fit.dropped]
+    if away:
+        away[0] += " standard uncertainties from 0" * away[0][-1].isdigit()
+    words = [WORDS[name] for name in (*names, *(one.name for one in fit.dropped))]
+    about = [f"{word} ({figure})" for word, figure in zip(words, away, strict=True)]
+    found, left = about[: len(names)], about[len(names) :]
     if fit.asked:
-        of = ", ".join(f"{WORDS[name]} ({figure})" for name, figure in zip(found, figures, strict=True))
-        return f"{count} Fitted, as asked: {of}."
-    parts = [count]
-    if found:
-        first, *more = (f"({figure})" for figure in figures)
-        parts.append(_sentence(f"{WORDS[found[0]]} is needed {first}"))
-        if more:
-            parts[-1] = f"{parts[-1][:-1]}; so is {WORDS[found[1]]} {more[0]}."
-    left = [f"{WORDS[one.name]} ({_figure(one.value, one.uncertainty)})" for one in fit.dropped]
-    if found and left:
-        parts.append(_sentence(f"{left[0].replace(' (', ' is not (', 1)}, and left out"))
-    elif left:
-        parts.append(
-            _sentence(f"neither {' nor '.join(left)} is needed" if left[1:] else f"{left[0]} is not needed")
-        )
-    if not found and not left:
-        parts.append("Nothing is left to find: the pulley and its axle are known.")
-    return " ".join(parts)
+        return f"{count} Fitted, as asked: {', '.join(found)}."
+    if not about:
+        return f"{count} Nothing is left to find: the pulley and its axle are known."
+    if not found:
+        neither = f"neither {left[0]} nor {left[1]} is needed" if left[1:] else f"{left[0]} is not needed"
+        return f"{count} {_sentence(neither)}"
+    parts = [_sentence(found[0].replace(" (", " is needed (", 1))]
+    if found[1:]:
+        parts = [f"{parts[0][:-1]}; so is {found[1]}."]
+    parts += [_sentence(f"{one.replace(' (', ' is not (', 1)}, and left out") for one in left]
+    return " ".join([count, *parts])
 
 
 def _away(value: float, uncertainty: float | None) -> float:
@@ -74,9 +82,10 @@ def _away(value: float, uncertainty: float | None) -> float:
 
 
 def _figure(value: float, uncertainty: float | None) -> str:
+    """How many standard uncertainties a value is from 0."""
     if not uncertainty or not isfinite(uncertainty):
-        return "how well, nothing tells"
-    return f"{few(_away(value, uncertainty))} standard uncertainties from 0"
+        return "nothing tells how well"
+    return few(_away(value, uncertainty))
 
 
 def _counted(count: int, thing: str) -> str:
