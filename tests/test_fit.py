@@ -754,3 +754,24 @@ def test_a_label_may_look_like_an_input(fit: Any) -> None:
     )
     result = found(fit(table, "--label", "M", "--json"))
     assert [run["M"] for run in result["runs"]] == ["heavy"] * 7 + ["light"]
+
+
+def test_runs_without_any_scatter_require_what_they_show(fit: Any) -> None:
+    """What is known without any uncertainty was left out, as if it were known with all of it."""
+    rows = [
+        (m1, m2, solve(m1=m1, m2=m2, M="0", g="10").acceleration)
+        for m1, m2 in (("1", "3"), ("2", "3"), ("1", "4"))
+    ]
+    table = "m1,m2,a\n" + "".join(f"{m1},{m2},{a}\n" for m1, m2, a in rows)
+    result = found(fit(table, "--g", "10", "--json"))
+    assert max(abs(result[name] or 0) for name in ("rim_mass", "axle")) < 1e-12
+    exact = "m1,m2,a\n1,2,2.5\n1,2,2.5\n"  # 10 (2 - 1)/(1 + 2 + 1)
+    result = found(fit(exact, "--g", "10", "--axle", "0", "--json"))
+    assert result["rim_mass"] == 1
+    assert "is needed (more than any number of standard uncertainties from 0)" in result["notes"][0]
+
+
+def test_repeats_of_either_sign_are_averaged_with_their_signs(fit: Any) -> None:
+    result = found(fit("m1,m2,a 1,a 2\n1,1.01,0.1,-0.02\n1,2,3,3.1\n1,3,4.7,4.8\n", "--find", "c", "--json"))
+    assert [run["a"] for run in result["runs"]] == [0.04, 3.05, 4.75]
+    assert result["chi2"] is not None

@@ -6,9 +6,9 @@ from fractions import Fraction
 from ..arithmetic.rounding import text, to_digits
 from ..derivation.equations import Law, Part
 from ..derivation.steps import Explanation, Step
-from .fitting import UNITS, WORDS, Fit
+from .fitting import UNITS, WORDS, Fit, away
 from .line import points
-from .sentences import few, notes, shown, verdict
+from .sentences import far, few, notes, shown, verdict
 
 DIGITS = 6
 
@@ -73,15 +73,14 @@ def _needed(fit: Fit) -> Iterator[Part]:
     for one in fit.dropped:
         yield (
             f"- {WORDS[one.name]}: {shown(one.value, one.uncertainty)} {UNITS[one.name]},"
-            f" {few(abs(one.value) / one.uncertainty)} standard uncertainties from 0: left out"
+            f" {far(away(one.value, one.uncertainty))} standard uncertainties from 0: left out"
         )
     for name, value in fit.values.items():
-        u = fit.uncertainty(name)
-        if u:
-            yield (
-                f"- {WORDS[name]}: {shown(value, u)} {UNITS[name]}, {few(abs(value) / u)} standard"
-                f" uncertainties from 0; chance stays within {few(fit.times, 3)} in 95 % of all cases: needed"
-            )
+        yield (
+            f"- {WORDS[name]}: {shown(value, fit.uncertainty(name))} {UNITS[name]}, {far(fit.away(name))}"
+            f" standard uncertainties from 0; chance stays within {few(fit.times, 3)} in 95 % of all cases:"
+            " needed"
+        )
 
 
 def _number(value: float) -> str:

@@ -7,7 +7,7 @@ for all runs together. Nothing is left out of the runs silently.
 
 from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
-from math import inf, isfinite, sqrt
+from math import inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -94,10 +94,8 @@ class Fit(NamedTuple):
     def values(self) -> dict[str, float]:
         return {name: self.estimate.values[name] for name in self.estimate.found}
 
-    def uncertainty(self, name: str) -> float | None:
-        """The standard uncertainty of what was found, what is known included; None if nothing tells it."""
-        if not isfinite(self.scale):
-            return None
+    def uncertainty(self, name: str) -> float:
+        """The standard uncertainty of what was found, with that of what is known."""
         i = self.estimate.found.index(name)
         variance = (self.scale * self.estimate.uncertainty(name)) ** 2
         for change in self.known.changes:
@@ -134,10 +132,9 @@ class Fit(NamedTuple):
                 continue
             measured, ideal = float(self.data.measured[i]), float(self.estimate.expected[i])
             sign = -1 if mean < 0 else 1
-            u = float(self.estimate.sigma[i]) * self.scale if isfinite(self.scale) else None
-            lines.append(
-                Line(run, sign * measured, sign * ideal, u, (measured - ideal) * sign / u if u else None)
-            )
+            u = float(self.estimate.sigma[i]) * self.scale
+            residual = (measured - ideal) * sign / u if u else None
+            lines.append(Line(run, sign * measured, sign * ideal, u, residual))
         return lines
 
     def without(self, indices: Collection[int]) -> "Fit | None":
@@ -177,8 +174,7 @@ class Fit(NamedTuple):
         if not some:
             return {}
         others = self.without(some) if self.scatters else self
-        scale = others.scale if others is not None and isfinite(others.scale) else 0.0
-        clear = CLEAR * scale * self.estimate.sigma
+        clear = CLEAR * self.estimate.sigma * (0.0 if others is None else others.scale)
         return {i: float(limits[i]) for i in some if beyond[i] > clear[i]}
 
     @property
@@ -191,12 +187,17 @@ class Fit(NamedTuple):
             _fit(self.runs, self.used, self.known, self.data, self.spread_known, names, [])
             for names in ([found[0], self.dropped[0].name], [self.dropped[0].name])
         )
-        needed = [_is_needed(both, name) for name in both.estimate.found]
-        return other if not any(needed) and _is_needed(other, self.dropped[0].name) else None
+        needed = [both.away(name) > both.times for name in both.estimate.found]
+        return other if not any(needed) and other.away(self.dropped[0].name) > other.times else None
+
+    def away(self, name: str) -> float:
+        """How many standard uncertainties what was found is from 0."""
+        return away(self.values[name], self.uncertainty(name))
 
 
-def _is_needed(fit: Fit, name: str) -> bool:
-    return abs(fit.values[name]) > fit.times * (fit.uncertainty(name) or inf)
+def away(value: float, uncertainty: float) -> float:
+    """How many standard uncertainties a value is from 0."""
+    return abs(value) / uncertainty if uncertainty else inf if value else 0.0
 
 
 class TooFew(ArithmeticError):
@@ -245,18 +246,17 @@ def _required(runs: Runs, used: Sequence[Run], known: Known, find: Sequence[str]
     """The fit of those runs: of what is to be found, or of both less what is not significant."""
     if not used:
         raise TooFew
-    data, spread_known = as_data(runs, used, known)
+    data, spread_known = as_data(runs, used)
     if find:
         return _fit(runs, used, known, data, spread_known, list(find), [], asked=True)
     found: list[str] = [x for x in FOUND[:2] if x not in known.values]
     dropped: list[Dropped] = []
     while True:
         fit = _fit(runs, used, known, data, spread_known, found, dropped)
-        away = {name: abs(value) / (fit.uncertainty(name) or inf) for name, value in fit.values.items()}
-        if not found or min(away.values()) > fit.times or not isfinite(fit.scale):
+        least = min(found, key=fit.away, default=None)
+        if least is None or fit.away(least) > fit.times:
             return fit
-        least = min(away, key=lambda name: away[name])
-        dropped = [*dropped, Dropped(least, fit.values[least], fit.uncertainty(least) or inf)]
+        dropped = [*dropped, Dropped(least, fit.values[least], fit.uncertainty(least))]
         found = [name for name in found if name != least]
 
 
@@ -280,9 +280,8 @@ def _fit(
         raise Alike(
             f"the runs do not tell {' from '.join(WORDS[x] for x in found)}: {to_vary(used)}"
         ) from None
-    scale = sqrt(best.chi2 / dof) if dof else inf
-    if spread_known and (not dof or chi2_beyond(best.chi2, dof) > 1 - SURE):
-        scale = 1.0
+    good = spread_known and (not dof or chi2_beyond(best.chi2, dof) > 1 - SURE)
+    scale = 1.0 if good else sqrt(best.chi2 / dof)
     return Fit(runs, used, known, data, best, dropped, spread_known, scale, dof, asked)
 
 
@@ -299,7 +298,7 @@ def _mean(values: Sequence[Fraction]) -> float:
     return float(sum(values, Fraction(0)) / len(values))
 
 
-def as_data(runs: Runs, used: Sequence[Run], known: Known) -> tuple[Data, bool]:
+def as_data(runs: Runs, used: Sequence[Run]) -> tuple[Data, bool]:
     """The runs as columns, and whether uncertainties were given. Raises Unreadable."""
     masses = [sorted((run.m1, run.m2), key=lambda mass: Fraction(mass.value)) for run in used]
     inputs = {"l": [light for light, _ in masses], "h": [heavy for _, heavy in masses]}
@@ -311,7 +310,12 @@ def as_data(runs: Runs, used: Sequence[Run], known: Known) -> tuple[Data, bool]:
         for name, some in inputs.items()
         if any(one.uncertainty for one in some) and not (name == "drop" and runs.one_drop)
     }
-    values = [np.array([abs(float(one.value)) for one in run.measured]) for run in used]
+    means = [_mean([one.value for one in run.measured]) for run in used]
+    signs = [-1 if mean < 0 else 1 for mean in means]
+    values = [
+        np.array([sign * float(one.value) for one in run.measured])
+        for run, sign in zip(used, signs, strict=True)
+    ]
     times = np.array([float(len(some)) for some in values])
     given = [np.array([float(one.uncertainty) for one in run.measured]) for run in used]
     if any(u.any() for u in given):
@@ -325,7 +329,7 @@ def as_data(runs: Runs, used: Sequence[Run], known: Known) -> tuple[Data, bool]:
         within = sum(sum_of_squares((v - m) / u) for v, m, u in zip(values, measured, given, strict=True))
         known_spread = True
     else:
-        measured = np.array([abs(_mean([one.value for one in run.measured])) for run in used])
+        measured = np.abs(means)
         squares = sum(sum_of_squares(v - m) for v, m in zip(values, measured, strict=True))
         repeats = float(times.sum()) - len(used)
         known_spread = bool(uncertain)

@@ -28,7 +28,7 @@ class Points(NamedTuple):
 def points(fit: Fit) -> Points:
     """The runs that were used, as points."""
     data, values = fit.data, fit.estimate.values
-    a, u = data.measured, fit.estimate.sigma * (fit.scale if np.isfinite(fit.scale) else 0.0)
+    a, u = data.measured, fit.estimate.sigma * fit.scale
     if data.kind == "time" and data.drop is not None:
         a = physics.acceleration_of_fall(data.drop, data.measured)
         u = u * 2 * a / data.measured

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 from fractions import Fraction
-from math import inf, isfinite, sqrt
+from math import sqrt
 from typing import Any, NamedTuple
 
 from ..arithmetic.rounding import as_typed, text, to_digits, to_place
@@ -14,10 +14,10 @@ Inputs = Mapping[str, Input]
 
 
 class Result(NamedTuple):
-    """A value, and its standard uncertainty if anything tells it."""
+    """A value and its standard uncertainty."""
 
     value: float
-    uncertainty: float | None
+    uncertainty: float
 
 
 def results(fit: Fit, inputs: Inputs) -> dict[str, Result]:
@@ -34,15 +34,10 @@ def results(fit: Fit, inputs: Inputs) -> dict[str, Result]:
     return found
 
 
-def _of_product(value: float, one: Result, other: Input, power: int) -> float | None:
+def _of_product(value: float, one: Result, other: Input, power: int) -> float:
     """The uncertainty of a product, or quotient, of a result and a power of an input."""
-    if one.uncertainty is None:
-        return None
-    shares = (
-        one.uncertainty / one.value if one.value else inf,
-        power * float(other.uncertainty / other.value),
-    )
-    return abs(value) * sqrt(sum(share**2 for share in shares)) if isfinite(shares[0]) else None
+    shares = one.uncertainty / one.value, power * float(other.uncertainty / other.value)
+    return abs(value) * sqrt(sum(share**2 for share in shares))
 
 
 def record(fit: Fit, inputs: Inputs, notes: list[str]) -> dict[str, Any]:

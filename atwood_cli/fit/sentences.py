@@ -11,7 +11,7 @@ from ..arithmetic.rounding import text, to_digits, to_place, with_uncertainty
 from ..model import physics
 from ..model.axle import Axle
 from ..model.case import Case
-from .fitting import FOUND, SAME, UNITS, WORDS, Fit, to_vary, unusable
+from .fitting import FOUND, SAME, UNITS, WORDS, Fit, away, to_vary, unusable
 from .runs import Run
 from .student import SURE, fisher_beyond
 
@@ -22,7 +22,7 @@ MUCH = 0.95
 def shown(value: float, uncertainty: float | None) -> str:
     """A value cut at the second digit of its uncertainty, with that; to six digits if it has none."""
     exact = Fraction(value)
-    if not uncertainty or not isfinite(uncertainty):
+    if not uncertainty:
         return text(to_digits(6)(exact))
     return with_uncertainty(
         lambda place: to_place(place)(exact), Decimal(to_digits(2)(Fraction(uncertainty)))
@@ -32,7 +32,7 @@ def shown(value: float, uncertainty: float | None) -> str:
 def cut(value: float, uncertainty: float | None) -> str:
     """A value cut at the second digit of an uncertainty; to six digits if there is none."""
     exact = Fraction(value)
-    if not uncertainty or not isfinite(uncertainty):
+    if not uncertainty:
         return text(to_digits(6)(exact))
     return f"{to_place(to_digits(2)(Fraction(uncertainty)).adjusted() - 1)(exact):f}"
 
@@ -52,16 +52,21 @@ def few(value: float, digits: int = 2) -> str:
     return f"{to_digits(digits)(Fraction(value)):f}"
 
 
+def far(size: float) -> str:
+    """How many standard uncertainties something is away."""
+    return few(abs(size)) if isfinite(size) else "more than any number of"
+
+
 def verdict(fit: Fit) -> str:
     """What the runs require, in a sentence or two."""
     count = f"{_counted(len(fit.used), 'run')}, {_counted(int(fit.data.times.sum()), _quantity(fit))}."
-    names = sorted(fit.estimate.found, key=lambda name: -_away(fit.values[name], fit.uncertainty(name)))
-    away = [_figure(fit.values[name], fit.uncertainty(name)) for name in names]
-    away += [_figure(one.value, one.uncertainty) for one in fit.dropped]
-    if away:
-        away[0] += " standard uncertainties from 0" * away[0][-1].isdigit()
+    names = sorted(fit.estimate.found, key=fit.away, reverse=True)
+    figures = [fit.away(name) for name in names] + [away(one.value, one.uncertainty) for one in fit.dropped]
+    distances = list(map(far, figures))
     words = [WORDS[name] for name in (*names, *(one.name for one in fit.dropped))]
-    about = [f"{word} ({figure})" for word, figure in zip(words, away, strict=True)]
+    about = [f"{word} ({number})" for word, number in zip(words, distances, strict=True)]
+    if about:
+        about[0] = f"{about[0][:-1]} standard uncertainties from 0)"
     found, left = about[: len(names)], about[len(names) :]
     if fit.asked:
         return f"{count} Fitted, as asked: {', '.join(found)}."
@@ -75,17 +80,6 @@ def verdict(fit: Fit) -> str:
         parts = [f"{parts[0][:-1]}; so is {found[1]}."]
     parts += [_sentence(f"{one.replace(' (', ' is not (', 1)}, and left out") for one in left]
     return " ".join([count, *parts])
-
-
-def _away(value: float, uncertainty: float | None) -> float:
-    return abs(value) / uncertainty if uncertainty else 0.0
-
-
-def _figure(value: float, uncertainty: float | None) -> str:
-    """How many standard uncertainties a value is from 0."""
-    if not uncertainty or not isfinite(uncertainty):
-        return "nothing tells how well"
-    return few(_away(value, uncertainty))
 
 
 def _counted(count: int, thing: str) -> str:
@@ -107,7 +101,7 @@ def _odd_values(fit: Fit) -> Iterator[str]:
         yield f"Neither fitted nor given, and so taken to be 0: {', '.join(nothing)}."
     for name, value in fit.values.items():
         u = fit.uncertainty(name)
-        if value < 0 and u is not None and -value > fit.times * u:
+        if value < 0 and -value > fit.times * u:
             what = {
                 "rim_mass": "No pulley has a negative inertia: masses, heights or gravity are not what they"
                 " are said to be, or something drives the masses",
@@ -132,9 +126,7 @@ def one_sided(fit: Fit) -> bool:
 
 def _spread(fit: Fit) -> Iterator[str]:
     data, runs = fit.data, len(fit.used) - len(fit.estimate.found)
-    if not isfinite(fit.scale):
-        yield "The runs are no more than what is fitted: nothing tells how well it is known."
-    elif fit.spread_known and fit.scale != 1:
+    if fit.spread_known and fit.scale != 1:
         yield (
             f"The runs scatter {few(fit.scale)} times as much as their uncertainties say (chi-squared"
             f" {few(fit.estimate.chi2, 3)} for {fit.dof} degrees of freedom): those found are scaled by that."
@@ -190,8 +182,8 @@ def _odd_runs(fit: Fit) -> Iterator[str]:
     yield from _more([fit.used[i] for i in impossible], "cannot be either")
     outliers = {i: size for i, size in fit.outliers.items() if i not in impossible}
     for i in list(outliers)[:MOST_NAMED]:
-        far = few(abs(outliers[i])) if isfinite(outliers[i]) else "more than any number of"
-        yield f"{_named(fit.used[i])} stands out: {far} standard uncertainties from what the others say."
+        away_by = far(outliers[i])
+        yield f"{_named(fit.used[i])} stands out: {away_by} standard uncertainties from what the others say."
     yield from _more([fit.used[i] for i in outliers], "stand out, too")
     if odd := [*impossible, *outliers]:
         names = _joined([fit.used[i].name for i in odd]) if len(odd) <= MOST_NAMED else "them all"

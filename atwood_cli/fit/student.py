@@ -1,5 +1,6 @@
 """Shares of probability: Student's t, Fisher's F and χ², as far as a fit needs them."""
 
+from functools import cache
 from math import erfc, exp, inf, lgamma, log, log1p, pi, sqrt
 
 TINY = 1e-300
@@ -40,6 +41,7 @@ def student_beyond(t: float, dof: float) -> float:
     return beta_share(dof / 2, 0.5, dof / (dof + t * t))
 
 
+@cache
 def student_within(share: float, dof: float) -> float:
     """The t between whose two signs that share lies."""
     low, high = 0.0, 1.0
