@@ -504,7 +504,14 @@ def test_two_runs_with_uncertainties_are_enough(fit: Any) -> None:
             "columns a and time both tell the acceleration; keep one, or let one pass by --label",
         ),
         ("m1,m2,time\n1,2,1\n", (), "times need the height of fall: a column drop, or --drop"),
-        ("m1,m2,a,a\n1,2,1,1\n", (), "two columns are both 'a'; number what is repeated, as in 'time 1'"),
+        ("m1,m2,a,a\n1,2,1,1\n", (), "column 'a' is there 2 times"),
+        (
+            "m1,m2,a,a (m/s2)\n1,2,1,1\n",
+            (),
+            "two columns are both 'a'; number what is repeated, as in 'time 1'",
+        ),
+        ("m1,m2,a,Team,Team\n1,2,1,x,y\n", (), "column 'Team' is there 2 times"),
+        ("m1,m2,a,u\n1,2,1,1\n", (), "column 'u' would be there twice, as a result is named so; rename it"),
         ("m1,m2,a\n", (), "it has no runs"),
         ("m1,m2,a\n1,1,1\n", (), "no run can be used: in row 1, its masses are equal, and rest"),
         ("m1,m2,a\n1,x,1\n", (), "row 1: m2 'x' is not a number; write it like 2, 0.5 or 1.5e-3"),
@@ -686,6 +693,8 @@ def test_bare_values(atwood: Atwood) -> None:
     assert ran.out == "0.0422\n0.0153\n"
     assert ran.err == "atwood: rim_mass = 0.042 ± 0.011 kg\natwood: axle = 0.01529 ± 0.00047 N\n"
     assert json.loads(atwood(*RIT, "--only", "dof", "--json").out) == {"dof": 13}
+    run = json.loads(atwood(*RIT, "--digits", "2", "--json").out)["runs"][1]
+    assert (run["m1"], run["time"], run["expected"], run["residual"]) == (0.2005, 4.58, 4.5, 1.3)
     assert atwood(*RIT, "--only", "dof", "--csv").out == "dof\n13\n"
 
 

@@ -154,6 +154,9 @@ def completed(*words: str, shell: str = "bash") -> list[str]:
         ("batch in.csv --from ", list(FORMATS)),
         ("batch in.csv --to p", ["parquet"]),
         ("batch ", []),
+        ("fit ", []),
+        ("fit runs.csv --find ", ["rim_mass", "axle", "gravity"]),
+        ("fit runs.csv --only mo", ["moment_of_inertia"]),
         ("tradeoff --family ", list(FAMILIES)),
     ],
 )

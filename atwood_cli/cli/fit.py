@@ -208,9 +208,9 @@ class _Forms:
         self.values = {name: self._rounded(self.record.get(name)) for name in RESULTS}
 
     def _rounded(self, value: Any) -> Any:
-        """Numbers to the digits asked for, wherever they are."""
+        """Numbers to the digits asked for, wherever they are, but for those that were read."""
         if isinstance(value, dict):
-            return {name: self._rounded(one) for name, one in value.items()}
+            return {name: one if name in READ else self._rounded(one) for name, one in value.items()}
         if isinstance(value, list):
             return [self._rounded(one) for one in value]
         if isinstance(value, float) and self.digits is not None:
@@ -330,6 +330,7 @@ class _Forms:
         page.table([for_stream(name, sys.stdout) for name in columns], [rows])
 
 
+READ = ("m1", "m2", "drop", "a", "time")
 NOT_FITTED = "was not needed, or is known, and so not fitted"
 WITHOUT = {
     "chi2": "needs uncertainties, or repeats",

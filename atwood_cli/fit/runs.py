@@ -1,6 +1,7 @@
 """A table of runs: which columns are masses, heights and measurements, and the runs that its rows make."""
 
 import re
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 from typing import Literal, NamedTuple
@@ -12,6 +13,8 @@ from ..model.scene import Input, SceneError, parameter_of, read_input
 
 Kind = Literal["a", "time"]
 
+RESULTS = ("rows", "u", "expected", "residual")
+"""What else is said of a run, by names that no label may have."""
 TAKEN = ("m1", "m2", "drop", "a", "time")
 """What a run is made of; what else a scene has is the same in all of them."""
 REPEATED = re.compile(r"(a|time)[ _]?\d+")
@@ -132,7 +135,11 @@ def read_runs(cells: Cells, usual: str, labels: Collection[str] = (), drop: Inpu
 def _headings(columns: Sequence[str], labels: Collection[str]) -> list[tuple[str, Heading]]:
     """What is taken of the columns, in their order; a measurement may have several. Raises Unreadable."""
     headings: list[tuple[str, Heading]] = []
-    for column in columns:
+    for column, times in Counter(columns).items():
+        if times > 1:
+            raise Unreadable(f"column {column!r} is there {times} times")
+        if column in RESULTS:
+            raise Unreadable(f"column {column!r} would be there twice, as a result is named so; rename it")
         if column in labels:
             continue
         name, unit = divided(column)
