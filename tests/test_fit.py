@@ -482,6 +482,14 @@ def test_what_is_odd_is_said(fit: Any, table: str, more: tuple[str, ...], words:
     assert any(words in note for note in notes), notes
 
 
+def test_a_free_end_is_a_run_too(fit: Any) -> None:
+    """A cart on a table: c is its mass and the pulley's."""
+    table = "m1,m2,a\n" + "".join(f"0,{m},{9.80665 * m / (m + 0.5)}\n" for m in (0.05, 0.1, 0.2)) + "0,0,0\n"
+    result = found(fit(table, "--mu", "0.3", "--find", "c", "--json"))
+    assert result["rim_mass"] == pytest.approx(0.5, rel=1e-6)
+    assert "Row 4 could not be used: its masses are equal, and rest." in result["notes"]
+
+
 def test_good_runs_are_not_called_odd(fit: Any) -> None:
     for ran in (fit(SIMMONS, "--g", "9.81", "--mu", "0.3", "--json"), fit(POLAND, "--json")):
         assert not any("Row" in note for note in found(ran)["notes"])

@@ -206,11 +206,11 @@ class TooFew(ArithmeticError):
 
 def known_of(inputs: Mapping[str, Input], runs: Runs) -> Known:
     """What options say of all runs; the masses are none of it. Raises SceneError."""
-    some = runs.runs[0]
     for x, one in inputs.items():
         if one.given is not None and one.value != inf and not in_range(one):
             raise SceneError(x, one.given, BEYOND)
-    scene = Scene.of({**inputs, "m1": some.m1, "m2": some.m2})
+    masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # no matter which
+    scene = Scene.of({**inputs, **masses})
     case = Case(scene)
     values = {"gravity": float(scene.g)}
     if scene.M is not None or scene.I is not None:
@@ -222,8 +222,9 @@ def known_of(inputs: Mapping[str, Input], runs: Runs) -> Known:
     if scene.axle is not None:
         values["axle"] = float(case.axle_friction or 0)
     changes: list[Mapping[str, float]] = []
-    if runs.one_drop and some.drop is not None and some.drop.uncertainty:
-        changes.append({"drop": float(some.drop.uncertainty)})
+    drop = runs.runs[0].drop
+    if runs.one_drop and drop is not None and drop.uncertainty:
+        changes.append({"drop": float(drop.uncertainty)})
     for x, one in inputs.items():
         if one.uncertainty:
             beside = Case(moved(scene, UNMEASURED, x, 1)[0])

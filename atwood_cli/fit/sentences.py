@@ -227,7 +227,7 @@ def _impossible(fit: Fit, i: int, limit: float | None) -> str:
     if h - l <= b:
         return f"by the friction that was found, the axle would hold its masses (up to {few(1000 * b)} g)"
     scene = fit.known.scene
-    if scene.mu is not None:
+    if scene.mu is not None and l:
         here = scene._replace(
             m1=run.m1.value,
             m2=run.m2.value,
