@@ -3,6 +3,8 @@
 import gc
 import signal
 import sys
+import time
+from _thread import get_ident, start_new_thread
 
 INTERRUPTED = 130
 STATUSES = {"SIGINT": INTERRUPTED, "SIGTERM": 143, "SIGHUP": 129}
@@ -11,24 +13,41 @@ STATUSES = {"SIGINT": INTERRUPTED, "SIGTERM": 143, "SIGHUP": 129}
 
 def main() -> int:
     """Run the command line and return its exit status. What comes after is the end of the process."""
-    ended_by, heeded = 0, True
+    ended_by, heeded = 0, True  # the signal that ended it, and whether one is heard
+    main_thread = get_ident()
     statuses = {getattr(signal, name): status for name, status in STATUSES.items() if hasattr(signal, name)}
 
     def end(number: int, _: object) -> None:
         """Stop as on Ctrl-C, which cleans up: nothing half-written stays beside a file."""
         nonlocal ended_by, heeded
         if heeded:  # a second signal would stop the cleaning up
-            ended_by, heeded = statuses[number], False
+            ended_by, heeded = number, False
             raise KeyboardInterrupt
 
-    for number in statuses:
-        if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
-            signal.signal(number, end)
-    sys.set_int_max_str_digits(
-        sys.int_info.default_max_str_digits
-    )  # the environment may allow fewer than we do
-    gc.disable()  # what is imported stays: looking through it for garbage is a seventh of a short run
+    def end_soon(unraised: "sys.UnraisableHookArgs") -> None:
+        """Once more, a moment later, where Python could not raise it, as while it drops an object."""
+        nonlocal heeded
+        if heeded or not isinstance(unraised.exc_value, KeyboardInterrupt):
+            sys.__unraisablehook__(unraised)
+            return
+        heeded = True
+        start_new_thread(again, ())
+
+    def again() -> None:
+        time.sleep(0.01)
+        if hasattr(signal, "pthread_kill"):  # to the thread that may be waiting for something
+            signal.pthread_kill(main_thread, ended_by)
+        else:
+            signal.raise_signal(ended_by)
+
     try:
+        for number in statuses:
+            if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
+                signal.signal(number, end)
+        sys.unraisablehook = end_soon
+        # The environment may allow fewer than we do.
+        sys.set_int_max_str_digits(sys.int_info.default_max_str_digits)
+        gc.disable()  # what is imported stays: looking through it for garbage is a seventh of a short run
         # Imported here, so that Ctrl-C during start-up shows no traceback either.
         from .cli import run
 
@@ -36,9 +55,12 @@ def main() -> int:
         gc.enable()
         status = run()
     except KeyboardInterrupt:
-        status = ended_by or INTERRUPTED
+        status = statuses.get(ended_by, INTERRUPTED)
     finally:
         heeded = False  # all is done, and Python would show a traceback of what interrupts its end
+        sys.unraisablehook = sys.__unraisablehook__
+        for number in statuses:
+            signal.signal(number, signal.SIG_IGN)
         gc.enable()
         gc.freeze()  # so that it is not looked through at the end either
     return status

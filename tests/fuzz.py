@@ -2,22 +2,29 @@
 
 A run is made from its number alone, so that it can be had again: python -m tests.fuzz 1 NUMBER. Whatever
 is typed, a run ends within the limit, without a traceback or a warning, with a status of ours, with stdout
-empty on an error and with sentences on stderr.
+empty on an error and with sentences on stderr. A table comes out with as many rows as were read.
+
+python -m tests.fuzz kill [RUNS [FIRST]] has runs that write a file get a signal at a random instant, some of
+them two. The file is then as it was, or whole, and but for SIGKILL nothing is left beside it.
 """
 
+import csv
 import io
 import json
 import os
 import re
 import signal
+import subprocess
 import sys
+import time
 import traceback
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from decimal import Decimal
 from fractions import Fraction
-from functools import partial
+from functools import cache, partial
+from itertools import pairwise
 from math import inf, nan
 from pathlib import Path
 from random import Random
@@ -250,6 +257,9 @@ def wrong_with_line(words: Sequence[str]) -> str:
         return f"status {status} without a word"
     if "\x1b" in said:
         return f"an escape sequence on stderr: {said!r}"
+    counted = re.search(r"^atwood: (\d+) rows?: ", said, re.MULTILINE)
+    if counted and _rows_out(words, printed) not in (None, int(counted[1])):
+        return f"{_rows_out(words, printed)} rows came out of {counted[1]}"
     if (
         words[0] != "batch"
         and status == 0
@@ -258,6 +268,18 @@ def wrong_with_line(words: Sequence[str]) -> str:
     ):
         json.loads(printed, parse_constant=lambda word: 1 / 0)
     return ""
+
+
+def _rows_out(words: Sequence[str], printed: str) -> int | None:
+    """How many rows a run printed; None where that cannot be told."""
+    if {"-o", "--output"} & {*words}:
+        return None
+    kinds = [after for word, after in pairwise(words) if word == "--to"] or ["csv"]
+    if kinds == ["ndjson"]:
+        return printed.count("\n")
+    if kinds != ["csv"]:
+        return None
+    return sum(1 for row in csv.reader(io.StringIO(printed, newline="")) if row) - 1
 
 
 def wrong_with_arguments(random: Dice) -> str:
@@ -290,6 +312,83 @@ def wrong_with_arguments(random: Dice) -> str:
     return call(solve_arrays, {"accuracy": accuracy, "quantities": quantities}, COLUMNS)
 
 
+STARTED = """
+import gc, signal, sys
+from atwood_cli.__main__ import main
+# The first that main calls once it hears signals, which were blocked until then: what Python does before is its own.
+gc.disable = lambda: signal.pthread_sigmask(signal.SIG_SETMASK, [])
+sys.exit(main())
+"""
+HEARD = ("SIGINT", "SIGTERM", "SIGHUP")
+KILLED_BY = {"SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129, "SIGKILL": -9}
+KILLED = [
+    "batch in.csv -o out.csv",
+    "batch in.csv -o out.parquet",
+    "batch in.parquet -o out.ndjson",
+    "batch in.parquet -o out.parquet --accuracy exact",
+    "sweep --m1 1 --m2 3 --M 1:100:2000 -o out.csv",
+    "sweep --m1 1 --m2 3 --M 1:100:20 -o out.json",
+    "sweep --m1 1 --m2 3 --M 1:100:20 --figure out.svg acceleration",
+    "contact --m1 1 --m2 3 --mu 0.3 --figure out.svg",
+]
+
+
+def start(line: str) -> "subprocess.Popen[bytes]":
+    """A run of the program, here, which hears no signal before its own handlers are there."""
+    scenes = pl.DataFrame({"m1": [1.0] * 50_000, "m2": [3.0] * 50_000, "n": range(50_000)})
+    scenes.write_csv("in.csv")
+    scenes.write_parquet("in.parquet")
+    words = [sys.executable, "-c", STARTED, *line.split(), "--force"]
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.Signals[name] for name in HEARD])
+    top = {"PYTHONPATH": str(Path(cli.__file__).parents[2])}
+    try:
+        return subprocess.Popen(
+            words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **top}
+        )
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@cache
+def whole(line: str) -> tuple[bytes, float]:
+    """What a run writes that is left alone, and how long it takes."""
+    with TemporaryDirectory() as folder, chdir(folder):
+        begun = time.perf_counter()
+        start(line).communicate()
+        taken = time.perf_counter() - begun
+        (out,) = Path().glob("out.*")
+        return out.read_bytes(), taken
+
+
+def wrong_with_killed(run: int) -> str:
+    """What is wrong once the run of that number got its signals, and the run itself."""
+    random = Dice(run)
+    line, blow = random.choice(KILLED), random.choice(list(KILLED_BY))
+    whole_file, seconds = whole(line)
+    out = Path(next(word for word in line.split() if word.startswith("out.")))
+    before = random.choice([None, b"as it was"])
+    if before is not None:
+        out.write_bytes(before)
+    delays = [random.uniform(0, 1.2 * seconds), *random.choice([[], [random.uniform(0, 0.02)]])]
+    child = start(line)
+    for delay in delays:
+        time.sleep(delay)
+        child.send_signal(signal.Signals[blow])
+    _, said = child.communicate(timeout=LIMIT)
+    left = {path.name for path in Path().iterdir()} - {"in.csv", "in.parquet", str(out)}
+    after = out.read_bytes() if out.exists() else None
+    wrong = ""
+    if child.returncode not in (0, KILLED_BY[blow]):
+        wrong = f"status {child.returncode}"
+    elif after not in (before, whole_file) or (child.returncode == 0 and after != whole_file):
+        wrong = f"{out} is neither as it was nor whole"
+    elif left and not (blow == "SIGKILL" and all(name.startswith(".atwood-") for name in left)):
+        wrong = f"there are {left} beside it"
+    elif any(not line.startswith(b"atwood: ") for line in said.splitlines()):
+        wrong = f"on stderr: {said!r}"
+    return wrong and f"run {run}, {line} and {blow} after {delays} s: {wrong}"
+
+
 def wrong_with(run: int) -> str:
     """What is wrong with the run of that number, and the run itself."""
     random = Dice(run)
@@ -311,7 +410,7 @@ def wrong_with(run: int) -> str:
     return wrong and f"run {run}, {what}: {wrong}"
 
 
-def faults(runs: Sequence[int]) -> Iterator[str]:
+def faults(runs: Sequence[int], wrong_with: Callable[[int], str] = wrong_with) -> Iterator[str]:
     """What is wrong with runs, each in a folder of its own; measurements are cut short."""
     short = patch.multiple(
         measure, RUN_SECONDS=1e-5, REPEATS=1, COUNTS=(4, 10), MOST_SCENES=20, FEWEST=2, TABLE=2
@@ -323,10 +422,10 @@ def faults(runs: Sequence[int]) -> Iterator[str]:
                 yield wrong
 
 
-def main(runs: int = 1000, first: int = 0) -> int:
+def main(runs: int = 1000, first: int = 0, wrong_with: Callable[[int], str] = wrong_with) -> int:
     """Report every fault; the status says whether there is one."""
     count = 0
-    for fault in faults(range(first, first + runs)):
+    for fault in faults(range(first, first + runs), wrong_with):
         print(fault, flush=True)
         count += 1
     print(f"{runs} runs, {count} faults")
@@ -335,4 +434,7 @@ def main(runs: int = 1000, first: int = 0) -> int:
 
 if __name__ == "__main__":
     os.environ.pop("COLUMNS", None)
-    sys.exit(main(*map(int, sys.argv[1:])))
+    typed = sys.argv[1:]
+    what = wrong_with_killed if typed[:1] == ["kill"] else wrong_with
+    numbers = dict(zip(("runs", "first"), map(int, typed[what is wrong_with_killed :]), strict=False))
+    sys.exit(main(**numbers, wrong_with=what))

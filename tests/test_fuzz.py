@@ -1,5 +1,6 @@
 """What is typed at random: a few of the runs of which `python -m tests.fuzz 100000` makes many."""
 
+import signal
 import sys
 from pathlib import Path
 
@@ -13,6 +14,11 @@ from . import fuzz
 @pytest.mark.parametrize("first", range(0, 400, 50))
 def test_nothing_that_is_typed_breaks_a_promise(first: int) -> None:
     assert list(fuzz.faults(range(first, first + 50))) == []
+
+
+@pytest.mark.skipif(not hasattr(signal, "pthread_sigmask"), reason="needs POSIX signals")
+def test_what_is_killed_at_any_instant_leaves_its_file_whole_or_as_it_was() -> None:
+    assert list(fuzz.faults(range(3), fuzz.wrong_with_killed)) == []
 
 
 def test_a_fault_is_found_and_can_be_had_again(

@@ -217,3 +217,25 @@ def test_what_ends_it_ends_it_quietly(command: str, blow: signal.Signals, status
     child.send_signal(blow)
     out, err = child.communicate(timeout=HANGS)
     assert (child.returncode, out, err) == (status, b"", b"")
+
+
+DROPPING = """
+import os, signal, sys, time
+from atwood_cli import cli
+from atwood_cli.__main__ import main
+class Dropped:
+    def __del__(self):
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(0)
+def run():
+    Dropped()
+    time.sleep(10**6)
+cli.run = run
+sys.exit(main())
+"""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_a_signal_is_not_lost_where_python_can_raise_nothing() -> None:
+    done = subprocess.run([sys.executable, "-c", DROPPING], capture_output=True, check=False, timeout=HANGS)
+    assert (done.returncode, done.stdout, done.stderr) == (143, b"", b"")
