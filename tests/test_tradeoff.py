@@ -290,7 +290,6 @@ def test_numbers_are_short() -> None:
 
 def test_elements_converge_until_rounding_takes_over(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tradeoff, "REPEATS", 1)
-    monkeypatch.setattr(tradeoff, "COUNTS", tradeoff.COUNTS[:-2])
     marched = with_orders(list(marches(Scene.read(tradeoff.PAPERS_SCENE))))
     plain_, extrapolated = (
         [one for one in marched if one.extrapolated == way and one.elements] for way in (0, 1)
