@@ -590,6 +590,26 @@ def test_carriage_returns_in_cells_stay(
     ]
 
 
+@pytest.mark.parametrize(
+    ("name", "content"),
+    [
+        ("e.tsv", b'm1\tm2\tz\n1\t"\x1b[31mX\t"x\n'),
+        ("\x1b[31m.csv", b"m1,m2\n1\n1,3,4\n"),
+        ("e.csv", b"m1,m2,M (\x1b[31m)\n1,3,4\n"),
+        ("e.ndjson", b'{"m1":1,"m2":3,"\\u001b[31m":1,"\\u001b[31m":2}\n'),
+        ("e.csv", b"m1,m2\n1,3\x1b[31m\n"),
+        ("\x1b[31m.parquet", b"no table"),
+    ],
+)
+def test_what_a_file_holds_or_is_called_steers_no_terminal(
+    atwood: Atwood, table: Table, tmp_path: Path, name: str, content: bytes
+) -> None:
+    ran = atwood("batch", table(content, name), "-o", str(tmp_path / "\x1b[32m.csv"))
+    assert ran.status == 1
+    assert "\\x1b[31m" in ran.err or "quotation mark" in ran.err
+    assert "\x1b" not in ran.err
+
+
 def test_a_long_cell_is_read(atwood: Atwood, table: Table) -> None:
     """Python's own reader of CSV takes 131,072 characters at most, which is no concern of ours."""
     long = "x" * 200_000

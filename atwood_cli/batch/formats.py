@@ -410,7 +410,7 @@ _DECODER = json.JSONDecoder(
 )
 
 
-ROWS_BYTES, GROUP_BYTES = 1 << 22, 1 << 23
+ROWS_BYTES, GROUP_BYTES = 1 << 21, 1 << 23
 FIRST_ROWS, MOST_ROWS = 16, 1 << 17
 """Of Parquet, about the bytes of a piece and of a group of rows that is written; and the rows that are read
 at first, when it is not known how long they are, and at most."""
