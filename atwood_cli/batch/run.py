@@ -80,8 +80,8 @@ def run_batch(job: Job, watch: Watch) -> Tally:
     _check_environment()
     _check_apart(job)
     with ExitStack() as stack:
-        stack.enter_context(warnings.catch_warnings())
-        warnings.simplefilter("ignore", UserWarning)  # of polars, about its other settings
+        # Of polars, about its other settings.
+        stack.enter_context(warnings.catch_warnings(action="ignore", category=UserWarning))
         import polars as pl
 
         if hasattr(signal, "siginterrupt"):  # as it is imported, polars has Ctrl-C wait for a pipe

@@ -188,7 +188,7 @@ def _load() -> None:
     spec = find_spec("matplotlib")
     if "matplotlib" not in sys.modules and spec and spec.origin:
         os.environ.pop("MPLBACKEND", None)
-        with chdir(Path(spec.origin).with_name("mpl-data")):
+        with warnings.catch_warnings(action="ignore"), chdir(Path(spec.origin).with_name("mpl-data")):
             import_module("matplotlib")
     import_module("matplotlib").set_loglevel("error")
 
@@ -203,8 +203,7 @@ def _page(path: str, force: bool) -> Iterator["Figure"]:
     kind = Path(path).suffix[1:].lower()
     drawn = BytesIO()  # a full disk is none of matplotlib's business
     with written_beside(Path(path), force) as beside:
-        with warnings.catch_warnings(), rc_context({**rcParamsDefault, **STYLE}):
-            warnings.simplefilter("ignore")
+        with warnings.catch_warnings(action="ignore"), rc_context({**rcParamsDefault, **STYLE}):
             figure = Figure(figsize=(11, 6), layout="constrained")
             yield figure
             figure.savefig(drawn, format=kind, dpi=200, metadata={"Date": None} if kind == "svg" else None)
