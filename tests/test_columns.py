@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import isfinite
 from random import Random
+from types import SimpleNamespace
 from typing import Any
 
 import flint
@@ -12,12 +13,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atwood_cli.arithmetic.double import DOUBLES, joined
+from atwood_cli.arithmetic.double import DOUBLES, Unvouched, joined
 from atwood_cli.arithmetic.double_double import QUICK, ROUNDED, Pair, Pairs
 from atwood_cli.arithmetic.error_free import UNIT, head_of, two_product
 from atwood_cli.arithmetic.expansion import PAIRS, TRIPLES, Expansion
 from atwood_cli.arithmetic.symbolic import Formula, Part
 from atwood_cli.arithmetic.tables import cosines_and_sines, powers
+from atwood_cli.arrays.plan import _value
 from atwood_cli.arrays.program import OPERATIONS, Program, Room
 
 LEVELS: dict[str, Any] = {
@@ -290,6 +292,21 @@ def test_doubles_have_the_same_names() -> None:
     (root,) = worked_out([DOUBLES.root(lambda s: s * s - x, x)], x0=np.array([2.0, 3.0]))
     assert root == pytest.approx([2**0.5, 3**0.5], rel=1e-15)
     assert np.finfo(float).eps / 2 == UNIT
+
+
+def test_what_may_be_off_by_more_than_promised_is_not_vouched_for() -> None:
+    """Half an ulp is left for rounding."""
+    (x,) = symbols(QUICK, 1)
+    for loss, doubt, sure in ((3.4, None, True), (3.6, None, None), (2.0, 1.4, True), (2.0, 1.6, False)):
+        column = None if doubt is None else x.high * (doubt * UNIT)
+        machine: Any = SimpleNamespace(value=Pair(QUICK, x.high, None, loss * UNIT, column))
+        if sure is None:
+            with pytest.raises(Unvouched):
+                _value(machine, "value", "certified")
+        else:
+            _, conditions = _value(machine, "value", "certified")
+            assert [bool(one[0]) for one in worked_out(conditions, x0=np.ones(1))] == [sure] * len(conditions)
+            assert len(conditions) == (doubt is not None)
 
 
 # Programs
