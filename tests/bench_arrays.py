@@ -100,6 +100,12 @@ def _strong(rows: int) -> dict[str, Any]:
     return {"m1": m1, "m2": m2, "M": M, "mu": rng.uniform(225, 400, rows)}
 
 
+def _ties(rows: int) -> dict[str, Any]:
+    """A load of six and a drive of three of the lighter mass: a tension is 3 g/2, of 54 bits."""
+    m1 = 2.0 ** np.random.default_rng(7).integers(-20, 20, rows)
+    return {"m1": m1, "m2": 4 * m1, "M": 2 * m1}
+
+
 VECTOR = ("friction_force_x", "friction_force_y")
 FAMILIES = {
     "near-critical": Family(lambda rows: _named(near_critical(rows)), "certified"),
@@ -149,6 +155,7 @@ FAMILIES = {
             g=lambda rng, rows: 10.0,
         )
     ),
+    "exact, every row a tie": Family(_ties),
 }
 
 

@@ -304,6 +304,25 @@ def test_rows_that_go_up_are_solved_wherever_they_wait(monkeypatch: pytest.Monke
             np.testing.assert_array_max_ulp(results[name], exact[name], 4)
 
 
+def test_ties_are_settled_in_columns(monkeypatch: pytest.MonkeyPatch) -> None:
+    """With load 6 and drive 3 a tension is 3 g/2, of 54 bits: half-way between two doubles, for an odd g."""
+    rng = np.random.default_rng(1)
+    m1, odd = 2.0 ** rng.integers(-20, 20, 100), 9.80665 + 2.0**-49 * np.arange(100)
+    given: dict[str, Any] = {"m1": m1, "m2": 4 * m1, "M": 2 * m1, "g": odd}
+    names = ["acceleration", "tension_1", "tension_2", "friction_force"]
+    monkeypatch.setattr(arrays.rows.Rows, "_solve_one_by_one", Mock(side_effect=AssertionError))
+    results = solve_arrays(**given, accuracy="exact", quantities=names[:3])
+    monkeypatch.undo()
+    with_others = solve_arrays(**given, accuracy="exact", quantities=names)
+    for i in range(100):
+        one = solve_any(**{name: float(column[i]) for name, column in given.items()})
+        for name in names:
+            assert with_others[name][i] == getattr(one, name), (i, name)
+            assert name not in results or results[name][i] == getattr(one, name)
+    exact = [Fraction(float(g)) * Fraction(3, 2) * Fraction(float(m)) for g, m in zip(odd, m1, strict=True)]
+    assert sum(Fraction(float(t)) != e for t, e in zip(results["tension_1"], exact, strict=True)) > 20
+
+
 def test_threads_do_not_wait_for_each_others_attributes() -> None:
     """Until Python 3.12 functools' own holds a lock for all objects of a class: blocks waited for ever."""
     both = Barrier(2, timeout=HANGS)

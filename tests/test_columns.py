@@ -17,6 +17,7 @@ from atwood_cli.arithmetic.double import DOUBLES, Unvouched, joined
 from atwood_cli.arithmetic.double_double import QUICK, ROUNDED, Pair, Pairs
 from atwood_cli.arithmetic.error_free import UNIT, head_of, two_product
 from atwood_cli.arithmetic.expansion import PAIRS, TRIPLES, Expansion
+from atwood_cli.arithmetic.modular import Irrational, is_sum, residues
 from atwood_cli.arithmetic.symbolic import Formula, Part
 from atwood_cli.arithmetic.tables import cosines_and_sines, powers
 from atwood_cli.arrays.plan import _value
@@ -307,6 +308,36 @@ def test_what_may_be_off_by_more_than_promised_is_not_vouched_for() -> None:
             _, conditions = _value(machine, "value", "certified")
             assert [bool(one[0]) for one in worked_out(conditions, x0=np.ones(1))] == [sure] * len(conditions)
             assert len(conditions) == (doubt is not None)
+
+
+# Ties
+
+
+def test_residues_tell_rational_numbers_from_their_neighbours() -> None:
+    """A sum of two doubles is a formula's value modulo primes just where it is so in fractions."""
+    x, y, z = (Formula("symbol", name) for name in "xyz")
+    formula = (x / y + z * x - 3.0) / (x - z * 4.0) * y
+    wholes = rng.integers(-9, 9, (3, 3000)) * 2.0 ** rng.integers(-3, 3, (3, 3000))
+    columns = dict(zip("xyz", wholes, strict=True))
+    fine = (columns["y"] != 0) & (columns["x"] != 4 * columns["z"])
+    columns = {name: column[fine] for name, column in columns.items()}
+    exact = [
+        (Fraction(a) / Fraction(b) + Fraction(c) * Fraction(a) - 3)
+        / (Fraction(a) - 4 * Fraction(c))
+        * Fraction(b)
+        for a, b, c in zip(*(column.tolist() for column in columns.values()), strict=True)
+    ]
+    first = np.array([float(value) for value in exact])
+    second = np.array([float(v - Fraction(f)) for v, f in zip(exact, first.tolist(), strict=True)])
+    inputs = {name: residues(column) for name, column in columns.items()}
+    wanted = [
+        Fraction(f) + Fraction(s) == v for f, s, v in zip(first.tolist(), second.tolist(), exact, strict=True)
+    ]
+    assert is_sum(formula, inputs, first, second).tolist() == wanted
+    assert 0.1 < np.mean(wanted) < 0.9
+    assert not is_sum(formula, inputs, np.nextafter(first, np.inf), second)[wanted].any()
+    with pytest.raises(Irrational):
+        is_sum(Formula("sqrt", x), inputs, first, second)
 
 
 # Programs

@@ -18,7 +18,8 @@ What the accuracies promise, and why they keep it:
   them, far more than the few roundings they take can amount to; else by the sign of a difference, if its
   bound is below 1/2.
 - ``exact``: the double nearest to the exact value. An expansion vouches where rounding gives the same
-  double at both ends of its bound (Ziv's test), or where it is exact.
+  double at both ends of its bound (Ziv's test), or where it is exact. A value half-way between two doubles
+  is no such thing; where it is rational, residues show that it is that tie (see `modular`).
 
 Rows with an input beyond `double_double.WINDOW` (and not 0), or beyond `FAST_WINDOW`, start with triples,
 whose range is not that of doubles.
@@ -290,6 +291,15 @@ def _is_nearest(value: Expansion, double: Part) -> Formula:
     left = absolute(first - times_power_of_two(double, -1.0 * value.exponent))
     half_a_step = times_power_of_two(0.5, -1074.0 - value.exponent)
     return both(sure, either(less(NORMAL, value.exponent), less(left, half_a_step), less(half_a_step, left)))
+
+
+@lru_cache(1024)
+def halfway(given: Given, answers: Answers, name: str) -> tuple[Program, Formula] | None:
+    """The program that gives a quantity's two doubles, if it has two, and its formula."""
+    value, plain = (
+        getattr(_ColumnsMachine(_RowsCase(given, answers, ar), ar), name) for ar in (PAIRS, DOUBLES)
+    )
+    return (Program(value.parts), plain) if len(value.parts) == 2 else None
 
 
 @lru_cache(1024)

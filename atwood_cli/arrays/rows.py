@@ -16,13 +16,14 @@ from numpy.typing import NDArray
 
 from ..arithmetic.double import DOUBLES
 from ..arithmetic.expansion import PAIRS, TRIPLES
+from ..arithmetic.modular import Irrational, is_sum, residues, tie
 from ..arithmetic.tables import Column
 from ..model.angle import Angle
 from ..model.case import Case
 from ..model.quantities import REGIMES
 from ..model.scene import Scene
 from ..solver.answers import Answers as Single
-from .plan import COLUMN, COLUMNS, LADDERS, Accuracy, Answers, Given, plan, questioning
+from .plan import COLUMN, COLUMNS, LADDERS, Accuracy, Answers, Given, halfway, plan, questioning
 from .program import Program, Room
 
 ROOM = 10_000_000  # bytes for the columns of a tile
@@ -62,6 +63,10 @@ class Rows:
         Rows ``along`` with them are written over later, and come along where parting would cost more.
         """
         ladder = LADDERS[self.accuracy]
+        if self.accuracy == "exact" and rung == 1 and len(names) == 1 and size_of(index) > FEW:
+            index = self._settle_ties(index, given, answers, names[0])
+            if not size_of(index):
+                return
         if rung == len(ladder) or (ladder[rung] == (TRIPLES,) and size_of(index) <= FEW):
             self._solve_one_by_one(index, names, given)
             return
@@ -149,9 +154,37 @@ class Rows:
                 return yes
         every: Any = np.arange(size) if isinstance(open_, slice) else open_
         for row in every.tolist():
-            case = Case(self._scene(index, row, given))
-            yes[row] = case.beats_friction(question)  # type: ignore[arg-type]
+            which: Any = question
+            yes[row] = Case(self._scene(index, row, given)).beats_friction(which)
         return yes
+
+    def _settle_ties(self, index: Index, given: Given, answers: Answers, name: str) -> Index:
+        """Write what is just half-way between two doubles, which no bound tells; returns the other rows."""
+        found, size = halfway(given, answers, name), size_of(index)
+        open_ = np.ones(size, np.bool_)
+        for start in range(0, size if found else 0, SMALLEST):
+            assert found is not None
+            program, plain = found
+            tile = _among(index, slice(start, min(start + SMALLEST, size)))
+            inputs = {
+                name: column if column.size == 1 else column[tile] for name, column in self.inputs.items()
+            }
+            first, second = np.empty((2, size_of(tile)))
+            between = self.room.columns(program.between, first.size)
+            program.run([inputs[name] for name in program.inputs], [first, second], between)
+            half, near = tie(first, second)
+            rows = np.flatnonzero(near)
+            try:
+                here = {
+                    name: residues(column if column.size == 1 else column[rows])
+                    for name, column in inputs.items()
+                }
+                rows = rows[is_sum(plain, here, first[rows], half[rows])]
+            except Irrational:
+                break
+            self.results[name][_among(tile, rows)] = first[rows] + half[rows]
+            open_[rows + start] = False
+        return index if open_.all() else _among(index, np.flatnonzero(open_))
 
     def _go_up(self, index: Index, given: Given, answers: Answers, name: str, rung: int) -> None:
         if self.left is not None and size_of(index) <= LEAVE:
