@@ -323,6 +323,18 @@ def test_ties_are_settled_in_columns(monkeypatch: pytest.MonkeyPatch) -> None:
     assert sum(Fraction(float(t)) != e for t, e in zip(results["tension_1"], exact, strict=True)) > 20
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_far_rows_are_solved_for_one_quantity_too(name: str) -> None:
+    """Where ties are looked for before all questions are asked."""
+    rng = np.random.default_rng(2)
+    given = {x: 10.0 ** rng.uniform(-300, 300, 40) for x in ("m1", "m2", "M")} | {"mu": rng.uniform(0, 2, 40)}
+    results = solve_arrays(**given, accuracy="exact", quantities=[name])
+    for i in range(0, 40, 7):
+        one = solve_any(**{x: float(column[i]) for x, column in given.items()}, g=9.80665)
+        want = REGIMES.index(one.regime) if name == "regime" else getattr(one, name)
+        np.testing.assert_equal(results[name][i], nan if want is None else want)
+
+
 def test_threads_do_not_wait_for_each_others_attributes() -> None:
     """Until Python 3.12 functools' own holds a lock for all objects of a class: blocks waited for ever."""
     both = Barrier(2, timeout=HANGS)

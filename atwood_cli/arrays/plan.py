@@ -295,10 +295,13 @@ def _is_nearest(value: Expansion, double: Part) -> Formula:
 
 @lru_cache(1024)
 def halfway(given: Given, answers: Answers, name: str) -> tuple[Program, Formula] | None:
-    """The program that gives a quantity's two doubles, if it has two, and its formula."""
-    value, plain = (
-        getattr(_ColumnsMachine(_RowsCase(given, answers, ar), ar), name) for ar in (PAIRS, DOUBLES)
-    )
+    """The program that gives a quantity's two doubles, and its formula; none where that is not known yet."""
+    try:
+        value, plain = (
+            getattr(_ColumnsMachine(_RowsCase(given, answers, ar), ar), name) for ar in (PAIRS, DOUBLES)
+        )
+    except (Asked, Undetermined, Unvouched):
+        return None
     return (Program(value.parts), plain) if len(value.parts) == 2 else None
 
 
