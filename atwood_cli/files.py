@@ -3,6 +3,7 @@
 import errno
 import os
 import stat
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
 from pathlib import Path
@@ -15,6 +16,14 @@ def check_free(path: Path, force: bool) -> None:
     """Raises FileExistsError where a file is there, unless ``force`` lets it be replaced."""
     if path.is_file() and not force:
         raise FileExistsError(errno.EEXIST, "it exists already; --force replaces it", str(path))
+
+
+def is_stdout(path: str) -> bool:
+    """Whether a file is the one that standard output goes to, by whatever name."""
+    try:
+        return os.path.isfile(path) and os.path.samestat(os.stat(path), os.fstat(sys.stdout.fileno()))
+    except (OSError, ValueError, AttributeError):  # one is closed, or not there yet
+        return False
 
 
 @contextmanager

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import re
+import shlex
 import subprocess
 import sys
 import warnings
@@ -688,3 +689,10 @@ def test_errors_of_elements_are_right_to_their_last_digit(given: dict[str, str],
         with localcontext(prec=3):
             off = (Fraction(row.value) - exact) / exact
             assert row.error == Decimal(off.numerator) / Decimal(off.denominator), row.name
+
+
+def test_a_figure_is_not_drawn_where_standard_output_goes(tmp_path: Path) -> None:
+    there = shlex.quote(str(tmp_path))
+    ran = process(shell=f"cd {there}; atwood contact --m1 1 --m2 3 --M 10 --figure a.svg --force > a.svg")
+    why = "atwood: --figure 'a.svg' is where standard output goes; name another\n"
+    assert (ran.status, ran.err, (tmp_path / "a.svg").read_text()) == (2, why, "")

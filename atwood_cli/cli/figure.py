@@ -18,7 +18,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.rounding import to_double
-from ..files import check_free, written_beside
+from ..files import check_free, is_stdout, written_beside
 from ..model.scene import SceneError
 from ..solver.answers import Answers
 from ..solver.contact import Contact, contact
@@ -176,6 +176,8 @@ def check_file(path: str, force: bool) -> None:
     """Raises in time: SceneError where the suffix is no format, ImportError, or OSError if it exists."""
     if Path(path).suffix.lower() not in FORMATS:
         raise SceneError("figure", path, f"must end in one of {', '.join(FORMATS)}")
+    if is_stdout(path):
+        raise SceneError("figure", path, "is where standard output goes; name another")
     _load()
     check_free(Path(path), force)
 
