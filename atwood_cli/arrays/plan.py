@@ -78,6 +78,8 @@ SIGNED = (
 
 NORMAL = -1021.0  # the power of two below which a double has fewer bits
 
+KEPT = 128  # plans; the longest, of all quantities in triples, takes 3 MB
+
 COLUMN = "column"
 
 
@@ -205,7 +207,7 @@ class Plan(NamedTuple):
     asking: tuple[str, ...]
 
 
-@lru_cache(1024)
+@lru_cache(KEPT)
 def plan(given: Given, answers: Answers, names: tuple[str, ...], accuracy: Accuracy, rung: int) -> Plan:
     """The plan for quantities on a rung of the accuracy's ladder, in its first arithmetic that can do all."""
     for machine in _machines(given, answers, LADDERS[accuracy][rung]):
@@ -293,7 +295,7 @@ def _is_nearest(value: Expansion, double: Part) -> Formula:
     return both(sure, either(less(NORMAL, value.exponent), less(left, half_a_step), less(half_a_step, left)))
 
 
-@lru_cache(1024)
+@lru_cache(KEPT)
 def halfway(given: Given, answers: Answers, name: str) -> tuple[Program, Formula] | None:
     """The program that gives a quantity's two doubles, and its formula; none where that is not known yet."""
     try:
@@ -305,7 +307,7 @@ def halfway(given: Given, answers: Answers, name: str) -> tuple[Program, Formula
     return (Program(value.parts), plain) if len(value.parts) == 2 else None
 
 
-@lru_cache(1024)
+@lru_cache(KEPT)
 def questioning(given: Given, answers: Answers, question: str, accuracy: Accuracy, ar: Any) -> Program:
     """The program that tells for each row whether the answer is yes, and whether that is sure."""
     wrap = Formula("symbol", "wrap")
