@@ -14,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from atwood_cli.arithmetic.double import DOUBLES, Unvouched, joined
-from atwood_cli.arithmetic.double_double import QUICK, ROUNDED, Pair, Pairs
+from atwood_cli.arithmetic.double_double import QUICK, ROUNDED, Pair, Quick
 from atwood_cli.arithmetic.error_free import UNIT, head_of, two_product
 from atwood_cli.arithmetic.expansion import PAIRS, TRIPLES, Expansion
 from atwood_cli.arithmetic.modular import Irrational, is_sum, residues
@@ -154,7 +154,7 @@ def test_bounds_of_ordered_terms_hold(level: str) -> None:
     off(ar.number(Fraction(3)) - a * b, lambda x, y: 3 - x * y, x, y, sure=float(ar is not ROUNDED))
     near = Fraction(21, 10)  # off its double by 0.38 units
     off(a / ar.number(near), lambda x: x / arb(near), 2.1 * x)
-    if isinstance(ar, Pairs):
+    if isinstance(ar, Quick):
         assert (c + product).loss <= product.loss / 2 + ar.sum_loss
 
 

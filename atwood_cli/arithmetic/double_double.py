@@ -67,7 +67,7 @@ class Pair:
 
     def __init__(
         self,
-        arithmetic: Pairs,
+        arithmetic: Quick,
         high: Part,
         low: Part | None = None,
         loss: float = 0.0,
@@ -233,19 +233,23 @@ class Pair:
         )
 
 
-class Pairs:
-    """What the arithmetics of pairs have in common; ``sum_loss`` is what a sum loses."""
+class Quick:
+    """Products, quotients, roots and exponentials by heads of 26 bits; logarithms as NumPy has them.
 
-    sum_loss: float
+    Factors are split into a head of 26 bits, the double with its other bits cut off, and a tail: the
+    product of the heads is exact. So low parts are not small, but |low| <= t |high|, where each product,
+    quotient and root adds 2^-25 for every head that it cuts to what its operands have; a sum has no more
+    than its terms, and a difference is made normal. As no quantity takes more than 60 operations on the
+    way, t < 2^-18. Every rounding is one of a tail or a remainder, none of them above 2t of the result.
+    A product has 7 times u t of them, a quotient 9, a root or sum fewer: each loses less than 2^-67 of the
+    result, or of both terms in a difference (`LOSS`).
 
-    def product(self, x: Pair, y: Pair) -> Pair:
-        raise NotImplementedError
+    Where a difference leaves less than t of its terms, `normal` may round as well, 2 u t of the terms, and
+    what is left may have a low part beyond t: its bound, at least 2^-66/t, is so large that whoever looks
+    at it asks for more digits anyway, and is larger than what that low part loses.
+    """
 
-    def quotient(self, x: Pair, y: Pair) -> Pair:
-        raise NotImplementedError
-
-    def sqrt(self, x: Pair) -> Pair:
-        raise NotImplementedError
+    sum_loss = LOSS  # what a sum loses
 
     def number(self, q: Any) -> Pair:
         """The pair for a number, or for a column of exact doubles."""
@@ -274,10 +278,6 @@ class Pairs:
     def exp(self, x: Pair) -> Pair:
         return self.expm1(x) + 1
 
-    def expm1(self, x: Pair) -> Pair:
-        """e^x - 1 for x >= 0."""
-        raise NotImplementedError
-
     def cos_sin(self, x: Any) -> tuple[Pair, Pair]:
         raise Unvouched
 
@@ -290,25 +290,6 @@ class Pairs:
 
     def root(self, f: Callable[[Pair], Pair], end: Pair) -> Pair:
         raise Unvouched
-
-
-class Quick(Pairs):
-    """Products, quotients, roots and exponentials by heads of 26 bits; logarithms as NumPy has them.
-
-    Factors are split into a head of 26 bits, the double with its other bits cut off, and a tail: the
-    product of the heads is exact. So low parts are not small, but |low| <= t |high|, where each product,
-    quotient and root adds 2^-25 for every head that it cuts to what its operands have; a sum has no more
-    than its terms, and a difference is made normal. As no quantity takes more than 60 operations on the
-    way, t < 2^-18. Every rounding is one of a tail or a remainder, none of them above 2t of the result.
-    A product has 7 times u t of them, a quotient 9, a root or sum fewer: each loses less than 2^-67 of the
-    result, or of both terms in a difference (`LOSS`).
-
-    Where a difference leaves less than t of its terms, `normal` may round as well, 2 u t of the terms, and
-    what is left may have a low part beyond t: its bound, at least 2^-66/t, is so large that whoever looks
-    at it asks for more digits anyway, and is larger than what that low part loses.
-    """
-
-    sum_loss = LOSS
 
     def product(self, x: Pair, y: Pair) -> Pair:
         """The product of the heads, and as low part (head tail + tail whole).

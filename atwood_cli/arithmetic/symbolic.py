@@ -60,9 +60,6 @@ class Formula:
     def __rtruediv__(self, other: float) -> Formula:
         return Formula("/", formula(other), self)
 
-    def __neg__(self) -> Formula:
-        return Formula("*", self, formula(-1.0))
-
     def symbols(self) -> set[Symbol]:
         """The symbols that the formula is made of."""
         if self.op in ("symbol", "number"):
