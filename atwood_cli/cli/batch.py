@@ -6,7 +6,7 @@ import typer
 
 from ..model.quantities import STANDARD
 from ..model.scene import SceneError
-from .options import COULD_NOT, DONE, Columns, Force, near_or_all, option, read_names
+from .options import COULD_NOT, DONE, Columns, Force, Labels, near_or_all, option, read_names
 from .text import say
 
 Table = Annotated[
@@ -43,15 +43,6 @@ Accuracy = Annotated[
         "Output",
         metavar="fast|certified|exact",
         help="How accurate results are; certified, within 4 units in the last place, if not given.",
-    ),
-]
-Labels = Annotated[
-    list[str] | None,
-    option(
-        "Files",
-        "--label",
-        metavar="COLUMN",
-        help="Pass this column on as it is, though it may be meant for an input; repeatable.",
     ),
 ]
 AllowErrors = Annotated[bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")]

@@ -23,6 +23,7 @@ from .options import (
     Digits,
     FigureFile,
     Force,
+    Labels,
     Rule,
     check,
     check_extras,
@@ -80,15 +81,6 @@ Explain = Annotated[
     bool, option("Output", "--explain", help="Instead, show how the line follows, with its numbers.")
 ]
 Plot = Annotated[bool, option("Output", "--plot", help="Draw the line in place of the tables (extra: plot).")]
-Labels = Annotated[
-    list[str] | None,
-    option(
-        "Files",
-        "--label",
-        metavar="COLUMN",
-        help="Pass this column on as it is, though it may be meant for an input; repeatable.",
-    ),
-]
 RULES = (
     *PLOT_IS_TEXT,
     *(

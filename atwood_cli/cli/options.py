@@ -156,6 +156,15 @@ FigureFile = Annotated[
     option("Files", metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure)."),
 ]
 Force = Annotated[bool, option("Files", "--force", help="Replace a file that is there.")]
+Labels = Annotated[
+    list[str] | None,
+    option(
+        "Files",
+        "--label",
+        metavar="COLUMN",
+        help="Pass this column on as it is, though it may be meant for an input; repeatable.",
+    ),
+]
 
 
 # What excludes what
