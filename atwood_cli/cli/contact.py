@@ -104,7 +104,7 @@ def contact(
     else:
         forms = _forms(answers, solve_contact(answers, points or DEFAULT_POINTS, profile))
     if figure is not None:
-        from .figure import save
+        from .arc_figure import save
 
         save(answers, profile, figure, force)
     say(*show(forms, json, csv))

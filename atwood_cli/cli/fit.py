@@ -149,9 +149,9 @@ def fit(
         _print_explanation(found, inputs)
         return DONE
     if figure is not None:
-        from .figure import save_fit
+        from .fit_figure import save
 
-        save_fit(found, _head(found, inputs), figure, force)
+        save(found, _head(found, inputs), figure, force)
     forms = _Forms(found, inputs, names, precision, plot)
     bare = bool(names) and not (json or csv)
     say(*show(forms.forms(), json, csv, bare=bare))

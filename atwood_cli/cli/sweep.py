@@ -122,10 +122,10 @@ def sweep(
             solved = watched(solved, swept.total)
         rows: Iterable[Row] = solved if csv else list(solved)
         if figure is not None:
-            from .figure import save_sweep
+            from .sweep_figure import save
 
             rows = held = list(rows)
-            save_sweep(picture(swept, held, "figure", drawn["figure"]), _head(swept), figure[0], force)
+            save(picture(swept, held, "figure", drawn["figure"]), _head(swept), figure[0], force)
         aside = show(_forms(swept, rows, reasons, names, plot, _is_file(output)), json, csv)
     say(*aside)
     return DONE

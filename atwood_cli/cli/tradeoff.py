@@ -116,9 +116,9 @@ def tradeoff(
     start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
     outcome = measure(families, count, start, scene, watched)
     if figure is not None:
-        from .figure import save_tradeoff
+        from .tradeoff_figure import save
 
-        save_tradeoff(outcome, figure, force)
+        save(outcome, figure, force)
     say(*show(_forms(outcome, plot), json, csv))
     return DONE
 
