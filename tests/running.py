@@ -5,8 +5,10 @@ import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from itertools import combinations
+from typing import Any, NamedTuple
 
 import pytest
 
@@ -84,3 +86,34 @@ def plain(seen: str) -> str:
 def labels(svg: str) -> list[str]:
     """The texts of a figure, which matplotlib writes beside their outlines."""
     return re.findall(r"<!-- (.*?) -->", svg, re.DOTALL)
+
+
+@contextmanager
+def pages_seen(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Any]]:
+    """The pictures that are saved meanwhile, as matplotlib has them."""
+    figure = pytest.importorskip("matplotlib.figure")
+    pages: list[Any] = []
+    save = figure.Figure.savefig
+
+    def saving(page: Any, *arguments: Any, **options: Any) -> Any:
+        pages.append(page)
+        return save(page, *arguments, **options)
+
+    with monkeypatch.context() as patching:
+        patching.setattr(figure.Figure, "savefig", saving)
+        yield pages
+
+
+def misplaced(page: Any) -> list[str]:
+    """What nobody could read on a page: words over words, or beyond its edge."""
+    from matplotlib.text import Text
+
+    renderer = page.canvas.get_renderer()
+    page.draw_without_rendering()
+    words = [text for text in page.findobj(Text) if text.get_visible() and text.get_text().strip()]
+    boxes = [(text.get_text(), Text.get_window_extent(text, renderer)) for text in words]
+    boxes = [(text, box) for text, box in boxes if box.width and box.height]
+    edge = page.bbox.padded(1)
+    beyond = [text for text, box in boxes if not (edge.contains(*box.min) and edge.contains(*box.max))]
+    over = [f"{one} | {other}" for (one, box), (other, at) in combinations(boxes, 2) if box.overlaps(at)]
+    return [*beyond, *over]

@@ -8,7 +8,7 @@ from ..model.scene import SceneError
 from ..solver.answers import Answers
 from ..solver.contact import Contact, contact
 from ..solver.messages import verdict
-from .figure import FRICTION, NORMAL, STRING, WEIGHT, check_file, page
+from .figure import BLUE, GREEN, INK, RED, check_file, page
 from .text import describe
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def _draw_machine(axes: "Axes", answers: Answers, arc: Contact) -> None:
     axes.axis("off")
     axes.add_patch(Circle((0, 0), 1, facecolor="#eeeeee", edgecolor="#999999"))
     axes.add_patch(Circle((0, 0), 0.03, color="#999999"))
-    axes.add_patch(Arc((0, 0), 2, 2, theta1=0, theta2=min(degrees(phi), 360), color=STRING, lw=2.5))
+    axes.add_patch(Arc((0, 0), 2, 2, theta1=0, theta2=min(degrees(phi), 360), color=INK, lw=2.5))
     axes.annotate("", (0.45 * cos(0.5), 0.45 * sin(0.5)), (0.45, 0), arrowprops=_arc_arrow())
     axes.text(0.52 * cos(0.25), 0.52 * sin(0.25), r"$\theta$", va="center")
 
@@ -57,20 +57,20 @@ def _draw_machine(axes: "Axes", answers: Answers, arc: Contact) -> None:
         outwards, along = (cos(theta), sin(theta)), (-sin(theta), cos(theta))
         normal = scale * float(point["normal_per_radian"])
         friction = scale * float(point["friction_per_radian"])
-        _arrow(axes, _at((0, 0), outwards, 1 + normal), outwards, -normal, NORMAL)
-        _arrow(axes, _at((0, 0), outwards, 0.93), along, friction, FRICTION)
+        _arrow(axes, _at((0, 0), outwards, 1 + normal), outwards, -normal, BLUE)
+        _arrow(axes, _at((0, 0), outwards, 0.93), along, friction, RED)
     middle = arc.points[len(arc.points) // 2]
     top = radians(float(middle["angle"]))
     beyond = 1.1 + scale * float(middle["normal_per_radian"])
-    axes.text(beyond * cos(top), beyond * sin(top), "$nR$", color=NORMAL, ha="center", va="bottom")
-    axes.text(0.8 * cos(top), 0.8 * sin(top), "$fR$", color=FRICTION, ha="center", va="center")
+    axes.text(beyond * cos(top), beyond * sin(top), "$nR$", color=BLUE, ha="center", va="bottom")
+    axes.text(0.8 * cos(top), 0.8 * sin(top), "$fR$", color=RED, ha="center", va="center")
 
     _hang(axes, answers, "1", (1.0, 0.0), (0.0, -1.0), scale, side=1)
     end, tangent = (cos(phi), sin(phi)), (-sin(phi), cos(phi))
     _hang(axes, answers, "2", end, tangent, scale, side=-1)
     friction_x, friction_y = arc.balance["friction"]["x"], arc.balance["friction"]["y"]
     net = hypot(float(friction_x), float(friction_y))
-    axes.text(0, -0.45, f"friction on the pulley\n{net:.4g} N", color=FRICTION, ha="center", va="center")
+    axes.text(0, -0.45, f"friction on the pulley\n{net:.4g} N", color=RED, ha="center", va="center")
     axes.set_xlim(-2.15, 2.15)
     axes.set_ylim(-3.1, 2.05)
 
@@ -89,25 +89,25 @@ def _hang(
 
     mass, tension = getattr(answers.case.scene, f"m{name}"), float(answers[f"tension_{name}"])
     x, y = _at(end, along, 1.5)
-    axes.plot([end[0], x], [end[1], y], color=STRING, lw=2.5, solid_capstyle="butt")
+    axes.plot([end[0], x], [end[1], y], color=INK, lw=2.5, solid_capstyle="butt")
     beside = "left" if side > 0 else "right"
     start = _at(end, end, 0.1)  # beside the string
-    _arrow(axes, start, along, scale * tension, STRING)
+    _arrow(axes, start, along, scale * tension, INK)
     label = _at(_at(start, along, 0.4), end, 0.12)
-    axes.text(*label, f"$T_{name}$ = {tension:.4g} N", ha=beside, va="center", color=STRING)
+    axes.text(*label, f"$T_{name}$ = {tension:.4g} N", ha=beside, va="center", color=INK)
     if abs(along[0]) > 1e-9 or along[1] > 0:
         return
-    axes.add_patch(Rectangle((x - 0.16, y - 0.32), 0.32, 0.32, facecolor="#d8d2c4", edgecolor=STRING))
+    axes.add_patch(Rectangle((x - 0.16, y - 0.32), 0.32, 0.32, facecolor="#d8d2c4", edgecolor=INK))
     axes.text(x, y - 0.16, f"$m_{name}$", ha="center", va="center")
     weight = float(mass * answers.case.scene.g)
-    _arrow(axes, (x, y - 0.32), (0, -1), min(scale * weight, 1.2), WEIGHT)
-    axes.text(x + 0.12 * side, y - 0.55, f"$W_{name}$ = {weight:.4g} N", ha=beside, va="center", color=WEIGHT)
+    _arrow(axes, (x, y - 0.32), (0, -1), min(scale * weight, 1.2), GREEN)
+    axes.text(x + 0.12 * side, y - 0.55, f"$W_{name}$ = {weight:.4g} N", ha=beside, va="center", color=GREEN)
 
 
 def _draw_tension(axes: "Axes", arc: Contact) -> None:
     angles = [float(point["angle"]) for point in arc.points]
-    axes.plot(angles, _column(arc, "tension"), color=NORMAL, lw=2, label=r"$T(\theta) = nR$")
-    axes.plot(angles, _column(arc, "friction_per_radian"), color=FRICTION, lw=2, label=r"$dT/d\theta = fR$")
+    axes.plot(angles, _column(arc, "tension"), color=BLUE, lw=2, label=r"$T(\theta) = nR$")
+    axes.plot(angles, _column(arc, "friction_per_radian"), color=RED, lw=2, label=r"$dT/d\theta = fR$")
     axes.set_xlabel(r"$\theta$ (°)")
     axes.set_ylabel("N per radian of arc")
     axes.set_xlim(angles[0], angles[-1])
@@ -122,7 +122,7 @@ def _draw_tension(axes: "Axes", arc: Contact) -> None:
             textcoords="offset points",
             xytext=(4 if align == "left" else -4, 14),
             ha=align,
-            color=NORMAL,
+            color=BLUE,
         )
     axes.margins(y=0.1)
 

@@ -6,22 +6,27 @@ No pyplot, no display; the same scene gives the same SVG to the byte.
 import os
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import chdir, contextmanager
 from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
+from itertools import product
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..files import check_free, is_stdout, written_beside
 from ..model.scene import SceneError
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.transforms import Bbox
 
 FORMATS = (".svg", ".png", ".pdf")
-NORMAL, FRICTION, STRING, WEIGHT = "#1f5fa8", "#c23b22", "#222222", "#5a7d2a"
+BLUE, RED, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b05d91", "#b07800", "#3f8fc0"
+"""Told apart without seeing red or green, and on paper: after M. Okabe and K. Ito, Color universal design."""
+INK, GREY, FAINT = "#222222", "#777777", "#999999"
 MARKED = 60  # points: of more, only the line is drawn
 STYLE: Any = {
     "svg.hashsalt": "atwood",  # else the SVG's ids are random
@@ -59,6 +64,7 @@ def page(path: str, force: bool) -> Iterator["Figure"]:
     """A figure to draw on, which is then saved."""
     _load()
     from matplotlib import rc_context, rcParamsDefault
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     kind = Path(path).suffix[1:].lower()
@@ -66,6 +72,90 @@ def page(path: str, force: bool) -> Iterator["Figure"]:
     with written_beside(Path(path), force) as beside:
         with warnings.catch_warnings(action="ignore"), rc_context({**rcParamsDefault, **STYLE}):
             figure = Figure(figsize=(11, 6), layout="constrained")
+            FigureCanvasAgg(figure)  # which knows how wide words are
             yield figure
             figure.savefig(drawn, format=kind, dpi=200, metadata={"Date": None} if kind == "svg" else None)
         beside.write_bytes(drawn.getbuffer())
+
+
+class Label(NamedTuple):
+    """Words that belong to a point of a picture."""
+
+    words: str
+    x: float
+    y: float
+    colour: str = INK
+
+
+SIDES = (("left", 1), ("right", -1), ("center", 0)), (("bottom", 1), ("top", -1), ("center", 0))
+DISTANCES = (6, 15, 27, 42, 60, 80)  # points
+FAR = 20  # points: from there on a thin line leads to the point
+SPARE = 2  # pixels around words
+
+
+def write_labels(axes: "Axes", labels: Sequence[Label], size: float = 9) -> None:
+    """Write words beside their points, where they cover no line, no point and no other words.
+
+    To be called when all else is drawn: it goes by where that stands on the page.
+    """
+    import numpy as np
+    from matplotlib.text import Text
+
+    figure: Any = axes.figure
+    figure.draw_without_rendering()  # which decides where the axes lie
+    renderer = figure.canvas.get_renderer()
+    taken = [Text.get_window_extent(text, renderer) for text in axes.texts]
+    if (legend := axes.get_legend()) is not None:
+        taken.append(legend.get_window_extent(renderer))
+    dots = np.concatenate([np.empty((0, 2)), *map(_dots, axes.lines)])
+
+    def covers(box: "Bbox") -> float:
+        inside = ((box.min < dots) & (dots < box.max)).all(axis=1)
+        outside = not (axes.bbox.x0 <= box.x0 and box.x1 <= axes.bbox.x1 and axes.bbox.y0 <= box.y0)
+        return float(sum(map(box.overlaps, taken)) * 1000 + outside * 500 + inside.sum())
+
+    for label in labels:
+        best = None
+        for far, (ha, dx), (va, dy) in product(DISTANCES, *SIDES):
+            if not (dx or dy):
+                continue
+            leads = {"arrowstyle": "-", "lw": 0.6, "color": label.colour, "shrinkB": 3} if far > FAR else None
+            note = axes.annotate(
+                label.words,
+                (label.x, label.y),
+                xytext=(dx * far, dy * far),
+                textcoords="offset points",
+                ha=ha,
+                va=va,
+                color=label.colour,
+                size=size,
+                arrowprops=leads,
+                in_layout=False,
+            )
+            note.update_positions(renderer)
+            box = Text.get_window_extent(note, renderer).padded(SPARE)  # without the line to the point
+            cost = covers(box)
+            if best is None or cost < best[0]:
+                if best is not None:
+                    best[1].remove()
+                best = cost, note, box
+            else:
+                note.remove()
+            if not cost:
+                break
+        if best is not None:
+            taken.append(best[2])
+
+
+def _dots(line: Any) -> Any:
+    """Where a line runs on the page, a point every few pixels."""
+    import numpy as np
+
+    corners = line.get_transform().transform(np.column_stack([line.get_xdata(), line.get_ydata()]))
+    corners = corners[np.isfinite(corners).all(axis=1)]
+    if len(corners) < 2:
+        return corners
+    steps = np.hypot(*np.diff(corners, axis=0).T)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    places = np.arange(0.0, along[-1] + 3, 3)
+    return np.column_stack([np.interp(places, along, corners[:, i]) for i in (0, 1)])

@@ -3,7 +3,7 @@
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
-from .figure import MARKED, NORMAL, STRING, check_file, page
+from .figure import BLUE, INK, MARKED, check_file, page
 
 if TYPE_CHECKING:
     from ..fit.fitting import Fit
@@ -21,10 +21,10 @@ def save(fit: "Fit", head: str, path: str, force: bool) -> None:
     with page(path, force) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
         end = 1.06 * float(max(at.x))
-        line.plot([0, end], [at.intercept, at.intercept + at.slope * end], color=NORMAL, lw=1.5)
-        bars: Any = {"fmt": "o", "ms": 5, "capsize": 3, "lw": 1.2, "color": STRING}
+        line.plot([0, end], [at.intercept, at.intercept + at.slope * end], color=BLUE, lw=1.5)
+        bars: Any = {"fmt": "o", "ms": 5, "capsize": 3, "lw": 1.2, "color": INK}
         line.errorbar(at.x, at.y, yerr=at.u_y, xerr=at.u_x, **bars)
-        rest.axhline(0, color=NORMAL, lw=1.5)
+        rest.axhline(0, color=BLUE, lw=1.5)
         rest.errorbar(at.x, at.residual, yerr=at.u_residual, **bars)
         for run, x, y in zip(fit.used, at.x, at.y, strict=True) if len(fit.used) <= MARKED else ():
             number = ",".join(map(str, run.rows))
@@ -38,7 +38,7 @@ def save(fit: "Fit", head: str, path: str, force: bool) -> None:
                 "" if name in fit.values else ", given" if name in fit.known.values else ", as none is needed"
             )
             said.append(f"{label} = {shown(fit.estimate.values[name], spread)} {unit}{why}")
-        line.text(0.03, 0.95, "\n".join(said), transform=line.transAxes, va="top", color=NORMAL)
+        line.text(0.03, 0.95, "\n".join(said), transform=line.transAxes, va="top", color=BLUE)
         line.set_ylabel("$T_h - T_l = (m_h - m_l)\\,g - a\\,(m_h + m_l)$  (N)")
         rest.set_ylabel("residual (N)")
         rest.set_xlabel("acceleration $a$ (m/s²)")

@@ -2,12 +2,12 @@
 
 from typing import TYPE_CHECKING
 
-from .figure import FRICTION, NORMAL, STRING, WEIGHT, page
+from .figure import BLUE, GREEN, INK, PURPLE, RED, page
 
 if TYPE_CHECKING:
     from ..tradeoff.measure import Tradeoff
 
-FAMILY_COLOURS = (NORMAL, FRICTION, WEIGHT, "#8a5a9e", STRING)
+FAMILY_COLOURS = (BLUE, RED, GREEN, PURPLE, INK)
 MARKERS = "xPs^Do*v"
 
 
@@ -31,7 +31,7 @@ def save(outcome: "Tradeoff", path: str, force: bool) -> None:
         arithmetic.axhline(MARGIN, color="#999999", lw=0.8, ls=":", label=f"{MARGIN} ulp")
         arithmetic.set_ylabel("worst error (ulp)")
         for elements in rest:
-            kinds = (("elements", NORMAL), ("extrapolated", FRICTION))
+            kinds = (("elements", BLUE), ("extrapolated", RED))
             for way, (label, colour) in zip(marches, kinds, strict=True):
                 if way:
                     elements.plot(*zip(*way, strict=True), color=colour, marker=".", label=label)
