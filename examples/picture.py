@@ -13,7 +13,7 @@ from atwood_cli.solver.answers import Answers
 def picture() -> str:
     """The main job's output as SVG."""
     console = Console(record=True, width=88, file=io.StringIO(), force_terminal=True, highlight=False)
-    print_table(Answers(Scene.read({"m1": "1", "m2": "3", "mu": "0.3"})), console)
+    print_table(Answers(Scene.read({"m1": "1", "m2": "3", "mu": "0.3"})), console=console)
     return console.export_svg(title="atwood solve --m1 1 --m2 3 --mu 0.3", unique_id="atwood")
 
 

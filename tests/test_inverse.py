@@ -460,7 +460,7 @@ LAB = ["solve", "--m1", "1", "--m2", "3", "--a", "1.00(1)", "--R", "10cm", "--dr
 def test_the_table_has_them_in_a_group_of_their_own(atwood: Atwood) -> None:
     ran = atwood(*LAB)
     assert (ran.status, ran.err) == (0, "")
-    assert "wrap = 180°, a = 1.00 ± 0.01 m/s², drop = 2 m\n" in ran.out
+    assert "wrap = 180°, a = 1.00 ± 0.01 m/s²,\ndrop = 2 m\n" in ran.out
     assert ", M = " not in ran.out.splitlines()[0]
     rows = [line.split("│")[1:4] for line in ran.out.splitlines() if line.startswith("│")]
     assert [[cell.strip() for cell in row] for row in rows][-4:] == [

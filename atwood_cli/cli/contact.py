@@ -2,8 +2,10 @@
 
 import sys
 from collections.abc import Mapping
+from decimal import Decimal
 from typing import Annotated
 
+from ..arithmetic.rounding import tidy
 from ..model.scene import Scene, read_digits
 from ..solver.answers import Answers
 from ..solver.contact import Contact
@@ -48,13 +50,14 @@ Profile = Annotated[
 Elements = Annotated[
     str | None,
     option(
-        "Arc",
+        "String elements",
         metavar="N",
         help="Instead, solve the arc by N elements of string, in doubles, beside the exact values.",
     ),
 ]
 Extrapolate = Annotated[
-    bool, option("Arc", "--extrapolate", help="Extrapolate from N/2 and N elements (Richardson).")
+    bool,
+    option("String elements", "--extrapolate", help="Extrapolate from N/2 and N elements (Richardson)."),
 ]
 
 RULES = (
@@ -74,7 +77,7 @@ COLUMN_UNITS = {
 HELP = """Show what acts along the arc of contact, and that it adds up.
 
 Examples:
-  atwood contact --m1 1 --m2 3 --mu 0.3 --digits 6
+  atwood contact --m1 1 --m2 3 --mu 0.3
   atwood contact --m1 1 --m2 3 --M 10 --mu 0.3 --profile least
   atwood contact --m1 1 --m2 3 --mu 0.3 --elements 1000 --extrapolate
   atwood contact --m1 1 --m2 200 --M inf --mu 0.2 --wrap 2.5turn --csv
@@ -98,6 +101,8 @@ def contact(
     options = dict(locals())
     check([ONE_FORM, FIGURE_TO_REPLACE], options)
     answers = Answers(Scene.read(given), read_digits(digits))
+    if not (json or csv):
+        answers = answers.shown
     check(RULES, options)
     if elements is not None:
         forms = _forms_of_elements(answers, march_elements(answers, elements, extrapolate))
@@ -150,7 +155,10 @@ def _print_arc(answers: Answers, arc: Contact) -> None:
     page = Page()
     page.head(answers)
     heads = [f"{name.partition('_per_')[0]} ({COLUMN_UNITS[name]})" for name in arc.points[0]]
-    columns = [aligned(cell(point[name]) for point in arc.points) for name in arc.points[0]]
+    columns = [
+        aligned(cell(tidy(Decimal(point[name])) if name == "angle" else point[name]) for point in arc.points)
+        for name in arc.points[0]
+    ]
     page.table([for_stream(head, sys.stdout) for head in heads], [list(zip(*columns, strict=True))])
     names, forces = zip(*((name, row) for name, row in arc.balance.items() if "x" in row), strict=True)
     xs, ys = (aligned(cell(force[axis]) for force in forces) for axis in "xy")

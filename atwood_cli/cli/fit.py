@@ -241,6 +241,7 @@ class _Forms:
             if any(values := [cell(self.values[name]) for name in self.only]):
                 print(*values, sep="\n")
             return
+        from .help import command_lines
         from .page import Page
 
         page = Page()
@@ -253,7 +254,9 @@ class _Forms:
         for note in self.notes:
             page.say(note)
         if command := prediction_of(self.fit, self.inputs):
-            page.say(f"To predict: {command}")
+            page.say("To predict:")
+            for line in command_lines(command, page.width):
+                page.line(line)
 
     def _tables(self, page: "Page") -> None:
         from ..fit.results import results

@@ -2,20 +2,22 @@
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from itertools import chain
+from itertools import chain, zip_longest
 from shutil import get_terminal_size
 from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
 from ..solver.answers import Answers
 from ..solver.messages import verdict
-from .text import describe, for_stream, scene_record
+from .text import describe, for_stream, wrapped
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 T = TypeVar("T")
 
+PIPED = 100
+"""Columns of text where there is no terminal."""
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 
 
@@ -31,12 +33,16 @@ class Page:
             highlight=False, force_terminal=False if plain else None, width=width, height=height
         )
         self.room = self.console.width if self.console.is_terminal else None
+        self.width = self.room or PIPED
 
     def say(self, words: str, style: str = "") -> None:
-        """A sentence: piped it is a line, on a terminal its lines break between words."""
-        from rich.text import Text
+        """A sentence, in lines no longer than the terminal; piped, than a page."""
+        for line in wrapped(for_stream(words, sys.stdout), self.width):
+            self.line(line, style)
 
-        self.console.print(Text(for_stream(words, sys.stdout), style), soft_wrap=self.room is None)
+    def lines(self, words: str) -> int:
+        """How many lines a sentence takes."""
+        return len(wrapped(for_stream(words, sys.stdout), self.width))
 
     def line(self, words: str, style: str = "") -> None:
         """A line as it is."""
@@ -47,20 +53,20 @@ class Page:
     def head(self, answers: Answers) -> None:
         """The scene and the verdict."""
         scene, motion, known = answers.case.scene, answers.case.motion, answers.uncertainties
-        self.say(describe(scene, scene_record(scene, motion), known.given if known else {}))
+        self.say(describe(scene, motion, known.given if known else {}))
         self.say(verdict(answers), f"bold {REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]], keys: int = 1) -> None:
         """A table, with a line between groups of rows, and as wide as its numbers ask.
 
-        Columns that a terminal has no room for go into a table below, beside the first ``keys`` again.
+        Columns for which there is no room go into a table below, beside the first ``keys`` again.
         """
         from rich import box
         from rich.table import Table
         from rich.text import Text
 
         fit = len(columns)
-        while self.room and fit > keys + 1 and table_width(columns[:fit], groups) > self.room:
+        while fit > keys + 1 and table_width(columns[:fit], groups) > self.width:
             fit -= 1
         if fit < len(columns):
             for part in (slice(keys, fit), slice(fit, None)):
@@ -71,15 +77,18 @@ class Page:
         for group in groups:
             # One row a group, its lines joined: rich takes five times as long over a row a line.
             table.add_row(*(Text("\n".join(column)) for column in zip(*group, strict=True)))
-        room = self.console.width
-        self.console.width = max(room, table_width(columns, groups))
+        width = self.console.width
+        self.console.width = max(width, table_width(columns, groups))
         self.console.print(table)
-        self.console.width = room
+        self.console.width = width
 
 
 def table_width(columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]]) -> int:
     """The width of the table with those columns, computed ten times as fast as by rich."""
-    rows = [columns, *chain.from_iterable(groups)]
+    rows = [
+        *zip_longest(*(column.split("\n") for column in columns), fillvalue=""),
+        *chain.from_iterable(groups),
+    ]
     return 1 + sum(3 + max(len(row[i]) for row in rows) for i in range(len(columns)))
 
 

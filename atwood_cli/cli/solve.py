@@ -10,7 +10,7 @@ from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from ..model.scene import read_digits
 from ..solver.answers import Answers
-from ..solver.messages import notes, reasons
+from ..solver.messages import conditions, notes, reasons, remarks
 from ..solver.reading import read_answers
 from .options import (
     COULD_NOT,
@@ -52,6 +52,14 @@ Only = Annotated[
         help="Print only this quantity, by name or symbol; repeatable, or a,b.",
     ),
 ]
+All = Annotated[
+    bool,
+    option(
+        "Output",
+        "--all",
+        help="Show all quantities, and why others are missing, not just those that the scene is about.",
+    ),
+]
 Budget = Annotated[
     bool,
     option("Output", "--budget", help="Also print each uncertain input's share of every result's variance."),
@@ -70,6 +78,10 @@ Markdown = Annotated[
 ]
 
 RULES = (
+    *(
+        Rule("all", name, f"is of the table, and has no say beside {flag(name)}; leave one of them out")
+        for name in ("json", "csv", "only", "explain")
+    ),
     Rule("markdown", "explain", "needs --explain", without=True),
     *(
         Rule("explain", name, f"has no part in {flag(name)}; leave one of them out")
@@ -88,7 +100,7 @@ HELP = """Solve one scene: acceleration, tensions, friction, critical masses.
 
 Examples:
   atwood solve --m1 1 --m2 3 --mu 0.3
-  atwood solve --m1 250g --m2 300g --M 100g --R 5cm --digits 6
+  atwood solve --m1 250g --m2 300g --M 100g --R 5cm --all
   atwood solve --m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --json
   atwood solve --m1 1 --m2 3 --M 10 --only acceleration --only mu_verge
   atwood solve --m1 '1.000(2)' --m2 3+/-0.01 --M 10 --budget
@@ -100,6 +112,16 @@ Any number may have its standard uncertainty, as 1.000+/-0.002 or, in quotes for
 Results then have theirs, to first order, and a table ends each value at the second digit of it,
 whatever --digits.
 """
+LISTED = "\n".join(
+    [
+        "Quantities, for --only:",
+        *(
+            f"{name}\t{about.symbol}{f' ({about.unit})' * bool(about.unit)}: {about.meaning}"
+            for name, about in QUANTITIES.items()
+        ),
+        "regime\tno-slip, verge or slip",
+    ]
+)
 
 
 @takes_scene
@@ -113,6 +135,7 @@ def solve(
     json: AsJson = False,
     csv: AsCsv = False,
     only: Only = None,
+    all: All = False,  # noqa: A002 - as the option is called
     budget: Budget = False,
     explain: Explain = False,
     markdown: Markdown = False,
@@ -127,17 +150,17 @@ def solve(
     if explain:
         print_explanation(answers, markdown)
         return DONE
-    say(*show(_forms(answers, names, budget, bare), json, csv, bare=bool(names)))
-    return COULD_NOT if bare and not all(cell(answers[name]) for name in names) else DONE
+    say(*show(_forms(answers, names, bare, budget, all), json, csv, bare=bool(names)))
+    return COULD_NOT if bare and "" in [cell(answers[name]) for name in names] else DONE
 
 
-def _forms(answers: Answers, only: Sequence[str], budget: bool, bare: bool) -> Forms:
+def _forms(answers: Answers, only: Sequence[str], bare: bool, budget: bool, whole: bool) -> Forms:
     names = only or answers.names
     return Forms(
         json=lambda: _record(answers, only, budget),
         records=lambda: [_line(answers, names)],
-        page=lambda: print_only(answers, only) if only else print_table(answers, budget=budget),
-        notes=lambda: [*(_beside_bare(answers, names) if bare else ()), *reasons(answers)],
+        page=lambda: print_only(answers, only) if only else print_table(answers, whole, budget),
+        notes=lambda: [*(_beside_bare(answers, only) if bare else ()), *reasons(answers)],
     )
 
 
@@ -175,47 +198,38 @@ def _beside_bare(answers: Answers, only: Sequence[str]) -> list[str]:
     ]
 
 
-UNCERTAIN_DIGITS = 6
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
 
-def print_table(answers: Answers, console: "Console | None" = None, budget: bool = False) -> None:
-    """The scene, the verdict, the quantities that exist, the notes, and the budget if asked for."""
+def print_table(
+    answers: Answers, whole: bool = False, budget: bool = False, console: "Console | None" = None
+) -> None:
+    """The scene, the verdict, the quantities that it is about, or all that exist, notes, and the budget."""
     from .page import Page, table_width
 
-    page, groups, columns = Page(console), _rows(answers), list(COLUMNS)
-    shorter = _in_sentences(answers)
-    _, *others = notes(shorter)
-    page.head(shorter)
+    answers, page, columns = answers.shown, Page(console), list(COLUMNS)
+    names = answers.names[1:] if whole else answers.main
+    groups = _rows(answers, names)
+    page.head(answers)
     while page.room and table_width(columns, groups) > page.room:
         columns.pop()
         groups = [[row[: len(columns)] for row in group] for group in groups]
     if groups and "Unit" in columns:
         page.table(columns, groups)
     else:  # no number without its unit: a plain line a quantity
-        for name, value, unit, *_ in chain.from_iterable(_rows(answers)):
-            page.console.out(f"{name} = {value.lstrip()} {unit}".rstrip())
-    for note in others:
+        for name, value, unit, *_ in chain.from_iterable(_rows(answers, names)):
+            page.say(f"{name} = {value.lstrip()} {unit}".rstrip())
+    for note in [*remarks(answers), *(conditions(answers) if whole else ()), *reasons(answers)]:
         page.say(note)
     if budget:
-        _print_budget(page, answers)
+        _print_budget(page, answers, names)
 
 
-def _in_sentences(answers: Answers) -> Answers:
-    """The answers as sentences state them: of what is uncertain, a double's seventeen digits are too many."""
-    if answers.uncertainties is None or answers.digits is not None:
-        return answers
-    case = answers.case
-    shorter = Answers(case.scene, UNCERTAIN_DIGITS, case.motion, answers.uncertainties)
-    _ = [_with_uncertainty(shorter, name) for name in shorter.names[1:]]
-    return shorter
-
-
-def _rows(answers: Answers) -> list[list[list[str]]]:
-    """The cells of the table, a row for each quantity that exists, by group."""
+def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
+    """The cells of the table, a row for each of the quantities that exists, by group."""
     from .page import aligned
 
-    values = {name: shown for name in answers.names[1:] if (shown := _with_uncertainty(answers, name))}
+    values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
         about = QUANTITIES[name]
@@ -234,12 +248,12 @@ def _with_uncertainty(answers: Answers, name: str) -> str:
     return with_uncertainty(partial(answers.cut, name), u) if u else shown
 
 
-def _print_budget(page: "Page", answers: Answers) -> None:
+def _print_budget(page: "Page", answers: Answers, names: Sequence[str]) -> None:
     """By quantity, each uncertain input's share of the variance."""
     from .page import aligned
 
     page.say("Each input's share of the variance, in percent:")
-    shares = {name: one for name in answers.names[1:] if (one := answers.budget(name, to_place(-1)))}
+    shares = {name: one for name in names if (one := answers.budget(name, to_place(-1)))}
     inputs = list(answers.uncertainties.given) if answers.uncertainties else []
     columns = [aligned(str(one[x]) for one in shares.values()) for x in inputs]
     rows = ([name, *cells] for name, *cells in zip(shares, *columns, strict=True))
@@ -257,6 +271,7 @@ def print_explanation(answers: Answers, markdown: bool) -> None:
     from ..derivation.typeset import as_markdown, as_text
     from .page import Page
 
+    answers = answers.shown
     scene, steps = describe(answers.case.scene), explain(answers)
     if markdown:
         for line in as_markdown(scene, steps):

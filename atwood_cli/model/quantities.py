@@ -61,6 +61,8 @@ FROM_MOTION: dict[str | None, tuple[str, ...]] = {
 MEASURED_NAMES = tuple(chain.from_iterable(FROM_MOTION.values()))
 NAMES = ("regime", *(name for name in QUANTITIES if name not in MEASURED_NAMES))
 """What every scene has."""
+MAIN = ("acceleration", "tension_1", "tension_2", "mu_verge", "friction_force")
+"""What every scene is about."""
 
 STANDARD = (
     "regime",

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable
+from copy import copy
 from decimal import Decimal
 from fractions import Fraction
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.interval import LARGEST_EXPONENT
+from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import EXACT, Irrational
 from ..arithmetic.rounding import (
     Rounding,
@@ -22,7 +24,7 @@ from ..arithmetic.rounding import (
 )
 from ..model.case import Case
 from ..model.machine import Machine, Undetermined
-from ..model.quantities import FROM_MOTION, NAMES
+from ..model.quantities import FROM_MOTION, MAIN, NAMES
 from ..model.scene import UNMEASURED, Motion, Scene
 
 if TYPE_CHECKING:
@@ -30,6 +32,8 @@ if TYPE_CHECKING:
     from .uncertainty import Uncertainties
 
 DOUBLE_DIGITS = 17
+SHOWN_DIGITS = 6
+"""Significant digits of tables and sentences, unless others are asked for."""
 
 TOO_LARGE = f"beyond 10^{LARGEST_EXPONENT}, the largest number written out"
 ABOVE_DOUBLES = "beyond the range of doubles; ask for digits (--digits 17) to see it"
@@ -53,13 +57,28 @@ class Answers:
         uncertainties: Uncertainties | None = None,
     ) -> None:
         self.case = Case(scene, motion)
-        self.digits = digits
         self.uncertainties = uncertainties
-        self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
+        self._round_to(digits)
+
+    def _round_to(self, digits: int | None) -> None:
+        self.digits = digits
+        self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
         self._values: dict[str, Any] = {"regime": self.case.regime}
         self.reasons: dict[str, str] = {}
         self.unsure: dict[str, str] = {}
+
+    def to(self, digits: int | None) -> Answers:
+        """The same quantities to so many digits, what was computed for these with them."""
+        other = copy(self)
+        vars(other).pop("shown", None)
+        other._round_to(digits)
+        return other
+
+    @lazy
+    def shown(self) -> Answers:
+        """The same as tables and sentences show them: to a person, all digits of a double are too many."""
+        return self.to(SHOWN_DIGITS) if self.digits is None else self
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -67,6 +86,25 @@ class Answers:
         motion = self.case.motion
         drop = "drop" if motion.drop is not None else None
         return (*NAMES, *FROM_MOTION.get(motion.finds, ()), *FROM_MOTION.get(drop, ()))
+
+    @property
+    def main(self) -> tuple[str, ...]:
+        """The quantities that the scene is about: what a table shows unless all are asked for."""
+        case, scene = self.case, self.case.scene
+        has_mu = scene.mu is not None
+        bounded = has_mu and "friction_force" in [name for name in MAIN if self[name] is None]
+        also = {
+            "friction_force_min": bounded,
+            "friction_force_max": bounded,
+            "axle_force": case.axle_friction is not None and case.ends_hang_down,
+            "torque": scene.R is not None,
+            "rim_acceleration": case.regime == "slip",
+            "angular_acceleration": scene.R is not None,
+            "critical_pulley_mass": has_mu,
+            "critical_heavier_mass": has_mu and case.pulley_known,
+            "least_wrap": has_mu and not scene.wrap.is_half_turn,
+        }
+        return tuple(name for name in self.names[1:] if also.get(name, name in MAIN or name not in NAMES))
 
     @property
     def asked(self) -> Container[str]:
@@ -141,7 +179,7 @@ class Answers:
         return self._settle(quantity, self.round)
 
     def _settle(self, quantity: OnMachine, round_: Rounding[Any]) -> float | Decimal:
-        digits = self.digits or DOUBLE_DIGITS
+        digits = max(self.digits or 0, DOUBLE_DIGITS)  # so that fewer are had from what doubles took
         value: float | Decimal = settle(self._on_machines(quantity), round_, digits)
         return value
 

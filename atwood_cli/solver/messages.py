@@ -2,12 +2,12 @@
 
 from collections import Counter
 from collections.abc import Mapping
-from decimal import Decimal
+from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from fractions import Fraction
 from math import inf
 
 from ..arithmetic.interval import LARGEST_EXPONENT
-from ..arithmetic.rounding import as_typed, is_infinite, text, to_double, to_side
+from ..arithmetic.rounding import as_typed, is_infinite, text, to_digits, to_double, to_side
 from ..model.case import Case
 from ..model.units import MAX_DIGITS, MAX_MAGNITUDE
 from .answers import DOUBLE_DIGITS, Answers
@@ -15,7 +15,7 @@ from .answers import DOUBLE_DIGITS, Answers
 
 def notes(answers: Answers) -> list[str]:
     """Sentences on the regime and why, on conditions (36), on what is missing and what is in doubt."""
-    return [verdict(answers), *_remarks(answers), *reasons(answers)]
+    return [verdict(answers), *remarks(answers.shown), *conditions(answers.shown), *reasons(answers)]
 
 
 def reasons(answers: Answers) -> list[str]:
@@ -41,6 +41,7 @@ def reasons_at(counted: Mapping[tuple[str, str], int], points: int) -> list[str]
 
 def verdict(answers: Answers) -> str:
     """What the string does, and why, in a sentence."""
+    answers = answers.shown
     case, scene = answers.case, answers.case.scene
     heavy = as_typed(case.heavy)
     if case.sign == 0:
@@ -50,9 +51,11 @@ def verdict(answers: Answers) -> str:
     if case.regime == "verge" and not scene.mu:
         return "Slips on any pulley that has mass, for want of friction; the values are for one without."
     if case.regime == "verge":
+        massless = answers.with_pulley(Fraction(0))
         return (
-            "On the verge of slipping if the pulley has the critical mass,"
-            f" {_say(answers, 'critical_pulley_mass')} kg: on a heavier one the string slips."
+            "On the verge of slipping: as M is not given, this is for the critical pulley mass,"
+            f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on one"
+            f" without mass the acceleration is {_say(massless, 'acceleration')} m/s²."
         )
     if case.slide_measured and scene.mu is None:
         return f"Slides over the locked pulley, with mu_k = {_say(answers, 'mu_k')}."
@@ -109,14 +112,9 @@ def _string_at_rest(answers: Answers) -> str:
     return f" The string holds: mu = {as_typed(mu)}, and {verge} is enough."
 
 
-def _remarks(answers: Answers) -> list[str]:
-    return [
-        *odd_inertia(answers),
-        *kinetic(answers),
-        *conditions(answers),
-        *holding_again(answers),
-        *open_range(answers),
-    ]
+def remarks(answers: Answers) -> list[str]:
+    """What else there is to say of the scene."""
+    return [*odd_inertia(answers), *kinetic(answers), *holding_again(answers), *open_range(answers)]
 
 
 def odd_inertia(answers: Answers) -> list[str]:
@@ -211,17 +209,20 @@ def conditions(answers: Answers) -> list[str]:
 
 def _apart(answers: Answers, name: str, other: Fraction, above: bool, up: bool) -> str:
     """A threshold, rounded up or down, with digits enough to show on which side of another number it is."""
-    finer, digits = answers, answers.digits or DOUBLE_DIGITS
+    finer, least = answers, answers.digits or DOUBLE_DIGITS
+    digits = least
     while not is_infinite(value := finer[name]):
-        near, shown = text(value), text(finer.bound(name, up))
-        # Beyond any input it is above; a fraction of it might have millions of digits.
-        huge = Decimal(shown).adjusted() > MAX_MAGNITUDE
-        if huge or all(Fraction(one) != other and (Fraction(one) > other) == above for one in (near, shown)):
-            return shown
+        near, shown = Decimal(text(value)), Decimal(text(finer.bound(name, up)))
+        if shown.adjusted() > MAX_MAGNITUDE:
+            return text(shown)  # beyond any input; a fraction of it might have millions of digits
+        for kept in range(least, digits + 1):
+            pair = to_digits(kept)(near), to_digits(kept, ROUND_CEILING if up else ROUND_FLOOR)(shown)
+            if all(Fraction(one) != other and (Fraction(one) > other) == above for one in pair):
+                return text(pair[1])
         if digits == MAX_DIGITS:  # the same number, or as good as
             break
         digits = min(2 * digits, MAX_DIGITS)
-        finer = Answers(answers.case.scene, digits)
+        finer = answers.to(digits)
     return _bound(answers, name, up)
 
 
