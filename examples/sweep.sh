@@ -3,7 +3,7 @@
 set -eu
 
 echo "the paper's masses on heavier and heavier pulleys:"
-atwood sweep --m1 1 --m2 3 --mu 0.3 --M 0:50:6 --digits 5 --only regime --only acceleration --only mu_verge
+atwood sweep --m1 1 --m2 3 --mu 0.3 --M 0:50:6 --only regime --only acceleration --only mu_verge
 
 echo "critical pulley mass by mu, for other programs:"
 atwood sweep --m1 1 --m2 3 --mu 0.1:0.35:6 --only critical_pulley_mass --digits 5 --csv 2>&1

@@ -108,11 +108,19 @@ def misplaced(page: Any) -> list[str]:
     """What nobody could read on a page: words over words, or beyond its edge."""
     from matplotlib.text import Text
 
-    renderer = page.canvas.get_renderer()
-    page.draw_without_rendering()
-    words = [text for text in page.findobj(Text) if text.get_visible() and text.get_text().strip()]
-    boxes = [(text.get_text(), Text.get_window_extent(text, renderer)) for text in words]
-    boxes = [(text, box) for text, box in boxes if box.width and box.height]
+    boxes: list[tuple[str, Any]] = []
+    draw = Text.draw
+
+    def drawing(text: Any, renderer: Any) -> None:
+        draw(text, renderer)
+        if text.get_visible() and text.get_text().strip():
+            boxes.append((text.get_text(), Text.get_window_extent(text, renderer)))
+
+    Text.draw = drawing  # type: ignore
+    try:
+        page.draw(page.canvas.get_renderer())
+    finally:
+        Text.draw = draw  # type: ignore
     edge = page.bbox.padded(1)
     beyond = [text for text, box in boxes if not (edge.contains(*box.min) and edge.contains(*box.max))]
     over = [f"{one} | {other}" for (one, box), (other, at) in combinations(boxes, 2) if box.overlaps(at)]

@@ -189,6 +189,15 @@ def with_uncertainty(cut: Callable[[int], Decimal], u: Decimal) -> str:
     return "({:f} ± {:f})e{}".format(*(context.scaleb(x, -power) for x in pair), power)
 
 
+def tidy(value: Decimal) -> Decimal:
+    """The same number without trailing zeros, and without an exponent where it is readable without."""
+    context = decimal_context(WIDE, ROUND_HALF_EVEN)
+    short = context.normalize(value)
+    if len(short.as_tuple().digits) <= short.adjusted() < 16:
+        return context.quantize(short, Decimal(1))
+    return short
+
+
 def text(value: float | Decimal) -> str:
     """The shortest text that reads back to the same double; all the digits of a decimal."""
     mantissa, _, exponent = str(value).lower().partition("e")

@@ -1,35 +1,76 @@
 """The curves of a sweep, for a terminal or a file: what is drawn, and the regimes along it."""
 
-from collections.abc import Sequence
-from itertools import pairwise
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from ..arithmetic.rounding import is_infinite
+from ..arithmetic.rounding import is_infinite, tidy, to_digits
+from ..model.case import Case
 from ..model.quantities import QUANTITIES
-from ..model.scene import SceneError
-from ..solver.sweep import Row, Sweep, stated_point
+from ..model.scene import Scene, SceneError
+from ..solver.answers import Answers
+from ..solver.messages import reasons_at
+from ..solver.regimes import Change, changes, with_value
+from ..solver.sweep import Range, Sweep, point_in_units, stated_point
 
 MAX_CURVES = 6
 LARGEST_DRAWN = 1e100
+STEPS = 240
+"""Of a curve, so that it is smooth whatever the count of the table."""
+MARK_DIGITS, DRAWN_DIGITS = 3, 12
+AXES = {
+    "m1": ("mass", "m₁"),
+    "m2": ("mass", "m₂"),
+    "M": ("pulley mass", "M"),
+    "mu": ("friction coefficient", "μ"),
+    "mu_k": ("kinetic friction coefficient", "μₖ"),
+    "g": ("gravity", "g"),
+    "inertia": ("inertia factor", "β"),
+    "I": ("moment of inertia", "I"),
+    "R": ("radius", "R"),
+    "wrap": ("angle of wrap", "φ"),
+    "axle": ("friction of the axle", "f"),
+    "mu_verge": ("verge coefficient", "μ*"),
+}
+"""What axes call parameters, and quantities whose name says less, with their symbols."""
+BEGINS = {"slip": "slips", "no-slip": "holds", "verge": "on the verge"}
+
+
+class Mark(NamedTuple):
+    """A place on a curve at which the regime changes, and what begins there."""
+
+    x: float
+    y: float | None
+    words: str
 
 
 class Curve(NamedTuple):
-    """A quantity along a range, None where it does not exist; the regimes, and where they change."""
+    """A quantity along a range, None where it does not exist; there it may have bounds, from and to.
+
+    ``label`` says which of several it is, and ``symbols`` says it shortly.
+    """
 
     label: str
+    symbols: str
     xs: list[float]
     ys: list[float | None]
+    band: list[tuple[float | None, float | None]]
     regimes: list[str]
-    changes: list[int]
+    marks: list[Mark]
+
+    @property
+    def lines(self) -> list[list[float | None]]:
+        """The heights of all that is drawn."""
+        return [self.ys, [low for low, _ in self.band], [high for _, high in self.band]]
 
 
 class Picture(NamedTuple):
-    """Curves, and what their axes say."""
+    """Curves, what their axes say, and why something is missing."""
 
     x: str
     y: str
     log: bool
     curves: list[Curve]
+    notes: list[str]
 
 
 def check_drawable(sweep: Sweep, option: str, name: str) -> None:
@@ -41,54 +82,100 @@ def check_drawable(sweep: Sweep, option: str, name: str) -> None:
         raise SceneError(option, name, rule)
 
 
-def picture(sweep: Sweep, rows: Sequence[Row], option: str, name: str) -> Picture:
+def longest(sweep: Sweep) -> Range:
+    """The range of more points, along which curves run."""
+    return max(reversed(sweep.ranges), key=lambda range_: len(range_.points))
+
+
+def picture(sweep: Sweep, option: str, name: str, digits: int | None) -> Picture:
     """Curves of a quantity along the range of more points, one for each point of the other.
 
     Raises SceneError where numbers are too large to draw, ArithmeticError where there are none.
     """
-    x = max(reversed(sweep.ranges), key=lambda range_: len(range_.points))
-    parts: dict[str, list[Row]] = {}
-    for row in rows:
-        label = ", ".join(stated_point(other, point) for other, point in row.at.items() if other != x.name)
-        parts.setdefault(label, []).append(row)
-    xs = list(map(float, x.bare()))
-    curves = [
-        Curve(label, xs, [_drawn(row.values[name]) for row in part], regimes(part, x.name), _changes(part))
-        for label, part in parts.items()
-    ]
-    values = [*xs, *(y for curve in curves for y in curve.ys if y is not None)]
-    if len(values) == len(xs):
-        why = "; ".join({row.reasons[name]: None for row in rows})
+    x = longest(sweep)
+    reasons: dict[tuple[str, str], int] = {}
+    curves = [_curve(x, at, name, digits, reasons) for at in sweep.along(x)]
+    ys = [y for curve in curves for line in curve.lines for y in line if y is not None]
+    if not ys:
+        why = "; ".join(dict.fromkeys(reason for _, reason in reasons))
         raise ArithmeticError(f"{name} exists at no point, so there is nothing to draw: {why}")
-    if max(map(abs, values)) > LARGEST_DRAWN or (x.log and min(xs) < 1 / LARGEST_DRAWN):
+    xs = curves[0].xs
+    if max(map(abs, [*xs, *ys])) > LARGEST_DRAWN or (x.log and min(xs) < 1 / LARGEST_DRAWN):
         rule = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only"
         raise SceneError(option, name, rule)
-    about = QUANTITIES[name]
-    return Picture(with_unit(x.name, x.unit), with_unit(name, about.unit), x.log, curves)
+    titles = (axis_title(x.name, x.unit), axis_title(name, QUANTITIES[name].unit))
+    return Picture(*titles, x.log, curves, reasons_at(reasons, 1))
 
 
-def regimes(rows: Sequence[Row], along: str) -> list[str]:
-    """Each regime with the first and the last point at which it holds; it changes somewhere between two."""
-    starts = [0, *_changes(rows)]
-    ends = [*(i - 1 for i in starts[1:]), len(rows) - 1]
-    if len(starts) == 1:
-        return [rows[0].regime]
+def _curve(
+    x: Range, fixed: tuple[Scene, Mapping[str, Any]], name: str, digits: int | None, reasons: dict[Any, int]
+) -> Curve:
+    scene, at = fixed
+    corners = list(
+        changes(scene, x, DRAWN_DIGITS, what=lambda case: (case.regime, case.sign, case.axle_holds))
+    )
+    values = [*x.steps(STEPS), *(value for one in corners for value in (one.last, one.first))]
+    xs, ys, band = [], [], []
+    for value in sorted(set(values), reverse=x.ends[0] > x.ends[1]):
+        answers = Answers(with_value(scene, x.name, value))
+        xs.append(float(value))
+        ys.append(_drawn(answers[name]))
+        bounds = _bounds(answers, name)
+        band.append(bounds)
+        if answers[name] is None and bounds == (None, None):
+            reasons[name, answers.reasons[name]] = 1
+    marks = [
+        Mark(float(one.first), _height(one, xs, ys, band), _begins(x, one))
+        for one in corners
+        if one.before[0] != one.after[0]
+    ]
+    label = ", ".join(stated_point(other, point) for other, point in at.items())
+    symbols = ", ".join(f"{AXES[other][1]} = {point_in_units(other, point)}" for other, point in at.items())
+    return Curve(label, symbols, xs, ys, band, regimes(x, list(changes(scene, x, digits)), scene), marks)
+
+
+def _state(case: Case) -> tuple[str, int, bool]:
+    """Where this changes, a curve may have a corner."""
+    return case.regime, case.sign, case.axle_holds
+
+
+def _bounds(answers: Answers, name: str) -> tuple[float | None, float | None]:
+    """Between what the friction force lies: where it is one number, both are that."""
+    if name != "friction_force":
+        return None, None
+    if answers[name] is not None:
+        return _drawn(answers[name]), _drawn(answers[name])
+    return _drawn(answers["friction_force_min"]), _drawn(answers["friction_force_max"])
+
+
+def _height(
+    change: Change,
+    xs: Sequence[float],
+    ys: Sequence[float | None],
+    band: Sequence[tuple[float | None, float | None]],
+) -> float | None:
+    """Where on its curve a change is, as far as there is a curve on one side of it."""
+    beside = [i for i, x in enumerate(xs) if x in (float(change.first), float(change.last))]
+    heights = [y for i in beside for y in (ys[i], band[i][1]) if y is not None]
+    return heights[-1] if heights else None
+
+
+def _begins(along: Range, change: Change) -> str:
+    """What begins at a change, in a few words."""
+    number = tidy(to_digits(MARK_DIGITS)(change.first))
+    return f"{BEGINS[change.after[0]]} from {point_in_units(along.name, along.point(number))}"
+
+
+def regimes(along: Range, found: Sequence[Change], scene: Scene) -> list[str]:
+    """Each regime along a range, and up to where it holds."""
+    if not found:
+        return [Case(with_value(scene, along.name, along.ends[0])).regime]
     parts = []
-    for start, end in zip(starts, ends, strict=True):
-        first, last = (stated_point(along, rows[i].at[along]) for i in (start, end))
-        where = f"from {first} to {last}"
-        if start == end:
-            where = f"at {first}"
-        elif not start:
-            where = f"up to {last}"
-        elif end == len(rows) - 1:
-            where = f"from {first} on"
-        parts.append(f"{rows[start].regime} {where}")
-    return parts
-
-
-def _changes(rows: Sequence[Row]) -> list[int]:
-    return [i for i, (before, row) in enumerate(pairwise(rows), 1) if before.regime != row.regime]
+    for before, one in zip([None, *found], found, strict=False):
+        place = point_in_units(along.name, one.at)
+        where = "at" if one.at == (before.at if before else along.points[0]) else "up to"
+        parts.append(f"{one.before} {where} {f'{along.name} = ' * (before is None)}{place}")
+    return [*parts, f"{found[-1].after} beyond"]
 
 
 def _drawn(value: Any) -> float | None:
@@ -96,6 +183,13 @@ def _drawn(value: Any) -> float | None:
     return None if value is None or is_infinite(value) else float(value)
 
 
-def with_unit(name: str, unit: str) -> str:
-    """A name as axes and columns have it."""
-    return f"{name} ({unit})" if unit else name
+def axis_words(name: str) -> tuple[str, str]:
+    """What a parameter or a quantity is called, and its symbol."""
+    if name in AXES:
+        return AXES[name]
+    return name.rstrip("_12").replace("_", " "), QUANTITIES[name].symbol
+
+
+def axis_title(name: str, unit: str) -> str:
+    """What an axis says: name, symbol and unit."""
+    return f"{' '.join(axis_words(name))}{f' ({unit})' * bool(unit)}"

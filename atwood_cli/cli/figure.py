@@ -12,6 +12,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
 from itertools import product
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -88,7 +89,8 @@ class Label(NamedTuple):
 
 
 SIDES = (("left", 1), ("right", -1), ("center", 0)), (("bottom", 1), ("top", -1), ("center", 0))
-DISTANCES = (6, 15, 27, 42, 60, 80)  # points
+DISTANCES, WIDTHS = (6, 15, 27, 42, 60, 80, 110, 150), (1, 2, 3)  # points, and times as far to the side
+AWAY = 30  # points that weigh as much as a covered dot
 FAR = 20  # points: from there on a thin line leads to the point
 SPARE = 2  # pixels around words
 
@@ -109,42 +111,49 @@ def write_labels(axes: "Axes", labels: Sequence[Label], size: float = 9) -> None
         taken.append(legend.get_window_extent(renderer))
     dots = np.concatenate([np.empty((0, 2)), *map(_dots, axes.lines)])
 
-    def covers(box: "Bbox") -> float:
-        inside = ((box.min < dots) & (dots < box.max)).all(axis=1)
-        outside = not (axes.bbox.x0 <= box.x0 and box.x1 <= axes.bbox.x1 and axes.bbox.y0 <= box.y0)
-        return float(sum(map(box.overlaps, taken)) * 1000 + outside * 500 + inside.sum())
+    def place(label: Label, far: float, side: tuple[str, int], height: tuple[str, int], wide: int) -> Any:
+        """The words there, the room they take, the line that leads to their point, and what that covers."""
+        leads = {"arrowstyle": "-", "lw": 0.6, "color": label.colour, "shrinkB": 3} if far > FAR else None
+        note = axes.annotate(
+            label.words,
+            (label.x, label.y),
+            xytext=(side[1] * far * wide, height[1] * far),
+            textcoords="offset points",
+            ha=side[0],
+            va=height[0],
+            color=label.colour,
+            size=size,
+            arrowprops=leads,
+            in_layout=False,
+        )
+        note.update_positions(renderer)
+        box = Text.get_window_extent(note, renderer).padded(SPARE)  # without the line to the point
+        ends = axes.transData.transform((label.x, label.y)), np.mean([box.min, box.max], axis=0)
+        line = np.linspace(*ends, 60 if leads else 0)
+        beyond = not (axes.bbox.contains(*box.min) and axes.bbox.contains(*box.max))
+        crossed = sum(_inside(line, other).any() for other in taken)
+        unreadable = beyond + sum(map(box.overlaps, taken))
+        cost = 1000 * unreadable + 20 * crossed + _inside(dots, box).sum() + far * wide / AWAY
+        return cost, note, box, line
 
     for label in labels:
         best = None
-        for far, (ha, dx), (va, dy) in product(DISTANCES, *SIDES):
-            if not (dx or dy):
-                continue
-            leads = {"arrowstyle": "-", "lw": 0.6, "color": label.colour, "shrinkB": 3} if far > FAR else None
-            note = axes.annotate(
-                label.words,
-                (label.x, label.y),
-                xytext=(dx * far, dy * far),
-                textcoords="offset points",
-                ha=ha,
-                va=va,
-                color=label.colour,
-                size=size,
-                arrowprops=leads,
-                in_layout=False,
-            )
-            note.update_positions(renderer)
-            box = Text.get_window_extent(note, renderer).padded(SPARE)  # without the line to the point
-            cost = covers(box)
-            if best is None or cost < best[0]:
-                if best is not None:
-                    best[1].remove()
-                best = cost, note, box
-            else:
-                note.remove()
-            if not cost:
-                break
+        for far, side, height, wide in product(DISTANCES, *SIDES, WIDTHS):
+            if side[1] or height[1]:
+                here = place(label, far, side, height, wide)
+                best, *worse = sorted([best or here, here][best is None :], key=itemgetter(0))
+                for other in worse:
+                    other[1].remove()
+                if best[0] <= far / AWAY:  # as no place farther away is better
+                    break
         if best is not None:
             taken.append(best[2])
+            dots = np.concatenate([dots, best[3]])
+
+
+def _inside(dots: Any, box: "Bbox") -> Any:
+    """Which of some points of the page lie in a box."""
+    return ((box.min < dots) & (dots < box.max)).all(axis=1)
 
 
 def _dots(line: Any) -> Any:

@@ -1,7 +1,7 @@
 """Curves in the terminal: needs plotille (extra ``plot``), which sets the dots; the axes are drawn here."""
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 from itertools import groupby, pairwise
@@ -67,12 +67,12 @@ def _decades(low: float, high: float, most: int) -> list[Decimal]:
     return [Decimal(1).scaleb(power) for power in powers[:: ceil(len(powers) / most)]]
 
 
-def print_plot(page: Page, head: str, drawn: Picture, notes: Sequence[str]) -> None:
+def print_plot(page: Page, head: str, drawn: Picture) -> None:
     """The curves below their head, with dotted lines where regimes change; then the regimes and the notes."""
     page.say(head)
     height = min(HEIGHT, max(page.console.height - AROUND, LEAST_HEIGHT)) if page.room else HEIGHT
     _show(page, _lines(drawn, page.room or PIPE_WIDTH, height))
-    for note in [*_legend(drawn), *notes]:
+    for note in [*_legend(drawn), *drawn.notes]:
         page.say(note)
 
 
@@ -166,15 +166,14 @@ def _lines(drawn: Picture, room: int, height: int) -> list[str]:
 
     def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
         for curve in drawn.curves:
-            for i in curve.changes:
-                y = curve.ys[i]
+            for x, y, _ in curve.marks:
                 top = y_axis.dot(y) if several and y is not None else y_axis.dots
                 for dot in range(0, top, 3):
-                    canvas.point(x_axis.dot(curve.xs[i]), dot, color=MARK)
+                    canvas.point(x_axis.dot(x), dot, color=MARK)
         for number, curve in enumerate(drawn.curves):
             _draw_curve(canvas, curve, x_axis, y_axis, number, several)
 
-    ys = [y for curve in drawn.curves for y in curve.ys if y is not None]
+    ys = [y for curve in drawn.curves for line in curve.lines for y in line if y is not None]
     return _framed((drawn.x, drawn.y), (drawn.curves[0].xs, ys), (drawn.log, False), room, height, draw)
 
 
@@ -209,17 +208,19 @@ def _framed(
 
 def _draw_curve(canvas: Any, curve: Curve, x_axis: Axis, y_axis: Axis, number: int, several: bool) -> None:
     colour = COLOURS[number]
-    dots = [
-        None if y is None else (x_axis.dot(x), y_axis.dot(y)) for x, y in zip(curve.xs, curve.ys, strict=True)
-    ]
-    for dot in filter(None, dots):
-        canvas.point(*dot, color=colour)
-    for start, end in pairwise(dots):
-        if start and end:
-            canvas.line(*start, *end, color=colour)
-    there = [dot for dot in dots if dot]
-    if several and there:  # letters tell the curves apart without colour, each at its own place
-        canvas.point(*there[(2 * number + 1) * len(there) // 12], color=colour, marker=LETTERS[number])
+    for line in curve.lines:
+        dots = [
+            None if y is None else (x_axis.dot(x), y_axis.dot(y)) for x, y in zip(curve.xs, line, strict=True)
+        ]
+        for dot in filter(None, dots):
+            canvas.point(*dot, color=colour)
+        for start, end in pairwise(dots):
+            if start and end:
+                canvas.line(*start, *end, color=colour)
+        there = [dot for dot in dots if dot]
+        if several and there:  # letters tell the curves apart without colour, each at its own place
+            place = there[-1 - (2 * number + 1) * len(there) // 24]
+            canvas.point(*place, color=colour, marker=LETTERS[number])
 
 
 def _label(tick: Decimal) -> str:

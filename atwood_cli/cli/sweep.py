@@ -3,8 +3,9 @@
 import os
 import sys
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import groupby, product
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import Annotated, Any
 
@@ -12,9 +13,11 @@ from ..arithmetic.rounding import text
 from ..files import STREAM, stdout_into
 from ..model.quantities import QUANTITIES, STANDARD
 from ..model.scene import SceneError, read_digits
+from ..solver.answers import SHOWN_DIGITS
 from ..solver.messages import reasons_at
-from ..solver.sweep import Row, Sweep, read_sweep, solve_rows
-from .curves import check_drawable, picture, regimes, with_unit
+from ..solver.regimes import changes
+from ..solver.sweep import Row, Sweep, read_sweep, solve_rows, stated_point
+from .curves import MAX_CURVES, axis_words, check_drawable, longest, picture, regimes
 from .options import (
     DONE,
     ONE_FORM,
@@ -34,7 +37,7 @@ from .options import (
     takes_scene,
 )
 from .page import Page, aligned, watched
-from .text import Forms, cell, describe, for_stream, say, scene_record, show
+from .text import Forms, cell, for_stream, inputs_in_words, say, scene_record, show
 
 Plot = Annotated[
     str | None,
@@ -77,10 +80,10 @@ RULES = (
 HELP = """Solve a range of scenes: one or two options carry start:stop:count or start:stop:count:log.
 
 Examples:
-  atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3 --digits 6
+  atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3
   atwood sweep --m1 1 --m2 3 --M 1:1000:4:log --mu 0.2:0.4:3 --only regime
   atwood sweep --m1 100g:500g:5 --m2 300g --M 50g --csv
-  atwood sweep --m1 1 --m2 3 --M 0:60:61 --mu 0.3 --plot acceleration
+  atwood sweep --m1 1 --m2 3 --M 0:60:2 --mu 0.3 --plot acceleration
   atwood sweep --m1 1 --m2 3 --M 0:60:61 --figure a.svg mu_verge -o a.csv
 """
 
@@ -102,44 +105,30 @@ def sweep(
     check([ONE_FORM, FILE_TO_REPLACE], options)
     json, csv = _form_for(output, json, csv)
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
-    swept, precision = read_sweep(given), read_digits(digits)
+    precision = read_digits(digits)
+    swept = read_sweep(given, precision)
     asked = {"plot": plot, "figure": figure and figure[1]}
     drawn = {where: read_name(where, word) for where, word in asked.items() if word is not None}
     for where, name in drawn.items():
         check_drawable(swept, where, name)
-    plot = drawn.get("plot")
     check(RULES, {**options, "json": json, "csv": csv})
     check_extras(plot, figure and figure[0], force)
     if figure and output and os.path.realpath(figure[0]) == os.path.realpath(output):
         raise SceneError("figure", figure[0], "is the file of --output; name another")
-    if plot is not None:
-        names = [plot]
-    wanted = list(dict.fromkeys([*names, *drawn.values()]))
-    reasons: Reasons = Counter()
-    solved = _noted(solve_rows(swept, wanted, precision), reasons)
     with stdout_into(output, force):
-        if not (csv and output is None and sys.stdout.isatty()):  # where rows would run into the bar
-            solved = watched(solved, swept.total)
-        rows: Iterable[Row] = solved if csv else list(solved)
         if figure is not None:
             from .sweep_figure import save
 
-            rows = held = list(rows)
-            save(picture(swept, held, "figure", drawn["figure"]), _head(swept), figure[0], force)
-        aside = show(_forms(swept, rows, reasons, names, plot, _is_file(output)), json, csv)
+            save(
+                picture(swept, "figure", drawn["figure"], precision),
+                _caption(swept, drawn["figure"]),
+                figure[0],
+                force,
+            )
+        forms = _Forms(swept, names, precision, drawn.get("plot"), plain=_is_file(output))
+        aside = show(forms.forms(), json, csv)
     say(*aside)
     return DONE
-
-
-Reasons = Counter[tuple[str, str]]
-"""By quantity and why it has no value, at how many points."""
-
-
-def _noted(rows: Iterable[Row], reasons: Reasons) -> Iterator[Row]:
-    """The rows, while reasons are counted."""
-    for row in rows:
-        reasons.update(row.reasons.items())
-        yield row
 
 
 def _is_file(output: str | None) -> bool:
@@ -157,85 +146,144 @@ def _form_for(output: str | None, json: bool, csv: bool) -> tuple[bool, bool]:
     return suffix == ".json", suffix == ".csv"
 
 
-def _forms(
-    sweep: Sweep, rows: Iterable[Row], reasons: Reasons, names: Sequence[str], plot: str | None, plain: bool
-) -> Forms:
-    """``plain``: what is printed goes to a file, though stdout may be a terminal.
+class _Forms:
+    """A sweep in the forms in which it may be asked for; rows of JSON and CSV are written as they come.
 
-    Rows that come one by one, for CSV, are those of which no other form can be had.
+    ``plain``: what is printed goes to a file, though stdout may be a terminal.
     """
 
-    def notes() -> list[str]:
-        """Why values are missing, and at how many points."""
-        counted = Counter({about: count for about, count in reasons.items() if about[0] in names})
-        return reasons_at(counted, sweep.total)
+    def __init__(
+        self, sweep: Sweep, names: Sequence[str], digits: int | None, plot: str | None, plain: bool
+    ) -> None:
+        self.sweep, self.names, self.digits, self.plot, self.plain = sweep, names, digits, plot, plain
+        self.reasons: Counter[tuple[str, str]] = Counter()
 
-    def page() -> None:
-        if plot is None:
-            _print_table(sweep, list(rows), names, notes(), plain)
-        else:
+    def forms(self) -> Forms:
+        return Forms(
+            json=self._json, records=self._records, page=self._page, notes=lambda: list(self._notes())
+        )
+
+    def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
+        """The rows, while it is counted why values are missing."""
+        rows = solve_rows(self.sweep, names, digits)
+        for row in watched(rows, self.sweep.total) if watch else rows:
+            self.reasons.update(row.reasons.items())
+            yield row
+
+    def _notes(self) -> Iterator[str]:
+        """Why values are missing, and at how many points; to be asked when all rows are out."""
+        yield from reasons_at(self.reasons, self.sweep.total)
+
+    def _json(self) -> Mapping[str, object]:
+        ranges = {range_.name: range_.typed for range_ in self.sweep.ranges}
+        return {
+            "scene": scene_record(self.sweep.scene) | ranges,
+            "rows": self._records(),
+            "notes": self._notes(),
+        }
+
+    def _records(self) -> Iterator[dict[str, object]]:
+        # Where rows would run into the bar, there is none.
+        rows = self._rows(self.names, self.digits, watch=self.plain or not sys.stdout.isatty())
+        return ({**row.at, **{name: row.values[name] for name in self.names}} for row in rows)
+
+    def _page(self) -> None:
+        page, head = Page(plain=self.plain), ", ".join(_inputs(self.sweep).values())
+        if self.plot is not None:
             from .plot import print_plot
 
-            curves = picture(sweep, list(rows), "plot", plot)
-            print_plot(Page(plain=plain), _head(sweep), curves, notes())
+            print_plot(page, head, picture(self.sweep, "plot", self.plot, self.digits))
+        else:
+            self._print_table(page, head)
 
-    return Forms(
-        json=lambda: {
-            "scene": scene_record(sweep.scene) | _typed_ranges(sweep),
-            "rows": list(_records(rows, names)),
-            "notes": notes(),
-        },
-        records=lambda: _records(rows, names),
-        page=page,
-        notes=notes,
-    )
+    def _print_table(self, page: Page, head: str) -> None:
+        """The scene, its regimes, what is the same in all rows, a row a point, and the notes.
 
+        Columns without a value are left out.
+        """
+        sweep, names = self.sweep, list(self.names)
+        may_vary = sweep.scene.M is None and sweep.scene.mu is not None
+        rows = list(self._rows([*names, *[PULLEY] * may_vary], self.digits or SHOWN_DIGITS))
+        on_verge = any(row.regime == "verge" for row in rows)
+        if on_verge and PULLEY not in names:
+            names.append(PULLEY)
+        cells = {name: [cell(row.values[name]) for row in rows] for name in names}
+        shown = {name: column for name, column in cells.items() if any(column)}
+        same = {name: column[0] for name, column in shown.items() if len(set(column)) == 1}
+        above = [head, *_regimes(sweep, rows, self.digits)]
+        if on_verge and PULLEY not in same:
+            above.append(PULLEYS)
+        if once := [_stated(name, value) for name, value in same.items() if name != "regime"]:
+            above.append(f"In all rows: {', '.join(once)}.")
+        notes = list(self._notes())
+        for sentence in above:
+            page.say(sentence)
+        if len(same) < len(shown) or not shown:
+            varying = {name: column for name, column in shown.items() if name not in same}
+            self._print_rows(page, rows, varying, FRAME + sum(map(page.lines, [*above, *notes])))
+        for note in notes:
+            page.say(note)
 
-def _records(rows: Iterable[Row], names: Sequence[str]) -> Iterator[dict[str, object]]:
-    return ({**row.at, **{name: row.values[name] for name in names}} for row in rows)
-
-
-def _head(sweep: Sweep) -> str:
-    """The scene in one line, with ranges as typed."""
-    return describe(sweep.scene, _typed_ranges(sweep))
-
-
-def _typed_ranges(sweep: Sweep) -> dict[str, str]:
-    return {range_.name: range_.typed for range_ in sweep.ranges}
-
-
-def _print_table(
-    sweep: Sweep, rows: Sequence[Row], names: Sequence[str], notes: Sequence[str], plain: bool
-) -> None:
-    """The scene, its regimes, a row a point, and the notes; columns without a value are left out."""
-    page, scene = Page(plain=plain), _head(sweep)
-    shown = [name for name in names if any(cell(row.values[name]) for row in rows)]
-    columns = [
-        aligned(map(text, points)) for points in zip(*product(*(r.bare() for r in sweep.ranges)), strict=True)
-    ]
-    columns += [_column(name, rows) for name in shown]
-    lines = zip(*columns, strict=True)
-    groups = [[next(lines) for _ in group] for group in _groups(sweep, rows)]
-    left_out = 0
-    if page.room and sys.stdout.isatty():  # a person reads: the table's frame and all else take lines too
-        sentences = sum(1 + len(line) // page.room for line in (scene, *notes))
-        groups, left_out = _trimmed(groups, page.console.height - sentences - FRAME)
-    page.say(scene)
-    if not sweep.ranges[1:]:
-        page.say(f"Regimes: {', '.join(regimes(rows, sweep.ranges[0].name))}.")
-    page.table([for_stream(head, sys.stdout) for head in _heads(sweep, shown)], groups, len(sweep.ranges))
-    if left_out:
-        page.say(f"{left_out} rows in the middle are left out; a pipe or -o FILE has them all.")
-    for note in notes:
-        page.say(note)
+    def _print_rows(
+        self, page: Page, rows: Sequence[Row], cells: Mapping[str, list[str]], beside: int
+    ) -> None:
+        """The table, of which a person sees what there is room for ``beside`` so many other lines."""
+        sweep = self.sweep
+        columns = [
+            aligned(text(range_.bare(row.at[range_.name])) for row in rows) for range_ in sweep.ranges
+        ] + [column if name == "regime" else aligned(column) for name, column in cells.items()]
+        lines = zip(*columns, strict=True)
+        groups = [[next(lines) for _ in group] for group in _groups(sweep, rows)]
+        left_out = 0
+        if page.room and sys.stdout.isatty():
+            groups, left_out = _trimmed(groups, page.console.height - beside)
+        page.table(
+            [for_stream(head, sys.stdout) for head in _heads(sweep, list(cells))], groups, len(sweep.ranges)
+        )
+        if left_out:
+            page.say(f"{left_out} rows in the middle are left out; a pipe or -o FILE has them all.")
 
 
-FRAME = 7  # lines: the table's frame and head, regimes, the sentence on what is left out, the prompt
+PULLEY = "critical_pulley_mass"
+PULLEYS = "As M is not given, each row that is on the verge has a pulley of its own: the critical one."
 
 
-def _column(name: str, rows: Sequence[Row]) -> list[str]:
-    cells = [cell(row.values[name]) for row in rows]
-    return cells if name == "regime" else aligned(cells)
+def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:
+    """The regimes along the range that varies fast, for each point of the other if these are few."""
+    *slow, fast = sweep.ranges
+    if len({row.regime for row in rows}) == 1 and slow:
+        yield f"Regimes: {rows[0].regime}."
+    elif not slow or len(slow[0].points) <= MAX_CURVES:
+        count = len(fast.points)
+        for i, (scene, at) in enumerate(sweep.along(fast)):
+            part = rows[i * count : (i + 1) * count]
+            beside = {j for j, (one, other) in enumerate(pairwise(part)) if one.regime != other.regime}
+            known = {
+                Fraction(fast.bare(part[j].at[fast.name])): part[j].regime
+                for j in beside | {j + 1 for j in beside}
+            }
+            words = ", ".join(regimes(fast, list(changes(scene, fast, digits, known)), scene))
+            where = ", ".join(stated_point(name, point) for name, point in at.items())
+            yield f"{where or 'Regimes'}: {words}."
+
+
+def _stated(name: str, value: str) -> str:
+    return f"{name} = {value} {QUANTITIES[name].unit}".rstrip()
+
+
+def _inputs(sweep: Sweep) -> dict[str, str]:
+    """What is said of each input, ranges in words."""
+    return inputs_in_words(sweep.scene) | {range_.name: range_.words for range_ in sweep.ranges}
+
+
+def _caption(sweep: Sweep, name: str) -> str:
+    """What a picture of a quantity shows, in a sentence."""
+    (title, _), along = axis_words(name), longest(sweep).name
+    others = (f"{axis_words(x)[1]}{words[len(x) :]}" for x, words in _inputs(sweep).items() if x != along)
+    return f"How the {title} depends on the {axis_words(along)[0]}: {', '.join(others)}."
+
+
+FRAME = 7  # lines: the table's frame and head, the sentence on what is left out, the prompt
 
 
 def _groups(sweep: Sweep, rows: Sequence[Row]) -> list[list[Row]]:
@@ -248,9 +296,10 @@ def _groups(sweep: Sweep, rows: Sequence[Row]) -> list[list[Row]]:
 
 
 def _heads(sweep: Sweep, names: Sequence[str]) -> list[str]:
-    """The names of parameters and quantities, with their units."""
-    swept = [with_unit(range_.name, range_.unit) for range_ in sweep.ranges]
-    return swept + [with_unit(n, QUANTITIES[n].unit if n in QUANTITIES else "") for n in names]
+    """The names of parameters and quantities, their units below them."""
+    units = {range_.name: range_.unit for range_ in sweep.ranges}
+    units |= {name: QUANTITIES[name].unit if name in QUANTITIES else "" for name in names}
+    return [f"{name}\n{f'({unit})' * bool(unit)}" for name, unit in units.items()]
 
 
 def _trimmed(groups: list[list[Any]], room: int) -> tuple[list[list[Any]], int]:

@@ -1,18 +1,20 @@
 """The curves of a sweep as a picture."""
 
-from itertools import pairwise
-from math import nan
+from math import isnan, nan
 from typing import TYPE_CHECKING
 
-from .figure import MARKED, check_file, page
+from .figure import BLUE, GREEN, INK, ORANGE, PURPLE, RED, Label, check_file, page, write_labels
+from .text import wrapped
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+    from .curves import Picture
 
-    from .curves import Curve, Picture
+COLOURS = (BLUE, RED, GREEN, PURPLE, ORANGE, INK)
+LINES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
+CAPTION_WIDTH = 135  # characters: more do not fit the page
 
 
-def save(picture: "Picture", title: str, path: str, force: bool) -> None:
+def save(picture: "Picture", caption: str, path: str, force: bool) -> None:
     """Draw the curves of a sweep to a file, whose suffix is its format. Raises SceneError, OSError."""
     check_file(path, force)
     with page(path, force) as figure:
@@ -21,20 +23,31 @@ def save(picture: "Picture", title: str, path: str, force: bool) -> None:
         axes.set_ylabel(picture.y)
         axes.set_xscale("log" if picture.log else "linear")
         axes.spines[["top", "right"]].set_visible(False)
-        for curve in picture.curves:
-            _draw_curve(axes, curve)
-        if min(curve.xs) < max(curve.xs):
-            axes.set_xlim(min(curve.xs), max(curve.xs))  # where the curve has gaps, too
-        if len(picture.curves) > 1:
-            axes.legend(frameon=False)
-        figure.suptitle(title, fontsize=10)
-
-
-def _draw_curve(axes: "Axes", curve: "Curve") -> None:
-    ys = [nan if y is None else y for y in curve.ys]
-    (line,) = axes.plot(curve.xs, ys, marker="." if len(ys) <= MARKED else "", label=curve.label)
-    for i, regimes in zip(curve.changes, pairwise(curve.regimes), strict=True):
-        axes.axvline(curve.xs[i], color=line.get_color(), lw=1, ls="--")
-        label = ", ".join([*regimes, *filter(None, [curve.label])])
-        place = axes.get_xaxis_transform()  # the height is a share of the axes'
-        axes.text(curve.xs[i], 0.98, f" {label}", transform=place, rotation=90, ha="right", va="top", size=9)
+        axes.margins(y=0.1)
+        labels = []
+        for curve, colour, style in zip(picture.curves, COLOURS, LINES, strict=False):
+            ys, least, most = ([nan if y is None else y for y in line] for line in curve.lines)
+            axes.plot(curve.xs, ys, color=colour, ls=style, lw=1.8)
+            axes.fill_between(curve.xs, least, most, color=colour, alpha=0.18, lw=0)
+            for edge in (least, most):
+                axes.plot(curve.xs, edge, color=colour, ls=style, lw=0.8)
+            there = [
+                (x, y) for x, *both in zip(curve.xs, ys, most, strict=True) for y in both if not isnan(y)
+            ]
+            if curve.symbols and there:
+                labels.append(Label(curve.symbols, *there[-1], colour))
+        bottom, _ = axes.get_ylim()
+        if min(y for curve in picture.curves for line in curve.lines for y in line if y is not None) >= 0:
+            bottom = max(bottom, 0.0)
+        for curve, colour in zip(picture.curves, COLOURS, strict=False):
+            for x, height, words in curve.marks:
+                y = bottom if height is None else height
+                axes.plot([x, x], [bottom, y], color=colour, lw=0.8, ls=":")
+                axes.plot([x], [y], "o", color=colour, ms=4)
+                labels.append(Label(words, x, y, colour))
+        axes.set_ylim(bottom=bottom)
+        xs = picture.curves[0].xs
+        if min(xs) < max(xs):
+            axes.set_xlim(min(xs), max(xs))  # where the curve has gaps, too
+        figure.suptitle("\n".join(wrapped(caption, CAPTION_WIDTH)), fontsize=10)
+        write_labels(axes, labels, size=10)

@@ -3,7 +3,7 @@
 import json
 import os
 import sys
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
@@ -56,13 +56,28 @@ def say(*messages: str) -> None:
     for message in messages:
         shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in message)
         line = for_stream(f"atwood: {shown}", sys.stderr)
-        if sys.stderr.isatty():  # a line breaks between words, where it must
+        if sys.stderr.isatty():
             from shutil import get_terminal_size
-            from textwrap import fill
 
-            line = fill(line, get_terminal_size().columns, break_long_words=False, break_on_hyphens=False)
+            line = "\n".join(wrapped(line, get_terminal_size().columns))
         with suppress(OSError):  # there is nobody else to tell
             print(line, file=sys.stderr)
+
+
+BESIDE = r"(?<=[\d)]) (?=(?:kg|g|m/s²|rad/s²|m/s\^2|m|s|Nm?)\b)|(?<=\bN) (?=m\b)|(?<=\bkg) (?=m[²^])"
+"""The blank between a number and its unit, and within units."""
+HELD, LOOSE = "\xa0", "\u2007"  # blanks at which no line breaks, or only where it must
+
+
+def wrapped(words: str, width: int) -> list[str]:
+    """The words in lines, none longer than that if words are not: no number is parted from its unit."""
+    import re
+    from textwrap import wrap
+
+    held = re.sub(" ?[=±] ?", lambda sign: sign[0].replace(" ", LOOSE), re.sub(BESIDE, HELD, words))
+    held = " ".join(w.replace(LOOSE, " ") if len(w) > width else w for w in held.split(" "))
+    lines = wrap(held, max(width, 1), break_long_words=False, break_on_hyphens=False)
+    return [line.replace(HELD, " ").replace(LOOSE, " ") for line in lines]
 
 
 def finish() -> None:
@@ -102,7 +117,8 @@ def show(forms: Forms, json: bool, csv: bool, bare: bool = False) -> Sequence[st
     result is out by then, so that they follow it where both go into one pipe. Raises OSError.
     """
     if json:
-        print(as_json(forms.json()))
+        sys.stdout.writelines(as_json(forms.json()))
+        print()
     elif csv:
         print_csv(forms.records())
     else:
@@ -111,23 +127,33 @@ def show(forms: Forms, json: bool, csv: bool, bare: bool = False) -> Sequence[st
     return forms.notes() if csv or bare else ()
 
 
-def as_json(value: object, indent: str = "\n") -> str:
-    """A value as JSON: numbers as they are printed everywhere, those that no double can hold as null."""
+def as_json(value: object, indent: str = "\n") -> Iterator[str]:
+    """A value as JSON, piece by piece: of an iterator, each item as it comes.
+
+    Numbers are as they are printed everywhere; those that no double can hold are null.
+    """
     inner = indent + "  "
     match value:
         case Mapping():
-            items = (f"{json.dumps(key)}: {as_json(item, inner)}" for key, item in value.items())
-            return f"{{{inner}{f',{inner}'.join(items)}{indent}}}"
-        case []:
-            return "[]"
-        case list():
-            items = (as_json(item, inner) for item in value)
-            return f"[{inner}{f',{inner}'.join(items)}{indent}]"
+            yield "{"
+            for i, (key, item) in enumerate(value.items()):
+                yield f"{',' * bool(i)}{inner}{json.dumps(key)}: "
+                yield from as_json(item, inner)
+            yield f"{indent}}}"
+        case list() | Iterator():
+            yield "["
+            empty = True
+            for item in value:
+                yield inner if empty else f",{inner}"
+                yield from as_json(item, inner)
+                empty = False
+            yield "]" if empty else f"{indent}]"
         case Fraction():
-            return as_typed(value)
+            yield as_typed(value)
         case float() | Decimal():
-            return "null" if is_infinite(value) else text(value)
-    return json.dumps(value)
+            yield "null" if is_infinite(value) else text(value)
+        case _:
+            yield json.dumps(value)
 
 
 def print_csv(records: Iterable[Mapping[str, object]]) -> None:
@@ -168,21 +194,28 @@ def scene_record(scene: Scene, motion: Motion = UNMEASURED) -> dict[str, object]
     return given
 
 
-def describe(scene: Scene, ranges: Mapping[str, object] = {}, uncertain: Mapping[str, Fraction] = {}) -> str:
-    """The scene in one line, as understood, with uncertainties, and with ranges as typed."""
-    parts = []
-    for name, value in {**scene_record(scene), **ranges}.items():
+def describe(scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}) -> str:
+    """The scene in one line, as understood, with uncertainties."""
+    return ", ".join(inputs_in_words(scene, motion, uncertain).values())
+
+
+def inputs_in_words(
+    scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}
+) -> dict[str, str]:
+    """What is said of each input: m1 = 1 kg."""
+    parts = {}
+    for name, value in scene_record(scene, motion).items():
         u = as_typed(uncertain[name]) if name in uncertain else ""
         spread = f" ± {u}" if u else ""
         if isinstance(value, Fraction):
-            parts.append(stated(name, f"{_as_fine(as_typed(value), u)}{spread}"))
+            parts[name] = stated(name, f"{_as_fine(as_typed(value), u)}{spread}")
         elif value is not None:
             number, unit = str(value), ""
             for one in ("rad", " Nm") if u else ():
                 if number.endswith(one):
                     number, unit = _as_fine(number.removesuffix(one), u), one
-            parts.append(f"{name} = {number}{spread}{unit}")
-    return ", ".join(parts)
+            parts[name] = f"{name} = {number}{spread}{unit}"
+    return parts
 
 
 def _as_fine(number: str, other: str) -> str:

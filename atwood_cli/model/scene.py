@@ -126,10 +126,15 @@ def parameter_of(name: str) -> Parameter:
     return INPUTS.get(name) or MEASURED[name]
 
 
+def in_units(name: str, value: str) -> str:
+    """A value of a parameter, with its unit."""
+    unit = parameter_of(name).unit
+    return f"{value}{' ' * (unit not in ('', '°'))}{unit}"
+
+
 def stated(name: str, value: str) -> str:
     """A parameter with its value and unit, for a sentence."""
-    unit = parameter_of(name).unit
-    return f"{name} = {value}{' ' * (unit not in ('', '°'))}{unit}"
+    return f"{name} = {in_units(name, value)}"
 
 
 class Input(NamedTuple):

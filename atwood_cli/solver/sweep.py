@@ -2,8 +2,8 @@
 
 A point is the number that is printed, exactly, so that `solve` given that number prints the same row.
 Linear ranges step in exact fractions from one end to the other: steps of 0.1 are 0.1. Where the step is
-no decimal (a third), or the points are at equal ratios, they are rounded to 17 significant digits, or to
-more where they are closer together than those can tell. The ends are hit exactly.
+no decimal (a third), or the points are at equal ratios, they are rounded to so many digits as results are
+shown with, or as it takes to tell them apart well. The ends are hit exactly.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,10 +14,10 @@ from math import lcm
 from typing import NamedTuple
 
 from ..arithmetic.interval import decimal_context
-from ..arithmetic.rounding import as_typed, text
-from ..model.scene import INPUTS, Scene, SceneError, read_value, read_whole, stated
-from ..model.units import MAX_DIGITS, MAX_MAGNITUDE, NUMBER, Malformed, symbol_of, without_blanks
-from .answers import DOUBLE_DIGITS, Answers
+from ..arithmetic.rounding import as_typed, text, tidy
+from ..model.scene import INPUTS, Scene, SceneError, in_units, read_value, read_whole
+from ..model.units import MAX_DIGITS, NUMBER, Malformed, symbol_of, without_blanks
+from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
 
 Point = Decimal | str
 """A value of a swept parameter as it is printed; text where it has a unit (an angle in radians, a torque)."""
@@ -37,13 +37,37 @@ class Range(NamedTuple):
     log: bool
 
     @property
+    def words(self) -> str:
+        """What a sentence says of it: M from 0 to 50 kg."""
+        start, stop = self.points[0], self.points[-1]
+        return f"{self.name} from {text(self.bare(start))} to {point_in_units(self.name, stop)}"
+
+    @property
     def unit(self) -> str:
         first = self.points[0]
         return first.lstrip("-+.e0123456789") if isinstance(first, str) else INPUTS[self.name].unit
 
-    def bare(self) -> list[Decimal]:
-        """The points without their unit."""
-        return [Decimal(str(point).removesuffix(self.unit)) for point in self.points]
+    @property
+    def ends(self) -> tuple[Fraction, Fraction]:
+        """The first and the last of its values, in its unit."""
+        return Fraction(self.bare(self.points[0])), Fraction(self.bare(self.points[-1]))
+
+    def steps(self, count: int) -> Iterator[Fraction]:
+        """So many equal steps from one end to the other, about, or equal ratios; with both ends."""
+        start, stop = self.ends
+        yield start
+        for i in range(1, count):
+            share = Fraction(i, count)
+            yield start * about_power(stop / start, share) if self.log else start + (stop - start) * share
+        yield stop
+
+    def point(self, number: Decimal) -> Point:
+        """A number as a point of it."""
+        return f"{text(number)}{self.unit}" if isinstance(self.points[0], str) else number
+
+    def bare(self, point: Point) -> Decimal:
+        """A point without its unit."""
+        return Decimal(str(point).removesuffix(self.unit))
 
 
 class Sweep(NamedTuple):
@@ -57,6 +81,13 @@ class Sweep(NamedTuple):
     def total(self) -> int:
         return len(self.ranges[0].points) * (len(self.ranges[1].points) if self.ranges[1:] else 1)
 
+    def along(self, along: Range) -> Iterator[tuple[Scene, dict[str, Point]]]:
+        """The scene at each point of the other range, if there is one, and that point."""
+        others = [range_ for range_ in self.ranges if range_ is not along]
+        for points in product(*(range_.points for range_ in others)):
+            at = dict(zip((range_.name for range_ in others), points, strict=True))
+            yield scene_at(self.given, {along.name: along.points[0], **at}), at
+
 
 class Row(NamedTuple):
     """The answers at a point."""
@@ -67,8 +98,8 @@ class Row(NamedTuple):
     reasons: dict[str, str]
 
 
-def read_sweep(given: Mapping[str, str | None]) -> Sweep:
-    """The sweep given: values, of which one or two are ranges. Raises SceneError."""
+def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sweep:
+    """The sweep given: values, of which one or two are ranges, for so many digits. Raises SceneError."""
     typed = {name: words for name in INPUTS if ":" in (words := given.get(name) or "")}
     if not typed:
         raise SceneError("M", None, f"or another option of the scene must carry a range: {FORM}")
@@ -79,10 +110,10 @@ def read_sweep(given: Mapping[str, str | None]) -> Sweep:
     for name in INPUTS:
         if name not in typed:
             read_value(name, given.get(name))  # what is wrong everywhere is not the first point's fault
-    ranges = [read_range(name, words) for name, words in typed.items()]
+    ranges = [read_range(name, words, digits) for name, words in typed.items()]
     # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
     ends = [[range_.points[0], range_.points[-1]] for range_ in ranges]
-    scene, *_ = (_scene_at(given, dict(zip(names, corner, strict=True))) for corner in product(*ends))
+    scene, *_ = (scene_at(given, dict(zip(names, corner, strict=True))) for corner in product(*ends))
     sweep = Sweep(ranges, given, scene)
     if sweep.total > MAX_POINTS:
         rule = f"makes {sweep.total} points with {names[0]}; at most {MAX_POINTS} are taken"
@@ -90,8 +121,8 @@ def read_sweep(given: Mapping[str, str | None]) -> Sweep:
     return sweep
 
 
-def read_range(name: str, typed: str) -> Range:
-    """A range of a parameter. Raises SceneError."""
+def read_range(name: str, typed: str, digits: int | None = None) -> Range:
+    """A range of a parameter, its points to about so many digits. Raises SceneError."""
     words = typed.split(":")
     if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
         raise SceneError(name, typed, f"is no range; write {FORM}")
@@ -110,9 +141,9 @@ def read_range(name: str, typed: str) -> Range:
         last = read_whole(name, words[2], 2, MAX_POINTS) - 1
     except SceneError as error:
         raise SceneError(name, typed, f"has the count {words[2]!r}, which {error.rule}") from None
-    ends = [_tidy(Decimal(as_typed(end))) for end in (start, stop)]
+    ends = [tidy(Decimal(as_typed(end))) for end in (start, stop)]
     try:
-        points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last), ends[1]]
+        points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last, digits), ends[1]]
     except Malformed as error:
         raise SceneError(name, typed, str(error)) from None
     return Range(name, typed, [f"{text(point)}{unit}" if unit else point for point in points], log)
@@ -137,45 +168,48 @@ def _check_units(name: str, typed: str, ends: Sequence[str], has_zero: bool) -> 
         raise SceneError(name, typed, "has a unit at one end only; write it at both")
 
 
-def _equal_steps(start: Fraction, stop: Fraction, last: int) -> Iterator[Decimal]:
+def _equal_steps(start: Fraction, stop: Fraction, last: int, digits: int | None) -> Iterator[Decimal]:
     step = (stop - start) / last
     unit = lcm(start.denominator, step.denominator)
     is_decimal = "/" not in as_typed(Fraction(1, unit))
-    digits = MAX_DIGITS if is_decimal else _digits(max(abs(start), abs(stop)) / abs(step))
-    context = decimal_context(digits, ROUND_HALF_EVEN)
+    kept = MAX_DIGITS
+    if digits or not is_decimal:
+        kept = _digits(max(abs(start), abs(stop)) / abs(step), digits)
+    context = decimal_context(kept, ROUND_HALF_EVEN)
     first, by, whole = int(start * unit), int(step * unit), Decimal(unit)
     for i in range(1, last):
-        yield _tidy(context.divide(Decimal(first + i * by), whole))
+        yield tidy(context.divide(Decimal(first + i * by), whole))
 
 
-def _equal_ratios(start: Fraction, stop: Fraction, last: int) -> Iterator[Decimal]:
+def _equal_ratios(start: Fraction, stop: Fraction, last: int, digits: int | None) -> Iterator[Decimal]:
     ratio = stop / start
     # The step is not below value * |ln ratio| / last.
-    digits = _digits(last / min(abs(1 - ratio), abs(1 - 1 / ratio)))
-    context, finer = (decimal_context(n, ROUND_HALF_EVEN) for n in (digits, digits + 20))
+    kept = _digits(last / min(abs(1 - ratio), abs(1 - 1 / ratio)), digits)
+    context, finer = (decimal_context(n, ROUND_HALF_EVEN) for n in (kept, max(kept, DOUBLE_DIGITS) + 20))
     value, whole = (finer.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (start, ratio))
     by = finer.exp(finer.divide(finer.ln(whole), Decimal(last)))
     for _ in range(1, last):  # a million factors cost half of the further digits
         value = finer.multiply(value, by)
-        yield _tidy(context.plus(value))
+        yield tidy(context.plus(value))
 
 
-def _digits(steps: Fraction) -> int:
-    """The significant digits that tell values apart which are so many steps from 0. Raises Malformed."""
-    digits = max(DOUBLE_DIGITS, len(str(int(steps))) + 3)
-    if digits > MAX_DIGITS:
+def about_power(ratio: Fraction, share: Fraction) -> Fraction:
+    """A ratio to a power between 0 and 1, to a few digits."""
+    context = decimal_context(DOUBLE_DIGITS, ROUND_HALF_EVEN)
+    number, exponent = (context.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (ratio, share))
+    return Fraction(context.power(number, exponent))
+
+
+def _digits(steps: Fraction, digits: int | None) -> int:
+    """The significant digits of values so many steps from 0: those wanted, or more to tell them apart.
+
+    Raises Malformed.
+    """
+    kept = max(digits or SHOWN_DIGITS, len(str(int(steps))) + 3)
+    if kept > MAX_DIGITS:
         rule = f"has points closer together than {MAX_DIGITS} digits can tell"
         raise Malformed(f"{rule}; take fewer points, or ends further apart")
-    return digits
-
-
-def _tidy(value: Decimal) -> Decimal:
-    """The same number without trailing zeros, and without an exponent where it is readable without."""
-    context = decimal_context(MAX_MAGNITUDE, ROUND_HALF_EVEN)
-    short = context.normalize(value)
-    if len(short.as_tuple().digits) <= short.adjusted() < 16:
-        return context.quantize(short, Decimal(1))
-    return short
+    return kept
 
 
 def point_text(point: Point) -> str:
@@ -183,12 +217,18 @@ def point_text(point: Point) -> str:
     return text(point) if isinstance(point, Decimal) else point
 
 
+def point_in_units(name: str, point: Point) -> str:
+    """A point with the unit of its parameter."""
+    return in_units(name, text(point)) if isinstance(point, Decimal) else point
+
+
 def stated_point(name: str, point: Point) -> str:
     """A point with the name and unit of its parameter, for a sentence."""
-    return stated(name, text(point)) if isinstance(point, Decimal) else f"{name} = {point}"
+    return f"{name} = {point_in_units(name, point)}"
 
 
-def _scene_at(given: Mapping[str, str | None], at: Mapping[str, Point]) -> Scene:
+def scene_at(given: Mapping[str, str | None], at: Mapping[str, Point]) -> Scene:
+    """The scene given, at a point. Raises SceneError."""
     here = {name: point_text(point) for name, point in at.items()}
     try:
         return Scene.read({**given, **here})
@@ -204,6 +244,6 @@ def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterat
     swept = [range_.name for range_ in sweep.ranges]
     for points in product(*(range_.points for range_ in sweep.ranges)):
         at = dict(zip(swept, points, strict=True))
-        answers = Answers(_scene_at(sweep.given, at), digits)
+        answers = Answers(scene_at(sweep.given, at), digits)
         values = {name: answers[name] for name in names}
         yield Row(at, answers.case.regime, values, answers.reasons)

@@ -1,0 +1,116 @@
+"""Where along a range the regime changes: the place found without a formula is that of the formulas."""
+
+from decimal import Decimal
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from atwood_cli import solve
+from atwood_cli.model.case import Case
+from atwood_cli.solver.regimes import changes, with_value
+from atwood_cli.solver.sweep import read_sweep
+
+
+def found(digits: int | None = None, **given: str) -> list[tuple[str, str, str]]:
+    swept = read_sweep(given)
+    return [(one.before, str(one.at), one.after) for one in changes(swept.scene, swept.ranges[0], digits)]
+
+
+positive = st.decimals(Decimal("0.01"), Decimal(100), places=4, allow_nan=False)
+
+
+@given(positive, positive, st.decimals(Decimal("0.01"), 1, places=3), st.booleans(), st.integers(1, 30))
+def test_it_is_the_critical_mass(
+    light: Decimal, heavy: Decimal, mu: Decimal, down: bool, digits: int
+) -> None:
+    critical = solve(m1=light, m2=heavy, mu=mu, digits=40).critical_pulley_mass
+    ends = ("1e9", "0") if down else ("0", "1e9")
+    places = found(digits, m1=str(light), m2=str(heavy), mu=str(mu), M=":".join([*ends, "2"]))
+    if critical is None or critical > 10**9:
+        assert places == []
+        return
+    ((before, at, after),) = places
+    assert (before, after) == (("slip", "no-slip") if down else ("no-slip", "slip"))
+    place, unit = Decimal(at), Decimal(10) ** (critical.adjusted() - digits + 1)
+    assert abs(place - critical) < unit
+    assert place >= critical if down else place <= critical
+    assert len(place.as_tuple().digits) == digits
+
+
+@pytest.mark.parametrize(
+    ("given", "quantity"),
+    [
+        ({"m2": "3.5:9:2", "M": "10", "mu": "0.3"}, "critical_heavier_mass"),
+        ({"m2": "3", "M": "10", "mu": "0.01:1:2:log"}, "mu_verge"),
+        ({"m2": "3", "M": "10", "mu": "0.3", "wrap": "30:330:2"}, "least_wrap"),
+        ({"m2": "3", "mu": "0.01:1:2"}, None),
+    ],
+)
+def test_it_is_what_the_formula_gives(given: dict[str, str], quantity: str | None) -> None:
+    ((_, at, _),) = found(12, m1="1", **given)
+    fixed: Any = {name: words for name, words in given.items() if ":" not in words} | {"m1": "1"}
+    swept = next(name for name in given if ":" in given[name])
+    if quantity is None:  # on a locked pulley
+        exact = solve(**fixed, M="inf", digits=30).mu_verge
+    else:
+        exact = getattr(solve(**fixed, **{swept: given[swept].split(":")[0]}, digits=30), quantity)
+    assert float(at) == pytest.approx(float(exact or 0), rel=1e-11)
+
+
+def test_both_sides_are_in_their_regimes() -> None:
+    swept = read_sweep({"m1": "0.1:30:5", "m2": "3", "M": "50", "mu": "0.1"})
+    places = list(changes(swept.scene, swept.ranges[0]))
+    assert [(one.before, one.after) for one in places] == [("slip", "no-slip"), ("no-slip", "slip")]
+    for one in places:
+        regimes = [Case(with_value(swept.scene, "m1", value)).regime for value in (one.last, one.first)]
+        assert regimes == [one.before, one.after]
+        assert Fraction(str(one.at)) <= one.last < one.first
+
+
+def test_what_begins_and_ends_between_two_points_is_found() -> None:
+    assert found(m1="1", m2="0.5:1.5:2", M="100", mu="0.01") == [
+        ("slip", "0.967875", "no-slip"),
+        ("no-slip", "1.03323", "slip"),
+    ]
+
+
+def test_a_regime_of_one_point_is_found_and_is_exactly_there() -> None:
+    assert found(m1="1", m2="0.5:1.7:2", M="100", mu="0") == [
+        ("slip", "1", "no-slip"),
+        ("no-slip", "1", "slip"),
+    ]
+    assert found(m1="1", m2="3", M="0:50:2", mu="0") == [("no-slip", "0", "slip")]
+    assert found(m1="1", m2="3", M="50:0:2", mu="0") == [("slip", "0", "no-slip")]
+
+
+def test_places_at_the_ends_of_all_sizes() -> None:
+    assert found(m1="1e-200", m2="1e-199", mu="0.3", M="0:1e300:6") == [("no-slip", "8.42831E-200", "slip")]
+    assert found(m1="1e400", m2="3e400", mu="0.3", M="1e-400:1e450:9:log") == [
+        ("no-slip", "4.33419E+401", "slip")
+    ]
+
+
+def test_more_digits_where_fewer_would_say_what_a_row_denies() -> None:
+    """The string holds at 43.34191 and slips at 43.34193: that it does from 43.3419 on would be wrong."""
+    assert found(3, m1="1", m2="3", mu="0.3", M="43.34191:43.34193:2") == [("no-slip", "43.34192", "slip")]
+    swept = read_sweep({"m1": "1", "m2": "3", "mu": "0.3", "M": "0:50:2"})
+    (one,) = changes(swept.scene, swept.ranges[0], 3, {Fraction("43.3419"): "no-slip", Fraction(44): "slip"})
+    assert str(one.at) == "43.3419"
+
+
+def test_an_axle_and_units_of_their_own() -> None:
+    assert found(m1="1", m2="1.5", M="1", mu="0.1", axle="0:5:6") == [("no-slip", "3.56115", "slip")]
+    assert found(m1="1", m2="3", M="20", mu="0.3", wrap="1rad:4rad:3") == [("slip", "2.70310rad", "no-slip")]
+    torque = found(m1="1", m2="1.5", M="1", mu="0.1", R="0.5", axle="0Nm:2.5Nm:6")
+    assert torque == [("no-slip", "1.78057Nm", "slip")]
+
+
+def test_what_is_known_is_not_asked_again() -> None:
+    swept = read_sweep({"m1": "1", "m2": "3", "M": "0:50:2", "mu": "0.3"})
+    said = {Fraction(0): "slip"}  # as if
+    one, other = changes(swept.scene, swept.ranges[0], known=said)
+    assert (one.before, one.at, one.after) == ("slip", Decimal(0), "no-slip")
+    assert (other.before, other.after) == ("no-slip", "slip")
