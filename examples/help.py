@@ -4,7 +4,7 @@ import os
 import subprocess
 import sys
 
-COMMANDS = ("", "solve", "contact", "sweep", "fit", "tradeoff", "batch")
+COMMANDS = ("", "solve", "fit", "sweep", "contact", "batch", "tradeoff")
 
 
 def pages() -> str:

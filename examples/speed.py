@@ -8,8 +8,8 @@ import sys
 from datetime import date
 from pathlib import Path
 
-from atwood_cli.cli.figure import save_tradeoff
 from atwood_cli.cli.page import watched
+from atwood_cli.cli.tradeoff_figure import save
 from atwood_cli.tradeoff.measure import Tradeoff, in_seconds, percent, scientific, short, tradeoff
 from atwood_cli.tradeoff.scenes import FAMILIES
 
@@ -63,7 +63,7 @@ def main(machine: str) -> None:
     if PLACE.search(page) is None:
         raise SystemExit(f"{PAGE.name} holds no place for what is measured")
     outcome = tradeoff(list(FAMILIES), 500, 1, None, watched)
-    save_tradeoff(outcome, str(PICTURE), force=True)
+    save(outcome, str(PICTURE), force=True)
     written = PLACE.sub(lambda match: match[1] + section(outcome, machine) + match[2], page)
     PAGE.write_text(written, encoding="utf-8")
 

@@ -44,6 +44,7 @@ def test_every_option_says_what_it_means_and_in_which_group(command: str) -> Non
     assert {param.rich_help_panel for param in params} <= {
         "Scene",
         "Arc",
+        "String elements",
         "Measured",
         "Measurement",
         "Output",
@@ -90,7 +91,7 @@ def test_a_long_example_is_continued_as_a_shell_takes_it(
     monkeypatch.setenv("COLUMNS", "40")
     out = atwood("solve", "-h").out
     assert "  atwood solve --m1 1 --m2 3 --mu 0.3\n" in out
-    assert "  atwood solve --m1 250g --m2 300g \\\n    --M 100g --R 5cm --digits 6\n" in out
+    assert "  atwood solve --m1 250g --m2 300g \\\n    --M 100g --R 5cm --all\n" in out
 
 
 def test_alone_it_is_brief(atwood: Atwood) -> None:

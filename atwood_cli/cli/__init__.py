@@ -16,18 +16,17 @@ from ..model.scene import SceneError
 from .options import COMPLETING, COULD_NOT, DONE, WORDS, WRONG_USAGE, flag
 from .text import drop, finish, say
 
-COMMANDS = ("solve", "contact", "sweep", "fit", "tradeoff", "batch")
+COMMANDS = ("solve", "fit", "sweep", "contact", "batch", "tradeoff")
 EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
 HELP = """Atwood's machine with a massive pulley and a rough string, every digit right.
 
 Examples:
   atwood solve --m1 1 --m2 3 --mu 0.3
   atwood solve --m1 250g --m2 300g --M 100g --only acceleration
+  atwood fit runs.csv --drop 98cm
   atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3
   atwood contact --m1 1 --m2 3 --M 10 --mu 0.3
-  atwood fit runs.csv --drop 98cm
   atwood batch scenes.csv -o results.csv
-  atwood tradeoff
 """
 
 # The parent of all of typer's complaints about usage; typer exports only this child of it.
@@ -129,7 +128,8 @@ def program(names: Iterable[str] = COMMANDS) -> Any:
     app.callback()(root)
     for name in names:
         module = import_module(f".{name}", __name__)
-        app.command(name, cls=Command, help=module.HELP)(getattr(module, name))
+        listed = getattr(module, "LISTED", None)
+        app.command(name, cls=Command, help=module.HELP, epilog=listed)(getattr(module, name))
     return typer.main.get_command(app)
 
 

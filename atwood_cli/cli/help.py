@@ -1,7 +1,8 @@
 """Help as plain text: examples first, options by group, nothing cut off at any width.
 
 HELP in the module of a command is its text: paragraphs, and after a line that ends in a colon lines that
-stay as they are. It is no docstring, as ``python -OO`` has none. An option says itself to which group it
+stay as they are. It is no docstring, as ``python -OO`` has none. LISTED, if it has that, is a head and lines
+of a name, a tab and what it means, which come last. An option says itself to which group it
 belongs (``rich_help_panel``). rich is not imported.
 """
 
@@ -19,7 +20,7 @@ NARROWEST, WIDEST = 24, 100
 LEAST_BESIDE = 40
 """Columns: where less is left beside the options' names, what they mean stands below them."""
 LONGEST_NAME, BELOW = 28, 6
-LAST = ("Output", "Files", "Help")
+LAST = ("Output", "Files", "String elements", "Help")
 """Groups of options that stand behind a command's own."""
 BRIEF_EXAMPLES = 3
 
@@ -39,6 +40,10 @@ def page(command: Any, context: Any) -> str:
     column = _column([name for rows in groups.values() for name, _ in rows])
     panels = sorted(groups, key=lambda panel: LAST.index(panel) if panel in LAST else -1)
     parts += [[f"{panel}:", *_pairs(groups[panel], column)] for panel in panels]
+    if command.epilog:
+        head, *rows = command.epilog.splitlines()
+        pairs = [(name, meaning) for name, _, meaning in (row.partition("\t") for row in rows)]
+        parts.append([head, *_pairs(pairs, _column([name for name, _ in pairs]))])
     return _joined(parts)
 
 
@@ -73,7 +78,7 @@ def _paragraphs(command: Any, most: int | None = None) -> list[list[str]]:
     for paragraph in (command.help or "").split("\n\n"):
         head, *rest = paragraph.replace("\b\n", "").splitlines()
         if head.endswith(":"):
-            lines.append([head, *(part for line in rest[:most] for part in _example(line))])
+            lines.append([head, *(part for line in rest[:most] for part in command_lines(line, _width()))])
         else:
             lines.append(_filled(" ".join([head, *rest])))
     return lines
@@ -90,10 +95,10 @@ def _filled(text: str, indent: str = "") -> list[str]:
     )
 
 
-def _example(line: str) -> Iterator[str]:
-    """A command that does not fit is continued as a shell takes it, an option beside its value."""
+def command_lines(line: str, width: int) -> Iterator[str]:
+    """A command; one that does not fit is continued as a shell takes it, an option beside its value."""
     glued = re.sub(r" (?![-|])", "\xa0", line.strip())
-    room = _width() - (2 if len(glued) + 2 <= _width() else 6)
+    room = width - (2 if len(glued) + 2 <= width else 6)
     *first, last = wrap(glued, room, break_long_words=False, break_on_hyphens=False)
     lines = [*(f"{part} \\" for part in first), last]
     return (f"{'    ' if number else '  '}{part}".replace("\xa0", " ") for number, part in enumerate(lines))

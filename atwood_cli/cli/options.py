@@ -137,7 +137,12 @@ def quantities() -> Mapping[str, str]:
 # Shared by several commands
 
 Digits = Annotated[
-    str | None, option("Output", metavar="N", help="Significant digits, 1 to 1000 (otherwise doubles).")
+    str | None,
+    option(
+        "Output",
+        metavar="N",
+        help="Significant digits, 1 to 1000; if not given, 6 in tables, all of a double elsewhere.",
+    ),
 ]
 AsJson = Annotated[bool, option("Output", "--json", help="Print JSON: results, scene and notes.")]
 AsCsv = Annotated[bool, option("Output", "--csv", help="Print CSV, with a line of names first.")]
@@ -148,7 +153,7 @@ Columns = Annotated[
         "--only",
         metavar="NAME",
         words=quantities,
-        help="A column for this quantity, by name or symbol, not for the usual seven; repeatable, or a,b.",
+        help="A column for this quantity, not for the usual seven; repeatable, or a,b; see solve -h.",
     ),
 ]
 FigureFile = Annotated[
