@@ -24,7 +24,7 @@ from atwood_cli.fit.runs import Kind, Run, Runs
 from atwood_cli.fit.student import beta_share, chi2_beyond, fisher_beyond, student_beyond, student_within
 from atwood_cli.model.scene import INPUTS, Input, read_input
 
-from .running import Atwood, labels, on_terminal, plain, process
+from .running import Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
 
 TOP = Path(__file__).parent.parent
 RIT = ["fit", str(TOP / "examples" / "rit.csv"), "--drop", "98cm", "--g", "9.804"]
@@ -741,6 +741,16 @@ def test_the_line_is_drawn(atwood: Atwood, tmp_path: Path) -> None:
     atwood(*RIT, "--figure", str(again), "--only", "dof")
     assert again.read_text(encoding="utf-8") == svg
     assert atwood(*RIT, "--figure", str(file)).status == 1
+
+
+def test_no_words_of_the_line_overlap_or_run_off(
+    fit: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    many = "m1,m2,a\n" + "".join(f"1,{1.1 + i / 40},{0.45 + i / 90}\n" for i in range(20))
+    for i, table in enumerate((SIMMONS, many)):
+        with pages_seen(monkeypatch) as pages:
+            assert fit(table, "--figure", str(tmp_path / f"{i}.png")).status == 0
+        assert [misplaced(page) for page in pages] == [[]]
 
 
 def test_the_line_is_plotted(atwood: Atwood) -> None:

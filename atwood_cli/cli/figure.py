@@ -109,7 +109,10 @@ def write_labels(axes: "Axes", labels: Sequence[Label], size: float = 9) -> None
     taken = [Text.get_window_extent(text, renderer) for text in axes.texts]
     if (legend := axes.get_legend()) is not None:
         taken.append(legend.get_window_extent(renderer))
-    dots = np.concatenate([np.empty((0, 2)), *map(_dots, axes.lines)])
+    bars = [(bar, line) for bar in axes.collections for line in getattr(bar, "get_segments", list)()]
+    lines = [(line, np.column_stack([line.get_xdata(), line.get_ydata()])) for line in axes.lines]
+    drawn = (one.get_transform().transform(points) for one, points in [*lines, *bars])
+    dots = np.concatenate([np.empty((0, 2)), *map(_dots, drawn)])
 
     def place(label: Label, far: float, side: tuple[str, int], height: tuple[str, int], wide: int) -> Any:
         """The words there, the room they take, the line that leads to their point, and what that covers."""
@@ -156,11 +159,10 @@ def _inside(dots: Any, box: "Bbox") -> Any:
     return ((box.min < dots) & (dots < box.max)).all(axis=1)
 
 
-def _dots(line: Any) -> Any:
+def _dots(corners: Any) -> Any:
     """Where a line runs on the page, a point every few pixels."""
     import numpy as np
 
-    corners = line.get_transform().transform(np.column_stack([line.get_xdata(), line.get_ydata()]))
     corners = corners[np.isfinite(corners).all(axis=1)]
     if len(corners) < 2:
         return corners

@@ -3,7 +3,7 @@
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
-from .figure import BLUE, INK, MARKED, check_file, page
+from .figure import BLUE, GREY, INK, MARKED, Label, check_file, page, write_labels
 
 if TYPE_CHECKING:
     from ..fit.fitting import Fit
@@ -26,11 +26,6 @@ def save(fit: "Fit", head: str, path: str, force: bool) -> None:
         line.errorbar(at.x, at.y, yerr=at.u_y, xerr=at.u_x, **bars)
         rest.axhline(0, color=BLUE, lw=1.5)
         rest.errorbar(at.x, at.residual, yerr=at.u_residual, **bars)
-        for run, x, y in zip(fit.used, at.x, at.y, strict=True) if len(fit.used) <= MARKED else ():
-            number = ",".join(map(str, run.rows))
-            line.annotate(
-                number, (x, y), xytext=(6, -12), textcoords="offset points", size=9, color="#777777"
-            )
         said = []
         for name, label, unit in (("rim_mass", "slope $c$", "kg"), ("axle", "intercept $f$", "N")):
             spread = fit.uncertainty(name) if name in fit.values else None
@@ -48,3 +43,8 @@ def save(fit: "Fit", head: str, path: str, force: bool) -> None:
         for axes in (line, rest):
             axes.spines[["top", "right"]].set_visible(False)
         figure.suptitle("\n".join([head, *wrap(verdict(fit), TITLE_WIDTH)]), fontsize=10)
+        runs = zip(fit.used, at.x, at.y, strict=True) if len(fit.used) <= MARKED else ()
+        rows = [
+            (f"row{'s' * (len(run.rows) > 1)} {','.join(map(str, run.rows))}", x, y) for run, x, y in runs
+        ]
+        write_labels(line, [Label(words, float(x), float(y), GREY) for words, x, y in rows])
