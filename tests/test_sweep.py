@@ -339,6 +339,21 @@ def test_a_long_table_is_trimmed_in_the_middle_on_a_terminal() -> None:
     assert "Regimes: no-slip up to M = 43.341 kg, slip beyond." in seen
 
 
+def test_tables_below_each_other_share_the_screen() -> None:
+    seen = plain(on_terminal(*HELD, "--mu", "0:0.3:101", columns=80, rows=40))
+    assert seen.count("\n") <= 39
+    assert seen.count("╭") == 2
+    assert (
+        len(re.findall(r"^│ 0 ", seen, re.MULTILINE)) == len(re.findall(r"^│ 0\.3 ", seen, re.MULTILINE)) == 2
+    )
+
+
+def test_the_regimes_are_a_column_where_no_sentence_tells_them(atwood: Atwood) -> None:
+    assert "│ regime " not in atwood(*SWEEP, "--M", "0:50:6").out
+    assert "│ regime " in atwood(*HELD, "--M", "0:50:6", "--mu", "0.1:0.3:9").out
+    assert atwood(*SWEEP, "--M", "0:50:6", "--csv").out.startswith("M,regime,acceleration,")
+
+
 def test_a_table_that_fits_is_whole() -> None:
     seen = plain(on_terminal(*SWEEP, "--M", "0:10:11", "--only", "tension_1", columns=100, rows=24))
     assert "..." not in seen

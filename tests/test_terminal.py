@@ -68,7 +68,7 @@ def test_no_width_loses_a_digit(command: str, table: str) -> None:
     piped = process(*words(command, table))
     assert piped.status == (2 if command in ("error", "usage") else 0)
     for columns in (40, 80, 200):
-        seen = plain(on_terminal(*words(command, table), columns=columns))
+        seen = plain(on_terminal(*words(command, table), columns=columns, rows=400))
         assert numbers(piped.out + piped.err) <= numbers(seen), columns
         assert "…" not in seen
         assert "Traceback" not in seen

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 T = TypeVar("T")
+Groups = Sequence[Sequence[Sequence[str]]]
+"""Of a table, its rows of cells, in groups."""
 
 PIPED = 100
 """Columns of text where there is no terminal."""
@@ -56,7 +58,7 @@ class Page:
         self.say(describe(scene, motion, known.given if known else {}))
         self.say(verdict(answers), f"bold {REGIME_STYLES[answers.case.regime]}")
 
-    def table(self, columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]], keys: int = 1) -> None:
+    def table(self, columns: Sequence[str], groups: Groups, keys: int = 1) -> None:
         """A table, with a line between groups of rows, and as wide as its numbers ask.
 
         Columns for which there is no room go into a table below, beside the first ``keys`` again.
@@ -65,25 +67,32 @@ class Page:
         from rich.table import Table
         from rich.text import Text
 
+        for heads, rows in self.parts(columns, groups, keys):
+            table = Table(*heads, box=box.ROUNDED, show_lines=True)
+            for group in rows:
+                # One row a group, its lines joined: rich takes five times as long over a row a line.
+                table.add_row(*(Text("\n".join(column)) for column in zip(*group, strict=True)))
+            width = self.console.width
+            self.console.width = max(width, table_width(heads, rows))
+            self.console.print(table)
+            self.console.width = width
+
+    def parts(
+        self, columns: Sequence[str], groups: Groups, keys: int
+    ) -> Iterator[tuple[Sequence[str], Groups]]:
+        """The table in parts that are no wider than there is room for, if a column beside the keys is not."""
         fit = len(columns)
         while fit > keys + 1 and table_width(columns[:fit], groups) > self.width:
             fit -= 1
-        if fit < len(columns):
-            for part in (slice(keys, fit), slice(fit, None)):
-                rows = [[[*row[:keys], *row[part]] for row in group] for group in groups]
-                self.table([*columns[:keys], *columns[part]], rows, keys)
+        if fit == len(columns):
+            yield columns, groups
             return
-        table = Table(*columns, box=box.ROUNDED, show_lines=True)
-        for group in groups:
-            # One row a group, its lines joined: rich takes five times as long over a row a line.
-            table.add_row(*(Text("\n".join(column)) for column in zip(*group, strict=True)))
-        width = self.console.width
-        self.console.width = max(width, table_width(columns, groups))
-        self.console.print(table)
-        self.console.width = width
+        for part in (slice(keys, fit), slice(fit, None)):
+            rows = [[[*row[:keys], *row[part]] for row in group] for group in groups]
+            yield from self.parts([*columns[:keys], *columns[part]], rows, keys)
 
 
-def table_width(columns: Sequence[str], groups: Sequence[Sequence[Sequence[str]]]) -> int:
+def table_width(columns: Sequence[str], groups: Groups) -> int:
     """The width of the table with those columns, computed ten times as fast as by rich."""
     rows = [
         *zip_longest(*(column.split("\n") for column in columns), fillvalue=""),

@@ -104,7 +104,7 @@ def sweep(
     options = dict(locals())
     check([ONE_FORM, FILE_TO_REPLACE], options)
     json, csv = _form_for(output, json, csv)
-    names = list(dict.fromkeys(read_names("only", only or STANDARD)))
+    names = list(dict.fromkeys(read_names("only", only or [])))
     precision = read_digits(digits)
     swept = read_sweep(given, precision)
     asked = {"plot": plot, "figure": figure and figure[1]}
@@ -155,7 +155,10 @@ class _Forms:
     def __init__(
         self, sweep: Sweep, names: Sequence[str], digits: int | None, plot: str | None, plain: bool
     ) -> None:
-        self.sweep, self.names, self.digits, self.plot, self.plain = sweep, names, digits, plot, plain
+        self.sweep, self.digits, self.plot, self.plain = sweep, digits, plot, plain
+        self.names = names or STANDARD
+        # Where a sentence tells the regimes, a column of them must be asked for.
+        self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
         self.reasons: Counter[tuple[str, str]] = Counter()
 
     def forms(self) -> Forms:
@@ -201,12 +204,12 @@ class _Forms:
 
         Columns without a value are left out.
         """
-        sweep, names = self.sweep, list(self.names)
-        may_vary = sweep.scene.M is None and sweep.scene.mu is not None
-        rows = list(self._rows([*names, *[PULLEY] * may_vary], self.digits or SHOWN_DIGITS))
-        on_verge = any(row.regime == "verge" for row in rows)
-        if on_verge and PULLEY not in names:
+        sweep, names = self.sweep, list(self.columns)
+        may_be_on_verge = sweep.scene.M is None and sweep.scene.mu is not None
+        if may_be_on_verge and PULLEY not in names:
             names.append(PULLEY)
+        rows = list(self._rows(names, self.digits or SHOWN_DIGITS))
+        on_verge = any(row.regime == "verge" for row in rows)
         cells = {name: [cell(row.values[name]) for row in rows] for name in names}
         shown = {name: column for name, column in cells.items() if any(column)}
         same = {name: column[0] for name, column in shown.items() if len(set(column)) == 1}
@@ -234,12 +237,13 @@ class _Forms:
         ] + [column if name == "regime" else aligned(column) for name, column in cells.items()]
         lines = zip(*columns, strict=True)
         groups = [[next(lines) for _ in group] for group in _groups(sweep, rows)]
+        heads, keys = [for_stream(head, sys.stdout) for head in _heads(sweep, list(cells))], len(sweep.ranges)
         left_out = 0
         if page.room and sys.stdout.isatty():
-            groups, left_out = _trimmed(groups, page.console.height - beside)
-        page.table(
-            [for_stream(head, sys.stdout) for head in _heads(sweep, list(cells))], groups, len(sweep.ranges)
-        )
+            tables = len(list(page.parts(heads, groups, keys)))
+            room = page.console.height - beside - (tables - 1) * FRAME_OF_A_TABLE
+            groups, left_out = _trimmed(groups, room // tables)
+        page.table(heads, groups, keys)
         if left_out:
             page.say(f"{left_out} rows in the middle are left out; a pipe or -o FILE has them all.")
 
@@ -283,7 +287,8 @@ def _caption(sweep: Sweep, name: str) -> str:
     return f"How the {title} depends on the {axis_words(along)[0]}: {', '.join(others)}."
 
 
-FRAME = 7  # lines: the table's frame and head, the sentence on what is left out, the prompt
+FRAME_OF_A_TABLE = 5  # lines: with its head
+FRAME = FRAME_OF_A_TABLE + 2  # and the sentence on what is left out, and the prompt
 
 
 def _groups(sweep: Sweep, rows: Sequence[Row]) -> list[list[Row]]:
