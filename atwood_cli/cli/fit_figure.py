@@ -3,7 +3,8 @@
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
-from .figure import BLUE, GREY, INK, MARKED, Label, check_file, page, write_labels
+from .figure import BLUE, GREY, INK, MARKED, check_file, page
+from .labels import Label, write_labels
 
 if TYPE_CHECKING:
     from ..fit.fitting import Fit

@@ -3,7 +3,8 @@
 from math import isnan, nan
 from typing import TYPE_CHECKING
 
-from .figure import BLUE, GREEN, INK, ORANGE, PURPLE, RED, Label, check_file, page, write_labels
+from .figure import BLUE, GREEN, INK, ORANGE, PURPLE, RED, check_file, page
+from .labels import Label, write_labels
 from .text import wrapped
 
 if TYPE_CHECKING:

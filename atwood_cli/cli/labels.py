@@ -1,0 +1,186 @@
+"""Words beside the points of a picture, where they cover nothing and cannot be taken for those of another."""
+
+from collections.abc import Iterator, Sequence
+from itertools import product
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from .figure import INK
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.transforms import Bbox
+
+
+class Label(NamedTuple):
+    """Words that belong to a point of a picture."""
+
+    words: str
+    x: float
+    y: float
+    colour: str = INK
+
+
+class Place(NamedTuple):
+    """Where words may stand: how far from their point, and to which side of it."""
+
+    far: float
+    x: int
+    y: int
+    wide: int
+
+
+DISTANCES, WIDTHS = (6, 15, 27, 42, 60, 80, 110, 150), (1, 2, 3)  # points, and times as far to the side
+FAR = 20  # points: from there on a thin line leads to the point
+SPARE = 2  # pixels around words
+CLEAR = 8  # pixels from a point: what is beside its own marker is not crossed
+UNREADABLE, CROSSED, AMBIGUOUS = 1000, 40, 20  # covered dots that weigh as much; and points of distance
+AWAY = 30
+HORIZONTAL, VERTICAL = {1: "left", -1: "right", 0: "center"}, {1: "bottom", -1: "top", 0: "center"}
+
+
+def write_labels(axes: "Axes", labels: Sequence[Label], size: float = 9) -> None:
+    """Write words beside their points, where they cover no line, no point and no other words.
+
+    To be called when all else is drawn: it goes by where that stands on the page.
+    """
+    page = _Page(axes, labels)
+    for label in labels:
+        best: tuple[float, Any] | None = None
+        for place in _places():
+            note = _written(axes, label, place, size)
+            cost = page.cost(note, label, place)
+            if best is None or cost < best[0]:
+                best, note = (cost, note), best and best[1]
+            if note is not None:
+                note.remove()
+            if best[0] <= place.far / AWAY:  # as no place farther away is better
+                break
+        if best is not None:
+            page.take(best[1], label)
+
+
+def _places() -> Iterator[Place]:
+    """The places around a point, those beside it first."""
+    for far, x, y, wide in product(DISTANCES, HORIZONTAL, VERTICAL, WIDTHS):
+        if (x or y) and (x or wide == 1):
+            yield Place(far, x, y, wide)
+
+
+def _written(axes: "Axes", label: Label, place: Place, size: float) -> Any:
+    leads = {"arrowstyle": "-", "lw": 0.6, "color": label.colour, "shrinkB": 3} if place.far > FAR else None
+    return axes.annotate(
+        label.words,
+        (label.x, label.y),
+        xytext=(place.x * place.far * place.wide, place.y * place.far),
+        textcoords="offset points",
+        ha=HORIZONTAL[place.x],
+        va=VERTICAL[place.y],
+        color=label.colour,
+        size=size,
+        arrowprops=leads,
+        in_layout=False,
+    )
+
+
+class _Page:
+    """What stands where on the page, in pixels: words, points, and the dots that all else is made of."""
+
+    def __init__(self, axes: "Axes", labels: Sequence[Label]) -> None:
+        import numpy as np
+        from matplotlib.text import Text
+
+        self.axes, self.extent = axes, Text.get_window_extent
+        figure: Any = axes.figure
+        figure.draw_without_rendering()  # which decides where the axes lie
+        self.renderer = figure.canvas.get_renderer()
+        texts = [text for text in (*axes.texts, axes.title) if text.get_text()]
+        self.taken = [self.extent(text, self.renderer) for text in texts]
+        if (legend := axes.get_legend()) is not None:
+            self.taken.append(legend.get_window_extent(self.renderer))
+        self.dots = np.concatenate([np.empty((0, 2)), *_drawn(axes)])
+        self.points = axes.transData.transform(np.reshape([(one.x, one.y) for one in labels], (-1, 2)))
+
+    def cost(self, note: Any, label: Label, place: Place) -> float:
+        """What is wrong with a place, in covered dots."""
+        note.update_positions(self.renderer)
+        box, inside = self._box(note), self.axes.bbox
+        unreadable = sum(map(box.overlaps, self.taken))
+        unreadable += not (inside.contains(*box.min) and inside.contains(*box.max))
+        cost = UNREADABLE * unreadable + _inside(self.dots, box).sum() + place.far * place.wide / AWAY
+        point = self.axes.transData.transform((label.x, label.y))
+        return float(cost + (self._crossed(box, point) if note.arrow_patch else self._ambiguous(box, point)))
+
+    def take(self, note: Any, label: Label) -> None:
+        """Let nothing else stand where these words do, nor on the line to their point."""
+        import numpy as np
+
+        box = self._box(note)
+        self.taken.append(box)
+        if note.arrow_patch:
+            way = _way(box, self.axes.transData.transform((label.x, label.y)))
+            self.dots = np.concatenate([self.dots, way])
+
+    def _box(self, note: Any) -> "Bbox":
+        return self.extent(note, self.renderer).padded(SPARE)  # without the line to the point
+
+    def _crossed(self, box: "Bbox", point: Any) -> float:
+        """What the line from the words to their point crosses."""
+        import numpy as np
+
+        way = _way(box, point)
+        words = sum(_inside(way, one).any() for one in self.taken)
+        lines = (np.hypot(*(self.dots[:, None] - way).T) < SPARE).any(axis=0).sum() if len(self.dots) else 0
+        return float(CROSSED * words + lines)
+
+    def _ambiguous(self, box: "Bbox", point: Any) -> float:
+        """What it costs to stand as near to the point of other words."""
+        import numpy as np
+
+        off = np.hypot(*(self.points - self.points.clip(box.min, box.max)).T)
+        own = np.hypot(*(point - point.clip(box.min, box.max)))
+        return float(AMBIGUOUS * (np.count_nonzero(off <= own + SPARE) > 1))
+
+
+def _inside(dots: Any, box: "Bbox") -> Any:
+    """Which of some dots lie in a box."""
+    return ((box.min < dots) & (dots < box.max)).all(axis=1)
+
+
+def _way(box: "Bbox", point: Any) -> Any:
+    """The dots of the line from a box to just before a point."""
+    import numpy as np
+
+    start = point.clip(box.min, box.max)
+    return np.linspace(start, point + CLEAR * (start - point) / max(np.hypot(*(start - point)), CLEAR), 40)
+
+
+def _drawn(axes: "Axes") -> Iterator[Any]:
+    """The dots of the lines, bars and markers that are drawn."""
+    import numpy as np
+
+    for bars in axes.collections:
+        for corners in getattr(bars, "get_segments", list)():
+            yield _along(bars.get_transform().transform(corners))
+    for line in axes.lines:
+        corners = line.get_transform().transform(np.column_stack([line.get_xdata(), line.get_ydata()]))
+        corners = corners[np.isfinite(corners).all(axis=1)]
+        if line.get_marker() not in ABSENT:
+            radius = line.get_markersize() / 2 * axes.figure.dpi / 72
+            edges = np.array([[1, 0], [-1, 0], [0, 1], [0, -1], [0, 0]]) * radius
+            yield (corners[:, None] + edges).reshape(-1, 2)
+        if line.get_linestyle() not in ABSENT:
+            yield _along(corners)
+
+
+ABSENT = ("", " ", "None", None)
+
+
+def _along(corners: Any) -> Any:
+    """A dot every few pixels along a line."""
+    import numpy as np
+
+    if len(corners) < 2:
+        return corners
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
+    places = np.arange(0.0, along[-1] + 3, 3)
+    return np.column_stack([np.interp(places, along, corners[:, i]) for i in (0, 1)])
