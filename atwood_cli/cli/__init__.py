@@ -22,9 +22,9 @@ HELP = """Atwood's machine with a massive pulley and a rough string, every digit
 
 Examples:
   atwood solve --m1 1 --m2 3 --mu 0.3
-  atwood solve --m1 250g --m2 300g --M 100g --only acceleration
   atwood fit runs.csv --drop 98cm
   atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3
+  atwood solve --m1 250g --m2 300g --M 100g --only acceleration
   atwood contact --m1 1 --m2 3 --M 10 --mu 0.3
   atwood batch scenes.csv -o results.csv
 """
