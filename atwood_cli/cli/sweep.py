@@ -119,12 +119,8 @@ def sweep(
         if figure is not None:
             from .sweep_figure import save
 
-            save(
-                picture(swept, "figure", drawn["figure"], precision),
-                _caption(swept, drawn["figure"]),
-                figure[0],
-                force,
-            )
+            curves = picture(swept, "figure", drawn["figure"], precision)
+            save(curves, _caption(swept, drawn["figure"]), figure[0], force)
         forms = _Forms(swept, names, precision, drawn.get("plot"), plain=_is_file(output))
         aside = show(forms.forms(), json, csv)
     say(*aside)
@@ -261,11 +257,8 @@ def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[
         count = len(fast.points)
         for i, (scene, at) in enumerate(sweep.along(fast)):
             part = rows[i * count : (i + 1) * count]
-            beside = {j for j, (one, other) in enumerate(pairwise(part)) if one.regime != other.regime}
-            known = {
-                Fraction(fast.bare(part[j].at[fast.name])): part[j].regime
-                for j in beside | {j + 1 for j in beside}
-            }
+            beside = [two for two in pairwise(part) if two[0].regime != two[1].regime]
+            known = {Fraction(fast.bare(row.at[fast.name])): row.regime for two in beside for row in two}
             words = ", ".join(regimes(fast, list(changes(scene, fast, digits, known)), scene))
             where = ", ".join(stated_point(name, point) for name, point in at.items())
             yield f"{where or 'Regimes'}: {words}."
