@@ -31,7 +31,7 @@ from atwood_cli.solver.contact import Contact, contact
 from atwood_cli.solver.elements import Comparison, elements
 
 from . import oracle
-from .running import PIP, Atwood, labels, on_terminal, plain, process
+from .running import PIP, Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
 
 PAPER = ["contact", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 TOP = Path(__file__).parent.parent
@@ -522,6 +522,8 @@ def test_elements_in_every_output(atwood: Atwood) -> None:
             for option, value in (("--figure", "e.svg"), ("--points", "5"), ("--profile", "creep"))
         ),
         ("--m1 1 --m2 3 --json --csv", "--json and --csv exclude each other; give one of them"),
+        ("--m1 1 --m2 3 --m1-side left", "--m1-side 'left' needs --figure"),
+        ("--m1 1 --m2 3 --figure x.svg --m1-side up", "--m1-side 'up' must be left or right"),
         ("--m1 1 --m2 3 --figure x.gif", "--figure 'x.gif' must end in one of .svg, .png, .pdf"),
         (
             "--m1 1e200 --m2 3e200 --figure x.svg",
@@ -559,10 +561,12 @@ def test_figure_is_the_one_in_the_readme_and_the_same_to_the_byte(tmp_path: Path
     assert first == second
     kept = (TOP / "examples" / "contact.svg").read_text(encoding="utf-8")
     assert labels(first.decode()) == labels(kept)
-    assert {"$T_1$ = 11.99 N", "$W_2$ = 29.42 N", "$nR$", "$fR$", "$m_1$"} <= set(labels(kept))
+    assert {"$T_1$ = 11.9859 N", "$W_2$ = 29.4200 N", "$nR$", "$fR$", "$m_1$"} <= set(labels(kept))
 
 
 FIGURE = ["--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3"]
+FIGURES = " ".join(FIGURE)
+MIRRORED = "--m1 3 --m2 1 --M 10 --mu 0.9"
 
 
 @pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
@@ -575,6 +579,194 @@ def test_figures_of_every_kind(atwood: Atwood, tmp_path: Path, suffix: str, word
     assert atwood("contact", *words, "--figure", str(file)).status == 0
     starts = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
     assert file.read_bytes().startswith(starts[suffix])
+
+
+def drawn(atwood: Atwood, monkeypatch: pytest.MonkeyPatch, file: Path, words: str) -> Any:
+    """The picture of a scene, as matplotlib has it."""
+    with pages_seen(monkeypatch) as pages:
+        ran = atwood("contact", *words.split(), "--figure", str(file), "--force")
+    assert ran.status == 0, ran.err
+    (page,) = pages
+    return page
+
+
+def texts(page: Any) -> list[str]:
+    """All that is written on a page, but for the numbers on its axes."""
+    from matplotlib.text import Text
+
+    ticks = [
+        label for axes in page.axes for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels()
+    ]
+    words = [text.get_text() for text in page.findobj(Text) if text.get_visible() and text not in ticks]
+    return [word for word in words if word]
+
+
+LEGIBLE = [
+    *(
+        f"--m1 1 --m2 3 --M 10 --mu 0.3 --wrap {wrap} --m1-side {side}"
+        for wrap in (
+            1,
+            60,
+            74,
+            76,
+            90,
+            120,
+            179,
+            180,
+            181,
+            240,
+            270,
+            280,
+            300,
+            330,
+            336,
+            360,
+            400,
+            540,
+            900,
+            1440,
+            2000,
+        )
+        for side in ("left", "right")
+    ),
+    *(f"{FIGURES} --profile least --wrap {wrap}" for wrap in (60, 100, 150, 180)),
+    *(f"{MIRRORED} --profile {kind} --wrap {wrap}" for kind in ("creep", "least") for wrap in (60, 120, 180)),
+    "--m1 3 --m2 1 --M 10 --mu 0.9 --wrap 270 --m1-side left",
+    "--m1 2 --m2 2",
+    "--m1 2 --m2 2 --M 3 --mu 0.1 --wrap 300",
+    "--m1 1 --m2 3",
+    "--m1 1 --m2 3 --mu 0",
+    "--m1 1 --m2 3 --M inf",
+    "--m1 1 --m2 3 --M 10 --mu 50",
+    "--m1 1 --m2 3 --M inf --mu 5 --wrap 1e9",
+    "--m1 1 --m2 3 --M 1 --wrap 1e-99rad",
+    "--m1 3 --m2 1 --M 1 --wrap 0.001",
+    "--m1 1e-90 --m2 3e90 --M 1 --mu 0.1 --wrap 1e6",
+    "--m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --digits 12",
+    "--m1 1 --m2 1000 --M 5",
+    "--m1 1000 --m2 1 --M 5 --wrap 1440",
+    "--m1 3e40 --m2 1e-40 --M 10 --mu 0.3 --wrap 200 --m1-side left",
+    "--m1 1e-60 --m2 3e-60 --M 1e-60 --wrap 300",
+    "--m1 1.00000000000000000000001 --m2 1 --M 0.3 --mu 0.3",
+    f"--m1 {'1.' + '123456789' * 60} --m2 {'2.' + '123456789' * 60} --M {'3.' + '1' * 500} --mu {'0.' + '3' * 500}",
+]
+
+
+@pytest.mark.parametrize("words", LEGIBLE)
+def test_all_of_a_figure_can_be_read(
+    atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, words: str
+) -> None:
+    page = drawn(atwood, monkeypatch, tmp_path / "arc.svg", words)
+    assert misplaced(page) == []
+    forces = re.findall(r"= (\S+) N", " ".join(texts(page)))
+    assert len(set(forces)) == len(forces) >= 1  # each number once
+
+
+def test_numbers_of_a_figure_are_rounded_from_the_exact_ones(
+    atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """2.5 g at 0.5 m/s² weigh 1.2500005 mN, of which no double is: it is rounded to even, once."""
+
+    def said(words: str) -> str:
+        return " ".join(texts(drawn(atwood, monkeypatch, tmp_path / "arc.svg", words)))
+
+    words = said("--m1 1 --m2 3 --g 1.2500005 --M 10 --mu 0.3")
+    assert "$W_1$ = 1.25000 N" in words
+    assert "$W_2$ = 3.75000 N" in words
+    words = said("--m1 1 --m2 3 --g 1.2500015 --M 10 --digits 3")
+    assert "$W_1$ = 1.25 N" in words
+    words = said("--m1 1 --m2 3 --g 1.2500015 --M 10 --digits 30")
+    assert "$W_1$ = 1.25000 N" in words
+    words = said("--m1 2 --m2 2 --M 3")
+    assert re.findall(r"\$[TW]_[12]\$ [=≈] \S+", words) == [
+        "$T_1$ = 19.6133", "$W_1$ = $T_1$", "$T_2$ = $T_1$", "$W_2$ = $T_1$"
+    ]  # fmt: skip
+    words = said("--m1 1 --m2 1.00000000001 --M 3")
+    assert "$T_2$ ≈ $T_1$" in words
+
+
+@pytest.mark.parametrize(
+    ("words", "steps"),
+    [
+        ("--m1 1 --m2 3 --M 10 --mu 0.3", [(56.503316, 0, 3.595773)]),
+        ("--m1 3 --m2 1 --M 10 --mu 0.3", [(123.496684, -3.595773, 0)]),
+        ("--m1 1 --m2 3 --M 10 --mu 0.3 --profile least", [(70.667, 5.205784, 0), (127.170, 0, 5.205784)]),
+        ("--m1 1 --m2 3 --mu 0.3", []),
+    ],
+)
+def test_friction_jumps_where_the_string_begins_to_be_stuck(
+    atwood: Atwood,
+    monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+    words: str,
+    steps: Any,
+) -> None:
+    """It was a slanted line between two points of the curve."""
+    page = drawn(atwood, monkeypatch, tmp_path / "arc.svg", words)
+    (friction,) = [line for line in page.axes[1].lines if line.get_linestyle() == "--"]
+    xs, ys = np.asarray(friction.get_xdata()), np.asarray(friction.get_ydata())
+    gaps = np.flatnonzero(np.isnan(ys))
+    found = [(xs[i], ys[i - 1], ys[i + 1]) for i in gaps]
+    assert len(found) == len(steps)
+    assert not found or np.allclose(found, steps, rtol=1e-4)
+    assert all(xs[i - 1] == xs[i] == xs[i + 1] for i in gaps)
+    assert np.nanmax(np.abs(np.diff(ys))) < 0.2  # smooth elsewhere
+
+
+def test_m1_is_on_the_side_asked_for(atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """All is mirrored but the words; the angle counts from m1 on either side."""
+    seen = {}
+    for side in ("", "right", "left"):
+        option = f"--m1-side {side}" if side else ""
+        page = drawn(atwood, monkeypatch, tmp_path / "a.svg", f"{FIGURES} --wrap 120 {option}")
+        page.draw_without_rendering()
+        machine, curves = page.axes
+        at = {text.get_text(): machine.transData.transform(text.get_position())[0] for text in machine.texts}
+        assert (at["$m_1$"] < at["$m_2$"]) == (side == "left")
+        tension = next(text for text in at if text.startswith("$T_1$ ="))
+        assert (at[tension] < at["$m_1$"]) == (side == "left")
+        (arc,) = [
+            line.get_ydata()
+            for line in curves.lines
+            if line.get_linestyle() == "-" and len(line.get_xdata()) > 9
+        ]
+        seen[side] = list(arc)
+        where = f"from $m_1$'s end on the {side or 'right'} (°)"
+        assert where in curves.get_xlabel()
+    assert seen[""] == seen["right"] == seen["left"]
+
+
+@pytest.mark.parametrize(
+    ("words", "sheaves"),
+    [
+        ("60", 2),
+        ("90", 1),
+        ("120", 1),
+        ("180", 0),
+        ("270", 1),
+        ("300", 1),
+        ("360", 1),
+        ("540", 0),
+        ("420", 2),
+    ],
+)
+def test_masses_hang_straight_down_from_sheaves_beside_the_pulley(
+    atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, words: str, sheaves: int
+) -> None:
+    machine = drawn(atwood, monkeypatch, tmp_path / "a.svg", f"{FIGURES} --wrap {words}").axes[0]
+    circles = [patch for patch in machine.patches if len(patch.get_xy()) > 9]
+    assert len(circles) == 1 + sheaves
+    strings = [line for line in machine.lines if line.get_linewidth() == 2.2]
+    feet = [line.get_xydata()[i] for line, i in zip(strings, (0, -1), strict=True)]
+    boxes = [patch.get_xy() for patch in machine.patches if len(patch.get_xy()) == 5]
+    for line, foot, box in zip(strings, feet, boxes, strict=True):
+        (x, y), points = foot, line.get_xydata()
+        above = points[1] if foot[0] == points[0][0] else points[-2]
+        assert abs(above[0] - x) < 1e-6 < above[1] - y or sheaves == 0
+        assert abs(np.mean(box[:4], axis=0)[0] - x) < 1e-9
+    assert abs(feet[0][0] - feet[1][0]) > 0.3  # beside each other
+    far = np.concatenate([line.get_xydata()[1 if i else 0 :] for i, line in enumerate(strings)])
+    assert np.hypot(*far.T).min() > 0.999  # no string crosses the pulley
 
 
 @pytest.mark.filterwarnings("error", "ignore::DeprecationWarning")  # of a matplotlib older than its parser
@@ -631,7 +823,7 @@ def test_what_matplotlib_warns_of_reaches_nobody(
     def warn(*_: object) -> None:
         warnings.warn("a source line", UserWarning, stacklevel=1)
 
-    monkeypatch.setattr(figure, "_draw_tension", warn)
+    monkeypatch.setattr(figure, "_draw_curves", warn)
     ran = atwood("contact", *FIGURE, "--figure", str(tmp_path / "a.svg"))
     assert (ran.status, ran.err) == (0, "")
 

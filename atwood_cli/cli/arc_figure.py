@@ -1,147 +1,145 @@
 """The arc of contact as a picture: the forces on the machine, and what they are along the arc."""
 
-from math import cos, degrees, hypot, radians, sin
+import re
+from functools import partial
+from math import nan
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.rounding import to_double
+from ..derivation.typeset import in_text, wrapped
+from ..model import arc
+from ..model.machine import Machine
 from ..model.scene import SceneError
 from ..solver.answers import Answers
 from ..solver.contact import Contact, contact
 from ..solver.messages import verdict
-from .figure import BLUE, GREEN, INK, RED, check_file, page
+from .figure import BLUE, FAINT, GREY, RED, check_file, page
+from .labels import Label, write_labels
+from .machine_figure import Numbers, draw
 from .text import describe
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LONGEST = 0.75  # radii: the arrow of the greatest force
 DRAWABLE = (1e-100, 1e100)
 WRAPS = (1e-100, 1e9)  # degrees: of more, doubles no longer say where the end of the arc is
-CURVE_POINTS, ARROWS, TITLE_DIGITS = 361, 13, 6
+CURVE_POINTS, DIGITS, TITLE_WIDTH, CAPTION_WIDTH = 361, 6, 118, 140
+SIDES = ("left", "right")
+LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 
 
-def save(answers: Answers, kind: str | None, path: str, force: bool) -> None:
+def save(answers: Answers, shown: Contact, path: str, force: bool, m1_side: str | None) -> None:
     """Draw the arc to a file, whose suffix is its format. Raises SceneError, OSError."""
+    if m1_side not in (None, *SIDES):
+        raise SceneError("m1_side", m1_side, f"must be {' or '.join(SIDES)}")
     check_file(path, force)
-    doubles = Answers(answers.case.scene)
-    scene = answers.case.scene
+    scene, kind = answers.case.scene, shown.kind
+    doubles = Answers(scene)
     tensions = [float(doubles[name] or 0) for name in ("tension_1", "tension_2")]
     weights = [to_double(mass * scene.g) for mass in (scene.m1, scene.m2)]
     if max(tensions) < DRAWABLE[0] or max(*tensions, *weights) > DRAWABLE[1]:
         raise SceneError("figure", path, f"draws forces between {DRAWABLE[0]} and {DRAWABLE[1]} N only")
-    if not WRAPS[0] <= doubles.settle(lambda m: m.case.scene.wrap.degrees(m.ar)) <= WRAPS[1]:
+    wrap = float(doubles.settle(lambda m: scene.wrap.degrees(m.ar)))
+    if not WRAPS[0] <= wrap <= WRAPS[1]:
         raise SceneError("figure", path, f"draws wraps between {WRAPS[0]} and {WRAPS[1]:.0e} degrees only")
+    numbers = Numbers(Answers(scene, min(answers.digits or DIGITS, DIGITS)))
     with page(path, force) as figure:
+        head = [_lines(words, TITLE_WIDTH) for words in (describe(scene), verdict(numbers.answers))]
+        figure.suptitle("\n".join(head), fontsize=10)
+        caption = [
+            "The string acts on the pulley along the arc of contact only: it presses with the normal force"
+            " $nR$ and rubs along the rim with the friction $fR$, both per radian.",
+            shown.notes[0],
+            *numbers.net_friction(kind),
+            *numbers.turns(wrap),
+        ]
+        words = figure.supxlabel(_lines(" ".join(caption), CAPTION_WIDTH), fontsize=10)
         machine, curve = figure.subplots(1, 2, width_ratios=[1.1, 1])
-        _draw_machine(machine, doubles, contact(doubles, ARROWS, kind))
-        _draw_tension(curve, contact(doubles, CURVE_POINTS, kind))
-        shown = Answers(answers.case.scene, answers.digits or TITLE_DIGITS)
-        figure.suptitle(f"{describe(shown.case.scene)}\n{verdict(shown)}", fontsize=10)
+        _draw_curves(curve, doubles, kind, numbers, m1_side or "right")
+        if draw(machine, doubles, profile(kind), numbers, m1_side == "left"):
+            caption.append("A dashed arrow is longer than drawn.")
+            words.set_text(_lines(" ".join(caption), CAPTION_WIDTH))
 
 
-def _draw_machine(axes: "Axes", answers: Answers, arc: Contact) -> None:
-    from matplotlib.patches import Arc, Circle
-
-    phi = float(answers.settle(lambda m: m.phi))
-    axes.set_aspect("equal")
-    axes.axis("off")
-    axes.add_patch(Circle((0, 0), 1, facecolor="#eeeeee", edgecolor="#999999"))
-    axes.add_patch(Circle((0, 0), 0.03, color="#999999"))
-    axes.add_patch(Arc((0, 0), 2, 2, theta1=0, theta2=min(degrees(phi), 360), color=INK, lw=2.5))
-    axes.annotate("", (0.45 * cos(0.5), 0.45 * sin(0.5)), (0.45, 0), arrowprops=_arc_arrow())
-    axes.text(0.52 * cos(0.25), 0.52 * sin(0.25), r"$\theta$", va="center")
-
-    scale = LONGEST / max(float(point["tension"]) for point in arc.points)
-    for point in arc.points:
-        theta = radians(float(point["angle"]))
-        outwards, along = (cos(theta), sin(theta)), (-sin(theta), cos(theta))
-        normal = scale * float(point["normal_per_radian"])
-        friction = scale * float(point["friction_per_radian"])
-        _arrow(axes, _at((0, 0), outwards, 1 + normal), outwards, -normal, BLUE)
-        _arrow(axes, _at((0, 0), outwards, 0.93), along, friction, RED)
-    middle = arc.points[len(arc.points) // 2]
-    top = radians(float(middle["angle"]))
-    beyond = 1.1 + scale * float(middle["normal_per_radian"])
-    axes.text(beyond * cos(top), beyond * sin(top), "$nR$", color=BLUE, ha="center", va="bottom")
-    axes.text(0.8 * cos(top), 0.8 * sin(top), "$fR$", color=RED, ha="center", va="center")
-
-    _hang(axes, answers, "1", (1.0, 0.0), (0.0, -1.0), scale, side=1)
-    end, tangent = (cos(phi), sin(phi)), (-sin(phi), cos(phi))
-    _hang(axes, answers, "2", end, tangent, scale, side=-1)
-    friction_x, friction_y = arc.balance["friction"]["x"], arc.balance["friction"]["y"]
-    net = hypot(float(friction_x), float(friction_y))
-    axes.text(0, -0.45, f"friction on the pulley\n{net:.4g} N", color=RED, ha="center", va="center")
-    axes.set_xlim(-2.15, 2.15)
-    axes.set_ylim(-3.1, 2.05)
+def _lines(words: str, width: int) -> str:
+    """The words in lines that fit the page; of numbers that nobody reads to the end, the beginning."""
+    return "\n".join(wrapped(in_text(LONG_DIGITS.sub(r"\1…", words)), width))
 
 
-def _hang(
-    axes: "Axes",
-    answers: Answers,
-    name: str,
-    end: tuple[float, float],
-    along: tuple[float, float],
-    scale: float,
-    side: int,
-) -> None:
-    """The free string from the end of the arc, its tension, and the mass if it hangs straight down."""
-    from matplotlib.patches import Rectangle
-
-    mass, tension = getattr(answers.case.scene, f"m{name}"), float(answers[f"tension_{name}"])
-    x, y = _at(end, along, 1.5)
-    axes.plot([end[0], x], [end[1], y], color=INK, lw=2.5, solid_capstyle="butt")
-    beside = "left" if side > 0 else "right"
-    start = _at(end, end, 0.1)  # beside the string
-    _arrow(axes, start, along, scale * tension, INK)
-    label = _at(_at(start, along, 0.4), end, 0.12)
-    axes.text(*label, f"$T_{name}$ = {tension:.4g} N", ha=beside, va="center", color=INK)
-    if abs(along[0]) > 1e-9 or along[1] > 0:
-        return
-    axes.add_patch(Rectangle((x - 0.16, y - 0.32), 0.32, 0.32, facecolor="#d8d2c4", edgecolor=INK))
-    axes.text(x, y - 0.16, f"$m_{name}$", ha="center", va="center")
-    weight = float(mass * answers.case.scene.g)
-    _arrow(axes, (x, y - 0.32), (0, -1), min(scale * weight, 1.2), GREEN)
-    axes.text(x + 0.12 * side, y - 0.55, f"$W_{name}$ = {weight:.4g} N", ha=beside, va="center", color=GREEN)
-
-
-def _draw_tension(axes: "Axes", arc: Contact) -> None:
-    angles = [float(point["angle"]) for point in arc.points]
-    axes.plot(angles, _column(arc, "tension"), color=BLUE, lw=2, label=r"$T(\theta) = nR$")
-    axes.plot(angles, _column(arc, "friction_per_radian"), color=RED, lw=2, label=r"$dT/d\theta = fR$")
-    axes.set_xlabel(r"$\theta$ (°)")
-    axes.set_ylabel("N per radian of arc")
+def _draw_curves(axes: "Axes", answers: Answers, kind: arc.Kind, numbers: Numbers, m1_side: str) -> None:
+    """Normal force and friction along the arc, with a step wherever the string begins to be stuck."""
+    points = contact(answers, CURVE_POINTS, profile(kind)).points
+    names = ("angle", "tension", "friction_per_radian")
+    rows = [tuple(float(point[name]) for name in names) for point in points]
+    steps = []
+    for piece in range(1, len(arc.STUCK[kind])):
+        angle, tension, before, after = _boundary(answers, kind, piece)
+        axes.plot([angle, angle], [before, after], color=RED, lw=1, ls=":")
+        steps.append(angle)
+        rows += [(angle, tension, before), (angle, tension, nan), (angle, tension, after)]
+    rows.sort(key=lambda row: row[0])  # those of one angle stay as they are
+    angles, tensions, frictions = (list(column) for column in zip(*rows, strict=True))
+    axes.axhline(0, color=FAINT, lw=0.8)
+    axes.plot(angles, tensions, color=BLUE, lw=2)
+    axes.plot(angles, frictions, color=RED, lw=2, ls="--")
     axes.set_xlim(angles[0], angles[-1])
-    axes.axhline(0, color="#999999", lw=0.8)
-    axes.legend(frameon=False)
+    axes.set_xlabel(rf"angle $\theta$ along the arc, from $m_1$'s end on the {m1_side} (°)")
+    axes.xaxis.set_major_formatter("{x:.6g}")
+    axes.set_ylabel("force per radian of arc, $nR$ and $fR$ (N/rad)")
+    axes.margins(y=0.12)
     axes.spines[["top", "right"]].set_visible(False)
-    for angle, align in ((angles[0], "left"), (angles[-1], "right")):
-        tension = float(arc.points[0 if angle == angles[0] else -1]["tension"])
-        axes.annotate(
-            f"{tension:.5g} N",
-            (angle, tension),
-            textcoords="offset points",
-            xytext=(4 if align == "left" else -4, 14),
-            ha=align,
-            color=BLUE,
+
+    def near(at: float, ys: list[float], words: str, colour: str) -> Label:
+        return Label(
+            words, at, next(y for x, y in zip(angles, ys, strict=True) if x >= at and y == y), colour
         )
-    axes.margins(y=0.1)
+
+    rubs = (
+        (max(steps, default=0), angles[-1]) if answers.case.sign > 0 else (0, min(steps, default=angles[-1]))
+    )
+    labels = [
+        near(angles[-1] / 2, tensions, r"$nR = T(\theta)$, normal force", BLUE),
+        near(sum(rubs) / 2, frictions, r"$fR = dT/d\theta$, friction", RED),
+        near(angles[0], tensions, "$T_1$", BLUE),
+        near(angles[-1], tensions, "$T_2$", BLUE),
+    ]
+    if True in arc.STUCK[kind]:
+        ends, words = _stuck(answers, kind, numbers)
+        start, end = ends[0] or angles[0], ends[1] or angles[-1]
+        axes.axvspan(start, end, color=FAINT, alpha=0.15, lw=0)
+        labels.append(Label(words, (start + end) / 2, max(tensions) / 4, GREY))
+    write_labels(axes, labels, 10)
 
 
-def _column(arc: Contact, name: str) -> list[float]:
-    return [float(point[name]) for point in arc.points]
+def profile(kind: arc.Kind) -> str | None:
+    """A profile as it is asked for."""
+    return None if kind == "exponential" else kind
 
 
-def _at(point: tuple[float, float], direction: tuple[float, float], distance: float) -> tuple[float, float]:
-    return point[0] + distance * direction[0], point[1] + distance * direction[1]
+def _boundary(answers: Answers, kind: arc.Kind, piece: int) -> tuple[float, float, float, float]:
+    """Where a piece of the arc begins: angle (°) from m1's end, tension, friction before and behind."""
+    sign = answers.case.sign
+    tension = float(answers.settle(lambda m: m.arcs(kind)[piece].start.tension))
+    limit = float(answers.settle(lambda m: m.arc_mu(kind) * m.arcs(kind)[piece].start.tension)) * sign
+    before, after = (0.0 if stuck else limit for stuck in arc.STUCK[kind][piece - 1 : piece + 1][::sign])
+    return float(answers.settle(lambda m: _from_m1(m, kind, piece) * 180 / m.ar.pi)), tension, before, after
 
 
-def _arrow(
-    axes: "Axes", start: tuple[float, float], direction: tuple[float, float], length: float, color: str
-) -> None:
-    if abs(length) > 1e-3:
-        style: dict[str, Any] = {"arrowstyle": "-|>", "color": color, "lw": 1.6, "shrinkA": 0, "shrinkB": 0}
-        axes.annotate("", _at(start, direction, length), start, arrowprops=style)
+def _from_m1(m: Machine[Any], kind: arc.Kind, piece: int) -> Any:
+    """The angle (rad) from m1's end of the arc at which a piece begins, counted from the lighter mass."""
+    angle = m.arcs(kind)[piece].start.angle
+    return angle if m.case.sign > 0 else m.phi - angle
 
 
-def _arc_arrow() -> dict[str, Any]:
-    return {"arrowstyle": "-|>", "connectionstyle": "arc3,rad=0.25", "color": "#666666"}
+def _stuck(
+    answers: Answers, kind: arc.Kind, numbers: Numbers
+) -> tuple[tuple[float | None, float | None], str]:
+    """From where to where (°) the string is stuck, None for an end of the arc, and that in words."""
+    pieces = range(1, len(arc.STUCK[kind]))[:: answers.case.sign]
+    angles = [_boundary(answers, kind, piece)[0] for piece in pieces]
+    words = [numbers.angle(partial(_from_m1, kind=kind, piece=piece)) for piece in pieces]
+    if len(angles) > 1:
+        return (angles[0], angles[1]), f"stuck from\n{words[0]}\nto {words[1]}"
+    if answers.case.sign > 0:
+        return (None, angles[0]), f"stuck\nup to\n{words[0]}"
+    return (angles[0], None), f"stuck\nfrom\n{words[0]}"

@@ -59,7 +59,16 @@ Extrapolate = Annotated[
     bool,
     option("String elements", "--extrapolate", help="Extrapolate from N/2 and N elements (Richardson)."),
 ]
+M1Side = Annotated[
+    str | None,
+    option(
+        "Files",
+        metavar="left|right",
+        help="On which side the figure has m1; right if not given.",
+    ),
+]
 
+FOR_FIGURE = Rule("m1_side", "figure", "needs --figure", without=True)
 RULES = (
     Rule("points profile figure", "elements", "has no say beside --elements; leave one of them out"),
     Rule("extrapolate", "elements", "needs --elements", without=True),
@@ -93,13 +102,14 @@ def contact(
     elements: Elements = None,
     extrapolate: Extrapolate = False,
     figure: FigureFile = None,
+    m1_side: M1Side = None,
     force: Force = False,
     digits: Digits = None,
     json: AsJson = False,
     csv: AsCsv = False,
 ) -> int:
     options = dict(locals())
-    check([ONE_FORM, FIGURE_TO_REPLACE], options)
+    check([ONE_FORM, FIGURE_TO_REPLACE, FOR_FIGURE], options)
     answers = Answers(Scene.read(given), read_digits(digits))
     if not (json or csv):
         answers = answers.shown
@@ -107,11 +117,12 @@ def contact(
     if elements is not None:
         forms = _forms_of_elements(answers, march_elements(answers, elements, extrapolate))
     else:
-        forms = _forms(answers, solve_contact(answers, points or DEFAULT_POINTS, profile))
-    if figure is not None:
-        from .arc_figure import save
+        arc = solve_contact(answers, points or DEFAULT_POINTS, profile)
+        forms = _forms(answers, arc)
+        if figure is not None:
+            from .arc_figure import save
 
-        save(answers, profile, figure, force)
+            save(answers, arc, figure, force, m1_side)
     say(*show(forms, json, csv))
     return DONE
 

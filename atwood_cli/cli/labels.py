@@ -163,11 +163,10 @@ def _drawn(axes: "Axes") -> Iterator[Any]:
             yield _along(bars.get_transform().transform(corners))
     for line in axes.lines:
         corners = line.get_transform().transform(np.column_stack([line.get_xdata(), line.get_ydata()]))
-        corners = corners[np.isfinite(corners).all(axis=1)]
         if line.get_marker() not in ABSENT:
             radius = line.get_markersize() / 2 * axes.figure.dpi / 72
             edges = np.array([[1, 0], [-1, 0], [0, 1], [0, -1], [0, 0]]) * radius
-            yield (corners[:, None] + edges).reshape(-1, 2)
+            yield (corners[np.isfinite(corners).all(axis=1), None] + edges).reshape(-1, 2)
         if line.get_linestyle() not in ABSENT:
             yield _along(corners)
 
@@ -176,11 +175,13 @@ ABSENT = ("", " ", "None", None)
 
 
 def _along(corners: Any) -> Any:
-    """A dot every few pixels along a line."""
+    """A dot every few pixels along a line, but not over its gaps."""
     import numpy as np
 
-    if len(corners) < 2:
-        return corners
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(corners, axis=0).T))])
+    there = np.isfinite(corners).all(axis=1)
+    if there.sum() < 2:
+        return corners[there]
+    steps = np.where(there[:-1] & there[1:], np.hypot(*np.diff(corners, axis=0).T), 0)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
     places = np.arange(0.0, along[-1] + 3, 3)
-    return np.column_stack([np.interp(places, along, corners[:, i]) for i in (0, 1)])
+    return np.column_stack([np.interp(places, along[there], corners[there, i]) for i in (0, 1)])
