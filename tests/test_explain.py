@@ -1,6 +1,7 @@
 """The derivation: every equation worked out again from its text, every number against the oracle."""
 
 import re
+import zipfile
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
@@ -12,6 +13,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from atwood_cli.cli.text import describe
 from atwood_cli.derivation.equations import HELD, Equation, Law
 from atwood_cli.derivation.steps import Explanation, explain
 from atwood_cli.derivation.typeset import as_markdown, as_text, chain
@@ -469,6 +471,87 @@ def check_markdown(lines: list[str]) -> None:
 @kinds
 def test_markdown_is_well_formed(kind: str) -> None:
     check_markdown([*as_markdown("m1 = 1 kg", told(scene_of(kind)))])
+
+
+MORE: dict[str, Given] = {
+    "two thirds of a turn": {"M": "10", "mu": "0.3", "wrap": "240"},
+    "a wrap in radians": {"M": "10", "mu": "0.9", "wrap": "2rad"},
+    "no mass": {"M": "0"},
+    "nearly equal": {"m2": "1.00000001", "M": "3", "mu": "0.1"},
+    "equal and missing": {"m2": "1", "mu": "0.1"},
+    "equal on a locked pulley": {"m2": "1", "M": "inf"},
+    "a hub": {"M": "10", "inertia": "2.5", "mu": "0.1", "mu_k": "0.05"},
+    "caught": {"M": "10", "mu": "0.3", "mu_k": "0.25"},
+    "kinetic and missing": {"mu": "0.4", "mu_k": "0.1"},
+    "slides on": {"M": "10", "mu": "0.3", "mu_k": "0.1"},
+    "an axle of grams": {"m2": "1.1", "M": "2", "mu": "0.4", "axle": "5"},
+    "an axle that is a note": {"m2": "50", "M": "3", "mu": "0.2", "axle": "3"},
+    "far apart": {"m1": "1e-30", "m2": "3e30", "M": "1e-5", "mu": "1e3"},
+    "inertia beside an axle": {"I": "0.3", "R": "0.1", "axle": "1Nm", "mu": "0.4"},
+}
+HANDOUTS = {**KINDS, **MORE}
+MATHEMATICS = {
+    *(
+        "frac",
+        "sqrt",
+        "ln",
+        "sin",
+        "cdot",
+        "times",
+        "approx",
+        "begin",
+        "end",
+        "mathrm",
+        "qquad",
+        "ast",
+        "infty",
+    ),
+    *("min", "max", "mu", "pi", "varphi", "theta", "alpha", "beta", "tau", "le", "ge"),
+}
+
+
+def handout(kind: str) -> str:
+    scene = Scene.read({"m1": "1", "m2": "3", **HANDOUTS[kind]})
+    return "\n".join(as_markdown(describe(scene), told(scene)))
+
+
+@pytest.mark.parametrize("kind", HANDOUTS)
+def test_a_handout_has_words_and_symbols_only(kind: str) -> None:
+    r"""friction\_force\_min stood in its prose, and mu, which is no symbol."""
+    page = handout(kind)
+    prose = re.sub(r"\$\$.*?\$\$|\$.*?\$", "", page, flags=re.DOTALL)
+    assert not re.search(r"[_`$\\]|--|: give |\b(?:mu|inf|m[12]|[MIR])\b", prose.replace("\\<", ""))
+    assert {character for character in prose if not character.isascii()} <= {"²", "°"}  # as LaTeX has them
+    mathematics = "".join(re.findall(r"\$\$.*?\$\$|\$.*?\$", page, flags=re.DOTALL))
+    assert mathematics.isascii()
+    assert set(re.findall(r"\\([a-zA-Z]+)", mathematics)) <= MATHEMATICS
+    assert "_{mathrm" not in mathematics
+    check_markdown(page.split("\n"))
+
+
+def test_sentences_of_a_handout() -> None:
+    assert "between the least friction force $F_{\\min}$ and the greatest friction force $F_{\\max}$ if" in (
+        handout("grips")
+    )
+    assert "angle of wrap $\\varphi$ = 180°" in handout("grips")
+    assert "The axle force $A$: not known without $M$, the pulley's mass" in handout("inertia alone")
+    assert re.search(r"\d g of difference", handout("an axle of grams"))  # which is not gravity
+    assert "axle friction = 5 N" in handout("an axle of grams")
+    assert "slides with $\\mu_{\\mathrm{k}}$ = 0.25" in handout("slips")
+
+
+@pytest.mark.parametrize("kind", ["grips", "an axle alone"])
+def test_pandoc_makes_other_pages_of_a_handout_without_complaint(kind: str, tmp_path: Path) -> None:
+    pypandoc = pytest.importorskip("pypandoc")
+    page, strictly = handout(kind), ["--fail-if-warnings", "--standalone", "--metadata=title:Atwood"]
+    html = pypandoc.convert_text(page, "html", format="markdown", extra_args=[*strictly, "--mathml"])
+    assert html.count("<math") == len(re.findall(r"\$\$.*?\$\$|\$.*?\$", page, flags=re.DOTALL))
+    latex = pypandoc.convert_text(page, "latex", format="markdown", extra_args=strictly)
+    assert "textbackslash" not in latex
+    word = tmp_path / "handout.docx"
+    pypandoc.convert_text(page, "docx", format="markdown", extra_args=strictly, outputfile=str(word))
+    with zipfile.ZipFile(word) as files:
+        assert files.read("word/document.xml").count(b"<m:oMath>") == html.count("<math")
 
 
 def test_the_handout_is_todays(atwood: Atwood) -> None:

@@ -10,7 +10,8 @@ from textwrap import wrap
 
 from ..arithmetic.rounding import text
 from ..arithmetic.symbolic import Formula, Symbol
-from .equations import HELD, Equation, Law, Part
+from ..model.quantities import QUANTITIES
+from .equations import HELD, Equation, Law, Part, plain
 from .steps import Explanation
 
 Spell = Callable[[str], str]
@@ -116,7 +117,8 @@ def in_math(words: str) -> str:
     words = re.sub(r"\b([A-Za-z])(\d)", r"\1_\2", words)
     words = re.sub(r" (min|max)\b", r"_{\\\1}", words)
     words = re.sub(r"\^\(([^()]*)\)", r"^{\1}", words)
-    words = words.replace("*", r"^{\ast}").replace("√", r"\sqrt")
+    words = words.replace("*", r"^{\ast}").replace("√", r"\sqrt").replace("∞", r"\infty ")
+    words = words.replace("≈", r"\approx ").replace("≤", r"\le ").replace("≥", r"\ge ")
     words = re.sub("[" + "".join(GREEK) + "]", lambda m: GREEK[m[0]] + " ", words)
     return re.sub(r" +([ })^_]|$)", r"\1", words)
 
@@ -224,8 +226,8 @@ def as_markdown(scene: str, explanation: Explanation) -> Iterator[str]:
             if isinstance(part, str):
                 yield in_markdown(part)
             else:
-                tag = rf" \tag{{{part.label.replace('(', '').replace(')', '')}}}" if part.label else ""
-                yield f"$$\n{_aligned(part)}{tag}\n$$"
+                label = rf" \qquad {part.label}" if part.label else ""  # not every reader knows \tag
+                yield f"$$\n{_aligned(part)}{label}\n$$"
 
 
 def _aligned(part: Law | Equation) -> str:
@@ -238,8 +240,50 @@ def _aligned(part: Law | Equation) -> str:
 
 
 def in_markdown(words: str) -> str:
-    """A sentence with its symbols as mathematics, and no character of it mistaken for markup."""
+    """A sentence with its symbols as mathematics, and no character of it mistaken for markup.
+
+    All that is not ASCII is mathematics, but for signs of units, so that any LaTeX can set it.
+    """
     pieces = words.split("`")
-    pieces[::2] = [re.sub(r"([*_|<>$\\])", r"\\\1", piece) for piece in pieces[::2]]
-    pieces[1::2] = [f"${in_math(piece)}$" for piece in pieces[1::2]]
+    pieces[::2] = map(_without_names, pieces[::2])
+    pieces = "`".join(pieces).split("`")  # there are more of them now
+    pieces[::2] = (re.sub(r"([][*_|<>$\\^~@#])", r"\\\1", piece) for piece in pieces[::2])
+    pieces[1::2] = (f"${in_math(piece)}$" for piece in pieces[1::2])
     return "".join(pieces).replace(HELD, " ")
+
+
+IN_WORDS = {
+    "tension_1": "tension",
+    "tension_2": "tension",
+    "mu_verge": "least friction coefficient",
+    "friction_force_min": "least friction force",
+    "friction_force_max": "greatest friction force",
+    "friction_force_x": "friction force",
+    "friction_force_y": "friction force",
+}
+"""What a page calls a quantity where its name with blanks says less."""
+SYMBOLS = {"mu": "`μ`", "mu_k": "`μ_k`", "inf": "`∞`"} | {
+    "inertia =": "inertia factor `β` =",
+    "wrap =": "angle of wrap `φ` =",
+    "axle =": "axle friction =",
+    ": give ": ": not known without ",
+}
+QUANTITY = "|".join(name for name in QUANTITIES if "_" in name and name not in SYMBOLS)
+NAMED = re.compile(
+    rf"\b(?P<quantity>{QUANTITY})\b|\b(?:mu|mu_k|inf)\b|\b(?:inertia|wrap|axle) =|: give "
+    r"|(?P<symbol>I/\(M R\^2\)|[μπφθαβτ≈≤≥√]|\bm[12]\b|\b[MIR]\b|\bg(?= =))"
+)
+
+
+def _without_names(words: str) -> str:
+    """A sentence with words and symbols (between backticks) for the names that the program has."""
+
+    def spelled(match: re.Match[str]) -> str:
+        if match["symbol"]:
+            return f"`{match[0]}`"
+        if not (name := match["quantity"]):
+            return SYMBOLS[match[0]]
+        the = "the" if match.start() else "The"
+        return f"{the} {IN_WORDS.get(name, name.replace('_', ' '))} `{plain(QUANTITIES[name].symbol)}`"
+
+    return NAMED.sub(spelled, words)
