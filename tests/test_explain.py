@@ -185,7 +185,7 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     }
     if scene.axle is not None:
         f: Fraction = scene.axle.force(scene.R)
-        inputs |= {"τ_axle": scene.axle.number, "f": f, "b": f / scene.g}
+        inputs |= {"τ_axle": scene.axle.number, "f_axle": f, "b": f / scene.g}
     inputs["β"] = scene.inertia
     if scene.inertia is None and scene.M is not None and scene.I is not None and scene.R is not None:
         inputs["β"] = scene.I / (Fraction(scene.M) * scene.R**2)
@@ -536,6 +536,7 @@ def test_sentences_of_a_handout() -> None:
     assert "angle of wrap $\\varphi$ = 180°" in handout("grips")
     assert "The axle force $A$: not known without $M$, the pulley's mass" in handout("inertia alone")
     assert re.search(r"\d g of difference", handout("an axle of grams"))  # which is not gravity
+    assert "a force $f_{\\mathrm{axle}}$ at the rim" in handout("an axle of grams")  # f is that of the string
     assert "axle friction = 5 N" in handout("an axle of grams")
     assert "slides with $\\mu_{\\mathrm{k}}$ = 0.25" in handout("slips")
 

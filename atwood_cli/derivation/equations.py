@@ -112,7 +112,7 @@ class Derivation:
             "g": scene.g,
             "I": scene.I,
             "R": scene.R,
-            "f": case.axle_friction,
+            "f_axle": case.axle_friction,
             "b": case.axle_mass,
         }
         self.inputs = {name: Symbol(name, value) for name, value in values.items() if value is not None}
@@ -259,8 +259,8 @@ class Derivation:
         given, axle = self.inputs, self.scene.axle
         if axle is not None and axle.unit == "N m":
             torque, R = (Formula("symbol", one) for one in (Symbol("τ_axle", axle.number), given["R"]))
-            yield self.worked_out("", "f", torque / R, given["f"], "N")
-        symbols: list[Any] = [Formula("symbol", given[name]) for name in "fg"]
+            yield self.worked_out("", "f_axle", torque / R, given["f_axle"], "N")
+        symbols: list[Any] = [Formula("symbol", given[name]) for name in ("f_axle", "g")]
         mass: Any = physics.axle_mass(*symbols)
         yield self.worked_out("", "b", mass, given["b"], "kg")
 

@@ -120,7 +120,7 @@ def _pulley(derivation: Derivation) -> Step:
         body += [
             f"{grips}, the rim has the acceleration of the masses, `α = a/R`. With `c = I/R^2`, the pulley's"
             " inertia as a mass at the rim (`M/2` for the disk of the paper),",
-            Law("(3)", f"{difference} = c {derivation.names['magnitude']}{' + f' * rubs}"),
+            Law("(3)", f"{difference} = c {derivation.names['magnitude']}{' + f_axle' * rubs}"),
             *derivation.rim_mass(),
             *odd_inertia(derivation.answers),
         ]
@@ -136,10 +136,10 @@ def _turning(derivation: Derivation) -> Iterator[Part]:
         return
     yield (
         "The pulley's weight acts at the axle and does not turn it. The axle rubs: its friction opposes the"
-        " turning like a force `f` at the rim. So, while the pulley turns,"
+        " turning like a force `f_axle` at the rim. So, while the pulley turns,"
     )
-    yield Law("(2)", f"({difference} - f) R = I α")
-    yield "and it stands while the tensions differ by no more than `f`, the weight of a mass `b`:"
+    yield Law("(2)", f"({difference} - f_axle) R = I α")
+    yield "and it stands while the tensions differ by no more than `f_axle`, the weight of a mass `b`:"
     yield from derivation.axle()
 
 
@@ -196,7 +196,7 @@ def _motion_at_the_limit(derivation: Derivation) -> Iterator["Part"]:
         if case.locked:
             yield "The pulley is locked: its rim stands still."
         elif case.rim_stands:
-            yield "The tensions differ by less than `f`: the axle holds the pulley."
+            yield "The tensions differ by less than `f_axle`: the axle holds the pulley."
         else:
             yield "Friction turns the pulley by (3), but its rim falls behind the string:"
             yield from derivation.lines("rim_acceleration")
