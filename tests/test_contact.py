@@ -767,6 +767,28 @@ def test_masses_hang_straight_down_from_sheaves_beside_the_pulley(
     assert abs(feet[0][0] - feet[1][0]) > 0.3  # beside each other
     far = np.concatenate([line.get_xydata()[1 if i else 0 :] for i, line in enumerate(strings)])
     assert np.hypot(*far.T).min() > 0.999  # no string crosses the pulley
+    centres = [np.mean(patch.get_xy()[:-1], axis=0) for patch in circles[1:]]
+    assert all(np.hypot(*centre) > 1.19 for centre in centres)  # nor does a sheave
+
+
+@pytest.mark.parametrize(
+    ("words", "dashed"),
+    [("--m1 1 --m2 3 --M 10", 0), ("--m1 1 --m2 1000", 1), ("--m1 1 --m2 3 --M 10 --mu 50", 1)],
+)
+def test_an_arrow_that_would_be_too_long_is_dashed_and_one_too_short_left_out(
+    atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, words: str, dashed: int
+) -> None:
+    page = drawn(atwood, monkeypatch, tmp_path / "a.svg", words)
+    arrows = [
+        line for line in page.axes[0].lines if line.get_linewidth() == 1.5 and len(line.get_xdata()) > 2
+    ]
+    assert sum(line.get_linestyle() == "--" for line in arrows) == dashed
+    assert ("A dashed arrow is longer than drawn." in " ".join(texts(page)).replace("\n", " ")) == bool(
+        dashed
+    )
+    for line in arrows:
+        steps = np.hypot(*np.diff(line.get_xydata(), axis=0).T)
+        assert 0.02 < np.nanmin(steps) <= np.nanmax(steps) < 0.85
 
 
 @pytest.mark.filterwarnings("error", "ignore::DeprecationWarning")  # of a matplotlib older than its parser

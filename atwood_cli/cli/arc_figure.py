@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 DRAWABLE = (1e-100, 1e100)
 WRAPS = (1e-100, 1e9)  # degrees: of more, doubles no longer say where the end of the arc is
-CURVE_POINTS, DIGITS, TITLE_WIDTH, CAPTION_WIDTH = 361, 6, 118, 140
+CURVE_POINTS, DIGITS, TITLE_WIDTH, CAPTION_WIDTH = 361, 6, 128, 140
 SIDES = ("left", "right")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 

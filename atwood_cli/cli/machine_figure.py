@@ -6,7 +6,7 @@ All is drawn with m1 on the right, where the arc begins; with m1 on the left, th
 from collections.abc import Callable, Iterable, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from math import cos, nan, pi, radians, sin
+from math import cos, nan, pi, radians, sin, sqrt
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -123,7 +123,7 @@ def draw(axes: "Axes", answers: Answers, kind: str | None, numbers: "Numbers", m
     for sheave in route.sheaves:
         axes.fill(*_circle(sheave, SHEAVE), facecolor="#eeeeee", edgecolor=FAINT, lw=1)
         axes.plot(*zip(sheave, strict=True), "o", color=FAINT, ms=2.5)
-    bottom = -(outermost + 0.75)
+    bottom = min(-outermost - 0.75, *(y - SHEAVE - LONGEST - 0.05 for _, y in [(0.0, 0.0), *route.sheaves]))
     for string in ([(1.0, bottom), *wound], [*route.string, (route.string[-1][0], bottom)]):
         axes.plot(*zip(*string, strict=True), color=INK, lw=2.2, solid_capstyle="butt")
         heights += [y for _, y in string]
@@ -136,17 +136,16 @@ def draw(axes: "Axes", answers: Answers, kind: str | None, numbers: "Numbers", m
     shares = [i / (count - 1) if ends else (2 * i + 1) / (2 * count) for i in range(count)]
     angles = [phi * share for share in shares]
     forces = [[float(point[f"{name}_per_radian"]) for point in points] for name in ("normal", "friction")]
-    scale = LONGEST / max(*map(abs, forces[0] + forces[1]), *(float(answers[f"tension_{i}"]) for i in (1, 2)))
+    scale = LONGEST / max(*forces[0], *(float(answers[f"tension_{i}"]) for i in (1, 2)))
     normal, friction = ([scale * force for force in along] for along in forces)
     _normal_arrows(axes, angles, normal)
     last_first = slice(None, None, -2 if max(map(abs, friction)) > CROWDED and count > 3 else -1)
-    _friction_arrows(axes, angles[last_first], friction[last_first])
-    names = _name("$nR$", angles, normal, radians(60), outermost, BLUE)
+    clipped = _friction_arrows(axes, angles[last_first], friction[last_first])
+    names = _name("$nR$", angles, normal, min(radians(60), phi / 3), outermost, BLUE)
     names += _name("$fR$", angles[last_first], friction[last_first], radians(120), outermost, RED)
     _mark_theta(axes, phi)
 
     right = turn > 1.5 * pi  # of m1
-    clipped = False
     for name, x, side in (("1", 1.0, -1 if right else 1), ("2", route.string[-1][0], 1 if right else -1)):
         clipped |= _mass(axes, answers, name, (x, bottom), scale, side, numbers, m1_left)
     top = max(heights) + 0.15
@@ -189,13 +188,16 @@ def _normal_arrows(axes: "Axes", angles: Sequence[float], lengths: Sequence[floa
     _arrows(axes, [(_polar(INSIDE, angle), _polar(-1, angle), length) for angle, length in there], BLUE)
 
 
-def _friction_arrows(axes: "Axes", angles: Sequence[float], lengths: Sequence[float]) -> None:
-    """The arrows of fR, along the rim."""
-    arrows = []
+def _friction_arrows(axes: "Axes", angles: Sequence[float], lengths: Sequence[float]) -> bool:
+    """The arrows of fR, along the rim; whether one would be longer than it is drawn."""
+    clipped = False
     for angle, length in zip(angles, lengths, strict=True):
+        shown = max(-LONGEST, min(length, LONGEST))
         along = _polar(1, angle + pi / 2)
-        arrows.append((_beyond(_polar(RIM, angle), along, -length / 2), along, length))
-    _arrows(axes, arrows, RED)
+        start = _beyond(_polar(RIM, angle), along, -shown / 2)
+        _arrows(axes, [(start, along, shown)], RED, "-" if shown == length else "--")
+        clipped |= shown != length
+    return clipped
 
 
 def _name(
@@ -212,7 +214,7 @@ def _name(
 
 def _route(turn: float, end: Point, outermost: float) -> Route:
     """How the string gets from the end of the arc, at that angle within a turn, to where it hangs down."""
-    level, aside, beside = outermost + 0.3, outermost + 0.45, outermost + 0.3
+    level, aside, beside = outermost + 0.45, outermost + 0.45, outermost + 0.3
     heading = turn + pi / 2
     along = _polar(1, heading)
     if abs(turn - pi) < 1e-9:
@@ -223,7 +225,10 @@ def _route(turn: float, end: Point, outermost: float) -> Route:
         second, down = _over((SHEAVE - aside, level), pi, pi / 2)
         return Route([end, *up, *down], [first, second])
     if turn < pi:
-        far = min((SHEAVE - aside - SHEAVE * cos(turn) - end[0]) / along[0], 0.7)
+        apart = outermost + SHEAVE + 0.05  # of the centres of pulley and sheave
+        far = sqrt(apart**2 - (outermost - SHEAVE) ** 2)
+        if turn < radians(105):
+            far = max(far, (SHEAVE - aside - SHEAVE * cos(turn) - end[0]) / along[0])
     elif turn <= 1.5 * pi:
         far = 0.2
     else:  # behind m1's string and down beside it
