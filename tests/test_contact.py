@@ -28,7 +28,7 @@ from atwood_cli import Scene, SceneError, solve
 from atwood_cli.arithmetic.rounding import text, tidy
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.contact import Contact, contact
-from atwood_cli.solver.elements import Comparison, elements
+from atwood_cli.solver.elements import Comparison, elements, march, march_ratio
 
 from . import oracle
 from .running import PIP, Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
@@ -316,6 +316,14 @@ def test_order_of_the_elements(
     for name in errors[0]:
         for coarse, fine in pairwise(errors):
             assert log2(coarse[name] / fine[name]) == pytest.approx(order, abs=0.02), name
+
+
+def test_the_ratio_alone_is_that_of_the_march() -> None:
+    """Timed with the friction, sums of a million products kept waiting for the other processor."""
+    for mu, count in ((0.3, 7), (0.3, 200_000), (2.5, 100)):
+        assert march_ratio(mu, pi, count) == march(mu, pi, count)[0]
+    with pytest.raises(SceneError):
+        march_ratio(900.0, pi, 10_000)
 
 
 def test_elements_are_an_independent_march() -> None:

@@ -6,6 +6,7 @@ shows what finite elements cost in accuracy beside the limit Δθ → 0 that the
 takes. The error falls as N^-2, with Richardson's extrapolation as N^-4, until rounding takes over.
 """
 
+from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
 from math import atan2, cos, floor, hypot, inf, isfinite, tan
@@ -53,22 +54,39 @@ def march(mu: float, phi: float, count: int) -> tuple[float, float, float]:
     import numpy as np
 
     step = phi / count
-    grip = mu * tan(step / 2)
-    tension, x, y = 1.0, 0.0, 0.0
-    for first in range(0, count, BLOCK):
-        ends = np.full(min(BLOCK, count - first), (1 + grip) / (1 - grip))
-        ends[0] *= tension
-        with np.errstate(over="ignore"):
-            np.multiply.accumulate(ends, out=ends)
-        if not isfinite(ends[-1]):
-            raise SceneError("elements", count, TOO_LARGE)
+    tension, x, y, first = 1.0, 0.0, 0.0, 0
+    for ends in _tensions(mu, phi, count):
         # (8a): the friction of an element is (F2 - F1) cos(Δθ/2), tangential at its middle.
         friction = np.diff(ends, prepend=tension) * cos(step / 2)
         middle = (np.arange(first, first + len(ends)) + 0.5) * step
         x -= float(friction @ np.sin(middle))
         y += float(friction @ np.cos(middle))
-        tension = float(ends[-1])
+        tension, first = float(ends[-1]), first + len(ends)
     return tension, x, y
+
+
+def march_ratio(mu: float, phi: float, count: int) -> float:
+    """k_N alone, as `march` has it."""
+    for ends in _tensions(mu, phi, count):
+        last = ends[-1]
+    return float(last)
+
+
+def _tensions(mu: float, phi: float, count: int) -> Iterator[Any]:
+    """The tensions over T_l at the ends of the elements, a block at a time."""
+    import numpy as np
+
+    grip = mu * tan(phi / count / 2)
+    tension = 1.0
+    for first in range(0, count, BLOCK):
+        ends = np.full(min(BLOCK, count - first), (1 + grip) / (1 - grip))
+        ends[0] *= tension
+        with np.errstate(over="ignore"):
+            np.multiply.accumulate(ends, out=ends)
+        tension = ends[-1]
+        if not isfinite(tension):
+            raise SceneError("elements", count, TOO_LARGE)
+        yield ends
 
 
 def extrapolated(fine: float, coarse: float) -> float:
