@@ -11,10 +11,11 @@ from pathlib import Path
 import pytest
 
 from atwood_cli.model.scene import Scene
-from atwood_cli.tradeoff.measure import COUNTS, PAPERS_SCENE, SETTINGS, March, Measured, Tradeoff
+from atwood_cli.tradeoff.measure import SETTINGS, March, Measured, counts
+from atwood_cli.tradeoff.outcome import PAPERS_SCENE, Tradeoff, front_legend
 from atwood_cli.tradeoff.scenes import FAMILIES
 
-from .running import process
+from .running import labels, process
 
 TOP = Path(__file__).parent.parent
 PAGES = {
@@ -146,32 +147,42 @@ def test_what_was_measured_is_of_todays_settings() -> None:
     assert list(errors) == [setting.name for setting in SETTINGS]
     assert max(map(float, errors["certified"])) <= 4
     assert max(map(float, errors["exact"])) <= 0.5
-    counts = [row[0] for row in rows[4 + len(SETTINGS) :]]
-    assert counts == [*map(str, COUNTS), "closed form"]
-    picture = (TOP / "examples" / "tradeoff.svg").read_text(encoding="utf-8")
-    assert all(f"<!-- {name} -->" in picture for name in (*FAMILIES, *errors))
+    marched = [row[0] for row in rows[4 + len(SETTINGS) :]]
+    assert marched == [*map(str, counts()), "closed form"]
+    picture = labels((TOP / "examples" / "tradeoff.svg").read_text(encoding="utf-8"))
+    assert all(picture.count(name) == len(FAMILIES) for name in errors)
+    assert set(FAMILIES) <= set(picture)
+    screen = measured.split("```text\n$ atwood tradeoff\n")[1].split("```")[0]
+    assert max(map(len, screen.splitlines())) <= 100
+    words = " ".join(screen.split())
+    assert front_legend(len(FAMILIES)) in words
+    assert "Settings that no other beats (--all shows the rest): 500 scenes each of ordinary, " in words
+    (advice,) = re.findall(r"Take certified for results within 4 ulp .*?\.(?= Time)", words)
+    assert advice in " ".join(" ".join(picture).split())  # the picture's caption
 
 
 def test_the_measuring_script_fills_its_place() -> None:
     script = runpy.run_path(str(TOP / "examples" / "speed.py"))
     assert script["PLACE"].search(TRADEOFF)
-    outcome = Tradeoff(
-        Scene.read(PAPERS_SCENE),
-        6,
-        1,
-        [
-            Measured(family, setting.name, 2e-7, 0.1, off, off, 0.0, 0.0)
+
+    def run(seconds: float) -> Tradeoff:
+        measured = [
+            Measured(family, setting.name, seconds, 0.1, off, off, 0.0, 0.0)
             for family in FAMILIES
             for setting in SETTINGS
             for off in [1e-30 if "digits" in setting.name else 1.5]
-        ],
-        [March(4, False, 1e-5, 0.1, 1e-3), March(None, False, 1e-8, 0.1, 1e-17, None, True)],
-        [],
-    )
-    written = script["section"](outcome, "a machine")
+        ]
+        marches = [March(4, False, 1e-5, 0.1, 1e-3), March(None, False, seconds / 20, 0.1, 1e-17, None, True)]
+        return Tradeoff(Scene.read(PAPERS_SCENE), 6, 1, measured, marches, [])
+
+    written = script["section"](script["typical"]([run(1e-6), run(2e-7), run(1e-7)]), "a machine")
     assert "![Error against time](tradeoff.svg)\n" in written
-    assert ", on a machine; 6 scenes of each family, seed 1.\n" in written
+    assert ", on a machine; 6 scenes of each family, seed 1; times are medians of 5 runs.\n" in written
+    assert (
+        "```text\n$ atwood tradeoff\nSettings that no other beats (--all shows the rest): 6 scenes" in written
+    )
     assert f"| certified |{' 200 ns: 1.5 |' * len(FAMILIES)}\n" in written
+    assert f"| 50 digits |{' 200 ns: **1e-30** |' * len(FAMILIES)}\n" in written
     assert "| closed form | **1.0e-17** |  | 10 ns |  |  |  |\n" in written
 
 

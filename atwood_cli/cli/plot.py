@@ -1,7 +1,7 @@
 """Curves in the terminal: needs plotille (extra ``plot``), which sets the dots; the axes are drawn here."""
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from itertools import groupby, pairwise
@@ -14,11 +14,12 @@ from plotille import Canvas
 from ..arithmetic.rounding import as_typed
 from .curves import Curve, Picture
 from .page import Page
-from .text import for_stream, takes_unicode
+from .text import describe, for_stream, takes_unicode
 
 if TYPE_CHECKING:
     from ..fit.fitting import Fit
-    from ..tradeoff.measure import Tradeoff
+    from ..tradeoff.measure import Cost
+    from ..tradeoff.outcome import Tradeoff
 
 PIPE_WIDTH, HEIGHT, SMALL_HEIGHT = 80, 20, 12
 LEAST_WIDTH, LEAST_HEIGHT = 10, 5
@@ -84,26 +85,44 @@ def _show(page: Page, lines: list[str]) -> None:
         page.console.print(Text.from_ansi(shown.rstrip()), soft_wrap=True)
 
 
-def print_tradeoff_plot(outcome: "Tradeoff") -> None:
-    """Error against time, both logarithmic: the settings on each family, then string elements."""
-    from ..tradeoff.measure import EDGES, drawable, drawable_marches
+def print_tradeoff_plot(outcome: "Tradeoff", everything: bool) -> None:
+    """Error against time, both logarithmic: settings over all families, or on each and string elements."""
+    from ..tradeoff.outcome import EDGES, overall
 
     page = Page()
-    room = page.room or PIPE_WIDTH
-    for family, group in groupby(outcome.measured, attrgetter("family")):
-        settings = list(group)
-        points = [(one.seconds, drawable(one.worst_ulp)) for one in settings]
-        page.say(family, "bold")
-        _show(page, _scatter("worst error (ulp)", [points], room, LETTERS))
-    letters = zip(LETTERS, settings, strict=False)
-    page.say(f"{', '.join(f'{letter} {one.setting}' for letter, one in letters)}.")
-    page.say(f"{EDGES} Times are this machine's, for one scene.")
-    if any(curves := drawable_marches(outcome.marches)):
-        page.say("String elements", "bold")
-        _show(page, _scatter("relative error of e^(μφ)", curves, room, ""))
-        page.say("a elements, b extrapolated; from left to right 4 to 10 million of them.")
-    for note in (*outcome.notes, outcome.advice):
+    if everything:
+        for family, group in groupby(outcome.measured, attrgetter("family")):
+            page.say(family, "bold")
+            _show_settings(page, list(group))
+    else:
+        about = f"Times of {outcome.families[0]}, errors of all families"
+        page.say(about if outcome.seed is not None else f"scene: {describe(outcome.scene)}")
+        _show_settings(page, overall(outcome.measured))
+    settings = dict.fromkeys(one.setting for one in outcome.measured)
+    page.say(f"{', '.join(map(' '.join, zip(LETTERS, settings, strict=False)))}. {EDGES}")
+    if everything:
+        _show_elements(page, outcome)
+    page.say(outcome.advice, "bold")
+
+
+def _show_settings(page: Page, settings: Sequence["Cost"]) -> None:
+    from ..tradeoff.outcome import drawable
+
+    points = [(one.seconds, drawable(one.worst_ulp)) for one in settings]
+    _show(page, _scatter("worst error (ulp)", [points], page.room or PIPE_WIDTH, LETTERS))
+
+
+def _show_elements(page: Page, outcome: "Tradeoff") -> None:
+    from ..tradeoff.outcome import drawable_marches
+
+    for note in outcome.notes:
         page.say(note)
+    if any(marches := drawable_marches(outcome.marches)):
+        curves = [[(one.seconds, one.relative_error) for one in ones] for ones in marches]
+        page.say("String elements", "bold")
+        _show(page, _scatter("relative error of e^(μφ)", curves, page.room or PIPE_WIDTH, ""))
+        numbers = [one.elements for ones in marches for one in ones if one.elements]
+        page.say(f"a elements, b extrapolated; along the lines {min(numbers):,} to {max(numbers):,} of them.")
 
 
 def print_fit_plot(page: Page, head: str, fit: "Fit") -> None:
@@ -140,7 +159,7 @@ def _scatter(title: str, curves: list[list[tuple[float, float]]], room: int, mar
     def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
         for number, curve in enumerate(curves):
             dots = [(x_axis.dot(x), y_axis.dot(y)) for x, y in curve]
-            for mark, dot in zip(marks, dots, strict=False):
+            for mark, dot in zip(marks, _side_by_side(dots), strict=False):
                 canvas.point(*dot, marker=mark, color=COLOURS[number])
             if not marks:
                 for start, end in pairwise(dots):
@@ -150,6 +169,17 @@ def _scatter(title: str, curves: list[list[tuple[float, float]]], room: int, mar
 
     xs, ys = ([point[i] for curve in curves for point in curve] for i in (0, 1))
     return _framed(("time (s)", title), (xs, ys), (True, True), room, SMALL_HEIGHT, draw)
+
+
+def _side_by_side(dots: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """The dots, of which those in the character of another go to the next one that is free left of it."""
+    apart: list[tuple[int, int]] = []
+    for x, y in dots:
+        left = x
+        while left >= 0 and any((left // 2, y // 4) == (a // 2, b // 4) for a, b in apart):
+            left -= 2
+        apart.append((left if left >= 0 else x, y))
+    return apart
 
 
 PLAIN = {DOTS[0]: " "}

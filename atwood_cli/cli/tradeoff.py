@@ -1,4 +1,4 @@
-"""`atwood tradeoff`: time beside error on this machine, as tables, JSON, CSV, plots or a figure."""
+"""`atwood tradeoff`: time beside error on this machine, on one screen or in full, or drawn."""
 
 import sys
 from collections.abc import Mapping, Sequence
@@ -27,7 +27,8 @@ from .options import (
 from .text import Forms, describe, for_stream, say, scene_record, show
 
 if TYPE_CHECKING:
-    from ..tradeoff.measure import March, Measured, Tradeoff
+    from ..tradeoff.measure import March, Measured
+    from ..tradeoff.outcome import Tradeoff
     from .page import Page
 
 
@@ -62,12 +63,22 @@ Seed = Annotated[
         "Measurement", metavar="N", help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given."
     ),
 ]
+Elements = Annotated[
+    str | None,
+    option(
+        "Measurement", metavar="N", help="String elements at most, up to 10 million; a million if not given."
+    ),
+]
+Everything = Annotated[
+    bool, option("Output", "--all", help="Show every setting on each family, and all numbers of elements.")
+]
 Plot = Annotated[
     bool,
-    option("Output", "--plot", help="Draw error against time in place of the tables (extra: plot)."),
+    option("Output", "--plot", help="Draw error against time in place of tables (extra: plot)."),
 ]
 
 RULES = (
+    Rule("all", "json csv", "has no say beside --json and --csv, which hold all of it; leave it out"),
     Rule("family scenes seed", "scene", "has no say where a scene is given; leave one of them out"),
     Rule("axle", "scene", "is not measured, as arrays have no such column; leave it out"),
 )
@@ -77,9 +88,12 @@ HELP = """Measure what accuracy costs on this machine: time beside error, for fa
 
 Examples:
   atwood tradeoff
-  atwood tradeoff --family near-critical --scenes 2000 --plot
   atwood tradeoff --m1 1 --m2 3 --M 10 --mu 0.3
+  atwood tradeoff --family near-critical --scenes 2000 --plot
+  atwood tradeoff --all --elements 10000000
   atwood tradeoff --json > measured.json
+
+What is shown are the settings that no other beats: none is both faster and more accurate.
 """
 
 
@@ -90,6 +104,8 @@ def tradeoff(
     family: Families = None,
     scenes: Scenes = None,
     seed: Seed = None,
+    elements: Elements = None,
+    all: Everything = False,  # noqa: A002 - the name of the option
     plot: Plot = False,
     figure: FigureFile = None,
     force: Force = False,
@@ -97,8 +113,9 @@ def tradeoff(
     csv: AsCsv = False,
 ) -> int:
     options = dict(locals())
-    from ..tradeoff.measure import MOST_SCENES
-    from ..tradeoff.measure import tradeoff as measure
+    from ..solver.elements import MAX_ELEMENTS
+    from ..tradeoff.measure import COUNTS, MOST_SCENES, USUAL_ELEMENTS
+    from ..tradeoff.outcome import tradeoff as measure
     from ..tradeoff.scenes import FAMILIES
     from .page import watched
 
@@ -114,23 +131,26 @@ def tradeoff(
     families = list(dict.fromkeys(chosen))
     count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
     start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
-    outcome = measure(families, count, start, scene, watched)
+    most = read_whole("elements", elements or USUAL_ELEMENTS, COUNTS[0], MAX_ELEMENTS)
+    outcome = measure(families, count, start, scene, most, watched)
     if figure is not None:
         from .tradeoff_figure import save
 
         save(outcome, figure, force)
-    say(*show(_forms(outcome, plot), json, csv))
+    say(*show(_forms(outcome, plot, all), json, csv))
     return DONE
 
 
-def _forms(outcome: "Tradeoff", plot: bool) -> Forms:
+def _forms(outcome: "Tradeoff", plot: bool, everything: bool) -> Forms:
     def page() -> None:
         if plot:
             from .plot import print_tradeoff_plot
 
-            print_tradeoff_plot(outcome)
+            print_tradeoff_plot(outcome, everything)
+        elif everything:
+            _print_all(outcome)
         else:
-            _print_tables(outcome)
+            print_front(outcome)
 
     return Forms(
         json=lambda: _record(outcome),
@@ -164,9 +184,43 @@ def _records(outcome: "Tradeoff") -> list[dict[str, object]]:
     return [{name: record.get(name) for name in names} for record in records]
 
 
-def _print_tables(outcome: "Tradeoff") -> None:
+def print_front(outcome: "Tradeoff") -> None:
+    """One screen: the settings that none beats, which to take, and what string elements come to."""
+    from ..tradeoff.outcome import elements_in_words, front_legend, in_seconds, percent, short
+    from .page import Page
+
+    page = Page()
+    settings = outcome.front
+    page.say(f"Settings that no other beats (--all shows the rest): {_measured_on(outcome)}")
+    columns = {
+        "Setting": [one.setting for one in settings],
+        "Time": [in_seconds(one.seconds) for one in settings],
+        "Slowest family": [
+            f"{in_seconds(one.longest)} {one.slowest}" if one.slowest else "" for one in settings
+        ],
+        "Error (ulp)": [short(one.worst_ulp) for one in settings],
+        "Wrong": [percent(one.share_wrong_regime) for one in settings],
+    }
+    if not any(one.slowest for one in settings):
+        del columns["Slowest family"]
+    _print_columns(page, list(columns), list(columns.values()))
+    page.say(outcome.advice, "bold")
+    page.say(front_legend(len(outcome.families)))
+    for note in outcome.notes or [elements_in_words(outcome.marches)]:
+        page.say(note)
+
+
+def _measured_on(outcome: "Tradeoff") -> str:
+    """The scene, or the families and how many scenes there are of each."""
+    if outcome.seed is None:
+        return f"scene: {describe(outcome.scene)}"
+    each = "scenes each of" if len(outcome.families) > 1 else "scenes,"
+    return f"{outcome.scenes} {each} {', '.join(outcome.families)} (seed {outcome.seed})"
+
+
+def _print_all(outcome: "Tradeoff") -> None:
     """A table of the settings for each family of scenes, one of string elements, and what follows."""
-    from ..tradeoff.measure import ELEMENTS_LEGEND, LEGEND
+    from ..tradeoff.outcome import ELEMENTS_LEGEND, LEGEND
     from ..tradeoff.scenes import FAMILIES
     from .page import Page
 
@@ -186,7 +240,7 @@ def _print_tables(outcome: "Tradeoff") -> None:
 
 
 def _print_measured(page: "Page", settings: "Sequence[Measured]") -> None:
-    from ..tradeoff.measure import in_seconds, percent, short
+    from ..tradeoff.outcome import in_seconds, percent, short
 
     columns = {
         "  Setting": [f"{'*' if one.best else ' '} {one.setting}" for one in settings],
@@ -201,7 +255,7 @@ def _print_measured(page: "Page", settings: "Sequence[Measured]") -> None:
 
 
 def _print_marches(page: "Page", marches: "Sequence[March]") -> None:
-    from ..tradeoff.measure import in_seconds, scientific
+    from ..tradeoff.outcome import in_seconds, scientific
 
     by_count: dict[int | None, dict[bool, March]] = {}
     for one in marches:

@@ -10,36 +10,34 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
 from functools import partial
-from math import ceil, degrees, exp, inf, isfinite, isinf, log, pi, ulp
+from math import ceil, exp, inf, isfinite, log, pi, ulp
 from operator import attrgetter
 from statistics import median
 from time import perf_counter
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
 from ..arithmetic.interval import decimal_context
-from ..arithmetic.rounding import as_typed, text, to_double
+from ..arithmetic.rounding import to_double
 from ..arrays import ACCURACIES, solve_arrays
-from ..arrays.plan import COLUMNS
-from ..model.machine import Undetermined
 from ..model.quantities import REGIMES, STANDARD
 from ..model.scene import STANDARD_GRAVITY, Scene, SceneError
 from ..solver.answers import Answers
-from ..solver.elements import TOO_LARGE, balanced, extrapolated, march
+from ..solver.elements import MAX_ELEMENTS, TOO_LARGE, balanced, extrapolated, march_ratio
 from .baseline import paper_in_numpy
-from .scenes import Inputs, draw_scenes
+from .scenes import Inputs
 
 Values = dict[str, Any]
 """A solution by quantity; None, or NaN, where there is no value."""
-Watch = Callable[[Iterator[Any], int], Iterator[Any]]
 
 VALUES = STANDARD[1:]
 MOST_SCENES = 100_000
 EXACT_DIGITS = 240
 DECIMALS = (17, 50, 200)
 MARGIN = 4  # ulp: what certified promises
-REPEATS, RUN_SECONDS = 5, 0.02
+PRECISE_SCENES = 100  # whose errors count with digits, of which all are about half a unit in the last
+REPEATS, RUN_SECONDS = 5, 0.01
 FEWEST, MOST_ROWS = 20, 1_000_000
 TABLE = 10_000  # scenes at least that are solved at once in arrays: of few, what is rare counts too much
 PRECISE = decimal_context(EXACT_DIGITS + 20, ROUND_HALF_EVEN)
@@ -61,8 +59,9 @@ class Setting(NamedTuple):
 
 def _columns(rows: Sequence[Inputs], size: int, dtype: Any = np.float64) -> dict[str, Any]:
     """The scenes as columns, over and over until there are as many rows as that."""
+    times = ceil(size / len(rows))
     with np.errstate(over="ignore"):
-        return {name: np.resize(np.array([row[name] for row in rows], dtype), size) for name in rows[0]}
+        return {name: np.tile(np.array([row[name] for row in rows], dtype), times)[:size] for name in rows[0]}
 
 
 def _by_scene(columns: Mapping[str, Any], regimes: Sequence[str]) -> list[Values]:
@@ -170,17 +169,22 @@ def measure(family: str, rows: Sequence[Inputs]) -> list[Measured]:
     """Every setting on these scenes, which have the same parameters; ``family`` names them."""
     reference = _in_decimals(EXACT_DIGITS)
     exact = reference.run(reference.prepare(rows, len(rows)))
-    off = [errors(s.read(rows, s.run(s.prepare(rows, len(rows)))), exact) for s in SETTINGS]
+    counted = [rows if setting.at_once else rows[:PRECISE_SCENES] for setting in SETTINGS]
+    off = [
+        errors(s.read(some, s.run(s.prepare(some, len(some)))), exact[: len(some)])
+        for s, some in zip(SETTINGS, counted, strict=True)
+    ]
     sizes = [_size(setting, rows) for setting in SETTINGS]
     given = [setting.prepare(rows, size) for setting, size in zip(SETTINGS, sizes, strict=True)]
     # In turn, so that what slows the machine for a while slows all of them.
     repeats = [[_seconds(s.run, g) for s, g in zip(SETTINGS, given, strict=True)] for _ in range(REPEATS)]
     measured = []
-    for setting, size, errors_, *taken in zip(SETTINGS, sizes, off, *repeats, strict=True):
+    for setting, size, some, errors_, *taken in zip(SETTINGS, sizes, counted, off, *repeats, strict=True):
         center = _center([seconds / size for seconds in taken])
-        wrong = (len(rows) - len(errors_)) / len(rows)
+        wrong = (len(some) - len(errors_)) / len(some)
         measured.append(Measured(family, setting.name, *center, *_summary(errors_), wrong))
-    return [one._replace(best=not any(_beats(other, one) for other in measured)) for one in measured]
+    best = front(measured)
+    return [one._replace(best=one in best) for one in measured]
 
 
 def _size(setting: Setting, rows: Sequence[Inputs]) -> int:
@@ -219,14 +223,33 @@ def _summary(off: Sequence[float]) -> tuple[float | None, float | None, float | 
     return off[-1], off[ceil(0.99 * len(off)) - 1], sum(one > MARGIN for one in off) / len(off)
 
 
-def _off(one: Measured) -> float:
-    """The error that counts: a regime taken wrongly is no answer."""
-    return inf if one.share_wrong_regime or one.worst_ulp is None else one.worst_ulp
+class Cost(Protocol):
+    """What a setting takes, and how far off it is."""
+
+    @property
+    def seconds(self) -> float: ...
+    @property
+    def worst_ulp(self) -> float | None: ...
+    @property
+    def share_wrong_regime(self) -> float: ...
 
 
-def _beats(one: Measured, other: Measured) -> bool:
-    mine, others = (one.seconds, _off(one)), (other.seconds, _off(other))
+C = TypeVar("C", bound=Cost)
+
+
+def front(settings: Sequence[C]) -> list[C]:
+    """Those of which no other is both faster and more accurate."""
+    return [one for one in settings if not any(_beats(other, one) for other in settings)]
+
+
+def _beats(one: Cost, other: Cost) -> bool:
+    mine, others = (one.seconds, _inaccuracy(one)), (other.seconds, _inaccuracy(other))
     return mine != others and mine[0] <= others[0] and mine[1] <= others[1]
+
+
+def _inaccuracy(one: Cost) -> tuple[float, float]:
+    """Regimes count first: what takes fewer of them wrongly is the more accurate."""
+    return one.share_wrong_regime, inf if one.worst_ulp is None else one.worst_ulp
 
 
 # String elements
@@ -246,11 +269,17 @@ class March(NamedTuple):
     """The least error: with more elements rounding takes over."""
 
 
-COUNTS = (4, *(times * 10**power for power in range(1, 6) for times in (1, 3)), 1_000_000)
+COUNTS = (4, *(times * 10**power for power in range(1, 7) for times in (1, 3)), MAX_ELEMENTS)
+USUAL_ELEMENTS = 1_000_000
 
 
-def marches(scene: Scene) -> Iterator[March]:
-    """e^{μφ} of a scene by each number of elements, plain and extrapolated, and last in closed form.
+def counts(most: int = USUAL_ELEMENTS) -> list[int]:
+    """The numbers of elements that are marched."""
+    return [count for count in COUNTS if count <= most]
+
+
+def marches(scene: Scene, most: int = USUAL_ELEMENTS) -> Iterator[March]:
+    """e^{μφ} of a scene by numbers of elements up to the most, plain and extrapolated, last in closed form.
 
     Raises SceneError where it is no double, Undetermined where no friction can hold the string.
     """
@@ -263,13 +292,13 @@ def marches(scene: Scene) -> Iterator[March]:
     exact = Fraction(ratio)
 
     def k(count: int) -> float:
-        return march(mu, phi, count)[0]
+        return march_ratio(mu, phi, count)
 
     def from_halves(count: int) -> float:
         return extrapolated(k(count), k(count // 2))
 
     def timed(count: int | None, halved: bool, ratio: Callable[[], float], times: int) -> March:
-        taken = []
+        taken, reached = [], ratio()  # the first call of all takes longer
         for _ in range(REPEATS):
             start = perf_counter()
             for _ in range(times):
@@ -277,7 +306,7 @@ def marches(scene: Scene) -> Iterator[March]:
             taken.append((perf_counter() - start) / times)
         return March(count, halved, *_center(taken), abs(float((Fraction(reached) - exact) / exact)))
 
-    for count in COUNTS:
+    for count in counts(most):
         if balanced(mu, phi, count):
             yield timed(count, False, partial(k, count), 1)
         if balanced(mu, phi, count // 2):
@@ -297,157 +326,3 @@ def with_orders(run: Sequence[March]) -> list[March]:
         least = min((other.relative_error for other in alike), default=None)
         marked.append(one._replace(order=order, best=one.elements is None or one.relative_error == least))
     return marked
-
-
-# What follows
-
-
-class Tradeoff(NamedTuple):
-    """What was measured: of ``scenes`` of each family from the seed, or of one scene (seed None).
-
-    ``scene`` is the one whose e^{μφ} the elements approach.
-    """
-
-    scene: Scene
-    scenes: int
-    seed: int | None
-    measured: list[Measured]
-    marches: list[March]
-    notes: list[str]
-
-    @property
-    def advice(self) -> str:
-        return advice(self.measured)
-
-
-PAPERS_SCENE = {"m1": "1", "m2": "3", "mu": "0.3"}
-LEGEND = (
-    "* No other setting is both faster and more accurate. Time is for one scene on this machine, of a table"
-    f" of at least {TABLE:,} but for digits, ± half the range of its repeats. Errors are in units in the last"
-    " place (ulp) of a double, a scene's the worst of its quantities', over the scenes whose regime is right;"
-    " Over 4 is the share of them over 4 ulp, Regime the share of scenes whose regime is wrong. paper: the"
-    " paper's formulas typed into NumPy."
-)
-ELEMENTS_LEGEND = (
-    "* The least error: with more elements rounding takes over. Order is the power of N by which the error"
-    " fell."
-)
-LEAST_DRAWN, GREATEST_DRAWN = 1e-3, 1e20
-EDGES = "Errors below 0.001 ulp and above 1e20 ulp, or without a right regime, lie on the edge."
-
-
-def drawable(worst_ulp: float | None) -> float:
-    """The error as far as a picture shows it."""
-    return GREATEST_DRAWN if worst_ulp is None else min(max(worst_ulp, LEAST_DRAWN), GREATEST_DRAWN)
-
-
-def drawable_marches(marches: Sequence[March]) -> list[list[tuple[float, float]]]:
-    """Times and errors of elements, then of extrapolated ones; where there is none, no logarithm of it."""
-    return [
-        [
-            (one.seconds, one.relative_error)
-            for one in marches
-            if one.extrapolated == way and one.elements and one.relative_error
-        ]
-        for way in (False, True)
-    ]
-
-
-def tradeoff(families: Sequence[str], scenes: int, seed: int, scene: Scene | None, watch: Watch) -> Tradeoff:
-    """Measure every setting on so many scenes of each family, or on the one scene given. Raises SceneError.
-
-    ``watch`` takes the parts of the work, and how many there are, and yields them as they are done.
-    """
-    sets: Iterator[tuple[str, list[Inputs]]] = ((name, draw_scenes(name, scenes, seed)) for name in families)
-    if scene is not None:
-        sets, families = iter([("scene", [inputs_of(scene)])]), ["scene"]
-    measured = [one for part in watch((measure(*each) for each in sets), len(families)) for one in part]
-    marched = scene or Scene.read(PAPERS_SCENE)
-    run, notes = [], []
-    try:
-        run = with_orders(list(watch(marches(marched), 2 * len(COUNTS) + 1)))
-    except SceneError as error:
-        notes.append(f"String elements {error.rule}.")
-    except Undetermined as reason:
-        notes.append(f"String elements: {reason}.")
-    if scene is not None:
-        return Tradeoff(marched, 1, None, measured, run, notes)
-    return Tradeoff(marched, scenes, seed, measured, run, notes)
-
-
-def inputs_of(scene: Scene) -> Inputs:
-    """A scene as the doubles that it is measured with, m1 the lighter mass. Raises SceneError."""
-    inputs: Inputs = {}
-    given = scene._asdict() | {"wrap": scene.wrap.number}
-    for name in COLUMNS:
-        if (value := given[name]) is not None:
-            inputs[name] = double = to_double(value)
-            if isinstance(value, Fraction) and (double == inf or (double == 0 and value)):
-                raise SceneError(name, as_typed(value), "is beyond the doubles, which are measured here")
-    if scene.I is not None:
-        raise SceneError("I", None, "is not measured, as arrays have no such column; give --inertia")
-    if scene.wrap.unit == "rad":
-        inputs["wrap"] = degrees(inputs["wrap"])
-    inputs["m1"], inputs["m2"] = sorted((inputs["m1"], inputs["m2"]))
-    return inputs
-
-
-def advice(measured: Sequence[Measured]) -> str:
-    """Which setting for which need, from what was measured: times of the first family, errors of all.
-
-    Where another family takes much longer, that is said too.
-    """
-    by_family: dict[str, dict[str, float]] = {}
-    for one in measured:
-        by_family.setdefault(one.setting, {})[one.family] = one.seconds
-    times = {name: next(iter(seconds.values())) for name, seconds in by_family.items()}
-    off = {name: max(_off(one) for one in measured if one.setting == name) for name in times}
-    wrong = max(one.share_wrong_regime for one in measured if one.setting == "fast")
-    wanted: dict[str, list[str]] = {}
-    for need, most in NEEDS.items():
-        fit = [name for name in times if off[name] <= most]
-        wanted.setdefault(min(fit, key=times.__getitem__), []).append(need)
-
-    def cost(name: str) -> str:
-        slowest = max(by_family[name], key=by_family[name].__getitem__)
-        longest = by_family[name][slowest]
-        more = f", {in_seconds(longest)} if {slowest}" if longest > MUCH * times[name] else ""
-        return in_seconds(times[name]) + " a scene" * (name == next(iter(wanted))) + more
-
-    parts = [f"{name} for {' and '.join(needs)} ({cost(name)})" for name, needs in wanted.items()]
-    worst = max(one.worst_ulp or 0 for one in measured if one.setting == "fast")
-    regimes = f" and took up to {percent(wrong)} of the regimes wrongly" if wrong else ""
-    fast = f"; fast ({cost('fast')}) was up to {short(worst)} ulp off{regimes}"
-    return f"Take {', '.join(parts)}{'' if 'fast' in wanted else fast}."
-
-
-MUCH = 5
-"""How many times as long a family must take as the first to be named."""
-NEEDS = {"results within 4 ulp": MARGIN, "the nearest double": 0.5, "more digits": 1e-9}
-
-
-def in_seconds(seconds: float) -> str:
-    """A time to three digits, in the unit that fits."""
-    unit, factor = next((u, f) for u, f in SECONDS.items() if seconds < 1000 * f or u == "s")
-    return f"{short(seconds / factor, 3)} {unit}"
-
-
-SECONDS = {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
-
-
-def short(value: float | None, digits: int = 2) -> str:
-    """A number to a few digits; a dash where there is none."""
-    if value is None or isinf(value):
-        return "-" if value is None else "inf"
-    return text(Decimal(f"{value:.{digits}g}"))
-
-
-def scientific(value: float) -> str:
-    """A number to two digits, with its power of ten."""
-    mantissa, exponent = f"{value:.1e}".split("e")
-    return f"{mantissa}e{int(exponent)}"
-
-
-def percent(share: float | None) -> str:
-    """A share in percent, to three digits; a dash where there is none."""
-    return "-" if share is None else f"{short(100 * share, 3)} %"
