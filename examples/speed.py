@@ -6,13 +6,14 @@ From the top of the project: python -m examples.speed "two cores of a cloud mach
 import re
 import sys
 from collections.abc import Sequence
-from contextlib import redirect_stdout
 from datetime import date
 from io import StringIO
 from pathlib import Path
 from statistics import median
 
-from atwood_cli.cli.page import watched
+from rich.console import Console
+
+from atwood_cli.cli.page import Page, watched
 from atwood_cli.cli.tradeoff import print_front
 from atwood_cli.cli.tradeoff_figure import save
 from atwood_cli.tradeoff.measure import USUAL_ELEMENTS, front
@@ -41,10 +42,10 @@ def typical(runs: Sequence[Tradeoff]) -> Tradeoff:
 
 
 def screen(outcome: Tradeoff) -> str:
-    """What `atwood tradeoff` prints."""
-    with redirect_stdout(StringIO()) as printed:
-        print_front(outcome)
-    return printed.getvalue()
+    """What `atwood tradeoff` shows on a terminal of 80 columns."""
+    shown = StringIO()
+    print_front(outcome, Page(Console(file=shown, width=80, force_terminal=True, color_system=None)))
+    return "".join(f"{line.rstrip()}\n" for line in shown.getvalue().splitlines())
 
 
 def table(heads: list[str], rows: list[list[str]]) -> str:

@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from atwood_cli import solve_arrays
+from atwood_cli.model.quantities import NAMES
 from atwood_cli.tradeoff.baseline import paper_in_numpy
 
 REPEATS = 5
@@ -159,6 +160,16 @@ FAMILIES = {
 }
 
 
+SLOWEST = {
+    "m1": 2.7370882119628515e136,
+    "m2": 9.2198601112921,
+    "M": 2.3265701665697617e-119,
+    "wrap": 2.27e295,
+}
+"""The row that took longest of ten thousand drawn from all doubles: of a wrap that long, pi is needed to
+as many digits."""
+
+
 def copied(*columns: Any) -> Any:
     """The ceiling: inputs copied into as many outputs."""
     return [column.copy() for column in (*columns, *columns[:2])], np.zeros(len(columns[0]), np.int8)
@@ -210,6 +221,8 @@ def main(rows: int) -> None:
     few = _named(ordinary(100))
     for accuracy in ("fast", "certified", "exact"):
         print(f"100 rows, {accuracy}: {warm(few, accuracy, None, 99) * 1e3:.2f} ms")
+    for what, names in (("the seven standard quantities", None), ("all quantities", NAMES[1:])):
+        print(f"the slowest row known, exact, {what}: {warm(SLOWEST, 'exact', names, 9) * 1e3:.0f} ms")
     tracemalloc.start()
     results = solve_arrays(*ordinary(rows // 5))
     _, peak = tracemalloc.get_traced_memory()

@@ -150,7 +150,9 @@ def _forms(outcome: "Tradeoff", plot: bool, everything: bool) -> Forms:
         elif everything:
             _print_all(outcome)
         else:
-            print_front(outcome)
+            from .page import Page
+
+            print_front(outcome, Page())
 
     return Forms(
         json=lambda: _record(outcome),
@@ -184,12 +186,10 @@ def _records(outcome: "Tradeoff") -> list[dict[str, object]]:
     return [{name: record.get(name) for name in names} for record in records]
 
 
-def print_front(outcome: "Tradeoff") -> None:
+def print_front(outcome: "Tradeoff", page: "Page") -> None:
     """One screen: the settings that none beats, which to take, and what string elements come to."""
     from ..tradeoff.outcome import elements_in_words, front_legend, in_seconds, percent, short
-    from .page import Page
 
-    page = Page()
     settings = outcome.front
     page.say(f"Settings that no other beats (--all shows the rest): {_measured_on(outcome)}")
     columns = {
