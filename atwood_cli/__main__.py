@@ -56,6 +56,10 @@ def main() -> int:
         status = run()
     except KeyboardInterrupt:
         status = statuses.get(ended_by, INTERRUPTED)
+    except Exception:  # modules in the middle of their import make others of it
+        if not ended_by:
+            raise
+        status = statuses[ended_by]
     finally:
         heeded = False  # all is done, and Python would show a traceback of what interrupts its end
         sys.unraisablehook = sys.__unraisablehook__

@@ -379,7 +379,7 @@ def wrong_with_killed(run: int) -> str:
     after = out.read_bytes() if out.exists() else None
     wrong = ""
     if child.returncode not in (0, KILLED_BY[blow]):
-        wrong = f"status {child.returncode}"
+        wrong = f"status {child.returncode}, and on stderr {said!r}"
     elif after not in (before, whole_file) or (child.returncode == 0 and after != whole_file):
         wrong = f"{out} is neither as it was nor whole"
     elif left and not (blow == "SIGKILL" and all(name.startswith(".atwood-") for name in left)):

@@ -1122,6 +1122,32 @@ def waiting(*words: str) -> "subprocess.Popen[bytes]":
     return child
 
 
+TURNED = """
+import os, signal, sys, time
+from atwood_cli import cli
+class Part:
+    def __set_name__(self, owner, name):
+        os.kill(os.getpid(), getattr(signal, sys.argv.pop()))
+        time.sleep(9)
+def run():
+    try:
+        type("Imported", (), {"part": Part()})
+    except KeyboardInterrupt as error:  # since Python 3.12; before, a RuntimeError
+        raise ImportError("numpy._core.multiarray failed to import") from error
+cli.run = run
+from atwood_cli.__main__ import main
+sys.exit(main())
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
+@pytest.mark.parametrize(("blow", "status"), [("SIGINT", 130), ("SIGTERM", 143), ("SIGHUP", 129)])
+def test_a_run_stopped_in_an_import_shows_no_traceback(blow: str, status: int) -> None:
+    """Classes that are being made, and modules written in C, turn what stops them into other errors."""
+    ended = subprocess.run([sys.executable, "-c", TURNED, blow], capture_output=True, check=False)
+    assert (ended.returncode, ended.stderr) == (status, b"")
+
+
 @pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
 @pytest.mark.parametrize("blows", ["SIGKILL", "SIGINT", "SIGTERM", "SIGHUP", "SIGINT SIGINT"])
 def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str) -> None:

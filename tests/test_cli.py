@@ -525,6 +525,16 @@ def test_an_interrupt_ends_it_with_130(
     assert capsys.readouterr() == ("", "")
 
 
+def test_an_error_that_is_no_interrupt_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail() -> int:
+        raise ImportError("numpy._core.multiarray failed to import")
+
+    monkeypatch.setattr("atwood_cli.cli.run", fail)
+    monkeypatch.setattr("signal.signal", lambda *_: None)  # this process goes on
+    with pytest.raises(ImportError):
+        main()
+
+
 def test_python_dash_m_and_the_command_are_one() -> None:
     command = Path(sys.executable).with_name("atwood")
     if not command.exists():
