@@ -535,6 +535,27 @@ def screen(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) 
     return lines
 
 
+def test_words_stand_by_their_own_points(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside a point stood the name of another; one that finds no place has a line to its point."""
+    pytest.importorskip("matplotlib")
+    from matplotlib.text import Text
+
+    from atwood_cli.cli.tradeoff_figure import save
+
+    with pages_seen(monkeypatch) as pages:
+        save(OUTCOMES["all lost"], str(tmp_path / "a.svg"), force=False)
+    pages[0].draw_without_rendering()
+    axes = pages[0].axes[0]
+    names = {text.get_text(): text for text in axes.texts if text.get_text() != "4 ulp"}
+    points = {name: axes.transData.transform(text.xy) for name, text in names.items()}
+    renderer = pages[0].canvas.get_renderer()
+    for name, text in names.items():
+        box = Text.get_window_extent(text, renderer)
+        off = {other: np.hypot(*(point - point.clip(box.min, box.max))) for other, point in points.items()}
+        assert text.arrow_patch or min(off, key=off.__getitem__) == name
+    assert len(names) == 6
+
+
 @pytest.mark.parametrize("name", OUTCOMES)
 @pytest.mark.parametrize("plot", [False, True])
 def test_the_answer_is_on_one_screen(name: str, plot: bool, screen: Any) -> None:
@@ -660,11 +681,8 @@ def test_a_scene_of_ones_own(atwood: Atwood) -> None:
     mirrored = json.loads(atwood(*"tradeoff --m1 3 --m2 1 --M 10 --mu 0.3 --json".split()).out)
     for one, other in zip(printed["arithmetic"], mirrored["arithmetic"], strict=True):
         assert one["worst_ulp"] == other["worst_ulp"]
-    table = atwood(*SCENE).out
-    assert (
-        "scene: m1 = 1 kg, m2 = 3 kg, M = 10 kg, mu = 0.3, g = 9.80665 m/s², inertia = 0.5, wrap = 180°\n"
-        in table
-    )
+    table = " ".join(atwood(*SCENE).out.split())
+    assert "scene: m1 = 1 kg, m2 = 3 kg, M = 10 kg, mu = 0.3, g = 9.80665 m/s², inertia = 0.5, wrap" in table
 
 
 @pytest.mark.usefixtures("briefly")
@@ -712,7 +730,7 @@ def test_scenes_of_every_kind(given: str, atwood: Atwood) -> None:
 def test_where_no_elements_can_be(given: str, note: str, atwood: Atwood) -> None:
     printed = json.loads(atwood("tradeoff", *given.split(), "--json").out)
     assert (printed["elements"], printed["notes"]) == ([], [note])
-    assert note in atwood("tradeoff", *given.split()).out
+    assert note in " ".join(atwood("tradeoff", *given.split()).out.split())
 
 
 def test_the_plot(atwood: Atwood, brief: list[str]) -> None:
