@@ -585,3 +585,12 @@ def test_a_ratio_too_large_to_write_is_told() -> None:
     tell = {equation.left: equation for equation in equations(found)}
     assert (tell["z"].signs, tell["z"].result, tell["z"].numbers) == ("=>", "10^100000000", None)
     assert tell["a"].numbers is not None
+
+
+def test_where_nothing_but_the_axle_tells_the_motion_there_is_no_scene_without_it() -> None:
+    """What it would be on an axle that does not rub depends on M, which is not given: a traceback."""
+    given = {"m1": "1", "m2": "0.3", "mu": "3", "mu_k": "2.5", "axle": "1e300"}
+    titles = [step.title for step in explain(Answers(Scene.read(given), 6)).steps]
+    assert "What if the axle did not rub?" not in titles
+    with_pulley = [step.title for step in explain(Answers(Scene.read(given | {"M": "1"}), 6)).steps]
+    assert "What if the axle did not rub?" in with_pulley

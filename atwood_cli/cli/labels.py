@@ -38,11 +38,15 @@ AWAY = 30
 HORIZONTAL, VERTICAL = {1: "left", -1: "right", 0: "center"}, {1: "bottom", -1: "top", 0: "center"}
 
 
-def write_labels(axes: "Axes", labels: Sequence[Label], size: float = 9) -> None:
+def write_labels(axes: "Axes", labels: Sequence[Label], size: float = 9, *, laid_out: bool = False) -> None:
     """Write words beside their points, where they cover no line, no point and no other words.
 
-    To be called when all else is drawn: it goes by where that stands on the page.
+    To be called when all else is drawn: it goes by where that stands on the page. The page is laid out
+    first, which takes a while, unless only other labels were written since it was ``laid_out``.
     """
+    if not laid_out:
+        figure: Any = axes.figure
+        figure.draw_without_rendering()  # which decides where the axes lie
     page = _Page(axes, labels)
     for label in labels:
         best: tuple[float, Any] | None = None
@@ -91,7 +95,6 @@ class _Page:
 
         self.axes, self.extent = axes, Text.get_window_extent
         figure: Any = axes.figure
-        figure.draw_without_rendering()  # which decides where the axes lie
         self.renderer = figure.canvas.get_renderer()
         texts = [text for text in (*axes.texts, axes.title) if text.get_text()]
         self.taken = [self.extent(text, self.renderer) for text in texts]

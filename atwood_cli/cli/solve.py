@@ -271,7 +271,6 @@ def print_explanation(answers: Answers, markdown: bool) -> None:
     from ..derivation.typeset import as_markdown, as_text
     from .page import Page
 
-    answers = answers.shown
     scene, steps = describe(answers.case.scene), explain(answers)
     if markdown:
         for line in as_markdown(scene, steps):

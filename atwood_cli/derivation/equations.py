@@ -18,14 +18,11 @@ from ..arithmetic.symbolic import Formula, Symbol, Symbols
 from ..model import physics
 from ..model.machine import Machine
 from ..model.quantities import QUANTITIES
-from ..model.scene import Scene
-from ..solver.answers import Answers
+from ..solver.answers import SHOWN_DIGITS, Answers
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, N
 
-DIGITS = 6
-"""Significant digits of a derivation, unless others are asked for."""
 DOUBT = 3
 """Significant digits of how much something matters (%)."""
 TYPED = 17
@@ -95,7 +92,7 @@ class Derivation:
 
     def __init__(self, answers: Answers) -> None:
         self.answers, self.case, self.scene = answers, answers.case, answers.case.scene
-        self.digits = answers.digits or DIGITS
+        self.digits = answers.digits or SHOWN_DIGITS
         self._finer = {self.digits: answers}
         self.shown: set[str] = set()
         self.explained: set[str] = set()
@@ -287,9 +284,8 @@ class Derivation:
             yield "The axle bears both tensions, as (20) says, and the pulley's weight:"
             yield from self.lines("axle_force")
 
-    def compared(self, scene: Scene) -> Iterator[Part]:
+    def compared(self, other: Answers) -> Iterator[Part]:
         """What another scene gives in place of this one, and by how much that is off."""
-        other = Answers(scene, self.digits)
         for name in ("acceleration", "tension_1", "tension_2"):
             about, value = QUANTITIES[name], self.answers[name]
             off = f" ({self.off(other, name)} %)" if value and not is_infinite(value) else ""

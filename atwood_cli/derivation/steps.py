@@ -11,7 +11,7 @@ from typing import NamedTuple
 from ..model.quantities import QUANTITIES
 from ..solver.answers import Answers
 from ..solver.messages import conditions, odd_inertia, open_range, reasons_at, verdict
-from .equations import DIGITS, Derivation, Law, Part
+from .equations import Derivation, Law, Part
 
 
 class Step(NamedTuple):
@@ -33,9 +33,8 @@ class Explanation(NamedTuple):
 
 
 def explain(answers: Answers) -> Explanation:
-    """The derivation for a scene, to the digits of ``answers`` or to `DIGITS`."""
-    if answers.digits is None:
-        answers = Answers(answers.case.scene, DIGITS)
+    """The derivation for a scene, to the digits of ``answers``, or as many as tables show."""
+    answers = answers.shown
     derivation = Derivation(answers)
     case = answers.case
     steps = [_masses(derivation), _pulley(derivation)]
@@ -315,19 +314,20 @@ def _limits(derivation: Derivation) -> Step:
 
 def _simpler(derivation: Derivation) -> Iterator[Step]:
     """What simpler models would give for this scene, and how far off."""
-    case, scene = derivation.case, derivation.scene
+    case, scene, digits = derivation.case, derivation.scene, derivation.digits
     if case.sign == 0 or derivation.answers["acceleration"] is None:
         return
     held = case.axle_friction is not None and not case.locked and (case.axle_holds or not case.pulley_known)
     if not (case.frictionless or (held and case.regime != "verge")):
         massless = scene._replace(M=Fraction(0), I=None, inertia=Fraction(1), mu=None, mu_k=None)
-        yield Step("What if the pulley's mass is ignored?", [*derivation.compared(massless)])
+        yield Step("What if the pulley's mass is ignored?", [*derivation.compared(Answers(massless, digits))])
     if case.axle_friction is not None and case.regime == "no-slip" and not case.locked:
-        freely = scene._replace(axle=None)
-        yield Step("What if the axle did not rub?", [*derivation.compared(freely)])
+        freely = Answers(scene._replace(axle=None), digits)
+        if freely["acceleration"] is not None:
+            yield Step("What if the axle did not rub?", [*derivation.compared(freely)])
     if case.regime == "slip" and case.pulley_known:
         holding = scene._replace(mu=None, mu_k=None)
-        yield Step("What if slipping is ignored?", [*derivation.compared(holding)])
+        yield Step("What if slipping is ignored?", [*derivation.compared(Answers(holding, digits))])
 
 
 def _model(derivation: Derivation) -> Step:

@@ -6,18 +6,17 @@ from fractions import Fraction
 from ..arithmetic.rounding import text, to_digits
 from ..derivation.equations import Law, Part
 from ..derivation.steps import Explanation, Step
+from ..solver.answers import SHOWN_DIGITS
 from .fitting import UNITS, WORDS, Fit, away
 from .line import points
 from .sentences import far, few, notes, shown, verdict
-
-DIGITS = 6
 
 
 def explained(fit: Fit) -> Explanation:
     """The derivation of the line, and what became of it."""
     return Explanation(
         [verdict(fit)],
-        f"Numbers are rounded to {DIGITS} significant digits.",
+        f"Numbers are rounded to {SHOWN_DIGITS} significant digits.",
         [
             Step("The equations of a run", list(_equations())),
             Step("The runs as points", list(_points(fit))),
@@ -84,4 +83,4 @@ def _needed(fit: Fit) -> Iterator[Part]:
 
 
 def _number(value: float) -> str:
-    return text(to_digits(DIGITS)(Fraction(float(value))))
+    return text(to_digits(SHOWN_DIGITS)(Fraction(float(value))))
