@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from fractions import Fraction
 from pathlib import Path
 from random import Random
@@ -736,6 +736,36 @@ def test_rows_of_parquet_come_in_slices(
     ran = atwood("batch", str(tmp_path / "in.parquet"), "-o", str(tmp_path / "out.parquet"))
     assert (ran.status, ran.err) == (0, f"atwood: {rows} row{'s' * (rows > 1)}: {rows} no-slip; no errors.\n")
     assert pl.read_parquet(tmp_path / "out.parquet").select(frame.columns).equals(frame)
+
+
+def test_rows_of_parquet_that_grow_do_not_fill_the_memory(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """After 200,000 short rows, 300 of 900 KB were read at once, and were one piece: a gigabyte."""
+    monkeypatch.setattr(tables, "ROWS_BYTES", 1 << 11)
+    monkeypatch.setattr(tables, "SLICE_BYTES", 1 << 13)
+    read: list[int] = []
+    cut = tables._cut
+
+    def length(frame: pl.DataFrame) -> int:
+        return sum(map(len, filter(None, [*frame["t"], *frame["b"]])))
+
+    def watched(frame: pl.DataFrame) -> Iterator[pl.DataFrame]:
+        read.append(length(frame))
+        return cut(frame)
+
+    monkeypatch.setattr(tables, "_cut", watched)
+    texts = [*["x"] * 3000, *["y" * 900] * 40, "z" * 10_000, None]
+    data = [*[b""] * 3000, *[b"b" * 100] * 42]
+    frame = pl.DataFrame({"m1": 1.0, "t": texts, "b": data})
+    frame.write_parquet(tmp_path / "in.parquet")
+    with (tmp_path / "in.parquet").open("rb") as file:
+        pieces = [piece.frame for piece in tables.read("parquet", file, list, as_lines=False)]
+    assert pl.concat(pieces).equals(frame)
+    assert max(read) == 10_100  # one row
+    assert sorted(read)[-2] <= 1 << 13
+    sizes = [length(part) for part in pieces if len(part) > 1]
+    assert max(sizes) <= 1 << 11
 
 
 def test_a_quotation_mark_left_open_does_not_fill_the_memory(

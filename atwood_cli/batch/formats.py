@@ -15,7 +15,7 @@ from functools import partial
 from io import BytesIO, StringIO
 from itertools import chain, islice
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from ..files import STREAM
 from ..model.scene import SceneError
@@ -411,9 +411,9 @@ _DECODER = json.JSONDecoder(
 
 
 ROWS_BYTES, GROUP_BYTES = 1 << 21, 1 << 23
-FIRST_ROWS, MOST_ROWS = 16, 1 << 17
-"""Of Parquet, about the bytes of a piece and of a group of rows that is written; and the rows that are read
-at first, when it is not known how long they are, and at most."""
+SLICE_BYTES, FIRST_ROWS, MOST_ROWS = 1 << 23, 16, 1 << 17
+"""Of Parquet, about the bytes of a piece and of a group of rows that is written; the bytes of text that are
+read at a time, and the rows, at first, when it is not known how long they are, and at most."""
 
 
 @contextmanager
@@ -473,6 +473,34 @@ def _scanned(file: IO[bytes]) -> "pl.LazyFrame":
     return pl.scan_parquet(os.path.abspath(file.name), glob=False)  # else it may begin with ~
 
 
+def _text_bytes(schema: Mapping[str, Any]) -> "pl.Expr | None":
+    """How long the text of a row is, of a table that has text; each of its cells counts."""
+    import polars as pl
+
+    columns = [pl.col(name).str.len_bytes() for name, kind in schema.items() if kind == pl.String]
+    columns += [pl.col(name).bin.size() for name, kind in schema.items() if kind == pl.Binary]
+    return pl.sum_horizontal(columns).cast(pl.Int64) if columns else None
+
+
+def _rows_that_fit(table: "pl.LazyFrame") -> int:
+    """How many of its rows may be read at once: short ones may be followed by rows of a megabyte each."""
+    text = _text_bytes(table.collect_schema())
+    if text is None:
+        return MOST_ROWS
+    return max(1, int(table.select(text.cum_sum() <= SLICE_BYTES).sum().collect().item() or 0))
+
+
+def _cut(frame: "pl.DataFrame") -> "Iterator[pl.DataFrame]":
+    """The rows in parts, halved until the text of each is as short as that of a piece."""
+    text = _text_bytes(frame.schema)
+    if text is None or frame.height < 2 or frame.select(text.sum()).item() <= ROWS_BYTES:
+        yield frame
+        return
+    middle = frame.height // 2
+    yield from _cut(frame[:middle])
+    yield from _cut(frame[middle:])
+
+
 def _read_parquet(file: IO[bytes]) -> Iterator[Piece]:
     """In slices, each read by itself: polars would hold a whole row group, which may be all of the file."""
     import polars as pl
@@ -492,14 +520,16 @@ def _read_parquet(file: IO[bytes]) -> Iterator[Piece]:
     start, most = 0, FIRST_ROWS
     while there == total and start < total:
         with _decoding():
-            frame = table.slice(start, most).collect()
-        if frame.height != min(most, total - start):
+            rows = min(most, total - start, _rows_that_fit(table.slice(start, most)))
+            frame = table.slice(start, rows).collect()
+        if frame.height != rows:
             there = start + frame.height
             break
         start += frame.height
         fit = min(PIECE_ROWS, PIECE_CELLS // len(columns), ROWS_BYTES // max(1, _row_bytes(frame)))
         fit = max(1, fit)
-        yield from (Piece(columns, part, part.height) for part in frame.iter_slices(fit))
+        for part in chain.from_iterable(map(_cut, frame.iter_slices(fit))):
+            yield Piece(columns, part, part.height)
         most = min(16 * most, MOST_ROWS // PIECE_ROWS * fit)
     if there != total:
         raise Unreadable(f"it is damaged: it should have {total} rows, and has {there}")
