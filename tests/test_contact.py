@@ -850,8 +850,9 @@ def test_what_matplotlib_warns_of_reaches_nobody(
 ) -> None:
     figure = pytest.importorskip("atwood_cli.cli.arc_figure")
 
-    def warn(*_: object) -> None:
+    def warn(*_: object) -> list[object]:
         warnings.warn("a source line", UserWarning, stacklevel=1)
+        return []
 
     monkeypatch.setattr(figure, "_draw_curves", warn)
     ran = atwood("contact", *FIGURE, "--figure", str(tmp_path / "a.svg"))

@@ -53,12 +53,13 @@ def save(answers: Answers, shown: Contact, path: str, force: bool, m1_side: str 
             *numbers.net_friction(kind),
             *numbers.turns(wrap),
         ]
-        words = figure.supxlabel(_lines(" ".join(caption), CAPTION_WIDTH), fontsize=10)
         machine, curve = figure.subplots(1, 2, width_ratios=[1.1, 1])
-        _draw_curves(curve, doubles, kind, numbers, m1_side or "right")
-        if draw(machine, doubles, profile(kind), numbers, m1_side == "left"):
-            caption.append("A dashed arrow is longer than drawn.")
-            words.set_text(_lines(" ".join(caption), CAPTION_WIDTH))
+        names, clipped = draw(machine, doubles, profile(kind), numbers, m1_side == "left")
+        labels = _draw_curves(curve, doubles, kind, numbers, m1_side or "right")
+        caption += ["A dashed arrow is longer than drawn."] * clipped
+        figure.supxlabel(_lines(" ".join(caption), CAPTION_WIDTH), fontsize=10)
+        write_labels(machine, names, 11)
+        write_labels(curve, labels, 10, laid_out=True)
 
 
 def _lines(words: str, width: int) -> str:
@@ -66,8 +67,10 @@ def _lines(words: str, width: int) -> str:
     return "\n".join(wrapped(in_text(LONG_DIGITS.sub(r"\1…", words)), width))
 
 
-def _draw_curves(axes: "Axes", answers: Answers, kind: arc.Kind, numbers: Numbers, m1_side: str) -> None:
-    """Normal force and friction along the arc, with a step wherever the string begins to be stuck."""
+def _draw_curves(
+    axes: "Axes", answers: Answers, kind: arc.Kind, numbers: Numbers, m1_side: str
+) -> list[Label]:
+    """Normal force and friction along the arc, with steps where it is stuck; words still to be written."""
     points = contact(answers, CURVE_POINTS, profile(kind)).points
     names = ("angle", "tension", "friction_per_radian")
     rows = [tuple(float(point[name]) for name in names) for point in points]
@@ -108,7 +111,7 @@ def _draw_curves(axes: "Axes", answers: Answers, kind: arc.Kind, numbers: Number
         start, end = ends[0] or angles[0], ends[1] or angles[-1]
         axes.axvspan(start, end, color=FAINT, alpha=0.15, lw=0)
         labels.append(Label(words, (start + end) / 2, max(tensions) / 4, GREY))
-    write_labels(axes, labels, 10)
+    return labels
 
 
 def profile(kind: arc.Kind) -> str | None:

@@ -17,12 +17,14 @@ from ..model.machine import Machine
 from ..solver.answers import Answers
 from ..solver.contact import contact
 from .figure import BLUE, FAINT, GREEN, INK, RED
-from .labels import Label, write_labels
+from .labels import Label
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Point = tuple[float, float]
+Arrow = tuple[Point, Point, float]
+"""From where, in which direction, how long."""
 
 TURNS = 4  # drawn at most: of more, so many with the same ends
 TURN = 2 * pi
@@ -106,8 +108,10 @@ def _typeset(value: float | Decimal) -> str:
     return f"${number_in_latex(digits).replace(' ', '')}$" if "e" in digits else digits
 
 
-def draw(axes: "Axes", answers: Answers, kind: str | None, numbers: "Numbers", m1_left: bool) -> bool:
-    """Draw the machine; whether an arrow would be longer than it is drawn."""
+def draw(
+    axes: "Axes", answers: Answers, kind: str | None, numbers: "Numbers", m1_left: bool
+) -> tuple[list[Label], bool]:
+    """Draw the machine; names still to be written, and whether an arrow would be longer than it is drawn."""
     case = answers.case
     wrap = float(answers.settle(lambda m: case.scene.wrap.degrees(m.ar)))
     phi = TURN * drawn_turns(wrap)
@@ -152,8 +156,7 @@ def draw(axes: "Axes", answers: Answers, kind: str | None, numbers: "Numbers", m
     axes.set_ylim(bottom - BOX - LONGEST_WEIGHT - 0.1, max(top, outermost + 0.35))
     axes.set_xlim(*((2.4, -2.4) if m1_left else (-2.4, 2.4)))
     axes.set_aspect("equal", adjustable="datalim")
-    write_labels(axes, names, 11)
-    return clipped
+    return names, clipped
 
 
 def _mark_theta(axes: "Axes", phi: float) -> None:
@@ -190,14 +193,14 @@ def _normal_arrows(axes: "Axes", angles: Sequence[float], lengths: Sequence[floa
 
 def _friction_arrows(axes: "Axes", angles: Sequence[float], lengths: Sequence[float]) -> bool:
     """The arrows of fR, along the rim; whether one would be longer than it is drawn."""
-    clipped = False
+    whole, clipped = list[Arrow](), list[Arrow]()
     for angle, length in zip(angles, lengths, strict=True):
-        shown = max(-LONGEST, min(length, LONGEST))
-        along = _polar(1, angle + pi / 2)
+        shown, along = max(-LONGEST, min(length, LONGEST)), _polar(1, angle + pi / 2)
         start = _beyond(_polar(RIM, angle), along, -shown / 2)
-        _arrows(axes, [(start, along, shown)], RED, "-" if shown == length else "--")
-        clipped |= shown != length
-    return clipped
+        (whole if shown == length else clipped).append((start, along, shown))
+    _arrows(axes, whole, RED)
+    _arrows(axes, clipped, RED, "--")
+    return bool(clipped)
 
 
 def _name(
@@ -270,9 +273,7 @@ def _mass(
     return clipped
 
 
-def _arrows(
-    axes: "Axes", arrows: Iterable[tuple[Point, Point, float]], colour: str, style: str = "-"
-) -> None:
+def _arrows(axes: "Axes", arrows: Iterable[Arrow], colour: str, style: str = "-") -> None:
     """Arrows, each from a point in a direction, as long as is told; none where it would not be seen."""
     heads, xs, ys = [], list[float](), list[float]()
     for start, direction, length in arrows:
@@ -289,7 +290,7 @@ def _arrows(
         _heads(axes, heads, colour)
 
 
-def _heads(axes: "Axes", heads: Sequence[tuple[Point, Point, float]], colour: str) -> None:
+def _heads(axes: "Axes", heads: Sequence[Arrow], colour: str) -> None:
     """Heads of arrows: tip, direction, length."""
     from matplotlib.collections import PolyCollection
 
