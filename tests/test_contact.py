@@ -780,6 +780,20 @@ def test_masses_hang_straight_down_from_sheaves_beside_the_pulley(
 
 
 @pytest.mark.parametrize(
+    ("wrap", "said"),
+    [("49", []), ("1440", []), ("1441", ["4.00278 turns"]), ("1e9", [r"$2.77778\times10^{6}$ turns"])],
+)
+def test_of_many_turns_a_few_are_drawn_and_it_is_said(
+    atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, wrap: str, said: list[str]
+) -> None:
+    page = drawn(atwood, monkeypatch, tmp_path / "a.svg", f"{FIGURES} --wrap {wrap}")
+    words = " ".join(texts(page)).replace("\n", " ")
+    assert re.findall(r"Of the string's (\S+ turns) a few are drawn\.", words) == said
+    far = max(np.hypot(*line.get_xydata().T).max() for line in page.axes[0].lines)
+    assert far < 3  # of any number, no more than there is room for
+
+
+@pytest.mark.parametrize(
     ("words", "dashed"),
     [("--m1 1 --m2 3 --M 10", 0), ("--m1 1 --m2 1000", 1), ("--m1 1 --m2 3 --M 10 --mu 50", 1)],
 )

@@ -82,7 +82,7 @@ class Numbers:
 
     def turns(self, wrap: float) -> list[str]:
         """How much of the string is drawn, if not all."""
-        if drawn_turns(wrap) * 360 == wrap:
+        if wrap <= 360 * TURNS:
             return []
         turns = self._rounded(lambda m: self.answers.case.scene.wrap.degrees(m.ar, Fraction(1, 360)))
         return [f"Of the string's {turns} turns a few are drawn."]
@@ -118,19 +118,7 @@ def draw(
     growth = GROWTH if phi > ALMOST_A_TURN else 0.0
     outermost = 1 + growth * phi / TURN
     axes.axis("off")
-    axes.fill(*_circle((0, 0), 1.0), facecolor="#eeeeee", edgecolor=FAINT, lw=1)
-    axes.plot([0], [0], "o", color=FAINT, ms=4)
-    steps = max(2, round(PIECES * phi / TURN))
-    wound = [_polar(1 + growth * phi * i / steps / TURN, phi * i / steps) for i in range(steps + 1)]
-    turn, heights = phi % TURN or TURN, [1.0]
-    route = _route(turn, wound[-1], outermost)
-    for sheave in route.sheaves:
-        axes.fill(*_circle(sheave, SHEAVE), facecolor="#eeeeee", edgecolor=FAINT, lw=1)
-        axes.plot(*zip(sheave, strict=True), "o", color=FAINT, ms=2.5)
-    bottom = min(-outermost - 0.75, *(y - SHEAVE - LONGEST - 0.05 for _, y in [(0.0, 0.0), *route.sheaves]))
-    for string in ([(1.0, bottom), *wound], [*route.string, (route.string[-1][0], bottom)]):
-        axes.plot(*zip(*string, strict=True), color=INK, lw=2.2, solid_capstyle="butt")
-        heights += [y for _, y in string]
+    foot = _draw_string(axes, phi, growth, outermost)
 
     count = _arrows_along(phi)
     ends = phi <= ALMOST_A_TURN and count > 1
@@ -149,14 +137,28 @@ def draw(
     names += _name("$fR$", angles[last_first], friction[last_first], radians(120), outermost, RED)
     _mark_theta(axes, phi)
 
-    right = turn > 1.5 * pi  # of m1
-    for name, x, side in (("1", 1.0, -1 if right else 1), ("2", route.string[-1][0], 1 if right else -1)):
-        clipped |= _mass(axes, answers, name, (x, bottom), scale, side, numbers, m1_left)
-    top = max(heights) + 0.15
-    axes.set_ylim(bottom - BOX - LONGEST_WEIGHT - 0.1, max(top, outermost + 0.35))
+    right = foot[0] > 1  # of m1
+    for name, x, side in (("1", 1.0, -1 if right else 1), ("2", foot[0], 1 if right else -1)):
+        clipped |= _mass(axes, answers, name, (x, foot[1]), scale, side, numbers, m1_left)
+    axes.set_ylim(foot[1] - BOX - LONGEST_WEIGHT - 0.1, outermost + 0.6)
     axes.set_xlim(*((2.4, -2.4) if m1_left else (-2.4, 2.4)))
     axes.set_aspect("equal", adjustable="datalim")
     return names, clipped
+
+
+def _draw_string(axes: "Axes", phi: float, growth: float, outermost: float) -> Point:
+    """Draw pulley, string and guide sheaves; where m2 hangs, and m1 as low."""
+    steps = max(2, round(PIECES * phi / TURN))
+    wound = [_polar(1 + growth * phi * i / steps / TURN, phi * i / steps) for i in range(steps + 1)]
+    route = _route(phi % TURN or TURN, wound[-1], outermost)
+    for centre, radius in [((0.0, 0.0), 1.0), *((sheave, SHEAVE) for sheave in route.sheaves)]:
+        axes.fill(*_circle(centre, radius), facecolor="#eeeeee", edgecolor=FAINT, lw=1)
+        axes.plot(*zip(centre, strict=True), "o", color=FAINT, ms=4 * radius**0.3)
+    x, lowest = route.string[-1][0], min([0.0, *(y for _, y in route.sheaves)])
+    bottom = min(-outermost - 0.75, lowest - SHEAVE - LONGEST - 0.05)
+    for string in ([(1.0, bottom), *wound], [*route.string, (x, bottom)]):
+        axes.plot(*zip(*string, strict=True), color=INK, lw=2.2, solid_capstyle="butt")
+    return x, bottom
 
 
 def _mark_theta(axes: "Axes", phi: float) -> None:
