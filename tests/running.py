@@ -90,17 +90,11 @@ def labels(svg: str) -> list[str]:
 
 @contextmanager
 def pages_seen(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Any]]:
-    """The pictures that are saved meanwhile, as matplotlib has them."""
+    """The pictures that would be saved meanwhile, as matplotlib has them."""
     figure = pytest.importorskip("matplotlib.figure")
     pages: list[Any] = []
-    save = figure.Figure.savefig
-
-    def saving(page: Any, *arguments: Any, **options: Any) -> Any:
-        pages.append(page)
-        return save(page, *arguments, **options)
-
     with monkeypatch.context() as patching:
-        patching.setattr(figure.Figure, "savefig", saving)
+        patching.setattr(figure.Figure, "savefig", lambda page, *_, **__: pages.append(page))
         yield pages
 
 

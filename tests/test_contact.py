@@ -10,7 +10,7 @@ import sys
 import warnings
 from decimal import Decimal, localcontext
 from fractions import Fraction
-from itertools import pairwise
+from itertools import cycle, pairwise
 from math import log2, pi
 from pathlib import Path
 from random import Random
@@ -609,33 +609,11 @@ def texts(page: Any) -> list[str]:
     return [word for word in words if word]
 
 
+WRAPS = "1 60 74 76 90 120 179 180 181 240 270 280 300 330 336 360 400 540 900 1440 2000".split()
 LEGIBLE = [
     *(
         f"--m1 1 --m2 3 --M 10 --mu 0.3 --wrap {wrap} --m1-side {side}"
-        for wrap in (
-            1,
-            60,
-            74,
-            76,
-            90,
-            120,
-            179,
-            180,
-            181,
-            240,
-            270,
-            280,
-            300,
-            330,
-            336,
-            360,
-            400,
-            540,
-            900,
-            1440,
-            2000,
-        )
-        for side in ("left", "right")
+        for wrap, side in zip(WRAPS, cycle(("left", "right")))
     ),
     *(f"{FIGURES} --profile least --wrap {wrap}" for wrap in (60, 100, 150, 180)),
     *(f"{MIRRORED} --profile {kind} --wrap {wrap}" for kind in ("creep", "least") for wrap in (60, 120, 180)),

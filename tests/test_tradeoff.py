@@ -773,6 +773,8 @@ def test_the_figure(atwood: Atwood, brief: list[str], tmp_path: Path) -> None:
 @pytest.mark.parametrize("name", OUTCOMES)
 def test_nothing_in_a_figure_overlaps(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("matplotlib")
+    from matplotlib.text import Text
+
     from atwood_cli.cli.tradeoff_figure import save
 
     shown = OUTCOMES[name]
@@ -780,7 +782,7 @@ def test_nothing_in_a_figure_overlaps(name: str, tmp_path: Path, monkeypatch: py
         save(shown, str(tmp_path / "a.svg"), force=False)
     (page,) = pages
     assert misplaced(page) == []
-    drawn = labels((tmp_path / "a.svg").read_text(encoding="utf-8"))
+    drawn = [line for text in page.findobj(Text) for line in text.get_text().splitlines()]
     for setting in NAMES:
         assert drawn.count(setting) == len(shown.families), setting
     caption = in_one_line(" ".join(drawn))

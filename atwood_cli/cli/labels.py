@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import product
+from math import inf
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from .figure import INK
@@ -36,6 +37,12 @@ CLEAR = 8  # pixels from a point: what is beside its own marker is not crossed
 UNREADABLE, CROSSED, AMBIGUOUS = 1000, 40, 20  # covered dots that weigh as much; and points of distance
 AWAY = 30
 HORIZONTAL, VERTICAL = {1: "left", -1: "right", 0: "center"}, {1: "bottom", -1: "top", 0: "center"}
+PLACES = [
+    Place(far, x, y, wide)
+    for far, x, y, wide in product(DISTANCES, HORIZONTAL, VERTICAL, WIDTHS)
+    if (x or y) and (x or wide == 1)
+]
+"""Around a point, those beside it first."""
 
 
 def write_labels(axes: "Axes", labels: Sequence[Label], size: float = 9, *, laid_out: bool = False) -> None:
@@ -49,30 +56,20 @@ def write_labels(axes: "Axes", labels: Sequence[Label], size: float = 9, *, laid
         figure.draw_without_rendering()  # which decides where the axes lie
     page = _Page(axes, labels)
     for label in labels:
-        best: tuple[float, Any] | None = None
-        for place in _places():
-            note = _written(axes, label, place, size)
-            cost = page.cost(note, label, place)
-            if best is None or cost < best[0]:
-                best, note = (cost, note), best and best[1]
-            if note is not None:
-                note.remove()
-            if best[0] <= place.far / AWAY:  # as no place farther away is better
+        extent, best, place = page.extent(label, size), inf, Place(0, 0, 0, 0)
+        for other in PLACES:
+            if best <= other.far / AWAY:  # as no place so far away is better
                 break
-        if best is not None:
-            page.take(best[1], label)
+            cost = page.cost(label, other, extent, best)
+            if cost < best:
+                best, place = cost, other
+        page.take(label, place, extent)
+        _write(axes, label, place, size)
 
 
-def _places() -> Iterator[Place]:
-    """The places around a point, those beside it first."""
-    for far, x, y, wide in product(DISTANCES, HORIZONTAL, VERTICAL, WIDTHS):
-        if (x or y) and (x or wide == 1):
-            yield Place(far, x, y, wide)
-
-
-def _written(axes: "Axes", label: Label, place: Place, size: float) -> Any:
+def _write(axes: "Axes", label: Label, place: Place, size: float) -> None:
     leads = {"arrowstyle": "-", "lw": 0.6, "color": label.colour, "shrinkB": 3} if place.far > FAR else None
-    return axes.annotate(
+    axes.annotate(
         label.words,
         (label.x, label.y),
         xytext=(place.x * place.far * place.wide, place.y * place.far),
@@ -93,38 +90,54 @@ class _Page:
         import numpy as np
         from matplotlib.text import Text
 
-        self.axes, self.extent = axes, Text.get_window_extent
+        self.axes = axes
         figure: Any = axes.figure
-        self.renderer = figure.canvas.get_renderer()
+        self.renderer, self.pixel = figure.canvas.get_renderer(), figure.dpi / 72
         texts = [text for text in (*axes.texts, axes.title) if text.get_text()]
-        self.taken = [self.extent(text, self.renderer) for text in texts]
+        self.taken = [Text.get_window_extent(text, self.renderer) for text in texts]
         if (legend := axes.get_legend()) is not None:
             self.taken.append(legend.get_window_extent(self.renderer))
         self.dots = np.concatenate([np.empty((0, 2)), *_drawn(axes)])
-        self.points = axes.transData.transform(np.reshape([(one.x, one.y) for one in labels], (-1, 2)))
+        self.points = np.array([self._point(label) for label in labels])
 
-    def cost(self, note: Any, label: Label, place: Place) -> float:
-        """What is wrong with a place, in covered dots."""
-        note.update_positions(self.renderer)
-        box, inside = self._box(note), self.axes.bbox
+    def extent(self, label: Label, size: float) -> Any:
+        """The width and height of its words."""
+        text = self.axes.text(label.x, label.y, label.words, size=size)
+        box = text.get_window_extent(self.renderer)
+        text.remove()
+        return box.size
+
+    def cost(self, label: Label, place: Place, extent: Any, least: float) -> float:
+        """What is wrong with a place, in covered dots; what is more than the least is not told exactly."""
+        box, inside = self._box(label, place, extent), self.axes.bbox
         unreadable = sum(map(box.overlaps, self.taken))
         unreadable += not (inside.contains(*box.min) and inside.contains(*box.max))
         cost = UNREADABLE * unreadable + _inside(self.dots, box).sum() + place.far * place.wide / AWAY
-        point = self.axes.transData.transform((label.x, label.y))
-        return float(cost + (self._crossed(box, point) if note.arrow_patch else self._ambiguous(box, point)))
+        if cost >= least:
+            return float(cost)
+        beside = self._crossed if place.far > FAR else self._ambiguous
+        return float(cost + beside(box, self._point(label)))
 
-    def take(self, note: Any, label: Label) -> None:
+    def take(self, label: Label, place: Place, extent: Any) -> None:
         """Let nothing else stand where these words do, nor on the line to their point."""
         import numpy as np
 
-        box = self._box(note)
+        box = self._box(label, place, extent)
         self.taken.append(box)
-        if note.arrow_patch:
-            way = _way(box, self.axes.transData.transform((label.x, label.y)))
-            self.dots = np.concatenate([self.dots, way])
+        if place.far > FAR:
+            self.dots = np.concatenate([self.dots, _way(box, self._point(label))])
 
-    def _box(self, note: Any) -> "Bbox":
-        return self.extent(note, self.renderer).padded(SPARE)  # without the line to the point
+    def _point(self, label: Label) -> Any:
+        return self.axes.transData.transform((label.x, label.y))
+
+    def _box(self, label: Label, place: Place, extent: Any) -> "Bbox":
+        """The room that words take there: without the line to their point, but with some around them."""
+        from matplotlib.transforms import Bbox
+
+        (x, y), (width, height) = self._point(label), extent
+        x += place.x * place.far * place.wide * self.pixel + (place.x - 1) * width / 2
+        y += place.y * place.far * self.pixel + (place.y - 1) * height / 2
+        return Bbox.from_bounds(x, y, width, height).padded(SPARE)
 
     def _crossed(self, box: "Bbox", point: Any) -> float:
         """What the line from the words to their point crosses."""
