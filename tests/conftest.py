@@ -17,7 +17,7 @@ settings.load_profile("anywhere")
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
-        "--every-digit", action="store_true", help="Solve every scene of test_digits at every precision."
+        "--every-digit", action="store_true", help="Try every scene and row that is kept: every digit."
     )
 
 
