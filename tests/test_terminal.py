@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from atwood_cli.cli.text import wrapped
+
 from . import running
 from .running import HANGS, plain
 
@@ -239,3 +241,18 @@ sys.exit(main())
 def test_a_signal_is_not_lost_where_python_can_raise_nothing() -> None:
     done = subprocess.run([sys.executable, "-c", DROPPING], capture_output=True, check=False, timeout=HANGS)
     assert (done.returncode, done.stdout, done.stderr) == (143, b"", b"")
+
+
+def test_lines_break_between_words_and_not_within_quantities() -> None:
+    words = (
+        "m1 = 1 kg, g = 9.81 m/s², R = 0.1 m, I = 2 kg m², torque 3 N m, 1.5 ± 0.2 N, 93.5 ns a scene, 4 ulp"
+    )
+    for width in range(12, 120):
+        lines = wrapped(words, width)
+        assert " ".join(lines) == words
+        assert max(map(len, lines)) <= width
+        for whole in ("1 kg", "9.81 m/s²", "0.1 m", "2 kg m²", "3 N m", "0.2 N", "93.5 ns", "4 ulp"):
+            assert any(whole in line for line in lines), (whole, width)
+    assert wrapped("m1 = 1234567890 kg", 14) == ["m1 =", "1234567890 kg"]
+    assert wrapped("m1 = 12345678901234567890 kg", 5) == ["m1 =", "12345678901234567890 kg"]
+    assert wrapped("", 5) == []

@@ -6,7 +6,6 @@ from math import nan
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.rounding import to_double
-from ..derivation.typeset import in_text, wrapped
 from ..model import arc
 from ..model.machine import Machine
 from ..model.scene import SceneError
@@ -16,7 +15,7 @@ from ..solver.messages import verdict
 from .figure import BLUE, FAINT, GREY, RED, check_file, page
 from .labels import Label, write_labels
 from .machine_figure import Numbers, draw
-from .text import describe
+from .text import describe, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -64,7 +63,7 @@ def save(answers: Answers, shown: Contact, path: str, force: bool, m1_side: str 
 
 def _lines(words: str, width: int) -> str:
     """The words in lines that fit the page; of numbers that nobody reads to the end, the beginning."""
-    return "\n".join(wrapped(in_text(LONG_DIGITS.sub(r"\1…", words)), width))
+    return "\n".join(wrapped(LONG_DIGITS.sub(r"\1…", words), width))
 
 
 def _draw_curves(

@@ -1,10 +1,10 @@
 """Runs and their line as a picture."""
 
-from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
 from .figure import BLUE, GREY, INK, MARKED, check_file, page
 from .labels import Label, write_labels
+from .text import wrapped
 
 if TYPE_CHECKING:
     from ..fit.fitting import Fit
@@ -43,7 +43,7 @@ def save(fit: "Fit", head: str, path: str, force: bool) -> None:
         line.set_ylim(low, high + 0.2 * (high - low))
         for axes in (line, rest):
             axes.spines[["top", "right"]].set_visible(False)
-        figure.suptitle("\n".join([head, *wrap(verdict(fit), TITLE_WIDTH)]), fontsize=10)
+        figure.suptitle("\n".join([head, *wrapped(verdict(fit), TITLE_WIDTH)]), fontsize=10)
         runs = zip(fit.used, at.x, at.y, strict=True) if len(fit.used) <= MARKED else ()
         rows = [
             (f"row{'s' * (len(run.rows) > 1)} {','.join(map(str, run.rows))}", x, y) for run, x, y in runs

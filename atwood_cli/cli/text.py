@@ -64,7 +64,8 @@ def say(*messages: str) -> None:
             print(line, file=sys.stderr)
 
 
-BESIDE = r"(?<=[\d)]) (?=(?:kg|g|m/s²|rad/s²|m/s\^2|m|s|Nm?)\b)|(?<=\bN) (?=m\b)|(?<=\bkg) (?=m[²^])"
+UNITS = r"kg|g|m/s²|rad/s²|m/s\^2|m|[mnµ]?s|m?Nm?|ulp"
+BESIDE = rf"(?<=[\d)]) (?=(?:{UNITS})\b)|(?<=\bN) (?=m\b)|(?<=\bkg) (?=m[²^])"
 """The blank between a number and its unit, and within units."""
 HELD, LOOSE = "\xa0", "\u2007"  # blanks at which no line breaks, or only where it must
 

@@ -4,12 +4,11 @@ from collections.abc import Callable, Sequence
 from itertools import groupby
 from math import ceil, hypot
 from operator import attrgetter
-from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 from .figure import BLUE, FAINT, GREEN, GREY, RED, page
 from .labels import Label, write_labels
-from .text import describe
+from .text import describe, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -43,7 +42,9 @@ def save(outcome: "Tradeoff", path: str, force: bool) -> None:
     marches = drawable_marches(outcome.marches)
     with page(path, force) as figure:
         about = [] if outcome.seed is not None else [describe(outcome.scene)]
-        caption = [fill(line, CAPTION_WIDTH) for line in (*about, f"{outcome.advice} {HOLLOW}")]
+        caption = [
+            part for line in (*about, f"{outcome.advice} {HOLLOW}") for part in wrapped(line, CAPTION_WIDTH)
+        ]
         figure.suptitle("\n".join(caption), fontsize=10)
         panels = _panels(figure, len(families) + any(marches))
         times = [one.seconds for one in outcome.measured]
