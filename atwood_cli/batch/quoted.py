@@ -2,12 +2,16 @@
 
 A cell that begins with a quotation mark ends with one, and those within are doubled; no other cell has
 one. What parsers make of anything else loses rows.
+
+So quotation marks come in pairs, of which the first stands where a cell begins or right behind the pair
+before, and the second where a cell ends or right before the next pair. Patterns here match a pair, not
+cells: what is repeated is a character, so that no text makes them slow, or hungry for memory. Nor are
+they possessive: over groups those went wrong until Python 3.11.5 (gh-106052).
 """
 
 import re
-
-QUOTED = rb'"(?:[^"]++|"")*+"'
-LEFT_OPEN = rb'"(?:[^"]++|"")*+'
+from collections.abc import Iterator
+from itertools import islice, pairwise
 
 
 class Unreadable(Exception):
@@ -25,10 +29,19 @@ def last_end(text: bytes) -> int:
     return end
 
 
+def _ends(text: bytes) -> Iterator[int]:
+    """Behind each line end that is not within quotation marks."""
+    start = marks = 0
+    while end := text.find(b"\n", start) + 1:
+        marks += text.count(b'"', start, end)
+        start = end
+        if not marks % 2:
+            yield end
+
+
 def first_end(text: bytes) -> int:
     """Behind the first line end that is not within quotation marks, or behind all if there is none."""
-    line = re.match(rb'(?:[^"\n]++|"[^"]*+")*+\n', text)
-    return line.end() if line else len(text)
+    return next(_ends(text), len(text))
 
 
 def checked(rows: bytes, separator: str, line: int) -> bytes:
@@ -37,31 +50,40 @@ def checked(rows: bytes, separator: str, line: int) -> bytes:
     Cells with a carriage return are quoted: polars drops one at the end of a cell. Raises Unreadable.
     """
     mark = separator.encode()
-    start = rb"(?<![^%b\n])" % mark
     if b'"' in rows:
-        cell = start + QUOTED + rb"(?=%b|\r?\n|\r?\Z)" % mark
-        well = re.match(rb'(?:[^"]*+%b)*+[^"]*+' % cell, rows)
-        stray = well.end() if well else 0
-        if stray < len(rows):
+        begins = rb"(?<![^%b\n])" % mark
+        pair = re.compile(rb'(?:%b|(?<="))"[^"]*"(?=%b|\r?\n|\r?\Z|")' % (begins, mark))
+        if 2 * sum(1 for _ in pair.finditer(rows)) < rows.count(b'"'):
+            stray = _first_stray(pair, rows)
             line += rows.count(b"\n", 0, stray)
-            if re.compile(start + LEFT_OPEN).fullmatch(rows, stray):
+            if re.compile(begins).match(rows, stray) and b'"' not in rows[stray + 1 :].replace(b'""', b""):
                 how = "it is truncated, or one is left open"
                 raise Unreadable(f"it ends within quotation marks opened in line {line}: {how}")
             raise Unreadable(f'line {line} has a quotation mark out of place; write it "like ""this"""')
     if b"\r" in rows and rows.count(b"\r") > rows.count(b"\r\n"):
         no_blank_line = rb"(?:(?<=%b)|(?<![^\n])(?!\r+\n))" % mark
-        bare = rb'[^"%b\r\n]*+(?:\r(?!\n|\Z)[^"%b\r\n]*+)++' % (mark, mark)
-        either = rb"%b%b|%b(%b)" % (start, QUOTED, no_blank_line, bare)
+        bare = rb'[^"%b\n]*\r(?!\n|\Z)[^"%b\n]*?(?=\r?(?:\n|\Z)|%b)' % (mark, mark, mark)
+        either = rb'"[^"]*"|%b(%b)' % (no_blank_line, bare)
         rows = re.sub(either, lambda found: b'"%b"' % found[1] if found[1] else found[0], rows)
     return rows
 
 
+def _first_stray(pair: re.Pattern[bytes], rows: bytes) -> int:
+    """Where the first cell begins that has a quotation mark without a pair, or where that mark stands."""
+    cell = end = 0
+    for found in pair.finditer(rows):
+        if rows.find(b'"', end, found.start()) >= 0:
+            break
+        cell = cell if found.start() == end else found.start()
+        end = found.end()
+    stray = rows.find(b'"', end)
+    return cell if stray == end else stray
+
+
 def portions(rows: bytes, lines: int) -> list[bytes]:
     """The rows in parts of so many lines at most, or more where they are in one cell."""
-    row = rb'(?:[^"\n]++|"[^"]*+")*+\n'
-    parts = [found[0] for found in re.finditer(rb"(?:%b){1,%d}+" % (row, lines), rows)]
-    rest = rows[sum(map(len, parts)) :]
-    return [*parts, rest] if rest else parts
+    cuts = [0, *islice(_ends(rows), lines - 1, None, lines), len(rows)]
+    return [rows[start:end] for start, end in pairwise(cuts) if start < end]
 
 
 def split(line: str, separator: str) -> list[str]:

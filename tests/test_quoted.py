@@ -1,0 +1,76 @@
+"""Quotation marks of CSV: the patterns that check them against a plain automaton, on any Python."""
+
+import csv
+from io import StringIO
+
+import pytest
+from hypothesis import example, given
+from hypothesis import strategies as st
+
+from atwood_cli.batch.quoted import Unreadable, checked, first_end, portions
+
+texts = st.text(st.sampled_from('""",,\n\r\nax'), max_size=16)
+
+
+def is_well_formed(text: str) -> bool:
+    """A mark opens a cell only where one begins, and closes it only where one ends; within it is doubled."""
+    state = "begin"
+    for i, character in enumerate([*text, ""]):
+        if state == "quoted":
+            state = "closed" if character == '"' else state if character else "open"
+        elif state == "closed" and character == '"':
+            state = "quoted"
+        elif character == '"':
+            if state != "begin":
+                return False
+            state = "quoted"
+        elif state == "closed" and character == "\r":
+            if text[i + 1 : i + 2] not in ("\n", ""):
+                return False
+            state = "bare"
+        elif character in (",", "\n"):
+            state = "begin"
+        elif state == "closed" and character:
+            return False
+        elif character:
+            state = "bare"
+    return state != "open"
+
+
+@given(texts)
+@example('1,3,"p"q\n')
+@example('1,3,"x\ny')
+@example('"a""b",c\n')
+@example('"a""b"c\n')
+@example('x","y\n')
+def test_marks_out_of_place_are_found(text: str) -> None:
+    """Python before 3.11.5 found none of them: its possessive quantifiers were wrong over groups."""
+    if is_well_formed(text):
+        assert checked(text.encode(), ",", 1).decode().count("\n") == text.count("\n")
+    else:
+        with pytest.raises(Unreadable):
+            checked(text.encode(), ",", 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [('a\n"x\n"",\n"b', 2), ('a,"b"\nc,"d""e', 2), ('"a"\n"b"c', 2), ('a\nb"c,"d"\n', 2), ('"a"",\n""b', 1)],
+)
+def test_the_line_named_is_where_the_cell_begins(text: str, line: int) -> None:
+    with pytest.raises(Unreadable, match=f"line {line}"):
+        checked(text.encode(), ",", 1)
+
+
+@given(texts.filter(is_well_formed), st.integers(1, 3))
+@example('a\n"x\ny"', 1)  # a last row without a line end was cut within its marks
+def test_portions_are_whole_rows(text: str, lines: int) -> None:
+    parts = [part.decode() for part in portions(text.encode(), lines)]
+    assert "".join(parts) == text
+    assert all(part and part.count('"') % 2 == 0 for part in parts)
+    rows = [
+        len(list(csv.reader(StringIO(part, newline=""), strict=True))) for part in parts if "\r" not in text
+    ]
+    assert max(rows, default=0) <= lines + 1  # and one without a line end
+    first = first_end(text.encode())
+    assert text[:first].count('"') % 2 == 0
+    assert first == len(text) or text[first - 1] == "\n"
