@@ -20,7 +20,6 @@ from .options import (
     PLOT_IS_TEXT,
     AsCsv,
     AsJson,
-    Digits,
     FigureFile,
     Force,
     Labels,
@@ -77,6 +76,15 @@ Only = Annotated[
         "Output", metavar="NAME", words=lambda: RESULTS, help="Print only this result; repeatable, or a,b."
     ),
 ]
+FitDigits = Annotated[
+    str | None,
+    option(
+        "Output",
+        "--digits",
+        metavar="N",
+        help="Significant digits, 1 to 1000; if not given, those that uncertainties leave, else of doubles.",
+    ),
+]
 Explain = Annotated[
     bool, option("Output", "--explain", help="Instead, show how the line follows, with its numbers.")
 ]
@@ -120,7 +128,7 @@ def fit(
     mu: Annotated[str | None, scene_option("mu", remark=", to tell runs that slip")] = None,
     wrap: Annotated[str | None, scene_option("wrap")] = None,
     label: Labels = None,
-    digits: Digits = None,
+    digits: FitDigits = None,
     json: AsJson = False,
     csv: AsCsv = False,
     only: Only = None,
