@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
 from atwood_cli.arithmetic.lazy import lazy
 from atwood_cli.arrays import ACCURACIES, MAY_BE_ABSENT, STATUSES
-from atwood_cli.arrays.plan import COLUMNS, Accuracy
+from atwood_cli.arrays.plan import COLUMNS, Accuracy, plan
 from atwood_cli.model.case import Case
 from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import Scene
@@ -397,6 +397,15 @@ def test_what_is_masked_is_not_given(name: str, accuracy: Accuracy) -> None:
     for quantity, values in found.items():
         assert not isinstance(values, np.ma.MaskedArray)
         np.testing.assert_array_equal(values, usual[quantity])
+
+
+def test_a_table_of_many_kinds_is_planned_once() -> None:
+    """Of 128 plans none was left when it was wanted again: 100 rows took 4 s each time, not 0.5."""
+    given = columns(rows("ordinary", 100))
+    solve_arrays(**given, quantities=NAMES)
+    planned = plan.cache_info().misses
+    solve_arrays(**given, quantities=NAMES)
+    assert plan.cache_info().misses == planned
 
 
 def test_inputs_are_left_alone() -> None:

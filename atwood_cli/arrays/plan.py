@@ -78,7 +78,7 @@ SIGNED = (
 
 NORMAL = -1021.0  # the power of two below which a double has fewer bits
 
-KEPT = 128  # plans; the longest, of all quantities in triples, takes 3 MB
+KEPT = 256  # plans: ten kinds of rows take that many; the longest, of all quantities in triples, has 3 MB
 
 COLUMN = "column"
 
