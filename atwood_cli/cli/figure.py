@@ -21,10 +21,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 FORMATS = (".svg", ".png", ".pdf")
-BLUE, RED, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b05d91", "#b07800", "#3f8fc0"
+BLUE, RED, GREEN, PURPLE, ORANGE = "#0072b2", "#d55e00", "#009e73", "#b05d91", "#b07800"
 """Told apart without seeing red or green, and on paper: after M. Okabe and K. Ito, Color universal design."""
 INK, GREY, FAINT = "#222222", "#777777", "#999999"
-MARKED = 60  # points: of more, only the line is drawn
 STYLE: Any = {
     "svg.hashsalt": "atwood",  # else the SVG's ids are random
     "font.family": "DejaVu Sans",

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING, Any
 
-from .figure import BLUE, GREY, INK, MARKED, check_file, page
+from .figure import BLUE, GREY, INK, check_file, page
 from .labels import Label, write_labels
 from .text import wrapped
 
@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from ..fit.fitting import Fit
 
 TITLE_WIDTH = 130  # characters: more do not fit the page
+NAMED = 60  # runs: of more, none is named
 
 
 def save(fit: "Fit", head: str, path: str, force: bool) -> None:
@@ -44,7 +45,7 @@ def save(fit: "Fit", head: str, path: str, force: bool) -> None:
         for axes in (line, rest):
             axes.spines[["top", "right"]].set_visible(False)
         figure.suptitle("\n".join([head, *wrapped(verdict(fit), TITLE_WIDTH)]), fontsize=10)
-        runs = zip(fit.used, at.x, at.y, strict=True) if len(fit.used) <= MARKED else ()
+        runs = zip(fit.used, at.x, at.y, strict=True) if len(fit.used) <= NAMED else ()
         rows = [
             (f"row{'s' * (len(run.rows) > 1)} {','.join(map(str, run.rows))}", x, y) for run, x, y in runs
         ]
