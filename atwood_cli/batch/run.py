@@ -196,10 +196,13 @@ def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "pl.DataFram
     }
     wanted = list(dict.fromkeys(["regime", *job.names]))
     results = solve_arrays(**scenes, accuracy=job.accuracy, quantities=wanted)
-    for row in results["status"].nonzero()[0].tolist():
-        if row not in errors:
-            cells = {name: frame[heading.column][row] for name, heading in layout.headings.items()}
-            errors[row] = _why(cells, layout)
+    bad = [row for row in results["status"].nonzero()[0].tolist() if row not in errors]
+    cells = frame.select(pl.col(heading.column).alias(name) for name, heading in layout.headings.items())[bad]
+    whys: dict[str, str] = {}  # those of rows that are alike are found once
+    for row, values in zip(bad, cells.rows(), strict=True):
+        errors[row] = whys.get(str(values)) or whys.setdefault(
+            str(values), _why(dict(zip(cells.columns, values, strict=True)), layout)
+        )
     failed = sorted(errors)
     texts = [errors.get(row) for row in range(frame.height)] if errors else []
     columns = {
