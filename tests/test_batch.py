@@ -702,6 +702,20 @@ def test_keys_that_differ_do_not_fill_the_memory(
     assert [row["k3"] for row in records(atwood("batch", keyed))] == ["", "", "", "3", "", "", "", ""]
 
 
+def test_short_rows_of_ndjson_are_objects_a_few_at_a_time(
+    atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As objects, 700,000 rows `{}` are a hundred times as long as as text."""
+    monkeypatch.setattr(tables, "PIECE_ROWS", 3)
+    path = Path(table('\n{"m1":1,"m2":2}\n\n' + '{"m1":1,"m2":3}\n' * 6 + "{}\n", "in.ndjson"))
+    with path.open("rb") as file:
+        pieces = list(tables.read("ndjson", file, inputs_among, as_lines=True))
+    assert [piece.frame.height for piece in pieces] == [3, 3, 2]
+    assert [piece.size for piece in pieces] == [path.stat().st_size, 0, 0]
+    ran = atwood("batch", str(path), "--only", "regime", "--allow-errors")
+    assert [row["m2"] for row in records(ran)] == ["2", *["3"] * 6, ""]
+
+
 def test_a_key_that_comes_too_late_for_a_column(
     atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch
 ) -> None:

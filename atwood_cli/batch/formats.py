@@ -292,10 +292,7 @@ def _read_ndjson(file: IO[bytes], inputs: Inputs | None) -> Iterator[Piece]:
 
     columns: dict[str, None] = {}
     done = 0
-    for text, _, _ in _records(file, quoted=False):
-        lines = [
-            line for line in map(str.strip, _decode(text, partial(_row, text, done)).split("\n")) if line
-        ]
+    for lines, size in _lines(file):
         rows = [_object(line, number) for number, line in enumerate(lines, done + 1)]
         for number, object_ in enumerate(rows, done + 1):
             if not object_.keys() <= columns.keys():
@@ -305,7 +302,7 @@ def _read_ndjson(file: IO[bytes], inputs: Inputs | None) -> Iterator[Piece]:
                 columns |= dict.fromkeys(new)
                 _check_count(columns)
         wanted = list(columns) if inputs is None else inputs(list(columns))
-        most, size = min(PIECE_ROWS, max(1, PIECE_CELLS // max(1, len(wanted)))), len(text)
+        most = max(1, PIECE_CELLS // max(1, len(wanted)))
         for start in range(0, len(rows), most):
             part = slice(start, start + most)
             cells = _columns(wanted, rows[part], lines[part], done + 1, inputs is None)
@@ -315,6 +312,18 @@ def _read_ndjson(file: IO[bytes], inputs: Inputs | None) -> Iterator[Piece]:
             size = 0
     if not done:
         raise Unreadable("it is empty")
+
+
+def _lines(file: IO[bytes]) -> Iterator[tuple[list[str], int]]:
+    """Lines that are not blank, as many as may be objects at a time, and how much of the file they are."""
+    done = 0
+    for text, _, _ in _records(file, quoted=False):
+        texts = _decode(text, partial(_row, text, done)).split("\n")
+        lines = [line for line in map(str.strip, texts) if line]
+        done, size = done + len(lines), len(text)
+        for start in range(0, len(lines), PIECE_ROWS):
+            yield lines[start : start + PIECE_ROWS], size
+            size = 0
 
 
 def _row(text: bytes, done: int, at: int) -> str:
