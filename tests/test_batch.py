@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from fractions import Fraction
 from pathlib import Path
 from random import Random
@@ -218,28 +218,6 @@ def test_a_header_alone_is_an_empty_table(atwood: Atwood, table: Table) -> None:
         assert (ran.status, ran.out, ran.err) == (0, "m1,m2,regime,error\n", "atwood: 0 rows: no errors.\n")
 
 
-def test_parquet_keeps_its_types(atwood: Atwood, tmp_path: Path) -> None:
-    frame = pl.DataFrame(
-        {
-            "m1": [1, 2],
-            "m2": [3.0, None],
-            "M": [math.inf, math.nan],
-            "list": [[1], None],
-            "struct": [{"a": 1, "b": "x"}, None],
-            "when": [None, None],
-        },
-        schema_overrides={"m1": pl.Int32, "when": pl.Date},
-    )
-    frame.write_parquet(tmp_path / "in.parquet")
-    ran = atwood("batch", str(tmp_path / "in.parquet"), "-o", str(tmp_path / "out.parquet"))
-    assert ran.status == 1
-    result = pl.read_parquet(tmp_path / "out.parquet")
-    assert result.select(frame.columns).equals(frame)
-    assert result.select(frame.columns).schema == frame.schema
-    assert result["regime"].to_list() == ["no-slip", None]
-    assert result["error"].to_list() == [None, "M nan must be 0 or more (inf locks the pulley)"]
-
-
 # Nothing is changed
 
 ODD_TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=8) | st.text(
@@ -436,35 +414,6 @@ def test_nothing_is_lost_among_bad_rows(
         else:
             assert row["error"].startswith(f"{wrong} {given_row[wrong].strip()!r} ")
             assert {row[name] for name in STANDARD} == {""}
-
-
-@given(
-    st.lists(
-        st.tuples(*(st.sampled_from([1.0, 2.0, 0.3, math.nan, math.inf, None]) for _ in range(4))),
-        max_size=20,
-    )
-)
-@settings(max_examples=40)
-def test_nan_in_parquet_is_bad_and_null_is_not_given(
-    atwood: Atwood, tmp_path: Path, rows: list[tuple[float | None, ...]]
-) -> None:
-    columns = ("m1", "m2", "M", "mu")
-    frame = pl.DataFrame(rows, schema=dict.fromkeys(columns, pl.Float64), orient="row")
-    frame.write_parquet(tmp_path / "in.parquet")
-    atwood("batch", str(tmp_path / "in.parquet"), "-o", str(tmp_path / "out.parquet"), "--force")
-    solved = pl.read_parquet(tmp_path / "out.parquet")
-    assert solved.select(columns).equals(frame)
-    for values, error, regime in zip(rows, solved["error"], solved["regime"], strict=True):
-        row = dict(zip(columns, values, strict=True))
-        wrong = [
-            name
-            for name, x in row.items()
-            if x is not None and not (x < math.inf or (name, x) == ("M", math.inf))
-        ]
-        missing = [name for name in ("m1", "m2") if row[name] is None]
-        assert (error is None) == (not wrong and not missing) == (regime is not None)
-        if wrong:
-            assert error.startswith(f"{wrong[0]} {row[wrong[0]]} must be") or missing
 
 
 def test_what_is_wrong_with_rows_that_are_alike_is_found_once(
@@ -727,85 +676,6 @@ def test_a_key_that_comes_too_late_for_a_column(
     assert atwood("batch", path, "--to", "ndjson").status == 0
 
 
-def test_unreadable_parquet(atwood: Atwood, table: Table, tmp_path: Path) -> None:
-    pl.DataFrame({"m1": [True], "m2": [1]}).write_parquet(tmp_path / "bool.parquet")
-    whole = (tmp_path / "bool.parquet").read_bytes()
-    ran = atwood("batch", str(tmp_path / "bool.parquet"))
-    assert ran.err.endswith("bool.parquet: column m1 holds Boolean, not numbers\n")
-    for content in (whole[:-20], b"m1,m2\n1,2\n", b""):
-        path = table(content, "cut.parquet")
-        ran = atwood("batch", path)
-        assert (ran.status, ran.out) == (1, "")
-        assert ran.err.startswith(f"atwood: cannot read {path}: it is not Parquet, or truncated: ")
-        assert ran.err.count("\n") == 1
-
-
-def test_a_damaged_parquet_file_is_an_error(atwood: Atwood, tmp_path: Path) -> None:
-    """Whatever byte of it is another: no row is lost in silence, nothing of polars' reaches stderr."""
-    path = tmp_path / "in.parquet"
-    columns = {"m1": [1] * 300, "m2": [3] * 300, "s": [None if i % 7 else "abc" for i in range(300)]}
-    pl.DataFrame(columns).write_parquet(path)
-    whole = path.read_bytes()
-    said: dict[str, bytes] = {}
-    for at in range(5, len(whole), 5):
-        path.write_bytes(whole[:at] + b"\0" + whole[at + 1 :])
-        ran = atwood("batch", str(path), "--only", "regime", "--allow-errors")
-        if ran.status == 0:
-            assert ran.err.startswith("atwood: 300 rows: "), at
-        else:
-            assert ran.err.startswith("atwood: cannot read "), at
-            said[ran.err.removeprefix(f"atwood: cannot read {path}: ")] = path.read_bytes()
-    assert "it is damaged: it should have 300 rows, and has 0\n" in said
-    panics = "it is damaged: polars cannot decode it\n"
-    path.write_bytes(said[panics])
-    assert process("batch", str(path)).err == f"atwood: cannot read {path}: {panics}"
-
-
-@pytest.mark.parametrize("rows", [1, 16, 17, 300])
-def test_rows_of_parquet_come_in_slices(
-    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, rows: int
-) -> None:
-    monkeypatch.setattr(tables, "ROWS_BYTES", 1 << 11)
-    monkeypatch.setattr(tables, "GROUP_BYTES", 1 << 12)
-    frame = pl.DataFrame(
-        {"m1": [1.0] * rows, "m2": [3.0] * rows, "n": [f"{i}{'x' * 99}" for i in range(rows)]}
-    )
-    frame.write_parquet(tmp_path / "in.parquet")
-    ran = atwood("batch", str(tmp_path / "in.parquet"), "-o", str(tmp_path / "out.parquet"))
-    assert (ran.status, ran.err) == (0, f"atwood: {rows} row{'s' * (rows > 1)}: {rows} no-slip; no errors.\n")
-    assert pl.read_parquet(tmp_path / "out.parquet").select(frame.columns).equals(frame)
-
-
-def test_rows_of_parquet_that_grow_do_not_fill_the_memory(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """After 200,000 short rows, 300 of 900 KB were read at once, and were one piece: a gigabyte."""
-    monkeypatch.setattr(tables, "ROWS_BYTES", 1 << 11)
-    monkeypatch.setattr(tables, "SLICE_BYTES", 1 << 13)
-    read: list[int] = []
-    cut = tables._cut
-
-    def length(frame: pl.DataFrame) -> int:
-        return sum(map(len, filter(None, [*frame["t"], *frame["b"]])))
-
-    def watched(frame: pl.DataFrame) -> Iterator[pl.DataFrame]:
-        read.append(length(frame))
-        return cut(frame)
-
-    monkeypatch.setattr(tables, "_cut", watched)
-    texts = [*["x"] * 3000, *["y" * 900] * 40, "z" * 10_000, None]
-    data = [*[b""] * 3000, *[b"b" * 100] * 42]
-    frame = pl.DataFrame({"m1": 1.0, "t": texts, "b": data})
-    frame.write_parquet(tmp_path / "in.parquet")
-    with (tmp_path / "in.parquet").open("rb") as file:
-        pieces = [piece.frame for piece in tables.read("parquet", file, list, as_lines=False)]
-    assert pl.concat(pieces).equals(frame)
-    assert max(read) == 10_100  # one row
-    assert sorted(read)[-2] <= 1 << 13
-    sizes = [length(part) for part in pieces if len(part) > 1]
-    assert max(sizes) <= 1 << 11
-
-
 def test_a_quotation_mark_left_open_does_not_fill_the_memory(
     atwood: Atwood, table: Table, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -815,13 +685,6 @@ def test_a_quotation_mark_left_open_does_not_fill_the_memory(
     assert ran.status == 1
     why = "the row that begins in line 2 is longer than 1 MB, the most taken; is a quotation mark left open?"
     assert ran.err.endswith(f": {why}\n")
-
-
-def test_nested_columns_do_not_go_into_csv(atwood: Atwood, tmp_path: Path) -> None:
-    pl.DataFrame({"m1": [1], "m2": [1], "n": [[1]]}).write_parquet(tmp_path / "in.parquet")
-    ran = atwood("batch", str(tmp_path / "in.parquet"))
-    assert (ran.status, ran.out) == (1, "")
-    assert ran.err == "atwood: cannot write column 'n', which holds List(Int64), as csv; give --to parquet\n"
 
 
 # What spreadsheets write

@@ -1,4 +1,4 @@
-"""Tables in pieces, so that memory is bounded: CSV, TSV, NDJSON and Parquet, by polars (extra ``batch``).
+"""Tables in pieces, so that memory is bounded: CSV, TSV, NDJSON and Parquet (extra ``batch``).
 
 Cells of CSV and NDJSON stay the text they were, the columns of Parquet keep their types.
 """
@@ -10,15 +10,15 @@ import re
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack
 from functools import partial
 from io import BytesIO, StringIO
-from itertools import chain, islice
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, NamedTuple, NoReturn
+from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn
 
 from ..files import STREAM
 from ..model.scene import SceneError
+from .parquet import RowGroups, read_frames
 from .quoted import Unreadable, checked, first_end, last_end, portions, split, widths
 
 if TYPE_CHECKING:
@@ -419,161 +419,40 @@ _DECODER = json.JSONDecoder(
 )
 
 
-ROWS_BYTES, GROUP_BYTES = 1 << 21, 1 << 23
-SLICE_BYTES, FIRST_ROWS, MOST_ROWS = 1 << 23, 16, 1 << 17
-"""Of Parquet, about the bytes of a piece and of a group of rows that is written; the bytes of text that are
-read at a time, and the rows, at first, when it is not known how long they are, and at most."""
-
-
-@contextmanager
-def _decoding() -> Iterator[None]:
-    """Whatever polars makes of damaged Parquet is Unreadable, and nothing of it goes to stderr."""
-    import polars as pl
-
-    with _nothing_on_stderr():
-        try:
-            yield
-        except (pl.exceptions.PolarsError, OSError) as error:
-            raise Unreadable(f"it is not Parquet, or truncated: {str(error).splitlines()[0]}") from None
-        except pl.exceptions.PanicException:
-            raise Unreadable("it is damaged: polars cannot decode it") from None
-
-
-@contextmanager
-def _nothing_on_stderr() -> Iterator[None]:
-    """Threads of Rust that panic write to the descriptor, and know no sys.stderr."""
-    try:
-        kept = os.dup(2)
-    except OSError:  # it is closed
-        yield
-        return
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    os.close(nowhere)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
-
-
-def _row_bytes(frame: "pl.DataFrame") -> int:
-    """About how long the rows are; a text that is in memory once counts in each of its cells."""
-    import polars as pl
-
-    size = sum(
-        int(column.str.len_bytes().sum()) if column.dtype == pl.String else int(column.estimated_size())
-        for column in frame
-    )
-    return size // max(1, frame.height)
-
-
-def count_rows(file: IO[bytes]) -> int:
-    """How many rows a file of Parquet says that it has. Raises Unreadable."""
-    import polars as pl
-
-    with _decoding():
-        return int(_scanned(file).select(pl.len()).collect().item())
-
-
-def _scanned(file: IO[bytes]) -> "pl.LazyFrame":
-    import polars as pl
-
-    return pl.scan_parquet(os.path.abspath(file.name), glob=False)  # else it may begin with ~
-
-
-def _text_bytes(schema: Mapping[str, Any]) -> "pl.Expr | None":
-    """How long the text of a row is, of a table that has text; each of its cells counts."""
-    import polars as pl
-
-    columns = [pl.col(name).str.len_bytes() for name, kind in schema.items() if kind == pl.String]
-    columns += [pl.col(name).bin.size() for name, kind in schema.items() if kind == pl.Binary]
-    return pl.sum_horizontal(columns).cast(pl.Int64) if columns else None
-
-
-def _rows_that_fit(table: "pl.LazyFrame") -> int:
-    """How many of its rows may be read at once: short ones may be followed by rows of a megabyte each."""
-    text = _text_bytes(table.collect_schema())
-    if text is None:
-        return MOST_ROWS
-    return max(1, int(table.select(text.cum_sum() <= SLICE_BYTES).sum().collect().item() or 0))
-
-
-def _cut(frame: "pl.DataFrame") -> "Iterator[pl.DataFrame]":
-    """The rows in parts, halved until the text of each is as short as that of a piece."""
-    text = _text_bytes(frame.schema)
-    if text is None or frame.height < 2 or frame.select(text.sum()).item() <= ROWS_BYTES:
-        yield frame
-        return
-    middle = frame.height // 2
-    yield from _cut(frame[:middle])
-    yield from _cut(frame[middle:])
-
-
 def _read_parquet(file: IO[bytes]) -> Iterator[Piece]:
-    """In slices, each read by itself: polars would hold a whole row group, which may be all of the file."""
-    import polars as pl
-
-    total = count_rows(file)
-    with _decoding():
-        table = _scanned(file)
-        schema = table.collect_schema()
-        columns = schema.names()
-        _check_count(columns)
-        head = table.head(0).collect()
-    yield Piece(columns, head, 0)
-    with _decoding():
-        short = next((name for name in columns if schema[name].is_numeric()), columns[0])
-        # Counted in the column, not taken from where the file says how many rows it has.
-        there = table.select(pl.col(short).is_null().count()).collect().item()
-    start, most = 0, FIRST_ROWS
-    while there == total and start < total:
-        with _decoding():
-            rows = min(most, total - start, _rows_that_fit(table.slice(start, most)))
-            frame = table.slice(start, rows).collect()
-        if frame.height != rows:
-            there = start + frame.height
-            break
-        start += frame.height
-        fit = min(PIECE_ROWS, PIECE_CELLS // len(columns), ROWS_BYTES // max(1, _row_bytes(frame)))
-        fit = max(1, fit)
-        for part in chain.from_iterable(map(_cut, frame.iter_slices(fit))):
-            yield Piece(columns, part, part.height)
-        most = min(16 * most, MOST_ROWS // PIECE_ROWS * fit)
-    if there != total:
-        raise Unreadable(f"it is damaged: it should have {total} rows, and has {there}")
+    for frame in read_frames(file):
+        _check_count(frame.columns)
+        yield Piece(frame.columns, frame, frame.height)
 
 
 def write(kind: str, file: IO[bytes], solved: Iterable[tuple[Piece, "pl.DataFrame"]]) -> None:
     """Write a table from its pieces, each with the columns to append. Raises OSError."""
+    encode: Callable[[Piece, pl.DataFrame, bool], bytes | memoryview] = _as_ndjson
+    end: Callable[[], bytes] = bytes
     if kind == "parquet":
-        _write_parquet(file, (piece.frame.hstack(results) for piece, results in solved))
-        return
-    solved = _checked(kind, solved)
-    if kind == "ndjson":
-        for piece, results in solved:
-            file.write(_as_ndjson(piece, results))
-        return
-    encode = partial(_as_csv, SEPARATORS[kind])
+        groups = RowGroups()
+        encode, end = partial(_as_parquet, groups), groups.end
+    elif kind in SEPARATORS:
+        encode = partial(_as_csv, SEPARATORS[kind])
     with ThreadPoolExecutor(1) as encoder:  # one that only computes: nothing to wait for on Ctrl-C
-        last: Future[memoryview] | None = None
-        for piece, results in solved:
+        last: Future[bytes | memoryview] | None = None
+        for piece, results in _checked(kind, solved):
             ready, last = last, encoder.submit(encode, piece, results, last is None)
             if ready:
                 file.write(ready.result())
         if last:
             file.write(last.result())
+    file.write(end())
 
 
 def _checked(
     kind: str, solved: Iterable[tuple[Piece, "pl.DataFrame"]]
 ) -> Iterator[tuple[Piece, "pl.DataFrame"]]:
     """Hand on pieces once it is certain that the format has a place for their columns. Raises OSError."""
-    import polars as pl
-
     for piece, results in solved:
-        for name, dtype in piece.frame.schema.items():
-            if dtype == pl.Binary or (kind != "ndjson" and dtype.is_nested()):
+        for name, dtype in piece.frame.schema.items() if kind != "parquet" else ():
+            bytes_ = re.search(r"\bBinary\b(?!')", str(dtype))  # not the name of a field
+            if bytes_ or (kind != "ndjson" and dtype.is_nested()):
                 raise OSError(
                     f"cannot write column {name!r}, which holds {dtype}, as {kind}; give --to parquet"
                 )
@@ -586,7 +465,11 @@ def _as_csv(separator: str, piece: Piece, results: "pl.DataFrame", first: bool) 
     return buffer.getbuffer()
 
 
-def _as_ndjson(piece: Piece, results: "pl.DataFrame") -> bytes:
+def _as_parquet(groups: RowGroups, piece: Piece, results: "pl.DataFrame", _: bool) -> bytes:
+    return groups.add(piece.frame.hstack(results))
+
+
+def _as_ndjson(piece: Piece, results: "pl.DataFrame", _: bool) -> bytes:
     if not piece.lines:
         return piece.frame.hstack(results).write_ndjson().encode()
     ends = results.write_ndjson().rstrip("\n").split("\n")
@@ -597,24 +480,3 @@ def _spliced(line: str, end: str) -> str:
     """A JSON object as it came, with the members of a second one behind its own."""
     comma = "," if line[1:-1].strip() else ""
     return f"{line[:-1].rstrip()}{comma}{end[1:]}\n"
-
-
-def _write_parquet(file: IO[bytes], frames: Iterator["pl.DataFrame"]) -> None:
-    from polars.io.plugins import register_io_source
-
-    begun, failed = [next(frames)], []
-    if not begun[0].height:  # as that of Parquet is, which comes before any is read
-        begun += islice(frames, 1)
-
-    def source(*_: object) -> Iterator["pl.DataFrame"]:
-        try:
-            yield from chain(begun, frames)
-        except BaseException as error:  # polars would make another one of it
-            failed.append(error)
-
-    width, size = begun[-1].width, max(1, _row_bytes(begun[-1]))
-    rows = max(1, min(MOST_ROWS, PIECE_CELLS // width, GROUP_BYTES // size))
-    table = register_io_source(source, schema=begun[0].schema)
-    table.sink_parquet(file, compression="snappy", row_group_size=rows)  # the fastest that all can read
-    for error in failed:
-        raise error

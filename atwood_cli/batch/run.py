@@ -21,8 +21,9 @@ from ..files import STREAM, written_beside
 from ..model.quantities import REGIMES
 from ..model.scene import Given, Scene, SceneError
 from ..model.units import NUMBER
-from .formats import SEPARATORS, Piece, block_of, count_rows, is_stream, opened, read, write
+from .formats import SEPARATORS, Piece, block_of, is_stream, opened, read, write
 from .layout import Layout, inputs_among, read_layout
+from .parquet import count_rows
 from .quoted import Unreadable
 
 if TYPE_CHECKING:

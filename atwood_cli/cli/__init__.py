@@ -17,7 +17,7 @@ from .options import COMPLETING, COULD_NOT, DONE, WORDS, WRONG_USAGE, flag
 from .text import drop, finish, say
 
 COMMANDS = ("solve", "fit", "sweep", "contact", "batch", "tradeoff")
-EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
+EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch", "pyarrow": "batch"}
 HELP = """Atwood's machine with a massive pulley and a rough string, every digit right.
 
 Examples:
