@@ -366,7 +366,9 @@ def test_a_column_whose_pages_cannot_be_told(monkeypatch: pytest.MonkeyPatch) ->
     ((_, (unknown,)),) = row_groups(io.BytesIO(content))
     size = known.decoded
     assert unknown == Column(True, 1000, size, size, size, [(1000, size)])
+    assert unknown.held == 2 * size  # dictionary and pages are not both all of it
     assert known.pages[0][1] < size
+    assert known.held == known.pages[0][1] + 2 * known.dictionary
 
 
 @given(

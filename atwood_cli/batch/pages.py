@@ -11,7 +11,7 @@ TEXT, DICTIONARY = 6, 2
 """Of what type a column of texts is, and of what kind a page of values that others refer to."""
 DATA = {0: 5, 3: 8}
 """Where it is told how many values are in a page, by the kind of that."""
-SMALL_BYTES, HEADER_BYTES = 1 << 20, 1 << 13
+SMALL_BYTES, HEADER_BYTES = 1 << 16, 1 << 13
 """Of a column whose pages need no look, and the most of the header of a page."""
 
 
@@ -31,8 +31,9 @@ class Column(NamedTuple):
 
     @property
     def held(self) -> int:
-        """What is in memory while it is decoded: a page, and the dictionary, that of texts twice."""
-        return max((size for _, size in self.pages), default=0) + (1 + self.is_text) * self.dictionary
+        """What is in memory while it is decoded: a page, and the dictionary twice."""
+        page = max((size for _, size in self.pages), default=0)
+        return min(page + 2 * self.dictionary, 2 * self.decoded)
 
     def rows_within(self, limit: int) -> int:
         """The most rows in sequence that are surely in pages of no more bytes than that; at least 1."""
@@ -108,7 +109,7 @@ def _headers(source: IO[bytes], start: int, end: int) -> Iterator[dict[int, Any]
 
 
 STRUCT = 12
-MALFORMED = (LookupError, RecursionError, TypeError, ValueError)
+MALFORMED = (LookupError, OSError, OverflowError, RecursionError, TypeError, ValueError)
 """What reading a malformed value leads to."""
 
 

@@ -24,7 +24,7 @@ MOST_ROWS, FEW_ROWS, LONG_BYTES = 1 << 17, 1 << 4, 1 << 24
 """Rows decoded at a time; few where a column has so much text that they may have a megabyte each."""
 FETCHED_BYTES, BATCH_BYTES = 1 << 16, 1 << 11
 """Of a column at a time; and what a batch takes that has hardly a row."""
-MOST_HELD, MOST_FOOTER = 96 << 20, 10 << 20
+MOST_HELD, MOST_FOOTER = 92 << 20, 10 << 20
 """Bytes: of one page of each column with dictionaries, and of the footer, which takes 20 times that."""
 
 
