@@ -156,7 +156,7 @@ mixed_rows = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=80)
+@settings(max_examples=40)
 @given(st.lists(odd_rows | mixed_rows, min_size=1, max_size=30), st.permutations(NAMES))
 def test_any_rows_side_by_side(some: list[dict[str, float]], names: list[str]) -> None:
     """Bad rows get a code and stop nobody, and whoever stands beside whom, each gets its own."""
@@ -409,7 +409,7 @@ def test_a_table_of_many_kinds_is_planned_once() -> None:
 
 
 def test_inputs_are_left_alone() -> None:
-    given = columns(rows("ordinary", 100))
+    given = columns(rows("ordinary", 20))
     before = {name: column.copy() for name, column in given.items()}
     for column in given.values():
         column.flags.writeable = False

@@ -11,6 +11,7 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
+import numpy as np
 import polars as pl
 import pyarrow as pa
 import pyarrow.parquet as pq
@@ -85,7 +86,7 @@ def test_nested_columns_do_not_go_into_csv(atwood: Atwood, tmp_path: Path) -> No
 COLUMNS: dict[str, pa.Array] = {
     "decimal": pa.array([Decimal("1.10"), Decimal("-0.10")], pa.decimal128(38, 2)),
     "bytes": pa.array([b"abc", None], pa.binary(3)),
-    "half": pa.array([1.5, None], pa.float16()),
+    "half": pa.array([np.float16(1.5), None], pa.float16()),
     "map": pa.array([[("k", 1)], []], pa.map_(pa.string(), pa.int32())),
     "when": pa.array([1, None], pa.timestamp("ns", "Europe/Berlin")),
     "time": pa.array([1, None], pa.time64("ns")),
@@ -96,9 +97,12 @@ COLUMNS: dict[str, pa.Array] = {
     "category": pa.array(["a", None]).dictionary_encode(),
     "structs": pa.array([[{"a": "x"}], None]),
     "bytes in a list": pa.array([[b"x"], []]),
-    "json": pa.array(["{}", None], pa.json_()),
     "large": pa.array([2**64 - 1, None], pa.uint64()),
 }
+
+
+if hasattr(pa, "json_"):  # from 19
+    COLUMNS["json"] = pa.array(["{}", None], pa.json_())
 
 
 @pytest.mark.parametrize("name", COLUMNS)
@@ -120,7 +124,10 @@ def test_columns_of_every_type_pass_through(atwood: Atwood, tmp_path: Path, name
 )
 def test_columns_that_cannot_be_carried(atwood: Atwood, tmp_path: Path, column: pa.Array, kind: str) -> None:
     path = tmp_path / "in.parquet"
-    pq.write_table(pa.table({"m1": [1.0], "m2": [3.0], "x": column}), path)
+    try:
+        pq.write_table(pa.table({"m1": [1.0], "m2": [3.0], "x": column}), path)
+    except NotImplementedError:
+        pytest.skip("this pyarrow writes no such columns")
     ran = atwood("batch", str(path), "--to", "ndjson")
     assert (ran.status, ran.out) == (1, "")
     assert ran.err == f"atwood: cannot read {path}: column 'x' holds {kind}, which cannot be carried\n"
