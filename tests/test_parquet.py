@@ -19,7 +19,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atwood_cli.batch import pages, parquet
+from atwood_cli.batch import formats, pages, parquet
 from atwood_cli.batch.pages import Column, footer_bytes, row_groups
 
 from .running import PIP, Atwood, process
@@ -300,7 +300,9 @@ def test_rows_are_written_in_groups_of_equal_size(
 ) -> None:
     monkeypatch.setattr(parquet, "PIECE_BYTES", 1 << 11)
     monkeypatch.setattr(parquet, "GROUP_BYTES", 1 << 13)
+    monkeypatch.setattr(parquet, "CHUNK_BYTES", 1 << 10)
     frame = pl.DataFrame({"m1": 1.0, "m2": 3.0, "n": [f"{i}{'x' * (i + 13)}" for i in range(rows)]})
+    frame = frame.with_columns(c=pl.col("n").str.head(1).cast(pl.Categorical))
     frame.write_parquet(tmp_path / "in.parquet")
     ran = atwood("batch", str(tmp_path / "in.parquet"), "-o", str(tmp_path / "out.parquet"))
     assert (ran.status, ran.err) == (0, f"atwood: {rows} row{'s' * (rows > 1)}: {rows} no-slip; no errors.\n")
@@ -420,6 +422,19 @@ class NoPyarrow:
     def find_spec(name: str, *_: Any) -> None:
         if name.startswith("pyarrow"):
             raise ModuleNotFoundError(name=name)
+
+
+def test_more_groups_than_fit_into_memory(
+    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name, limit in (("GROUP_BYTES", 1), ("CHUNK_BYTES", 1), ("MOST_CHUNKS", 20)):
+        monkeypatch.setattr(parquet, name, limit)
+    monkeypatch.setattr(formats, "PIECE_BYTES", 1 << 8)
+    (tmp_path / "in.csv").write_text("m1,m2\n" + "1,3\n" * 1000)
+    ran = atwood("batch", str(tmp_path / "in.csv"), "-o", str(tmp_path / "out.parquet"), "--only", "regime")
+    why = "cannot write more than 20 pieces of columns, the most taken, as parquet; give --to csv"
+    assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: {why}\n")
+    assert not (tmp_path / "out.parquet").exists()
 
 
 @pytest.mark.parametrize("source", ["in.parquet", "in.csv"])

@@ -18,8 +18,10 @@ from .quoted import Unreadable
 if TYPE_CHECKING:
     import polars as pl
 
-PIECE_BYTES, GROUP_BYTES = 1 << 21, 1 << 22
+PIECE_BYTES, GROUP_BYTES = 1 << 21, 1 << 23
 """About what a piece that is read takes in memory, and a row group that is written."""
+CHUNK_BYTES, MOST_CHUNKS = 1 << 14, 25_000
+"""Of columns in row groups that are written: what they have at least, and how many there may be, at 2 KB."""
 MOST_ROWS, FEW_ROWS, LONG_BYTES = 1 << 17, 1 << 4, 1 << 24
 """Rows decoded at a time; few where a column has so much text that they may have a megabyte each."""
 FETCHED_BYTES, BATCH_BYTES = 1 << 16, 1 << 11
@@ -227,37 +229,44 @@ class RowGroups:
     def __init__(self) -> None:
         from pyarrow.parquet import ParquetWriter
 
-        self._rows: list[pl.DataFrame] = []
         self._written = BytesIO()  # not the file itself, which would get a footer though something failed
         self._begin = partial(ParquetWriter, self._written, compression="snappy")  # which all can read
         self._writer: Any = None
+        self._waiting: list[Any] = []
+        self._size = self._chunks = 0
 
     def add(self, frame: "pl.DataFrame") -> bytes:
         """Add rows; the bytes that are ready."""
-        self._rows.append(frame)
-        if sum(rows.estimated_size() for rows in self._rows) >= GROUP_BYTES:
+        table = frame.to_arrow()
+        self._waiting.append(table)
+        self._size += table.nbytes
+        if self._size >= max(GROUP_BYTES, CHUNK_BYTES * frame.width):
             self._write_group()
         return self._ready()
 
     def end(self) -> bytes:
         """The rest of the bytes."""
-        if self._rows:
+        if self._waiting:
             self._write_group()
         self._writer.close()
         return self._ready()
 
     def _write_group(self) -> None:
-        import polars as pl
-        import pyarrow
+        import pyarrow as pa
 
-        table = pl.concat(self._rows).to_arrow()
-        self._rows = []
+        table = pa.concat_tables(self._waiting)
+        self._waiting.clear()
+        self._size = 0
+        self._chunks += table.num_columns
+        if self._chunks > MOST_CHUNKS:
+            most = f"{MOST_CHUNKS} pieces of columns, the most taken"
+            raise OSError(f"cannot write more than {most}, as parquet; give --to csv")
         if self._writer is None:
             # Not numbers, which it would take thrice the time to write.
             texts = [field.name for field in table.schema if _is_text(field.type)]
             self._writer = self._begin(table.schema, use_dictionary=texts)
         self._writer.write_table(table, row_group_size=max(1, table.num_rows))
-        pyarrow.default_memory_pool().release_unused()
+        pa.default_memory_pool().release_unused()
 
     def _ready(self) -> bytes:
         ready = self._written.getvalue()
