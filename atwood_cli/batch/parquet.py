@@ -18,7 +18,7 @@ from .quoted import Unreadable
 if TYPE_CHECKING:
     import polars as pl
 
-PIECE_BYTES, GROUP_BYTES = 1 << 21, 1 << 23
+PIECE_BYTES, GROUP_BYTES = 1 << 21, 3 << 21
 """About what a piece that is read takes in memory, and a row group that is written."""
 CHUNK_BYTES, MOST_CHUNKS = 1 << 14, 25_000
 """Of columns in row groups that are written: what they have at least, and how many there may be, at 2 KB."""
