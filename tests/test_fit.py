@@ -808,3 +808,17 @@ def test_repeats_of_either_sign_are_averaged_with_their_signs(fit: Any) -> None:
     result = found(fit("m1,m2,a 1,a 2\n1,1.01,0.1,-0.02\n1,2,3,3.1\n1,3,4.7,4.8\n", "--find", "c", "--json"))
     assert [run["a"] for run in result["runs"]] == [0.04, 3.05, 4.75]
     assert result["chi2"] is not None
+
+
+def test_an_inertia_that_runs_away_is_not_told(atwood: Atwood, tmp_path: Path) -> None:
+    """Runs that no pulley explains: it grew until nothing depended on it, which LAPACK did not take."""
+    path = tmp_path / "runs.csv"
+    path.write_text(
+        "m1,m2,a\n"
+        "1.4902594501435225+/-0.01,1.6235554121487294+/-0.01,0.3089214721279846+/-0.01\n"
+        "1.294845704527006+/-0.01,1.8471607525147582+/-0.01,1.5335939325623844+/-0.01\n"
+        "1.2484303713661655+/-0.01,1.455744342272462+/-0.01,0.6018093116086901+/-0.01\n"
+    )
+    ran = atwood("fit", str(path), "--R", "0.3", "--g", "0.5")
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err == "atwood: the runs do not tell the pulley's inertia: vary m2 - m1 more, and m1 + m2\n"

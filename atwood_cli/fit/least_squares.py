@@ -117,17 +117,24 @@ def _state(data: Data, values: Mapping[str, float]) -> tuple[Column, dict[str, C
 def _step(slopes: Mapping[str, Column], sigma: Column, found: Sequence[str], left: Column) -> Any:
     if not found:
         return np.empty(0)
-    J = np.stack([slopes[x] for x in found], 1) / sigma[:, None]
+    directions, lengths = _directions(np.stack([slopes[x] for x in found], 1) / sigma[:, None])
+    return np.linalg.lstsq(directions, left, rcond=None)[0] / lengths
+
+
+def _directions(J: Any) -> tuple[Any, Column]:
+    """The columns at length 1, and their lengths; raises Alike where one says nothing, or too much."""
     lengths = np.linalg.norm(J, axis=0)
-    return np.linalg.lstsq(J / lengths, left, rcond=None)[0] / lengths
+    if not (lengths > 0).all() or not np.isfinite(lengths).all():
+        raise Alike
+    return J / lengths, lengths
 
 
 def _inverse(J: Any) -> Any:
     """(JᵀJ)⁻¹; raises Alike where a combination of columns says nothing."""
     if not J.shape[1]:
         return np.empty((0, 0))
-    lengths = np.linalg.norm(J, axis=0)
-    _, singular, rows = np.linalg.svd(J / lengths, full_matrices=False)
+    directions, lengths = _directions(J)
+    _, singular, rows = np.linalg.svd(directions, full_matrices=False)
     if len(singular) < J.shape[1] or singular[-1] < ALIKE * singular[0]:
         raise Alike
     half = rows.T / singular / lengths[:, None]
