@@ -198,7 +198,7 @@ def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "pl.DataFram
     wanted = list(dict.fromkeys(["regime", *job.names]))
     results = solve_arrays(**scenes, accuracy=job.accuracy, quantities=wanted)
     bad = [row for row in results["status"].nonzero()[0].tolist() if row not in errors]
-    cells = frame.select(pl.col(heading.column).alias(name) for name, heading in layout.headings.items())[bad]
+    cells = _inputs(frame, layout)[bad]
     whys: dict[str, str] = {}  # those of rows that are alike are found once
     for row, values in zip(bad, cells.rows(), strict=True):
         errors[row] = whys.get(str(values)) or whys.setdefault(
@@ -246,6 +246,13 @@ def _finite(values: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
     return pl.Series(np.where(exists, values, nan), nan_to_null=True)
 
 
+def _inputs(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
+    """The columns of inputs, by the names of these."""
+    import polars as pl
+
+    return frame.select(pl.col(heading.column).alias(name) for name, heading in layout.headings.items())
+
+
 def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict[int, str]]:
     """The inputs as doubles by name, and by row the error of the first cell that is no double."""
     import polars as pl
@@ -254,7 +261,7 @@ def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict
         kind = frame[heading.column].dtype
         if not (kind.is_numeric() or kind in (pl.String, pl.Null)):
             raise Unreadable(f"column {name} holds {kind}, not numbers")
-    cells = frame.select(pl.col(heading.column).alias(name) for name, heading in layout.headings.items())
+    cells = _inputs(frame, layout)
     doubles = cells.select(
         layout.as_doubles(name, cells[name].dtype) for name in cells.columns
     )  # in parallel
