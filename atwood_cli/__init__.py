@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .api import Solution, solve
     from .arrays import solve_arrays
+    from .laboratory import fit
     from .model.quantities import REGIMES
     from .model.scene import Scene, SceneError
 
-__all__ = ["REGIMES", "Scene", "SceneError", "Solution", "solve", "solve_arrays"]
+__all__ = ["REGIMES", "Scene", "SceneError", "Solution", "fit", "solve", "solve_arrays"]
 __version__ = "0.1.0"
 
 _HOMES = {
@@ -16,6 +17,7 @@ _HOMES = {
     "Scene": "model.scene",
     "SceneError": "model.scene",
     "Solution": "api",
+    "fit": "laboratory",
     "solve": "api",
     "solve_arrays": "arrays",
 }
@@ -32,3 +34,8 @@ def __getattr__(name: str) -> Any:
 
     value = globals()[name] = getattr(import_module(f".{_HOMES[name]}", __name__), name)
     return value
+
+
+def __dir__() -> set[str]:
+    """What a shell completes: the names above, whether used yet or not."""
+    return {*globals(), *__all__}

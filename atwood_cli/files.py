@@ -1,15 +1,61 @@
-"""Files that are there whole or not at all."""
+"""Files that are there whole or not at all, and what of a table a terminal gets to see."""
 
 import errno
 import os
+import re
 import stat
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
+from io import TextIOBase
 from pathlib import Path
 
+FORMATS = ("csv", "tsv", "ndjson", "parquet")
+"""Of tables, each with the suffix of that name."""
 STREAM = "-"
 """The name of a file that is stdin or stdout."""
+LONGEST_NAME = 255
+"""Characters of a file's name that a message shows."""
+
+
+STEERING = re.compile("[\0-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+"""Control characters, those that change the direction of others, and halves of pairs."""
+
+
+def printable(words: str, keep: str = "\n") -> str:
+    """The words as a terminal may see them: what could steer it is spelled out, but for what is to keep.
+
+    Whatever the program did not make itself goes through here on its way to a terminal.
+    """
+    return STEERING.sub(lambda found: found[0] if found[0] in keep else ascii(found[0])[1:-1], words)
+
+
+class Stdout:
+    """Standard output for tables: the bytes as they are, but for what could steer a terminal."""
+
+    def __init__(self) -> None:
+        sys.stdout.flush()
+        self.file, self.is_terminal = sys.stdout.buffer, sys.stdout.isatty()
+
+    def write(self, cells: str | bytes | memoryview) -> None:
+        if self.is_terminal:
+            words = cells if isinstance(cells, str) else bytes(cells).decode(errors="replace")
+            cells = printable(words, "\n\t").encode(sys.stdout.encoding, "replace")
+        self.file.write(cells.encode() if isinstance(cells, str) else cells)
+
+    def flush(self) -> None:
+        self.file.flush()
+
+
+class ClosedStdout(TextIOBase):
+    """What stands for a standard output that the caller closed: nothing can be written to it."""
+
+    @property
+    def buffer(self) -> "ClosedStdout":
+        return self
+
+    def write(self, words: object) -> int:
+        raise OSError("cannot write the output: stdout is closed")
 
 
 def check_free(path: Path, force: bool) -> None:

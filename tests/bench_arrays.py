@@ -62,6 +62,7 @@ class Family(NamedTuple):
     draw: Callable[[int], dict[str, Any]]
     accuracy: Any = "exact"
     quantities: tuple[str, ...] | None = None
+    of: int = 50  # this part of all rows
 
 
 def _named(columns: Columns) -> dict[str, Any]:
@@ -83,6 +84,10 @@ def _anything(rng: Any, rows: int) -> Any:
     return 10.0 ** rng.uniform(-300, 300, rows)
 
 
+def _tiny(rng: Any, rows: int) -> Any:
+    return 10.0 ** rng.uniform(-300, -50, rows)
+
+
 def _whole(least: int, most: int) -> Callable[[Any, int], Any]:
     return lambda rng, rows: rng.integers(least, most, rows).astype(float)
 
@@ -99,6 +104,11 @@ def _strong(rows: int) -> dict[str, Any]:
     rng = np.random.default_rng(6)
     m1, m2, M, _ = ordinary(rows)
     return {"m1": m1, "m2": m2, "M": M, "mu": rng.uniform(225, 400, rows)}
+
+
+def _light(rows: int) -> dict[str, Any]:
+    m1, m2, M, mu = ordinary(rows)
+    return {"m1": m1 * 1e-305, "m2": m2 * 1e-305, "M": M * 1e-305, "mu": mu}
 
 
 def _ties(rows: int) -> dict[str, Any]:
@@ -157,6 +167,11 @@ FAMILIES = {
         )
     ),
     "exact, every row a tie": Family(_ties),
+    "whole turns, weak friction, friction_force_x, y": Family(
+        _with(wrap=lambda rng, rows: 360.0, mu=_tiny), quantities=VECTOR, of=20_000
+    ),
+    "wraps of 1e-300 to 1e-50, friction_force_x, y": Family(_with(wrap=_tiny), quantities=VECTOR, of=20_000),
+    "masses of 1e-305, friction_force_min": Family(_light, quantities=("friction_force_min",), of=20_000),
 }
 
 
@@ -215,9 +230,9 @@ def main(rows: int) -> None:
     beside_the_paper("ordinary (mu uniform in 0 to 1)", more_slip(rows))
     print("Rows a second, in families that are hard:")
     for name, family in FAMILIES.items():
-        given = family.draw(rows // 50)
-        taken = warm(given, family.accuracy, family.quantities, 3)
-        print(f"  {name:56} {rows // 50 / taken:12,.0f}")
+        count = rows // family.of
+        taken = warm(family.draw(count), family.accuracy, family.quantities, 3)
+        print(f"  {name:56} {count / taken:12,.0f}")
     few = _named(ordinary(100))
     for accuracy in ("fast", "certified", "exact"):
         print(f"100 rows, {accuracy}: {warm(few, accuracy, None, 99) * 1e3:.2f} ms")

@@ -1,14 +1,16 @@
 """Command lines, files and arguments at random, and what is wrong with the runs: python -m tests.fuzz [RUNS [FIRST]]
 
 A run is made from its number alone, so that it can be had again: python -m tests.fuzz 1 NUMBER. Whatever
-is typed, a run ends within the limit, without a traceback or a warning, with a status of ours, with stdout
-empty on an error and with sentences on stderr. A table comes out with as many rows as were read.
+is typed, a run ends within the limits, without a traceback or a warning, with a status of ours, with stdout
+empty on an error and with sentences on stderr. A table comes out with as many rows as were read. What is
+read steers no terminal, and nothing long is repeated whole. What a closed stdout loses is said.
 
 python -m tests.fuzz kill [RUNS [FIRST]] has runs that write a file get a signal at a random instant, some of
 them two. The file is then as it was, or whole, and but for SIGKILL nothing is left beside it.
 """
 
 import csv
+import gzip
 import io
 import json
 import os
@@ -19,6 +21,7 @@ import sys
 import time
 import traceback
 import warnings
+import zipfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from decimal import Decimal
@@ -30,6 +33,7 @@ from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 from typing import Any
+from unicodedata import category
 from unittest.mock import patch
 
 import numpy as np
@@ -37,13 +41,14 @@ import polars as pl
 import typer
 
 from atwood_cli import SceneError, cli, solve, solve_arrays
-from atwood_cli.arrays.plan import COLUMNS
-from atwood_cli.batch.formats import FORMATS
+from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import NAMES
-from atwood_cli.model.scene import INPUTS, MEASURED
+from atwood_cli.model.scene import COLUMNS, INPUTS, MEASURED
 from atwood_cli.tradeoff import measure
 
-LIMIT = 120  # seconds, for a run; on a quiet machine the longest take a tenth of it
+LIMIT = 120  # seconds, for a run that waits
+BUSY = 15  # seconds of processor time, for any run
+MOST_SAID = 2000  # characters of a sentence
 STATUSES = (0, 1, 2, 130)
 COMMANDS: dict[str, Any] = cli.program().commands
 WEIGHTS = {"solve": 40, "contact": 20, "sweep": 20, "batch": 20, "fit": 20, "tradeoff": 1}
@@ -55,7 +60,9 @@ RARE = {
     "--elements": 0.15,
     "--digits": 0.3,
 }
-OFTEN = {"--m1": 0.97, "--m2": 0.97, "--M": 0.6, "--mu": 0.6}
+CLOSED = 0.005
+"""How often stdout is closed, for which a process is needed."""
+OFTEN = {"--wrap": 0.2, "--m1": 0.97, "--m2": 0.97, "--M": 0.6, "--mu": 0.6}
 
 GOOD = "1 3 2 0.3 10 0.25 1.5e-3 100 0.1 90 180 4 0.5".split()
 FREE = "1 3 2.5 0.3 1e-300 1e300 1.0000000000000001 0.99 1e-9 7e463".split()
@@ -74,10 +81,34 @@ EDGES = [
         "9" * 1000,
         "9" * 1001,
         "0." + "3" * 500,
+        "1" * 100_000,
+        "1 kg" + "*st^9" * 20_000,
+        "1kg" + " t^9/ug^9" * 5,
     ),
 ]
 UNITS = "kg g lb t mg µg m cm mm in ft deg rad turn ° % s ms N m/s2 m/s² x µ kgg".split()
-TEXTS = [*"x µ =1+1 regime tension_1 ' \" , ;".split(), "", "a b", "M (kg)", "m1 ", "\t", "\x1b]0;a\x07"]
+COMPOUND = {
+    "MASS": "kg|g km/m|lb ft^2/m^2|st^2/kg|N s^2/m",
+    "ACCELERATION": "m/s2|km/h/s|ft/s^2|cm/min^2|m/s/h|g",
+    "LENGTH": "m|km m/mm|in ft/cm|m/s s",
+    "TIME": "s|h s/min|s^2/ms",
+    "INERTIA": "kg m2|g cm^2|lb ft in|N m s^2",
+    "FORCE": "N|kg m/s^2|lb ft/min^2|Nm|kg m^2/s^2",
+    "ANGLE": "rad|turn|°|deg",
+}
+"""Units by what they measure."""
+FACTORS = "kg/g|g^2/kg^2|km^9/m^9|h/s|*st^9/lb^9|in/ft|s^-1 s|kg^99/g^99|m".split("|")
+UNCERTAIN = "175(7)|180(3)|90+/-2|540±0.5|1.5(1)rad|0.5(1)turn|1(1)|179.9(2)|360(1)|0.1(1)".split("|")
+HOSTILE = ["\x1b[31mRED", "\x1b]0;a\x07", "\x9b31mred", "a\x85b", "\u202edrow", "\u2066a", "a\u2028b", "\x7f"]
+LONG = [
+    "x" * 100_000,
+    "9" * 100_000,
+    "1" + "kg " * 30_000,
+    "--" + "m1" * 50_000,
+    "1(" * 50_000,
+    "m1:" * 30_000,
+]
+TEXTS = [*"x µ =1+1 regime tension_1 ' \" , ;".split(), "", "a b", "M (kg)", "m1 ", "\t", *HOSTILE]
 FILES = [
     "in.csv",
     "a",
@@ -124,12 +155,19 @@ def number(random: Dice) -> str:
     return shape.format(text, random.choice(GOOD), random.choice(GOOD), u=random.choice(UNITS))
 
 
+def with_unit(random: Dice, metavar: str) -> str:
+    """A number with a unit of what is measured, and at times with factors that may cancel, or be many."""
+    unit = random.choice(COMPOUND[metavar].split("|"))
+    factors = random.choices(FACTORS, k=random.choice([0, 0, 0, 1, 2, 5, 300]) if random.is_odd() else 0)
+    return " ".join([f"{random.choice(GOOD)}{random.choice(['', ' '])}{unit}", *factors])
+
+
 def value(random: Dice, command: str, metavar: str) -> list[str]:
     """What may stand behind an option."""
     if metavar == "FILE NAME":
         return [*value(random, command, "FILE"), *value(random, command, "NAME")]
     if random.random() < random.odd / 5:
-        return [random.choice([*EDGES, *TEXTS])]
+        return [random.choice([*EDGES, *TEXTS, *LONG])]
     if metavar in ("FILE", "OUT"):
         return [random.choice(FILES)]
     if metavar == "NAME":
@@ -139,7 +177,16 @@ def value(random: Dice, command: str, metavar: str) -> list[str]:
     if "|" in metavar:
         return [random.choice(metavar.split("|"))]
     if command == "sweep" and random.random() < 0.3:
-        return [f"{number(random)}:{number(random)}:{random.choice('1234')}{random.choice(['', ':log'])}"]
+        ends = [with_unit(random, metavar) if metavar in COMPOUND else number(random) for _ in range(2)]
+        return [f"{ends[0]}:{ends[1]}:{random.choice('1234')}{random.choice(['', ':log'])}"]
+    if command == "solve" and random.random() < (0.5 if metavar == "ANGLE" else 0.05):
+        return [
+            random.choice(UNCERTAIN)
+            if metavar == "ANGLE"
+            else f"{random.choice(GOOD)}({random.randint(1, 30)})"
+        ]
+    if metavar in COMPOUND and random.random() < 0.1:
+        return [with_unit(random, metavar)]
     return [number(random)]
 
 
@@ -162,7 +209,8 @@ def command_line(random: Dice) -> list[str]:
     line = [command, *(word for option in words for word in option)]
     if random.random() < random.odd / 3:
         line.insert(
-            random.randrange(len(line)), random.choice([*EDGES, *TEXTS, "--m", "-m1", "-h", "--version"])
+            random.randrange(len(line)),
+            random.choice([*EDGES, *TEXTS, *LONG, "--m", "-m1", "-h", "--version"]),
         )
     return line
 
@@ -194,45 +242,77 @@ def table(random: Dice, kind: str) -> bytes:
     while data and random.is_odd():
         at = random.randrange(len(data))
         data[at : at + random.choice([0, 1, 5])] = random.randbytes(random.choice([0, 1, 3]))
-    return bytes(data)
+    return otherwise(random, bytes(data))
+
+
+def otherwise(random: Dice, data: bytes) -> bytes:
+    """A table, at times as no table is read."""
+    if not random.is_odd():
+        return data
+    text = data.decode("utf-8", "replace")
+    wide = random.choice(["utf-16", "utf-16-le", "utf-16-be", "utf-32", "latin-1"])
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as book:
+        book.writestr(zipfile.ZipInfo("xl/worksheets/sheet1.xml"), data)
+    return random.choice([gzip.compress(data, mtime=0), text.encode(wide, "replace"), packed.getvalue()])
+
+
+HEADINGS = (
+    'M|time 2|a1|m1 (g)|t/s|u(a)|±|u (%)|Δm|m1+m2|h_cm|Team|T1||Run 1: Time (s)|a (m/s²) Run #1|"m1\n(g)"|u(((|'
+    "u(u(a))|+/-|/|a/(|Zeit"
+).split("|")
+AROUND = [[line] * bool(line) for line in '||||# about|Lab 3|sep=;|sep=,|;;;|,,|5" drop|Mean,,'.split("|")]
 
 
 def table_of_runs(random: Dice) -> bytes:
     """A table of runs of one pulley and axle, more or less whole and true."""
     c, f, timed = random.random(), random.random(), random.random() < 0.5
     names = ["m1", "m2", "time" if timed else "a", *["drop"] * (random.random() < 0.5)]
-    names += [random.choice([*TEXTS, "M", "time 2", "a1"]) for _ in range(2) if random.is_odd()]
+    names += [random.choice([*TEXTS, *HEADINGS]) for _ in range(2) if random.is_odd()]
     rows = []
     for _ in range(random.choice([1, 2, 3, 5, 30])):
         l = 1 + random.random()
         h = l + 0.1 + random.choice([0.01, 1, 1, 1]) * random.random()
         a = (9.80665 * (h - l) - f) / (h + l + c) + random.gauss(0, random.choice([0, 0.01, 0.3]))
         measured = abs(2 / a) ** 0.5 if timed else a
-        cells = [*random.choice([[l, h], [l, h], [h, l]]), measured, 1.0, 1.0, 1.0][: len(names)]
+        numbers = [*random.choice([[l, h], [l, h], [h, l]]), measured, 1.0, 1.0, 1.0][: len(names)]
         spread = random.choice(["", "", "+/-0.01"])
-        rows.append([number(random) if random.is_odd() else f"{cell!r}{spread}" for cell in cells])
+        rows.append([number(random) if random.is_odd() else f"{cell!r}{spread}" for cell in numbers])
+        rows[-1] = [
+            random.choice(TEXTS) if name in TEXTS else cell
+            for name, cell in zip(names, rows[-1], strict=True)
+        ]
     separator = random.choice(",;\t")
-    text = "\n".join(separator.join(row) for row in [names, *rows])
-    return text.encode("utf-8", "replace")
+    table = [separator.join(row) for row in [names, *rows]]
+    table = [*random.choice(AROUND), *table, *random.choice(AROUND)]
+    text = "\n".join(table).encode(random.choice(["utf-8"] * 8 + ["cp1252"] * 2), "replace")
+    return otherwise(random, text)
 
 
 @contextmanager
-def limited(seconds: float) -> Iterator[None]:
-    """Raises TimeoutError in what takes longer, where the system has alarms."""
+def limited() -> Iterator[None]:
+    """Raises TimeoutError in what takes longer than `LIMIT` or `BUSY`, where the system has alarms."""
     if not hasattr(signal, "setitimer"):
         yield
         return
 
-    def ring(*_: object) -> None:
-        raise TimeoutError(f"it takes more than {seconds} s")
+    def ring(number: int, _: object) -> None:
+        taken = f"{BUSY} s of processor time" if number == signal.SIGPROF else f"{LIMIT} s"
+        raise TimeoutError(f"it takes more than {taken}")
 
-    before = signal.signal(signal.SIGALRM, ring)
-    signal.setitimer(signal.ITIMER_REAL, seconds)
+    timers = (
+        (signal.ITIMER_REAL, signal.SIGALRM, LIMIT),
+        (signal.ITIMER_PROF, signal.SIGPROF, BUSY),
+    )
+    before = [signal.signal(number, ring) for _, number, _ in timers]
+    for timer, _, seconds in timers:
+        signal.setitimer(timer, seconds)
     try:
         yield
     finally:
-        signal.setitimer(signal.ITIMER_REAL, 0)
-        signal.signal(signal.SIGALRM, before)
+        for (timer, number, _), handler in zip(timers, before, strict=True):
+            signal.setitimer(timer, 0)
+            signal.signal(number, handler)
 
 
 def wrong_with_line(words: Sequence[str]) -> str:
@@ -257,6 +337,10 @@ def wrong_with_line(words: Sequence[str]) -> str:
         return f"status {status} without a word"
     if "\x1b" in said:
         return f"an escape sequence on stderr: {said!r}"
+    if long := [line for line in said.splitlines() if len(line) > MOST_SAID]:
+        return f"{len(long[0])} characters in a line of stderr: {long[0]!r:.99}"
+    if steers := _steering(printed) if words[0] != "batch" and not {"--csv", "--markdown"} & {*words} else "":
+        return f"{steers!r} on stdout, which steers a terminal"
     counted = re.search(r"^atwood: (\d+) rows?: ", said, re.MULTILINE)
     if counted and _rows_out(words, printed) not in (None, int(counted[1])):
         return f"{_rows_out(words, printed)} rows came out of {counted[1]}"
@@ -267,6 +351,29 @@ def wrong_with_line(words: Sequence[str]) -> str:
         and not {"-h", "--help", "-o", "--output"} & {*words}
     ):
         json.loads(printed, parse_constant=lambda word: 1 / 0)
+    return ""
+
+
+def _steering(text: str) -> str:
+    """What is in a page that no page has: controls, and marks that turn the direction of words."""
+    return "".join({c for c in text if category(c) in ("Cc", "Cf") and c != "\n"})
+
+
+def wrong_with_closed(words: Sequence[str]) -> str:
+    """What is wrong with a run whose stdout is closed: its result is lost, and it should say so."""
+    if any("\0" in word for word in words):
+        return ""
+    command = ["sh", "-c", 'exec "$@" >&-', "sh", sys.executable, "-m", "atwood_cli", *words]
+    with open("in.csv", "rb") as stdin:
+        ran = subprocess.run(
+            command, stdin=stdin, stderr=subprocess.PIPE, env=ENVIRONMENT, timeout=LIMIT, check=False
+        )
+    said = ran.stderr.decode("utf-8", "replace")
+    if ran.returncode not in STATUSES or "Traceback" in said:
+        return f"status {ran.returncode}, and on stderr {said[-2000:]!r}"
+    elsewhere = {"-o", "--output", "-h", "--help", "-V", "--version"} & {*words}
+    if ran.returncode == 0 and not elsewhere:
+        return f"status 0, though stdout is closed; on stderr {said!r}"
     return ""
 
 
@@ -312,6 +419,7 @@ def wrong_with_arguments(random: Dice) -> str:
     return call(solve_arrays, {"accuracy": accuracy, "quantities": quantities}, COLUMNS)
 
 
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(cli.__file__).parents[2])}
 STARTED = """
 import gc, signal, sys
 from atwood_cli.__main__ import main
@@ -340,11 +448,8 @@ def start(line: str) -> "subprocess.Popen[bytes]":
     scenes.write_parquet("in.parquet")
     words = [sys.executable, "-c", STARTED, *line.split(), "--force"]
     before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.Signals[name] for name in HEARD])
-    top = {"PYTHONPATH": str(Path(cli.__file__).parents[2])}
     try:
-        return subprocess.Popen(
-            words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env={**os.environ, **top}
-        )
+        return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=ENVIRONMENT)
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
@@ -399,9 +504,14 @@ def wrong_with(run: int) -> str:
         for kind in FORMATS:
             made = table(random, kind) if words[0] == "batch" else b""
             Path(f"in.{kind}").write_bytes(table_of_runs(random) if words[0] == "fit" else made)
-        what, try_it = repr(words), partial(wrong_with_line, words)
+        what, try_it = (
+            repr([word if len(word) < 1100 else f"{word[:50]}..." for word in words]),
+            partial(wrong_with_line, words),
+        )
+        if random.random() < CLOSED and os.name == "posix":
+            what, try_it = f"{what} >&-", partial(wrong_with_closed, words)
     try:
-        with limited(LIMIT):
+        with limited():
             wrong = try_it()
     except BaseException as error:
         if isinstance(error, KeyboardInterrupt):

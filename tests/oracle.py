@@ -241,8 +241,7 @@ def expected(scene: Scene) -> dict[str, Any]:
                 if mu == 0
                 else lambda: 2 * ball(l) * ball(h) * (k(mu) - 1) / (ball(beta) * (ball(h) - ball(l) * k(mu)))
             )
-        applicable = mu > 0 or known
-        if applicable:
+        if mu > 0 or known or f:
             out["least_heavier_mass"] = l if mu == 0 else lambda: ball(l) * k(mu)
             if f:
                 if beta is not None and not beats(1 + f / g / l):

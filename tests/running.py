@@ -38,14 +38,14 @@ class Ran(NamedTuple):
 Atwood = Callable[..., Ran]
 
 
-def process(*arguments: str, shell: str = "", **environment: str) -> Ran:
+def process(*arguments: str, shell: str = "", stdin: Any = None, **environment: str) -> Ran:
     """Run it as a process; with ``shell``, a bash line in which `atwood` is the command."""
     env = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "FORCE_COLOR", "NO_COLOR")}
     env |= {"PYTHON": sys.executable, **environment}
     words = [sys.executable, "-m", "atwood_cli", *arguments]
     if shell:
         words = ["bash", "-c", f'atwood() {{ "$PYTHON" -m atwood_cli "$@"; }}; {shell}']
-    done = subprocess.run(words, capture_output=True, env=env, check=False, timeout=HANGS)
+    done = subprocess.run(words, stdin=stdin, capture_output=True, env=env, check=False, timeout=HANGS)
     return Ran(
         done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
     )

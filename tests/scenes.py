@@ -123,6 +123,20 @@ def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
         yield _vary(rng, FAMILIES[family](rng))
 
 
+def of_all_kinds(count: int, seed: int = 2026) -> Iterator[Given]:
+    """Scenes as people have them, some on an axle that rubs, with a free end or equal masses."""
+    rng = Random(f"all kinds {seed}")
+    for _ in range(count):
+        scene = _vary(rng, ordinary(rng))
+        if rng.random() < 0.1:
+            scene["m2"] = rng.choice([scene["m1"], "0"][: 1 + ("mu" not in scene)])
+        if rng.random() < 0.5:
+            difference = abs(float(scene["m1"]) - float(scene["m2"])) or 1.0
+            force = 9.8 * difference * _log_uniform(rng, -2, 0.2)
+            scene["axle"] = repr(force) + ("Nm" if "R" in scene and rng.random() < 0.5 else "")
+        yield scene
+
+
 def exact_scene(row: Mapping[str, float]) -> Scene:
     """The scene that a row of doubles is, exactly; NaN is not given."""
     return Scene.read({name: value for name, value in row.items() if not isnan(value)})

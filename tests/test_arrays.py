@@ -2,12 +2,15 @@
 
 import tracemalloc
 from collections import Counter
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from datetime import date
+from decimal import Decimal
 from fractions import Fraction
 from functools import cache
 from itertools import islice
 from math import inf, isfinite, isinf, isnan, nan, ulp
+from random import Random
 from threading import Barrier
 from typing import Any
 from unittest.mock import Mock
@@ -19,11 +22,12 @@ from hypothesis import strategies as st
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
 from atwood_cli.arithmetic.lazy import lazy
-from atwood_cli.arrays import ACCURACIES, MAY_BE_ABSENT, STATUSES
-from atwood_cli.arrays.plan import COLUMNS, Accuracy, plan
+from atwood_cli.arrays import MAY_BE_ABSENT, STATUSES
+from atwood_cli.arrays.plan import plan
 from atwood_cli.model.case import Case
-from atwood_cli.model.quantities import NAMES, STANDARD
-from atwood_cli.model.scene import Scene
+from atwood_cli.model.quantities import ACCURACIES, NAMES, STANDARD, Accuracy
+from atwood_cli.model.scene import COLUMNS, Scene
+from atwood_cli.solver.answers import Answers
 
 from . import oracle
 from .running import HANGS
@@ -108,6 +112,127 @@ def test_exact_is_solve_to_the_bit(family: str, pytestconfig: pytest.Config) -> 
                 assert abs(certified[name][i] - want) <= 4 * ulp(want), (row, name)
             else:
                 assert repr(float(certified[name][i])) == repr(nan if want is None else want), (row, name)
+
+
+Columns = dict[str, Any]
+Drawing = np.random.Generator
+
+
+def _tiny(rng: Drawing, least: float = 12, most: float = 305) -> Any:
+    """From about 2^-40 to beyond 2^-1000."""
+    return rng.uniform(1, 2, CANCELLING_ROWS) * 10.0 ** -rng.uniform(least, most, CANCELLING_ROWS)
+
+
+def _near_1(rng: Drawing, closest: float) -> Any:
+    """Beside 1, by 1e-8 or less."""
+    return 1 + rng.choice([-1, 1], CANCELLING_ROWS) * 10.0 ** -rng.uniform(8, closest, CANCELLING_ROWS)
+
+
+def _usual(rng: Drawing, least: float = -1, most: float = 1) -> Any:
+    return 10 ** rng.uniform(least, most, CANCELLING_ROWS)
+
+
+def _masses(rng: Drawing) -> Columns:
+    m1 = _usual(rng)
+    return {"m1": m1, "m2": m1 * (1 + _usual(rng, -2)), "R": _usual(rng)}
+
+
+def _turns(rng: Drawing) -> Any:
+    return 360.0 * rng.integers(1, 4, CANCELLING_ROWS)
+
+
+def light_pulley_whole_turns(rng: Drawing) -> Columns:
+    return _masses(rng) | {"M": _tiny(rng), "wrap": _turns(rng)}
+
+
+def light_pulley_short_wrap(rng: Drawing) -> Columns:
+    return _masses(rng) | {"M": _tiny(rng, most=150), "wrap": _tiny(rng, 1, 150)}
+
+
+def slip_on_a_short_wrap(rng: Drawing) -> Columns:
+    return _masses(rng) | {"M": _usual(rng), "wrap": _tiny(rng, 4), "mu": _usual(rng, -1, 0)}
+
+
+def slip_with_weak_friction(rng: Drawing) -> Columns:
+    return _masses(rng) | {"M": _usual(rng), "wrap": _turns(rng), "mu": _tiny(rng)}
+
+
+def verge_with_weak_friction(rng: Drawing) -> Columns:
+    return _masses(rng) | {"wrap": _turns(rng), "mu": _tiny(rng)}
+
+
+def masses_a_few_doubles_apart(rng: Drawing) -> Columns:
+    m1, M = _usual(rng), _usual(rng) * _tiny(rng, 0, 20)
+    m2 = m1 + np.spacing(m1) * rng.integers(1, 1000, CANCELLING_ROWS)
+    return {"m1": m1, "m2": m2, "R": 1.0, "M": M, "wrap": _turns(rng)}
+
+
+def near_the_least_heavier_mass(rng: Drawing) -> Columns:
+    m1 = _usual(rng)
+    apart = _tiny(rng, 0, 15)
+    mu = np.log1p(apart) / np.pi * _near_1(rng, 16)
+    return {"m1": m1, "m2": m1 * (1 + apart), "mu": mu, "M": _usual(rng, 0, 30), "R": 1.0}
+
+
+def near_the_least_pulley_mass(rng: Drawing) -> Columns:
+    given, mu = _masses(rng), _usual(rng, -10, 0)
+    return given | {"mu": mu, "M": 4 * given["m1"] * np.expm1(mu * np.pi) * _near_1(rng, 16)}
+
+
+def grip_with_little_to_spare(rng: Drawing) -> Columns:
+    given, M = _masses(rng), _usual(rng)
+    excess = (given["m2"] / given["m1"] - 1) * M / (4 * given["m2"] + M)
+    return given | {"M": M, "mu": np.log1p(excess) / np.pi * (1 + _tiny(rng, 2, 15))}
+
+
+def friction_straight_up(rng: Drawing) -> Columns:
+    """Its part x changes its sign between two doubles of wrap."""
+    given = _masses(rng) | {"mu": _usual(rng, -2, -0.5)}
+    low, high = np.full((2, CANCELLING_ROWS), [[200.0], [500.0]])
+    for _ in range(60):
+        wrap = (low + high) / 2
+        before = solve_arrays(**given, wrap=wrap, quantities=["friction_force_x"])["friction_force_x"] < 0
+        low, high = np.where(before, wrap, low), np.where(before, high, wrap)
+    return given | {"wrap": low}
+
+
+CANCELLING_ROWS = 48  # too many to be solved one by one from the start
+CANCELLING: list[Callable[[Drawing], Columns]] = [
+    light_pulley_whole_turns,
+    light_pulley_short_wrap,
+    slip_on_a_short_wrap,
+    slip_with_weak_friction,
+    verge_with_weak_friction,
+    masses_a_few_doubles_apart,
+    near_the_least_heavier_mass,
+    near_the_least_pulley_mass,
+    grip_with_little_to_spare,
+    friction_straight_up,
+]
+
+
+@pytest.mark.parametrize("family", CANCELLING, ids=lambda family: family.__name__)
+def test_what_cancels_is_solve_to_the_bit(
+    family: Callable[[Drawing], Columns], pytestconfig: pytest.Config
+) -> None:
+    """From 2^-40 to beyond 2^-1000: all quantities, and what FLINT has of them."""
+    given = family(np.random.default_rng(24))
+    exact = solve_arrays(**given, accuracy="exact", quantities=NAMES)
+    certified = solve_arrays(**given, quantities=NAMES)
+    for i, columns_ in enumerate(zip(*np.broadcast_arrays(*given.values()), strict=True)):
+        row = DEFAULTS | dict(zip(given, map(float, columns_), strict=True))
+        one = solve_any(**row)
+        wanted = {name: getattr(one, name) for name in NAMES[1:]}
+        if i % 4 == 0 or pytestconfig.getoption("every_digit"):
+            for name, independent in oracle.expected(exact_scene(row)).items():
+                if name in wanted and independent is not None:
+                    assert wanted[name] == oracle.correctly_rounded(independent, None), (row, name)
+        assert REGIMES[exact["regime"][i]] == REGIMES[certified["regime"][i]] == one.regime
+        for name, value in wanted.items():
+            want = nan if value is None else value
+            assert repr(float(exact[name][i])) == repr(want), (row, name)
+            got = float(certified[name][i])
+            assert repr(got) == repr(want) or abs(got - want) <= 4 * ulp(want), (row, name, got)
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -243,6 +368,31 @@ def test_a_number_is_a_column_of_it(accuracy: Any) -> None:
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)
+@pytest.mark.parametrize("block", [7, arrays.BLOCK])
+def test_why_values_are_missing_is_counted(
+    accuracy: Any, block: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As each row's own scene says it, whichever rows are solved together."""
+    monkeypatch.setattr(arrays, "BLOCK", block)
+    rng = Random(5)
+    numbers = {"m1": (1, 2, 0), "m2": (1, 2, 3), "M": (None, 0, 1, 100, inf), "mu": (None, 0, 0.1, 1)}
+    numbers |= {"R": (None, 1), "wrap": (90, 180, 360, 540)}
+    given = [{name: rng.choice(some) for name, some in numbers.items()} for _ in range(150)]
+    counted: Counter[tuple[str, str]] = Counter()
+    for row in given:
+        if row["m1"] or row["mu"] is None:
+            answers = Answers(Scene.read(row))
+            counted.update((name, answers.reasons[name]) for name in NAMES if answers[name] is None)
+    whole: dict[str, Any] = {name: np.array([row[name] for row in given], float) for name in numbers}
+    defaults = {"g": 9.80665, "inertia": 0.5}
+    results, reasons = arrays.solve_and_count(whole | defaults, accuracy, NAMES)
+    assert reasons == counted
+    for name in NAMES[1:]:
+        missing = int(np.isnan(results[name][results["status"] == 0]).sum())
+        assert missing == sum(times for (of, _), times in reasons.items() if of == name)
+
+
+@pytest.mark.parametrize("accuracy", ACCURACIES)
 def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     given = columns(rows("ordinary", 100) + rows("near_critical", 100))
     whole = solve_arrays(**given, accuracy=accuracy)
@@ -285,17 +435,19 @@ def test_single_numbers_keep_no_columns() -> None:
 
 
 def test_what_leaves_the_doubles_is_infinite() -> None:
-    """e^{μφ} is within them and l e^{μφ} is not, by a thorough pair and by one scene."""
+    """e^{μφ} is within them and l e^{μφ} is not, in an expansion of two doubles and in one scene."""
     mu, names = 690 / np.pi, ["least_heavier_mass", "least_pulley_mass"]
-    for m1 in (2.0**100, 2.0**-100):
-        results = solve_arrays([m1] * 9, 2 * m1, 1.0, mu, quantities=names)
+    for m1 in (*(2.0**power for power in range(26, 32)), 2.0**100, 2.0**-100):
+        given: dict[str, Any] = {"m1": [m1] * 40, "m2": 2 * m1, "M": 1.0, "mu": mu, "quantities": names}
         one = solve_any(m1=m1, m2=2 * m1, M=1.0, mu=mu)
-        for name in names:
-            np.testing.assert_array_max_ulp(results[name], np.full(9, float(getattr(one, name))), 4)
+        for accuracy, ulps in (("certified", 4), ("exact", 0)):
+            results = solve_arrays(**given, accuracy=accuracy)  # type: ignore[arg-type]
+            for name in names:
+                np.testing.assert_array_max_ulp(results[name], np.full(40, float(getattr(one, name))), ulps)
 
 
-def test_rows_that_go_up_are_solved_wherever_they_wait(monkeypatch: pytest.MonkeyPatch) -> None:
-    """With those of their block, where they are many, or of all blocks; and some go up twice."""
+def test_rows_of_the_next_level_are_solved_wherever_they_wait(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Many are solved with their block, few with those of all blocks; and some need two more levels."""
     given = columns(rows("ordinary", 200) + rows("near_critical", 800))
     exact = solve_arrays(**given, accuracy="exact")
     monkeypatch.setattr(arrays, "BLOCK", 100)
@@ -323,6 +475,19 @@ def test_ties_are_settled_in_columns(monkeypatch: pytest.MonkeyPatch) -> None:
             assert name not in results or results[name][i] == getattr(one, name)
     exact = [Fraction(float(g)) * Fraction(3, 2) * Fraction(float(m)) for g, m in zip(odd, m1, strict=True)]
     assert sum(Fraction(float(t)) != e for t, e in zip(results["tension_1"], exact, strict=True)) > 20
+
+
+def test_what_is_beside_a_tie_is_rounded_to_its_own_side() -> None:
+    """With a tiny M the tension is 3 g/2 but for 2^-112 of it; and a tie below 2^n has nearer neighbours."""
+    odd = 9.80665 + 2.0**-49 * np.arange(100)
+    below_8 = np.full(100, float((2**54 - 1) // 3) * 2.0**-50)
+    for g, M in ((odd, 2.0**-110), (odd, 2.0**-90), (below_8, 0.0)):
+        given: dict[str, Any] = {"m1": 1.0, "m2": 3.0, "M": M, "g": g}
+        results = solve_arrays(**given, accuracy="exact")
+        for i in range(100):
+            one = solve_any(**given | {"g": float(g[i])})
+            for name in STANDARD[1:4]:
+                assert results[name][i] == getattr(one, name), (i, name)
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -377,6 +542,35 @@ def test_what_is_no_real_number_is_an_error_that_names_it(name: str, value: Any)
         solve_arrays(**{"m1": 1.0, "m2": 3.0, name: value})
     assert error.value.parameter == name
     assert error.value.rule.startswith(("must be real numbers, not ", "must be real numbers: "))
+
+
+LONG = np.longdouble(2) ** 3000  # infinite where a long double is a double
+BEYOND = [
+    *([LONG, 1 / LONG, np.array([1, LONG]), np.array([LONG], dtype=object)] if LONG < np.inf else []),
+    *([Decimal("1e400")], [1, Decimal("-1e-400")], [Fraction(1, 10**400)], Decimal("2e-324")),
+    *(["3", "1e400"], "1e-400", [b"1e400"], "1.7976931348623159e308"),
+]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("value", BEYOND, ids=repr)
+def test_what_is_beyond_the_doubles_is_neither_0_nor_infinite(value: Any) -> None:
+    """M = inf would lock the pulley, and M = 0 take it away."""
+    with pytest.raises(SceneError, match=r"^M .* is beyond the range of doubles$"):
+        solve_arrays(1.0, 3.0, M=value)
+    masked = np.ma.array(np.atleast_1d(value), mask=True)
+    assert solve_arrays(1.0, 3.0, M=masked)["acceleration"][-1] == solve_arrays(1.0, 3.0)["acceleration"]
+
+
+@pytest.mark.parametrize(
+    "value", [0, -0.0, "0", b"-0", "0e500", Decimal(0), Fraction(0), np.longdouble(0)], ids=repr
+)
+def test_0_and_infinity_of_any_type_are_themselves(value: Any) -> None:
+    infinite: Any = [Decimal("inf"), "-inf", np.longdouble("inf")]
+    for same, double in ((value, 0.0), (infinite, np.array([inf, -inf, inf]))):
+        found, wanted = (solve_arrays(1.0, 3.0, M=M) for M in (same, double))
+        np.testing.assert_array_equal(found["status"], wanted["status"])
+        np.testing.assert_array_equal(found["acceleration"], wanted["acceleration"])
 
 
 @pytest.mark.parametrize("name", ["g", "inertia", "wrap"])
@@ -458,6 +652,7 @@ def test_temporaries_are_bounded() -> None:
     [
         ({"accuracy": "best"}, "accuracy 'best' must be one of fast, certified, exact"),
         ({"quantities": ["tension"]}, "quantities 'tension' is no quantity; did you mean tension_2?"),
+        ({"quantities": [["torque"]]}, r"quantities .*torque.* is no quantity.*"),
     ],
 )
 def test_errors(arguments: dict[str, Any], message: str) -> None:
@@ -488,6 +683,13 @@ def test_a_mass_that_is_missing() -> None:
             solve_arrays(*masses)
 
 
+def test_an_error_shows_text_as_it_was_given() -> None:
+    """Was np.str_('hoop')."""
+    with pytest.raises(SceneError, match=r"^inertia must be real numbers: .*: 'hoop'$"):
+        solve_arrays(1.0, 3.0, M=2.0, inertia=[np.str_("hoop")])
+
+
 def test_shapes_that_do_not_broadcast() -> None:
-    with pytest.raises(ValueError, match="broadcast"):
-        solve_arrays([1, 2, 3], [1, 2])
+    why = r"^M of shape \(2,\) does not broadcast with \(3,\), the shape of what comes before it$"
+    with pytest.raises(SceneError, match=why):
+        solve_arrays([1, 2, 3], 2, M=[1, 2])

@@ -214,7 +214,25 @@ def test_json_numbers_are_the_shortest_doubles_or_the_digits(atwood: Atwood) -> 
 def test_json_with_only_has_only_those(atwood: Atwood) -> None:
     ran = atwood(*PAPER, "--json", "--only", "mu_verge", "--only", "torque")
     assert json.loads(ran.out) == {"mu_verge": 0.3, "torque": None}
-    assert (ran.status, ran.err) == (0, "atwood: torque: give R, the pulley's radius.\n")
+    assert (ran.status, ran.err) == (1, "atwood: torque: give R, the pulley's radius.\n")
+
+
+@pytest.mark.parametrize(("digits", "g"), [((), 8.333333333333334), (("--digits", "4"), 8.333)])
+@pytest.mark.parametrize("command", [["solve"], ["contact", "--M", "1"], ["sweep", "--M", "1:2:2"]])
+def test_json_has_numbers_that_are_no_decimals_as_results(
+    atwood: Atwood, command: list[str], digits: tuple[str, ...], g: float
+) -> None:
+    """30 km/h/s is 25/3 m/s², and a torque of 1 kg km²/h² is 25/324 N m; a decimal is exact whatever --digits."""
+    more = [] if command == ["solve"] else ["--R", "1", "--axle", "1 kg km2/h2"]
+    given = ["--m1", "1.0000000000000000001", "--m2", "3", "--g", "30km/h/s"]
+    ran = atwood(*command, *given, *more, *digits, "--json")
+    assert '"m1": 1.0000000000000000001,\n' in ran.out
+    scene = json.loads(ran.out)["scene"]
+    assert scene["g"] == g
+    assert scene.get("axle", "") == "" or float(scene["axle"].removesuffix(" Nm")) == pytest.approx(
+        25 / 324, 1e-3
+    )
+    assert "/" not in str(scene.get("axle"))
 
 
 def test_json_never_says_infinity(atwood: Atwood) -> None:
@@ -345,9 +363,15 @@ def test_a_table_without_rows_is_no_table(atwood: Atwood) -> None:
         ),
         (
             "solve --m1 1 --m2 2 --radus 3",
-            "No such option: --radus (Possible options: --a, --radius, --wrap); atwood solve -h shows how",
+            "No such option: --radus. Did you mean --radius?; atwood solve -h shows how",
         ),
         ("solve --zzz", "No such option: --zzz; atwood solve -h shows how"),
+        ("solve --bogus 1", "No such option: --bogus; atwood solve -h shows how"),
+        ("solve --Digit 1", "No such option: --Digit. Did you mean --digits?; atwood solve -h shows how"),
+        (
+            "solve --m1 1 --m2 3 --wrap 3.14 --mu x",
+            "--mu 'x' is not a number; write it like 2, 0.5 or 1.5e-3",
+        ),
         ("solve --m1", "Option '--m1' requires an argument"),
         ("solve --m1 1 --m2 3 --M --mu 0.3", "--M lacks its value: what follows is the option --mu"),
         ("solve --m1 1 --m2 3 --M --mu=0.3", "--M lacks its value: what follows is the option --mu=0.3"),
@@ -382,7 +406,7 @@ def test_an_angle_that_looks_like_radians_is_remarked_on(atwood: Atwood, wrap: s
     for words in (["solve", "--only", "mu_verge"], ["contact", "--csv"], ["sweep", "--g", "1:2:2", "--csv"]):
         ran = atwood(*words, "--m1", "1", "--m2", "3", "--M", "10", "--wrap", wrap)
         assert ran.status == 0
-        assert ran.err.startswith(
+        assert ran.err.endswith(
             f"atwood: --wrap {wrap} was taken for degrees; if it is in radians, write rad behind it, as 3.14rad\n"
         )
 
@@ -428,6 +452,44 @@ def test_no_name_that_is_typed_steers_the_terminal(atwood: Atwood, words: str, s
     assert "\x1b" not in ran.err
     assert ran.err.count("\n") == 1
     assert r"\x1b]0;owned\x07" in ran.err
+
+
+LONG = [
+    "a" * 100_000,
+    "1 kg" + "*st^9" * 20_000,
+    "1" * 100_000,
+    "1," * 50_000 + "1",
+    "x " * 50_000,
+    "-" * 100_000,
+]
+
+
+@pytest.mark.parametrize("long", LONG, ids=lambda word: word[:8])
+def test_no_message_repeats_all_that_was_typed(atwood: Atwood, long: str) -> None:
+    """Nor does it take long: an unknown unit of 100 kB took a minute."""
+    scene = ["--m1", "1", "--m2", "3"]
+    for words in (
+        *(
+            [command, *scene, name, long]
+            for command in ("solve", "contact")
+            for name in ("--M", "--wrap", "--I")
+        ),
+        *(["sweep", *scene, "--M", word] for word in (f"{long}:2:3", f"1:2:{long}", f"1:2:3:{long}")),
+        *(["sweep", *scene, "--M", "1:2:3", name, long] for name in ("--only", "--plot", "-o", "--digits")),
+        *([*words, long] for words in ([], ["solve"], ["solve", *scene], ["solve", *scene, "--M", "1"])),
+        *(["solve", *scene, word] for word in (f"--{long}", f"--json={long}", f"-{long}=1")),
+        *(["solve", *scene, "--M", f"--mu={long}"], ["solve", *scene, *["x"] * 20_000]),
+        *(["contact", *scene, name, long] for name in ("--figure", "--profile", "--elements")),
+        *([command, long] for command in ("batch", "fit")),
+        *(["batch", "-", name, long] for name in ("--from", "--to", "--only", "--accuracy")),
+        *(["fit", "-", name, long] for name in ("--find", "--only", "--drop")),
+        ["tradeoff", "--family", long],
+    ):
+        ran = atwood(*words)
+        assert ran.status in (1, 2)
+        assert ran.out == ""
+        assert ran.err.count("\n") == 1
+        assert len(ran.err) < 700, words[:5]
 
 
 # How it begins and ends
@@ -486,6 +548,29 @@ def test_help_where_stdout_is_not_unicode(command: str, encoding: str) -> None:
     ran = process(command, "-h", PYTHONIOENCODING=encoding)
     assert (ran.status, ran.err) == (0, "")
     assert "(kg m^2)" in ran.out
+
+
+ASKED = ["--only", "torque", "--only", "mu_verge"]
+
+
+@pytest.mark.parametrize("form", [[], ["--json"], ["--csv"]])
+def test_what_only_names_and_no_row_has_is_a_status_in_every_form(atwood: Atwood, form: list[str]) -> None:
+    """The README's rule, whose output is the same with a radius but for the torque."""
+    for command in (["solve", "--M", "1"], ["sweep", "--M", "1:2:2"]):
+        words = [*command, "--m1", "1", "--m2", "3", *form]
+        without, given = atwood(*words, *ASKED), atwood(*words, *ASKED, "--R", "1")
+        assert (without.status, given.status) == (1, 0)
+        assert without.out.strip()
+        assert "give R, the pulley's radius" in without.out + without.err
+        assert without.err.startswith("atwood: torque")
+        assert atwood(*words).status == 0  # which lacks it too, but nobody asked
+
+
+def test_what_only_names_and_one_row_has_is_there(atwood: Atwood) -> None:
+    words = ["--m1", "1", "--m2", "3", "--mu", "0.1:0.4:4", "--only", "critical_pulley_mass", "--csv"]
+    ran = atwood("sweep", *words)
+    assert ran.status == 0
+    assert ran.out.endswith("\n0.4,\n")
 
 
 @pytest.mark.parametrize(("words", "status"), [("--csv", 0), ("--m3 1", 2), ("--mu x", 2)])

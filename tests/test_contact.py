@@ -339,6 +339,45 @@ def test_elements_are_an_independent_march() -> None:
     assert ratio["tension_ratio"] == k
 
 
+@pytest.mark.parametrize(
+    ("mu", "wrap", "whole_turns"),
+    [
+        (0.3, 180, False),
+        (1e-9, 180, False),
+        (9.7e-5, 172, False),
+        (2.0, 1440, False),
+        (9.71688e-5, 720, True),
+    ],
+)
+@pytest.mark.parametrize("count", [10, 11, 100])
+def test_elements_lose_no_digits_where_tensions_are_nearly_equal(
+    mu: float, wrap: int, whole_turns: bool, count: int
+) -> None:
+    """Friction was 1.5e-10 off, from differences of tensions; k - 1 lost as much, and critical masses with it.
+
+    Over whole turns equal frictions cancel, and only what the tensions differ by is left: 10^-4 of each.
+    """
+    phi = wrap * pi / 180
+    if mu * np.tan(phi / count / 2) > 1 or phi / count >= pi:
+        pytest.skip("too few")
+    ratio, k1, x, y = march(mu, phi, count)
+    with mpmath.workdps(50):
+        step = mpmath.mpf(phi) / count
+        grip = mu * mpmath.tan(step / 2)
+        r = (1 + grip) / (1 - grip)
+        middles = [(j + mpmath.mpf(1) / 2) * step for j in range(count)]
+        frictions = [r**j * (r - 1) * mpmath.cos(step / 2) for j in range(count)]
+        force = mpmath.fsum(
+            f * mpmath.expj(m + mpmath.pi / 2) for f, m in zip(frictions, middles, strict=True)
+        )
+        near = count * 2**-52
+        assert ratio == pytest.approx(float(r**count), rel=near)
+        assert k1 == pytest.approx(float(r**count - 1), rel=near)
+        assert abs(complex(x, y) - complex(force)) < near * float(
+            sum(frictions) if whole_turns else abs(force)
+        )
+
+
 def test_ten_million_elements_lose_digits_to_rounding() -> None:
     answers = Answers(Scene.read({"m1": 1, "m2": 3, "mu": "0.3"}))
     (best, *_), (worn, *_) = rows_of(answers, 100_000), rows_of(answers, 10_000_000)
@@ -496,6 +535,14 @@ def test_elements_in_every_output(atwood: Atwood) -> None:
         ),
         ("--m1 1 --m2 3 --mu 0.3 --extrapolate", "--extrapolate needs --elements"),
         (
+            "--m1 1 --m2 1.2 --elements 1",
+            "--elements 1 are too few, as each must be below 180 degrees; take at least 2",
+        ),
+        (
+            "--m1 1 --m2 1e6 --M inf --elements 2",
+            "--elements 2 are too few for this mu_verge and wrap, which take at least 8",
+        ),
+        (
             "--m1 1 --m2 3 --mu 50 --elements 10",
             "--elements 10 are too few for this mu and wrap, which take at least 79",
         ),
@@ -587,6 +634,18 @@ def test_figures_of_every_kind(atwood: Atwood, tmp_path: Path, suffix: str, word
     assert atwood("contact", *words, "--figure", str(file)).status == 0
     starts = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
     assert file.read_bytes().startswith(starts[suffix])
+
+
+@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
+def test_a_figure_has_no_date(atwood: Atwood, tmp_path: Path, suffix: str) -> None:
+    """matplotlib dates a PDF, and takes what SOURCE_DATE_EPOCH says for a number."""
+    pytest.importorskip("matplotlib")
+    files = [tmp_path / f"{date}.{suffix}" for date in ("abc", "0")]
+    for file in files:
+        ran = process("contact", *FIGURE, "--figure", str(file), SOURCE_DATE_EPOCH=file.stem)
+        assert (ran.status, ran.err) == (0, "")
+    assert files[0].read_bytes() == files[1].read_bytes()
+    assert b"CreationDate" not in files[0].read_bytes()
 
 
 def drawn(atwood: Atwood, monkeypatch: pytest.MonkeyPatch, file: Path, words: str) -> Any:

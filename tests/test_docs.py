@@ -6,6 +6,7 @@ import runpy
 import subprocess
 import sys
 from collections import Counter
+from math import inf, nan
 from pathlib import Path
 
 import pytest
@@ -118,6 +119,27 @@ def test_examples_print_what_is_kept_beside_them(script: Path) -> None:
 def test_engines_print_what_is_kept_beside_them(script: Path) -> None:
     ran = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True)
     assert ran.stdout == script.with_suffix(".txt").read_text(encoding="utf-8")
+
+
+def test_engines_keep_rows_that_are_no_scenes() -> None:
+    import dask.array as da
+    import polars as pl
+
+    bad = [-1.0, nan, inf]
+    for script in ENGINES:
+        run = runpy.run_path(str(script))
+        if "by_regime" in run:
+            frame = pl.LazyFrame(
+                {"m1": [1.0, *bad, None, 1.0], "m2": 3.0, "M": 50.0, "mu": 0.3}, run["schema"]
+            )
+            found = run["by_regime"](frame).collect(engine="streaming")
+            assert {row["regime"]: row["len"] for row in found.to_dicts()} == {"slip": 2, None: 4}
+            assert None not in found.filter(pl.col("regime") == "slip")["acceleration"].to_list()
+        else:
+            M, mu = da.array([50.0, 10.0, -1.0]), da.array([0.3] * 3)
+            assert run["share_of_slip"](M, mu) == 0.5
+    with_rows = [path for path in (TOP / "examples").glob("*.py") if "solve_arrays" in path.read_text()]
+    assert sorted(with_rows) == ENGINES
 
 
 def test_the_picture_shows_todays_table() -> None:

@@ -34,6 +34,19 @@ def test_a_fault_is_found_and_can_be_had_again(
     assert fuzz.main(1, int(last.split(",")[0])) == 1
 
 
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="needs POSIX signals")
+def test_a_run_that_is_busy_for_long_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    def busy(*_: object) -> None:
+        while True:
+            pass
+
+    monkeypatch.setattr(cli, "run", busy)
+    monkeypatch.setattr(fuzz, "BUSY", 0.1)
+    run = next(run for run in range(99) if fuzz.Dice(run).random() >= 0.2)  # no call from Python
+    (fault,) = fuzz.faults([run])
+    assert "TimeoutError: it takes more than 0.1 s of processor time" in fault
+
+
 @pytest.mark.parametrize(
     ("status", "out", "err", "wrong"),
     [
@@ -45,6 +58,9 @@ def test_a_fault_is_found_and_can_be_had_again(
         (120, "", "", "status 120"),
         (0, "", "x.py:1: UserWarning: log\n", "on stderr: 'x.py:1: UserWarning: log'"),
         (2, "", "atwood: \x1b[31m\n", "an escape sequence on stderr: 'atwood: \\x1b[31m\\n'"),
+        (0, "a\x9bm\n", "", "'\\x9b' on stdout, which steers a terminal"),
+        (0, "a\u202eb\n", "", "'\\u202e' on stdout, which steers a terminal"),
+        (2, "", f"atwood: {'x' * 2000}\n", f"2008 characters in a line of stderr: 'atwood: {'x' * 90}"),
     ],
 )
 def test_what_a_promise_is(

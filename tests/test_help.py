@@ -12,9 +12,8 @@ import pytest
 import typer
 
 from atwood_cli import cli
-from atwood_cli.arrays import ACCURACIES
-from atwood_cli.batch.formats import FORMATS
-from atwood_cli.model.quantities import NAMES
+from atwood_cli.files import FORMATS
+from atwood_cli.model.quantities import ACCURACIES, NAMES
 from atwood_cli.model.scene import BODIES, INERTIA_FACTORS
 from atwood_cli.tradeoff.scenes import FAMILIES
 from examples.help import COMMANDS, pages

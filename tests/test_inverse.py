@@ -343,13 +343,13 @@ def test_a_fall_in_doubt_of_slipping() -> None:
         *(
             (
                 {"a": a, "m2": None, "M": "10"},
-                f"a {a!r} must be between -1.6344416666666666 (no m2 at all) and 9.80665 m/s² (m2 in free fall)",
+                f"a {a!r} must be between -1.63 (no m2 at all) and 9.80665 m/s² (m2 in free fall)",
             )
             for a in ("9.80665", "11", "-1.7")
         ),
         (
             {"a": "-9.9", "m1": None, "M": "10"},
-            "a '-9.9' must be between 3.67749375 (no m1 at all) and -9.80665 m/s² (m1 in free fall)",
+            "a '-9.9' must be between 3.67 (no m1 at all) and -9.80665 m/s² (m1 in free fall)",
         ),
         (
             {"a": "0", "m1": "0", "m2": None, "M": "10"},
@@ -358,7 +358,7 @@ def test_a_fall_in_doubt_of_slipping() -> None:
         *(
             (
                 {"a": a, "M": "inf"},
-                f"a {a!r} must be between 0 (a string that holds) and 4.903325 m/s² (no friction), as m2 is"
+                f"a {a!r} must be between 0 (a string that holds) and 4.90 m/s² (no friction), as m2 is"
                 " the heavier mass",
             )
             for a in ("0", "5", "-1")
@@ -394,19 +394,19 @@ def test_a_fall_in_doubt_of_slipping() -> None:
         *(
             (
                 {"a": a},
-                f"a {a!r} must be between 0 (a locked pulley: M = inf) and 4.903325 m/s² (a massless one),"
+                f"a {a!r} must be between 0 (a locked pulley: M = inf) and 4.90 m/s² (a massless one),"
                 " as m2 is the heavier mass",
             )
             for a in ("0", "-1", "4.9034", "5.00(3)")
         ),
         (
             {"a": "1", "m1": "3", "m2": "1"},
-            "a '1' must be between 0 (a locked pulley: M = inf) and -4.903325 m/s² (a massless one),"
+            "a '1' must be between 0 (a locked pulley: M = inf) and -4.90 m/s² (a massless one),"
             " as m1 is the heavier mass",
         ),
         (
             {"drop": "1", "time": "0.500(5)"},
-            "time '0.500(5)' implies a = 8 m/s², which must be between 0 (a locked pulley: M = inf) and 4.903325 m/s²"
+            "time '0.500(5)' implies a = 8 m/s², which must be between 0 (a locked pulley: M = inf) and 4.90 m/s²"
             " (a massless one), as m2 is the heavier mass",
         ),
         ({"a": "-1", "M": "1"}, "a '-1' must be above 0, as m2 is the heavier mass"),

@@ -1,8 +1,11 @@
 """The equations against what they come from: Newton's laws, exactly, and SymPy on the closed forms."""
 
 from collections.abc import Callable
+from doctest import DocTestFinder, DocTestRunner
 from fractions import Fraction
+from inspect import isfunction
 
+import pytest
 import sympy as sp
 from hypothesis import given
 from hypothesis import strategies as st
@@ -196,3 +199,12 @@ def test_equations_run_in_floats_too() -> None:
     functions: list[Callable[..., float]] = [physics.light_tension, physics.least_pulley_mass]
     assert functions[0](1.0, 3.0, 10.0) == 13.0
     assert functions[1](0.5, 0.5) == 2.0
+
+
+@pytest.mark.parametrize("name", [name for name, one in vars(physics).items() if isfunction(one)])
+def test_every_equation_has_an_example_that_holds(name: str) -> None:
+    [example] = DocTestFinder(recurse=False).find(getattr(physics, name), name, physics)
+    report: list[str] = []
+    DocTestRunner().run(example, out=report.append)
+    assert example.examples
+    assert not report, "".join(report)

@@ -54,9 +54,16 @@ def test_marks_out_of_place_are_found(text: str) -> None:
 
 @pytest.mark.parametrize(
     ("text", "line"),
-    [('a\n"x\n"",\n"b', 2), ('a,"b"\nc,"d""e', 2), ('"a"\n"b"c', 2), ('a\nb"c,"d"\n', 2), ('"a"",\n""b', 1)],
+    [
+        ('a\n"x\n"",\n"b', 2),
+        ('a,"b"\nc,"d""e', 2),
+        ('"a"\n"b"c', 2),
+        ('a\nb"c,"d"\n', 2),
+        ('"a"",\n""b', 1),
+        ('a\n"p\nq",r"\n', 2),
+    ],
 )
-def test_the_line_named_is_where_the_cell_begins(text: str, line: int) -> None:
+def test_the_line_named_is_where_the_row_begins(text: str, line: int) -> None:
     with pytest.raises(Unreadable, match=f"line {line}"):
         checked(text.encode(), ",", 1)
 

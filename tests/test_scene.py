@@ -58,7 +58,12 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
     *(({"m1": missing}, f"m1 {missing!r} is empty; give a value, or leave it out") for missing in ("", " ")),
     ({"m1": "1,000"}, "m1 '1,000' is not a number; write 1000 or 1.000, whichever is meant"),
     ({"m1": "1,000g"}, "m1 '1,000g' is not a number; write 1000g or 1.000g, whichever is meant"),
+    *(
+        ({"wrap": several}, f"wrap {several!r} {NOT_A_NUMBER}")
+        for several in ("180,270,450", "1,000,000", "180,270.5,450")
+    ),
     ({"m1": "1,000.5"}, "m1 '1,000.5' is not a number; write 1000.5, without commas"),
+    ({"m1": np.str_("1,5")}, "m1 '1,5' is not a number; write it with a decimal point, 1.5"),
     ({"m1": "1,5"}, "m1 '1,5' is not a number; write it with a decimal point, 1.5"),
     ({"m1": "१"}, f"m1 '१' {NOT_A_NUMBER}"),
     ({"m1": "１"}, f"m1 '１' {NOT_A_NUMBER}"),
@@ -72,6 +77,27 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
     (
         {"m1": Decimal("1e9999999")},
         "m1 Decimal('1E+9999999') is too long; numerator and denominator may have 1500 digits",
+    ),
+    (
+        {"m1": "4" * 1000 + "lb"},
+        f"m1 '{'4' * 39}...{'4' * 7}lb' has {len(str(int('4' * 1000) * 45359237))} digits, its unit included;"
+        " at most 1000 are taken",
+    ),
+    ({"m1": "1e500t"}, "m1 '1e500t' has an exponent beyond 500 in magnitude, its unit included"),
+    ({"m1": "1e-500g"}, "m1 '1e-500g' has an exponent beyond 500 in magnitude, its unit included"),
+    (
+        {"m1": f"1 kg{' t^9/ug^9' * 5}"},  # 1e540
+        "m1 '1 kg t^9/ug^9 t^9/ug^9 t^9/ug^9 t^9/ug^9 t^9/ug^9' has an exponent beyond 500 in magnitude,"
+        " its unit included",
+    ),
+    (
+        {"m1": f"1 kg{'*st^9' * 20_000}"},
+        "m1 '1 kg*st^9*st^9*st^9*st^9*st^9*st^9*st^9...st^9*st^9' has a unit of 100002 characters;"
+        " at most 60 are taken",
+    ),
+    (
+        {"mu": "1" + "g" * 200},
+        f"mu '1{'g' * 38}...{'g' * 9}' must be a plain number, without the '{'g' * 39}...{'g' * 9}'",
     ),
     ({"m1": True}, "m1 True must be text or a number (str, int, float, Decimal, Fraction)"),
     ({"m1": b"1"}, "m1 b'1' must be text or a number (str, int, float, Decimal, Fraction)"),
@@ -92,11 +118,20 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
     ({"m1": "5cm"}, f"m1 '5cm' has a unit of length; it takes one of mass ({MASSES})"),
     ({"wrap": "5cm"}, "wrap '5cm' has a unit of length; it takes one of angle (deg, °, turn, rad)"),
     ({"wrap": "2 tuns"}, "wrap '2 tuns' has the unknown unit 'tuns'; did you mean turn?"),
+    (
+        {"wrap": "3rad m/m"},
+        "wrap '3rad m/m' has a unit of several parts; it takes one of angle (deg, °, turn, rad)",
+    ),
     ({"wrap": "0rad"}, "wrap '0rad' must be above 0, and finite"),
     ({"R": "5kg"}, f"R '5kg' has a unit of mass; it takes one of length ({LENGTHS})"),
     ({"mu": "0.3kg"}, "mu '0.3kg' must be a plain number, without the 'kg'"),
     ({"g": "moo"}, f"g 'moo' {NOT_A_NUMBER}, or one of {BODY_NAMES}; did you mean moon?"),
     ({"inertia": "disc"}, f"inertia 'disc' {NOT_A_NUMBER}, or one of disk, hoop; did you mean disk?"),
+    (
+        {"mu": "0." + "3" * 500, "mu_k": "0." + "3" * 500 + "1"},
+        f"mu_k '0.{'3' * 37}...{'3' * 8}1' must not be above mu; exactly,"
+        f" 0.{'3' * 38}...{'3' * 9}1 > 0.{'3' * 38}...{'3' * 10}",
+    ),
     ({"mu_k": "0.1"}, "mu_k '0.1' needs mu, the coefficient that decides whether it slips"),
     ({"mu": "0.1", "mu_k": "0.2"}, "mu_k '0.2' must not be above mu; exactly, 0.2 > 0.1"),
     (
@@ -154,6 +189,9 @@ def test_the_grammar_of_numbers(text: str) -> None:
         ("1e+2", 100),
         ("-0", 0),
         ("1e500", 10**500),
+        ("1e497t", 10**500),
+        ("4" * 1000 + "g", Fraction(int("4" * 1000), 1000)),
+        ("4" * 992 + "lb", Fraction(int("4" * 992) * 45359237, 10**8)),
         ("1e0000000000000003", 1000),
         ("9" * 1000, int("9" * 1000)),
         ("250g", "1/4"),
@@ -236,6 +274,37 @@ def test_numbers_mean_exactly_themselves(number: Any) -> None:
         else number
     )
     assert Scene.read({"m1": number, "m2": 1}).m1 == Fraction(exact)
+
+
+@pytest.mark.parametrize("text", ["0.1", "1e4000", "1e-4000", "-inf", "nan"])
+def test_a_long_double_is_exact_or_an_error(text: str) -> None:
+    """1e4000 was infinite and 1e-4000 was 0, where the platform has them."""
+    number: Any = np.longdouble(text)
+    exact = Fraction(*number.as_integer_ratio()) if np.isfinite(number) else None
+    if exact is None or max(exact.numerator, exact.denominator) >= 10**1500:
+        with pytest.raises(SceneError, match=r"^m1 np\.longdouble\('.*'\) (is too long; |must be 0 or more)"):
+            Scene.read({"m1": number, "m2": 1})
+    else:
+        assert Scene.read({"m1": number, "m2": 1}).m1 == exact
+
+
+class Contrary(float):
+    """A float that cannot be compared, as units of other packages cannot."""
+
+    def __eq__(self, other: object) -> bool:
+        raise RuntimeError
+
+    __hash__ = float.__hash__
+    __ne__ = __lt__ = __gt__ = __eq__
+
+
+@pytest.mark.parametrize("name", ["m1", "M", "g", "inertia", "wrap"])
+def test_a_float_that_cannot_be_compared_is_its_number(name: str) -> None:
+    contrary, usual = (Scene.read({"m1": 1, "m2": 3, name: one}) for one in (Contrary(2.5), 2.5))
+    assert contrary == usual
+    assert solve(m1=1, m2=3, M=Contrary(inf)).scene.M == inf
+    with pytest.raises(SceneError):
+        solve(m1=1, m2=Contrary(nan))
 
 
 def test_units_are_consistent() -> None:

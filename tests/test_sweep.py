@@ -494,9 +494,28 @@ def test_a_file_gets_what_stdout_would(
     words = [*HELD, "--M", "1:2:3", "--only", "tension_1", "--only", "torque"]
     expected = atwood(*words, *printed_by.split())
     ran = atwood(*words, *options.split(), "-o", str(tmp_path / name))
-    assert (ran.status, ran.out, ran.err) == (0, "", expected.err)
+    assert (ran.status, ran.out, ran.err) == (1, "", expected.err)  # as there is no torque
     assert (tmp_path / name).read_bytes().decode() == expected.out
     assert list(tmp_path.iterdir()) == [tmp_path / name]
+
+
+@pytest.mark.parametrize(
+    ("ends", "points"), [("2:log", "8.33333 11.1111"), ("4", "8.33333 9.25926 10.1852 11.1111")]
+)
+def test_ends_that_are_no_decimals_are_rounded_as_other_points_are(
+    atwood: Atwood, ends: str, points: str
+) -> None:
+    """30 km/h/s is 25/3 m/s²."""
+    ends = f"30km/h/s:40km/h/s:{ends}"
+    ran = atwood("sweep", "--m1", "1", "--m2", "3", "--g", ends, "--only", "tension_1", "--csv")
+    assert [line.split(",")[0] for line in ran.out.splitlines()[1:]] == points.split()
+    for line in ran.out.splitlines()[1:]:
+        g, tension = line.split(",")
+        assert float(tension) == solve(m1=1, m2=3, g=g).tension_1
+    rows = json.loads(atwood("sweep", "--m1", "1", "--m2", "3", "--g", ends, "--digits", "9", "--json").out)[
+        "rows"
+    ]
+    assert [rows[0]["g"], rows[-1]["g"]] == [8.33333333, 11.1111111]
 
 
 def test_the_table_in_a_file_is_whole_and_uncoloured(tmp_path: Path) -> None:

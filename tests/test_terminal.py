@@ -125,6 +125,59 @@ def test_a_dumb_terminal_cuts_no_number_off() -> None:
     assert max(map(len, re.findall(r"\w[^│\n]+\.$", seen, re.MULTILINE))) <= 40
 
 
+HOSTILE = "\x1b[31mRED\x1b]0;owned\x07 \x9b2J\x9d \u202eesrever\u2066 \x08"
+"""What would colour, name, clear or reverse a terminal: C0 and C1 controls, and overrides of the direction."""
+STEERS = re.compile("[\0-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069]")
+RUNS = f"m1,m2,a,[/b] l {HOSTILE}\n1,3,3,x\n1,2,2.1,{HOSTILE}\r2\n1,4,4.4,[/b][link=http://a.b]z :smile:\n"
+SCENES = f"m1,m2,l {HOSTILE}\n1,3,{HOSTILE}\r2\n1,x{HOSTILE},z\n"
+
+
+@pytest.mark.parametrize(
+    ("typed", "content"),
+    [
+        *(
+            (f"fit {{file}}.csv{form}", RUNS)
+            for form in ("", " --csv", " --json", " --explain", " --label x")
+        ),
+        *((f"batch {{file}}.csv --to {kind}", SCENES) for kind in ("csv", "tsv", "ndjson", "parquet")),
+        ("batch {file}.csv -o {file}.tsv --force", SCENES),
+        ("batch {file}.csv", SCENES.replace(",l ", ",M ")),
+        ("batch {file}.ndjson", '{"m1": 1, "m2": 3, "\x9b2J": "\u202e\x9d"}\n'),
+        ("batch {file}.ndjson --to ndjson", '{"m1": 1, "m2": 3, "\x9b2J": "\u202e\x9d"}\n'),
+        ("batch {file}.none", SCENES),
+        ("fit {file}.none", "m1"),
+    ],
+)
+def test_nothing_of_a_file_steers_the_terminal(tmp_path: Path, typed: str, content: str) -> None:
+    file = tmp_path / "\x1b[31m\x9b2J\u202e"
+    words = [word.format(file=file) for word in typed.split()]
+    suffix = next(word.rpartition(".")[2] for word in words if "." in word)
+    Path(f"{file}.{suffix}").write_text(content, newline="", encoding="utf-8")
+    seen = plain(on_terminal(*words, columns=100, TERM="dumb"))
+    assert seen.strip()
+    assert not STEERS.findall(seen.replace("\r\n", "\n"))
+    assert "Traceback" not in seen
+
+
+@pytest.mark.parametrize("typed", ["--{}", "{}", "--M {}", "--wrap {}", "--only {}", "--M 1 {}"])
+@pytest.mark.parametrize("command", ["solve", "sweep --M 1:2:3", "contact --M 1", "tradeoff", "fit", "batch"])
+def test_nothing_typed_steers_the_terminal(command: str, typed: str) -> None:
+    hostile = "\x1b[31m\x1b]0;a\x07\x9b2J\u202ex"
+    seen = on_terminal(*command.split(), *typed.format(hostile).split(), columns=100, TERM="dumb")
+    assert seen.startswith("atwood: ")
+    assert not STEERS.findall(seen.replace("\r\n", "\n"))
+
+
+def test_in_a_pipe_or_a_file_a_table_keeps_its_bytes(tmp_path: Path) -> None:
+    for command, content in (("fit", RUNS), ("batch", SCENES)):
+        (tmp_path / "in.csv").write_text(content, newline="", encoding="utf-8")
+        for given in ({}, {"PYTHONIOENCODING": "ascii"}):
+            csv = "--csv" if command == "fit" else "--allow-errors"
+            ran = process(command, str(tmp_path / "in.csv"), csv, **given)
+            assert ran.status == 0
+            assert ran.out.count(HOSTILE) >= 2
+
+
 # How it ends
 
 
@@ -143,10 +196,17 @@ def test_a_reader_that_leaves_is_no_error(command: str, table: str) -> None:
 
 
 @pytest.mark.parametrize("command", OUTPUTS)
-def test_a_closed_stdout_is_quiet(command: str, table: str) -> None:
+def test_a_closed_stdout_is_an_error(command: str, table: str) -> None:
     ran = process(shell=f"atwood {' '.join(words(command, table))} >&-")
-    assert (ran.status, ran.out) == (0, "")
-    assert ran.err == "" or command == "batch"  # which says what became of the rows
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err == "atwood: cannot write the output: stdout is closed\n"
+
+
+def test_a_closed_stdout_is_none_where_nothing_goes_there(tmp_path: Path, table: str) -> None:
+    for typed in (f"sweep {SCENE} --M 1:2:2 --mu 0.3 --csv", f"batch {table}"):
+        ran = process(shell=f"atwood {typed} -o {tmp_path}/{typed[:5]}.csv >&-")
+        assert (ran.status, "cannot" in ran.err) == (0, False)
+        assert (tmp_path / f"{typed[:5]}.csv").read_text().count("\n") == 3
 
 
 BUFFERED = pytest.mark.parametrize("unbuffered", ["", "1"])

@@ -248,6 +248,21 @@ def test_an_interruption_makes_no_run_too_short(
     assert 0.5 <= 1e-6 * _size(setting, [{}] * 1000) / tradeoff.RUN_SECONDS <= 1.5
 
 
+@pytest.mark.parametrize("seconds", [1e-7, 1e-6, 1e-5, 1e-3, 0.02, 1.0])
+def test_rows_that_take_long_are_few(seconds: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A table of 10,000 rows of 20 ms each was run eight times: half an hour."""
+    clock = [0.0]
+
+    def run(size: int) -> None:
+        clock[0] += size * seconds
+
+    monkeypatch.setattr(tradeoff, "perf_counter", lambda: clock[0])
+    size = _size(Setting("slow", lambda _, size: size, run, lambda *_: []), [{}])
+    assert size >= tradeoff.TABLE or size * seconds >= tradeoff.LONG_SECONDS
+    assert size * seconds < 16 * tradeoff.LONG_SECONDS or size == tradeoff.SAMPLE
+    assert clock[0] < 5 * max(size * seconds, tradeoff.LONG_SECONDS)
+
+
 def test_the_best_are_those_that_none_beats() -> None:
     one = Measured("any", "one", 2.0, 0, 2.0, 2.0, 0, 0.0)
     assert not tradeoff._beats(one, one)
@@ -528,8 +543,8 @@ def screen(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) 
     for name, value in (("FORCE_COLOR", "1"), ("TERM", "xterm"), ("COLUMNS", "80"), ("LINES", "24")):
         monkeypatch.setenv(name, value)
 
-    def lines(shown: Tradeoff, plot: bool = False, everything: bool = False) -> list[str]:
-        command._forms(shown, plot, everything).page()
+    def lines(shown: Tradeoff, everything: bool = False) -> list[str]:
+        command._forms(shown, everything).page()
         return [line.rstrip() for line in plain(capsys.readouterr().out).splitlines()]
 
     return lines
@@ -557,10 +572,9 @@ def test_words_stand_by_their_own_points(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.parametrize("name", OUTCOMES)
-@pytest.mark.parametrize("plot", [False, True])
-def test_the_answer_is_on_one_screen(name: str, plot: bool, screen: Any) -> None:
+def test_the_answer_is_on_one_screen(name: str, screen: Any) -> None:
     """24 lines of 80 columns, one of them for the prompt."""
-    shown = screen(OUTCOMES[name], plot)
+    shown = screen(OUTCOMES[name])
     assert len(shown) <= 23
     assert max(map(len, shown)) <= 80
     assert OUTCOMES[name].advice in " ".join(shown)
@@ -733,30 +747,6 @@ def test_where_no_elements_can_be(given: str, note: str, atwood: Atwood) -> None
     assert note in " ".join(atwood("tradeoff", *given.split()).out.split())
 
 
-def test_the_plot(atwood: Atwood, brief: list[str]) -> None:
-    ran = atwood(*brief, "--plot", "--all", "--family", "near-critical")
-    assert ran.status == 0
-    assert ran.out.startswith("near-critical\n worst error (ulp)\n")
-    scatter = ran.out[: ran.out.index("time (s)")]
-    for letter in "abcdef":
-        assert letter in scatter.split("(ulp)")[1]
-    letters = "a paper, float32, b paper, float64, c fast, d certified, e exact, f 17 digits, g 50 digits, h 200 digits"
-    assert letters in in_one_line(ran.out)
-    assert "a elements, b extrapolated; along the lines 4 to 1,000 of them.\n" in ran.out
-    assert "relative error of e^(μφ)\n" in ran.out
-    assert re.search(r" 1e\d+ ┤", scatter)  # no zeros to count
-
-
-def test_letters_stand_side_by_side(screen: Any) -> None:
-    """Those over each other were lost."""
-    shown = screen(OUTCOMES["all alike"], plot=True)
-    drawn = "".join(line[9:] for line in shown[3:15])
-    assert sorted(drawn.replace(" ", "")) == list("abcdefgh")
-    assert any("gh" in line.replace(" ", "") or "hg" in line for line in shown)
-    assert shown[0].startswith("scene: m1 = 1 kg, ")
-    assert screen(OUTCOMES["all families"], plot=True)[0] == "Times of ordinary, errors of all families"
-
-
 def test_the_figure(atwood: Atwood, brief: list[str], tmp_path: Path) -> None:
     file = tmp_path / "errors.svg"
     assert atwood(*brief, "--figure", str(file)).status == 0
@@ -808,11 +798,8 @@ def test_nothing_in_a_figure_overlaps(name: str, tmp_path: Path, monkeypatch: py
 def test_elements_without_an_error_have_no_place_on_a_logarithmic_axis(
     atwood: Atwood, tmp_path: Path, more: str
 ) -> None:
-    """Zeros there were a traceback in plots, and warnings about figures."""
+    """Zeros there were warnings about figures."""
     words = ["tradeoff", "--m1", "1", "--m2", "3", *more.split()]
-    plot = atwood(*words, "--plot")
-    assert (plot.status, plot.err) == (0, "")
-    assert "String elements\n" not in plot.out
     figure = atwood(*words, "--figure", str(tmp_path / "a.svg"))
     assert (figure.status, figure.err) == (0, "")
     assert "relative error of" not in (tmp_path / "a.svg").read_text(encoding="utf-8")
@@ -845,8 +832,6 @@ def test_elements_without_an_error_have_no_place_on_a_logarithmic_axis(
             "--m1 1 --m2 3 --I 2 --R 1",
             "--I is not measured, as arrays have no such column; give --inertia",
         ),
-        ("--plot --json", "--plot draws text, not JSON; leave one of them out"),
-        ("--plot --csv", "--plot draws text, not CSV; leave one of them out"),
         ("--figure x.gif", "--figure 'x.gif' must end in one of .svg, .png, .pdf"),
         ("--json --csv", "--json and --csv exclude each other; give one of them"),
     ],

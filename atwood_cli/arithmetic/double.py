@@ -1,4 +1,4 @@
-"""The arithmetic of doubles, as formulas of columns, a row a scene; and what all formulas of columns use."""
+"""The arithmetic of plain doubles, as formulas of columns; and the operations that all such formulas use."""
 
 from __future__ import annotations
 
@@ -10,25 +10,25 @@ from typing import Any
 
 import numpy as np
 
-from .symbolic import Formula, Formulas, Part, formula
+from .symbolic import Formula, Formulas, Term, formula
 from .tables import precise_cos_sin
 
 
-class Unvouched(ArithmeticError):
-    """This arithmetic has no bound for the operation: take a more accurate one."""
+class Uncertified(ArithmeticError):
+    """This arithmetic cannot certify the result in any row: take a more accurate one."""
 
 
-def maximum(x: Part, y: Part) -> Any:
+def maximum(x: Term, y: Term) -> Any:
     """The larger of the two."""
     return Formula("maximum", formula(x), formula(y))
 
 
-def minimum(x: Part, y: Part) -> Any:
+def minimum(x: Term, y: Term) -> Any:
     """The smaller of the two."""
     return Formula("minimum", formula(x), formula(y))
 
 
-def absolute(x: Part) -> Any:
+def absolute(x: Term) -> Any:
     """The size of x."""
     return Formula("abs", x) if isinstance(x, Formula) else abs(x)
 
@@ -41,17 +41,17 @@ def with_all(*many: Conditions) -> Conditions:
     return tuple({id(one): one for some in many for one in some}.values())
 
 
-def at_most(x: Part, y: Part) -> Formula:
-    """Whether x <= y; not where either is no number."""
+def at_most(x: Term, y: Term) -> Formula:
+    """Whether x <= y; false where either is NaN."""
     return Formula("<=", formula(x), formula(y))
 
 
-def less(x: Part, y: Part) -> Formula:
+def less(x: Term, y: Term) -> Formula:
     """Whether x < y."""
     return Formula("<", formula(x), formula(y))
 
 
-def equal(x: Part, y: Part) -> Formula:
+def equal(x: Term, y: Term) -> Formula:
     """Whether x = y."""
     return Formula("==", formula(x), formula(y))
 
@@ -66,28 +66,28 @@ def either(*conditions: Formula) -> Formula:
     return reduce(lambda x, y: Formula("or", x, y), conditions)
 
 
-def is_finite(x: Part) -> Formula:
-    """Whether x is a number."""
+def is_finite(x: Term) -> Formula:
+    """Whether x is neither infinite nor NaN."""
     return Formula("finite", formula(x))
 
 
-def joined(x: Part | None, y: Part | None) -> Any:
+def joined(x: Term | None, y: Term | None) -> Any:
     """The sum of two columns, either of which may be None."""
     return y if x is None else x if y is None else x + y
 
 
-def where(condition: Formula, x: Part, y: Part) -> Formula:
+def where(condition: Formula, x: Term, y: Term) -> Formula:
     """x where the condition holds, else y."""
     return Formula("where", condition, formula(x), formula(y))
 
 
 def looked_up(table: Any, index: Formula) -> Formula:
-    """The entries of a table of doubles at a column of indices; beyond its ends, those at its ends."""
+    """The entries of a table of doubles at a column of indices; beyond an end, the entry at that end."""
     return Formula("take", index, table)
 
 
 class Doubles(Formulas):
-    """Doubles, as they come."""
+    """Plain double arithmetic, without bounds."""
 
     pi = formula(pi)
 
@@ -98,7 +98,7 @@ class Doubles(Formulas):
         return bool(x.op == "number" and x.parts[0] == 0)
 
     def hypot(self, x: Formula, y: Formula | int) -> Formula:
-        """NumPy's own, which minds overflow, takes ten times as long."""
+        """√(x² + y²). NumPy's own function, which avoids overflow, takes ten times as long."""
         return self.sqrt(x * x + y * y)
 
     def cos_sin_of_degrees(self, x: Any) -> tuple[Formula, Formula]:
@@ -122,9 +122,9 @@ DOUBLES = Doubles()
 
 
 def fold(degrees: Formula) -> tuple[Formula, Callable[..., tuple[Any, Any]]]:
-    """The angle less its quarter turns, exactly, and what they do to its cosine and sine.
+    """The angle less its quarter turns, exactly, and the function that puts these into its cosine and sine.
 
-    That is to exchange them, and to turn their signs round where they are ``signed``.
+    The function exchanges the two after an odd number of quarter turns, and sets their signs if ``signed``.
     """
     degrees = Formula("fmod", degrees, formula(360.0))
     quarters = Formula("rint", degrees / 90)
@@ -132,7 +132,7 @@ def fold(degrees: Formula) -> tuple[Formula, Callable[..., tuple[Any, Any]]]:
     odd = Formula("==", Formula("bits", which, 1), formula(1.0))
     signs = [looked_up(table, Formula("bits", which, 3)) for table in SIGNS]
 
-    def turn(cos: Part, sin: Part, signed: bool = True) -> tuple[Any, Any]:
+    def turn(cos: Term, sin: Term, signed: bool = True) -> tuple[Any, Any]:
         x, y = where(odd, sin, cos), where(odd, cos, sin)
         return (x * signs[0], y * signs[1]) if signed else (x, y)
 
@@ -140,4 +140,4 @@ def fold(degrees: Formula) -> tuple[Formula, Callable[..., tuple[Any, Any]]]:
 
 
 SIGNS = np.array([1.0, -1.0, -1.0, 1.0]), np.array([1.0, 1.0, -1.0, -1.0])
-"""Of cosine and sine, by the number of quarter turns."""
+"""The signs of cosine and sine, by the number of quarter turns."""

@@ -1,19 +1,18 @@
-"""Double-doubles, pairs of doubles that know their error, for the least cost that four digits more allow.
+"""Double-doubles: pairs of doubles with a proven error bound, at the least cost for about four more digits.
 
-A `Pair` stands for high + low, about twice the digits of a double, with a proven bound on its relative
-error, the same in all rows, but for those in which terms cancelled: it is vouched for where certain
-conditions hold. Two arithmetics compute with pairs and differ in cost and in loss: products are *rounded*
-to a double, or *quick*, by heads of 26 bits. Each class argues its bounds, and each method what it loses
-beyond them. (`expansion` has what is thorough.) The parts of a pair are formulas of columns, or numbers.
+A `Pair` stands for high + low, with up to twice the digits of a double. The bound on its relative error is
+the same in all rows. It holds in rows that meet certain conditions, which fail where terms cancel. Two
+arithmetics compute with pairs. `ROUNDED` rounds products to a double, which is cheaper; `QUICK` multiplies by
+heads of 26 bits, which loses less. Each class derives its bounds, and each method what it adds to them.
+(`expansion` is dearer and more accurate.) The parts of a pair are formulas of columns, or numbers.
 
-Let u = 2^-53. What is assumed: IEEE 754 double arithmetic, as in `error_free`; that NumPy's log1p, cos
-and sin are within one unit in the last place, 2u of the value (`LIBRARY`; 0.7 was the most that `tests`
-measured); and that inputs are 0 or within 2^±120 (`WINDOW`), so that no product of the equations leaves
-the normal doubles, but for squares that do not matter beside what they are added to. To check the inputs
-is up to the caller.
+Let u = 2^-53. Three things are assumed. Doubles follow IEEE 754, as in `error_free`. NumPy's log1p is within
+one unit in the last place, 2u of the value (`LIBRARY`; the tests measure at most 0.7 units). And inputs are 0
+or within 2^±120 (`WINDOW`), which the caller checks. So no product of the equations leaves the normal
+doubles, but for squares that are negligible beside what they are added to.
 
-Bounds are kept in first order. What conditions are made of is taken as it is computed: that is of second
-order, as is the product of two bounds, and whoever compares a bound leaves room for it.
+Bounds are of first order. Products of two bounds are left out, and so are the rounding errors of the columns
+that conditions compare. That is of second order: the limits that bounds are compared with leave room for it.
 """
 
 from __future__ import annotations
@@ -23,55 +22,37 @@ from fractions import Fraction
 from math import frexp, log
 from typing import Any
 
-from .double import (
-    Conditions,
-    Unvouched,
-    absolute,
-    at_most,
-    joined,
-    looked_up,
-    maximum,
-    minimum,
-    with_all,
-)
-from .error_free import (
-    UNIT,
-    fast_two_difference,
-    fast_two_sum,
-    head_of,
-    two_difference,
-    two_sum,
-)
+from .double import Conditions, Uncertified, absolute, at_most, joined, looked_up, maximum, minimum, with_all
+from .error_free import UNIT, fast_two_difference, fast_two_sum, head_of, two_difference, two_sum
 from .lazy import lazy
-from .symbolic import Formula, Part, formula
+from .symbolic import Formula, Term, formula
 from .tables import STEPS, heads_and_tails, in_parts, ln2, pi, precise_cos_sin, whole_powers
 
 WINDOW = 2.0**-120, 2.0**120
 LIBRARY = 2 * UNIT
-LOOSE = 2**14 * UNIT**2  # of second order, lost by a rounded operation
-LOSS = 2.0**-67  # lost by a quick one
-NEARLY = 0.4 * UNIT  # off, a constant such as π may be divided by as if it were a double
+LOOSE = 2**14 * UNIT**2  # the second-order error of a rounded operation
+LOSS = 2.0**-67  # the error of a quick operation
+NEARLY = 0.4 * UNIT  # a divisor this close to a double, such as π, is taken for the double
 LARGEST = 36.0  # argument of an exponential
 TOLERANCE = 2.0**-55
-"""What a difference may be off by; rows in which it may be more are not vouched for."""
+"""The bound of a difference; rows in which its error may be larger are not certified."""
 
 
 class Pair:
-    """high + low, off by at most ``loss`` + ``doubt`` of itself where it is ``sure``.
+    """high + low, with a relative error up to ``loss`` + ``doubt`` in rows that meet the conditions ``sure``.
 
-    ``low`` is None where high is exact. ``positive`` says that no row is negative, ``covers`` names a number
-    that is larger than this in no row. Of the relative error bound, ``loss`` is the same in all rows, and
-    ``doubt`` a column, or None. It adds up in products and quotients; for sums see `_plus`. ``sure`` are
-    conditions, in rows that meet all of which the bound holds.
+    ``low`` is None where there is none. ``positive`` says that no row is negative; ``covers`` is a number
+    that is larger than this one in no row. ``loss`` is the same in all rows, and ``doubt`` is a column, or
+    None. Bounds add up in products and quotients; for sums see `_plus`.
     """
 
     def __init__(
         self,
         arithmetic: Quick,
-        high: Part,
-        low: Part | None = None,
+        high: Term,
+        low: Term | None = None,
         loss: float = 0.0,
-        doubt: Part | None = None,
+        doubt: Term | None = None,
         positive: bool = True,
         sure: Conditions = (),
     ) -> None:
@@ -91,20 +72,20 @@ class Pair:
 
     @property
     def power(self) -> float:
-        """The value, where it is a power of two, or -1 times one: a factor that rounds nothing; else 0."""
+        """The value if it is ±2^n, a factor that causes no rounding; else 0."""
         if isinstance(self.high, Formula) or not self.exact:
             return 0.0
         return self.high if abs(frexp(self.high)[0]) == 0.5 else 0.0
 
     def _meet(self, other: Pair | Fraction | int) -> tuple[Pair, Pair]:
-        """Both, as the less accurate of their arithmetics takes them."""
+        """Both numbers in one arithmetic: `ROUNDED` if theirs differ."""
         two = other if isinstance(other, Pair) else self.arithmetic.number(other)
         if two.arithmetic is self.arithmetic:
             return self, two
         return self.rounding(), two.rounding()
 
     def rounding(self) -> Pair:
-        """This number as `ROUNDED` takes it."""
+        """This number in the arithmetic `ROUNDED`."""
         if self.arithmetic is ROUNDED:
             return self
         own = self if self.exact or self.low is None else self.normal()
@@ -121,24 +102,25 @@ class Pair:
         return self._plus(other, difference=True)
 
     def _plus(self, other: Pair | int, difference: bool) -> Pair:
-        """The sum or difference.
+        """The sum or difference, and its error bound.
 
-        A sum of what is not negative inherits the larger bound; of a term that is the smaller one in all
-        rows, which is at most half of the sum, half the bound counts beside half the other's. In a difference
-        bounds count as much as the terms weigh beside what is left: where that is more than `TOLERANCE` it
-        is not sure.
+        The high parts are added with their rounding error, which joins the low parts. How that is done, and
+        what the bound is, depends on what is known of the terms. Where neither is negative, their sum is no
+        less accurate than the less accurate term. (Where one term is known to be the smaller one, it is at
+        most half of the sum, so only half of its bound counts, beside half of the other's.) A difference may
+        cancel: the errors of both terms are added and compared with what is left. The bound of a difference
+        is `TOLERANCE`, on condition that they are within it.
         """
         one, two = self._meet(other)
         if two.is_zero:
             return one
-        ordered = one.covers is not None and one.covers.high is two.high
-        if not difference and two.covers is not None and two.covers.high is one.high:
-            one, two, ordered = two, one, True
+        if not difference and two.is_never_below(one):
+            one, two = two, one
+        ordered = one.is_never_below(two)
         positive = one.positive and two.positive
-        together = positive and not difference
         if ordered:
             high, low = (fast_two_difference if difference else fast_two_sum)(one.high, two.high)
-        elif together:
+        elif positive and not difference:
             high, low = fast_two_sum(maximum(one.high, two.high), minimum(one.high, two.high))
         else:
             high, low = (two_difference if difference else two_sum)(one.high, two.high)
@@ -146,24 +128,27 @@ class Pair:
             low = low + one.low
         if two.low is not None:
             low = low - two.low if difference else low + two.low
-        sum_ = Pair(one.arithmetic, high, low, positive=together or (ordered and positive))
-        sum_.sure = with_all(one.sure, two.sure)
+        sure, own_loss = with_all(one.sure, two.sure), one.arithmetic.sum_loss
+        result = Pair(one.arithmetic, high, low, positive=positive and (ordered or not difference), sure=sure)
         if one.exact and two.exact:
-            return sum_
-        loss = one.arithmetic.sum_loss
-        if together:
+            return result
+        if positive and not difference:
             smaller = (one.loss + two.loss) / 2 if ordered else two.loss
-            sum_.loss = max(one.loss, smaller) + loss
+            result.loss = max(one.loss, smaller) + own_loss
             for term in (one, two):
                 if term.doubt is not None:
-                    sum_.sure = with_all(sum_.sure, (at_most(term.doubt, TOLERANCE),))
-                    sum_.loss += TOLERANCE
-            return sum_
-        sum_ = sum_.normal()
-        off = one.off_by(loss) + two.off_by(loss)
-        sum_.loss, sum_.doubt = TOLERANCE, None
-        sum_.sure = with_all(sum_.sure, (at_most(off, absolute(sum_.high) * TOLERANCE),))
-        return sum_
+                    result.sure = with_all(result.sure, (at_most(term.doubt, TOLERANCE),))
+                    result.loss += TOLERANCE
+            return result
+        result = result.normal()
+        result.loss = TOLERANCE
+        error = one.error(own_loss) + two.error(own_loss)
+        result.sure = with_all(sure, (at_most(error, absolute(result.high) * TOLERANCE),))
+        return result
+
+    def is_never_below(self, other: Pair) -> bool:
+        """Whether it is known that this number is at least the other one in all rows."""
+        return self.covers is not None and self.covers.high is other.high
 
     def normal(self) -> Pair:
         """This number with a low part of at most half a unit in the last place."""
@@ -172,12 +157,12 @@ class Pair:
         low = (self.high - high) + self.low
         return Pair(self.arithmetic, high, low, self.loss, self.doubt, self.positive, self.sure)
 
-    def off_by(self, more: float) -> Any:
-        """How far this may be off, and more of itself."""
+    def error(self, more: float) -> Any:
+        """The bound on the absolute error, if the relative error is larger by ``more``."""
         return (self.high if self.positive else absolute(self.high)) * joined(self.doubt, self.loss + more)
 
     def halved(self) -> Pair:
-        """This number, where its high part is known to have 26 bits: it is split already."""
+        """This number, whose high part is known to have 26 bits, so that it need not be split."""
         self._halves = self.high, self.low
         return self
 
@@ -194,7 +179,7 @@ class Pair:
         return self.high if self.low is None else self.high + self.low
 
     def _scaled(self, factor: float) -> Pair:
-        """This number times a power of two, or -1 times one."""
+        """This number times ±2^n."""
         low = None if self.low is None else self.low * factor
         positive = self.positive and factor > 0
         return Pair(self.arithmetic, self.high * factor, low, self.loss, self.doubt, positive, self.sure)
@@ -220,8 +205,8 @@ class Pair:
         one: Pair = self.arithmetic.number(other)
         return one / self
 
-    def of_factors(self, other: Pair, high: Part, low: Part | None, loss: float) -> Pair:
-        """The product or quotient of two pairs, from its parts and what is lost in it."""
+    def of_factors(self, other: Pair, high: Term, low: Term | None, loss: float) -> Pair:
+        """The product or quotient of two pairs, from its parts and the loss of the operation itself."""
         return Pair(
             self.arithmetic,
             high,
@@ -234,25 +219,24 @@ class Pair:
 
 
 class Quick:
-    """Products, quotients, roots and exponentials by heads of 26 bits; logarithms as NumPy has them.
+    """Products, quotients, roots and exponentials by heads of 26 bits; logarithms by NumPy.
 
-    Factors are split into a head of 26 bits, the double with its other bits cut off, and a tail: the
-    product of the heads is exact. So low parts are not small, but |low| <= t |high|, where each product,
-    quotient and root adds 2^-25 for every head that it cuts to what its operands have; a sum has no more
-    than its terms, and a difference is made normal. As no quantity takes more than 60 operations on the
-    way, t < 2^-18. Every rounding is one of a tail or a remainder, none of them above 2t of the result.
-    A product has 7 times u t of them, a quotient 9, a root or sum fewer: each loses less than 2^-67 of the
-    result, or of both terms in a difference (`LOSS`).
+    A factor is split into its head, the first 26 bits of the high part, and the tail, which is the rest. The
+    product of two heads is exact. So low parts are not small: |low| <= t |high|. Each product, quotient and
+    root adds 2^-25 to t for every head that it cuts. A sum has no larger t than its terms, and a difference
+    is made normal. No quantity takes more than 60 operations, so t < 2^-18. Only tails and remainders are
+    rounded, and none of them is above 2t of the result. A product loses 7 u t, a quotient 9 u t, a root or
+    sum less. That is below 2^-67 (`LOSS`) of the result, or of both terms in a difference.
 
-    Where a difference leaves less than t of its terms, `normal` may round as well, 2 u t of the terms, and
-    what is left may have a low part beyond t: its bound, at least 2^-66/t, is so large that whoever looks
-    at it asks for more digits anyway, and is larger than what that low part loses.
+    Where a difference leaves less than t of its terms, `normal` may round off 2 u t of the terms, and the low
+    part that is left may exceed t. The bound, at least 2^-66/t, is larger than what that loses. It is also so
+    large that the row is not certified, and more digits are asked for.
     """
 
-    sum_loss = LOSS  # what a sum loses
+    sum_loss = LOSS  # of a sum, beside the losses of its terms
 
     def number(self, q: Any) -> Pair:
-        """The pair for a number, or for a column of exact doubles."""
+        """The pair of a number, or of a column of exact doubles."""
         if isinstance(q, Pair):
             return q.rounding() if self is ROUNDED else q
         if isinstance(q, Formula):
@@ -279,39 +263,39 @@ class Quick:
         return self.expm1(x) + 1
 
     def cos_sin(self, x: Any) -> tuple[Pair, Pair]:
-        raise Unvouched
+        raise Uncertified
 
     def cos_sin_of_degrees(self, x: Any) -> tuple[Pair, Pair]:
-        """Cosine and sine of a number of degrees that is the same in all rows."""
+        """Cosine and sine of an angle in degrees that is the same in all rows."""
         if not isinstance(x, Fraction):
-            raise Unvouched
+            raise Uncertified
         cos, sin = map(self.number, precise_cos_sin(x))
         return cos, sin
 
     def root(self, f: Callable[[Pair], Pair], end: Pair) -> Pair:
-        raise Unvouched
+        raise Uncertified
 
     def product(self, x: Pair, y: Pair) -> Pair:
-        """The product of the heads, and as low part (head tail + tail whole).
+        """High is the product of the heads, and low is head · tail + tail · whole.
 
-        Roundings: the tails, one whole, two products, their sum, 7 times u t.
+        Rounded are the tails, one whole, two products and their sum: 7 u t.
         """
         if x.low is None:
-            x, y = y, x  # so that y, of whom the whole is needed, has it at hand
+            x, y = y, x  # the second factor's parts are added up: without a low part that costs nothing
         (x_head, x_tail), (y_head, y_tail) = x.halves(), y.halves()
         return x.of_factors(y, x_head * y_head, x_head * y_tail + x_tail * y.rounded(), LOSS)
 
     def quotient(self, x: Pair, y: Pair) -> Pair:
-        """The head q of the rounded quotient, and as low part ((x - q head) - q tail)/whole.
+        """High is the head q of the rounded quotient, and low is ((x - q · head) - q · tail)/whole.
 
-        Roundings: those of a product and two divisions, 9 times u t.
+        Rounded are the steps of a product and two divisions: 9 u t.
         """
         whole, (head, tail) = y.rounded(), y.halves()
         high = head_of(x.high / whole)
         return x.of_factors(y, high, _rest(x, high * head, high * tail) / whole, LOSS).halved()
 
     def sqrt(self, x: Pair) -> Pair:
-        """The head v of the rounded root w, and as low part (x - v²)/(w + v) ≈ √x - v."""
+        """High is the head v of the rounded root w, and low is (x - v²)/(w + v) ≈ √x - v."""
         root = Formula("sqrt", formula(x.rounded()))
         high = head_of(root)
         doubt = None if x.doubt is None else x.doubt / 2
@@ -319,17 +303,17 @@ class Quick:
         return Pair(self, high, low, x.loss / 2 + LOSS, doubt, sure=x.sure).halved()
 
     def expm1(self, x: Pair) -> Pair:
-        """e^x - 1 for x >= 0; beyond e^36 (`LARGEST`) its bound is no number.
+        """k = e^x - 1 for x >= 0; beyond x = 36 (`LARGEST`) its bound is NaN.
 
-        1 + k = (1 + a)(1 + r), with n the nearest multiple of ln 2/16384 to x and a = 2^(n/16384) - 1 from a
-        table, so |r| < 2^-15.5, and k = a + r (1 + a), in which nothing cancels. With a 2^m, and 2^m - 1, as
-        a head that is exact for x <= 36 and a tail, 1 + a is rounded twice, r and their product once each:
-        4 u r, less than 2^-66 of e^x, which is 2^-66 (1 + 1/k) of k. The other terms, below r², are doubles
-        and lose less than 2^-66 of r; the next one would be 2^-69 r. Where n = 0, a = 0 and r (1 + a) is
-        exact: that is all. An error of x counts x + 1 times, as x e^x < (x + 1)(e^x - 1), with u t x for
-        each time that a part of the multiple of ln 2 adds to what x has as low part.
+        Let n ln 2/16384 be the multiple nearest to x, a = 2^(n/16384) - 1, from a table, and r = e^y - 1 for
+        the rest y of x, |y| < 2^-15.5. Then 1 + k = (1 + a)(1 + r), so k = a + r (1 + a), where nothing
+        cancels. a is a head, exact for x <= 36, and a tail. 1 + a is rounded twice, r and their product once
+        each: 4 u r, below 2^-66 of e^x, which is 2^-66 (1 + 1/k) of k. The terms of r's series after the
+        first are doubles and lose less than 2^-66 of r; the first one left out is 2^-69 r. Where n = 0, a = 0
+        and r (1 + a) is exact, so only these losses count. An error of x counts x + 1 times, because
+        x e^x < (x + 1)(e^x - 1); each part of the multiple of ln 2 that joins x's low part adds u t x to it.
         """
-        # What is too large stays so, as no whole number has that many bits.
+        # At 2 `LARGEST` the table of whole powers has ended, so larger numbers give NaN as well.
         count = Formula("rint", minimum(x.rounded(), 2 * LARGEST) * (STEPS / log(2)))
         first, last = in_parts(ln2() / STEPS, 30, 1)
         low = count * -last if x.low is None else count * -last + x.low
@@ -352,27 +336,27 @@ class Quick:
         return k.normal()
 
     def log1p(self, x: Pair) -> Pair:
-        """ln(1 + x) for x >= 0 as NumPy has it, with no more digits than a double."""
+        """ln(1 + x) for x >= 0 by NumPy, with no more digits than a double."""
         x = x if x.low is None else x.normal()
         high = Formula("log1p", formula(x.high))
         low = None if x.low is None else x.low / (x.high + 1.0)
-        # Exact products gain nothing from here on.
+        # From here on a quick product would be no more accurate than a rounded one.
         return Pair(ROUNDED, high, low, LIBRARY + x.loss + LOOSE, x.doubt, sure=x.sure)
 
 
-def _rest(x: Pair, product: Part, more: Part | None) -> Any:
-    """What of x is beyond a product in one or two parts."""
+def _rest(x: Pair, product: Term, more: Term | None) -> Any:
+    """x minus a product, which comes in one or two parts."""
     rest = x.high - product if more is None else x.high - product - more
     return rest if x.low is None else rest + x.low
 
 
 class Rounded(Quick):
-    """Products and quotients are rounded to a double, and low parts small.
+    """Products and quotients are rounded to a double, and low parts are small.
 
-    Each product or quotient loses u, and what is of second order: low parts are a few u, as they start with
-    at most half a unit in the last place (`Pair.normal`) and grow by u per operation. A low part counts
-    once, in first order: 60² u² and the roundings of low parts are less than `LOOSE` = 2^14 u². What comes
-    from a quick operation is made normal first.
+    Each product or quotient loses u, and an error of second order. Low parts are a few u: they start with at
+    most half a unit in the last place (`Pair.normal`) and grow by u per operation. In 60 operations the
+    products of two low parts and the roundings of low parts come to less than `LOOSE` = 2^14 u². Results of
+    quick operations are made normal first.
     """
 
     sum_loss = LOOSE
@@ -385,7 +369,7 @@ class Rounded(Quick):
         return x.of_factors(y, high, low, UNIT + LOOSE)
 
     def quotient(self, x: Pair, y: Pair) -> Pair:
-        """x/y. The low part of a constant y counts as lost if it is less than 0.4 u of it; π's is 0.35."""
+        """x/y. The low part of a constant y counts as loss if it is below 0.4 u of y, as the 0.35 u of π."""
         high: Any = x.high / y.high
         low: Any = x.low
         loss = UNIT + LOOSE

@@ -1,12 +1,12 @@
-"""Numbers with their slope: an arithmetic over any other that differentiates what is computed in it.
+"""Dual numbers: automatic differentiation over any other arithmetic.
 
-A `Dual` is value + slope·ε with an infinitesimal ε > 0, so the slope of a result is its derivative with
-respect to the input that was given the slope 1. Nothing is approximated: over fractions the slope is a
-fraction, over enclosures an enclosure of the true one.
+A `Dual` is value + slope·ε with an infinitesimal ε > 0. One input is given the slope 1; the slope of a
+result is then its derivative with respect to that input. Nothing is approximated: over fractions the slope
+is a fraction, over enclosures an enclosure of the true one.
 
-Duals of fractions are ordered, and so can stand for the inputs themselves: 1 + ε is above 1 and below
-every greater fraction. A decision about such inputs, which mass is the heavier, or whether the pulley has
-any mass, is then that of a scene one infinitesimal step away, and the slopes are those to that side.
+Duals of fractions are ordered, so they can be the inputs themselves: 1 + ε is above 1 and below every
+greater fraction. Decisions about them (which mass is heavier, whether the pulley has any mass) are those of
+a scene one infinitesimal step away, and the slopes are one-sided derivatives to that side.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 class Dual(Generic[N]):
-    """value + slope·ε; the slope is None where it is 0 because the value does not depend on the input."""
+    """value + slope·ε; the slope is None where the value does not depend on the input."""
 
     __slots__ = ("slope", "value")
 
@@ -83,7 +83,7 @@ class Dual(Generic[N]):
 
     @property
     def numerator(self: Dual[Fraction]) -> int:
-        """That of the value, which is what an arithmetic without slopes takes the number for."""
+        """The value's, so that an arithmetic without slopes takes the dual for its value."""
         return self.value.numerator
 
     @property
@@ -125,7 +125,7 @@ class Duals(Generic[N]):
         return Dual(self.base.number(q))
 
     def is_zero(self, x: Dual[N]) -> bool:
-        """Whether a number is 0, and stays so."""
+        """Whether both the value and its slope are 0."""
         return self.base.is_zero(x.value) and (x.slope is None or self.base.is_zero(x.slope))
 
     @lazy
@@ -148,7 +148,7 @@ class Duals(Generic[N]):
         return Dual(value, None if x.slope is None else x.slope / (2 * value))
 
     def hypot(self, x: Dual[N], y: Dual[N] | int) -> Dual[N]:
-        """√(x² + y²); where that is 0, the length of what x and y are beside the scene."""
+        """√(x² + y²). Where that is 0, its slope is the length of the slopes of x and y."""
         y = y if isinstance(y, Dual) else self.number(y)
         value, half_slope = self.base.hypot(x.value, y.value), (x * x + y * y).slope
         if half_slope is None:
@@ -168,11 +168,11 @@ class Duals(Generic[N]):
         return self._turning(*self.base.cos_sin_of_degrees(x.value), rate)
 
     def _turning(self, cos: N, sin: N, rate: N | None) -> tuple[Dual[N], Dual[N]]:
-        """Cosine and sine of an angle that has a slope, in radians."""
+        """The duals of cosine and sine of an angle whose slope is ``rate``, in radians."""
         return Dual(cos, _times(-1 * sin, rate)), Dual(sin, _times(cos, rate))
 
     def root(self, f: Callable[[Dual[N]], Dual[N]], end: Dual[N]) -> Dual[N]:
-        """The root of f between 0 and ``end``; its slope is that by which f stays 0."""
+        """The root of f between 0 and ``end``; its slope keeps f at 0."""
         nowhere = self.base.is_zero(end.value)
         value = end.value if nowhere else self.base.root(lambda s: f(Dual(s)).value, end.value)
         alone = f(Dual(value)).slope

@@ -1,26 +1,26 @@
-"""Expansions: numbers as sums of two or three doubles that know their error, in columns, a row a scene.
+"""Expansions: numbers as sums of two or three doubles with a proven error bound, in columns.
 
-An `Expansion` stands for the sum of its parts, each at most about half a unit in the last place of the one
-before, with a proven bound on its relative error. `PAIRS` compute with two parts, to about 2^-101; `TRIPLES`
-with three, to about 2^-151, times a power of two that is kept beside them, so that nothing leaves the range
-of doubles but results.
+An `Expansion` stands for the sum of its parts. Each part is at most about half a unit in the last place of
+the one before, and the relative error of the sum has a bound. `PAIRS` compute with two parts, to about
+2^-101, `TRIPLES` with three, to about 2^-151. `TRIPLES` keep a power of two beside the parts, so that only
+results can leave the range of doubles.
 
-Let u = 2^-53, and n the number of parts. An operation loses at most `LOSS`, 2^5 u² or 2^8 u³, of its
-result, or of both terms in a difference. Terms are summed by their order, those of about u^i of the result
-apart (`_collected`): sums of all orders but the last are exact, as what they round off joins the next. So
-what is lost are roundings of the last order, and what is of higher ones. In units of u^n, of the size of
-the result (or of both terms):
+Let u = 2^-53, and n the number of parts. An operation loses at most `LOSS`, 2^5 u² or 2^8 u³, of its result,
+or of both terms in a difference. Terms of about u^i of the result are of order i, and each order is summed on
+its own (`_collected`). All orders but the last are summed exactly, as their rounding errors join the next
+order. So two things are lost: the rounding errors of the last order, and terms of higher orders. In units of
+u^n of the result (or of both terms):
 
-- a sum adds two parts to the one or two errors that arrive: the last order has up to five terms of u^(n-1)
-  in all, rounded up to three times: 15;
-- a product has up to seven terms of at most 10 u^(n-1) in all, rounded as they are formed, 3, and added,
-  31, and what is of order n is left out, 3: 37;
-- a quotient is found part by part, each from what the ones before leave of the dividend, and off by 3 u of
-  that. What they leave is at most 3, 9 u; to find it loses as much as a sum and a product, for each part
-  but the last: 52 (n - 1), and 27. A root is found in the same way and loses no more.
+- a sum loses 15. Its last order has two parts and one or two errors from the order before, together at
+  most 5 u^(n-1), and is rounded up to three times;
+- a product loses 37. Its last order has up to seven terms, together at most 10 u^(n-1). Forming them loses 3,
+  adding them 31, and terms of order n, which are left out, 3;
+- a quotient loses 52 (n - 1) + 27. It is found part by part, each from the remainder that the ones before
+  leave, and off by 3 u of it. The last remainder is at most 9 u, so that is 27. Each remainder is found by a
+  sum and a product. A root is found in the same way and loses no more.
 
-So 2^8 is ample for n = 3. For n = 2 the last order is that of u: 3 for a sum, 8 for a product, 20 for a
-quotient. Bounds are kept in first order, as in `double_double`, whose assumptions hold here too.
+So 2^8 is ample for n = 3. For n = 2 the last order is that of u, and the same counts give 3 for a sum, 8 for
+a product and 20 for a quotient. Bounds are of first order, under the assumptions of `double_double`.
 """
 
 from __future__ import annotations
@@ -30,10 +30,10 @@ from fractions import Fraction
 from math import factorial, frexp, inf, ldexp, log
 from typing import Any
 
-from .double import Unvouched, absolute, both, equal, fold, joined, less, looked_up, maximum, minimum, where
+from .double import Uncertified, absolute, both, equal, fold, joined, less, looked_up, maximum, minimum, where
 from .error_free import UNIT, two_product, two_sum
 from .lazy import lazy
-from .symbolic import Formula, Part, formula
+from .symbolic import Formula, Term, formula
 from .tables import (
     FINE,
     FINER,
@@ -49,28 +49,28 @@ from .tables import (
 )
 
 LOSS = {2: 2.0**5 * UNIT**2, 3: 2.0**8 * UNIT**3}
-LARGEST = {2: 700.0, 3: 5000.0}  # argument of an exponential; beyond the latter all results are infinite
-TINY = -200  # power of two below which e^x - 1, ln(1 + x) and sin x are x
+LARGEST = {2: 700.0, 3: 5000.0}  # argument of an exponential; beyond 5000 all results are infinite
+TINY = -200  # below this power of two, e^x - 1, ln(1 + x) and sin x are x
 NOTHING = -1.0e6  # the power of two beside a 0
 
 Parts = tuple[Any, ...]
 
 
 class Expansion:
-    """The sum of ``parts`` times 2^``exponent``, off by at most ``loss`` + ``doubt`` of itself.
+    """The sum of ``parts`` times 2^``exponent``, whose relative error is at most ``loss`` + ``doubt``.
 
-    ``positive`` says that no row is negative. Of the bound ``loss`` is the same in all rows, and ``doubt`` a
-    column, or None; it is no number, or infinite, where there is no bound.
+    ``positive`` says that no row is negative. ``loss`` is the same in all rows. ``doubt`` is a column, or
+    None; it is NaN or infinite in rows without a bound.
     """
 
     def __init__(
         self,
         arithmetic: Expansions,
-        parts: Sequence[Part],
+        parts: Sequence[Term],
         loss: float = 0.0,
-        doubt: Part | None = None,
+        doubt: Term | None = None,
         positive: bool = True,
-        exponent: Part = 0.0,
+        exponent: Term = 0.0,
     ) -> None:
         self.arithmetic, self.parts, self.exponent = arithmetic, tuple(parts), exponent
         self.loss, self.doubt, self.positive = loss, doubt, positive
@@ -81,7 +81,7 @@ class Expansion:
 
     @property
     def power(self) -> float:
-        """The value, where it is a power of two, or -1 times one: a factor that rounds nothing; else 0."""
+        """The value if it is ±2^n, a factor that causes no rounding; else 0."""
         (first, *others) = self.parts
         if others or isinstance(first, Formula) or isinstance(self.exponent, Formula):
             return 0.0
@@ -101,7 +101,7 @@ class Expansion:
         return self._plus(other, -1.0)
 
     def _plus(self, other: Expansion | int, sign: float) -> Expansion:
-        """The sum, or the difference for sign -1; bounds count as much as the terms weigh beside it."""
+        """The sum, or the difference for sign -1. Each term's bound is scaled by term/result."""
         ar, one, two = self.arithmetic, self, self.arithmetic.number(other) * sign
         if ar.is_zero(two):
             return one
@@ -116,7 +116,7 @@ class Expansion:
             weighed = [_times(first / parts[0], of.doubt) for first, of in ((x[0], one), (y[0], two))]
             return ar.made(parts, max(one.loss, two.loss) + ar.loss, joined(*weighed), True, exponent)
         off = absolute(x[0]) * (one.bound + ar.loss) + absolute(y[0]) * (two.bound + ar.loss)
-        # What cancels to nothing without an error is exact.
+        # Without errors the result is exact, even if it is 0.
         doubt = where(equal(off, 0.0), 0.0, off / absolute(parts[0]))
         return ar.made(parts, 0.0, doubt, False, exponent)
 
@@ -131,7 +131,7 @@ class Expansion:
     __rmul__ = __mul__
 
     def _scaled(self, factor: float) -> Expansion:
-        """This number times a power of two, or -1 times one."""
+        """This number times ±2^n."""
         if factor == 1:
             return self
         exponent = self.exponent
@@ -154,7 +154,7 @@ class Expansion:
 
 
 class Expansions:
-    """Expansions of ``n`` parts; wide ones keep a power of two beside them."""
+    """The arithmetic of expansions of ``n`` parts; if ``wide``, with a power of two beside the parts."""
 
     def __init__(self, n: int, wide: bool) -> None:
         self.n, self.wide, self.loss = n, wide, LOSS[n]
@@ -185,7 +185,7 @@ class Expansions:
         return _collected(orders)
 
     def divide(self, x: Parts, y: Parts) -> Parts:
-        """Part by part, each from what the ones before leave."""
+        """x/y, part by part: each divides the remainder that the ones before leave."""
         quotients = [x[0] / y[0]]
         for _ in range(self.n - 1):
             x = self._plus_product(x, (-1.0 * quotients[-1],), y)
@@ -223,8 +223,8 @@ class Expansions:
     def is_zero(self, x: Expansion) -> bool:
         return x.parts == (0.0,)
 
-    def aligned(self, one: Expansion, two: Expansion) -> tuple[Parts, Parts, Part]:
-        """The parts of both beside one power of two, the larger one."""
+    def aligned(self, one: Expansion, two: Expansion) -> tuple[Parts, Parts, Term]:
+        """The parts of both, scaled to one power of two, the larger of theirs."""
         if not self.wide:
             return one.parts, two.parts, 0.0
         exponent = maximum(one.exponent, two.exponent)
@@ -232,9 +232,9 @@ class Expansions:
         return x, y, exponent
 
     def made(
-        self, parts: Parts, loss: float, doubt: Part | None, positive: bool, exponent: Part
+        self, parts: Parts, loss: float, doubt: Term | None, positive: bool, exponent: Term
     ) -> Expansion:
-        """A number from its parts; if wide, made so that the first is from 1/2 to 1."""
+        """A number from its parts; if wide, scaled so that the first part is from 1/2 to 1."""
         if self.wide:
             own = Formula("exponent", formula(parts[0]))
             parts = tuple(part * power_of_two(-1.0 * own) for part in parts)
@@ -248,7 +248,7 @@ class Expansions:
     def quotient(self, x: Expansion, y: Expansion) -> Expansion:
         return self._of_factors(x, y, self.divide(x.parts, y.parts), x.exponent - y.exponent, self.loss)
 
-    def _of_factors(self, x: Expansion, y: Expansion, parts: Parts, exponent: Part, loss: float) -> Expansion:
+    def _of_factors(self, x: Expansion, y: Expansion, parts: Parts, exponent: Term, loss: float) -> Expansion:
         doubt, positive = joined(x.doubt, y.doubt), x.positive and y.positive
         return self.made(parts, x.loss + y.loss + loss, doubt, positive, exponent)
 
@@ -278,12 +278,13 @@ class Expansions:
         return self.expm1(x) + 1
 
     def expm1(self, x: Expansion) -> Expansion:
-        """e^x - 1 for x >= 0; in pairs it has no bound beyond e^700 (`LARGEST`).
+        """k = e^x - 1 for x >= 0; in pairs it has no bound beyond x = 700 (`LARGEST`).
 
-        1 + k = 2^m (1 + a)(1 + b)(1 + r'), with n, the next lower multiple of ln 2/65536 to x, told apart
-        into m, steps of a table of a = 2^(i/16384) - 1 and of one of b = 2^(i/65536) - 1, and r' = e^r - 1
-        by the Taylor series of what is left of x, r < 1.1e-5. Nothing cancels on the way: a + k + a k. An
-        error of x counts x + 1 times, as x e^x < (x + 1)(e^x - 1), and `LOSS` of x is lost in r.
+        The largest multiple of ln 2/65536 that is not above x is split into m ln 2, steps of a table of
+        a = 2^(i/16384) - 1, and steps of a table of b = 2^(i/65536) - 1. The rest r < 1.1e-5 of x gives
+        s = e^r - 1 by its Taylor series. Then 1 + k = 2^m (1 + a)(1 + b)(1 + s). The factors are joined as
+        a + k + a k, where nothing cancels. An error of x counts x + 1 times, as x e^x < (x + 1)(e^x - 1), and
+        r loses `LOSS` of x.
         """
         return self._unless_tiny(x, self._expm1)
 
@@ -316,16 +317,16 @@ class Expansions:
             k.doubt = where(within, k.doubt, inf)
         return k
 
-    def _whole(self, parts: Parts, exponent: Part) -> Expansion:
-        """A number that is exact."""
+    def _whole(self, parts: Parts, exponent: Term) -> Expansion:
+        """A number without error."""
         return self.made(parts, 0.0, None, True, exponent)
 
     def _less_multiple(
-        self, first: Part, others: Sequence[Part], count: Formula, step: Fraction, bits: int
+        self, first: Term, others: Sequence[Term], count: Formula, step: Fraction, bits: int
     ) -> Parts:
-        """x less a multiple of a constant that is near it.
+        """x minus the multiple of a constant that is near it (argument reduction).
 
-        The constant comes in parts of so many bits, of which the multiples are exact, and the rest.
+        The constant is split into parts of so many bits, whose multiples are exact, and the rest.
         """
         near, *parts = in_parts(step, bits, 2 * self.n - 1)
         terms = [first - count * near, *(count * -part for part in parts[:-1])]
@@ -335,12 +336,12 @@ class Expansions:
         return _collected(orders)
 
     def _small_expm1(self, r: Parts) -> Parts:
-        """e^r - 1 for what the tables leave, by its Taylor series, to 2^-110 or 2^-164 of it."""
+        """e^r - 1 for a small r, by its Taylor series, to 2^-110 or 2^-164 of it."""
         terms, more = {2: (3, 6), 3: (6, 10)}[self.n]
         return self._series(r, r, [Fraction(1, factorial(k)) for k in range(1, more + 1)], terms)
 
     def _series(self, factor: Parts, x: Parts, coefficients: Sequence[Fraction], terms: int) -> Parts:
-        """``factor`` Σ c_k x^k, from k = 0; the terms of higher order than ``terms`` - 1 in doubles."""
+        """``factor`` Σ c_k x^k from k = 0; terms from k = ``terms`` on are computed in doubles."""
         total: Any = 0.0
         for c in reversed(coefficients[terms:]):
             total = total * x[0] + float(c)
@@ -350,9 +351,10 @@ class Expansions:
         return self.multiply(parts, factor)
 
     def log1p(self, x: Expansion) -> Expansion:
-        """ln(1 + x) for x >= 0: a double y, and ln(1 + δ), δ = (1 + x)/e^y - 1, by ``n`` terms of its series.
+        """ln(1 + x) for x >= 0, as a double y and a correction.
 
-        As y is off by a few u of it, and is below 1500, δ is below 2^-41.
+        The correction is ln(1 + δ) for δ = (1 + x)/e^y - 1, by ``n`` terms of its series. As y is below 1500
+        and off by a few u of it, δ is below 2^-41.
         """
         return self._unless_tiny(x, self._log1p)
 
@@ -381,7 +383,7 @@ class Expansions:
         return self._cos_sin(index, rest, x, absolute(first) * (x.bound + self.loss))
 
     def cos_sin_of_degrees(self, x: Any) -> tuple[Expansion, Expansion]:
-        """Cosine and sine of a number of degrees, or of a column of exact ones."""
+        """Cosine and sine of an angle in degrees, or of a column of exact ones."""
         if isinstance(x, Fraction):
             cos, sin = map(self.number, precise_cos_sin(x))
             return cos, sin
@@ -398,10 +400,10 @@ class Expansions:
             Expansion(self, y_parts, 0.0, doubts[1], False, exponents[1]),
         )
 
-    def _cos_sin(self, index: Formula, rest: Parts, x: Expansion, error: Part) -> tuple[Expansion, Expansion]:
-        """Cosine and sine of x, which is ``index`` steps of the table and a small rest, with that error.
+    def _cos_sin(self, index: Formula, rest: Parts, x: Expansion, error: Term) -> tuple[Expansion, Expansion]:
+        """Cosine and sine of x, which is ``index`` steps of the table and a small rest r, with its error.
 
-        cos r - 1 and sin r are series in -r², with |r| < 2^-8.8, to 2^-110 or 2^-164 of them.
+        cos r - 1 and sin r are summed as series in -r², to 2^-110 or 2^-164 of them, as |r| < 2^-8.8.
         """
         square = self.multiply(tuple(-1.0 * part for part in rest), rest)
         terms, more = {2: (3, 6), 3: (5, 8)}[self.n]
@@ -428,7 +430,7 @@ class Expansions:
         return cos, self._unless_tiny(x, lambda _: sin)
 
     def _unless_tiny(self, x: Expansion, function: Callable[[Expansion], Expansion]) -> Expansion:
-        """What a function gives that is x itself, but for 2^-200 of it, where x is as tiny as that."""
+        """function(x), or x itself where it is below 2^-200: there they differ by at most 2^-200 of x."""
         if not self.wide:
             return function(x)
         tiny = less(x.exponent, float(TINY))
@@ -447,23 +449,23 @@ class Expansions:
         return Expansion(self, parts, 0.0, doubt, y.positive, exponent)
 
     def _plain(self, x: Expansion) -> Parts:
-        """The parts of a number that doubles can hold."""
+        """The parts of a number within the range of doubles, without a power of two."""
         return tuple(part * power_of_two(x.exponent) for part in x.parts) if self.wide else x.parts
 
     def root(self, f: Callable[[Expansion], Expansion], end: Expansion) -> Expansion:
         """The root of f between 0 and ``end``, where f is negative before it and positive after.
 
-        Found in doubles, by secants that keep to either side of it (N. Anderson and Å. Björck, 1973), and
-        then in steps along the last slope that is worth its name. That f has opposite signs a little to both
-        sides is checked, so the search need not be trusted.
+        First doubles find it, by secants that keep it between two points (N. Anderson and Å. Björck, 1973).
+        Then a few steps along the last reliable slope add digits. In the end f is checked to have opposite
+        signs closely before and after the root, so the search need not be trusted.
         """
         if self.wide:
-            raise Unvouched
+            raise Uncertified
 
         def at(x: Parts) -> Expansion:
             return f(Expansion(self, x))
 
-        def value(x: Part) -> Any:
+        def value(x: Term) -> Any:
             return at((x,)).parts[0]
 
         width = end.parts[0]
@@ -495,15 +497,15 @@ class Expansions:
 
 SECANTS, STEPS_ALONG = 9, 3
 WORTH = 2.0**-24
-"""How far apart, beside the whole width, points must be for the slope between them to be worth its name."""
+"""The least distance, in whole widths, of two points for the slope between them to be reliable."""
 ASIDE, NEAR_BY = 2.0**-85, 2.0**-40
-"""How far beside a root, in whole widths, signs are checked where f is sharp, and its blur is seen."""
+"""Distances from a root, in whole widths: to check the signs of an accurate f, and to read its error."""
 
 PAIRS, TRIPLES = Expansions(2, wide=False), Expansions(3, wide=True)
 
 
 def _collected(orders: list[list[Any]]) -> Parts:
-    """The sum of terms, those of each order apart; what a sum rounds off joins the next order."""
+    """The sum of terms, order by order; the rounding errors of each order join the next one."""
     parts = []
     for i, terms in enumerate(orders):
         if not terms:
@@ -520,9 +522,9 @@ def _collected(orders: list[list[Any]]) -> Parts:
 
 
 def _normal(parts: Sequence[Any]) -> Parts:
-    """The same sum, of parts that are at most about u times the one before, or its first.
+    """The same sum, made of parts that are each at most about u times the one before.
 
-    From the last to the first, as often as parts may have cancelled and left only what is below them.
+    Each pass adds from the last part to the first. One pass a part is enough, even if leading parts cancel.
     """
     parts = list(parts)
     for _ in parts[1:]:
@@ -531,19 +533,19 @@ def _normal(parts: Sequence[Any]) -> Parts:
     return tuple(parts)
 
 
-def power_of_two(exponent: Part) -> Any:
-    """2 to the power of a column of whole numbers; 0 below the range of doubles."""
+def power_of_two(exponent: Term) -> Any:
+    """2 to the power of a column of integers; 0 below the range of doubles."""
     return Formula("power", exponent) if isinstance(exponent, Formula) else 2.0**exponent
 
 
-def times_power_of_two(x: Part, exponent: Part) -> Any:
-    """x 2^exponent, at once to a subnormal double, to 0 or to infinity."""
+def times_power_of_two(x: Term, exponent: Term) -> Any:
+    """x 2^exponent, rounded once if it is a subnormal double; 0 or infinite beyond the range."""
     half = Formula("floor", formula(exponent * 0.5))
     return x * power_of_two(half) * power_of_two(exponent - half)
 
 
-def _times(factor: Part, doubt: Part | None) -> Any:
-    """A bound's column as it weighs; there may be none."""
+def _times(factor: Term, doubt: Term | None) -> Any:
+    """A factor times the column of a bound, if there is one."""
     return None if doubt is None else factor * doubt
 
 

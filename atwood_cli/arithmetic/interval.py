@@ -1,27 +1,21 @@
-"""Enclosures: pairs lo <= value <= hi of decimals that are certain to hold the true value.
+"""Interval arithmetic in decimals: enclosures lo <= value <= hi that are certain to hold the true value.
 
-Sums, products and quotients round lo down and hi up; the standard library's `decimal` does both exactly as
-told, on every platform. So the true value lies in the enclosure whatever was lost to cancellation, which
-only makes it wider. `rounding` draws the digits from enclosures.
+Sums, products and quotients round lo down and hi up, which the standard library's `decimal` does correctly on
+every platform. So the true value always lies in the enclosure; cancellation only makes it wider. `rounding`
+takes the digits from enclosures.
 
-Few things are not plain arithmetic. Each function argues what it adds and takes off. Constants and series
-are summed in integers, in units of 2^-w. A function is evaluated at the lower end of its argument only; over
-a width δ <= 1 of it ln(1 + y), cosine and sine change by at most δ, and e^x by at most 2δ e^x.
+Each function derives its own error bound. Constants and series are summed in integers, in units of 2^-w. A
+function is evaluated only at the lower end of its argument. Over an argument's width δ <= 1, ln(1 + y),
+cosine and sine change by at most δ, and e^x by at most 2δ e^x.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from decimal import (
-    ROUND_CEILING,
-    ROUND_FLOOR,
-    ROUND_HALF_EVEN,
-    Context,
-    Decimal,
-)
+from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from functools import lru_cache
-from math import inf, isqrt
+from math import isqrt
 
 from .lazy import lazy
 from .rational import EXACT, Irrational
@@ -29,13 +23,13 @@ from .rational import EXACT, Irrational
 # Far beyond any input (1e±1500), far within what `decimal` takes on a 32-bit machine.
 LARGEST_EXPONENT = 10**8
 LARGEST_ARGUMENT = LARGEST_EXPONENT * 2_302_585_092 // 10**9  # of an exponential: times ln 10
-ZERO, ONE, TWO = Decimal(0), Decimal(1), Decimal(2)
+ZERO, ONE, TWO, INFINITY = Decimal(0), Decimal(1), Decimal(2), Decimal("inf")
 KEPT = 256  # values of a function: a quantity and its slopes ask for the same ones
-LOG10_E = Decimal("0.434294481903")  # rounded down, so that what remains is not negative
+LOG10_E = Decimal("0.434294481903")  # rounded down, so that the rest of an argument is not negative
 
 
 class Unsettled(ArithmeticError):
-    """The enclosure is too wide to go on: compute with more digits, ``digits`` if that is known."""
+    """The enclosure is too wide to go on: compute with more digits (``digits``, if the number is known)."""
 
     def __init__(self, digits: int = 0) -> None:
         super().__init__(digits)
@@ -43,7 +37,7 @@ class Unsettled(ArithmeticError):
 
 
 def decimal_context(digits: int, rounding: str) -> Context:
-    """A context of its own, so that nothing depends on the caller's; its exponents are ample."""
+    """A context that does not depend on the caller's, with an ample range of exponents."""
     limit = 2 * LARGEST_EXPONENT
     return Context(prec=digits, rounding=rounding, Emin=-limit, Emax=limit, traps=[])
 
@@ -86,9 +80,9 @@ class Enclosure:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Enclosure | int) -> Enclosure:
-        """The quotient by what is positive, as every denominator of the equations is.
+        """The quotient by a positive number, as every denominator of the equations is positive.
 
-        One that may be zero is too wide: Unsettled. One that is, is an error as everywhere.
+        Raises Unsettled for a denominator that may be zero, ZeroDivisionError for one that is.
         """
         other, at = self._lift(other), self.arithmetic
         if other.lo <= 0:
@@ -121,7 +115,7 @@ class Enclosures:
         return Enclosure(self, self.down.divide(lo, unit), self.up.divide(hi, unit))
 
     def _from_zero(self, x: Enclosure) -> Enclosure:
-        """What is left of an enclosure if its value is known not to be negative."""
+        """The enclosure cut off below 0, for a value that is known not to be negative."""
         return x if x.lo >= 0 else Enclosure(self, ZERO, x.hi)
 
     def _width(self, x: Enclosure) -> Enclosure:
@@ -136,7 +130,8 @@ class Enclosures:
     def sqrt(self, x: Enclosure) -> Enclosure:
         """Square root of x >= 0, exact where it can be.
 
-        `decimal` rounds it correctly, so one step outwards encloses it, if what is squared shows the need.
+        `decimal` rounds the root correctly, so one step outwards encloses it. The square of an end shows
+        whether the step is needed.
         """
         x = self._from_zero(x)
         lo, hi = self.down.sqrt(x.lo), self.up.sqrt(x.hi)
@@ -159,17 +154,20 @@ class Enclosures:
     def _cos_sin(self, x: Decimal) -> tuple[Enclosure, Enclosure]:
         """Cosine and sine of a number x >= 0.
 
-        The series are summed for what n quarter turns leave, within ±π/4. As in `_expm1`, but without
-        doublings: 4 (w + n) units cover the error.
+        n quarter turns are taken off, which leaves an angle within ±π/4. The series are summed for this angle
+        divided by 2^s, and the angle is doubled s times. 4 (w + n) units cover the error of the series, as in
+        `_expm1`. A doubling squares c + is: it doubles the error and adds at most two units. So
+        2^s · 8 (w + n) units cover all.
         """
         n, d = x.as_integer_ratio()
         bits = _bits(self.digits + max(0, -x.adjusted()))
-        w = bits + 2 * bits.bit_length() + (n // d).bit_length() + 8
+        halvings = isqrt(bits) // 2
+        w = bits + halvings + 2 * bits.bit_length() + (n // d).bit_length() + 8
         angle, quarter = (n << w) // d, _pi(w) >> 1
         turns = (angle + (quarter >> 1)) // quarter
-        c, s = _cos_sin_series(angle - turns * quarter, w)
+        c, s = _cos_sin_series(angle - turns * quarter, halvings, w)
         c, s = ((c, s), (-s, c), (-c, -s), (s, -c))[turns % 4]
-        error = 4 * (w + turns)
+        error = 8 * (w + turns) << halvings
         return self._fixed(c, error, w), self._fixed(s, error, w)
 
     def cos_sin_of_degrees(self, x: Fraction) -> tuple[Enclosure, Enclosure]:
@@ -183,15 +181,15 @@ class Enclosures:
     def root(self, f: Callable[[Enclosure], Enclosure], end: Enclosure) -> Enclosure:
         """The root of f between 0 and ``end``, where f is negative before it and positive after.
 
-        Secants find it, and bisection where they lead astray (T. J. Dekker, 1969). That f has opposite
-        signs at the ends of what is returned is checked, so the search need not be trusted.
+        Secants find it, with bisection where they fail (T. J. Dekker, 1969). In the end f is checked to have
+        opposite signs at both ends of the result, so the search need not be trusted.
         """
 
         def at(x: Decimal) -> Enclosure:
             return f(Enclosure(self, x, x))
 
         near = decimal_context(self.digits, ROUND_HALF_EVEN)
-        # A root at 10^-n of the scale of f's terms is lost without 2n digits more.
+        # A root at 10^-n of the scale of f's terms takes 2n more digits.
         wanted = self.digits + 2 * max(0, -end.lo.adjusted())
         a, b = ZERO, end.lo
         f_a, f_b = at(a), at(b)
@@ -212,7 +210,7 @@ class Enclosures:
             if f_c.lo <= 0 <= f_c.hi:
                 break
             a, b = (c, b) if f_c.hi < 0 else (a, c)
-        # How far from y the sign of f can be told if f is about straight, and then further.
+        # The distance from y at which f, if nearly straight, has a certain sign; then larger ones.
         error = near.scaleb(near.add(near.divide(blur, slope), near.scaleb(y, -self.digits)), 1)
         while error < end.lo:
             lo, hi = self.down.subtract(y, error), self.up.add(y, error)
@@ -222,10 +220,10 @@ class Enclosures:
         raise Unsettled(wanted)
 
     def exp(self, x: Enclosure) -> Enclosure:
-        """e^x for x >= 0, without the digits that e^x - 1 takes if x is tiny."""
+        """e^x for x >= 0, without the extra digits that e^x - 1 needs for a tiny x."""
         x = self._from_zero(x)
         at_lo, width = self._expm1(x.lo, ONE) + 1, self._width(x)
-        if width.hi > 1 or at_lo.lo == inf:
+        if width.hi > 1 or at_lo.lo == INFINITY:
             return Enclosure(self, at_lo.lo, (self._expm1(x.hi, ONE) + 1).hi)
         return Enclosure(self, at_lo.lo, (at_lo + 2 * width * at_lo).hi)
 
@@ -233,25 +231,26 @@ class Enclosures:
         """e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
         x = self._from_zero(x)
         at_lo, width = self._expm1(x.lo), self._width(x)
-        if width.hi > 1 or at_lo.lo == inf:
+        if width.hi > 1 or at_lo.lo == INFINITY:
             return Enclosure(self, at_lo.lo, self._expm1(x.hi).hi)
         return Enclosure(self, at_lo.lo, (at_lo + 2 * width * (at_lo + 1)).hi)
 
     @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _expm1(self, x: Decimal, scale: Decimal | None = None) -> Enclosure:
-        """e^x - 1 for a number x, to all the digits of itself, or of what is of that scale.
+        """e^x - 1 for a number x, to the relative precision of the result, or of numbers of that scale.
 
-        In integers, unit 2^-w: x less n ln 10 is in [0, 2.4), off by at most 2n + 2 units. It is divided by
-        2^s, summed as e^r - 1 = r + r²/2 + ..., and doubled s times by e^{2r} - 1 = u (2 + u). A term
-        inherits at most its predecessor's error and is cut off by less than one unit twice, so t terms are
-        off by at most 3t units; a doubling multiplies the error by 2 (1 + u) and adds at most one unit. The
-        product of those factors is 2^s e^{2.4} < 12 · 2^s. So the sum is off by fewer than
-        12 · 2^s (3t + s + 2n + 4) units, less than 2^(s + 8) (w + n), as t and s are below w.
+        All is computed in integers, in units of 2^-w. x - n ln 10 is in [0, 2.4), off by at most 2n + 2
+        units. It is divided by 2^s, which gives r, and e^r - 1 = r + r²/2 + ... is summed. Then s doublings
+        follow, each by e^{2r} - 1 = u (2 + u) with u = e^r - 1. A term inherits at most its predecessor's
+        error and is truncated twice by less than one unit, so t terms are off by at most 3t units. A doubling
+        multiplies the error by 2 (1 + u) and adds at most one unit; the product of the factors is 2^s e^{2.4}
+        < 12 · 2^s. So the result is off by fewer than 12 · 2^s (3t + s + 2n + 4) units, less than 2^(s + 8)
+        (w + n), as t and s are below w.
         """
         if x == 0:
             return Enclosure(self, ZERO, ZERO)
         if x > LARGEST_ARGUMENT:
-            return Enclosure(self, Decimal(inf), Decimal(inf))
+            return Enclosure(self, INFINITY, INFINITY)
         tens = int(self.down.multiply(x, LOG10_E)) if x > 2 else 0
         bits = _bits(self.digits + max(0, -(scale or x).adjusted()))
         halvings = isqrt(bits)
@@ -277,7 +276,7 @@ class Enclosures:
         """ln(1 + y) for a number y >= 0, from a guess y0, with no series.
 
         ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
-        Whatever the guess, that encloses; a good one encloses tightly.
+        That encloses the value for any guess, and tightly for a good one.
         """
         if y == 0:
             return Enclosure(self, ZERO, ZERO)
@@ -300,17 +299,17 @@ class Enclosures:
 
 @lru_cache(maxsize=64)
 def enclosures(digits: int) -> Enclosures:
-    """The arithmetic of enclosures with that many digits; one object, so that π is kept."""
+    """The arithmetic of enclosures with that many digits; always the same object, which keeps π."""
     return Enclosures(digits)
 
 
 def _bits(digits: int) -> int:
-    """The bits that hold so many digits, and a few more."""
+    """The bits for so many digits, and a few more."""
     return digits * 10 // 3 + 8
 
 
 def _expm1_series(x: int, halvings: int, w: int) -> int:
-    """e^x - 1 by the series of x/2^halvings and as many doublings; x and the result in units of 2^-w."""
+    """e^x - 1 by the series at x/2^halvings and as many doublings; x and the result in units of 2^-w."""
     r = x >> halvings
     total, term, n = 0, r, 1
     while term:
@@ -322,14 +321,18 @@ def _expm1_series(x: int, halvings: int, w: int) -> int:
     return total
 
 
-def _cos_sin_series(x: int, w: int) -> tuple[int, int]:
-    """Cosine and sine by their series; x and the results in units of 2^-w."""
+def _cos_sin_series(x: int, halvings: int, w: int) -> tuple[int, int]:
+    """Cosine and sine by the series at x/2^halvings and as many doublings; all in units of 2^-w."""
+    r = x >> halvings
     sums, term, n = [0, 0, 0, 0], 1 << w, 0
     while term:
         sums[n % 4] += term
         n += 1
-        term = (term * x >> w) // n
-    return sums[0] - sums[2], sums[1] - sums[3]
+        term = (term * r >> w) // n
+    cos, sin = sums[0] - sums[2], sums[1] - sums[3]
+    for _ in range(halvings):
+        cos, sin = (cos + sin) * (cos - sin) >> w, cos * sin >> (w - 1)
+    return cos, sin
 
 
 def _inverse(q: int, sign: int, w: int) -> int:
@@ -344,7 +347,7 @@ def _inverse(q: int, sign: int, w: int) -> int:
 
 
 GUARD = 40
-# Constants are kept to a power of two of bits, at least twice this, so that precisions share them.
+# The bits of cached constants are a power of two, at least twice this, so that precisions share them.
 LEAST_BITS = 256
 
 
@@ -361,8 +364,8 @@ def _ln10(bits: int) -> int:
 def _constant(*terms: tuple[int, int, int], bits: int) -> int:
     """A sum of factor · `_inverse`(q, sign) for terms (factor, q, sign), right to two units of 2^-bits.
 
-    Each term of the series is cut off by less than two units of its own, 2^-w, there are fewer than w of
-    them, the factors add up to at most 100, and 40 further bits (`GUARD`) absorb that up to w = 2^32.
+    The series have fewer than w terms, each truncated by less than two units of 2^-w, and the factors add up
+    to at most 100. The 40 extra bits (`GUARD`) absorb that up to w = 2^32.
     """
     wide = 1 << max(LEAST_BITS, bits).bit_length()
     return _wide_constant(terms, wide + GUARD) >> (wide + GUARD - bits)

@@ -11,9 +11,9 @@ else:
     class lazy(cached_property):  # noqa: N801 - a decorator
         """An attribute that is computed when it is first asked for, and kept.
 
-        This is `cached_property` of Python 3.12. Until then it held a lock for all objects of a class:
-        threads that each solve a block waited for each other, and for ever where two attributes may need
-        each other (`Case.slips` and `Case.can_slip`).
+        This is `cached_property` of Python 3.12. Before 3.12 it held a lock for all objects of a class.
+        Threads that each solve a block then waited for each other, and for ever where two attributes may
+        need each other (`Case.slips` and `Case.can_slip`).
         """
 
         def __get__(self, instance: Any, owner: Any = None) -> Any:

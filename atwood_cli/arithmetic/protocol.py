@@ -1,6 +1,6 @@
-"""What the equations ask of a number, and of the arithmetic that the number belongs to.
+"""The operations that the equations need of a number, and of the arithmetic that it belongs to.
 
-The protocols exist only for the type checker: to create them costs every start of the program time.
+The protocols exist only for the type checker, as creating them would slow every start of the program.
 Modules that name them in annotations leave those unevaluated (`from __future__ import annotations`).
 """
 
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
         def __rtruediv__(self, other: Any, /) -> Self: ...
 
     class Arithmetic(Protocol[N]):
-        """A number type with its transcendental functions; angles are in radians but where named."""
+        """A number type with its transcendental functions; angles are in radians unless named degrees."""
 
         def number(self, q: Fraction | int) -> N: ...
         def is_zero(self, x: N) -> bool: ...

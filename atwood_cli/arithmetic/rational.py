@@ -1,16 +1,22 @@
-"""Exact fractions, which every input is: what stays rational is computed in them."""
+"""Exact fractions. Every input is one, and every quantity that is rational is computed in them."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
 from math import isqrt
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from .protocol import Arithmetic, N
 
 
 class Irrational(ArithmeticError):
-    """The quantity leaves the rational numbers: compute it in enclosures."""
+    """An operation leaves the rational numbers: compute in enclosures, or in floating point."""
 
 
 class Rationals:
-    """Exact fractions; whatever would leave them raises `Irrational`."""
+    """The arithmetic of exact fractions; an operation that may leave them raises `Irrational`."""
 
     def number(self, q: Fraction | int) -> Fraction:
         return Fraction(q) if isinstance(q, int) else q
@@ -35,7 +41,7 @@ class Rationals:
         return root
 
     def hypot(self, x: Fraction, y: Fraction | int) -> Fraction:
-        raise Irrational
+        return self.sqrt(x * x + y * y)
 
     def cos_sin(self, x: Fraction) -> tuple[Fraction, Fraction]:
         raise Irrational
@@ -51,3 +57,22 @@ class Rationals:
 
 
 EXACT = Rationals()
+
+
+def power(ar: Arithmetic[N], excess: N, share: Fraction) -> N:
+    """(1 + excess)^share for a share from 0 to 1. Of exact fractions it must be rational, else Irrational."""
+    if not isinstance(excess, Fraction):
+        return ar.exp(ar.number(share) * ar.log1p(excess))
+    base, times = 1 + excess, share.denominator
+    root = Fraction(_root(base.numerator, times), _root(base.denominator, times))
+    if root**times != base:
+        raise Irrational
+    return ar.number(root**share.numerator)
+
+
+def _root(n: int, k: int) -> int:
+    """The greatest integer whose k-th power is at most n > 0 (I. Newton)."""
+    x = 1 << -(-n.bit_length() // k)
+    while (smaller := ((k - 1) * x + n // x ** (k - 1)) // k) < x:
+        x = smaller
+    return x

@@ -1,28 +1,27 @@
-"""From exact values and enclosures to correctly rounded digits and to text: why the last digit is right.
+"""Correct rounding of exact values and enclosures to digits and text, and why the last digit is right.
 
-Every input is a rational number, taken exactly as typed. A quantity is first computed in exact fractions; if
-its formula stays rational, one division, rounded once, gives the answer, ties included. Otherwise (an
-exponential, logarithm or root was asked for) it is computed in enclosures.
+Every input is a rational number, taken exactly as typed. A quantity is first computed in exact fractions. If
+its formula stays rational, one division, rounded once, gives the result, ties included. Otherwise (it has an
+exponential, a logarithm or a root) it is computed in enclosures.
 
-Rounding is monotonic: if both ends of an enclosure round to the same double, or to the same N digits, so
-does everything between them, the true value too. If they differ, the precision is doubled and the quantity
-computed anew (Ziv's strategy). This ends because the width tends to zero, unless the true value is just the
-tie between two results, or 0. Most of what is not computed in fractions is transcendental, as e^q and ln q
-are for rational q other than 0 and 1, and e^{πq} (A. O. Gelfond), and so no tie. But sines and cosines of
-30° and 60° are rational, so is 4^(1/2), and e^{μφ} can cancel. So where an enclosure closes in on a tie,
-`residue` is asked whether the value is that number, and if it is, that number is rounded. Where it has no
-answer (a root found by search), what agrees with a tie to `CLOSEST` digits is taken for it, so that all ends.
+Rounding is monotonic: if both ends of an enclosure round to the same double, or to the same N digits, so does
+the true value between them. If they differ, the precision is doubled and the quantity computed again (Ziv's
+strategy). This ends, because the width tends to zero, unless the true value is a tie between two results, or
+0. Most values not computed in fractions are transcendental and so no ties: e^q and ln q are for rational q
+other than 0 and 1, and e^{πq} is (A. O. Gelfond). But sin 30° and cos 60° are rational, and e^{μφ} can
+cancel. So a value that agrees with a tie in `CLOSEST` digits is taken for the tie, and a difference that is 0
+in so many digits of its terms for 0. Inputs have at most 1000 digits, too few for another value so close.
 
 A comparison, such as μφ against ln(T_h/T_l), is decided once the enclosure of the difference excludes zero.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal, Inexact
 from fractions import Fraction
-from math import inf, isfinite, nextafter
-from typing import TYPE_CHECKING, Any, TypeVar
+from math import inf, isinf
+from typing import TYPE_CHECKING, TypeVar
 
 from .interval import ZERO, Enclosure, Unsettled, decimal_context, enclosures
 from .rational import EXACT, Irrational
@@ -36,9 +35,18 @@ Rounding = Callable[[Fraction | Decimal], T]
 
 # Far more than any valid input was found to need (about 6000): a bug must not become a hang.
 LARGEST_PRECISION = 50_000
-# Closer to a tie than valid inputs can bring a value that is none; where residues cannot tell, it is one.
-CLOSEST = 6000
-WIDE = 5000  # digits, more than the ratio of any two numbers written beside each other has
+CLOSEST, ENOUGH = 6000, 6050
+"""The digits in which a value must agree with a tie to be taken for it; and a precision that shows them."""
+SUSPECT = 800
+"""If a value is not settled at this precision, the next one is `ENOUGH`, as it may be a tie."""
+THRESHOLD_DIGITS = 3
+"""Significant digits of thresholds in sentences."""
+GUARD = 8
+"""Digits beyond the wanted ones in the first computation of a quantity."""
+WIDE = 5000  # digits, more than any two numbers shown side by side differ in size
+
+NEAR = decimal_context(CLOSEST - 10, ROUND_HALF_EVEN)
+"""Rounds a value that agrees with a tie in `CLOSEST` digits to the tie, as no tie has so many digits."""
 
 
 def to_double(x: Fraction | Decimal) -> float:
@@ -50,8 +58,8 @@ def to_double(x: Fraction | Decimal) -> float:
 
 
 def is_infinite(value: float | Decimal) -> bool:
-    """Whether a value is too large to be written (math.isinf makes a double of it first)."""
-    return value in (inf, -inf)
+    """Whether a value is infinite. (math.isinf would convert a Decimal to a double first.)"""
+    return value.is_infinite() if isinstance(value, Decimal) else isinf(value)
 
 
 def to_digits(digits: int, rounding: str = ROUND_HALF_EVEN) -> Rounding[Decimal]:
@@ -72,16 +80,25 @@ def to_digits(digits: int, rounding: str = ROUND_HALF_EVEN) -> Rounding[Decimal]
     return round_
 
 
-def to_side(digits: int | None, up: bool) -> Rounding[Any]:
-    """Rounding up or down, to that many digits or to the next double whose text is not beyond the value."""
-    if digits is not None:
-        return to_digits(digits, ROUND_CEILING if up else ROUND_FLOOR)
+def to_threshold(up: bool, given: Fraction | None = None) -> Rounding[Decimal]:
+    """Rounding of a threshold up or down, to as many digits as are worth typing back: 0.350, 4810."""
+    round_ = to_side_of(given, THRESHOLD_DIGITS, ROUND_CEILING if up else ROUND_FLOOR)
+    return lambda x: tidy(value) if (value := round_(x)).adjusted() >= THRESHOLD_DIGITS else value
 
-    def round_(x: Fraction | Decimal) -> float:
-        value = to_double(x)
-        while isfinite(value) and (shown := type(x)(text(value))) != x and (shown < x) == up:
-            value = nextafter(value, inf if up else -inf)
-        return value
+
+def to_side_of(given: Fraction | None, digits: int, rounding: str = ROUND_HALF_EVEN) -> Rounding[Decimal]:
+    """Rounding to that many digits, or to more if the side of a given number would not show."""
+
+    def round_(x: Fraction | Decimal) -> Decimal:
+        shown = to_digits(digits, rounding)(x)
+        if given is None or not shown.is_finite() or abs(shown.adjusted()) > WIDE:
+            return shown  # its fraction might have millions of digits
+        exact = Fraction(x)
+        for kept in range(digits, WIDE):
+            near = to_digits(kept, rounding)(x)
+            if (Fraction(near) > given, Fraction(near) < given) == (exact > given, exact < given):
+                return near
+        return shown  # the value is the given number, which is no decimal
 
     return round_
 
@@ -91,7 +108,7 @@ def to_place(place: int) -> Rounding[Decimal]:
     context, unit = decimal_context(WIDE, ROUND_HALF_EVEN), Decimal((0, (1,), place))
 
     def round_(x: Fraction | Decimal) -> Decimal:
-        if isinstance(x, Fraction):  # to a whole number of units first, which is exact
+        if isinstance(x, Fraction):  # round to an integer number of units first, which is exact
             x = context.multiply(Decimal(round(x / Fraction(10) ** place)), unit)
         value = context.quantize(x, unit) if x.is_finite() else x
         return value if value else value.copy_abs()
@@ -100,52 +117,28 @@ def to_place(place: int) -> Rounding[Decimal]:
 
 
 def settle(quantity: Quantity, round_: Rounding[T], digits: int) -> T:
-    """The correctly rounded value of a quantity; ``digits`` is about how many are wanted."""
-    from_zero = 0
+    """The correctly rounded value of a quantity; ``digits`` is about the number of digits wanted."""
 
-    def rounded(value: Enclosure) -> T | None:
-        nonlocal from_zero
+    def rounded(value: Enclosure) -> T:
         lo, hi = round_(value.lo), round_(value.hi)
         if lo == hi:
             return lo
-        from_zero += value.lo <= 0 <= value.hi
-        tie = _tie(value, lo, hi, digits) if from_zero != 1 else None
-        if tie is None or not (_is(quantity, tie) or _is_narrow(value, CLOSEST)):
-            return None
-        return round_(tie)
+        if value.arithmetic.digits < CLOSEST:
+            raise Unsettled(ENOUGH if value.arithmetic.digits >= SUSPECT else 0)
+        if value.lo <= 0 <= value.hi:
+            return round_(ZERO)
+        if NEAR.divide(NEAR.subtract(value.hi, value.lo), value.hi).adjusted() > -CLOSEST:
+            raise Unsettled
+        return round_(NEAR.plus(value.lo))
 
     try:
         return round_(quantity(EXACT))
     except Irrational:
-        return _refine(quantity, rounded, digits + 8)
-
-
-def _tie(value: Enclosure, lo: float | Decimal, hi: float | Decimal, digits: int) -> Fraction | None:
-    """The number between two rounded results that an enclosure seems to close in on, if it is one."""
-    if value.lo <= 0 <= value.hi:
-        return Fraction(0)
-    if is_infinite(lo) or is_infinite(hi) or abs(value.hi.adjusted()) > WIDE:
-        return None
-    return (Fraction(lo) + Fraction(hi)) / 2 if _is_narrow(value, digits) else None
-
-
-def _is_narrow(value: Enclosure, digits: int) -> bool:
-    """Whether the ends of an enclosure beside 0 agree to about so many digits."""
-    if value.lo <= 0 <= value.hi:
-        return False
-    context = decimal_context(digits, ROUND_HALF_EVEN)
-    width = context.divide(context.subtract(value.hi, value.lo), value.hi)
-    return width.adjusted() <= -digits
-
-
-def _is(quantity: Quantity, value: Fraction) -> bool:
-    from .residue import is_rational
-
-    return is_rational(quantity, value)
+        return _refine(quantity, rounded, digits + GUARD)
 
 
 def is_positive(quantity: Quantity) -> bool:
-    """The sign of a quantity that is known to be irrational, so not zero."""
+    """Whether a quantity is positive that is known to be irrational, so not zero."""
 
     def sign(value: Enclosure) -> bool | None:
         return value.lo > 0 if value.lo > 0 or value.hi < 0 else None
@@ -154,7 +147,7 @@ def is_positive(quantity: Quantity) -> bool:
 
 
 def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits: int) -> A:
-    """What ``answer`` says of the first enclosure of the quantity that is tight enough for it, not None."""
+    """Refine the enclosure of a quantity until ``answer`` is not None, and return that."""
     while digits < LARGEST_PRECISION:
         needed = 0
         try:
@@ -175,6 +168,12 @@ def as_typed(q: Fraction) -> str:
     return text(context.normalize(value) if value.adjusted() >= 16 else value)
 
 
+def as_decimal(q: Fraction, round_: Rounding[T]) -> T | Decimal:
+    """The exact number if it is a decimal, else the rounded one."""
+    typed = as_typed(q)
+    return round_(q) if "/" in typed else Decimal(typed)
+
+
 def with_uncertainty(cut: Callable[[int], Decimal], u: Decimal) -> str:
     """A value and its standard uncertainty u > 0, both cut at the second digit of u: 0.764 ± 0.012.
 
@@ -182,11 +181,15 @@ def with_uncertainty(cut: Callable[[int], Decimal], u: Decimal) -> str:
     """
     place = to_digits(2)(u).adjusted() - 1
     pair = cut(place), to_place(place)(u)
-    power = max(x.adjusted() for x in pair if x)
+    return with_one_power("{:f} ± {:f}", pair, max(x.adjusted() for x in pair if x))
+
+
+def with_one_power(form: str, numbers: Sequence[Decimal], power: int) -> str:
+    """Numbers in a form, with one power of ten behind them where they are unreadable without."""
     if -4 <= power < 16:
-        return "{:f} ± {:f}".format(*pair)
+        return form.format(*numbers)
     context = decimal_context(WIDE, ROUND_HALF_EVEN)
-    return "({:f} ± {:f})e{}".format(*(context.scaleb(x, -power) for x in pair), power)
+    return f"({form.format(*(context.scaleb(x, -power) for x in numbers))})e{power}"
 
 
 def tidy(value: Decimal) -> Decimal:

@@ -1,8 +1,7 @@
-"""Formulas as an arithmetic: the equations of the model, run on symbols, record themselves.
+"""Formulas as an arithmetic: run on symbols, the equations of the model give expression trees.
 
-A `Formula` is what the model computes with where it is not to compute: the functions that give a number
-in fractions or enclosures give here the tree of what they do. It can be written out, with symbols or with
-numbers put in, and worked out again to check the numbers.
+The same functions that give a number in fractions or enclosures give a `Formula` here, which records the
+operations. It can be written out, with symbols or with numbers, and evaluated to check the numbers.
 """
 
 from __future__ import annotations
@@ -19,16 +18,16 @@ OPERATORS = {"+": add, "-": sub, "*": mul, "/": truediv}
 
 
 class Symbol(NamedTuple):
-    """A symbol and what it stands for: an input's exact value, or the name of something a machine has."""
+    """A symbol and what it stands for: an input's exact value, or the name of an attribute of `Machine`."""
 
     name: str
     of: Fraction | str
 
 
 class Formula:
-    """An operation ``op`` on its ``parts``, formulas or what else it takes; or a symbol or a number.
+    """An operation ``op`` on its ``parts``, which are formulas, numbers or tables; or a symbol or a number.
 
-    A ``"symbol"`` has a `Symbol`, or the name of a column, a ``"number"`` an int or a float.
+    The part of a ``"symbol"`` is a `Symbol`, or the name of a column; that of a ``"number"`` an int or float.
     """
 
     __slots__ = ("op", "parts")
@@ -36,38 +35,38 @@ class Formula:
     def __init__(self, op: str, *parts: Any) -> None:
         self.op, self.parts = op, parts
 
-    def __add__(self, other: Part) -> Formula:
+    def __add__(self, other: Term) -> Formula:
         return Formula("+", self, formula(other))
 
     def __radd__(self, other: float) -> Formula:
         return Formula("+", formula(other), self)
 
-    def __sub__(self, other: Part) -> Formula:
+    def __sub__(self, other: Term) -> Formula:
         return Formula("-", self, formula(other))
 
     def __rsub__(self, other: float) -> Formula:
         return Formula("-", formula(other), self)
 
-    def __mul__(self, other: Part) -> Formula:
+    def __mul__(self, other: Term) -> Formula:
         return self if other == 1 else Formula("*", self, formula(other))
 
     def __rmul__(self, other: float) -> Formula:
         return self if other == 1 else Formula("*", formula(other), self)
 
-    def __truediv__(self, other: Part) -> Formula:
+    def __truediv__(self, other: Term) -> Formula:
         return Formula("/", self, formula(other))
 
     def __rtruediv__(self, other: float) -> Formula:
         return Formula("/", formula(other), self)
 
     def symbols(self) -> set[Symbol]:
-        """The symbols that the formula is made of."""
+        """The symbols in the formula."""
         if self.op in ("symbol", "number"):
             return {self.parts[0]} if self.op == "symbol" else set()
         return set().union(*(part.symbols() for part in self.parts))
 
     def worked_out(self, ar: Enclosures, values: Mapping[Symbol, Decimal]) -> Enclosure:
-        """The enclosure of its value, with exactly those numbers for the symbols. Raises Unsettled."""
+        """The enclosure of the value for these exact values of the symbols. Raises Unsettled."""
         if self.op == "symbol":
             return Enclosure(ar, values[self.parts[0]], values[self.parts[0]])
         if self.op == "number":
@@ -80,12 +79,12 @@ class Formula:
         return cast(Enclosure, ar.cos_sin(*parts)[1] if self.op == "sin" else getattr(ar, self.op)(*parts))
 
 
-Part = Formula | float
-"""What formulas of columns are made of: a column's formula, or a number that is the same in all rows."""
+Term = Formula | float
+"""An operand in formulas of columns: a column's formula, or a number that is the same in all rows."""
 
 
-def formula(part: Part | Fraction) -> Formula:
-    """A formula, of a number too."""
+def formula(part: Term | Fraction) -> Formula:
+    """The formula itself, or the formula of a number."""
     if isinstance(part, Formula):
         return part
     return Formula("number", float(part) if isinstance(part, Fraction) else part)
@@ -114,13 +113,13 @@ class Formulas:
 
 
 class Symbols(Formulas):
-    """As much of `Arithmetic` as the equations that are written out need: inputs are symbols."""
+    """The part of `Arithmetic` that the derivations need; inputs are symbols."""
 
     def __init__(self, inputs: Sequence[Symbol]) -> None:
         self.inputs = inputs
 
     def number(self, q: Fraction | int) -> Formula:
-        """The symbol of an input, recognised by identity, as two inputs may be equal. Raises LookupError."""
+        """The symbol of an input, found by identity, as two inputs may be equal. Raises LookupError."""
         for symbol in self.inputs:
             if symbol.of is q:
                 return Formula("symbol", symbol)

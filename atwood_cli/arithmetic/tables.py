@@ -1,4 +1,4 @@
-"""Constants and tables of columns' arithmetics, computed once to 80 digits and told apart into doubles."""
+"""Constants and tables for the arithmetics of columns, computed once to 80 digits and split into doubles."""
 
 from collections.abc import Sequence
 from fractions import Fraction
@@ -13,13 +13,13 @@ from .rational import EXACT, Irrational
 
 Column = NDArray[np.float64]
 
-STEPS, FINER = 16_384, 4  # of the exponential's tables to a factor of 2, and to one of these
+STEPS, FINER = 16_384, 4  # steps of the coarse table of powers to a factor of 2; fine steps to a coarse one
 FINE = STEPS * FINER
-TO_A_DEGREE = 4  # steps of the table of sines
+TO_A_DEGREE = 4  # steps of the table of sines to a degree
 FIRST_DEGREE, LAST_DEGREE = -45, 270
 
 ENOUGH = enclosures(80)
-BITS = 240  # after the point of a table's numbers
+BITS = 240  # of a table's numbers after the binary point
 
 
 @cache
@@ -46,7 +46,7 @@ def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
 
 @cache
 def in_parts(q: Fraction, bits: int, count: int) -> tuple[float, ...]:
-    """A number as a sum: ``count`` parts of so many bits, whose short multiples are exact, and the rest."""
+    """A number as a sum of ``count`` parts of so many bits, with exact small multiples, and the rest."""
     parts = []
     for _ in range(count):
         mantissa, exponent = frexp(float(q))
@@ -57,7 +57,7 @@ def in_parts(q: Fraction, bits: int, count: int) -> tuple[float, ...]:
 
 @cache
 def powers(steps: int, n: int) -> tuple[Column, ...]:
-    """2^(i/steps) - 1 from i = 0 up to the next coarser table's step, as the sum of ``n`` columns."""
+    """2^(i/steps) - 1 for i from 0 to the step of the next coarser table, as the sum of ``n`` columns."""
     exact, count = [0], STEPS if steps == STEPS else FINER
     step = int(Fraction(ENOUGH.expm1(ENOUGH.number(ln2() / steps)).lo) * 2**BITS)
     for _ in range(count - 1):
@@ -67,7 +67,7 @@ def powers(steps: int, n: int) -> tuple[Column, ...]:
 
 @cache
 def heads_and_tails() -> tuple[Column, Column]:
-    """The coarse table of powers as a head of 26 bits and the rest."""
+    """The coarse table of powers, split into heads of 26 bits and the rest."""
     highs, lows = powers(STEPS, 2)
     heads = (highs.view(np.int64) & HEAD).view(np.float64)
     return heads, highs - heads + lows
@@ -78,7 +78,7 @@ HEAD = -1 << 27  # masks the last 27 of the 53 bits of a double
 
 @cache
 def whole_powers() -> Column:
-    """2^m as long as 2^m - 1 has no more than 52 bits, then infinity: what comes of that is no number."""
+    """2^m for m < 52, and then infinity, which makes all that depends on it NaN."""
     return np.array([2.0**m for m in range(52)] + [inf])
 
 

@@ -1,13 +1,16 @@
-"""Many scenes at once: arrays in, arrays out, by block, on threads.
+"""Many scenes at once: arrays in, arrays out, block by block, on threads.
 
-`solve_arrays` is the door. Here it is also decided, row by row, whether what is given is a scene, and of
-which kind its inputs are; rows of the same kind are solved together in `rows`, which argues what the
-accuracies promise.
+`solve_arrays` checks each row's inputs and puts rows with the same pattern of inputs into one group. `rows`
+solves a group. `plan` shows by an example how results are certified.
 """
 
+from __future__ import annotations  # help() shows types by the names written here
+
 import os
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from decimal import Decimal
 from fractions import Fraction
 from math import inf, nan, prod
 from threading import Lock
@@ -18,24 +21,23 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..arithmetic.double_double import WINDOW
 from ..arithmetic.tables import Column
-from ..model.quantities import NAMES, STANDARD
-from ..model.scene import MISSING_MASS, PARAMETERS, SceneError
+from ..model.quantities import ACCURACIES, NAMES, STANDARD, Accuracy
+from ..model.scene import COLUMNS, MASSES, MISSING_MASS, PARAMETERS, SceneError
 from ..model.units import nearest
-from .plan import COLUMN, COLUMNS, LADDERS, Accuracy, Given
+from .plan import COLUMN, LEVELS, Pattern, Task
 from .program import Room
-from .rows import Index, Left, Rows, size_of
+from .rows import Index, Rows, size_of
 
-ACCURACIES: tuple[Accuracy, ...] = ("fast", "certified", "exact")
 BLOCK = 131_072  # rows, as measured
-THREADS = 4  # more would wait for the interpreter
-FAST_WINDOW = 2.0**-250, 2.0**250  # beyond it, what comes in between may overflow though results do not
+THREADS = 4  # more would wait for the interpreter's lock
+FAST_WINDOW = 2.0**-250, 2.0**250  # beyond it, intermediate values may overflow though results do not
 SHAPES = ("inertia", "wrap")
-"""Inputs that a program is made for, where all rows share them: 1/2 and π are no mere numbers."""
-MASSES, MAY_BE_ABSENT = ("m1", "m2"), ("M", "mu", "mu_k", "R")
+"""Inputs whose common value is built into a program: with 1/2 and π it is simpler than with a column."""
+MAY_BE_ABSENT = ("M", "mu", "mu_k", "R")
 REAL = "biufOSU"
-"""Kinds of arrays: those of real numbers, and those whose elements may be; NumPy takes others for numbers."""
+"""NumPy's kinds of arrays that may hold real numbers. It would convert some others to numbers too."""
 STATUSES = ("valid", *COLUMNS, "no mass", "friction at a free end", "mu_k without mu", "mu_k above mu")
-"""What the codes in ``status`` mean: the parameter outside its domain, or what does not go together."""
+"""What the codes in ``status`` mean: a parameter outside its domain, or inputs that do not go together."""
 
 
 def solve_arrays(
@@ -52,28 +54,36 @@ def solve_arrays(
     accuracy: Accuracy = "certified",
     quantities: Sequence[str] | None = None,
 ) -> dict[str, NDArray[Any]]:
-    """`solve` for arrays of scenes, broadcast against each other; all numbers are doubles.
+    """Solve arrays of scenes, broadcast against each other, in doubles.
 
-    Masses in kg, g in m/s², R in m, wrap in degrees; M = inf locks the pulley. What is masked or NaN is
-    not given for that row, which M, mu, mu_k and R may be. ``accuracy`` is "fast" (doubles), "certified"
+    Masses are in kg, g in m/s², R in m, wrap in degrees. M = inf locks the pulley. M, mu, mu_k and R are
+    not given in rows where they are masked or NaN. ``accuracy`` is "fast" (plain doubles), "certified"
     (every value within 4 units in the last place of the exact one, or 4.5 just below a power of two; every
-    regime right), or "exact" (the nearest double, and so the same everywhere; else the last place may
-    differ between NumPy's builds, or by the rows beside).
+    regime right), or "exact" (the nearest double). Exact results are the same everywhere. The last place of
+    others may depend on NumPy's build and on the other rows.
 
-    Returns arrays by name, of the inputs' common shape: the ``quantities`` asked for (those of
-    `quantities.STANDARD` if None), NaN where undetermined, ±inf beyond the doubles; ``regime`` is an
-    int8 index into `REGIMES`, -1 where the row is invalid; and always ``status``, an int8 index into
-    `STATUSES`, 0 where it is valid. An invalid row never stops the others. Raises SceneError for a
-    missing mass, what is no real number, an unknown accuracy or quantity, ValueError for shapes that do
-    not broadcast.
+    Returns arrays by name, of the inputs' common shape. There is one for each of the ``quantities``, or of
+    `quantities.STANDARD` if None: NaN where undetermined, ±inf beyond the doubles. ``regime`` is an int8
+    index into `REGIMES`, -1 in an invalid row. There is always ``status``, an int8 index into `STATUSES`, 0
+    in a valid row. An invalid row never stops the others. Raises SceneError for a missing mass, for what
+    is no real number or beyond the range of doubles, for an unknown accuracy or quantity, and for shapes
+    that do not broadcast.
     """
-    names = list(STANDARD if quantities is None else dict.fromkeys(quantities))
+    given = dict(zip(COLUMNS, (m1, m2, M, mu, mu_k, g, inertia, R, wrap), strict=True))
+    return solve_and_count(given, accuracy, quantities)[0]
+
+
+def solve_and_count(
+    given: Mapping[str, ArrayLike | None], accuracy: Accuracy, quantities: Sequence[str] | None
+) -> tuple[dict[str, NDArray[Any]], Counter[tuple[str, str]]]:
+    """As `solve_arrays`; and the number of valid rows without a value, by quantity and reason."""
+    names = list(STANDARD if quantities is None else quantities)
     for name in names:
         if name not in NAMES:
-            raise SceneError("quantities", name, f"is no quantity{nearest(str(name), NAMES)}")
+            raise SceneError("quantities", str(name), f"is no quantity{nearest(str(name), NAMES)}")
+    names = list(dict.fromkeys(names))
     if accuracy not in ACCURACIES:
         raise SceneError("accuracy", accuracy, f"must be one of {', '.join(ACCURACIES)}")
-    given = dict(zip(COLUMNS, (m1, m2, M, mu, mu_k, g, inertia, R, wrap), strict=True))
     for name, value in given.items():
         if value is None and name not in MAY_BE_ABSENT:
             raise SceneError(
@@ -82,55 +92,85 @@ def solve_arrays(
                 MISSING_MASS if name in MASSES else "is None; give it, or leave it out for the default",
             )
     inputs = {name: _doubles(name, value) for name, value in given.items() if value is not None}
-    shape = np.broadcast_shapes(*(column.shape for column in inputs.values()))
+    shape = _common_shape(inputs)
     kinds = {"regime": np.int8, "status": np.int8}
     results = {name: np.empty(shape, kinds.get(name, np.float64)) for name in (*names, "status")}
     flat = {name: column.reshape(-1) for name, column in results.items()}
-    left: dict[Left, list[NDArray[np.intp]]] = {}
+    left: dict[Task, list[NDArray[np.intp]]] = {}
+    counted: list[Counter[tuple[str, str]]] = []
 
-    def solve_block(block: Index, room: Room, what: Left | None) -> None:
-        """All of a block's rows, or what was left of rows that agree."""
+    def solve_block(block: Index, room: Room, task: Task | None) -> None:
+        """Solve all rows of a block, or the rows of a task that was left for the end."""
         given = {name: _cut(column, shape, block) for name, column in inputs.items()}
         out = {name: flat[name][block] for name in results}
         rows = Rows(given, out, accuracy, room)
-        if what is None:
+        if task is None:
             assert isinstance(block, slice)
             rows.left = {} if len(blocks) > 1 else None
             _solve(rows, tuple(names))
-            for left_rows, some in (rows.left or {}).items():
-                left.setdefault(left_rows, []).extend(index + block.start for index in some)
+            for few, some in (rows.left or {}).items():
+                left.setdefault(few, []).extend(index + block.start for index in some)
         else:
-            rows.solve(slice(0, size_of(block)), *what)
+            rows.solve(slice(0, size_of(block)), task)
+        counted.append(rows.reasons)
         if not isinstance(block, slice):
-            for name in what[2] if what else ():
+            for name in task.names if task else ():
                 flat[name][block] = out[name]
 
     blocks = _blocks(prod(shape), BLOCK, THREADS)
     _on_threads(solve_block, [(block, None) for block in blocks])
-    again: list[tuple[Index, Left | None]] = []
-    for what, indices in left.items():
-        index = np.sort(np.concatenate(indices))  # whichever thread was first
-        again += [(index[block], what) for block in _blocks(index.size, BLOCK)]
+    again: list[tuple[Index, Task | None]] = []
+    for task, indices in left.items():
+        index = np.sort(np.concatenate(indices))  # the same order whichever thread was first
+        again += [(index[block], task) for block in _blocks(index.size, BLOCK)]
     _on_threads(solve_block, again)
-    return results
+    return results, sum(counted, Counter())
+
+
+def _common_shape(inputs: Mapping[str, Column]) -> tuple[int, ...]:
+    """The shape that the columns are broadcast to. Raises SceneError."""
+    shape: tuple[int, ...] = ()
+    for name, column in inputs.items():
+        try:
+            shape = np.broadcast_shapes(shape, column.shape)
+        except ValueError:
+            rule = (
+                f"of shape {column.shape} does not broadcast with {shape}, the shape of what comes before it"
+            )
+            raise SceneError(name, None, rule) from None
+    return shape
 
 
 def _doubles(name: str, value: ArrayLike) -> Column:
-    """A parameter's numbers as doubles, NaN where masked. Raises SceneError for what is no real number."""
+    """A parameter's numbers as doubles, NaN where masked.
+
+    Raises SceneError for what is no real number, and for a number that would round to 0 or inf and is
+    neither.
+    """
     try:
         array = value if isinstance(value, np.ma.MaskedArray) else np.asarray(value)
-        doubles: Any = array.astype(np.float64, copy=False) if array.dtype.kind in REAL else None
+        is_text = array.dtype.kind in "SU"  # as objects, so that an error shows 'x', not np.str_('x')
+        plain = array.astype(object) if is_text else array
+        with np.errstate(over="ignore"):
+            doubles: Any = plain.astype(np.float64, copy=False) if array.dtype.kind in REAL else None
     except (TypeError, ValueError, OverflowError) as error:
         raise SceneError(name, None, f"must be real numbers: {error}") from None
     if doubles is None:
         raise SceneError(name, None, f"must be real numbers, not {array.dtype}")
-    return np.asarray(doubles.filled(nan) if isinstance(doubles, np.ma.MaskedArray) else doubles)
+    column = np.asarray(doubles.filled(nan) if isinstance(doubles, np.ma.MaskedArray) else doubles)
+    if not np.can_cast(array.dtype, np.float64):
+        ends = np.isinf(column) | (column == 0)
+        for one, double in zip(np.asarray(array)[ends], column[ends], strict=True):
+            text = one.decode() if isinstance(one, bytes) else one
+            if (Decimal(text) if isinstance(text, str) else text) != double:
+                raise SceneError(name, str(text), "is beyond the range of doubles")
+    return column
 
 
 def _blocks(size: int, most: int, multiple_of: int = 1) -> list[slice]:
-    """Slices of nearly the same length, so many that threads share them evenly.
+    """Slices of nearly the same length; their number is a multiple that threads can share evenly.
 
-    Not by how many processors there are: the digits must not depend on it.
+    The number of processors plays no part, as the digits must not depend on it.
     """
     count = -(-size // most)
     count = -(-count // multiple_of) * multiple_of if count > 1 else count
@@ -147,9 +187,9 @@ def _cut(column: Column, shape: tuple[int, ...], rows: Index) -> Column:
 
 
 def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> None:
-    """NumPy lets go of the interpreter while it computes, so threads share the parts.
+    """Do the parts of the work on threads, which run at once because NumPy releases the interpreter's lock.
 
-    Each keeps a room of its own from part to part.
+    Each thread keeps its own `Room` from part to part.
     """
     waiting = iter(parts)
     taking = Lock()
@@ -162,8 +202,8 @@ def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> 
                     part = next(waiting, None)
                 if part is None:
                     return
-                block, what = part
-                work(block, room, what)
+                block, task = part
+                work(block, room, task)
 
     count = min(THREADS, os.cpu_count() or 1, len(parts))
     if count < 2:
@@ -174,36 +214,36 @@ def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> 
         for done in [pool.submit(share) for _ in range(count)]:
             done.result()
     finally:
-        waiting = iter(())  # for all threads, should one have failed or Ctrl-C come
+        waiting = iter(())  # stops all threads if one has failed, or at Ctrl-C
         pool.shutdown()
 
 
 def _solve(rows: Rows, names: tuple[str, ...]) -> None:
-    """Write quantities of all rows, and their status."""
+    """Write the status of all rows, and the quantities of the valid ones."""
     given = {name: _InputColumn.of(name, column, rows.accuracy) for name, column in rows.inputs.items()}
     rows.results["status"][:] = status = _status(given, len(rows.results["status"]))
-    for index, agreed, far in _agreeing(given, status):
-        rung = len(LADDERS[rows.accuracy]) - 1 if far else 0
-        rows.solve(index, agreed, frozenset(), names, rung)
+    for index, pattern, far in _groups(given, status):
+        level = len(LEVELS[rows.accuracy]) - 1 if far else 0
+        rows.solve(index, Task(pattern, frozenset(), names, level))
     if status.any():
         for name in names:
             rows.results[name][status != 0] = -1 if name == "regime" else nan
 
 
-# What is given in each row: which rows agree before any question is asked
+# The pattern of each row's inputs
 
 USUAL, ABSENT, ZERO, INFINITE, FAR = range(5)
 
 
 class _InputColumn(NamedTuple):
-    """A parameter's column, and of which kind each number is: just USUAL if all are."""
+    """A parameter's column and the kind of each number, or just USUAL if all are."""
 
     name: str
     column: Column
     kinds: Any
 
     @classmethod
-    def of(cls, name: str, column: Column, accuracy: Accuracy) -> "_InputColumn":
+    def of(cls, name: str, column: Column, accuracy: Accuracy) -> _InputColumn:
         low, high = FAST_WINDOW if accuracy == "fast" else WINDOW
         if low < column.min() and column.max() < high:
             return cls(name, column, USUAL)
@@ -220,8 +260,8 @@ class _InputColumn(NamedTuple):
         )
         return ~np.isin(self.kinds, may_be) | (self.column < 0)
 
-    def agreed(self, row: int) -> Any:
-        """What the rows of the same kind as this one agree on: see `Given`."""
+    def in_pattern(self, row: int) -> Any:
+        """This input in the `Pattern` of a row."""
         single = self.column.size == 1
         kind = self.kinds if self.kinds is USUAL else self.kinds[0 if single else row]
         if kind == ABSENT:
@@ -234,7 +274,7 @@ class _InputColumn(NamedTuple):
 
 
 def _status(given: Mapping[str, _InputColumn], size: int) -> NDArray[np.int8]:
-    """Row by row, whether the inputs are in their domains and go together; see STATUSES."""
+    """The index into STATUSES for each row: whether its inputs are in their domains and go together."""
     faults = [(name, one.faults) for name, one in given.items() if one.kinds is not USUAL]
     absent = np.array([nan])
     m1, m2, mu, mu_k = (given[n].column if n in given else absent for n in ("m1", "m2", "mu", "mu_k"))
@@ -245,15 +285,15 @@ def _status(given: Mapping[str, _InputColumn], size: int) -> NDArray[np.int8]:
         faults.append(("mu_k without mu", ~np.isnan(mu_k) & np.isnan(mu)))
         faults.append(("mu_k above mu", mu_k > mu))
     status = np.zeros(size, np.int8)
-    for fault, rows in reversed(faults):  # the first one stands
+    for fault, rows in reversed(faults):  # the first fault overwrites the others
         status[np.broadcast_to(rows, size)] = STATUSES.index(fault)
     return status
 
 
-def _agreeing(
+def _groups(
     given: Mapping[str, _InputColumn], status: NDArray[np.int8]
-) -> Iterator[tuple[Index, Given, bool]]:
-    """The rows of a block in parts that agree on what is given; and whether that is beyond the window."""
+) -> Iterator[tuple[Index, Pattern, bool]]:
+    """A block's valid rows, grouped by pattern, and whether an input of the group is beyond the window."""
     size, (m1, m2) = len(status), (given["m1"].column, given["m2"].column)
     digits = [(5, one.kinds) for one in given.values() if one.kinds is not USUAL]
     if not (m2 > m1).all():
@@ -269,9 +309,9 @@ def _agreeing(
         row = 0 if isinstance(index, slice) else int(index[0])
         if status[row]:
             continue
-        inputs = dict.fromkeys(COLUMNS) | {name: of.agreed(row) for name, of in given.items()}
+        inputs = dict.fromkeys(COLUMNS) | {name: of.in_pattern(row) for name, of in given.items()}
         far = any(
             of.kinds is not USUAL and np.broadcast_to(of.kinds, size)[row] == FAR for of in given.values()
         )
         light, heavy = (float(np.broadcast_to(mass, size)[row]) for mass in (m1, m2))
-        yield index, Given((heavy > light) - (heavy < light), tuple(inputs.values())), far
+        yield index, Pattern((heavy > light) - (heavy < light), tuple(inputs.values())), far

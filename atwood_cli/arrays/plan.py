@@ -1,28 +1,36 @@
-"""What is done to rows that agree: the model's own equations, traced once and listed as programs.
+"""How arrays are certified: what is done for a group of rows, and why the results keep what is promised.
 
-The model of one scene (`Machine`) runs on formulas of columns. It asks a few questions on the way, as it
-does for one scene: which mass is heavier, does the string slip. Rows that agree on what is given and on the
-answers so far share a `Plan`, a question for its rows, or the program that gives their quantities.
+Take the row m1 = 1, m2 = 3, M = 100, mu = 0.3, and its acceleration, certified. (u = 2^-53)
 
-What the accuracies promise, and why they keep it:
+1. The row joins all rows with the same `Pattern`: m2 is heavier, M and mu are given, nothing is zero.
+2. The model of one scene (`Machine`) runs on formulas of columns. It asks: does the string slip? That is, is
+   T_h/T_l - 1 = 1.786 of a string that grips above e^{μφ} - 1 = 1.566? Doubles suffice to say yes here. The
+   rows that say yes go on as a group, of which the model asks nothing more.
+3. The formulas become a `Program` of some hundred NumPy operations. It computes with pairs of doubles, which
+   have an error bound. For this row it gives 0.764026672247107, off by at most 2.51 u of that, on condition
+   that m2 - e^{μφ} m1 = 0.43 is large enough beside the rounding errors of its terms. It is. The bound is
+   below 3.49 u, so the value is certified. (The exact one is 0.76402667224710707.)
+4. Beside it, the row M = 1e6, mu = 0.34969 hardly slips: m2 - e^{μφ} m1 = 8.6e-5 has lost too many digits,
+   and the condition does not hold. Only this row, and only this quantity, goes to the next level of
+   precision. There an expansion of two doubles is off by at most 1.7e-25 of the value.
 
-- ``fast``: doubles as they come. Whether a string slips is read off doubles too, and what comes of an
-  e^{μφ} beyond the doubles is infinite, even where a tiny mass would bring it back.
-- ``certified``: a value is within 4 units in the last place (ulp) of the exact one for the given
-  doubles, and every regime is right. A row goes up a ladder until an arithmetic vouches for it: pairs,
-  rounded or quick, whichever is good enough in all rows, then expansions of two and three doubles, and at
-  the end the exact arithmetic of a single scene. An arithmetic vouches where its bound is at most
-  3.49 · 2^-53 of the value: that is at most 3.49 ulp, and rounding to a double costs half an ulp more.
-  (Just below a power of two half an ulp of the double may be a whole one of the exact value: there it is
-  4.49 ulp.) A question (does it slip?) is answered by doubles where the two sides differ by a 2^-40 of
-  them, far more than the few roundings they take can amount to; else by the sign of a difference, if its
-  bound is below 1/2.
-- ``exact``: the double nearest to the exact value. An expansion vouches where rounding gives the same
-  double at both ends of its bound (Ziv's test), or where it is exact. A value half-way between two doubles
-  is no such thing; where it is rational, residues show that it is that tie (see `modular`).
+What each accuracy promises, and why it holds:
 
-Rows with an input beyond `double_double.WINDOW` (and not 0), or beyond `FAST_WINDOW`, start with triples,
-whose range is not that of doubles.
+- ``fast``: plain doubles, without bounds. They also decide whether a string slips. An e^{μφ} beyond the
+  doubles makes results infinite, even where a tiny mass would bring them back.
+- ``certified``: every regime is right, and every value within 4 units in the last place (ulp) of the exact
+  one for the given doubles. The levels are pairs (rounded or quick, the first that suffices in all rows),
+  then expansions of two and of three doubles, and in the end the exact arithmetic of a single scene. A value
+  is certified where its bound is at most 3.49 u of it: that is at most 3.49 ulp, and to round to a double
+  costs half an ulp more. (Just below a power of two, half an ulp of the double may be a whole one of the
+  exact value: there it is 4.49 ulp.) A question is answered by doubles where its sides differ by a 2^-40 of
+  them, far more than their few roundings; else by the sign of the difference, if its bound is below 1/2.
+- ``exact``: the double nearest to the exact value. A value is certified where both ends of its bound round to
+  the same double (Ziv's test), or where it is exact. A tie, half-way between two doubles, never passes. A
+  rational value that is nearer to a tie than it could be without being one (see `gap`) is that tie.
+
+Rows with an input beyond `double_double.WINDOW` (or `FAST_WINDOW`), other than 0, start with expansions of
+three doubles, whose range is wider than that of doubles.
 """
 
 from __future__ import annotations
@@ -30,13 +38,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from fractions import Fraction
 from functools import lru_cache, reduce
-from math import inf, nan
-from typing import Any, Literal, NamedTuple
+from math import inf
+from typing import Any, NamedTuple
 
 from ..arithmetic.double import (
     DOUBLES,
     Conditions,
-    Unvouched,
+    Uncertified,
     absolute,
     at_most,
     both,
@@ -46,27 +54,25 @@ from ..arithmetic.double import (
     less,
 )
 from ..arithmetic.double_double import QUICK, ROUNDED, Pair
-from ..arithmetic.error_free import UNIT
+from ..arithmetic.error_free import UNIT, two_sum
 from ..arithmetic.expansion import PAIRS, TRIPLES, Expansion, times_power_of_two
 from ..arithmetic.lazy import lazy
-from ..arithmetic.symbolic import Formula, Part, formula
+from ..arithmetic.symbolic import Formula, Term, formula
 from ..model.angle import Angle
 from ..model.case import Case, Excess, is_zero
 from ..model.machine import Machine, Undetermined
-from ..model.quantities import REGIMES
-from ..model.scene import PARAMETERS, Scene
+from ..model.quantities import REGIMES, Accuracy
+from ..model.scene import COLUMNS, Scene
 from .program import Program
 
-Accuracy = Literal["fast", "certified", "exact"]
-COLUMNS = tuple(name for name in PARAMETERS if name != "I")
 CERTIFIED = 3.49 * UNIT
-LADDERS: dict[str, tuple[tuple[Any, ...], ...]] = {
+LEVELS: dict[str, tuple[tuple[Any, ...], ...]] = {
     "fast": ((DOUBLES,), (TRIPLES,)),
     "certified": ((ROUNDED, QUICK), (PAIRS,), (TRIPLES,)),
     "exact": ((PAIRS,), (TRIPLES,)),
 }
 CLEAR = 2.0**-40
-"""By how much of it two sides must differ in doubles to answer a question."""
+"""The relative difference of two sides at which doubles answer a question."""
 SIGNED = (
     "acceleration",
     "friction_force_x",
@@ -76,74 +82,85 @@ SIGNED = (
     "angular_acceleration",
 )
 
-NORMAL = -1021.0  # the power of two below which a double has fewer bits
+LEAST = 5e-324  # the smallest positive double
+NORMAL = -1021.0  # below this power of two a double has fewer bits
 
-KEPT = 256  # plans: ten kinds of rows take that many; the longest, of all quantities in triples, has 3 MB
+KEPT = 256  # plans: enough for ten patterns; the longest, of all quantities in triples, takes 3 MB
 
 COLUMN = "column"
 
 
-class Given(NamedTuple):
-    """What rows agree on before any question: which mass is heavier (see `Case.sign`), and each input.
+class Pattern(NamedTuple):
+    """What rows have in common before any question: which mass is heavier (`Case.sign`), and each input.
 
-    That is None or inf, a Fraction that all share, or COLUMN.
+    An input is None (not given), inf, a Fraction that is the same in all rows, or COLUMN.
     """
 
     sign: int
     inputs: tuple[Fraction | float | str | None, ...]
 
 
-Answers = frozenset[tuple[str, bool]]
+Decisions = frozenset[tuple[str, bool]]
+"""Questions, and what the rows of a group have answered."""
+
+
+class Task(NamedTuple):
+    """Quantities to compute, at a level of precision, for the rows of one pattern and the same decisions."""
+
+    pattern: Pattern
+    decisions: Decisions
+    names: tuple[str, ...]
+    level: int
 
 
 class Asked(Exception):
-    """The rows have not answered this question yet."""
+    """The model asks a question that the rows have not answered yet."""
 
 
-class _RowsCase(Case):
-    """A case whose inputs are columns of an arithmetic, and whose questions have been put to the rows."""
+class _GroupCase(Case):
+    """The case of a group of rows: its inputs are columns, and its decisions are those of the group."""
 
-    def __init__(self, given: Given, answers: Answers, ar: Any) -> None:
+    def __init__(self, pattern: Pattern, decisions: Decisions, ar: Any) -> None:
         inputs: dict[str, Any] = {
             name: ar.number(Formula("symbol", name)) if value == COLUMN else value
-            for name, value in zip(COLUMNS, given.inputs, strict=True)
+            for name, value in zip(COLUMNS, pattern.inputs, strict=True)
         }
         inputs["wrap"] = Angle(inputs["wrap"])
         super().__init__(Scene(**inputs, I=None))
-        self.sign, self._answers = given.sign, dict(answers)
+        self.sign, self._decisions = pattern.sign, dict(decisions)
         if isinstance(self.light, Pair) and isinstance(self.heavy, Pair):
             self.heavy.covers = self.light
 
     @lazy
     def rim_mass(self) -> Any:
-        """Without a mass it is 0, whatever the column of its shape."""
+        """A pulley without mass has none at its rim, even where its inertia factor is a column."""
         return self.pulley_mass if is_zero(self.pulley_mass) else super().rim_mass
 
-    def _answer(self, question: str) -> bool:
-        if question not in self._answers:
+    def _decided(self, question: str) -> bool:
+        if question not in self._decisions:
             raise Asked(question)
-        return self._answers[question]
+        return self._decisions[question]
 
     @lazy
     def long_wrap(self) -> bool:
         wrap = self.scene.wrap
-        return wrap.is_beyond_half_turn if isinstance(wrap.number, Fraction) else self._answer("long_wrap")
+        return wrap.is_beyond_half_turn if isinstance(wrap.number, Fraction) else self._decided("long_wrap")
 
     @lazy
     def ends_hang_down(self) -> bool:
         wrap = self.scene.wrap
-        return wrap.ends_hang_down if isinstance(wrap.number, Fraction) else self._answer("ends_hang_down")
+        return wrap.ends_hang_down if isinstance(wrap.number, Fraction) else self._decided("ends_hang_down")
 
     def beats_friction(self, which: Excess) -> bool:
-        return self._answer(which)
+        return self._decided(which)
 
 
 class _ColumnsMachine(Machine[Any]):
-    """The model of columns: what is known of the order and signs of numbers saves telling them row by row."""
+    """The model of columns. It states which numbers are never negative or never the larger, to save work."""
 
     @lazy
     def drive(self) -> Any:
-        """Asked for only where the string can slip, and so above 0."""
+        """Above 0, as it is asked for only where the string can slip."""
         return _known_positive(super().drive)
 
     @lazy
@@ -152,7 +169,7 @@ class _ColumnsMachine(Machine[Any]):
 
     @lazy
     def magnitude(self) -> Any:
-        """Never above gravity."""
+        """The acceleration without its sign, which is never above g."""
         magnitude = super().magnitude
         if isinstance(magnitude, Pair):
             self.g.covers = magnitude
@@ -165,102 +182,109 @@ def _known_positive(drive: Any) -> Any:
     return drive
 
 
-def _taken(name: str) -> Any:
-    """An attribute that a finer machine has."""
+def _from_finer(name: str) -> Any:
+    """An attribute that is computed by the finer machine and then rounded."""
     return lazy(lambda machine: ROUNDED.number(getattr(machine.finer, name)))
 
 
 class _RoundedMachine(_ColumnsMachine):
-    """A machine whose products are rounded, but for those that come before something cancels."""
+    """A machine with rounded products. What enters a difference that cancels comes from a finer machine."""
 
     def __init__(self, finer: Machine[Any]) -> None:
         super().__init__(finer.case, ROUNDED)
         self.finer = finer
 
-    phi, k1, excess, transfer, drive = map(_taken, ("phi", "k1", "excess", "transfer", "drive"))
+    phi, k1, excess, transfer, drive = map(_from_finer, ("phi", "k1", "excess", "transfer", "drive"))
 
 
-def _machines(given: Given, answers: Answers, arithmetics: tuple[Any, ...]) -> Iterator[Machine[Any]]:
-    """The model in each of those arithmetics."""
-    if arithmetics == (ROUNDED, QUICK):
-        quick = _ColumnsMachine(_RowsCase(given, answers, QUICK), QUICK)
-        yield from (_RoundedMachine(quick), quick)
-    else:
-        for ar in arithmetics:
-            yield _ColumnsMachine(_RowsCase(given, answers, ar), ar)
+def _machines(task: Task, accuracy: Accuracy) -> Iterator[Machine[Any]]:
+    """The model in each arithmetic of the task's level, the cheapest first."""
+    arithmetics = LEVELS[accuracy][task.level]
+    finest = arithmetics[-1]
+    machine = _ColumnsMachine(_GroupCase(task.pattern, task.decisions, finest), finest)
+    if ROUNDED in arithmetics:
+        yield _RoundedMachine(machine)
+    yield machine
 
 
 class Plan(NamedTuple):
-    """How rows that agree are solved.
+    """What is done for a task.
 
-    The program's results are those of the ``quantities``, and whether those that are ``doubtful`` are
-    vouched for, which differs from row to row. ``constants`` are the same in all rows, ``later`` is not for
-    this rung, and ``asking`` cannot be told before the ``question`` is put to the rows.
+    The program gives the ``quantities``, and then, for each of the ``conditional`` ones, whether a row is
+    certified. ``constants`` have the same value in all rows, ``missing`` have none, for a reason. ``later``
+    cannot be computed at this level. Those that are ``asking`` need the answer to the ``question`` first.
     """
 
     program: Program | None
     quantities: tuple[str, ...]
-    doubtful: tuple[str, ...]
+    conditional: tuple[str, ...]
     constants: tuple[tuple[str, float], ...]
+    missing: tuple[tuple[str, str], ...]
     later: tuple[str, ...]
     question: str
     asking: tuple[str, ...]
 
 
 @lru_cache(KEPT)
-def plan(given: Given, answers: Answers, names: tuple[str, ...], accuracy: Accuracy, rung: int) -> Plan:
-    """The plan for quantities on a rung of the accuracy's ladder, in its first arithmetic that can do all."""
-    for machine in _machines(given, answers, LADDERS[accuracy][rung]):
-        values: dict[str, Part] = {}
-        vouched: dict[str, Formula] = {}
+def plan(task: Task, accuracy: Accuracy) -> Plan:
+    """The plan for a task, in the first arithmetic of its level that can do all, or else in the last one."""
+    for machine in _machines(task, accuracy):
+        values: dict[str, Term] = {}
+        certified: dict[str, Formula] = {}
         constants: list[tuple[str, float]] = []
+        missing: list[tuple[str, str]] = []
         later, asking, question = [], [], ""
-        for name in names:
+        for name in task.names:
             try:
                 if name == "regime":
                     constants.append((name, REGIMES.index(machine.case.regime)))
                     continue
-                values[name], sure = _value(machine, name, accuracy)
+                values[name], conditions = _value(machine, name, accuracy)
             except Asked as asked:
                 question = question or str(asked)
                 asking.append(name)
-            except Undetermined:
-                constants.append((name, nan))
-            except Unvouched:
+            except Undetermined as undetermined:
+                missing.append((name, str(undetermined)))
+            except Uncertified:
                 later.append(name)
             else:
-                if sure:
-                    vouched[name] = reduce(both, sure)
+                if conditions:
+                    certified[name] = reduce(both, conditions)
         if not later:
             break
-    program = Program([*values.values(), *vouched.values()]) if values else None
-    return Plan(
-        program, tuple(values), tuple(vouched), tuple(constants), tuple(later), question, tuple(asking)
-    )
+    program = Program([*values.values(), *certified.values()]) if values else None
+    fixed = tuple(constants), tuple(missing)
+    return Plan(program, tuple(values), tuple(certified), *fixed, tuple(later), question, tuple(asking))
 
 
-def _value(machine: Machine[Any], name: str, accuracy: Accuracy) -> tuple[Part, Conditions]:
-    """A quantity as doubles, and where it is vouched for. Raises Unvouched, Undetermined, Asked."""
+def _value(machine: Machine[Any], name: str, accuracy: Accuracy) -> tuple[Term, Conditions]:
+    """A quantity as a double, and the conditions under which a row's double is certified.
+
+    The model gives the quantity as a number with an error bound, which `_double` rounds. What must hold then
+    depends on the accuracy: nothing (fast), that the bound is small enough (certified), or that the whole
+    interval of the bound rounds to the same double (exact). Raises Uncertified where the bound is too large
+    in all rows, Undetermined for a quantity without a value, Asked for an open question.
+    """
     value = getattr(machine, name)
-    if isinstance(value, Formula):
+    if isinstance(value, Formula):  # a double already, and without a bound
         return value + 0.0 if name in SIGNED else value, ()  # 0.0 makes 0 of -0
     if value.loss > CERTIFIED:
-        raise Unvouched
+        raise Uncertified
     double = _double(value)
     if accuracy == "fast":
         return double, ()
     if accuracy == "exact":
         return double, (_is_nearest(value, double),)
-    sure: Conditions = value.sure if isinstance(value, Pair) else ()
+    conditions: Conditions = value.sure if isinstance(value, Pair) else ()
     if value.doubt is not None:
-        sure = (*sure, at_most(value.doubt, CERTIFIED - value.loss))
+        conditions = (*conditions, at_most(value.doubt, CERTIFIED - value.loss))
     if value.arithmetic is PAIRS:  # e^{μφ} may leave the doubles
-        sure = (*sure, is_finite(double))
-    return double, sure
+        conditions = (*conditions, is_finite(double))
+    return double, conditions
 
 
-def _double(value: Pair | Expansion) -> Part:
-    """The double that a number rounds to."""
+def _double(value: Pair | Expansion) -> Term:
+    """The double that a pair or an expansion rounds to."""
     double: Any
     if isinstance(value, Pair):
         double = value.rounded()
@@ -268,55 +292,49 @@ def _double(value: Pair | Expansion) -> Part:
         double = value.parts[0]
         if value.arithmetic.wide:
             double = times_power_of_two(double, value.exponent)
-    result: Part = double if value.positive else double + 0.0
+    result: Term = double if value.positive else double + 0.0
     return result
 
 
-def _is_nearest(value: Expansion, double: Part) -> Formula:
-    """Whether a double is the nearest to the exact value: rounding gives it at both ends of the bound."""
+def _is_nearest(value: Expansion, double: Term) -> Formula:
+    """Whether a double is the nearest to the exact value: both ends of the error bound round to it."""
     first, second, third = (*value.parts, 0.0, 0.0)[:3]
-    wide = value.arithmetic.wide
-    error = absolute(first) * (value.bound + 4 * (UNIT**3 if wide else UNIT**2))
-    if wide:  # a step from the second part breaks ties, and changes nothing else
-        ends = [
-            Formula("nextafter", formula(second), formula((third + side * error) * inf))
-            for side in (-1.0, 1.0)
-        ]
-    else:
-        ends = [second - error, second + error]
-    same = both(*(equal(first + end, first) for end in ends))
+    error = absolute(first) * value.bound
+    ends = []
+    for side in (-1.0, 1.0):  # each end of the bound is between a double and the next one
+        end, rest = two_sum(second, third + side * error)
+        ends += [end, Formula("nextafter", formula(end), formula((rest + side * LEAST) * inf))]
+    same = reduce(both, (equal(first + end, first) for end in ends))
     exact = both(equal(value.bound, 0.0), equal(third, 0.0))
     sure = either(same, exact)
-    if not wide:  # e^{μφ} may leave the doubles
-        return both(sure, is_finite(double))
-    # What is below the normal doubles is rounded once more, which is right but on a tie.
+    if not value.arithmetic.wide:
+        return sure
+    # Below the normal doubles the result is rounded a second time. That is right unless it is then a tie.
     left = absolute(first - times_power_of_two(double, -1.0 * value.exponent))
     half_a_step = times_power_of_two(0.5, -1074.0 - value.exponent)
     return both(sure, either(less(NORMAL, value.exponent), less(left, half_a_step), less(half_a_step, left)))
 
 
 @lru_cache(KEPT)
-def halfway(given: Given, answers: Answers, name: str) -> tuple[Program, Formula] | None:
-    """The program that gives a quantity's two doubles, and its formula; none where that is not known yet."""
-    try:
-        value, plain = (
-            getattr(_ColumnsMachine(_RowsCase(given, answers, ar), ar), name) for ar in (PAIRS, DOUBLES)
-        )
-    except (Asked, Undetermined, Unvouched):
-        return None
-    return (Program(value.parts), plain) if len(value.parts) == 2 else None
+def in_pairs(pattern: Pattern, decisions: Decisions, name: str) -> tuple[Program, Formula]:
+    """The program for a quantity's two doubles and the bound on their error, and its plain formula."""
+    value, plain = (
+        getattr(_ColumnsMachine(_GroupCase(pattern, decisions, ar), ar), name) for ar in (PAIRS, DOUBLES)
+    )
+    first, second = (*value.parts, 0.0)[:2]
+    return Program([first, second, absolute(first) * value.bound]), plain
 
 
 @lru_cache(KEPT)
-def questioning(given: Given, answers: Answers, question: str, accuracy: Accuracy, ar: Any) -> Program:
-    """The program that tells for each row whether the answer is yes, and whether that is sure."""
+def questioning(pattern: Pattern, decided: Decisions, question: str, accuracy: Accuracy, ar: Any) -> Program:
+    """The program that answers a question in each row: whether it is yes, and whether that is certain."""
     wrap = Formula("symbol", "wrap")
     sure = less(0.0, wrap)
     if question == "long_wrap":
         return Program([less(180.0, wrap), sure])
     if question == "ends_hang_down":
         return Program([equal(Formula("fmod", wrap, formula(360.0)), 180.0), sure])
-    case = _RowsCase(given, answers, ar)
+    case = _GroupCase(pattern, decided, ar)
     excess, held = getattr(case, question)(ar), Machine[Any](case, ar).k1
     if ar is not DOUBLES:
         margin = excess - held

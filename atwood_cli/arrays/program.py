@@ -1,7 +1,7 @@
-"""Formulas as programs: straight lists of NumPy's operations, run on tiles of rows that fit the cache.
+"""Formulas compiled to programs: lists of NumPy operations, run on tiles of rows that fit the cache.
 
-A `Program` is made of the formulas of its results. What occurs twice in them is computed once, what no
-result needs not at all, and a column whose last use has passed is written over.
+A `Program` is made from the formulas of its results. A subexpression that occurs twice is computed once, and
+a temporary column is reused after its last use.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.expansion import NOTHING
-from ..arithmetic.symbolic import Formula, Part, formula
+from ..arithmetic.symbolic import Formula, Term, formula
 from ..arithmetic.tables import HEAD, Column
 
 Operation = Callable[..., Any]
@@ -41,7 +41,7 @@ def _where(condition: NDArray[np.bool_], x: Column, y: Column, out: Column) -> N
 
 
 def _maximum(x: Column, y: Column, out: Column) -> None:
-    np.maximum(x, y, out=out)
+    np.maximum(x, y, out=out)  # NumPy deprecates giving it in third place
 
 
 def _minimum(x: Column, y: Column, out: Column) -> None:
@@ -62,7 +62,7 @@ def _power(exponent: Column, out: Column) -> None:
 
 
 POWERS = np.array([0.0, *(2.0**e for e in range(-1074, 1024))])
-"""2^e from e = -1075, where there is no such double, to e = 1023."""
+"""2^e from e = -1075, where it is 0 as no double is so small, to e = 1023."""
 
 
 OPERATIONS: dict[str, Operation] = {
@@ -103,19 +103,19 @@ OPERATIONS: dict[str, Operation] = {
 KINDS: dict[str, type[Any]] = dict.fromkeys(
     ("<", "<=", "==", "and", "or", "finite"), np.bool_
 ) | dict.fromkeys(("int", "bits", ">>"), np.intp)
-"""What an operation gives, where it is no double."""
+"""The type of an operation's results, if they are not doubles."""
 NOT_IN_PLACE = ("where", "take", "exponent")
-"""Operations that write before they have read all."""
+"""Operations that write results before they have read all operands."""
 
 
 class Room:
-    """Columns for what comes in between, kept from tile to tile. Each thread needs its own."""
+    """Columns for intermediate values, kept from tile to tile. Each thread needs its own."""
 
     def __init__(self) -> None:
         self._kept: dict[tuple[type[Any], int], NDArray[Any]] = {}
 
     def columns(self, kinds: Sequence[type[Any]], size: int) -> list[NDArray[Any]]:
-        """Columns of those kinds."""
+        """A column of each of those types; the same ones again in the next call."""
         count: dict[type[Any], int] = {}
         columns = []
         for kind in kinds:
@@ -128,13 +128,13 @@ class Room:
 
 
 class Program:
-    """The operations that give ``results`` from ``inputs``, columns by name.
+    """The operations that compute ``results`` from ``inputs``, which are names of columns.
 
-    Each reads and writes numbered slots: those of inputs, constants and results come first, then the
-    ``between`` ones, with what kind of column each holds.
+    Operations read and write numbered slots. The slots of inputs, constants and results come first, then
+    those of intermediate values, whose types are ``between``.
     """
 
-    def __init__(self, results: Sequence[Part]) -> None:
+    def __init__(self, results: Sequence[Term]) -> None:
         values = _Values()
         wanted = [values.number(formula(result)) for result in results]
         inputs, constants = (
@@ -176,24 +176,26 @@ class Program:
     def run(
         self, inputs: Sequence[Column], results: Sequence[NDArray[Any]], between: Sequence[NDArray[Any]]
     ) -> None:
-        """Write the results of these inputs; ``between`` are columns to compute in."""
+        """Write the results of these inputs; ``between`` are columns for intermediate values."""
         at = [*inputs, *self.constants, *results, *between]
-        # Bound beforehand: what is done between two operations keeps other threads waiting.
+        # Look up operands first: Python code between two operations would keep other threads waiting.
         bound = [(operation, [at[slot] for slot in slots]) for operation, slots in self.operations]
         for operation, columns in bound:
             operation(*columns)
 
 
 class _Values:
-    """The different values in formulas, numbered so that parts come before what is made of them."""
+    """The distinct values in formulas, numbered so that operands come before their operations."""
 
     def __init__(self) -> None:
         self.all: list[tuple[str, tuple[Any, ...]]] = []
         self._numbers: dict[tuple[str, tuple[Any, ...]], int] = {}
-        self._of: dict[int, tuple[int, Formula]] = {}  # by id; the formula stands there so that it lives
+        self._of: dict[
+            int, tuple[int, Formula]
+        ] = {}  # by id; the formula is kept so that its id stays its own
 
     def number(self, root: Formula) -> int:
-        """The number of a formula's value. Formulas are deep: this does not recur."""
+        """The number of a formula's value. Formulas are too deep for recursion."""
         waiting = [root]
         while waiting:
             one = waiting[-1]

@@ -1,11 +1,11 @@
-"""Rows solved: questions put to them, programs run on them tile by tile, and what is not vouched for gone up.
+"""Rows solved, group by group: questions are put to them, and programs run on tiles that fit the cache.
 
-A block's rows that agree on what is given are parted by their answers until there is a program for them
-(see `plan`). What its arithmetic does not vouch for goes up the ladder, for that quantity alone.
+`plan` shows by an example what is done for a group, and why. Here it is done.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from math import nan
@@ -16,23 +16,24 @@ from numpy.typing import NDArray
 
 from ..arithmetic.double import DOUBLES
 from ..arithmetic.expansion import PAIRS, TRIPLES
-from ..arithmetic.modular import Irrational, is_sum, residues, tie
+from ..arithmetic.gap import gap, ratio
+from ..arithmetic.rational import Irrational
 from ..arithmetic.tables import Column
 from ..model.angle import Angle
 from ..model.case import Case
-from ..model.quantities import REGIMES
-from ..model.scene import Scene
-from ..solver.answers import Answers as Single
-from .plan import COLUMN, COLUMNS, LADDERS, Accuracy, Answers, Given, halfway, plan, questioning
+from ..model.quantities import REGIMES, Accuracy
+from ..model.scene import COLUMNS, Scene
+from ..solver.answers import Answers
+from .plan import COLUMN, LEVELS, Pattern, Plan, Task, in_pairs, plan, questioning
 from .program import Program, Room
 
 ROOM = 10_000_000  # bytes for the columns of a tile
 SMALLEST, LARGEST = 8_192, 65_536  # rows of a tile
-FEW = 24  # rows: sooner solved one by one than by a program, where that takes many operations
-LEAVE = 2_000  # rows of a block that are better solved with those of others
+FEW = 24  # rows that are solved sooner one by one than by a long program
+LEAVE = 2_000  # rows of one block that are solved sooner together with rows of other blocks
 
 Index = slice | NDArray[np.intp]
-Left = tuple[Given, Answers, tuple[str, ...], int]
+"""A selection of rows."""
 
 
 class Rows:
@@ -46,70 +47,79 @@ class Rows:
         room: Room,
     ) -> None:
         self.inputs, self.results, self.accuracy, self.room = inputs, results, accuracy, room
-        self.left: dict[Left, list[NDArray[np.intp]]] | None = None
-        """Where rows are left that go up, if they are few; else they go up at once."""
+        self.left: dict[Task, list[NDArray[np.intp]]] | None = None
+        """Tasks with few rows, kept for the end of all blocks; None where they are solved at once."""
+        self.reasons: Counter[tuple[str, str]] = Counter()
+        """In how many rows a quantity has no value, by its name and the reason."""
 
-    def solve(
-        self,
-        index: Index,
-        given: Given,
-        answers: Answers,
-        names: tuple[str, ...],
-        rung: int,
-        along: Index | None = None,
-    ) -> None:
-        """Write those quantities of rows that agree on those answers.
+    def solve(self, index: Index, task: Task, run_on: Index | None = None) -> None:
+        """Write the results of a task for rows of its pattern and decisions.
 
-        Rows ``along`` with them are written over later, and come along where parting would cost more.
+        The `Plan` divides the task's quantities. Some are computed by its program; rows that are not
+        certified go to the next level, for that quantity only. Some cannot be computed at this level and go
+        to the next one in all rows. Some need an answer first: the rows of either answer become a new task.
+
+        The program runs on the rows ``run_on`` where that is cheaper than to select those of ``index`` among
+        them. The results of the other rows are overwritten afterwards.
         """
-        ladder = LADDERS[self.accuracy]
-        if self.accuracy == "exact" and rung == 1 and len(names) == 1 and size_of(index) > FEW:
-            index = self._settle_ties(index, given, answers, names[0])
-            if not size_of(index):
-                return
-        if rung == len(ladder) or (ladder[rung] == (TRIPLES,) and size_of(index) <= FEW):
-            self._solve_one_by_one(index, names, given)
+        levels = LEVELS[self.accuracy]
+        if task.level == len(levels) or (levels[task.level] == (TRIPLES,) and size_of(index) <= FEW):
+            self._solve_one_by_one(index, task)
             return
-        how = plan(given, answers, names, self.accuracy, rung)
-        rows = index if along is None else along
+        how = plan(task, self.accuracy)
+        rows = index if run_on is None else run_on
         for name, constant in how.constants:
             self.results[name][rows] = constant
-        if how.program:
-            doubtful: dict[str, list[NDArray[np.intp]]] = {name: [] for name in how.doubtful}
-            for start, *vouched in self._run(how.program, rows, how.quantities, len(how.doubtful)):
-                for name, sure in zip(how.doubtful, vouched, strict=True):
-                    if np.count_nonzero(sure) < sure.size:
-                        doubtful[name].append(np.flatnonzero(~sure) + start)
-            for name, some in doubtful.items():
-                if some:
-                    up = _among(rows, np.concatenate(some))
-                    if along is not None and not isinstance(index, slice):
-                        up = np.intersect1d(up, index, assume_unique=True)
-                    if up.size:
-                        self._go_up(up, given, answers, name, rung + 1)
+        for name, reason in how.missing:
+            self.results[name][rows] = nan
+            self.reasons[name, reason] += size_of(index)
+        for name, failed in self._run_certified(how, rows).items():
+            if rows is not index and not isinstance(index, slice):
+                failed = np.intersect1d(failed, index, assume_unique=True)
+            self._to_next_level(failed, task._replace(names=(name,)))
         if how.later:
-            self.solve(index, given, answers, how.later, rung + 1)
+            self.solve(index, task._replace(names=how.later, level=task.level + 1))
         if how.asking:
-            yes = self._ask(index, given, answers, how.question, rung)
-            most = 2 * np.count_nonzero(yes) > yes.size
-            for answer in (most, not most):
-                members = np.flatnonzero(yes if answer else ~yes)
-                if members.size:
-                    agreed = answers | {(how.question, bool(answer))}
-                    if members.size == yes.size:
-                        self.solve(index, given, agreed, how.asking, rung)
-                    else:
-                        with_others = index if answer == most else None
-                        self.solve(_among(index, members), given, agreed, how.asking, rung, with_others)
+            yes = self._ask(index, task, how.question)
+            most = bool(2 * np.count_nonzero(yes) > yes.size)
+            for answer in (most, not most):  # the minority comes last and overwrites
+                members = np.flatnonzero(yes == answer)
+                part = task._replace(decisions=task.decisions | {(how.question, answer)}, names=how.asking)
+                if members.size == yes.size:
+                    self.solve(index, part)
+                elif members.size:
+                    self.solve(_select(index, members), part, index if answer == most else None)
+
+    def _run_certified(self, how: Plan, rows: Index) -> dict[str, NDArray[np.intp]]:
+        """Run a plan's program; returns the rows in which a quantity is not certified, by its name."""
+        failed: dict[str, list[NDArray[np.intp]]] = {name: [] for name in how.conditional}
+        if how.program:
+            for start, *certified in self._run(how.program, rows, how.quantities, len(how.conditional)):
+                for name, sure in zip(how.conditional, certified, strict=True):
+                    if np.count_nonzero(sure) < sure.size:
+                        failed[name].append(np.flatnonzero(~sure) + start)
+        return {name: _select(rows, np.concatenate(some)) for name, some in failed.items() if some}
+
+    def _to_next_level(self, index: NDArray[np.intp], task: Task) -> None:
+        """Solve one quantity at the next level of precision, now or with the rows of other blocks."""
+        if self.accuracy == "exact" and task.level == 0 and index.size > FEW:
+            index = self._settle_ties(index, task)
+        if not index.size:
+            return
+        task = task._replace(level=task.level + 1)
+        if self.left is not None and index.size <= LEAVE:
+            self.left.setdefault(task, []).append(index)
+        else:
+            self.solve(index, task)
 
     def _run(
         self, program: Program, index: Index, names: Sequence[str], more: int
     ) -> Iterator[tuple[Any, ...]]:
-        """Run a program on tiles of rows; yields where each starts, and ``more`` columns of yes and no."""
+        """Run a program tile by tile; yields the start of each tile and its ``more`` columns of booleans."""
         size, columns_ = size_of(index), len(program.between) + len(program.inputs) + len(names)
         most = min(max(SMALLEST, ROOM // (8 * columns_)), LARGEST)
         for start in range(0, size, most):
-            tile = _among(index, slice(start, min(start + most, size)))
+            tile = _select(index, slice(start, min(start + most, size)))
             rows = size_of(tile)
             inputs = [self.inputs[name] for name in program.inputs]
             direct = isinstance(tile, slice)
@@ -131,84 +141,75 @@ class Rows:
                     self.results[name][tile] = column
             yield start, *answers
 
-    def _ask(
-        self, index: Index, given: Given, answers: Answers, question: str, rung: int
-    ) -> NDArray[np.bool_]:
-        """The rows' answers to a question."""
+    def _ask(self, index: Index, task: Task, question: str) -> NDArray[np.bool_]:
+        """Each row's answer to a question, at the first level of precision that decides it."""
         size = size_of(index)
         yes = np.empty(size, np.bool_)
-        far = LADDERS[self.accuracy][rung] == (TRIPLES,)
-        ladder = (DOUBLES, PAIRS, TRIPLES)[2 * far :]
+        far = LEVELS[self.accuracy][task.level] == (TRIPLES,)
         open_: Any = slice(0, size)
-        for ar in ladder:
+        for ar in (DOUBLES, PAIRS, TRIPLES)[2 * far :]:
             if ar is not DOUBLES and size_of(open_) <= FEW:
                 break
-            program = questioning(given, answers, question, self.accuracy, ar)
-            rows, unsure = _among(index, open_), []
+            program = questioning(task.pattern, task.decisions, question, self.accuracy, ar)
+            rows, unsure = _select(index, open_), []
             for start, says, sure in self._run(program, rows, (), 2):
-                yes[_among(open_, slice(start, start + says.size))] = says
+                yes[_select(open_, slice(start, start + says.size))] = says
                 if np.count_nonzero(sure) < sure.size:
                     unsure.append(np.flatnonzero(~sure) + start)
-            open_ = _among(open_, np.concatenate(unsure)) if unsure else np.empty(0, np.intp)
+            open_ = _select(open_, np.concatenate(unsure)) if unsure else np.empty(0, np.intp)
             if not open_.size:
                 return yes
         every: Any = np.arange(size) if isinstance(open_, slice) else open_
         for row in every.tolist():
             which: Any = question
-            yes[row] = Case(self._scene(index, row, given)).beats_friction(which)
+            yes[row] = Case(self._scene(index, row, task.pattern)).beats_friction(which)
         return yes
 
-    def _settle_ties(self, index: Index, given: Given, answers: Answers, name: str) -> Index:
-        """Write what is just half-way between two doubles, which no bound tells; returns the other rows."""
-        found, size = halfway(given, answers, name), size_of(index)
-        open_ = np.ones(size, np.bool_)
-        for start in range(0, size if found else 0, SMALLEST):
-            assert found is not None
-            program, plain = found
-            tile = _among(index, slice(start, min(start + SMALLEST, size)))
+    def _settle_ties(self, index: NDArray[np.intp], task: Task) -> NDArray[np.intp]:
+        """Write the task's quantity where it is a tie, half-way between two doubles; returns the other rows.
+
+        No error bound shows that a value is a tie, but the `gap` does.
+        """
+        (name,) = task.names
+        program, plain = in_pairs(task.pattern, task.decisions, name)
+        open_ = np.ones(index.size, np.bool_)
+        for start in range(0, index.size, SMALLEST):
+            tile = index[start : start + SMALLEST]
             inputs = {
                 name: column if column.size == 1 else column[tile] for name, column in self.inputs.items()
             }
-            first, second = np.empty((2, size_of(tile)))
-            between = self.room.columns(program.between, first.size)
-            program.run([inputs[name] for name in program.inputs], [first, second], between)
-            half, near = tie(first, second)
-            rows = np.flatnonzero(near)
             try:
-                here = {
-                    name: residues(column if column.size == 1 else column[rows])
-                    for name, column in inputs.items()
-                }
-                rows = rows[is_sum(plain, here, first[rows], half[rows])]
+                bits = ratio(plain, inputs)
             except Irrational:
-                break
-            self.results[name][_among(tile, rows)] = first[rows] + half[rows]
-            open_[rows + start] = False
-        return index if open_.all() else _among(index, np.flatnonzero(open_))
+                return index
+            first, second, error = np.empty((3, tile.size))
+            between = self.room.columns(program.between, tile.size)
+            program.run([inputs[name] for name in program.inputs], [first, second, error], between)
+            half = np.copysign(np.spacing(np.abs(first)) / 2, second)
+            tied = np.abs(second - half) + error < gap(bits, half)
+            self.results[name][tile[tied]] = (first + half)[tied]
+            open_[start : start + SMALLEST] = ~tied
+        return index[open_]
 
-    def _go_up(self, index: Index, given: Given, answers: Answers, name: str, rung: int) -> None:
-        if self.left is not None and size_of(index) <= LEAVE:
-            assert not isinstance(index, slice)
-            self.left.setdefault((given, answers, (name,), rung), []).append(index)
-        else:
-            self.solve(index, given, answers, (name,), rung)
-
-    def _solve_one_by_one(self, index: Index, names: tuple[str, ...], given: Given) -> None:
+    def _solve_one_by_one(self, index: Index, task: Task) -> None:
+        """Solve each row as a scene of its own, exactly."""
         for row in range(size_of(index)):
-            single = Single(self._scene(index, row, given))
+            answers = Answers(self._scene(index, row, task.pattern))
             place = row + index.start if isinstance(index, slice) else index[row]
-            for name in names:
+            for name in task.names:
                 if name == "regime":
-                    self.results[name][place] = REGIMES.index(single.case.regime)
+                    self.results[name][place] = REGIMES.index(answers.case.regime)
                 else:
-                    value = single[name]
+                    value = answers[name]
                     self.results[name][place] = nan if value is None else float(value)
+                    if value is None:
+                        self.reasons[name, answers.reasons[name]] += 1
 
-    def _scene(self, index: Index, row: int, given: Given) -> Scene:
+    def _scene(self, index: Index, row: int, pattern: Pattern) -> Scene:
         """One row as a scene of its own."""
         place = row + index.start if isinstance(index, slice) else int(index[row])
         fields: dict[str, Any] = {}
-        for name, value in zip(COLUMNS, given.inputs, strict=True):
+        for name, value in zip(COLUMNS, pattern.inputs, strict=True):
             fields[name] = value
             if value == COLUMN:
                 column = self.inputs[name]
@@ -218,12 +219,12 @@ class Rows:
 
 
 def size_of(index: Index) -> int:
-    """How many rows that are."""
+    """The number of rows of a selection."""
     return index.stop - index.start if isinstance(index, slice) else index.size
 
 
-def _among(index: Any, some: Any) -> Any:
-    """The rows at some places among those."""
+def _select(index: Any, some: Any) -> Any:
+    """The rows at some places of a selection: two selections made one."""
     if not isinstance(index, slice):
         return index[some]
     if isinstance(some, slice):

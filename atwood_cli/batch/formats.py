@@ -8,6 +8,7 @@ import json
 import os
 import re
 import sys
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
@@ -16,34 +17,49 @@ from io import BytesIO, StringIO
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn
 
-from ..files import STREAM
+from ..files import FORMATS, LONGEST_NAME, STREAM, Stdout
 from ..model.scene import SceneError
-from .parquet import RowGroups, read_frames
+from ..model.units import in_quotes, shortened
+from .parquet import PIECE_CELLS, PIECE_ROWS, read_frames, write_frames
 from .quoted import Unreadable, checked, first_end, last_end, portions, split, widths
 
 if TYPE_CHECKING:
     import polars as pl
 
-FORMATS = ("csv", "tsv", "ndjson", "parquet")
 SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
 SEPARATORS = {"csv": ",", "tsv": "\t"}
 PARTED_BY = {",": "commas", "\t": "tabs", ";": "semicolons"}
-PIECE_BYTES, PIECE_ROWS = 1 << 21, 1 << 16
-"""What of a table is in memory at a time, some times over."""
-PIECE_CELLS = 1 << 20
-"""Cells in memory at a time: rows may be short, and have keys that no other row has."""
+PIECE_BYTES = 1 << 21
+"""What of a table of text is in memory at a time, some times over."""
 MOST_COLUMNS = 1024
 """Each column of a piece takes a kilobyte and some microseconds, whatever is in it."""
 LONGEST_RECORD = 1 << 20
 """Bytes: a quotation mark that is never closed must not make one record of the whole file."""
+MOST_ABOVE = 40
+"""Lines in which the header of a small table is looked for, as titles may stand above."""
+
+
+WIDE_TEXT = "in UTF-16 or UTF-32; save it as UTF-8"
+FOREIGN = {
+    b"\x1f\x8b": "compressed by gzip; unpack it first",
+    **dict.fromkeys((b"BZh", b"\xfd7zXZ", b"\x28\xb5\x2f\xfd"), "compressed; unpack it first"),
+    b"PK\3\4": "a workbook (.xlsx), or another zip archive; save the sheet as CSV",
+    b"\xd0\xcf\x11\xe0": "a workbook (.xls); save the sheet as CSV",
+    **dict.fromkeys((b"\xff\xfe", b"\xfe\xff"), WIDE_TEXT),
+    b"PAR1": "Parquet; batch reads it with --from parquet, and fit reads CSV",
+    **dict.fromkeys((b"[{", b"[\n"), "a JSON array; write an object a line, and give --from ndjson to batch"),
+}
+"""What a file is that begins so, and what to do: no table of CSV or NDJSON does."""
+JSON_FOR_CSV = {b'{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
 
 
 class Cells(NamedTuple):
-    """A small table of CSV, all of it: its columns, its rows of as many cells each, and what parts them."""
+    """A small table, all of it: its columns, its rows, what parts their cells, and how else it was read."""
 
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     separator: str
+    remarks: Sequence[str] = ()
 
 
 Inputs = Callable[[Sequence[str]], Sequence[str]]
@@ -74,14 +90,14 @@ def read_format(option: str, given: str | None, path: str) -> str:
         return given
     if suffix := SUFFIXES.get(Path(path).suffix.lower()):
         return suffix
-    if path == STREAM or is_stream(path):
+    if is_stream(path):
         return "csv"
-    raise SceneError(option, None, f"is needed: {path!r} ends in none of {', '.join(SUFFIXES)}")
+    raise SceneError(option, None, f"is needed: {in_quotes(path)} ends in none of {', '.join(SUFFIXES)}")
 
 
 def is_stream(path: str) -> bool:
-    """Whether the path is that of a pipe or a device, not of a file."""
-    return os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path))
+    """Whether the path is that of stdin, stdout, a pipe or a device, not of a file."""
+    return path == STREAM or (os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path)))
 
 
 def read(kind: str, file: IO[bytes], inputs: Inputs, as_lines: bool) -> Iterator[Piece]:
@@ -108,6 +124,11 @@ def opened(source: str, stack: ExitStack) -> IO[bytes]:
         raise Unreadable(error.strerror) from None
 
 
+def cannot_read(source: str, why: Unreadable) -> OSError:
+    """The error of a file, or of stdin, that is no table."""
+    return OSError(f"cannot read {'stdin' if source == STREAM else shortened(source, LONGEST_NAME)}: {why}")
+
+
 def block_of(file: IO[bytes]) -> bytes:
     """The next bytes of a file, none at its end. Raises Unreadable."""
     try:
@@ -120,6 +141,9 @@ def _records(file: IO[bytes], quoted: bool) -> Iterator[tuple[bytes, int, int]]:
     """A file in pieces that end where a record ends, with the line each begins in and its line ends."""
     rest, line = b"", 1
     while block := block_of(file):
+        if line == 1 and not rest:
+            block = block.removeprefix(b"\xef\xbb\xbf")
+            _check_start(block, FOREIGN | JSON_FOR_CSV if quoted else FOREIGN)
         rest += block
         end = last_end(rest) if quoted else rest.rfind(b"\n") + 1
         if end:
@@ -135,27 +159,111 @@ def _records(file: IO[bytes], quoted: bool) -> Iterator[tuple[bytes, int, int]]:
         yield rest, line, rest.count(b"\n")
 
 
+def _check_start(block: bytes, foreign: Mapping[bytes, str]) -> None:
+    """Refuse a file that begins as one of another kind."""
+    for start, kind in foreign.items():
+        if block.startswith(start):
+            raise Unreadable(f"it is {kind}")
+    if b"\0" in block[:2]:
+        raise Unreadable(f"it is {WIDE_TEXT}")
+
+
 def _check_count(columns: Collection[str]) -> None:
     if len(columns) > MOST_COLUMNS:
         raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
 
 
+def check_distinct(columns: Sequence[str]) -> None:
+    """Refuse columns of the same name."""
+    for name, times in Counter(columns).items():
+        if times > 1:
+            unnamed = f"{times} columns have no heading; name them, or delete them"
+            raise Unreadable(f"column {in_quotes(name)} is there {times} times" if name else unnamed)
+
+
 def read_cells(file: IO[bytes], usual: str, inputs: Inputs) -> Cells:
-    """A small table of CSV, for which polars is not needed. Raises Unreadable."""
+    """A small table of CSV as people keep it, for which polars is not needed. Raises Unreadable.
+
+    Its rows are those with anything in them, of as many cells as they have.
+    """
+    text = b"".join(lines for lines, _, _ in _records(file, quoted=False))
+    remarks: list[str] = []
+    if b"\0" not in text:  # of a file that is no text, `_rows_of_csv` says so
+        text, usual, remarks = _tidied(text, usual, inputs)
     rows: list[list[str]] = []
     columns: list[str] = []
     separator = usual
-    for columns, separator, piece, _, _ in _rows_of_csv(file, usual, inputs):
-        text = _decode(piece, partial(_row_of_csv, piece, len(rows), separator))
-        for row in csv.reader(StringIO(text, newline=""), delimiter=separator):
-            if not "".join(row).strip() and len(row) < 2:  # a blank line
-                continue
-            rows.append(row)
-            if len(row) > len(columns):
-                _refuse_long(len(rows), len(row), len(columns), separator)
-            if len(row) < len(columns):
-                raise Unreadable(f"row {len(rows)} has {len(row)} cells, and the header {len(columns)}")
-    return Cells(columns, rows, separator)
+    csv.field_size_limit(LONGEST_RECORD + PIECE_BYTES)  # no row is longer, and by default it would be less
+    for header, separator, piece, _, _ in _rows_of_csv(BytesIO(text), usual, inputs):
+        decoded = _decode(piece, partial(_row_of_csv, piece, len(rows), separator))
+        parsed = csv.reader(StringIO(decoded, newline=""), delimiter=separator)
+        rows += [row for row in parsed if "".join(row).strip()]
+        columns = header
+    while columns and not columns[-1].strip():
+        columns = columns[:-1]
+    return Cells(columns, rows, separator, remarks)
+
+
+def whole_rows(cells: Cells) -> list[Sequence[str]]:
+    """The rows, of as many cells as there are columns. Raises Unreadable.
+
+    A row may be shorter if it has no numbers: it could be a remark below the table, and is not cut off.
+    """
+    rows: list[Sequence[str]] = []
+    width = len(cells.columns)
+    for number, row in enumerate(cells.rows, 1):
+        if any(cell.strip() for cell in row[width:]):
+            _refuse_long(number, len(row), width, cells.separator)
+        if len(row) < width and re.search(r"\d", "".join(row)):
+            raise Unreadable(f"row {number} has {len(row)} cells, and the header {width}")
+        rows.append([*row[:width], *[""] * (width - len(row))])
+    return rows
+
+
+def _tidied(text: bytes, usual: str, inputs: Inputs) -> tuple[bytes, str, list[str]]:
+    """A text in UTF-8 that begins with its header, its usual separator, and how it was read.
+
+    Lines that are left out become blank, so that all keep their numbers.
+    """
+    remarks: list[str] = []
+    try:
+        lines = text.decode("utf-8-sig").split("\n")
+    except UnicodeDecodeError:
+        try:
+            lines = text.decode("cp1252").split("\n")
+        except UnicodeDecodeError:
+            return text, usual, []
+        remarks.append("text in Windows-1252")
+    first = next((i for i, line in enumerate(lines) if line.strip()), 0)
+    if found := re.fullmatch(r'"?sep=([,;\t])"?\r?', lines[first], re.IGNORECASE):
+        usual, lines[first] = found[1], ""
+    comments: dict[int, str] = {}
+    marks = 0
+    for i, line in enumerate(lines):
+        if line.lstrip().startswith("#") and not marks % 2:
+            comments[i], lines[i] = line.lstrip("# \t"), ""
+        marks += lines[i].count('"')
+
+    def score(i: int) -> tuple[int, int]:
+        """How many inputs a line has, and how many cells that begin with a letter."""
+        line = comments.get(i, lines[i])
+        # A heading in quotation marks may be of two lines.
+        ends = (line, *("\n".join(lines[i:end]) for end in range(i + 2, i + MOST_ABOVE)))
+        line = next((text for text in ends if text.count('"') % 2 == 0), line)
+        rows = [split(line, mark) for mark in PARTED_BY]
+        return max((len(inputs(row)), sum(cell.strip()[:1].isalpha() for cell in row)) for row in rows)
+
+    above = [i for i, line in enumerate(lines[:MOST_ABOVE]) if line.strip()]
+    header = next((i for i in (*above, *comments) if score(i)[0] > 1), None)
+    if header is None:
+        header = max(above, key=score, default=0)
+    lines[header] = comments.pop(header, lines[header])
+    if any(i < header for i in above):
+        lines[:header] = [""] * header
+        remarks.append(f"header in line {header + 1}")
+    if comments:
+        remarks.append("lines that begin with # left out")
+    return "\n".join(lines).encode(), usual, remarks
 
 
 def _rows_of_csv(
@@ -167,7 +275,7 @@ def _rows_of_csv(
     for text, line, lines in _records(file, quoted=True):
         rows, before = text, 0
         if not header:
-            rows = text.removeprefix(b"\xef\xbb\xbf").lstrip(b"\r\n")
+            rows = text.lstrip(b"\r\n")
             if not rows:
                 continue
             end, before = first_end(rows), lines - rows.count(b"\n")
@@ -204,7 +312,7 @@ def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
 
 
 def _header(row: bytes, line: int, usual: str, inputs: Inputs) -> tuple[list[str], str]:
-    """The columns, and what parts them: the usual separator, unless another one makes more inputs."""
+    """The columns, and what parts them: what makes most inputs, or most cells, or the usual separator."""
     if row.count(b'"') % 2:
         raise Unreadable("the header ends within quotation marks: one is left open")
     if b"\r" in row.rstrip(b"\r\n"):
@@ -218,7 +326,10 @@ def _header(row: bytes, line: int, usual: str, inputs: Inputs) -> tuple[list[str
             return []
         return split(text, separator)
 
-    separator = max((usual, *PARTED_BY), key=lambda mark: len(inputs(columns(mark))))
+    def score(separator: str) -> tuple[int, int]:
+        return len(inputs(columns(separator))), len(columns(separator))
+
+    separator = max((usual, *PARTED_BY), key=score)
     checked(row, separator, line)
     header = split(text, separator)
     _check_count(header)
@@ -264,7 +375,7 @@ def _refuse_csv(error: Exception, rows: bytes, width: int, done: int, separator:
     for number, cells in enumerate(filter(None, widths(rows, separator)), done + 1):
         if cells > width:
             _refuse_long(number, cells, width, separator)
-    raise Unreadable(str(error).splitlines()[0])
+    raise Unreadable(shortened(str(error).splitlines()[0], LONGEST_NAME))
 
 
 def _row_of_csv(rows: bytes, done: int, separator: str, at: int) -> str:
@@ -273,7 +384,9 @@ def _row_of_csv(rows: bytes, done: int, separator: str, at: int) -> str:
 
 
 def _refuse_long(number: int, cells: int, width: int, separator: str) -> NoReturn:
-    how = "; is there a decimal comma? write a point" if separator == "," else ""
+    how = "; is there a decimal comma (write a point), or one at its end?" if separator == "," else ""
+    if width == 1:
+        how = "; the headings must come first, without lines above them"
     raise Unreadable(f"row {number} has {cells} cells, and the header {width}{how}")
 
 
@@ -335,10 +448,11 @@ def _check_keys(names: Sequence[str], number: int, late: bool) -> None:
     """Refuse keys that make no columns of a table other than NDJSON."""
     for name in names:
         if not _is_unicode(name):
-            raise Unreadable(f"row {number} has the key {name!r}, which is not Unicode; give --to ndjson")
+            why = f"the key {in_quotes(name)}, which is not Unicode; give --to ndjson"
+            raise Unreadable(f"row {number} has {why}")
     if late:
         how = "for which there is no column by now; give --to ndjson"
-        raise Unreadable(f"row {number} has {names[0]!r}, {how}")
+        raise Unreadable(f"row {number} has {in_quotes(names[0])}, {how}")
 
 
 def _is_unicode(text: str) -> bool:
@@ -361,7 +475,7 @@ def _columns(
             cell = value if isinstance(value, str) else _typed(lines[number], name)
             if not _is_unicode(cell):
                 if all_:
-                    why = f"a value of {name!r} that is not Unicode; give --to ndjson"
+                    why = f"a value of {in_quotes(name)} that is not Unicode; give --to ndjson"
                     raise Unreadable(f"row {first + number} has {why}")
                 cell = cell.encode(errors="replace").decode()
             columns[name][number] = cell
@@ -406,7 +520,8 @@ def _members(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
     row = dict(pairs)
     if len(row) < len(pairs):
         names = [name for name, _ in pairs]
-        raise ValueError(f"{next(name for name in names if names.count(name) > 1)!r} is there twice")
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"{in_quotes(twice)} is there twice")
     return row
 
 
@@ -425,48 +540,57 @@ def _read_parquet(file: IO[bytes]) -> Iterator[Piece]:
         yield Piece(frame.columns, frame, frame.height)
 
 
-def write(kind: str, file: IO[bytes], solved: Iterable[tuple[Piece, "pl.DataFrame"]]) -> None:
-    """Write a table from its pieces, each with the columns to append. Raises OSError."""
-    encode: Callable[[Piece, pl.DataFrame, bool], bytes | memoryview] = _as_ndjson
-    end: Callable[[], bytes] = bytes
+def write(kind: str, file: IO[bytes] | Stdout, solved: Iterable[tuple[Piece, "pl.DataFrame"]]) -> None:
+    """Write a table from its pieces, each with the columns to append. Raises OSError, PolarsError."""
+    checked_ = _checked(kind, solved)
     if kind == "parquet":
-        groups = RowGroups()
-        encode, end = partial(_as_parquet, groups), groups.end
-    elif kind in SEPARATORS:
-        encode = partial(_as_csv, SEPARATORS[kind])
+        assert not isinstance(file, Stdout)  # which gets it once it is whole
+        write_frames(file, (piece.frame.hstack(results) for piece, results in checked_))
+        return
+    encode = partial(_as_csv, SEPARATORS[kind]) if kind in SEPARATORS else _as_ndjson
     with ThreadPoolExecutor(1) as encoder:  # one that only computes: nothing to wait for on Ctrl-C
         last: Future[bytes | memoryview] | None = None
-        for piece, results in _checked(kind, solved):
+        for piece, results in checked_:
             ready, last = last, encoder.submit(encode, piece, results, last is None)
             if ready:
                 file.write(ready.result())
         if last:
             file.write(last.result())
-    file.write(end())
 
 
 def _checked(
     kind: str, solved: Iterable[tuple[Piece, "pl.DataFrame"]]
 ) -> Iterator[tuple[Piece, "pl.DataFrame"]]:
     """Hand on pieces once it is certain that the format has a place for their columns. Raises OSError."""
+    import polars as pl
+
     for piece, results in solved:
         for name, dtype in piece.frame.schema.items() if kind != "parquet" else ():
             bytes_ = re.search(r"\bBinary\b(?!')", str(dtype))  # not the name of a field
-            if bytes_ or (kind != "ndjson" and dtype.is_nested()):
-                raise OSError(
-                    f"cannot write column {name!r}, which holds {dtype}, as {kind}; give --to parquet"
-                )
+            if bytes_ or (kind != "ndjson" and (dtype.is_nested() or dtype == pl.Duration)):
+                what = f"column {in_quotes(name)}, which holds {shortened(str(dtype))},"
+                raise OSError(f"cannot write {what} as {kind}; give --to parquet")
+            if _has_far_year(piece.frame[name]):
+                what = f"column {in_quotes(name)}, which has a date beyond the year ±262000,"
+                raise OSError(f"cannot write {what} as {kind}; give --to parquet")
         yield piece, results
+
+
+def _has_far_year(column: "pl.Series") -> bool:
+    """Whether a date is so far (as an infinite one is) that polars cannot write it as text, and panics."""
+    import polars as pl
+
+    if column.dtype in (pl.List, pl.Array):
+        return _has_far_year(column.explode())
+    if column.dtype == pl.Struct:
+        return any(map(_has_far_year, column.struct.unnest()))
+    return column.dtype in (pl.Date, pl.Datetime) and column.dt.year().null_count() > column.null_count()
 
 
 def _as_csv(separator: str, piece: Piece, results: "pl.DataFrame", first: bool) -> memoryview:
     buffer = BytesIO()
     piece.frame.hstack(results).write_csv(buffer, separator=separator, include_header=first)
     return buffer.getbuffer()
-
-
-def _as_parquet(groups: RowGroups, piece: Piece, results: "pl.DataFrame", _: bool) -> bytes:
-    return groups.add(piece.frame.hstack(results))
 
 
 def _as_ndjson(piece: Piece, results: "pl.DataFrame", _: bool) -> bytes:

@@ -11,16 +11,13 @@ from typing import TYPE_CHECKING, NamedTuple
 from unicodedata import normalize
 
 from ..arithmetic.rounding import to_double
-from ..arrays.plan import COLUMNS
-from ..model.scene import MEASURED, PARAMETERS, SceneError, parameter_of, read_plain, read_value
-from ..model.units import Malformed, read_unit, symbol_of, without_blanks
-from .formats import PARTED_BY, Cells, Piece
+from ..model.scene import COLUMNS, MASSES, MEASURED, SceneError, parameter_of, read_plain, read_value
+from ..model.units import Malformed, in_quotes, read_unit, symbol_of, without_blanks
+from .formats import PARTED_BY, Piece
 from .quoted import Unreadable
 
 if TYPE_CHECKING:
     import polars as pl
-
-REQUIRED = COLUMNS[:2]
 
 NO_UNIT = ("", "-", "1")
 
@@ -37,6 +34,10 @@ OTHER_NAMES = {
 # fmt: on
 """In small ASCII letters, what else people call the inputs."""
 GREEK = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
+
+
+LARGEST_POWER = 22
+"""Of ten, that a double holds."""
 
 
 class Heading(NamedTuple):
@@ -71,7 +72,7 @@ class Layout(NamedTuple):
             pointed = cells.str.replace(",", ".", literal=True)
             cells = pl.when(~cells.str.contains(".", literal=True)).then(pointed)
         power = len(str(max(factor, 1 / factor))) - 1
-        if max(factor, 1 / factor) != 10**power:
+        if power > LARGEST_POWER or max(factor, 1 / factor) != 10**power:
             return cells.cast(pl.Float64, strict=False) * pl.lit(None, pl.Float64)
         if power and kind == pl.String:
             cells = cells + f"e{power if factor > 1 else -power}"
@@ -91,7 +92,7 @@ class Layout(NamedTuple):
         else:
             read_value(name, cell)  # raises where it is NaN, or infinite and must not be
             exact = Fraction(cell) if isfinite(cell) else inf
-        if exact == inf and PARAMETERS[name].inf:
+        if exact == inf and parameter_of(name).inf:
             return inf
         value = to_double(Fraction(exact) * self.headings[name].factor)
         if abs(value) == inf or (exact and not value):
@@ -109,7 +110,7 @@ def read_layout(piece: Piece, labels: Collection[str] = ()) -> Layout:
     for column, name in others.items():
         if name in COLUMNS and name not in headings:
             raise refused(column, f"could be meant for {name}; name it so, with a unit like 'm1 (g)'")
-    for name in REQUIRED:
+    for name in MASSES:
         if name not in headings:
             raise Unreadable(f"column {name} is missing; there are {listed(piece.columns)}")
     for column, name in others.items():
@@ -123,26 +124,32 @@ def read_layout(piece: Piece, labels: Collection[str] = ()) -> Layout:
     return Layout(headings, piece.separator, _has_decimal_commas(piece, columns))
 
 
-def read_as(headings: Iterable[tuple[str, Heading]], separator: str, usual: str, comma: bool) -> list[str]:
+def read_as(
+    headings: Iterable[tuple[str, Heading]],
+    separator: str,
+    usual: str,
+    comma: bool,
+    others: Iterable[str] = (),
+) -> list[str]:
     """What was understood of a table, in a line; none if it is as usual."""
     parts = [f"cells parted by {PARTED_BY[separator]}"] if separator != usual else []
     parts += ["decimal commas"] if comma else []
     for name, (column, unit, _) in headings:
         if column != name:
-            parts.append(f"{column!r} as {name}{f' in {unit}' if unit else ''}")
+            parts.append(f"{in_quotes(column)} as {name}{f' in {unit}' if unit else ''}")
+    parts += others
     return [f"read as: {', '.join(parts)}."] if parts else []
 
 
 PART_THOUSANDS = r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$"
 
 
-def decimal_commas_in(cells: Cells, columns: Collection[str]) -> bool:
-    """As `_has_decimal_commas`, of a small table."""
-    if cells.separator == ",":
+def decimal_commas_in(rows: Sequence[Sequence[str]], places: Collection[int], separator: str) -> bool:
+    """As `_has_decimal_commas`, of the cells in those places of a small table."""
+    if separator == ",":
         return False
-    taken = [i for i, column in enumerate(cells.columns) if column in columns]
-    with_comma = [row[i] for row in cells.rows for i in taken if "," in row[i]]
-    return any(cells.separator == ";" or not re.match(PART_THOUSANDS, cell) for cell in with_comma)
+    with_comma = [row[at] for row in rows for at in places if "," in row[at]]
+    return any(separator == ";" or not re.match(PART_THOUSANDS, cell) for cell in with_comma)
 
 
 def _has_decimal_commas(piece: Piece, columns: Sequence[str]) -> bool:
@@ -169,7 +176,8 @@ def _headings(columns: Sequence[str], labels: Collection[str]) -> dict[str, Head
     for column in inputs_among(columns, labels):
         name, unit = divided(column)
         if name in headings:
-            raise Unreadable(f"columns {headings[name].column!r} and {column!r} are both {name}")
+            two = " and ".join(map(in_quotes, (headings[name].column, column)))
+            raise Unreadable(f"columns {two} are both {name}")
         headings[name] = Heading(column, unit, unit_factor(name, unit, column))
     return headings
 
@@ -191,7 +199,7 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
     dimension = parameter_of(name).dimension
     try:
         if dimension is None:
-            raise Malformed(f"must hold plain numbers, without the {unit!r}")
+            raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")
         if symbol_of(unit) == "rad":
             raise Malformed("has angles in radians; give degrees or turns")
         return read_unit(unit, dimension)
@@ -209,12 +217,13 @@ def meant(column: str) -> str | None:
     for key in ("_".join(words), "_".join(words[:-1])):
         known = {one.lower(): one for one in (*reversed(COLUMNS), *MEASURED, "axle")}
         meant = OTHER_NAMES.get(key) or known.get(key)
-        if meant and (key == "_".join(words) or _is_unit(words[-1], meant)):
+        if meant and (key == "_".join(words) or is_unit(words[-1], meant)):
             return meant
     return None
 
 
-def _is_unit(word: str, name: str) -> bool:
+def is_unit(word: str, name: str) -> bool:
+    """Whether an input may be given in that unit."""
     dimension = parameter_of(name).dimension
     try:
         return dimension is not None and bool(read_unit(word, dimension))
@@ -223,9 +232,9 @@ def _is_unit(word: str, name: str) -> bool:
 
 
 def refused(column: str, why: str) -> Unreadable:
-    return Unreadable(f"column {column!r} {why}; or let it pass by --label {column!r}")
+    return Unreadable(f"column {in_quotes(column)} {why}; or let it pass by --label {in_quotes(column)}")
 
 
 def listed(names: Sequence[str], most: int = 12) -> str:
     more = f" and {len(names) - most} more" if len(names) > most else ""
-    return f"{', '.join(map(repr, names[:most]))}{more}"
+    return f"{', '.join(map(in_quotes, names[:most]))}{more}"

@@ -51,33 +51,26 @@ def checked(rows: bytes, separator: str, line: int) -> bytes:
     """
     mark = separator.encode()
     if b'"' in rows:
-        begins = rb"(?<![^%b\n])" % mark
-        pair = re.compile(rb'(?:%b|(?<="))"[^"]*"(?=%b|\r?\n|\r?\Z|")' % (begins, mark))
-        if 2 * sum(1 for _ in pair.finditer(rows)) < rows.count(b'"'):
-            stray = _first_stray(pair, rows)
-            line += rows.count(b"\n", 0, stray)
-            if re.compile(begins).match(rows, stray) and b'"' not in rows[stray + 1 :].replace(b'""', b""):
-                how = "it is truncated, or one is left open"
-                raise Unreadable(f"it ends within quotation marks opened in line {line}: {how}")
-            raise Unreadable(f'line {line} has a quotation mark out of place; write it "like ""this"""')
+        opens = rb'(?<![^%b\n])"' % mark
+        pair = re.compile(rb'(?:%b|(?<=")")[^"]*"(?=%b|\r?\n|\r?\Z|")' % (opens, mark))
+
+        def has_stray(rows: bytes) -> bool:
+            return 2 * sum(1 for _ in pair.finditer(rows)) < rows.count(b'"')
+
+        for row in portions(rows, 1) if has_stray(rows) else ():
+            if has_stray(row):
+                where = f"the row that begins in line {line}"
+                if row.count(b'"') % 2 and re.search(opens + rb'[^"]*\Z', row.replace(b'""', b"")):
+                    how = "it is truncated, or one is left open"
+                    raise Unreadable(f"it ends within quotation marks, in {where}: {how}")
+                raise Unreadable(f'{where} has a quotation mark out of place; write it "like ""this"""')
+            line += row.count(b"\n")
     if b"\r" in rows and rows.count(b"\r") > rows.count(b"\r\n"):
         no_blank_line = rb"(?:(?<=%b)|(?<![^\n])(?!\r+\n))" % mark
         bare = rb'[^"%b\n]*\r(?!\n|\Z)[^"%b\n]*?(?=\r?(?:\n|\Z)|%b)' % (mark, mark, mark)
         either = rb'"[^"]*"|%b(%b)' % (no_blank_line, bare)
         rows = re.sub(either, lambda found: b'"%b"' % found[1] if found[1] else found[0], rows)
     return rows
-
-
-def _first_stray(pair: re.Pattern[bytes], rows: bytes) -> int:
-    """Where the first cell begins that has a quotation mark without a pair, or where that mark stands."""
-    cell = end = 0
-    for found in pair.finditer(rows):
-        if rows.find(b'"', end, found.start()) >= 0:
-            break
-        cell = cell if found.start() == end else found.start()
-        end = found.end()
-    stray = rows.find(b'"', end)
-    return cell if stray == end else stray
 
 
 def portions(rows: bytes, lines: int) -> list[bytes]:

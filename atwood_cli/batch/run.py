@@ -10,18 +10,29 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from inspect import signature
-from math import isfinite, nan
+from math import nan
 from pathlib import Path
+from shutil import copyfileobj
 from tempfile import NamedTemporaryFile
 from typing import IO, TYPE_CHECKING, Any
 
-from ..arrays import solve_arrays
-from ..arrays.plan import Accuracy
-from ..files import STREAM, written_beside
-from ..model.quantities import REGIMES
+from ..arrays import solve_and_count, solve_arrays
+from ..files import LONGEST_NAME, STREAM, Stdout, written_beside
+from ..model.quantities import NAMES, REGIMES, Accuracy
 from ..model.scene import Given, Scene, SceneError
-from ..model.units import NUMBER
-from .formats import SEPARATORS, Piece, block_of, is_stream, opened, read, write
+from ..model.units import in_quotes, read_number, shortened
+from ..solver.messages import reasons_at
+from .formats import (
+    SEPARATORS,
+    Piece,
+    block_of,
+    cannot_read,
+    check_distinct,
+    is_stream,
+    opened,
+    read,
+    write,
+)
 from .layout import Layout, inputs_among, read_layout
 from .parquet import count_rows
 from .quoted import Unreadable
@@ -37,17 +48,19 @@ ERROR = "error"
 
 @dataclass
 class Tally:
-    """What became of the rows, and remarks on columns."""
+    """What became of the rows, which results no row has, and remarks on columns."""
 
+    missing: set[str]
     rows: int = 0
     regimes: Counter[str] = field(default_factory=Counter)
     errors: int = 0
     first_error: str = ""
     beyond: int = 0
+    reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
     remarks: list[str] = field(default_factory=list)
 
     def lines(self) -> list[str]:
-        """What to say of it: remarks, the summary, the first error."""
+        """What to say of it: remarks, the summary, why valid rows lack results, the first error."""
         parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
         counts = [", ".join(parts)] if parts else []
         counts.append(_counted(self.errors, "error") if self.errors else "no errors")
@@ -55,7 +68,10 @@ class Tally:
             counts.append(f"{_counted(self.beyond, 'value')} beyond the range of doubles left empty")
         summary = f"{_counted(self.rows, 'row')}: {'; '.join(counts)}."
         first = [f"first error, in {self.first_error}"] if self.errors else []
-        return [*self.remarks, summary, *first]
+        # Threads count in any order: the most frequent reason first.
+        reasons = sorted(self.reasons.items(), key=lambda one: (-one[1], NAMES.index(one[0][0]), one[0][1]))
+        missing = reasons_at(dict(reasons), self.rows, "in {} of {} rows")
+        return [*self.remarks, summary, *missing, *first]
 
 
 def _counted(count: int, thing: str) -> str:
@@ -87,15 +103,24 @@ def run_batch(job: Job, watch: Watch) -> Tally:
 
         if hasattr(signal, "siginterrupt"):  # as it is imported, polars has Ctrl-C wait for a pipe
             signal.siginterrupt(signal.SIGINT, True)
-        tally = Tally()
+        tally = Tally(set(job.names))
         try:
             source = _open(job, stack)
             target = _target(job, stack)
-            write(job.target_format, target, _solved(job, source, tally, watch))
+            solved = _solved(job, source, tally, watch)
+            if job.target_format == "parquet" and is_stream(job.target):
+                # polars ends the file rightly even where it fails, so a stream gets it only when it is whole.
+                with NamedTemporaryFile() as whole:
+                    write(job.target_format, whole.file, solved)
+                    whole.seek(0)
+                    copyfileobj(whole, target)
+            else:
+                write(job.target_format, target, solved)
         except Unreadable as error:
-            raise OSError(f"cannot read {'stdin' if job.source == STREAM else job.source}: {error}") from None
-        except pl.exceptions.PolarsError as error:
-            raise OSError(f"cannot write {job.target_format}: {str(error).splitlines()[0]}") from None
+            raise cannot_read(job.source, error) from None
+        except (pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
+            why = shortened(str(error).splitlines()[0], LONGEST_NAME)
+            raise OSError(f"cannot write {job.target_format}: {why}") from None
         target.flush()
     return tally
 
@@ -105,9 +130,10 @@ THREADS = "POLARS_MAX_THREADS"
 
 def _check_environment() -> None:
     """Refuse a number of threads over which polars would panic. Raises OSError."""
+    os.environ.pop("POLARS_PANIC_ON_ERR", None)  # its errors would be panics
     threads = os.environ.get(THREADS, "1")
     if not (threads.isascii() and threads.isdigit() and int(threads)):
-        raise OSError(f"{THREADS} is set to {threads!r}; it must be a whole number from 1, or unset")
+        raise OSError(f"{THREADS} is set to {in_quotes(threads)}; it must be a whole number from 1, or unset")
 
 
 def _check_apart(job: Job) -> None:
@@ -127,24 +153,22 @@ def _open(job: Job, stack: ExitStack) -> IO[bytes]:
     Raises Unreadable.
     """
     stream = opened(job.source, stack)
-    if job.source_format != "parquet" or not (job.source == STREAM or is_stream(job.source)):
+    if job.source_format != "parquet" or not is_stream(job.source):
         return stream
     spool = stack.enter_context(NamedTemporaryFile())  # noqa: SIM115
     try:
         while block := block_of(stream):
             spool.write(block)
-        spool.flush()
+        spool.seek(0)
     except OSError as error:
         raise OSError(error.errno, error.strerror, spool.name) from None
-    return spool
+    return spool.file
 
 
-def _target(job: Job, stack: ExitStack) -> IO[bytes]:
+def _target(job: Job, stack: ExitStack) -> IO[bytes] | Stdout:
     """The output."""
     if job.target == STREAM:
-        sys.stdout.flush()
-        stream: IO[bytes] | None = getattr(sys.stdout, "buffer", None)
-        return stream or stack.enter_context(open(os.devnull, "wb"))
+        return Stdout()
     return stack.enter_context(open(stack.enter_context(written_beside(Path(job.target), job.force)), "wb"))
 
 
@@ -177,12 +201,11 @@ def _size(job: Job, source: IO[bytes]) -> int | None:
 
 def _check_columns(columns: Sequence[str], results: Sequence[str]) -> None:
     """Refuse a table whose columns come twice, or would with the results."""
-    for name, times in Counter(columns).items():
-        if times > 1:
-            raise Unreadable(f"column {name!r} is there {times} times")
+    check_distinct(columns)
+    for name in columns:
         if name in results:
             how = "rename it" if name == ERROR else "rename it, or name other results by --only"
-            raise Unreadable(f"column {name!r} would be there twice, as a result is named so; {how}")
+            raise Unreadable(f"column {in_quotes(name)} would be there twice, as a result is named so; {how}")
 
 
 def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "pl.DataFrame":
@@ -192,57 +215,55 @@ def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "pl.DataFram
     frame = piece.frame
     scenes, errors = _scenes(frame, layout)
     width = len(piece.columns)
-    errors |= {
-        row: f"the row has {cells} cells, and the header {width}" for row, cells in piece.short.items()
-    }
+    for row, cells in piece.short.items():
+        errors[row] = f"the row has {_counted(cells, 'cell')}, and the header {width}"
+    scenes["m1"][list(errors)] = nan  # such a row has no results
     wanted = list(dict.fromkeys(["regime", *job.names]))
-    results = solve_arrays(**scenes, accuracy=job.accuracy, quantities=wanted)
+    results, reasons = solve_and_count(scenes, job.accuracy, wanted)
+    tally.reasons += reasons
     bad = [row for row in results["status"].nonzero()[0].tolist() if row not in errors]
-    cells = _inputs(frame, layout)[bad]
+    given = _inputs(frame, layout)[bad]
     whys: dict[str, str] = {}  # those of rows that are alike are found once
-    for row, values in zip(bad, cells.rows(), strict=True):
+    for row, values in zip(bad, given.rows(), strict=True):
         errors[row] = whys.get(str(values)) or whys.setdefault(
-            str(values), _why(dict(zip(cells.columns, values, strict=True)), layout)
+            str(values), _why(dict(zip(given.columns, values, strict=True)), layout)
         )
     failed = sorted(errors)
     texts = [errors.get(row) for row in range(frame.height)] if errors else []
     columns = {
-        "regime": _regimes(results["regime"], failed, tally),
-        **{name: _finite(results[name], failed, tally) for name in wanted[1:]},
+        "regime": _regimes(results["regime"], tally),
+        **{name: _finite(results[name], tally) for name in wanted[1:]},
         ERROR: pl.Series(texts, dtype=pl.String)
         if texts
         else pl.repeat(None, frame.height, dtype=pl.String, eager=True),
     }
     if errors and not tally.errors:
         tally.first_error = f"row {tally.rows + failed[0] + 1}: {errors[failed[0]]}"
+    tally.missing -= {name for name in job.names if columns[name].null_count() < frame.height}
     tally.errors += len(errors)
     tally.rows += frame.height
     return pl.DataFrame({name: columns[name] for name in [*job.names, ERROR]})
 
 
-def _regimes(codes: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
+def _regimes(codes: Any, tally: Tally) -> "pl.Series":
     """A column of the regimes' names, empty in rows that failed; the tally counts them."""
     import numpy as np
     import polars as pl
 
-    codes = codes.astype(np.uint32)
-    codes[failed] = len(REGIMES)
-    tally.regimes.update(
-        dict(zip(REGIMES, np.bincount(codes, minlength=len(REGIMES)).tolist(), strict=False))
-    )
-    return pl.Series([*REGIMES, None]).gather(codes)
+    counts = np.bincount(codes[codes >= 0], minlength=len(REGIMES)).tolist()
+    tally.regimes.update(dict(zip(REGIMES, counts, strict=True)))
+    return pl.Series([*REGIMES, None]).gather(codes)  # -1 is the last
 
 
-def _finite(values: Any, failed: Sequence[int], tally: Tally) -> "pl.Series":
+def _finite(values: Any, tally: Tally) -> "pl.Series":
     """A column of results, empty where a value does not exist or no double can hold it."""
     import numpy as np
     import polars as pl
 
     exists = np.isfinite(values)
-    exists[failed] = False
     if exists.all():
         return pl.Series(values)
-    tally.beyond += int(np.isinf(np.delete(values, failed)).sum())
+    tally.beyond += int(np.isinf(values).sum())
     return pl.Series(np.where(exists, values, nan), nan_to_null=True)
 
 
@@ -260,12 +281,12 @@ def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict
     for name, heading in layout.headings.items():
         kind = frame[heading.column].dtype
         if not (kind.is_numeric() or kind in (pl.String, pl.Null)):
-            raise Unreadable(f"column {name} holds {kind}, not numbers")
+            raise Unreadable(f"column {name} holds {shortened(str(kind))}, not numbers")
     cells = _inputs(frame, layout)
     doubles = cells.select(
         layout.as_doubles(name, cells[name].dtype) for name in cells.columns
     )  # in parallel
-    scenes: dict[str, Any] = {}
+    scenes: dict[str, Any] = {**DEFAULTS}
     errors: dict[int, str] = {}
     for name in cells.columns:
         scenes[name], odd = _column(cells[name], doubles[name], layout.as_doubles(name, cells[name].dtype))
@@ -274,12 +295,17 @@ def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict
                 scenes[name][row] = layout.double(name, cell)
             except SceneError as error:
                 errors.setdefault(row, str(error))
-        default = signature(solve_arrays).parameters[name].default
-        if isinstance(default, float):
-            scenes[name][scenes[name] != scenes[name]] = default
+        if name in DEFAULTS:
+            scenes[name][scenes[name] != scenes[name]] = DEFAULTS[name]
     return scenes, errors
 
 
+DEFAULTS = {
+    name: parameter.default
+    for name, parameter in signature(solve_arrays).parameters.items()
+    if isinstance(parameter.default, float)
+}
+"""Of inputs that an empty cell, or no column, leaves at what is usual."""
 LONG = 100
 """Characters: a shorter text that is a double other than 0 has no more digits and no larger exponent than are
 taken."""
@@ -315,10 +341,9 @@ def _why(row: Mapping[str, Any], layout: Layout) -> str:
         text = layout.pointed(cell).strip() if isinstance(cell, str) else cell
         if text is None or text == "":
             continue
-        if unit and isfinite(float(text)):
-            cells[name] = f"{text}{unit}"
-        else:
-            cells[name] = text if isinstance(text, str) and NUMBER.fullmatch(text) else float(text)
+        is_number = read_number(str(text), None) is not None
+        as_text = is_number and (unit or isinstance(text, str))
+        cells[name] = f"{text}{unit}" if as_text else float(text)
     try:
         Scene.read(cells)
     except SceneError as error:

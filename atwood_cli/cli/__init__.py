@@ -6,18 +6,20 @@ import sys
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
-from typing import Annotated, Any
+from typing import Annotated, Any, cast
 
 import typer
 from typer.core import TyperCommand, TyperGroup
 
 from .. import __version__
+from ..files import LONGEST_NAME, ClosedStdout
 from ..model.scene import SceneError
+from ..model.units import in_quotes, near, shortened
 from .options import COMPLETING, COULD_NOT, DONE, WORDS, WRONG_USAGE, flag
 from .text import drop, finish, say
 
 COMMANDS = ("solve", "fit", "sweep", "contact", "batch", "tradeoff")
-EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch", "pyarrow": "batch"}
+EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
 HELP = """Atwood's machine with a massive pulley and a rough string, every digit right.
 
 Examples:
@@ -46,8 +48,12 @@ class Command(TyperCommand):
             options = {flag: param for param in self.get_params(ctx) for flag in param.opts}
             try:
                 values, left, order = self.make_parser(ctx).parse_args(args=list(args))
-            except UsageError:
+            except UsageError as error:
                 _check_dashes(ctx, args, options)
+                if hasattr(error, "possibilities"):  # which typer finds by their dashes, too
+                    typed = error.option_name
+                    meant = near(typed.lstrip("-"), [known.lstrip("-") for known in options])
+                    raise _no_option(typed, meant, ctx) from None
                 raise
             _check_dashes(ctx, left, options)
             _check_values(values, order, options)
@@ -66,7 +72,14 @@ def _check_dashes(ctx: Any, words: Iterable[str], options: Mapping[str, Any]) ->
         name, equals, _ = word.partition("=")
         meant = f"--{name.lstrip('-–—')}"
         if meant in options and name not in options and (equals or meant[2:] != name):
-            raise UsageError(f"No such option: {name}. Did you mean {meant}?", ctx)
+            raise _no_option(name, meant[2:], ctx)
+
+
+def _no_option(typed: str, meant: str, ctx: Any) -> Exception:
+    """The error of an option that there is not, with a hint at another, if one is meant."""
+    hint = f". Did you mean --{meant}?" if meant else ""
+    error: Exception = UsageError(f"No such option: {typed}{hint}", ctx)
+    return error
 
 
 def _check_values(values: Mapping[str, Any], order: Sequence[Any], options: Mapping[str, Any]) -> None:
@@ -75,7 +88,8 @@ def _check_values(values: Mapping[str, Any], order: Sequence[Any], options: Mapp
         typed = values[option.name]
         for value in typed if isinstance(typed, list | tuple) else [typed]:
             if str(value).partition("=")[0] in options:
-                raise SceneError(option.name, None, f"lacks its value: what follows is the option {value}")
+                rule = f"lacks its value: what follows is the option {shortened(value)}"
+                raise SceneError(option.name, None, rule)
         if times > 1 and not (getattr(option, "multiple", 0) or getattr(option, "is_flag", 0)):
             raise SceneError(option.name, None, f"is given {times} times; give it once")
 
@@ -86,7 +100,7 @@ def _check_left(args: Sequence[str], left: Sequence[str], options: Mapping[str, 
         if word in left[:1] and before in options:
             option = options[before]
             joined = f"{value}{',' if getattr(option, 'multiple', 0) else ' '}{word}"
-            rule = f"is followed by a stray {word!r}; write {joined!r} if it belongs there"
+            rule = f"is followed by a stray {in_quotes(word)}; write {in_quotes(joined)} if it belongs there"
             raise SceneError(option.name, value, rule)
 
 
@@ -141,8 +155,8 @@ def _needed(arguments: list[str]) -> tuple[str, ...]:
 
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line; every error is a sentence on stderr and an exit status."""
-    # A stream closed by the caller is None: what is printed goes nowhere.
-    sys.stdout, sys.stderr = sys.stdout or io.StringIO(), sys.stderr or io.StringIO()
+    # A stream that the caller closed is None. Lost results are an error; lost messages cannot be told of.
+    sys.stdout, sys.stderr = sys.stdout or cast(Any, ClosedStdout()), sys.stderr or io.StringIO()
     try:
         arguments = sys.argv[1:] if arguments is None else arguments
         if arguments[:1] == ["help"]:
@@ -163,7 +177,8 @@ def run(arguments: list[str] | None = None) -> int:
         return WRONG_USAGE
     except UsageError as error:
         how = f"; {error.ctx.command_path} -h shows how" if error.ctx else ""
-        say(f"{error.format_message().rstrip('.')}{how}")
+        words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
+        say(f"{shortened(words, LONGEST_NAME)}{how}")
         return WRONG_USAGE
     except (KeyError, ValueError):
         if COMPLETING not in os.environ:
@@ -184,7 +199,8 @@ def run(arguments: list[str] | None = None) -> int:
         return COULD_NOT
     except OSError as error:
         known = error.errno is None  # a sentence of ours
-        say(str(error) if known else f"cannot write {error.filename or 'the output'}: {error.strerror}")
+        name = shortened(str(error.filename or "the output"), LONGEST_NAME)
+        say(str(error) if known else f"cannot write {name}: {error.strerror}")
         return COULD_NOT
     except ArithmeticError as error:
         say(str(error))

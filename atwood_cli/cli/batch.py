@@ -4,8 +4,9 @@ from typing import Annotated
 
 import typer
 
-from ..model.quantities import STANDARD
-from ..model.scene import SceneError
+from ..files import FORMATS
+from ..model.quantities import ACCURACIES, STANDARD
+from ..model.scene import COLUMNS, SceneError
 from .options import COULD_NOT, DONE, Columns, Force, Labels, near_or_all, option, read_names
 from .text import say
 
@@ -24,16 +25,14 @@ OutTable = Annotated[
 ]
 FromFormat = Annotated[
     str | None,
-    option(
-        "Files", "--from", metavar="csv|tsv|ndjson|parquet", help="Format of IN, if not that of its suffix."
-    ),
+    option("Files", "--from", metavar="|".join(FORMATS), help="Format of IN, if not that of its suffix."),
 ]
 ToFormat = Annotated[
     str | None,
     option(
         "Files",
         "--to",
-        metavar="csv|tsv|ndjson|parquet",
+        metavar="|".join(FORMATS),
         help="Format of OUT, if not that of its suffix; stdout: csv.",
     ),
 ]
@@ -41,14 +40,14 @@ Accuracy = Annotated[
     str,
     option(
         "Output",
-        metavar="fast|certified|exact",
+        metavar="|".join(ACCURACIES),
         help="How accurate results are; certified, within 4 units in the last place, if not given.",
     ),
 ]
 AllowErrors = Annotated[bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")]
 
 
-HELP = """Solve a table of scenes: the same table with results appended, and the error of each bad row.
+HELP = f"""Solve a table of scenes: the same table with results appended, and the error of each bad row.
 
 Examples:
   atwood batch scenes.csv -o results.csv
@@ -56,7 +55,7 @@ Examples:
   atwood batch scenes.csv --only regime --only acceleration | head
   generate | atwood batch - --from ndjson --to ndjson --allow-errors
 
-Columns m1, m2, M, mu, mu_k, g, inertia, R, wrap are the options of solve, in SI units or in those
+Columns {", ".join(COLUMNS)} are the options of solve, in SI units or in those
 of the heading, as m1 (g) or M [kg]; an empty cell is not given. Other columns stay as they are, but
 what could be meant for an input, like radius, is refused. Cells may be parted by semicolons or tabs,
 and have decimal commas then. A cell is read as the double nearest to it, as is g: so even exact can
@@ -76,7 +75,6 @@ def batch(
     allow_errors: AllowErrors = False,
     force: Force = False,
 ) -> int:
-    from ..arrays import ACCURACIES
     from ..batch.formats import read_format
     from ..batch.run import Job, run_batch
     from .page import watched
@@ -88,4 +86,6 @@ def batch(
     job = Job(table, formats[0], output, formats[1], names, accuracy, force, label or ())
     tally = run_batch(job, watched)
     say(*tally.lines())
-    return COULD_NOT if tally.errors and not allow_errors else DONE
+    failed = tally.errors and not allow_errors
+    missing = only and tally.missing and tally.rows > tally.errors
+    return COULD_NOT if failed or missing else DONE

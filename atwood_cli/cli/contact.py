@@ -1,6 +1,5 @@
 """`atwood contact`: what acts along the arc, as a table, JSON, CSV or a figure, or by string elements."""
 
-import sys
 from collections.abc import Mapping
 from decimal import Decimal
 from typing import Annotated
@@ -8,7 +7,7 @@ from typing import Annotated
 from ..arithmetic.rounding import tidy
 from ..model.scene import Scene, read_digits
 from ..solver.answers import Answers
-from ..solver.contact import Contact
+from ..solver.contact import TO_SPARE, Contact
 from ..solver.contact import contact as solve_contact
 from ..solver.elements import Elements as Solved
 from ..solver.elements import elements as march_elements
@@ -27,7 +26,7 @@ from .options import (
     option,
     takes_scene,
 )
-from .text import Forms, cell, for_stream, say, scene_record, show
+from .text import Forms, cell, say, scene_record, show
 
 DEFAULT_POINTS = 13
 Points = Annotated[
@@ -42,7 +41,7 @@ Profile = Annotated[
     str | None,
     option(
         "Arc",
-        metavar="creep|least",
+        metavar="|".join(TO_SPARE),
         help="Which tension, where friction to spare leaves it open: that of a slightly elastic string"
         " (creep, if not given), or that with the least net friction.",
     ),
@@ -130,7 +129,7 @@ def contact(
 def _forms(answers: Answers, arc: Contact) -> Forms:
     return Forms(
         json=lambda: {
-            "scene": scene_record(answers.case.scene),
+            "scene": scene_record(answers.case.scene, round_=answers.round),
             "regime": answers.case.regime,
             "profile": arc.kind,
             "points": arc.points,
@@ -146,7 +145,7 @@ def _forms(answers: Answers, arc: Contact) -> Forms:
 def _forms_of_elements(answers: Answers, solved: Solved) -> Forms:
     return Forms(
         json=lambda: {
-            "scene": scene_record(answers.case.scene),
+            "scene": scene_record(answers.case.scene, round_=answers.round),
             "regime": answers.case.regime,
             "elements": {
                 row.name: {"value": row.value, "exact": row.exact, "error": row.error} for row in solved.rows
@@ -170,7 +169,7 @@ def _print_arc(answers: Answers, arc: Contact) -> None:
         aligned(cell(tidy(Decimal(point[name])) if name == "angle" else point[name]) for point in arc.points)
         for name in arc.points[0]
     ]
-    page.table([for_stream(head, sys.stdout) for head in heads], [list(zip(*columns, strict=True))])
+    page.table(heads, [list(zip(*columns, strict=True))])
     names, forces = zip(*((name, row) for name, row in arc.balance.items() if "x" in row), strict=True)
     xs, ys = (aligned(cell(force[axis]) for force in forces) for axis in "xy")
     force_rows = list(zip(names, xs, ys, strict=True))

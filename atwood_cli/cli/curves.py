@@ -111,9 +111,7 @@ def _curve(
     x: Range, fixed: tuple[Scene, Mapping[str, Any]], name: str, digits: int | None, reasons: dict[Any, int]
 ) -> Curve:
     scene, at = fixed
-    corners = list(
-        changes(scene, x, DRAWN_DIGITS, what=lambda case: (case.regime, case.sign, case.axle_holds))
-    )
+    corners = list(changes(scene, x, DRAWN_DIGITS, what=_state))
     values = [*x.steps(STEPS), *(value for one in corners for value in (one.last, one.first))]
     xs, ys, band = [], [], []
     for value in sorted(set(values), reverse=x.ends[0] > x.ends[1]):

@@ -64,11 +64,13 @@ def page(path: str, force: bool) -> Iterator["Figure"]:
     from matplotlib.figure import Figure
 
     kind = Path(path).suffix[1:].lower()
+    dated = {"svg": "Date", "pdf": "CreationDate"}.get(kind)
+    os.environ.pop("SOURCE_DATE_EPOCH", None)  # a figure has no date, whatever this is set to
     drawn = BytesIO()  # a full disk is none of matplotlib's business
     with written_beside(Path(path), force) as beside:
         with warnings.catch_warnings(action="ignore"), rc_context({**rcParamsDefault, **STYLE}):
             figure = Figure(figsize=(11, 6), layout="constrained")
             FigureCanvasAgg(figure)  # which knows how wide words are
             yield figure
-            figure.savefig(drawn, format=kind, dpi=200, metadata={"Date": None} if kind == "svg" else None)
+            figure.savefig(drawn, format=kind, dpi=200, metadata={dated: None} if dated else None)
         beside.write_bytes(drawn.getbuffer())

@@ -56,8 +56,7 @@ def brief(command: Any, context: Any) -> str:
 
 
 def _joined(parts: list[list[str]]) -> str:
-    text = "\n\n".join("\n".join(map(_heading, part)) for part in parts)
-    return for_stream(text, sys.stdout)
+    return "\n\n".join("\n".join(_heading(for_stream(line, sys.stdout)) for line in part) for part in parts)
 
 
 def _heading(line: str) -> str:

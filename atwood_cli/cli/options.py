@@ -11,7 +11,7 @@ import typer
 
 from ..model.quantities import NAMES, QUANTITIES
 from ..model.scene import INPUTS, SceneError, parameter_of
-from ..model.units import NUMBER, nearest, without_blanks
+from ..model.units import nearest, read_number, shortened
 from .text import ASCII, say
 
 COMPLETING = "_ATWOOD_COMPLETE"
@@ -94,9 +94,11 @@ def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
 
     def with_scene(**options: Any) -> int:
         given = {name: options.pop(name) for name in INPUTS}
+        status = command(given=given, **options)
         if (wrap := given["wrap"]) and _may_be_radians(wrap):
-            say(f"--wrap {wrap} was taken for degrees; if it is in radians, write rad behind it, as 3.14rad")
-        return command(given=given, **options)
+            typed = f"--wrap {shortened(wrap)}"
+            say(f"{typed} was taken for degrees; if it is in radians, write rad behind it, as 3.14rad")
+        return status
 
     kind = inspect.Parameter.KEYWORD_ONLY
     scene = [
@@ -116,12 +118,10 @@ LIKE_RADIANS = (0.3, 12.6)
 
 
 def _may_be_radians(typed: str) -> bool:
-    """Whether an angle, or both ends of a range, has no unit and the size of radians."""
-    ends = [NUMBER.fullmatch(without_blanks(word)) for word in typed.split(":")[:2]]
+    """Whether a valid angle, or both ends of a range, has no unit and the size of radians."""
     least, most = LIKE_RADIANS
-    return (
-        all(end and not end[4] for end in ends) and least < max(float(end[0]) for end in ends if end) < most
-    )
+    ends = [read_number(word, "angle") for word in typed.split(":")[:2]]
+    return all(end and not end.unit for end in ends) and least < max(end.value for end in ends if end) < most
 
 
 def numbers() -> Mapping[str, str]:
@@ -155,6 +155,10 @@ Columns = Annotated[
         words=quantities,
         help="A column for this quantity, not for the usual seven; repeatable, or a,b; see solve -h.",
     ),
+]
+Markdown = Annotated[
+    bool,
+    option("Output", "--markdown", help="With --explain: a page of Markdown, its mathematics in LaTeX."),
 ]
 FigureFile = Annotated[
     str | None,
@@ -192,6 +196,7 @@ PLOT_IS_TEXT = (
     Rule("plot", "json", "draws text, not JSON; leave one of them out"),
     Rule("plot", "csv", "draws text, not CSV; leave one of them out"),
 )
+MARKDOWN_IS_EXPLAINED = Rule("markdown", "explain", "needs --explain", without=True)
 FIGURE_TO_REPLACE = Rule("force", "figure", "needs --figure", without=True)
 
 

@@ -9,7 +9,10 @@ from typing import TYPE_CHECKING, TypeVar
 
 from ..solver.answers import Answers
 from ..solver.messages import verdict
-from .text import describe, for_stream, wrapped
+from .text import describe, for_stream, spelled, wrapped
+
+if TYPE_CHECKING:
+    from ..derivation.steps import Explanation
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -20,6 +23,9 @@ Groups = Sequence[Sequence[Sequence[str]]]
 
 PIPED = 100
 """Columns of text where there is no terminal."""
+READABLE = 80
+"""Columns of text beyond which lines are hard to follow."""
+NARROWEST = 40
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 
 
@@ -50,7 +56,7 @@ class Page:
         """A line as it is."""
         from rich.text import Text
 
-        self.console.print(Text(words, style), soft_wrap=True)
+        self.console.print(Text(for_stream(words, sys.stdout), style), soft_wrap=True)
 
     def head(self, answers: Answers) -> None:
         """The scene and the verdict."""
@@ -68,7 +74,9 @@ class Page:
         from rich.text import Text
 
         for heads, rows in self.parts(columns, groups, keys):
-            table = Table(*heads, box=box.ROUNDED, show_lines=True)
+            table = Table(box=box.ROUNDED, show_lines=True)
+            for head in heads:
+                table.add_column(Text(head))  # not as markup, which a file's heading may look like
             for group in rows:
                 # One row a group, its lines joined: rich takes five times as long over a row a line.
                 table.add_row(*(Text("\n".join(column)) for column in zip(*group, strict=True)))
@@ -81,6 +89,11 @@ class Page:
         self, columns: Sequence[str], groups: Groups, keys: int
     ) -> Iterator[tuple[Sequence[str], Groups]]:
         """The table in parts that are no wider than there is room for, if a column beside the keys is not."""
+        columns = [for_stream(head, sys.stdout) for head in columns]
+        groups = [
+            [[for_stream(word, sys.stdout).replace("\n", r"\n") for word in row] for row in group]
+            for group in groups
+        ]
         fit = len(columns)
         while fit > keys + 1 and table_width(columns[:fit], groups) > self.width:
             fit -= 1
@@ -90,6 +103,20 @@ class Page:
         for part in (slice(keys, fit), slice(fit, None)):
             rows = [[[*row[:keys], *row[part]] for row in group] for group in groups]
             yield from self.parts([*columns[:keys], *columns[part]], rows, keys)
+
+
+def print_explanation(scene: str, explanation: "Explanation", markdown: bool) -> None:
+    """A derivation, step by step: on a terminal in its columns, or as Markdown."""
+    from ..derivation.typeset import as_markdown, as_text
+
+    if markdown:
+        for line in as_markdown(scene, explanation):
+            print(for_stream(line, sys.stdout))
+        return
+    page = Page()
+    width = max(NARROWEST, min(READABLE, page.room or READABLE))
+    for line, style in as_text(scene, explanation, width, lambda words: spelled(words, sys.stdout)):
+        page.line(line, style)
 
 
 def table_width(columns: Sequence[str], groups: Groups) -> int:

@@ -4,9 +4,8 @@ import sys
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from itertools import groupby, pairwise
+from itertools import pairwise
 from math import ceil, floor, log10
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from plotille import Canvas
@@ -14,14 +13,12 @@ from plotille import Canvas
 from ..arithmetic.rounding import as_typed
 from .curves import Curve, Picture
 from .page import Page
-from .text import describe, for_stream, takes_unicode
+from .text import for_stream, takes_unicode
 
 if TYPE_CHECKING:
-    from ..fit.fitting import Fit
-    from ..tradeoff.measure import Cost
-    from ..tradeoff.outcome import Tradeoff
+    from ..laboratory.fitting import Fit
 
-PIPE_WIDTH, HEIGHT, SMALL_HEIGHT = 80, 20, 12
+PIPE_WIDTH, HEIGHT = 80, 20
 LEAST_WIDTH, LEAST_HEIGHT = 10, 5
 LEAST_TICKS = 3  # asking for fewer may give none
 LONGEST_POWER = 4  # of ten, written out
@@ -85,50 +82,10 @@ def _show(page: Page, lines: list[str]) -> None:
         page.console.print(Text.from_ansi(shown.rstrip()), soft_wrap=True)
 
 
-def print_tradeoff_plot(outcome: "Tradeoff", everything: bool) -> None:
-    """Error against time, both logarithmic: settings over all families, or on each and string elements."""
-    from ..tradeoff.outcome import EDGES, overall
-
-    page = Page()
-    if everything:
-        for family, group in groupby(outcome.measured, attrgetter("family")):
-            page.say(family, "bold")
-            _show_settings(page, list(group))
-    else:
-        about = f"Times of {outcome.families[0]}, errors of all families"
-        page.say(about if outcome.seed is not None else f"scene: {describe(outcome.scene)}")
-        _show_settings(page, overall(outcome.measured))
-    settings = dict.fromkeys(one.setting for one in outcome.measured)
-    page.say(f"{', '.join(map(' '.join, zip(LETTERS, settings, strict=False)))}. {EDGES}")
-    if everything:
-        _show_elements(page, outcome)
-    page.say(outcome.advice, "bold")
-
-
-def _show_settings(page: Page, settings: Sequence["Cost"]) -> None:
-    from ..tradeoff.outcome import drawable
-
-    points = [(one.seconds, drawable(one.worst_ulp)) for one in settings]
-    _show(page, _scatter("worst error (ulp)", [points], page.room or PIPE_WIDTH, LETTERS))
-
-
-def _show_elements(page: Page, outcome: "Tradeoff") -> None:
-    from ..tradeoff.outcome import drawable_marches
-
-    for note in outcome.notes:
-        page.say(note)
-    if any(marches := drawable_marches(outcome.marches)):
-        curves = [[(one.seconds, one.relative_error) for one in ones] for ones in marches]
-        page.say("String elements", "bold")
-        _show(page, _scatter("relative error of e^(μφ)", curves, page.room or PIPE_WIDTH, ""))
-        numbers = [one.elements for ones in marches for one in ones if one.elements]
-        page.say(f"a elements, b extrapolated; along the lines {min(numbers):,} to {max(numbers):,} of them.")
-
-
-def print_fit_plot(page: Page, head: str, fit: "Fit") -> None:
+def print_fit_plot(page: Page, head: Sequence[str], fit: "Fit") -> None:
     """Runs as points, and their line; then what it is."""
-    from ..fit.line import points
-    from ..fit.sentences import shown, verdict
+    from ..laboratory.results import points
+    from ..laboratory.sentences import coefficients
 
     at = points(fit)
     end = 1.06 * float(max(at.x))
@@ -142,44 +99,14 @@ def print_fit_plot(page: Page, head: str, fit: "Fit") -> None:
 
     values = [x for x, _ in ends], [y for _, y in ends]
     xs, ys = (list(map(float, [*one, *other])) for one, other in zip(values, (at.x, at.y), strict=True))
-    page.say(head)
-    page.say(verdict(fit), "bold")
+    page.say(head[0])
+    for words in head[1:]:
+        page.say(words, "bold")
     titles = ("a (m/s²)", "T_h - T_l (N)")
-    _show(page, _framed(titles, (xs, [0.0, *ys]), (False, False), page.room or PIPE_WIDTH, HEIGHT, draw))
-    for name, what, unit in (("rim_mass", "slope c", "kg"), ("axle", "intercept f", "N")):
-        value = fit.estimate.values[name]
-        spread = fit.uncertainty(name) if name in fit.values else None
-        page.say(f"{what} = {shown(value, spread)} {unit}.")
+    _show(page, _framed(titles, (xs, [0.0, *ys]), page.room or PIPE_WIDTH, HEIGHT, draw))
+    for words in coefficients(fit):
+        page.say(f"{words.replace('$', '')}.")
     page.say("Points are the last digits of their rows.")
-
-
-def _scatter(title: str, curves: list[list[tuple[float, float]]], room: int, marks: str) -> list[str]:
-    """Points with a letter each, or curves with a letter each."""
-
-    def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
-        for number, curve in enumerate(curves):
-            dots = [(x_axis.dot(x), y_axis.dot(y)) for x, y in curve]
-            for mark, dot in zip(marks, _side_by_side(dots), strict=False):
-                canvas.point(*dot, marker=mark, color=COLOURS[number])
-            if not marks:
-                for start, end in pairwise(dots):
-                    canvas.line(*start, *end, color=COLOURS[number])
-                for dot in dots[len(dots) // 2 :][:1]:
-                    canvas.point(*dot, color=COLOURS[number], marker=LETTERS[number])
-
-    xs, ys = ([point[i] for curve in curves for point in curve] for i in (0, 1))
-    return _framed(("time (s)", title), (xs, ys), (True, True), room, SMALL_HEIGHT, draw)
-
-
-def _side_by_side(dots: list[tuple[int, int]]) -> list[tuple[int, int]]:
-    """The dots, of which those in the character of another go to the next one that is free left of it."""
-    apart: list[tuple[int, int]] = []
-    for x, y in dots:
-        left = x
-        while left >= 0 and any((left // 2, y // 4) == (a // 2, b // 4) for a, b in apart):
-            left -= 2
-        apart.append((left if left >= 0 else x, y))
-    return apart
 
 
 PLAIN = {DOTS[0]: " "}
@@ -204,23 +131,23 @@ def _lines(drawn: Picture, room: int, height: int) -> list[str]:
             _draw_curve(canvas, curve, x_axis, y_axis, number, several)
 
     ys = [y for curve in drawn.curves for line in curve.lines for y in line if y is not None]
-    return _framed((drawn.x, drawn.y), (drawn.curves[0].xs, ys), (drawn.log, False), room, height, draw)
+    return _framed((drawn.x, drawn.y), (drawn.curves[0].xs, ys), room, height, draw, drawn.log)
 
 
 def _framed(
     titles: tuple[str, str],
     values: tuple[list[float], list[float]],
-    logs: tuple[bool, bool],
     room: int,
     height: int,
     draw: Callable[[Any, Axis, Axis], None],
+    log: bool = False,
 ) -> list[str]:
-    """Axes over the values in x and y, and what is drawn on them."""
-    y_axis = Axis(values[1], 4 * height, max(height // 4, LEAST_TICKS), logs[1])
+    """Axes over the values in x and y, and what is drawn on them; ``log`` makes the x axis logarithmic."""
+    y_axis = Axis(values[1], 4 * height, max(height // 4, LEAST_TICKS))
     labels = {y_axis.dot(float(tick)) // 4: _label(tick) for tick in y_axis.ticks}
     margin = max(map(len, labels.values()), default=0)
     width = max(room - margin - 3, LEAST_WIDTH)
-    x_axis = Axis(values[0], 2 * width, max(width // 12, LEAST_TICKS), logs[0])
+    x_axis = Axis(values[0], 2 * width, max(width // 12, LEAST_TICKS), log)
     canvas = Canvas(width, height, 0, 0, 2 * width, 4 * height)
     draw(canvas, x_axis, y_axis)
     rows = canvas.plot("\n").split("\n")

@@ -2,7 +2,6 @@
 
 import sys
 from collections.abc import Mapping, Sequence
-from functools import partial
 from itertools import chain, groupby
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,10 +14,12 @@ from ..solver.reading import read_answers
 from .options import (
     COULD_NOT,
     DONE,
+    MARKDOWN_IS_EXPLAINED,
     ONE_FORM,
     AsCsv,
     AsJson,
     Digits,
+    Markdown,
     Rule,
     check,
     flag,
@@ -72,17 +73,13 @@ Explain = Annotated[
         help="Instead, show how it follows: step by step, with the numbers put in.",
     ),
 ]
-Markdown = Annotated[
-    bool,
-    option("Output", "--markdown", help="With --explain: a page of Markdown, its mathematics in LaTeX."),
-]
 
 RULES = (
     *(
         Rule("all", name, f"is of the table, and has no say beside {flag(name)}; leave one of them out")
         for name in ("json", "csv", "only", "explain")
     ),
-    Rule("markdown", "explain", "needs --explain", without=True),
+    MARKDOWN_IS_EXPLAINED,
     *(
         Rule("explain", name, f"has no part in {flag(name)}; leave one of them out")
         for name in ("json", "csv", "only", "budget", "a", "drop", "time")
@@ -148,10 +145,13 @@ def solve(
     bare = bool(names) and not (json or csv)
     check(RULES_OF_THE_SCENE, {**options, "bare": bare, "uncertain": answers.uncertainties})
     if explain:
-        print_explanation(answers, markdown)
+        from ..derivation.steps import explain as explained
+        from .page import print_explanation
+
+        print_explanation(describe(answers.case.scene), explained(answers), markdown)
         return DONE
     say(*show(_forms(answers, names, bare, budget, all), json, csv, bare=bool(names)))
-    return COULD_NOT if bare and "" in [cell(answers[name]) for name in names] else DONE
+    return COULD_NOT if "" in [cell(answers[name]) for name in names] else DONE
 
 
 def _forms(answers: Answers, only: Sequence[str], bare: bool, budget: bool, whole: bool) -> Forms:
@@ -174,7 +174,7 @@ def _record(answers: Answers, only: Sequence[str], budget: bool) -> dict[str, ob
         results["budget"] = {name: answers.budget(name) or None for name in names if name != "regime"}
     if only:
         return results
-    scene = scene_record(answers.case.scene, answers.case.motion)
+    scene = scene_record(answers.case.scene, answers.case.motion, answers.round)
     return {"scene": scene, **results, "notes": notes(answers)}
 
 
@@ -245,7 +245,7 @@ def _with_uncertainty(answers: Answers, name: str) -> str:
     """A value, and its uncertainty if it has one; empty if it does not exist."""
     shown = cell(answers[name])
     u = answers.uncertainty(name, to_digits(2)) if shown else None
-    return with_uncertainty(partial(answers.cut, name), u) if u else shown
+    return with_uncertainty(lambda place: answers.rounded(name, to_place(place)), u) if u else shown
 
 
 def _print_budget(page: "Page", answers: Answers, names: Sequence[str]) -> None:
@@ -259,24 +259,3 @@ def _print_budget(page: "Page", answers: Answers, names: Sequence[str]) -> None:
     rows = ([name, *cells] for name, *cells in zip(shares, *columns, strict=True))
     by_group = groupby(rows, lambda row: QUANTITIES[row[0]].group)
     page.table(["Quantity", *inputs], [list(group) for _, group in by_group])
-
-
-READABLE = 80  # columns: longer lines of text are hard to follow
-NARROWEST = 40
-
-
-def print_explanation(answers: Answers, markdown: bool) -> None:
-    """The derivation, step by step: on a terminal in its columns, or as Markdown."""
-    from ..derivation.steps import explain
-    from ..derivation.typeset import as_markdown, as_text
-    from .page import Page
-
-    scene, steps = describe(answers.case.scene), explain(answers)
-    if markdown:
-        for line in as_markdown(scene, steps):
-            print(for_stream(line, sys.stdout))
-        return
-    page = Page()
-    width = max(NARROWEST, min(READABLE, page.room or READABLE))
-    for line, style in as_text(scene, steps, width, lambda words: for_stream(words, sys.stdout)):
-        page.line(line, style)

@@ -9,7 +9,7 @@ from itertools import groupby, pairwise
 from operator import itemgetter
 from typing import Annotated, Any
 
-from ..arithmetic.rounding import text
+from ..arithmetic.rounding import text, to_digits, to_double
 from ..files import STREAM, stdout_into
 from ..model.quantities import QUANTITIES, STANDARD
 from ..model.scene import SceneError, read_digits
@@ -19,6 +19,7 @@ from ..solver.regimes import changes
 from ..solver.sweep import Row, Sweep, read_sweep, solve_rows, stated_point
 from .curves import MAX_CURVES, axis_words, check_drawable, longest, picture, regimes
 from .options import (
+    COULD_NOT,
     DONE,
     ONE_FORM,
     PLOT_IS_TEXT,
@@ -37,7 +38,7 @@ from .options import (
     takes_scene,
 )
 from .page import Page, aligned, watched
-from .text import Forms, cell, for_stream, inputs_in_words, say, scene_record, show
+from .text import Forms, cell, inputs_in_words, say, scene_record, show
 
 Plot = Annotated[
     str | None,
@@ -123,8 +124,8 @@ def sweep(
             save(curves, _caption(swept, drawn["figure"]), figure[0], force)
         forms = _Forms(swept, names, precision, drawn.get("plot"), plain=_is_file(output))
         aside = show(forms.forms(), json, csv)
-    say(*aside)
-    return DONE
+    say(*aside or [f"{name} has no value in any row" for name in names if name in forms.missing])
+    return COULD_NOT if forms.missing else DONE
 
 
 def _is_file(output: str | None) -> bool:
@@ -152,6 +153,7 @@ class _Forms:
         self, sweep: Sweep, names: Sequence[str], digits: int | None, plot: str | None, plain: bool
     ) -> None:
         self.sweep, self.digits, self.plot, self.plain = sweep, digits, plot, plain
+        self.missing = set(names)  # of those asked for, what no row has
         self.names = names or STANDARD
         # Where a sentence tells the regimes, a column of them must be asked for.
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
@@ -167,6 +169,7 @@ class _Forms:
         rows = solve_rows(self.sweep, names, digits)
         for row in watched(rows, self.sweep.total) if watch else rows:
             self.reasons.update(row.reasons.items())
+            self.missing = {name for name in self.missing if not cell(row.values[name])}
             yield row
 
     def _notes(self) -> Iterator[str]:
@@ -175,8 +178,9 @@ class _Forms:
 
     def _json(self) -> Mapping[str, object]:
         ranges = {range_.name: range_.typed for range_ in self.sweep.ranges}
+        rounding = to_double if self.digits is None else to_digits(self.digits)
         return {
-            "scene": scene_record(self.sweep.scene) | ranges,
+            "scene": scene_record(self.sweep.scene, round_=rounding) | ranges,
             "rows": self._records(),
             "notes": self._notes(),
         }
@@ -233,7 +237,7 @@ class _Forms:
         ] + [column if name == "regime" else aligned(column) for name, column in cells.items()]
         lines = zip(*columns, strict=True)
         groups = [[next(lines) for _ in group] for group in _groups(sweep, rows)]
-        heads, keys = [for_stream(head, sys.stdout) for head in _heads(sweep, list(cells))], len(sweep.ranges)
+        heads, keys = _heads(sweep, list(cells)), len(sweep.ranges)
         left_out = 0
         if page.room and sys.stdout.isatty():
             tables = len(list(page.parts(heads, groups, keys)))

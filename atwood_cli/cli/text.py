@@ -8,40 +8,25 @@ from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
-from typing import NamedTuple, TextIO
+from typing import Any, NamedTuple, TextIO
 
-from ..arithmetic.rounding import as_typed, is_infinite, text
+from ..arithmetic.rounding import Rounding, as_decimal, as_typed, is_infinite, text, to_double
+from ..files import Stdout, printable
+from ..model.angle import Angle
+from ..model.axle import Axle
 from ..model.scene import MEASURED, UNMEASURED, Motion, Scene, stated
 
-ASCII = str.maketrans(
-    {
-        "μ": "mu",
-        "µ": "u",
-        "φ": "phi",
-        "β": "beta",
-        "π": "pi",
-        "τ": "tau",
-        "α": "alpha",
-        "θ": "theta",
-        "χ": "chi",
-    }
-    | {
-        "₁": "1",
-        "₂": "2",
-        "²": "^2",
-        "°": "deg",
-        "·": "*",
-        "±": "+/-",
-        "≤": "<=",
-        "≥": ">=",
-        "≈": "~",
-        "√": "sqrt",
-    }
-)
+SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
+ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
 
 
 def for_stream(words: str, stream: TextIO | None) -> str:
-    """The words as the stream can take them: symbols are spelled out where it is not Unicode."""
+    """The words as the stream can take them, a terminal too: what is read or typed does not steer it."""
+    return spelled(printable(words), stream)
+
+
+def spelled(words: str, stream: TextIO | None) -> str:
+    """The words with their symbols spelled out where the stream is not Unicode."""
     return words if takes_unicode(stream) else words.translate(ASCII).encode("ascii", "replace").decode()
 
 
@@ -52,10 +37,9 @@ def takes_unicode(stream: TextIO | None) -> bool:
 
 
 def say(*messages: str) -> None:
-    """Each message on stderr, as the program's, a line; what is typed or read steers no terminal."""
+    """Each message on stderr, as the program's, a line."""
     for message in messages:
-        shown = "".join(c if c.isprintable() else repr(c)[1:-1] for c in message)
-        line = for_stream(f"atwood: {shown}", sys.stderr)
+        line = for_stream(f"atwood: {printable(message, keep='')}", sys.stderr)
         if sys.stderr.isatty():
             from shutil import get_terminal_size
 
@@ -149,8 +133,6 @@ def as_json(value: object, indent: str = "\n") -> Iterator[str]:
                 yield from as_json(item, inner)
                 empty = False
             yield "]" if empty else f"{indent}]"
-        case Fraction():
-            yield as_typed(value)
         case float() | Decimal():
             yield "null" if is_infinite(value) else text(value)
         case _:
@@ -161,7 +143,7 @@ def print_csv(records: Iterable[Mapping[str, object]]) -> None:
     """A line of names and a line for each record, as they come."""
     from csv import writer
 
-    table = writer(sys.stdout, lineterminator="\n")
+    table = writer(Stdout(), lineterminator="\n")
     for number, record in enumerate(records):
         if not number:
             table.writerow(record)
@@ -175,24 +157,41 @@ def cell(value: object) -> str:
             return "" if is_infinite(value) else text(value)
         case bool():
             return str(value).lower()
-    return str(value or "")
+    return "" if value is None else str(value)
 
 
-def scene_record(scene: Scene, motion: Motion = UNMEASURED) -> dict[str, object]:
-    """The inputs as JSON has them: numbers in SI units and degrees, or text where JSON has no number."""
-    given: dict[str, object] = scene._asdict()
+def scene_record(
+    scene: Scene, motion: Motion = UNMEASURED, round_: Rounding[Any] = to_double
+) -> dict[str, object]:
+    """The inputs as JSON has them: numbers in SI units and degrees, or text where JSON has no number.
+
+    A number is exact where it is a decimal, or else rounded as results are.
+    """
+
+    def written(value: object, unit: str) -> object:
+        if not isinstance(value, Fraction):
+            return value
+        number = as_decimal(value, round_)
+        return f"{text(number)}{unit}" if unit else number
+
+    return {name: written(*one) for name, one in _given(scene, motion).items()}
+
+
+def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
+    """The inputs by name, each with its unit where that is not the usual one."""
+    given: dict[str, Any] = scene._asdict()
     if motion != UNMEASURED:
         given |= {name: getattr(motion, name) for name in MEASURED}
         given |= {motion.finds: None} if motion.finds else {}
     if scene.M == inf:
         given["M"] = "inf"
-    wrap, axle = scene.wrap, scene.axle
-    given["wrap"] = wrap.number if wrap.unit == "°" else f"{as_typed(wrap.number)}rad"
-    if axle is None:
+    if scene.axle is None:
         del given["axle"]  # nothing of it shows
-    else:
-        given["axle"] = axle.number if axle.unit == "N" else f"{as_typed(axle.number)} Nm"
-    return given
+    units = {"rad": "rad", "N m": " Nm"}
+    return {
+        name: (value.number, units.get(value.unit, "")) if isinstance(value, Angle | Axle) else (value, "")
+        for name, value in given.items()
+    }
 
 
 def describe(scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}) -> str:
@@ -205,17 +204,13 @@ def inputs_in_words(
 ) -> dict[str, str]:
     """What is said of each input: m1 = 1 kg."""
     parts = {}
-    for name, value in scene_record(scene, motion).items():
+    for name, (value, unit) in _given(scene, motion).items():
         u = as_typed(uncertain[name]) if name in uncertain else ""
-        spread = f" ± {u}" if u else ""
         if isinstance(value, Fraction):
-            parts[name] = stated(name, f"{_as_fine(as_typed(value), u)}{spread}")
+            number = f"{_as_fine(as_typed(value), u)}{f' ± {u}' * bool(u)}"
+            parts[name] = f"{name} = {number}{unit}" if unit else stated(name, number)
         elif value is not None:
-            number, unit = str(value), ""
-            for one in ("rad", " Nm") if u else ():
-                if number.endswith(one):
-                    number, unit = _as_fine(number.removesuffix(one), u), one
-            parts[name] = f"{name} = {number}{spread}{unit}"
+            parts[name] = f"{name} = {value}"
     return parts
 
 

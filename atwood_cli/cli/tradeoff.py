@@ -11,7 +11,6 @@ from .options import (
     DONE,
     FIGURE_TO_REPLACE,
     ONE_FORM,
-    PLOT_IS_TEXT,
     AsCsv,
     AsJson,
     FigureFile,
@@ -72,10 +71,6 @@ Elements = Annotated[
 Everything = Annotated[
     bool, option("Output", "--all", help="Show every setting on each family, and all numbers of elements.")
 ]
-Plot = Annotated[
-    bool,
-    option("Output", "--plot", help="Draw error against time in place of tables (extra: plot)."),
-]
 
 RULES = (
     Rule("all", "json csv", "has no say beside --json and --csv, which hold all of it; leave it out"),
@@ -89,7 +84,7 @@ HELP = """Measure what accuracy costs on this machine: time beside error, for fa
 Examples:
   atwood tradeoff
   atwood tradeoff --m1 1 --m2 3 --M 10 --mu 0.3
-  atwood tradeoff --family near-critical --scenes 2000 --plot
+  atwood tradeoff --family near-critical --scenes 2000
   atwood tradeoff --all --elements 10000000
   atwood tradeoff --json > measured.json
 
@@ -106,7 +101,6 @@ def tradeoff(
     seed: Seed = None,
     elements: Elements = None,
     all: Everything = False,  # noqa: A002 - the name of the option
-    plot: Plot = False,
     figure: FigureFile = None,
     force: Force = False,
     json: AsJson = False,
@@ -126,8 +120,7 @@ def tradeoff(
     for name in chosen:
         if name not in FAMILIES:
             raise SceneError("family", name, f"is no family of scenes{near_or_all(name, FAMILIES)}")
-    check(PLOT_IS_TEXT, options)
-    check_extras(plot, figure, force)
+    check_extras(None, figure, force)
     families = list(dict.fromkeys(chosen))
     count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
     start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
@@ -137,17 +130,13 @@ def tradeoff(
         from .tradeoff_figure import save
 
         save(outcome, figure, force)
-    say(*show(_forms(outcome, plot, all), json, csv))
+    say(*show(_forms(outcome, all), json, csv))
     return DONE
 
 
-def _forms(outcome: "Tradeoff", plot: bool, everything: bool) -> Forms:
+def _forms(outcome: "Tradeoff", everything: bool) -> Forms:
     def page() -> None:
-        if plot:
-            from .plot import print_tradeoff_plot
-
-            print_tradeoff_plot(outcome, everything)
-        elif everything:
+        if everything:
             _print_all(outcome)
         else:
             from .page import Page

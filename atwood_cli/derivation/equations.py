@@ -194,7 +194,7 @@ class Derivation:
                 break
             digits += 1 + digits // 16
         put_in = "=" if all(is_exact for _, is_exact in rounded.values()) else "≈"
-        signs = put_in + ("=" if exact and put_in == "=" else "≈")
+        signs = put_in + ("=" if exact and (put_in == "=" or not value) else "≈")
         return Equation(label, left, formula, numbers, signs, text(value), unit)
 
     def _gives(self, formula: Formula, numbers: Mapping[Symbol, Decimal], result: Decimal) -> bool:

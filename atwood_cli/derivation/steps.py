@@ -10,7 +10,15 @@ from typing import NamedTuple
 
 from ..model.quantities import QUANTITIES
 from ..solver.answers import Answers
-from ..solver.messages import conditions, odd_inertia, open_range, reasons_at, verdict
+from ..solver.messages import (
+    conditions,
+    holding_again,
+    kinetic,
+    odd_inertia,
+    open_range,
+    reasons_at,
+    verdict,
+)
 from .equations import Derivation, Law, Part
 
 
@@ -25,11 +33,12 @@ class Step(NamedTuple):
 
 
 class Explanation(NamedTuple):
-    """The answer first, how to read what follows, and the steps to it."""
+    """The answer first, how to read what follows, and the steps to it; a page has a title."""
 
     answer: list[str]
     reading: str
     steps: list[Step]
+    title: str = "Atwood's machine, step by step"
 
 
 def explain(answers: Answers) -> Explanation:
@@ -140,6 +149,7 @@ def _turning(derivation: Derivation) -> Iterator[Part]:
     yield Law("(2)", f"({difference} - f_axle) R = I α")
     yield "and it stands while the tensions differ by no more than `f_axle`, the weight of a mass `b`:"
     yield from derivation.axle()
+    yield "(The axle of the paper does not rub: its equations are those here with `f_axle = 0` and `b = 0`.)"
 
 
 def _motion(derivation: Derivation) -> Step:
@@ -252,7 +262,7 @@ def _grip(derivation: Derivation) -> Step:
                 "The ratio (33) is `k` on a pulley of the critical mass,",
                 *derivation.lines("critical_pulley_mass"),
             ]
-    return Step("Does the string hold?", [*body, verdict(derivation.answers)])
+    return Step("Does the string hold?", [*body, verdict(derivation.answers), *kinetic(derivation.answers)])
 
 
 def _friction(derivation: Derivation) -> Step:
@@ -268,8 +278,11 @@ def _friction(derivation: Derivation) -> Step:
         body[-1] = f"{body[-1]} all along the arc, so `T(θ)` is known, and the net force on the pulley is"
         body += derivation.lines("friction_force")
         body += [] if case.ends_hang_down else [f"with {derivation.value('half_sine')}."]
+        axes = "`x` towards the side of `m1` and `y` upwards"
+        if not case.ends_hang_down:
+            axes = "`x` towards where `m1`'s string meets the pulley and `y` a quarter turn on along the arc"
         body.append(
-            "As a vector, `x` towards the side of `m1` and `y` upwards, it is"
+            f"As a vector, {axes}, it is"
             f" {derivation.say('friction_force_x')},"
             f" {derivation.say('friction_force_y')} by (31)."
         )
@@ -307,9 +320,11 @@ def _limits(derivation: Derivation) -> Step:
         body.append(f"{', '.join(meanings)}.")
         body += [*derivation.lines("k1", "transfer", *["drive"] * derivation.case.can_slip), *masses]
     if least := [*derivation.lines("least_heavier_mass", "least_pulley_mass")]:
-        body.append("For the verge, the heavier mass must exceed `m min` and the pulley's mass `M min`.")
+        pulley = " and the pulley's mass `M min`" * (derivation.answers["least_pulley_mass"] is not None)
+        body.append(f"For the verge, the heavier mass must exceed `m min`{pulley}.")
         body += [*derivation.lines("k1", "transfer"), *least]
-    return Step("The critical masses", [*body, *conditions(derivation.answers)])
+    answers = derivation.answers
+    return Step("The critical masses", [*body, *holding_again(answers), *conditions(answers)])
 
 
 def _simpler(derivation: Derivation) -> Iterator[Step]:
@@ -317,10 +332,13 @@ def _simpler(derivation: Derivation) -> Iterator[Step]:
     case, scene, digits = derivation.case, derivation.scene, derivation.digits
     if case.sign == 0 or derivation.answers["acceleration"] is None:
         return
-    held = case.axle_friction is not None and not case.locked and (case.axle_holds or not case.pulley_known)
-    if not (case.frictionless or (held and case.regime != "verge")):
-        massless = scene._replace(M=Fraction(0), I=None, inertia=Fraction(1), mu=None, mu_k=None)
-        yield Step("What if the pulley's mass is ignored?", [*derivation.compared(Answers(massless, digits))])
+    massless = Answers(scene._replace(M=Fraction(0), I=None, inertia=Fraction(1)), digits)
+    runs_freely = case.frictionless and case.axle_friction is None
+    if not (runs_freely or case.axle_holds or case.rim_mass == 0):
+        body = [*derivation.compared(massless)]
+        if case.regime == massless.case.regime == "slip":
+            body = ["Nothing changes: the string slips over a pulley without mass, too, as its axle rubs."]
+        yield Step("What if the pulley's mass is ignored?", body)
     if case.axle_friction is not None and case.regime == "no-slip" and not case.locked:
         freely = Answers(scene._replace(axle=None), digits)
         if freely["acceleration"] is not None:

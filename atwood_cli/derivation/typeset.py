@@ -17,7 +17,7 @@ from .steps import Explanation
 Spell = Callable[[str], str]
 Written = tuple[str, int]
 """A formula as text and how tightly it holds together: it is put in parentheses where it is too loose."""
-SUM, PRODUCT, ATOM = range(3)
+SUM, PRODUCT, POWER, ATOM = range(4)
 GREEK = {
     "μ": r"\mu",
     "π": r"\pi",
@@ -47,7 +47,8 @@ def _write(f: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) ->
             if numbers is not None:
                 return _write_number(text(numbers[f.parts[0]]), latex)
             name = f.parts[0].name
-            return in_math(name) if latex else name, SUM if " " in name else ATOM
+            level = SUM if " " in name else POWER if "*" in name else ATOM  # LaTeX takes one superscript
+            return in_math(name) if latex else name, level
         case "number":
             return _write_number(str(f.parts[0]), latex)
         case "+" | "-":
@@ -56,7 +57,7 @@ def _write(f: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) ->
         case "*" | "/":
             return _quotient(f, write, numbers is not None, latex)
         case "square":
-            return f"{tight(f.parts[0])}^2", ATOM
+            return f"{tight(f.parts[0])}^2", POWER
         case "hypot":
             inside = " + ".join(tight(part) + "^2" * (part.op != "number") for part in f.parts)
             return (rf"\sqrt{{{inside}}}" if latex else f"√({inside})"), ATOM
@@ -79,7 +80,7 @@ def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, la
     times = (r" \cdot " if latex else " · ") if numbers else (r" \, " if latex else " ")
 
     def product(factors: list[Formula], alone: bool) -> str:
-        words = [(word if level == ATOM else f"({word})") for word, level in map(write, factors)]
+        words = [(word if level >= POWER else f"({word})") for word, level in map(write, factors)]
         return write(factors[0])[0] if alone and not factors[1:] else times.join(words)
 
     upper = product(above, alone=latex and bool(below))
@@ -113,12 +114,14 @@ def number_in_latex(digits: str) -> str:
 
 def in_math(words: str) -> str:
     """A symbol or a plain equation as LaTeX: indices lowered, Greek letters and powers spelled."""
+    words = re.sub(r"(?<=[\d)])e(-?\d+)", r" \\times 10^{\1}", words)
     words = re.sub(r"_(\w+)", r"_{\\mathrm{\1}}", words)
     words = re.sub(r"\b([A-Za-z])(\d)", r"\1_\2", words)
     words = re.sub(r" (min|max)\b", r"_{\\\1}", words)
     words = re.sub(r"\^\(([^()]*)\)", r"^{\1}", words)
     words = words.replace("*", r"^{\ast}").replace("√", r"\sqrt").replace("∞", r"\infty ")
     words = words.replace("≈", r"\approx ").replace("≤", r"\le ").replace("≥", r"\ge ")
+    words = words.replace("±", r"\pm ").replace(" to ", r"~\mathrm{to}~")
     words = re.sub("[" + "".join(GREEK) + "]", lambda m: GREEK[m[0]] + " ", words)
     return re.sub(r" +([ })^_]|$)", r"\1", words)
 
@@ -213,7 +216,7 @@ def _equation_lines(part: Law | Equation, width: int, spell: Spell, label: str) 
 
 def as_markdown(scene: str, explanation: Explanation) -> Iterator[str]:
     """A page of Markdown, its mathematics in LaTeX between dollars."""
-    yield "# Atwood's machine, step by step"
+    yield f"# {explanation.title}"
     for words in (scene, *explanation.answer, explanation.reading):
         yield ""
         yield in_markdown(words)
@@ -247,7 +250,7 @@ def in_markdown(words: str) -> str:
     pieces = words.split("`")
     pieces[::2] = map(_without_names, pieces[::2])
     pieces = "`".join(pieces).split("`")  # there are more of them now
-    pieces[::2] = (re.sub(r"([][*_|<>$\\^~@#])", r"\\\1", piece) for piece in pieces[::2])
+    pieces[::2] = (re.sub(r"([][*_|<>$\\^~@#]|-(?=-))", r"\\\1", piece) for piece in pieces[::2])
     pieces[1::2] = (f"${in_math(piece)}$" for piece in pieces[1::2])
     return "".join(pieces).replace(HELD, " ")
 
@@ -270,8 +273,9 @@ SYMBOLS = {"mu": "`μ`", "mu_k": "`μ_k`", "inf": "`∞`"} | {
 }
 QUANTITY = "|".join(name for name in QUANTITIES if "_" in name and name not in SYMBOLS)
 NAMED = re.compile(
-    rf"\b(?P<quantity>{QUANTITY})\b|\b(?:mu|mu_k|inf)\b|\b(?:inertia|wrap|axle) =|: give "
-    r"|(?P<symbol>I/\(M R\^2\)|[μπφθαβτ≈≤≥√]|\bm[12]\b|\b[MIR]\b|\bg(?= =))"
+    rf"\b(?P<quantity>{QUANTITY})\b|\b(?:mu|mu_k|inf)\b|\b(?<!of )(?:inertia|wrap|axle) =|: give "
+    r"|(?P<symbol>I/\(M R\^2\)|\(-?[\d.]+ ± [\d.]+\)e-?\d+|-?[\d.]+ ± [\d.]+|[μπφθαβτ≈≤≥√±]"
+    r"|\bm[12]\b|\b[MIR]\b|\bg(?= =))"
 )
 
 

@@ -29,8 +29,6 @@ class Case:
 
     def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
         self.scene, self.motion = scene, motion
-        # Arrays, whose scenes are columns, have no axle yet.
-        self.axle = scene.axle if isinstance(scene, Scene) else None
 
     @lazy
     def sign(self) -> int:
@@ -80,9 +78,10 @@ class Case:
     @lazy
     def axle_friction(self) -> Fraction | None:
         """The axle's friction as a force at the rim (N), f; none where there is none."""
-        if self.axle is None or is_zero(self.axle.number):
+        axle = self.scene.axle
+        if axle is None or is_zero(axle.number):
             return None
-        force: Fraction = self.axle.force(self.scene.R)
+        force: Fraction = axle.force(self.scene.R)
         return force
 
     @lazy
@@ -179,10 +178,10 @@ class Case:
 
     @lazy
     def always_slips(self) -> bool:
-        """Whether the string slips on any pulley that turns, however light, for the friction of its axle."""
-        if self.axle_friction is None or self.sign == 0 or self.axle_holds:
+        """Whether the string slips on any pulley, however light, for the friction of its axle."""
+        if self.axle_friction is None or self.sign == 0:
             return False
-        return self.beats_friction("massless_excess")
+        return self.beats_friction("locked_excess" if self.axle_holds else "massless_excess")
 
     @lazy
     def slips_once_it_moves(self) -> bool:
@@ -227,7 +226,7 @@ class Case:
         """T_h/T_l - 1 of a string that grips."""
         if self.stands or self.rim_mass is None:
             return self.locked_excess(ar)
-        if self.axle_mass is not None:
+        if self.axle_mass is not None and self.sign:  # equal masses rest, whatever the axle
             given = (self.light, self.heavy, self.rim_mass, self.axle_mass)
             return physics.excess_ratio_beside_axle(*map(ar.number, given))
         return physics.excess_ratio(*map(ar.number, (self.light, self.heavy, self.rim_mass)))

@@ -131,6 +131,11 @@ class Machine(Generic[N]):
         return self.case.excess_ratio(self.ar)
 
     @lazy
+    def log_ratio(self) -> N:
+        """ln(T_h/T_l) of a string that grips."""
+        return self.ar.log1p(self.excess)
+
+    @lazy
     def transfer(self) -> N:
         """Transfer z at the limit of static friction (kg); see `physics`."""
         return physics.transfer_at_limit(self.l, self.k1)
@@ -199,8 +204,7 @@ class Machine(Generic[N]):
         """The arc (rad) that friction at its limit needs, where the string grips with some to spare."""
         if self.scene.mu is None:
             raise Undetermined(self._needs_mu)
-        log_ratio = self.mu_verge * self.phi
-        return physics.limiting_arc(log_ratio, self.ar.number(self.scene.mu))
+        return physics.limiting_arc(self.log_ratio, self.ar.number(self.scene.mu))
 
     def arcs(self, kind: arc.Kind) -> list[arc.Arc[N]]:
         """The arc of contact from the light end, in pieces: limiting, stuck or both (see `arc`)."""
@@ -329,7 +333,7 @@ class Machine(Generic[N]):
             if case.regime == "verge":
                 return self.ar.number(case.limiting_mu)
             raise Undetermined(NEEDS_M)
-        return physics.verge_coefficient(self.ar.log1p(self.excess), self.phi)
+        return physics.verge_coefficient(self.log_ratio, self.phi)
 
     @lazy
     def massless_verge(self) -> N:
@@ -403,10 +407,8 @@ class Machine(Generic[N]):
         """Pulley mass above which the string slips (kg) (34)."""
         if self.scene.mu is None:
             raise Undetermined(self._needs_mu)
-        if self.case.axle_holds:
-            raise Undetermined(AXLE_HOLDS)
         if not self.case.can_slip:
-            raise Undetermined(NO_CRITICAL_MASS)
+            raise Undetermined(AXLE_HOLDS if self.case.axle_holds else NO_CRITICAL_MASS)
         if self.case.always_slips:
             raise Undetermined(ALWAYS_SLIPS)
         transfer = self.transfer
@@ -439,23 +441,25 @@ class Machine(Generic[N]):
     @lazy
     def least_heavier_mass(self) -> N:
         """What the heavier mass must exceed for any pulley to make the string slip (kg) (36)."""
-        transfer = self.transfer
-        if is_zero(self.scene.mu) and not self.case.pulley_known:
-            raise Undetermined(NOT_APPLICABLE)
-        return physics.least_heavier_mass(self.l, transfer)
+        self._check_applicable()
+        return physics.least_heavier_mass(self.l, self.transfer)
 
     @lazy
     def least_pulley_mass(self) -> N:
         """What the pulley's mass must exceed for any heavier mass to make the string slip (kg) (36)."""
+        self._check_applicable()
         transfer = self.transfer
-        if is_zero(self.scene.mu) and not self.case.pulley_known:
-            raise Undetermined(NOT_APPLICABLE)
         if self.case.slips_once_it_moves:
             raise Undetermined(AXLE_ENOUGH)
         beta = self._given(self.case.beta, UNKNOWN_SHAPE)
         if self.case.axle_friction is not None:
             return physics.least_pulley_mass_beside_axle(transfer, beta, self.b)
         return physics.least_pulley_mass(transfer, beta)
+
+    def _check_applicable(self) -> None:
+        """Raise Undetermined where (36) has no meaning: where the critical pulley has no mass."""
+        if is_zero(self.scene.mu) and not self.case.pulley_known and self.case.axle_friction is None:
+            raise Undetermined(NOT_APPLICABLE)
 
     @lazy
     def least_wrap(self) -> N:
@@ -470,8 +474,7 @@ class Machine(Generic[N]):
             raise Undetermined(NEEDS_M)
         if is_zero(self.scene.mu):
             raise Undetermined(NO_WRAP)
-        arc = physics.limiting_arc(self.ar.log1p(self.excess), self.ar.number(self.scene.mu))
-        return arc * 180 / self.ar.pi
+        return self.alpha * 180 / self.ar.pi
 
     def _check_found(self) -> None:
         """Raise Undetermined unless the motion tells of the pulley."""

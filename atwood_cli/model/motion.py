@@ -10,13 +10,13 @@ from math import inf
 from typing import Any
 
 from ..arithmetic.dual import Dual
-from ..arithmetic.rounding import as_typed, settle, text, to_digits, to_double, to_side
+from ..arithmetic.rounding import as_typed, settle, text, to_digits, to_double, to_threshold
 from . import physics
 from .angle import Angle
 from .axle import Axle
 from .case import Case
 from .machine import Undetermined
-from .scene import MEASURED, Input, Motion, Scene, SceneError
+from .scene import MASSES, MEASURED, Input, Motion, Scene, SceneError
 
 AGREES = 3
 """Beyond how many standard uncertainties (99.7 % of a normal distribution) what cannot be is refused."""
@@ -29,7 +29,7 @@ def read(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     """The scene, without what is to be found, and what was measured. Raises SceneError."""
     a, drop, time = (inputs[name].value for name in MEASURED)
     motion, measured = Motion(a, drop, time), a is not None or time is not None
-    missing = [mass for mass in ("m1", "m2") if inputs[mass].value is None]
+    missing = [mass for mass in MASSES if inputs[mass].value is None]
     name = "a" if time is None else "time"
     if measured and len(missing) == 1:
         if inputs["M"].value is None is inputs["I"].value:
@@ -45,7 +45,7 @@ def read(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
         return scene, motion
     motion = motion._replace(finds=motion.finds or _what_follows(scene))
     rule = _contradiction(scene, motion, inputs["g"].given is not None)
-    if not rule and (rule := _impossible(Case(scene, motion), name)):
+    if not rule and (rule := impossible(Case(scene, motion), name)):
         uncertain = {x: one.uncertainty for x, one in inputs.items() if one.uncertainty}
         if beyond := _beyond(scene, motion, uncertain):
             return scene, motion._replace(beyond=beyond)
@@ -70,7 +70,7 @@ def _contradiction(scene: Scene, motion: Motion, g_given: bool) -> str:
     finds, pulley = motion.finds, "M" if scene.M is not None else "I"
     if scene.mu is not None and finds != "mu_k":
         return "has no place beside mu, as a string that slips moves alike on any pulley; leave mu out"
-    if finds in ("m1", "m2"):
+    if finds in MASSES:
         if scene.M == inf:
             return "has no place beside M = inf, which lets nothing move; leave one of them out"
         if not motion.a and scene.axle is not None:
@@ -101,10 +101,10 @@ def _known_mass(scene: Scene, unknown: str) -> Fraction:
     return scene.m1 if unknown == "m2" else scene.m2
 
 
-def _impossible(case: Case, name: str) -> str:
+def impossible(case: Case, name: str) -> str:
     """Why nothing that is to be found gives the acceleration; empty if something does."""
     motion = case.motion
-    if motion.finds in ("m1", "m2"):
+    if motion.finds in MASSES:
         return _impossible_for_a_mass(case, motion.finds)
     a, most = case.measured_acceleration, _most(case)
     if a > 0 and (motion.finds == "g" or a <= most):
@@ -115,7 +115,7 @@ def _impossible(case: Case, name: str) -> str:
     heavier = f"as {'m2' if case.sign > 0 else 'm1'} is the heavier mass"
     if motion.finds == "g":
         return f"{implied}must be {'above' if case.sign > 0 else 'below'} 0, {heavier}"
-    limit = text(to_side(None, up=case.sign < 0)(case.sign * most))  # so that the limit itself is taken
+    limit = text(to_threshold(up=case.sign < 0)(case.sign * most))  # so that the limit itself is taken
     least, greatest = ENDS[motion.finds]
     return f"{implied}must be between 0 ({least}) and {limit} m/s² ({greatest}), {heavier}"
 
@@ -138,7 +138,7 @@ def _impossible_for_a_mass(case: Case, unknown: str) -> str:
     drive = known if case.axle_mass is None else max(known - case.axle_mass, Fraction(0))
     least = physics.acceleration(drive, physics.load(known, Fraction(0), case.rim_mass), scene.g)
     ends = [
-        f"{text(to_side(None, up=lifted > 0)(-lifted * least))} (no {unknown} at all)",
+        f"{text(to_threshold(up=lifted > 0)(-lifted * least))} (no {unknown} at all)",
         f"{text(to_double(lifted * scene.g))} m/s² ({unknown} in free fall)",
     ]
     return f"must be between {ends[0]} and {ends[1]}"
@@ -192,18 +192,26 @@ def _beyond(scene: Scene, motion: Motion, uncertain: Mapping[str, Fraction]) -> 
     )
 
 
+def number_of(scene: Scene, motion: Motion, x: str) -> Any:
+    """The number given for an input, in the unit that it was given in."""
+    value = getattr(scene if x in Scene._fields else motion, x)
+    return getattr(value, "number", value)
+
+
 def moved(scene: Scene, motion: Motion, x: str, side: int) -> tuple[Scene, Motion]:
     """The scene, and what was measured, with an input that is infinitesimally more, or less."""
+    return with_number(scene, motion, x, Dual(number_of(scene, motion, x), Fraction(side)))
+
+
+def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scene, Motion]:
+    """The scene, and what was measured, with another number for an input, in the unit that it has there."""
     of_scene = x in Scene._fields
     value = getattr(scene if of_scene else motion, x)
-    beside: Any = Dual(getattr(value, "number", value), Fraction(side))
-    if isinstance(value, Angle):
-        beside = Angle(beside, value.unit)
-    elif isinstance(value, Axle):
-        beside = Axle(beside, value.unit)
+    if isinstance(value, Angle | Axle):
+        number = type(value)(number, value.unit)  # type: ignore[arg-type]
     if of_scene:
-        return scene._replace(**{x: beside}), motion
-    return scene, motion._replace(**{x: beside})
+        return scene._replace(**{x: number}), motion
+    return scene, motion._replace(**{x: number})
 
 
 def completed(scene: Scene, motion: Motion) -> Scene:
@@ -213,7 +221,7 @@ def completed(scene: Scene, motion: Motion) -> Scene:
     if motion.beyond:
         return scene._replace(M=Fraction(0))
     case = Case(scene, motion)
-    if motion.finds in ("m1", "m2"):
+    if motion.finds in MASSES:
         mass = _mass(case, motion.finds)
         if mass is None or mass < 0:
             raise Undetermined(NO_MASS)

@@ -23,6 +23,8 @@ These equations are apart, as a scene without friction of the axle must not pay 
 the ones above them.
 
 Divisions come before products where a product could leave the range of doubles and the result not.
+
+Most examples are of l = 1, h = 3, c = 5 and g = 9, where a = 2, T_l = 11 and T_h = 21.
 """
 
 from collections.abc import Callable
@@ -34,172 +36,311 @@ Hypot = Callable[[N, N | int], N]
 
 
 def transfer_at_limit(l: N, k1: N) -> N:
-    """Transfer z = l (k - 1) (kg) of a string whose friction is at its limit all along, from (26)."""
+    """Transfer z = l (k - 1) (kg) of a string whose friction is at its limit all along, from (26).
+
+    >>> transfer_at_limit(1, 1)
+    1
+    """
     return l * k1
 
 
 def drive_at_limit(l: N, h: N, transfer: N) -> N:
-    """Drive d = h - l k (kg) at the limit of friction; positive where a heavy enough pulley makes it slip."""
+    """Drive d = h - l k (kg) at the limit of friction; positive where a heavy enough pulley makes it slip.
+
+    >>> drive_at_limit(1, 3, 1)
+    1
+    """
     return h - l - transfer
 
 
 def axle_mass(f: N, g: N) -> N:
-    """The axle's friction f at the rim (N) as a mass b (kg): what the axle just holds of a difference."""
+    """The axle's friction f at the rim (N) as a mass b (kg): what the axle just holds of a difference.
+
+    >>> axle_mass(9, 9)
+    1.0
+    """
     return f / g
 
 
 def drive_beside_axle(l: N, h: N, b: N) -> N:
-    """Drive d = h - l - b (kg) of a string that grips, where the axle takes b of it."""
+    """Drive d = h - l - b (kg) of a string that grips, where the axle takes b of it.
+
+    >>> drive_beside_axle(1, 3, 1)
+    1
+    """
     return h - l - b
 
 
 def load(l: N, h: N, added: N) -> N:
-    """Load s (kg) that the drive sets moving; friction adds the pulley's c, or at its limit the transfer."""
+    """Load s (kg) that the drive sets moving; friction adds the pulley's c, or at its limit the transfer.
+
+    >>> load(1, 3, 5)
+    9
+    """
     return l + h + added
 
 
 def acceleration(drive: N, load: N, g: N) -> N:
-    """Magnitude of the masses' acceleration (m/s²): (4), and (1) with (26)."""
+    """Magnitude of the masses' acceleration (m/s²): (4), and (1) with (26).
+
+    >>> acceleration(2, 9, 9)
+    2.0
+    """
     return g * (drive / load)
 
 
 def load_under(drive: N, a: N, g: N) -> N:
-    """Load s (kg) that the drive sets moving with a measured acceleration; inverse of `acceleration`."""
+    """Load s (kg) that the drive sets moving with a measured acceleration; inverse of `acceleration`.
+
+    >>> load_under(2, 2, 9)
+    9.0
+    """
     return g * (drive / a)
 
 
 def gravity_under(drive: N, load: N, a: N) -> N:
-    """Gravity (m/s²) under which the drive sets the load moving with a; inverse of `acceleration`."""
+    """Gravity (m/s²) under which the drive sets the load moving with a; inverse of `acceleration`.
+
+    >>> gravity_under(2, 9, 2)
+    9.0
+    """
     return a * (load / drive)
 
 
 def gravity_under_beside_axle(l: N, h: N, load: N, a: N, f: N) -> N:
-    """Gravity (m/s²) under which the masses move with a, with f (N) for the axle."""
+    """Gravity (m/s²) under which the masses move with a, with f (N) for the axle.
+
+    >>> gravity_under_beside_axle(1, 3, 9, 1, 9)
+    9.0
+    """
     return (a * load + f) / (h - l)
 
 
 def hanging_mass(tension: N, a: N, g: N) -> N:
-    """Mass (kg) that descends with the acceleration a, or rises with -a, under a tension (N); from (1)."""
+    """Mass (kg) that descends with the acceleration a, or rises with -a, under a tension (N); from (1).
+
+    >>> hanging_mass(21, 2, 9)
+    3.0
+    """
     return tension / (g - a)
 
 
 def slide_excess(l: N, h: N, a: N, g: N) -> N:
-    """T_h/T_l - 1 under which the masses have a measured acceleration, from (1)."""
+    """T_h/T_l - 1 under which the masses have a measured acceleration, from (1).
+
+    >>> slide_excess(1, 3, 2, 10)
+    1.0
+    """
     return difference_of_moving_masses(l, h, a, g) / light_tension(l, a, g)
 
 
 def added_load(l: N, h: N, load: N) -> N:
-    """What is added to the masses in a load (kg), c where the string grips; inverse of `load`."""
+    """What is added to the masses in a load (kg), c where the string grips; inverse of `load`.
+
+    >>> added_load(1, 3, 9)
+    5
+    """
     return load - l - h
 
 
 def moment_of_inertia(c: N, R: N) -> N:
-    """Moment of inertia (kg m²) of a pulley of radius R (m), from its c as a mass at the rim."""
+    """Moment of inertia (kg m²) of a pulley of radius R (m), from its c as a mass at the rim.
+
+    >>> moment_of_inertia(5, 2)
+    20
+    """
     return c * R * R
 
 
 def acceleration_of_fall(drop: N, time: N) -> N:
-    """Constant acceleration (m/s²) that covers the height ``drop`` (m) from rest in ``time`` (s)."""
+    """Constant acceleration (m/s²) that covers the height ``drop`` (m) from rest in ``time`` (s).
+
+    >>> acceleration_of_fall(9, 3)
+    2.0
+    """
     return 2 * drop / (time * time)
 
 
 def fall_time(drop: N, a: N, sqrt: Function[N]) -> N:
-    """Time (s) to fall the height ``drop`` (m) from rest with the acceleration ``a`` (m/s²)."""
+    """Time (s) to fall the height ``drop`` (m) from rest with the acceleration ``a`` (m/s²).
+
+    >>> from math import sqrt
+    >>> fall_time(9, 2, sqrt)
+    3.0
+    """
     return sqrt(2 * drop / a)
 
 
 def final_speed(drop: N, a: N, sqrt: Function[N]) -> N:
-    """Speed (m/s) after falling the height ``drop`` (m) from rest with the acceleration ``a`` (m/s²)."""
+    """Speed (m/s) after falling the height ``drop`` (m) from rest with the acceleration ``a`` (m/s²).
+
+    >>> from math import sqrt
+    >>> final_speed(9, 2, sqrt)
+    6.0
+    """
     return sqrt(2 * drop * a)
 
 
 def light_tension(l: N, a: N, g: N) -> N:
-    """Tension on the lighter mass (N), from (1): its weight and what accelerates it."""
+    """Tension on the lighter mass (N), from (1): its weight and what accelerates it.
+
+    >>> light_tension(1, 2, 9)
+    11
+    """
     return l * (g + a)
 
 
 def difference_of_a_pulley(c: N, a: N) -> N:
-    """T_h - T_l (N) that turns a pulley whose rim has the acceleration a (3)."""
+    """T_h - T_l (N) that turns a pulley whose rim has the acceleration a (3).
+
+    >>> difference_of_a_pulley(5, 2)
+    10
+    """
     return c * a
 
 
 def difference_beside_axle(c: N, a: N, f: N) -> N:
-    """T_h - T_l (N) that turns a pulley, and its axle against the friction f (N); (3) with f."""
+    """T_h - T_l (N) that turns a pulley, and its axle against the friction f (N); (3) with f.
+
+    >>> difference_beside_axle(5, 1, 9)
+    14
+    """
     return c * a + f
 
 
 def rim_acceleration(difference: N, c: N) -> N:
-    """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns (3)."""
+    """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns (3).
+
+    >>> rim_acceleration(10, 5)
+    2.0
+    """
     return difference / c
 
 
 def rim_acceleration_beside_axle(difference: N, c: N, f: N) -> N:
-    """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns against the axle; (3) with f."""
+    """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns against the axle; (3) with f.
+
+    >>> rim_acceleration_beside_axle(14, 5, 9)
+    1.0
+    """
     return (difference - f) / c
 
 
 def difference_of_a_locked_pulley(l: N, h: N, g: N) -> N:
-    """T_h - T_l (N) of masses at rest: that of their weights."""
+    """T_h - T_l (N) of masses at rest: that of their weights.
+
+    >>> difference_of_a_locked_pulley(1, 3, 9)
+    18
+    """
     return g * (h - l)
 
 
 def difference_of_moving_masses(l: N, h: N, a: N, g: N) -> N:
-    """T_h - T_l (N) of masses with a measured acceleration, from (1): c a + f where the string grips."""
+    """T_h - T_l (N) of masses with a measured acceleration, from (1): c a + f where the string grips.
+
+    >>> difference_of_moving_masses(1, 3, 2, 9)
+    10
+    """
     return g * (h - l) - a * (h + l)
 
 
 def difference_of_friction(light: N, k1: N) -> N:
-    """T_h - T_l (N) where friction is at its limit (26); ``light`` = T_l."""
+    """T_h - T_l (N) where friction is at its limit (26); ``light`` = T_l.
+
+    >>> difference_of_friction(12, 1)
+    12
+    """
     return light * k1
 
 
 def excess_ratio(l: N, h: N, c: N) -> N:
-    """T_h/T_l - 1 of a string that grips, from (4); without cancellation."""
+    """T_h/T_l - 1 of a string that grips, from (4); without cancellation.
+
+    >>> excess_ratio(1, 3, 6)
+    1.0
+    """
     return locked_excess(l, h) * (c / (2 * h + c))
 
 
 def excess_ratio_beside_axle(l: N, h: N, c: N, b: N) -> N:
-    """T_h/T_l - 1 of a string that grips and turns an axle that rubs; h - l > b."""
+    """T_h/T_l - 1 of a string that grips and turns an axle that rubs; h - l > b.
+
+    >>> excess_ratio_beside_axle(1, 3, 5, 1)
+    1.4
+    """
     return (c * (h - l) + b * (h + l)) / (l * (2 * h - b + c))
 
 
 def massless_excess(l: N, h: N, b: N) -> N:
-    """T_h/T_l - 1 of a string that grips and turns an axle that rubs, but no mass, c = 0; h - l > b."""
+    """T_h/T_l - 1 of a string that grips and turns an axle that rubs, but no mass, c = 0; h - l > b.
+
+    >>> massless_excess(1, 3, 1)
+    0.8
+    """
     return b * (h + l) / (l * (2 * h - b))
 
 
 def held_excess(l: N, b: N) -> N:
-    """T_h/T_l - 1 where the axle just holds the difference, h = l + b."""
+    """T_h/T_l - 1 where the axle just holds the difference, h = l + b.
+
+    >>> held_excess(1, 2)
+    2.0
+    """
     return b / l
 
 
 def locked_excess(l: N, h: N) -> N:
-    """T_h/T_l - 1 of a string that grips a locked pulley, c = ∞."""
+    """T_h/T_l - 1 of a string that grips a locked pulley, c = ∞.
+
+    >>> locked_excess(1, 3)
+    2.0
+    """
     return (h - l) / l
 
 
 def heaviest_excess(l: N, c: N) -> N:
-    """T_h/T_l - 1 of a string that grips under a heavier mass beyond all bounds, h = ∞; c + b for c."""
+    """T_h/T_l - 1 of a string that grips under a heavier mass beyond all bounds, h = ∞; c + b for c.
+
+    >>> heaviest_excess(1, 5)
+    2.5
+    """
     return c / (2 * l)
 
 
 def verge_coefficient(log_ratio: N, phi: N) -> N:
-    """Friction coefficient at which the string is on the verge (27); log_ratio = ln(T_h/T_l)."""
+    """Friction coefficient at which the string is on the verge (27); log_ratio = ln(T_h/T_l).
+
+    >>> verge_coefficient(0.75, 3)
+    0.25
+    """
     return log_ratio / phi
 
 
 def critical_pulley_mass(h: N, transfer: N, drive: N, beta: N) -> N:
-    """Pulley mass (kg) above which the string slips (34); transfer and drive at the limit of friction."""
+    """Pulley mass (kg) above which the string slips (34); transfer and drive at the limit of friction.
+
+    >>> z = 1.56633  # e^{0.3 π} - 1, the paper's example
+    >>> round(critical_pulley_mass(3, z, drive_at_limit(1, 3, z), 0.5))
+    43
+    """
     return transfer / drive * (2 * h / beta)
 
 
 def critical_pulley_mass_beside_axle(l: N, h: N, transfer: N, drive: N, beta: N, b: N) -> N:
-    """Pulley mass (kg) above which the string slips, where it turns an axle that rubs; (34) with b."""
+    """Pulley mass (kg) above which the string slips, where it turns an axle that rubs; (34) with b.
+
+    >>> critical_pulley_mass_beside_axle(1, 3, 1, 1, 0.5, 1)
+    2.0
+    """
     return (2 * h * transfer - b * (h + l + transfer)) / (drive * beta)
 
 
 def critical_heavier_mass(l: N, c: N, transfer: N) -> N:
-    """Heavier mass (kg) at which the string is on the verge (35); needs c > 2 l (k - 1)."""
+    """Heavier mass (kg) at which the string is on the verge (35); needs c > 2 l (k - 1).
+
+    >>> critical_heavier_mass(1, 4, 1)
+    4.0
+    """
     return c / (c - 2 * transfer) * least_heavier_mass(l, transfer)
 
 
@@ -207,27 +348,46 @@ def critical_heavier_mass_beside_axle(l: N, c: N, transfer: N, b: N, side: int) 
     """Heavier mass (kg) at which the string that turns an axle that rubs is on the verge; (35) with b.
 
     ``side`` is 1 for c > b, where it slips above that mass, and -1 for c < b, where it slips below.
+
+    >>> critical_heavier_mass_beside_axle(1, 6, 2, 1, 1)
+    5.0
     """
     return (c - b) * side / ((c + b - 2 * transfer) * side) * least_heavier_mass(l, transfer)
 
 
 def least_heavier_mass(l: N, transfer: N) -> N:
-    """What the heavier mass (kg) must exceed for any pulley to slip, l k: first condition of (36)."""
+    """What the heavier mass (kg) must exceed for any pulley to slip, l k: first condition of (36).
+
+    >>> least_heavier_mass(1, 1)
+    2
+    """
     return l + transfer
 
 
 def least_pulley_mass(transfer: N, beta: N) -> N:
-    """What the pulley's mass (kg) must exceed for any mass to slip: second condition of (36)."""
+    """What the pulley's mass (kg) must exceed for any mass to slip: second condition of (36).
+
+    >>> least_pulley_mass(1, 0.5)
+    4.0
+    """
     return 2 * transfer / beta
 
 
 def least_pulley_mass_beside_axle(transfer: N, beta: N, b: N) -> N:
-    """What the pulley's mass (kg) must exceed for any mass to slip, beside an axle that rubs; z >= b."""
+    """What the pulley's mass (kg) must exceed for any mass to slip, beside an axle that rubs; z >= b.
+
+    >>> least_pulley_mass_beside_axle(2, 0.5, 1)
+    6.0
+    """
     return (2 * transfer - b) / beta
 
 
 def half_turn_resultant(t1: N, t2: N) -> N:
-    """Magnitude (N) of the force of T1 and T2 where both pull the same way (20)."""
+    """Magnitude (N) of the force of T1 and T2 where both pull the same way (20).
+
+    >>> half_turn_resultant(11, 21)
+    32
+    """
     return t1 + t2
 
 
@@ -236,12 +396,21 @@ def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N], hypot
 
     ``difference`` = T2 - T1 and ``sin_half``, the sine of half the arc, keep what is nearly equal
     from cancelling in T1² + T2² - 2 T1 T2 cos φ.
+
+    >>> from math import hypot, sqrt
+    >>> resultant(9, 16, 7, 1, sqrt, hypot)
+    25.0
     """
     return hypot(difference, 2 * sin_half * sqrt(t1) * sqrt(t2))
 
 
 def friction_magnitude(mu: N, resultant: N, hypot: Hypot[N]) -> N:
-    """Net friction force (N) where T grows as e^{μθ} all along the arc (32)."""
+    """Net friction force (N) where T grows as e^{μθ} all along the arc (32).
+
+    >>> from math import hypot
+    >>> friction_magnitude(0.75, 35, hypot)
+    21.0
+    """
     return mu / hypot(mu, 1) * resultant
 
 
@@ -251,29 +420,48 @@ def friction_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
     ``dx + i dy`` is T e^{iθ} at the arc's end less that at its start; θ grows with the tension, and μ
     is 0 where the string is stuck without friction. The integrals (28)-(29) give
     μ (1 + iμ)/(1 + μ²) times that difference.
+
+    >>> friction_vector(1, -32, 0)
+    (-16.0, -16.0)
     """
     factor = mu / (mu * mu + 1)
     return factor * (dx - mu * dy), factor * (dy + mu * dx)
 
 
 def normal_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
-    """Normal force on the pulley (N), (x, y), where T grows as e^{μθ}: -∫ T e^{iθ} dθ, from (18)."""
+    """Normal force on the pulley (N), (x, y), where T grows as e^{μθ}: -∫ T e^{iθ} dθ, from (18).
+
+    >>> normal_vector(1, -32, 0)
+    (16.0, -16.0)
+    """
     factor = 1 / (mu * mu + 1)
     return factor * (-1 * mu * dx - dy), factor * (dx - mu * dy)
 
 
 def resultant_vector(dx: N, dy: N) -> tuple[N, N]:
-    """The force on the pulley (N), (x, y), that friction and normal force add up to; (19)-(20)."""
+    """The force on the pulley (N), (x, y), that friction and normal force add up to; (19)-(20).
+
+    >>> resultant_vector(-32, 0)
+    (0, -32)
+    """
     return -1 * dy, dx
 
 
 def mirrored(x: N, y: N, cos_phi: N, sin_phi: N) -> tuple[N, N]:
-    """A vector of the machine seen from behind: θ there is φ - θ here."""
+    """A vector of the machine seen from behind: θ there is φ - θ here.
+
+    >>> mirrored(2, 5, -1, 0)
+    (-2, 5)
+    """
     return x * cos_phi + y * sin_phi, x * sin_phi - y * cos_phi
 
 
 def limiting_arc(log_ratio: N, mu: N) -> N:
-    """Arc (rad) over which friction at its limit makes up ln(T_h/T_l), from (26)."""
+    """Arc (rad) over which friction at its limit makes up ln(T_h/T_l), from (26).
+
+    >>> limiting_arc(0.5, 0.25)
+    2.0
+    """
     return log_ratio / mu
 
 
@@ -284,10 +472,17 @@ def least_friction_slope(mu: N, chord: N, growth: N, cos: N, sin: N, dx: N, dy: 
     δ = φ - α between, has the net friction μ/√(1 + μ²) |T_l e^{(μ+i)s} (1 - e^{iδ}) + dx + i dy|.
     This is the derivative of its square with respect to s, up to a positive factor: ``chord`` =
     2 T_l sin(δ/2), ``growth`` = e^{μs}, ``cos`` and ``sin`` of s + δ/2, dx + i dy = T_h e^{iφ} - T_l.
+
+    >>> least_friction_slope(1, 3, 1, 0, 1, -4, 1)
+    0
     """
     return mu * chord * growth + (mu * dx + dy) * sin + (dx - mu * dy) * cos
 
 
 def axle_force(t1: N, t2: N, pulley_mass: N, g: N) -> N:
-    """Force (N) on the axle of a pulley with half a turn of wrap: (20) and the pulley's weight."""
+    """Force (N) on the axle of a pulley with half a turn of wrap: (20) and the pulley's weight.
+
+    >>> axle_force(11, 21, 10, 9)
+    122
+    """
     return half_turn_resultant(t1, t2) + pulley_mass * g

@@ -1,9 +1,12 @@
 """The registry: every quantity's name, symbol, unit, equation and meaning, once."""
 
 from itertools import chain
-from typing import NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 REGIMES = ("no-slip", "verge", "slip")
+Accuracy = Literal["fast", "certified", "exact"]
+ACCURACIES: tuple[Accuracy, ...] = get_args(Accuracy)
+"""How accurate the quantities of many scenes are."""
 
 
 class About(NamedTuple):

@@ -6,7 +6,7 @@ from decimal import Decimal
 from fractions import Fraction
 from math import inf
 from numbers import Rational, Real
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, SupportsInt
 
 from ..arithmetic.rounding import as_typed
 from .angle import Angle
@@ -18,9 +18,11 @@ from .units import (
     PERCENT,
     Malformed,
     dimension_of,
+    in_quotes,
     is_uncertain,
     nearest,
     read_number,
+    shortened,
     split_uncertainty,
     without_blanks,
 )
@@ -43,6 +45,7 @@ BODIES = {
 }
 """Mean surface gravity of bodies with a surface (m/s²): NASA planetary fact sheets; earth, standard."""
 
+MASSES = ("m1", "m2")
 DEFAULTS = {"g": STANDARD_GRAVITY, "wrap": "180"}
 MISSING_MASS = "is missing; give both masses, m1 and m2"
 NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
@@ -63,11 +66,9 @@ class SceneError(ValueError):
         if self.value is None:
             return f"{name} {self.rule}"
         try:
-            shown = repr(self.value)
+            shown = in_quotes(self.value)
         except ValueError:  # an int too long for Python to write out
             shown = f"<{type(self.value).__name__}>"
-        if len(shown) > 60:
-            shown = f"{shown[:40]}...{shown[-10:]}"
         return f"{name} {shown} {self.rule}"
 
 
@@ -110,7 +111,9 @@ INPUTS = PARAMETERS | {
         dimension="torque or force",
     )
 }
-"""What a scene is made of: the parameters, which arrays take too, and an axle, which they do not yet."""
+"""What a scene is made of: the parameters, and an axle."""
+COLUMNS = tuple(name for name in PARAMETERS if name != "I")
+"""The inputs of arrays and tables, which take no axle yet."""
 MEASURED = {
     "a": Parameter(
         "measured acceleration, positive when m2 descends", "m/s²", dimension="acceleration", signed=True
@@ -176,7 +179,7 @@ class Scene(NamedTuple):
     def of(cls, inputs: Mapping[str, Input]) -> "Scene":
         """The scene of inputs that were read one by one. Raises SceneError if they do not go together."""
         values = {name: inputs[name].value for name in INPUTS}
-        for mass in ("m1", "m2"):
+        for mass in MASSES:
             if values[mass] is None:
                 raise SceneError(mass, None, MISSING_MASS)
         if values["inertia"] is None and values["I"] is None:
@@ -200,14 +203,16 @@ class Scene(NamedTuple):
             raise SceneError(
                 "mu_k",
                 given["mu_k"],
-                f"must not be above mu; exactly, {as_typed(self.mu_k)} > {as_typed(self.mu)}",
+                "must not be above mu; exactly,"
+                f" {shortened(as_typed(self.mu_k))} > {shortened(as_typed(self.mu))}",
             )
         if self.I is not None and self.R is None:
             raise SceneError("I", given["I"], "needs the radius R as well")
         if self.axle is not None and self.axle.unit == "N m" and self.R is None:
             raise SceneError("axle", given["axle"], "is a torque, which needs the radius R as well")
         if self.I is not None and self.M is not None and not 0 < self.M < inf:
-            raise SceneError("I", given["I"], f"contradicts M = {given['M']}; leave one of them out")
+            pulley = f"M = {shortened(str(given['M']))}"
+            raise SceneError("I", given["I"], f"contradicts {pulley}; leave one of them out")
 
 
 class Motion(NamedTuple):
@@ -317,7 +322,8 @@ def _read_text(
     return number
 
 
-THOUSANDS = re.compile(r"[+-]?\d{1,3}(,\d{3})+(\.\d*)?", re.ASCII)
+THOUSANDS = re.compile(r"[+-]?\d{1,3},\d{3}[^,]*", re.ASCII)
+"""With more commas it may as well be a list."""
 
 
 def _not_a_number(parameter: Parameter, word: str) -> str:
@@ -327,14 +333,15 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
         return parameter.domain
     if is_uncertain(word):
         return "carries an uncertainty, which only solve takes; give the value alone"
-    if ":" in word:
+    if re.match(r"[-+.]?\d.*:", word):
         return "is a range, not a number; atwood sweep takes ranges"
     number, pointed = word.replace(",", ""), word.replace(",", ".")
-    if THOUSANDS.match(word) and NUMBER.fullmatch(number):
-        decimal = f" or {pointed}, whichever is meant" if NUMBER.fullmatch(pointed) else ", without commas"
-        return f"is not a number; write {number}{decimal}"
+    if THOUSANDS.fullmatch(word) and NUMBER.fullmatch(number):
+        other = f" or {shortened(pointed)}, whichever is meant"
+        how = other if NUMBER.fullmatch(pointed) else ", without commas"
+        return f"is not a number; write {shortened(number)}{how}"
     if pointed != word and NUMBER.fullmatch(pointed):
-        return f"is not a number; write it with a decimal point, {pointed}"
+        return f"is not a number; write it with a decimal point, {shortened(pointed)}"
     near = nearest(word, parameter.names)
     return f"{NOT_A_NUMBER}{_or_one_of(parameter.names)}{near}"
 
@@ -352,16 +359,30 @@ def _read_number(name: str, given: object) -> Fraction | float:
     is_duration = getattr(getattr(given, "dtype", None), "kind", "") == "m"  # NumPy's pass for integers
     if isinstance(given, bool) or is_duration or not isinstance(given, Real | Decimal):
         raise SceneError(name, given, "must be text or a number (str, int, float, Decimal, Fraction)")
-    if given.is_nan() if isinstance(given, Decimal) else given != given:
-        raise SceneError(name, given, parameter_of(name).domain)
-    if given in (inf, -inf):
-        return float(given)
     # What is too long is refused before it becomes a huge integer.
-    if not isinstance(given, Decimal) or not given or _longest(given) <= MAX_MAGNITUDE:
-        if isinstance(given, Rational):  # NumPy's integers among them, whose parts are no ints
-            value = Fraction(int(given.numerator), int(given.denominator))
-        else:
-            value = Fraction(given if isinstance(given, Decimal) else float(given))
+    if not (isinstance(given, Decimal) and given.is_finite() and given and _longest(given) > MAX_MAGNITUDE):
+        try:
+            value = Fraction(*map(int, _ratio(given)))
+        except ValueError:  # not a number
+            raise SceneError(name, given, parameter_of(name).domain) from None
+        except OverflowError:
+            return float(given)
         if max(abs(value.numerator), value.denominator) < 10**MAX_MAGNITUDE:
             return value
     raise SceneError(name, given, f"is too long; numerator and denominator may have {MAX_MAGNITUDE} digits")
+
+
+def _ratio(given: Any) -> tuple[SupportsInt, SupportsInt]:
+    """A number's numerator and denominator, exact, whatever a kind of float makes of == and others.
+
+    NumPy's integers have parts that are no ints; its long doubles are beyond doubles. Raises ValueError
+    where it is not a number, OverflowError where it is infinite.
+    """
+    if isinstance(given, Rational):
+        return given.numerator, given.denominator
+    if isinstance(given, float):
+        return float.as_integer_ratio(given)
+    ratio: tuple[int, int] = (
+        given if hasattr(given, "as_integer_ratio") else float(given)
+    ).as_integer_ratio()
+    return ratio

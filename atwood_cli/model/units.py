@@ -2,30 +2,22 @@
 
 import re
 from collections.abc import Iterable, Mapping
+from decimal import ROUND_FLOOR
 from fractions import Fraction
+from typing import NamedTuple
 
+from ..arithmetic.rounding import as_typed, to_digits
+
+# fmt: off
 MASS = {
-    "kg": "1",
-    "g": "1e-3",
-    "mg": "1e-6",
-    "ug": "1e-9",
-    "t": "1e3",
-    "lb": "0.45359237",
-    "lbs": "0.45359237",
-    "oz": "0.028349523125",
-    "st": "6.35029318",
+    "kg": "1", "g": "1e-3", "mg": "1e-6", "ug": "1e-9", "t": "1e3",
+    "lb": "0.45359237", "lbs": "0.45359237", "oz": "0.028349523125", "st": "6.35029318",
 }
 LENGTH = {
-    "m": "1",
-    "km": "1e3",
-    "dm": "1e-1",
-    "cm": "1e-2",
-    "mm": "1e-3",
-    "um": "1e-6",
-    "in": "0.0254",
-    "ft": "0.3048",
-    "yd": "0.9144",
+    "m": "1", "km": "1e3", "dm": "1e-1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6",
+    "in": "0.0254", "ft": "0.3048", "yd": "0.9144",
 }
+# fmt: on
 ANGLE = {"deg": "1", "°": "1", "turn": "360", "rad": "1"}
 """In degrees, but for radians, which stay what they are."""
 TIME = {"s": "1", "ms": "1e-3", "min": "60", "h": "3600"}
@@ -35,10 +27,8 @@ COMPOUND = {
     "acceleration": ("m/s2", "cm/s2", "ft/s2", "N/kg"),
     "moment of inertia": ("kg m2", "g cm2", "lb ft2"),
 }
-DIMENSIONS: Mapping[str, Iterable[str]] = {
-    **{"mass": MASS, "length": LENGTH, "angle": ANGLE, "time": TIME, "force": FORCE, "torque": TORQUE},
-    **COMPOUND,
-}
+SIMPLE = {"mass": MASS, "length": LENGTH, "angle": ANGLE, "time": TIME, "force": FORCE, "torque": TORQUE}
+DIMENSIONS: Mapping[str, Iterable[str]] = {**SIMPLE, **COMPOUND}
 """The dimensions that units are of, and what units a sentence names; others are made of those, as km/h2."""
 POWERS = {
     **{"mass": [1, 0, 0, 0], "length": [0, 1, 0, 0], "time": [0, 0, 1, 0], "angle": [0, 0, 0, 1]},
@@ -48,14 +38,7 @@ POWERS = {
 """By dimension, the powers of mass, length, time and angle in it."""
 SYMBOLS = {
     symbol: (Fraction(factor), POWERS[dimension])
-    for dimension, factors in (
-        ("mass", MASS),
-        ("length", LENGTH),
-        ("angle", ANGLE),
-        ("time", TIME),
-        ("force", FORCE),
-        ("torque", TORQUE),
-    )
+    for dimension, factors in SIMPLE.items()
     for symbol, factor in factors.items()
 }
 # fmt: off
@@ -72,6 +55,9 @@ WORDS = {
 """Units written out, in small letters and without the s of a plural."""
 
 MAX_DIGITS, MAX_EXPONENT = 1000, 500
+"""Of a number as it is typed, and of the number that it is in SI units."""
+MAX_UNIT = 60
+"""Characters of a unit."""
 # No text within those limits is longer as a numerator or denominator.
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 
@@ -98,6 +84,26 @@ NOT_UNCERTAIN = (
 
 class Malformed(ValueError):
     """A text that is no such number; the message is the rule it breaks."""
+
+
+class Typed(NamedTuple):
+    """A number that was typed: its exact value in SI units, degrees or radians, and its unit, if it has one.
+
+    The unit is a symbol, or as it was typed where it is made of several.
+    """
+
+    value: Fraction
+    unit: str
+
+
+def shortened(text: str, most: int = 60) -> str:
+    """The text as a message shows it: where it is longer than that, only how it begins and ends."""
+    return text if len(text) <= most else f"{text[: most - 20]}...{text[-10:]}"
+
+
+def in_quotes(value: object) -> str:
+    """What was typed or read, as a message shows it."""
+    return shortened(repr(str(value) if isinstance(value, str) else value))  # not np.str_("hoop")
 
 
 def without_blanks(text: str) -> str:
@@ -133,8 +139,8 @@ def split_uncertainty(text: str) -> tuple[str, str]:
     return match[1] + match[4], match[3] + match[4]
 
 
-def read_number(text: str, dimension: str | None) -> tuple[Fraction, str] | None:
-    """A number in SI units, degrees or radians, and the unit typed; None if it is no number at all.
+def read_number(text: str, dimension: str | None) -> Typed | None:
+    """The number that was typed; None if it is no number at all.
 
     ``dimension`` is one of `DIMENSIONS`, or two with an "or" between, or None for a number that takes no
     unit. Raises Malformed.
@@ -143,28 +149,43 @@ def read_number(text: str, dimension: str | None) -> tuple[Fraction, str] | None
     if not match:
         return None
     sign, mantissa, exponent, unit = match.groups(default="")
-    digits = len(mantissa.replace(".", ""))
-    power = exponent.lstrip("+-").lstrip("0") or "0"
-    if digits > MAX_DIGITS:
-        raise Malformed(f"has {digits} digits; at most {MAX_DIGITS} are taken")
-    if len(power) > 3 or int(power) > MAX_EXPONENT:
-        raise Malformed(f"has an exponent beyond {MAX_EXPONENT} in magnitude")
-    value = Fraction(f"{sign}{mantissa}e{'-' * exponent.startswith('-')}{power}")
+    power = exponent.lstrip("+-").lstrip("0")[:5] or "0"  # enough to see that it is too large
+    power = f"{'-' * exponent.startswith('-')}{power}"
+    _check_size(len(mantissa.replace(".", "")), int(power))
+    value = Fraction(f"{sign}{mantissa}e{power}")
     if not unit:
-        return value, ""
+        return Typed(value, "")
     if dimension is None:
-        raise Malformed(f"must be a plain number, without the {unit!r}")
-    return value * read_unit(unit, dimension), symbol_of(unit) or unit
+        raise Malformed(f"must be a plain number, without the {in_quotes(unit)}")
+    factor = read_unit(unit, dimension)
+    value *= factor
+    digits = re.sub("[^0-9]", "", as_typed(value).partition("e")[0]).lstrip("0")
+    exponent_of_unit = to_digits(1, ROUND_FLOOR)(factor).adjusted()
+    _check_size(len(digits), int(power) + exponent_of_unit, ", its unit included")
+    return Typed(value, symbol_of(unit) or unit)
+
+
+def _check_size(digits: int, exponent: int, how: str = "") -> None:
+    """Refuse a number that would take long. Raises Malformed."""
+    if digits > MAX_DIGITS:
+        raise Malformed(f"has {digits} digits{how}; at most {MAX_DIGITS} are taken")
+    if abs(exponent) > MAX_EXPONENT:
+        raise Malformed(f"has an exponent beyond {MAX_EXPONENT} in magnitude{how}")
 
 
 def read_unit(unit: str, wanted: str) -> Fraction:
     """What a unit is in the SI, or in degrees. Raises Malformed if it is unknown or of another dimension."""
+    if len(unit) > MAX_UNIT:
+        raise Malformed(f"has a unit of {len(unit)} characters; at most {MAX_UNIT} are taken")
     if not re.fullmatch(_UNIT, unit):
         raise Malformed(f"has the unknown unit {unit!r}; there are {_names(wanted)}")
     factor, powers = _measure(unit, wanted)
-    if powers in [POWERS[one] for one in wanted.split(" or ")]:
+    # Radians are no multiple of degrees, so that an angle has one unit, of itself.
+    several = wanted == "angle" and not symbol_of(unit)
+    if powers in [POWERS[one] for one in wanted.split(" or ")] and not several:
         return factor
-    raise Malformed(f"has a unit of {_dimension(powers)}; it takes one of {wanted} ({_names(wanted)})")
+    kind = "several parts" if several else _dimension(powers)
+    raise Malformed(f"has a unit of {kind}; it takes one of {wanted} ({_names(wanted)})")
 
 
 def dimension_of(unit: str) -> str:
@@ -217,10 +238,16 @@ def _near_units(word: str, wanted: str) -> str:
     return nearest(word, alike) or f"; there are {_names(wanted)}"
 
 
-def nearest(word: str, words: Iterable[str]) -> str:
-    """The hint that a near word may have been meant, empty if none is near."""
+def near(word: str, words: Iterable[str]) -> str:
+    """The one of the words that may have been meant, empty if none is near."""
     from difflib import get_close_matches
 
     words = list(words) if word else []
-    near = get_close_matches(word.lower(), words, n=1) or [w for w in words if w.startswith(word.lower())]
-    return f"; did you mean {near[0]}?" if near else ""
+    close = get_close_matches(word.lower(), words, n=1) or [w for w in words if w.startswith(word.lower())]
+    return close[0] if close else ""
+
+
+def nearest(word: str, words: Iterable[str]) -> str:
+    """The hint that a near word may have been meant, empty if none is near."""
+    meant = near(word, words)
+    return f"; did you mean {meant}?" if meant else ""

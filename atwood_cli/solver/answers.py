@@ -19,8 +19,6 @@ from ..arithmetic.rounding import (
     settle,
     to_digits,
     to_double,
-    to_place,
-    to_side,
 )
 from ..model.case import Case
 from ..model.machine import Machine, Undetermined
@@ -45,19 +43,14 @@ OnMachine = Callable[[Machine[Any]], Any]
 class Answers:
     """The quantities of a scene, settled when asked for: to doubles or to ``digits`` digits.
 
-    ``reasons`` says by name why one asked for shows no value, ``unsure`` why one shows no uncertainty.
+    ``reasons`` says by name why one asked for shows no value, ``unsure`` why one shows no uncertainty, and
+    ``spread`` has the uncertainties asked for.
     ``uncertainties`` is None where all inputs are exact.
     """
 
-    def __init__(
-        self,
-        scene: Scene,
-        digits: int | None = None,
-        motion: Motion = UNMEASURED,
-        uncertainties: Uncertainties | None = None,
-    ) -> None:
+    def __init__(self, scene: Scene, digits: int | None = None, motion: Motion = UNMEASURED) -> None:
         self.case = Case(scene, motion)
-        self.uncertainties = uncertainties
+        self.uncertainties: Uncertainties | None = None
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._round_to(digits)
 
@@ -67,6 +60,7 @@ class Answers:
         self._values: dict[str, Any] = {"regime": self.case.regime}
         self.reasons: dict[str, str] = {}
         self.unsure: dict[str, str] = {}
+        self.spread: dict[str, Any] = {}
 
     def to(self, digits: int | None) -> Answers:
         """The same quantities to so many digits, what was computed for these with them."""
@@ -143,6 +137,7 @@ class Answers:
         except Undetermined as undetermined:
             self.unsure[name] = str(undetermined)
             return None
+        self.spread[name] = u
         if not round_ and (reason := self._out_of_range(u, of)):
             self.unsure[name] = reason
         return u
@@ -164,15 +159,11 @@ class Answers:
             for x, share in shares.items()
         }
 
-    def cut(self, name: str, place: int) -> Decimal:
-        """The value of a quantity that exists, rounded to a multiple of 10^place."""
-        value = self._settle(attrgetter(name), to_place(place))
+    def rounded(self, name: str, round_: Rounding[Decimal]) -> Decimal:
+        """The value of a quantity that exists, rounded in another way."""
+        value = self._settle(attrgetter(name), round_)
         assert isinstance(value, Decimal)
         return value
-
-    def bound(self, name: str, up: bool) -> float | Decimal:
-        """The value of a quantity that exists, rounded up or down: for sentences, a threshold."""
-        return self._settle(attrgetter(name), to_side(self.digits, up))
 
     def settle(self, quantity: OnMachine) -> float | Decimal:
         """Anything that a machine has, correctly rounded. Raises Undetermined."""

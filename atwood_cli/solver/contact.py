@@ -12,6 +12,7 @@ from fractions import Fraction
 from math import inf
 from typing import Any, NamedTuple
 
+from ..arithmetic.rational import power
 from ..arithmetic.rounding import is_infinite
 from ..model import arc
 from ..model.arc import Kind
@@ -35,6 +36,8 @@ ABOUT_KIND = {
     ),
     "exponential": "Friction is at its limit all along the arc.",
 }
+TO_SPARE = ("creep", "least")
+"""Kinds of profiles of a string whose friction is to spare."""
 WITHOUT_MU = "Without mu, shown is the string on the verge, with the least mu that holds it."
 ROUNDING = "Residuals are differences of the rounded numbers shown."
 RESIDUALS = (("residual", "x"), ("residual", "y"), ("torque", "residual"))
@@ -66,8 +69,8 @@ def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -
     check_arc(case)
     if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
         raise SceneError("M", None, f"is missing: {NEEDS_M}")
-    if kind not in (None, "creep", "least"):
-        raise SceneError("profile", kind, "must be creep or least")
+    if kind not in (None, *TO_SPARE):
+        raise SceneError("profile", kind, f"must be {' or '.join(TO_SPARE)}")
     spare = case.regime == "no-slip" and case.scene.mu is not None and not case.tensions_equal
     shown: Kind = "exponential" if not spare else "least" if kind == "least" else "creep"
     if shown == "least" and case.long_wrap:
@@ -93,6 +96,9 @@ def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
             return machine.light_tension
         if from_light == 1:
             return machine.heavy_tension
+        if scene.mu is None:
+            excess = machine.difference / machine.light_tension
+            return machine.light_tension * power(machine.ar, excess, from_light)
         angle = machine.ar.number(from_light) * machine.phi
         return arc.tension(machine.ar, machine.arcs(kind)[piece], angle)
 

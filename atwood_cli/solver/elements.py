@@ -6,6 +6,8 @@ shows what finite elements cost in accuracy beside the limit Δθ → 0 that the
 takes. The error falls as N^-2, with Richardson's extrapolation as N^-4, until rounding takes over.
 """
 
+from __future__ import annotations
+
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
@@ -46,23 +48,27 @@ NOT_LIMITING = "tension_ratio, friction_force: not decided by mu while friction 
 NO_MASS = "critical_pulley_mass: so few elements overrate friction, and find no pulley heavy enough."
 
 
-def march(mu: float, phi: float, count: int) -> tuple[float, float, float]:
-    """k_N, the tension ratio over ``count`` elements, and the net friction (x, y) over T_l.
+def march(mu: float, phi: float, count: int) -> tuple[float, float, float, float]:
+    """k_N, the tension ratio over ``count`` elements, k_N - 1, and the net friction (x, y) over T_l.
 
     Elements must be so many that μ tan(Δθ/2) < 1. Raises SceneError where k_N is no double.
     """
     import numpy as np
 
     step = phi / count
-    tension, x, y, first = 1.0, 0.0, 0.0, 0
+    grip = mu * tan(step / 2)
+    k1, x, y, first = 0.0, 0.0, 0.0, 0
     for ends in _tensions(mu, phi, count):
+        # F2 - F1 in terms of F2, as the difference of nearly equal tensions has lost its digits.
+        rises = ends * (2 * grip / (1 + grip))
         # (8a): the friction of an element is (F2 - F1) cos(Δθ/2), tangential at its middle.
-        friction = np.diff(ends, prepend=tension) * cos(step / 2)
+        friction = rises * cos(step / 2)
         middle = (np.arange(first, first + len(ends)) + 0.5) * step
+        k1 += float(rises.sum())
         x -= float(friction @ np.sin(middle))
         y += float(friction @ np.cos(middle))
-        tension, first = float(ends[-1]), first + len(ends)
-    return tension, x, y
+        first += len(ends)
+    return float(ends[-1]), k1, x, y
 
 
 def march_ratio(mu: float, phi: float, count: int) -> float:
@@ -99,18 +105,21 @@ def balanced(mu: float, phi: float, count: int) -> bool:
     return phi / (2 * count) < atan2(1, mu)
 
 
-def _check_count(mu: float, phi: float, count: int, halved: bool) -> None:
-    """Raise SceneError, with the least number that will do, where elements are too few to be in balance."""
-    times = 2 if halved else 1
+def _check_count(machine: _Doubles, count: int, times: int) -> None:
+    """Raise SceneError, with the least number that will do, where a part of the elements is too few."""
+    mu, phi = machine.mu, machine.phi
     if balanced(mu, phi, count // times):
         return
+    cause = f"{'mu_verge' if machine.case.scene.mu is None else 'mu'} and wrap"
     most = MAX_ELEMENTS // times
-    rule = f"are too few for this mu and wrap, and so are {MAX_ELEMENTS}, the most"
+    rule = f"are too few for this {cause}, and so are {MAX_ELEMENTS}, the most"
     if balanced(mu, phi, most):
         least = max(1, floor(phi / (2 * atan2(1, mu))))
         while not balanced(mu, phi, least):
             least += 1
-        rule = f"are too few for this mu and wrap, which take at least {times * least}"
+        rule = f"are too few for this {cause}, which take at least {times * least}"
+        if not balanced(0, phi, count // times):
+            rule = f"are too few, as each must be below 180 degrees; take at least {times * least}"
     raise SceneError("elements", count, rule)
 
 
@@ -124,7 +133,7 @@ def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> E
         raise SceneError("elements", count, "must be even, to extrapolate from half as many")
     check_arc(answers.case)
     machine, rough = _Doubles(Answers(answers.case.scene), count), Answers(answers.case.scene, ERROR_DIGITS)
-    _check_count(machine.mu, machine.phi, count, extrapolate)
+    _check_count(machine, count, 2 if extrapolate else 1)
     values = machine.solve(count)
     if extrapolate:
         coarse = machine.solve(count // 2)
@@ -181,12 +190,12 @@ class _Doubles:
 
     def solve(self, count: int) -> dict[str, float]:
         case, answers = self.case, self.answers
-        k, x, y = march(self.mu, self.phi, count)
+        k, k1, x, y = march(self.mu, self.phi, count)
         values = {"capstan_ratio": k}
         l, h = self._double(lambda machine: machine.l), self._double(lambda machine: machine.h)
         if answers["critical_pulley_mass"] is not None:
             beta = self._double(lambda machine: machine.ar.number(case.beta or 0))
-            transfer = physics.transfer_at_limit(l, k - 1)
+            transfer = physics.transfer_at_limit(l, k1)
             drive = physics.drive_at_limit(l, h, transfer)
             values["critical_pulley_mass"] = inf
             if drive > 0 and case.axle_friction is None:
@@ -199,10 +208,10 @@ class _Doubles:
             return values
         if case.regime == "slip" and case.scene.mu_k is not None:
             kinetic = self._double(lambda machine: machine.arc_mu("exponential"))
-            k, x, y = march(kinetic, self.phi, count)
+            k, k1, x, y = march(kinetic, self.phi, count)
         light = self._double(lambda machine: machine.light_tension)
         if case.regime != "no-slip":
-            transfer, g = physics.transfer_at_limit(l, k - 1), self._double(lambda machine: machine.g)
+            transfer, g = physics.transfer_at_limit(l, k1), self._double(lambda machine: machine.g)
             drive, load = physics.drive_at_limit(l, h, transfer), physics.load(l, h, transfer)
             light = physics.light_tension(l, physics.acceleration(drive, load, g), g)
         values["tension_ratio"] = k if case.sign >= 0 else 1 / k

@@ -2,15 +2,13 @@
 
 from collections import Counter
 from collections.abc import Mapping
-from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
 from fractions import Fraction
 from math import inf
 
-from ..arithmetic.interval import LARGEST_EXPONENT
-from ..arithmetic.rounding import as_typed, is_infinite, text, to_digits, to_double, to_side
+from ..arithmetic.rounding import as_typed, is_infinite, text, tidy, to_side_of, to_threshold
 from ..model.case import Case
-from ..model.units import MAX_DIGITS, MAX_MAGNITUDE
-from .answers import DOUBLE_DIGITS, Answers
+from ..model.units import MAX_MAGNITUDE
+from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
 
 
 def notes(answers: Answers) -> list[str]:
@@ -25,16 +23,20 @@ def reasons(answers: Answers) -> list[str]:
     if uncertainties is None:
         return missing
     unsure = {(f"u_{name}", reason): 1 for name, reason in answers.unsure.items()}
-    return [*missing, *uncertainties.doubts(answers.asked), *reasons_at(unsure, 1)]
+    shown = {name: u for name, u in answers.spread.items() if name not in answers.unsure}
+    misled = uncertainties.misled(shown, answers.digits or DOUBLE_DIGITS)
+    return [*missing, *uncertainties.doubts(answers.asked), *misled, *reasons_at(unsure, 1)]
 
 
-def reasons_at(counted: Mapping[tuple[str, str], int], points: int) -> list[str]:
-    """Why values are missing: a sentence a reason, with the names, and at how many of the points."""
+def reasons_at(
+    counted: Mapping[tuple[str, str], int], points: int, where: str = "at {} of {} points"
+) -> list[str]:
+    """Why values are missing: a sentence a reason, with the names, and where."""
     names: dict[tuple[str, int], list[str]] = {}
     for (name, reason), times in counted.items():
         names.setdefault((reason, times), []).append(name)
     return [
-        f"{', '.join(group)}: {reason}{'' if times == points else f' (at {times} of {points} points)'}."
+        f"{', '.join(group)}: {reason}{'' if times == points else f' ({where.format(times, points)})'}."
         for (reason, times), group in names.items()
     ]
 
@@ -63,12 +65,12 @@ def verdict(answers: Answers) -> str:
         mu_k = _say(answers, "mu_k") if case.slide_measured else scene.mu_k and as_typed(scene.mu_k)
         kinetic = "" if mu_k is None else f", and slides with mu_k = {mu_k}"
         if not case.pulley_known:
-            verge = _apart(answers, "massless_verge", scene.mu, above=True, up=True)
+            verge = _threshold(answers, "massless_verge", up=True)
             return (
                 f"Slips on any pulley, for the friction of its axle: mu = {as_typed(scene.mu)} is below the"
                 f" {verge} that would hold it on one without mass{kinetic}."
             )
-        verge = _apart(answers, "mu_verge", scene.mu, above=True, up=True)
+        verge = _threshold(answers, "mu_verge", up=True)
         where = " over a pulley that its axle holds" * (case.rim_stands and not case.locked)
         return f"Slips{where}: mu = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
     if case.tensions_equal:
@@ -76,28 +78,26 @@ def verdict(answers: Answers) -> str:
     if not case.light:
         return "Holds: the string's end is fixed to the pulley."
     if scene.mu is None:
-        return (
-            f"Assumed to hold, without mu: it does if mu is at least {_bound(answers, 'mu_verge', up=True)}."
-        )
+        where = " on a pulley without mass" * (scene.M is None and scene.I is None)
+        verge = _threshold(answers, "mu_verge", up=True)
+        return f"Assumed to hold, without mu: it does{where} if mu is at least {verge}."
     if case.pulley_known:
-        verge = _apart(answers, "mu_verge", scene.mu, above=False, up=True)
+        verge = _threshold(answers, "mu_verge", up=True, given=scene.mu)
         at_rest = " from rest" * (_sliding(answers) is not None)
         return f"Holds{at_rest}: mu = {as_typed(scene.mu)}, and {verge} is enough."
-    least = _apart(answers, "least_heavier_mass", case.heavy, above=True, up=False)
-    return f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {least} kg to slip."
-
-
-HELD_DIGITS = 3
-"""Significant digits of what an axle holds, where those tell it from the difference of the masses."""
+    least = answers.rounded("least_heavier_mass", to_threshold(up=False, given=case.heavy))
+    if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
+        return "Holds on any pulley, under any mass that can be given in place of the heavier one."
+    return (
+        f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {text(least)} kg to slip."
+    )
 
 
 def _held(case: Case) -> str:
     """The difference that the axle just holds, rounded down, but not below what it does hold."""
-    b, difference, digits = case.axle_mass or Fraction(0), case.heavy - case.light, HELD_DIGITS
+    b, difference = case.axle_mass or Fraction(0), case.heavy - case.light
     times, unit = (1000, "g") if b < 1 else (1, "kg")
-    while (held := to_side(digits, up=False)(times * b)) < times * difference and digits < MAX_DIGITS:
-        digits *= 2
-    return f"{text(held)} {unit}"
+    return f"{text(to_threshold(up=False, given=times * difference)(times * b))} {unit}"
 
 
 def _string_at_rest(answers: Answers) -> str:
@@ -106,9 +106,9 @@ def _string_at_rest(answers: Answers) -> str:
     if not answers.case.light:
         return ""
     if mu is None:
-        least = _bound(answers, "mu_verge", up=True)
+        least = _threshold(answers, "mu_verge", up=True)
         return f" The string is assumed to hold, without mu: it does if mu is at least {least}."
-    verge = _apart(answers, "mu_verge", mu, above=False, up=True)
+    verge = _threshold(answers, "mu_verge", up=True, given=mu)
     return f" The string holds: mu = {as_typed(mu)}, and {verge} is enough."
 
 
@@ -122,11 +122,9 @@ def odd_inertia(answers: Answers) -> list[str]:
     beta = answers.case.beta
     if beta is None or beta <= 1:
         return []
-    shown = f"{to_double(beta):.6g}"
-    if shown == "1":
-        shown = text(to_side(None, up=True)(beta))
+    shown = tidy(to_side_of(Fraction(1), SHOWN_DIGITS)(beta))
     return [
-        f"The inertia factor I/(M R^2) is {shown}, above 1: the mass lies outside"
+        f"The inertia factor I/(M R^2) is {text(shown)}, above 1: the mass lies outside"
         " the rim the string runs on. If that is not so, check inertia, I and R."
     ]
 
@@ -135,8 +133,9 @@ def holding_again(answers: Answers) -> list[str]:
     """That a string which slips under the critical mass holds under much heavier ones, if it does."""
     if answers.case.scene.mu is None or not answers.case.holds_again:
         return []
+    least = _threshold(answers, "holding_heavier_mass", up=True, given=answers.case.heavy)
     return [
-        f"Under more than {_say(answers, 'holding_heavier_mass')} kg it holds again: the more the heavier"
+        f"Under more than {least} kg it holds again: the more the heavier"
         " mass weighs, the less the friction of the axle counts beside it."
     ]
 
@@ -166,7 +165,7 @@ def kinetic(answers: Answers) -> list[str]:
         return [
             f"mu_k = {as_typed(mu_k)} is enough, too: a string that slides already is caught by the pulley."
         ]
-    verge = _apart(answers, "mu_verge", mu_k, above=True, up=False)
+    verge = _threshold(answers, "mu_verge", up=False, given=mu_k)
     return [
         f"A string that slides already goes on sliding, as mu_k = {as_typed(mu_k)} is below {verge}:"
         f" the masses then have the acceleration {_say(sliding, 'acceleration')} m/s²."
@@ -188,52 +187,34 @@ def conditions(answers: Answers) -> list[str]:
         return []
     case, mass = answers.case, answers.case.scene.M
     met = {True: "met", False: "not met"}
-    least = _apart(answers, "least_heavier_mass", case.heavy, above=not case.can_slip, up=False)
-    parts = [f"the heavier mass, {as_typed(case.heavy)} kg, must exceed {least} kg ({met[case.can_slip]})"]
+    least = _least(answers, "least_heavier_mass", case.heavy)
+    parts = [f"the heavier mass, {as_typed(case.heavy)} kg, must exceed {least} ({met[case.can_slip]})"]
     if answers["least_pulley_mass"] is None:
         pass  # the pulley's shape is not known
     elif mass is None:
-        least, answer = _bound(answers, "least_pulley_mass", up=False), "open without M"
-        if case.can_slip:
-            answer = "met by the critical one"
-        parts.append(f"the pulley's mass must exceed {least} kg ({answer})")
+        answer = "met by the critical one" if case.can_slip else "open without M"
+        parts.append(f"the pulley's mass must exceed {_least(answers, 'least_pulley_mass')} ({answer})")
     elif isinstance(mass, Fraction):
-        heavy = case.can_be_made_slip
-        least = _apart(answers, "least_pulley_mass", mass, above=not heavy, up=False)
-        parts.append(f"the pulley's mass, {as_typed(mass)} kg, must exceed {least} kg ({met[heavy]})")
+        least = _least(answers, "least_pulley_mass", mass)
+        parts.append(
+            f"the pulley's mass, {as_typed(mass)} kg, must exceed {least} ({met[case.can_be_made_slip]})"
+        )
     else:
-        least = _bound(answers, "least_pulley_mass", up=False)
-        parts.append(f"the pulley's mass, infinite, must exceed {least} kg (met)")
+        parts.append(f"the pulley's mass, infinite, must exceed {_least(answers, 'least_pulley_mass')} (met)")
     return [f"Conditions (36) for the verge: {'; '.join(parts)}."]
 
 
-def _apart(answers: Answers, name: str, other: Fraction, above: bool, up: bool) -> str:
-    """A threshold, rounded up or down, with digits enough to show on which side of another number it is."""
-    finer, least = answers, answers.digits or DOUBLE_DIGITS
-    digits = least
-    while not is_infinite(value := finer[name]):
-        near, shown = Decimal(text(value)), Decimal(text(finer.bound(name, up)))
-        if shown.adjusted() > MAX_MAGNITUDE:
-            return text(shown)  # beyond any input; a fraction of it might have millions of digits
-        for kept in range(least, digits + 1):
-            pair = to_digits(kept)(near), to_digits(kept, ROUND_CEILING if up else ROUND_FLOOR)(shown)
-            if all(Fraction(one) != other and (Fraction(one) > other) == above for one in pair):
-                return text(pair[1])
-        if digits == MAX_DIGITS:  # the same number, or as good as
-            break
-        digits = min(2 * digits, MAX_DIGITS)
-        finer = answers.to(digits)
-    return _bound(answers, name, up)
+def _least(answers: Answers, name: str, given: Fraction | None = None) -> str:
+    """A mass of (36) as the table shows it, and on its side of the mass given."""
+    least = answers.rounded(name, to_side_of(given, answers.digits or SHOWN_DIGITS))
+    return "a mass too large to be written out" if is_infinite(least) else f"{text(least)} kg"
 
 
-def _bound(answers: Answers, name: str, up: bool) -> str:
-    """A threshold, rounded to the side on which the sentence is true of the number shown."""
-    return _say(answers, name) if is_infinite(answers[name]) else text(answers.bound(name, up))
+def _threshold(answers: Answers, name: str, up: bool, given: Fraction | None = None) -> str:
+    """A number that may be typed back, rounded to the side on which the sentence is true of it."""
+    return text(answers.rounded(name, to_threshold(up, given)))
 
 
 def _say(answers: Answers, name: str) -> str:
-    """A value as the output shows it, for a sentence."""
-    value = answers[name]
-    if is_infinite(value):
-        return "over 1.8e308" if answers.digits is None else f"over 10^{LARGEST_EXPONENT}"
-    return text(value)
+    """A value as the table shows it."""
+    return text(answers[name])

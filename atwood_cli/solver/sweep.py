@@ -3,7 +3,7 @@
 A point is the number that is printed, exactly, so that `solve` given that number prints the same row.
 Linear ranges step in exact fractions from one end to the other: steps of 0.1 are 0.1. Where the step is
 no decimal (a third), or the points are at equal ratios, they are rounded to so many digits as results are
-shown with, or as it takes to tell them apart well. The ends are hit exactly.
+shown with, or as it takes to tell them apart well. The ends are hit exactly, unless they are no decimals.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,9 +14,9 @@ from math import lcm
 from typing import NamedTuple
 
 from ..arithmetic.interval import decimal_context
-from ..arithmetic.rounding import as_typed, text, tidy
+from ..arithmetic.rounding import as_decimal, as_typed, text, tidy, to_digits
 from ..model.scene import INPUTS, Scene, SceneError, in_units, read_value, read_whole
-from ..model.units import MAX_DIGITS, NUMBER, Malformed, symbol_of, without_blanks
+from ..model.units import MAX_DIGITS, in_quotes, read_number
 from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
 
 Point = Decimal | str
@@ -140,53 +140,55 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     try:
         last = read_whole(name, words[2], 2, MAX_POINTS) - 1
     except SceneError as error:
-        raise SceneError(name, typed, f"has the count {words[2]!r}, which {error.rule}") from None
-    ends = [tidy(Decimal(as_typed(end))) for end in (start, stop)]
-    try:
-        points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last, digits), ends[1]]
-    except Malformed as error:
-        raise SceneError(name, typed, str(error)) from None
+        raise SceneError(name, typed, f"has the count {in_quotes(words[2])}, which {error.rule}") from None
+    kept = _digits_kept(start, stop, last, log, digits)
+    if kept > MAX_DIGITS:
+        rule = f"has points closer together than {MAX_DIGITS} digits can tell"
+        raise SceneError(name, typed, f"{rule}; take fewer points, or ends further apart")
+    ends = [tidy(as_decimal(end, to_digits(kept))) for end in (start, stop)]
+    points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last, kept), ends[1]]
     return Range(name, typed, [f"{text(point)}{unit}" if unit else point for point in points], log)
 
 
 def _read_end(name: str, typed: str, word: str) -> tuple[Fraction, str]:
     """An end of a range, and its unit if that is not the usual one. Raises SceneError."""
     if word.strip().lower() in ("inf", *INPUTS[name].names):
-        raise SceneError(name, typed, f"has the end {word!r}; a range runs between finite numbers")
+        raise SceneError(name, typed, f"has the end {in_quotes(word)}; a range runs between finite numbers")
     value = read_value(name, word)
     return (value.number, UNUSUAL.get(value.unit, "")) if name in ("wrap", "axle") else (value, "")
 
 
 def _check_units(name: str, typed: str, ends: Sequence[str], has_zero: bool) -> None:
     """100:500g is from 100 kg to half a kilogram: hardly what was meant."""
-    first, second = (
-        match[4] and (symbol_of(match[4]) or match[4])
-        for word in ends
-        if (match := NUMBER.fullmatch(without_blanks(word)))
-    )
-    if bool(first) != bool(second) and not has_zero:
+    numbers = (read_number(word, INPUTS[name].dimension) for word in ends)
+    if len({bool(number and number.unit) for number in numbers}) > 1 and not has_zero:
         raise SceneError(name, typed, "has a unit at one end only; write it at both")
 
 
-def _equal_steps(start: Fraction, stop: Fraction, last: int, digits: int | None) -> Iterator[Decimal]:
+def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: int | None) -> int:
+    """The significant digits of points: as many as wanted and as differ; all where steps are decimals."""
+    if log:  # the step is not below value * |ln ratio| / last
+        steps = last / min(abs(1 - start / stop), abs(1 - stop / start))
+    else:
+        step = (stop - start) / last
+        if not digits and "/" not in as_typed(start) + as_typed(step):
+            return MAX_DIGITS
+        steps = max(abs(start), abs(stop)) / abs(step)
+    return max(digits or SHOWN_DIGITS, len(str(int(steps))) + 3)
+
+
+def _equal_steps(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
     step = (stop - start) / last
     unit = lcm(start.denominator, step.denominator)
-    is_decimal = "/" not in as_typed(Fraction(1, unit))
-    kept = MAX_DIGITS
-    if digits or not is_decimal:
-        kept = _digits(max(abs(start), abs(stop)) / abs(step), digits)
     context = decimal_context(kept, ROUND_HALF_EVEN)
     first, by, whole = int(start * unit), int(step * unit), Decimal(unit)
     for i in range(1, last):
         yield tidy(context.divide(Decimal(first + i * by), whole))
 
 
-def _equal_ratios(start: Fraction, stop: Fraction, last: int, digits: int | None) -> Iterator[Decimal]:
-    ratio = stop / start
-    # The step is not below value * |ln ratio| / last.
-    kept = _digits(last / min(abs(1 - ratio), abs(1 - 1 / ratio)), digits)
+def _equal_ratios(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
     context, finer = (decimal_context(n, ROUND_HALF_EVEN) for n in (kept, max(kept, DOUBLE_DIGITS) + 20))
-    value, whole = (finer.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (start, ratio))
+    value, whole = (finer.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (start, stop / start))
     by = finer.exp(finer.divide(finer.ln(whole), Decimal(last)))
     for _ in range(1, last):  # a million factors cost half of the further digits
         value = finer.multiply(value, by)
@@ -198,18 +200,6 @@ def about_power(ratio: Fraction, share: Fraction) -> Fraction:
     context = decimal_context(DOUBLE_DIGITS, ROUND_HALF_EVEN)
     number, exponent = (context.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (ratio, share))
     return Fraction(context.power(number, exponent))
-
-
-def _digits(steps: Fraction, digits: int | None) -> int:
-    """The significant digits of values so many steps from 0: those wanted, or more to tell them apart.
-
-    Raises Malformed.
-    """
-    kept = max(digits or SHOWN_DIGITS, len(str(int(steps))) + 3)
-    if kept > MAX_DIGITS:
-        rule = f"has points closer together than {MAX_DIGITS} digits can tell"
-        raise Malformed(f"{rule}; take fewer points, or ends further apart")
-    return kept
 
 
 def point_text(point: Point) -> str:

@@ -9,26 +9,41 @@ What is decided about a scene is decided for the one an infinitesimal step besid
 difference. It does at equal masses, where the friction needed, which goes with |m2 - m1|, has a kink: the
 slopes to the two sides disagree, and there is no uncertainty. An input of 0, which must not be negative,
 has a right side only, and what has no value to one side has no slope.
+
+First order takes a quantity for linear over ± u(x). That is tried, too: where the quantity at x - u(x) or
+x + u(x) is far from where its slope puts it, a sentence gives both values.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache, partial
+from itertools import islice
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.dual import Dual, Duals
-from ..arithmetic.interval import ZERO, Enclosure
+from ..arithmetic.interval import ZERO, Enclosure, Unsettled, enclosures
 from ..arithmetic.lazy import lazy
 from ..arithmetic.protocol import N
-from ..arithmetic.rounding import settle, to_digits, to_place, with_uncertainty
+from ..arithmetic.rounding import (
+    GUARD,
+    as_typed,
+    settle,
+    text,
+    to_digits,
+    to_place,
+    with_uncertainty,
+)
 from ..model import physics
 from ..model.case import Case, Excess
 from ..model.machine import Machine, Undetermined
-from ..model.motion import completed, moved
-from ..model.scene import Scene
+from ..model.motion import completed, impossible, moved, number_of, with_number
+from ..model.quantities import QUANTITIES
+from ..model.scene import Scene, parameter_of
+from .answers import SHOWN_DIGITS
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, Quantity
@@ -36,6 +51,10 @@ if TYPE_CHECKING:
 
 SURE = 20
 """Digits to which it is told whether a case is in doubt."""
+FAR = 5
+"""The fraction, a fifth, of its uncertainty that a quantity may be off where first order puts it."""
+NAMED = 3
+"""How many quantities a sentence names."""
 COVERAGE = 2
 """How many standard uncertainties from the line between two cases leave the case in doubt."""
 
@@ -68,6 +87,7 @@ class Uncertainties:
         self.case, self.given = case, given
         self._beside = cache(partial(beside, case))
         self._machine: Callable[..., Machine[Any]] = cache(lambda case, ar: MachineBeside(case, Duals(ar)))
+        self._plain: Callable[..., Machine[Any]] = cache(Machine)
 
     def of(self, quantity: OnMachine) -> Quantity:
         """The standard uncertainty of a quantity that has a value. It raises Undetermined."""
@@ -178,6 +198,58 @@ class Uncertainties:
         if case.rim_mass is not None and "critical_heavier_mass" in asked:
             yield "heaviest_excess", "Whether there is a critical_heavier_mass", heaviest
 
+    def misled(self, spread: Mapping[str, float | Decimal], digits: int) -> list[str]:
+        """Sentences, by uncertain input, on where first order misleads: the values an uncertainty off.
+
+        ``spread`` has the uncertainties shown, by name of the quantity, settled to so many digits.
+        """
+        ar = enclosures(digits + GUARD)  # in which the uncertainties were settled
+        sentences = []
+        for x, u in self.given.items():
+            numbers = [_one_off(self.case, x, u * side) for side in (-1, 1)]
+            cases = [case for number in numbers if (case := _case_at(self.case, x, number))]
+            far = {n: u for n, u in spread.items() if self._is_far(attrgetter(n), x, cases, ar)}
+            if far:
+                start, end = (_with_unit(self.case, x, number) for number in numbers)
+                said = f"as it goes from {start} to {end}, {self._from_end_to_end(far, cases)}"
+                if len(cases) < len(numbers):
+                    said = f"not every value from {start} to {end} is possible"
+                sentences.append(f"{x} is too uncertain for first order: {said}.")
+        return sentences
+
+    def _is_far(self, quantity: OnMachine, x: str, cases: Sequence[Case], ar: Arithmetic[Enclosure]) -> bool:
+        """Whether the quantity is far from linear between the cases, or lacks a value or a case there."""
+        try:
+            parts = self._parts(quantity, ar, _first)
+            if len(cases) < 2:
+                return x in parts
+            most = _size(ar.sqrt(_sum_of_squares(ar, parts.values())))
+            low, here, high = (quantity(self._plain(case, ar)) for case in (cases[0], self.case, cases[1]))
+            part = parts.get(x, ar.number(0))
+            return any(_size(FAR * off, least=True) > most for off in (here - low - part, high - here - part))
+        except Unsettled:  # nearer to a pole than anything that is measured
+            return False
+        except (Undetermined, ZeroDivisionError):
+            return True
+
+    def _from_end_to_end(self, spread: Mapping[str, float | Decimal], cases: Sequence[Case]) -> str:
+        """The values in the cases, as a table cuts them here, of the first few quantities."""
+        words: list[str] = []
+        for name, u in islice(spread.items(), NAMED):
+            quantity, unit = attrgetter(name), QUANTITIES[name].unit
+            exact = Fraction(u) if isinstance(u, float) else u
+            round_ = to_place(to_digits(2)(exact).adjusted() - 1) if u else to_digits(SHOWN_DIGITS)
+            values = []
+            for case in cases:
+                try:
+                    shown = settle(lambda ar, q=quantity, c=case: q(self._plain(c, ar)), round_, SURE)
+                    number = f"{shown:f}" if -4 <= shown.adjusted() < 16 else text(shown)
+                    values.append(f"{number} {unit}".rstrip())
+                except (Undetermined, ZeroDivisionError):
+                    values.append("no value")
+            words.append(f"{name} {'goes ' * (not words)}from {' to '.join(values)}")
+        return ", ".join(words) + f", and so on for {len(spread) - NAMED} more" * (len(spread) > NAMED)
+
 
 def _sum_of_squares(ar: Arithmetic[N], parts: Iterable[N]) -> N:
     total = ar.number(0)
@@ -200,9 +272,9 @@ def _steepest(slopes: list[N]) -> N:
 
 
 def _size(x: Any, least: bool = False) -> Fraction | Decimal:
-    """How far from 0 a number may be; or is, at least. Residues are told from 0, and that is all."""
+    """How far from 0 a number may be; or is, at least."""
     if not isinstance(x, Enclosure):
-        return Fraction(abs(getattr(x, "residue", x)))
+        return Fraction(abs(x))
     if least and x.lo <= 0 <= x.hi:
         return ZERO
     return (min if least else max)(x.lo.copy_abs(), x.hi.copy_abs())
@@ -220,6 +292,34 @@ def _doubt(what: str, name: str, value: Quantity, u: Quantity, unit: str = "") -
     )
 
 
+def _one_off(case: Case, x: str, u: Fraction) -> Fraction:
+    """The number given for an input, with u added, or the nearest to that which an input may be."""
+    scene = case.scene
+    number: Fraction = number_of(scene, case.motion, x) + u
+    least = (x == "mu" and scene.mu_k) or Fraction(0)
+    if x == "mu_k" and scene.mu is not None:
+        number = min(number, scene.mu)
+    return number if x == "a" else max(number, least)
+
+
+def _case_at(case: Case, x: str, number: Fraction) -> Case | None:
+    """The case with that number for an input; None where nothing gives what was measured."""
+    scene, motion = with_number(case.scene, case.motion, x, number)
+    try:
+        if motion.finds and not motion.beyond and impossible(Case(scene, motion), ""):
+            return None
+        return Case(completed(scene, motion), motion)
+    except (Undetermined, ZeroDivisionError):
+        return None
+
+
+def _with_unit(case: Case, x: str, number: Fraction) -> str:
+    """An input's number with the unit that it was given in."""
+    given = getattr(case.scene if x in Scene._fields else case.motion, x)
+    unit = getattr(given, "unit", parameter_of(x).unit)
+    return f"{as_typed(number)}{' ' * (unit not in ('', '°'))}{unit}"
+
+
 def _just_held(case: Case) -> bool:
     """Whether the axle holds just the difference of the masses."""
     return case.axle_mass is not None and case.heavy - case.light == case.axle_mass
@@ -232,8 +332,7 @@ def beside(case: Case, x: str) -> list[tuple[int, Case]]:
     """
     scene, motion = case.scene, case.motion
     bends = scene.m1 == scene.m2 or scene.M == 0 or x == "wrap" or _just_held(case)
-    given = getattr(scene if x in Scene._fields else motion, x)
-    ends = getattr(given, "number", given) == 0 and x != "a"
+    ends = number_of(scene, motion, x) == 0 and x != "a"
     cases = []
     for side in (1, -1) if bends and not ends else (1,):
         near, measured = moved(scene, motion, x, side)

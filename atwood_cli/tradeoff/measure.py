@@ -20,8 +20,8 @@ import numpy as np
 
 from ..arithmetic.interval import decimal_context
 from ..arithmetic.rounding import to_double
-from ..arrays import ACCURACIES, solve_arrays
-from ..model.quantities import REGIMES, STANDARD
+from ..arrays import solve_arrays
+from ..model.quantities import ACCURACIES, REGIMES, STANDARD
 from ..model.scene import STANDARD_GRAVITY, Scene, SceneError
 from ..solver.answers import Answers
 from ..solver.elements import MAX_ELEMENTS, TOO_LARGE, balanced, extrapolated, march_ratio
@@ -40,6 +40,7 @@ PRECISE_SCENES = 100  # whose errors count with digits, of which all are about h
 REPEATS, RUN_SECONDS = 5, 0.01
 FEWEST, MOST_ROWS = 20, 1_000_000
 TABLE = 10_000  # scenes at least that are solved at once in arrays: of few, what is rare counts too much
+SAMPLE, LONG_SECONDS = 40, 0.1  # of a table: where so many, or a few more, take so long, it has no more
 PRECISE = decimal_context(EXACT_DIGITS + 20, ROUND_HALF_EVEN)
 
 
@@ -189,15 +190,16 @@ def measure(family: str, rows: Sequence[Inputs]) -> list[Measured]:
 
 def _size(setting: Setting, rows: Sequence[Inputs]) -> int:
     """So many scenes that a run takes long enough to be timed, and not much longer."""
-    size = TABLE if setting.at_once else min(len(rows), FEWEST)
+    size, least = (min(SAMPLE, TABLE), TABLE) if setting.at_once else (min(len(rows), FEWEST), 0)
     while size < MOST_ROWS:
+        enough = RUN_SECONDS / 2 if size >= least else LONG_SECONDS
         given = setting.prepare(rows, size)
         taken = _seconds(setting.run, given)
-        if taken > RUN_SECONDS / 2:  # or was it interrupted?
+        if taken > enough:  # or was it interrupted?
             taken = min(taken, _seconds(setting.run, given))
-        if taken > RUN_SECONDS / 2:
+        if taken > enough:
             return size
-        size = min(size * min(ceil(RUN_SECONDS / taken), 16), MOST_ROWS)
+        size = min(max(size * min(ceil(RUN_SECONDS / taken), 16), min(2 * size, least)), MOST_ROWS)
     return size
 
 

@@ -7,9 +7,8 @@ from math import degrees, inf, isinf
 from typing import Any, NamedTuple
 
 from ..arithmetic.rounding import as_typed, text, to_double
-from ..arrays.plan import COLUMNS
 from ..model.machine import Undetermined
-from ..model.scene import Scene, SceneError
+from ..model.scene import COLUMNS, Scene, SceneError
 from .measure import (
     MARGIN,
     PRECISE_SCENES,
@@ -165,10 +164,11 @@ def advice(measured: Sequence[Measured]) -> str:
 
 LEGEND = (
     "* No other setting is both faster and more accurate. Time is for one scene on this machine, of a table"
-    f" of at least {TABLE:,} but for digits, ± half the range of its repeats. Errors are in units in the last"
-    " place (ulp) of a double, a scene's the worst of its quantities', over the scenes whose regime is right"
-    f" (with digits, of the first {PRECISE_SCENES}); Over 4 is the share of them over 4 ulp, Regime the share"
-    " of scenes whose regime is wrong. paper: the paper's formulas typed into NumPy."
+    f" of at least {TABLE:,} (fewer where they take long) but for digits, ± half the range of its repeats."
+    " Errors are in units in the last place (ulp) of a double, a scene's the worst of its quantities', over"
+    f" the scenes whose regime is right (with digits, of the first {PRECISE_SCENES}); Over 4 is the share of"
+    " them over 4 ulp, Regime the share of scenes whose regime is wrong. paper: the paper's formulas typed"
+    " into NumPy."
 )
 
 
@@ -217,7 +217,6 @@ def elements_in_words(marched: Sequence[March]) -> str:
 
 
 LEAST_DRAWN, GREATEST_DRAWN = 1e-3, 1e16
-EDGES = "Edges: below 0.001 ulp; no digit right."
 
 
 def drawable(worst_ulp: float | None) -> float:

@@ -1,13 +1,13 @@
 """Shares of probability: Student's t, Fisher's F and χ², as far as a fit needs them."""
 
 from functools import cache
-from math import erfc, exp, inf, lgamma, log, log1p, pi, sqrt
+from math import erfc, exp, inf, lgamma, log, log1p, sqrt
 
 TINY = 1e-300
 """In place of 0 in a continued fraction (W. J. Lentz)."""
 MOST_TERMS = 10_000
 SURE = 0.95
-"""The share of an interval, and how sure a fit is that something is needed."""
+"""The share of truths that an interval holds."""
 
 
 def beta_share(a: float, b: float, x: float) -> float:
@@ -54,19 +54,16 @@ def student_within(share: float, dof: float) -> float:
 
 
 def chi2_beyond(chi2: float, dof: int) -> float:
-    """How probable a χ² beyond this one is."""
-    half = chi2 / 2
-    if dof % 2:
-        total, term = erfc(sqrt(half)), exp(-half) * 2 * sqrt(half) / sqrt(pi)
-        start = 1.5
-    else:
-        total, term, start = 0.0, exp(-half), 1.0
-    for j in range(dof // 2):
-        total += term
-        term *= half / (start + j)
-    return total
+    """How probable a χ² beyond this one is: a sum of dof/2 terms, each by its logarithm."""
+    half, first = chi2 / 2, dof % 2 / 2
+    if not half:
+        return 1.0
+    terms = (exp((first + j) * log(half) - half - lgamma(first + j + 1)) for j in range(dof // 2))
+    return sum(terms, erfc(sqrt(half)) if first else 0.0)
 
 
-def fisher_beyond(ratio: float, dof: int, dof_below: int) -> float:
-    """How probable a ratio of variances beyond this one is."""
+def fisher_beyond(ratio: float, dof: int, dof_below: float) -> float:
+    """How probable a ratio of variances beyond this one is; dof_below is inf where the lower is known."""
+    if dof_below == inf:
+        return chi2_beyond(ratio * dof, dof)
     return beta_share(dof_below / 2, dof / 2, dof_below / (dof_below + dof * ratio))

@@ -4,13 +4,11 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..arithmetic.dual import Dual, Duals
+from ..arithmetic.tables import Column
 from ..model import physics
 from .runs import Kind
-
-Column = NDArray[np.float64]
 
 NUMPY: Any = np
 DUALS: Duals[Any] = Duals(NUMPY)

@@ -3,27 +3,35 @@
 from collections.abc import Iterator
 from fractions import Fraction
 
-from ..arithmetic.rounding import text, to_digits
+from ..arithmetic.rounding import text, tidy, to_digits
 from ..derivation.equations import Law, Part
 from ..derivation.steps import Explanation, Step
 from ..solver.answers import SHOWN_DIGITS
-from .fitting import UNITS, WORDS, Fit, away
-from .line import points
-from .sentences import far, few, notes, shown, verdict
+from .fitting import Fit
+from .numbers import few
+from .results import Inputs, found, points, rows_of
+from .sentences import accusations, notes, verdict
 
 
-def explained(fit: Fit) -> Explanation:
-    """The derivation of the line, and what became of it."""
+def explained(fit: Fit, inputs: Inputs) -> Explanation:
+    """The derivation of the line, what became of it, and what was assumed."""
     return Explanation(
-        [verdict(fit)],
+        [verdict(fit), *accusations(fit, inputs)],
         f"Numbers are rounded to {SHOWN_DIGITS} significant digits.",
         [
             Step("The equations of a run", list(_equations())),
             Step("The runs as points", list(_points(fit))),
-            Step("The line", list(_line(fit))),
-            Step("What is needed", [*_needed(fit), *notes(fit)]),
+            Step("The line", list(_line(fit, inputs))),
+            Step("What was assumed, and what else to know", [ASSUMED, *notes(fit)]),
         ],
+        "Runs of Atwood's machine",
     )
+
+
+ASSUMED = (
+    "The string is taken to have no mass, not to stretch and not to slip, the friction of the axle to be the"
+    " same in all runs, and what is given without an uncertainty to be exact."
+)
 
 
 def _equations() -> Iterator[Part]:
@@ -35,7 +43,7 @@ def _equations() -> Iterator[Part]:
         " rim, against the friction of the axle, a force `f` there:"
     )
     yield Law("(3)", "T_h - T_l = c a + f")
-    yield "The sum of both (1) has that difference in it, and apart from it only what is measured:"
+    yield "The sum of both (1) gives that difference by what is measured:"
     yield Law("", "y = T_h - T_l = (h - l) g - a (h + l)")
     yield (
         "So `y` against `a` is a straight line, for whatever masses. Its slope is `c`, and where it meets the"
@@ -50,37 +58,29 @@ def _points(fit: Fit) -> Iterator[Part]:
     g = fit.estimate.values["gravity"]
     yield f"With `g` = {text(g)} m/s² the runs are"
     at = points(fit)
-    for run, x, y in zip(fit.used, at.x, at.y, strict=True):
-        yield f"- {run.name}: `a` = {_number(x)} m/s², `y` = {_number(y)} N"
+    data, time = fit.data, fit.runs.kind == "time"
+    for run, l, h, t, x, y in zip(fit.used, data.l, data.h, data.measured, at.x, at.y, strict=True):
+        fall = f", `t = {_number(t)}` s" * time
+        masses = f"`l = {text(float(l))}` kg, `h = {text(float(h))}` kg"
+        yield f"- {run.name}: {masses}{fall}: `a = {_number(x)}` m/s², `y = {_number(y)}` N"
 
 
-def _line(fit: Fit) -> Iterator[Part]:
-    c, f = fit.estimate.values["rim_mass"], fit.estimate.values["axle"]
-    yield Law("", f"y = c a + f, c = {_number(c)} kg, f = {_number(f)} N")
+def _line(fit: Fit, inputs: Inputs) -> Iterator[Part]:
+    yield Law("", "y = c a + f")
     what = {"a": "accelerations", "time": "times"}[fit.runs.kind]
     yield (
         f"This line is the one by which the {what} are as close as can be to those measured: the sum of the"
         f" squares of what is left, each in its standard uncertainty, is the least. It is not that of `y`, as"
         f" {what} were measured and not `y`, which has their errors multiplied."
     )
-
-
-def _needed(fit: Fit) -> Iterator[Part]:
-    if fit.asked:
-        yield "What to fit was said (--find), so nothing was left out."
-        return
-    for one in fit.dropped:
-        yield (
-            f"- {WORDS[one.name]}: {shown(one.value, one.uncertainty)} {UNITS[one.name]},"
-            f" {far(away(one.value, one.uncertainty))} standard uncertainties from 0: left out"
-        )
-    for name, value in fit.values.items():
-        yield (
-            f"- {WORDS[name]}: {shown(value, fit.uncertainty(name))} {UNITS[name]}, {far(fit.away(name))}"
-            f" standard uncertainties from 0; chance stays within {few(fit.times, 3)} in 95 % of all cases:"
-            " needed"
-        )
+    rows = rows_of(found(fit, inputs))
+    for name, value, unit, symbol, ends in rows:
+        words = "axle friction" if name == "axle" else name.replace("_", " ")
+        within = f", 95 % interval `{ends}` {unit}" * bool(ends)
+        yield f"- {words}: `{symbol[0]} = {value}` {unit}{within}"
+    if rows:
+        yield f"Uncertainties are standard ones; intervals have {few(fit.times, 3)} of them on either side."
 
 
 def _number(value: float) -> str:
-    return text(to_digits(SHOWN_DIGITS)(Fraction(float(value))))
+    return text(tidy(to_digits(SHOWN_DIGITS)(Fraction(float(value)))))

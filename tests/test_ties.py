@@ -1,4 +1,4 @@
-"""Values that are rational though their formulas are not: found to be so, and rounded as what they are."""
+"""Values that are rational though their formulas are not: they are rounded as what they are."""
 
 from collections.abc import Callable
 from decimal import ROUND_HALF_EVEN, Context, Decimal
@@ -13,12 +13,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve, solve_arrays
-from atwood_cli.arithmetic import residue
-from atwood_cli.arithmetic.residue import is_rational
-from atwood_cli.arithmetic.rounding import settle, to_digits
+from atwood_cli.arithmetic.rounding import is_positive, settle, to_digits, to_threshold
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.contact import contact
+from atwood_cli.solver.reading import read_answers
 
 from .running import Atwood
 
@@ -65,63 +64,61 @@ IRRATIONAL: dict[str, tuple[Quantity, Fraction]] = {
     "√2": (lambda ar: ar.sqrt(ar.number(2)), F(1414213562373095048801688724210, 10**30)),
     "e^π": (lambda ar: ar.exp(ar.pi), F(23140692632779269005729086367949, 10**30)),
     "ln 2 / π": (lambda ar: ar.log1p(ar.number(1)) / ar.pi, F(220635600152651662, 10**18)),
-    "π": (lambda ar: ar.pi, F(355, 113)),
-    "π - π/2": (lambda ar: ar.pi - ar.pi / 2, F(0)),
+    "π": (lambda ar: ar.pi, F(3141592653589793238462643383280, 10**30)),
     "sin of 10^-300 degrees": (lambda ar: ar.cos_sin_of_degrees(F(1, 10**300))[1], F(0)),
 }
 
 
 @pytest.mark.parametrize("name", RATIONAL)
-def test_what_is_rational_is_found_to_be(name: str) -> None:
+def test_a_rational_value_is_rounded_as_what_it_is(name: str) -> None:
+    """Moved by a rational number, the value becomes a tie, or lies beside one by 10^-40."""
     quantity, value = RATIONAL[name]
-    assert is_rational(quantity, value)
-    assert not is_rational(quantity, value + F(1, 10**40))
+    for beside, digits in ((F(0), "0.12"), (F(1, 10**40), "0.13"), (F(-1, 10**40), "0.12")):
+        moved = F(1, 8) + beside - value
+        assert settle(lambda ar, by=moved: quantity(ar) + ar.number(by), to_digits(2), 2) == Decimal(digits)
+
+
+@pytest.mark.parametrize("name", RATIONAL)
+def test_a_value_of_zero_is_zero(name: str) -> None:
+    quantity, value = RATIONAL[name]
+    assert settle(lambda ar: quantity(ar) - ar.number(value), to_digits(2), 2) == 0
+
+
+@pytest.mark.parametrize("up", [True, False])
+def test_a_threshold_that_has_few_digits_is_not_moved(up: bool) -> None:
+    """4^(1/2), rounded up to three digits, was 2.01."""
+    quantity, value = RATIONAL["4^(1/2)"]
+    assert settle(quantity, to_threshold(up), 3) == value == 2
 
 
 @pytest.mark.parametrize("name", IRRATIONAL)
-def test_what_is_not_is_not(name: str) -> None:
-    assert not is_rational(*IRRATIONAL[name])
-
-
-def test_the_primes_are_primes() -> None:
-    assert residue._is_prime(residue.ORDER)
-    assert [n for n in range(54, 400) if residue._is_prime(n)] == [
-        n for n in range(54, 400) if all(n % d for d in range(2, n))
-    ]
-    for order in (4, 360, 4 * 7919):
-        p = residue._prime(order)
-        assert residue._is_prime(p)
-        assert (p - 1) % order == (p - 1) % residue.ORDER == 0
+def test_an_irrational_value_beside_a_tie_is_none(name: str) -> None:
+    quantity, beside = IRRATIONAL[name]
+    more = is_positive(lambda ar: quantity(ar) - ar.number(beside))
+    rounded = settle(lambda ar: quantity(ar) + ar.number(F(1, 8) - beside), to_digits(2), 2)
+    assert rounded == Decimal("0.13" if more else "0.12")
 
 
 @pytest.mark.parametrize(
-    ("base", "power"),
-    [
-        (F(2), 1),
-        (F(3, 2), 1),
-        (F(6), 7),
-        (F(27, 10), 1),
-        (F(12, 5), 4),
-        (F(59), 6),
-        (F(61, 59), 5),
-        (F(10007, 10), 3),
-        (F(10**40 + 1, 7), 1),
-    ],
+    "more",
+    ["0" * 38 + "21097506749098184734729225660769629110149", "0" * 300 + "1", "0" * 990 + "1"],
+    ids=["a multiple of a known prime", "300 digits", "990 digits"],
 )
-def test_powers_are_told_from_their_least_base(base: Fraction, power: int) -> None:
-    assert residue._as_power(base**power) == (base, power)
+def test_a_tie_cannot_be_faked(more: str) -> None:
+    """Half-way between 2 s and 3 s is the fall of 6.25 m at 2 m/s², and of no other height."""
+
+    def fall_time(drop: str) -> Any:
+        return read_answers({"m1": "1", "m2": "3", "g": "4", "drop": drop}, 1)["fall_time"]
+
+    assert fall_time("6.25") == 2
+    assert fall_time(f"6.25{more}") == 3
 
 
-def test_a_tie_that_residues_cannot_tell_takes_bounded_time() -> None:
-    """A root found by search has no formula: what agrees with a tie in 6,000 digits is taken for one."""
-
-    def quantity(ar: Any) -> Any:
-        root = ar.root(lambda s: s * s - 2, ar.number(2))
-        return root * root + ar.number(F(1, 2))
-
-    assert not is_rational(quantity, F(5, 2))
-    assert settle(quantity, to_digits(1), 1) == 2
-    assert settle(quantity, to_digits(3), 3) == Decimal("2.50")
+def test_every_row_of_an_arc_may_be_a_tie() -> None:
+    """T = 2.5, 25, 250 N and so on, which took 60 ms a row."""
+    answers = Answers(Scene.read({"m1": 1, "m2": F(10**99), "M": inf, "g": "2.5"}), 1)
+    tensions = [point["tension"] for point in contact(answers, 100).points]
+    assert tensions == [Decimal(f"2e{j}") for j in range(100)]
 
 
 # Ties in what is printed: the oracle has 60 digits, and calls a tie what agrees with one in 45
@@ -211,6 +208,7 @@ def test_a_tie_in_an_array_stops_no_other_row() -> None:
         "--m1 1 --m2 1 --wrap 60 --digits 6",
         "--m1 1 --m2 2 --M inf --wrap 60 --points 2 --digits 5",
         "--m1 1 --m2 2 --mu 0.1 --M inf --wrap 120 --g 1.25 --points 2 --digits 1",
+        "--m1 1 --m2 1e499 --M inf --g 2.5 --points 500 --digits 1",
     ],
 )
 def test_what_ran_for_a_minute_ends(words: str, atwood: Atwood) -> None:

@@ -1,0 +1,208 @@
+"""A fit in words: what the runs require, what is odd about them, and what to vary."""
+
+from collections.abc import Iterator, Sequence
+from math import floor, inf, isfinite, log10
+
+import numpy as np
+
+from ..arithmetic.rounding import text
+from ..model import physics
+from ..model.scene import parameter_of
+from .fitting import FOUND, SAME, WORDS, Fit, not_told, to_vary, unusable
+from .numbers import UNITS, cut, far, few, shown
+from .probability import fisher_beyond
+from .results import Inputs, found
+from .runs import Run
+
+SMALL_UNITS = {
+    "rim_mass": ("g", "the rim mass"),
+    "axle": ("mN", "the friction of the axle"),
+    "gravity": ("mm/s²", "gravity"),
+}
+"""Units for small changes, and what changes."""
+MUCH = 0.95
+"""A correlation beyond which two results can hardly be distinguished."""
+MOST_NAMED = 5
+"""Runs of which each has a sentence; of more, the numbers."""
+
+
+NO_RESULT = {
+    "rim_mass": "The runs would need a pulley of {} kg at its rim, and there is none: masses, heights or"
+    " gravity are not what they are said to be, or something drives the masses.",
+    "axle": "The runs would need an axle with a friction of {} N, and there is none: there is more mass on"
+    " the heavier side than the table says, or something drives the masses.",
+    "gravity": "The runs would need a gravity of {} m/s²: m1 and m2, or the sign of a, change places.",
+}
+
+
+def verdict(fit: Fit) -> str:
+    """How many runs there are, and which of what they require is significant."""
+    said = [f"{_counted(len(fit.used), 'run')}, {_counted(int(fit.data.times.sum()), _quantity(fit))}."]
+    if fit.vague:
+        said.append(f"No result: {not_told(fit.used, fit.estimate.found)}.")
+    elif not fit.values:
+        said.append("Nothing is left to find: the pulley and its axle are known.")
+    else:
+        numbers = {name: shown(fit.values[name], fit.uncertainty(name)) for name in fit.impossible}
+        said += [NO_RESULT[name].format(number) for name, number in numbers.items()]
+    for name in () if fit.void else [name for name in FOUND[:2] if name in fit.values]:
+        value, u, word = fit.values[name], fit.uncertainty(name), _capital(WORDS[name])
+        if fit.significant(name) > 0:
+            away = f"{far(value / u if u else inf)} standard uncertainties from 0"
+            said.append(f"{word} is significant ({away}).")
+        elif not fit.significant(name):
+            most = cut(value + fit.times * u, u)
+            said.append(f"{word} agrees with 0: at most {most} {UNITS[name]} (95 %).")
+    return " ".join(said)
+
+
+def coefficients(fit: Fit) -> Iterator[str]:
+    """The slope and the intercept of the line, if they are a result, with symbols as in LaTeX."""
+    for name, label in (("rim_mass", "slope $c$"), ("axle", "intercept $f$")):
+        if not fit.void and name not in fit.impossible:
+            spread = fit.uncertainty(name) if name in fit.values else None
+            why = "" if name in fit.values else ", given" if name in fit.known.values else ", assumed"
+            yield f"{label} = {shown(fit.estimate.values[name], spread)} {UNITS[name]}{why}"
+
+
+def _counted(count: int, thing: str) -> str:
+    return f"{count} {thing}{'s' * (count != 1)}"
+
+
+def accusations(fit: Fit, inputs: Inputs) -> list[str]:
+    """What is odd about the runs, and the result without it; empty of sound runs."""
+    odd = fit.odd
+    if not odd.runs:
+        return []
+    said, unit = [], parameter_of(fit.runs.kind).unit
+    for (i, k), size in list(odd.repeats.items())[:MOST_NAMED]:
+        run = fit.used[i]
+        cell = f"{_capital(run.cells[k])} ({text(float(run.measured[k].value))} {unit})"
+        said.append(f"{cell} is far from its siblings: {far(size)} standard deviations.")
+    said += [f"{len(odd.repeats) - MOST_NAMED} more are, too."] * (len(odd.repeats) > MOST_NAMED)
+    for i, size in list(odd.rows.items())[:MOST_NAMED]:
+        why = f"{far(size)} standard uncertainties from what the others say"
+        fast = ", and faster than a massless pulley without friction allows" * fit.too_fast(i)
+        said.append(f"{_capital(fit.used[i].name)} stands out: {why}{fast}.")
+    said += _more([fit.used[i] for i in odd.rows], "stand out, too")
+    for i, why in list(odd.cannot.items())[:MOST_NAMED]:
+        said.append(f"{_capital(fit.used[i].name)} cannot be: {why}.")
+    said += _more([fit.used[i] for i in odd.cannot], "cannot be either")
+    rows = sorted({row for i in {*odd.rows, *odd.cannot} for row in fit.used[i].rows})
+    names = [*(fit.used[i].cells[k] for i, k in odd.repeats), *(f"row {row}" for row in rows)]
+    what = _joined(names) if len(names) <= MOST_NAMED else "all that is odd"
+    if odd.without is None:
+        return [*said, f"Without {what} too few runs are left to fit."]
+    left = found(odd.without, inputs)
+    values = (f"{x.replace('_', ' ')} = {shown(*one[:2])} {UNITS[x]}" for x, one in left.items())
+    it, end = "them" if names[1:] else "it", "; to leave a measurement out, empty its cell"
+    if not any("," in name for name in names):
+        end = f"; --without {','.join(name.removeprefix('row ') for name in names)} leaves {it} out"
+    end = f"The fit includes {it}{end}."
+    return [*said, f"Without {what}: {', '.join(values) or 'no result'}. {end}"]
+
+
+def notes(fit: Fit) -> list[str]:
+    """What else there is to say, first how the table was read."""
+    said = [*map(_capital, fit.runs.remarks), *_unused(fit)]
+    return said if fit.vague else [*said, *_assumptions(fit), *_spread(fit), *_told_apart(fit)]
+
+
+def _unused(fit: Fit) -> Iterator[str]:
+    yield from (f"{_capital(run.name)} was left out, as asked." for run in fit.runs.runs if run.left_out)
+    used = {run.rows for run in fit.used}
+    others = [run for run in fit.runs.runs if run.rows not in used and not run.left_out]
+    unused = [(run, unusable(fit.runs, run, fit.known, fit.estimate.found)) for run in others]
+    yield from (f"{_capital(run.name)} could not be used: {why}." for run, why in unused[:MOST_NAMED])
+    yield from _more([run for run, _ in unused], "could not be used")
+
+
+def _assumptions(fit: Fit) -> Iterator[str]:
+    """What is taken to be 0, and what that carries."""
+    if fit.assumed:
+        yield f"Axle friction is assumed to be 0: {fit.assumed}."
+    for name, (unit, thing) in list(SMALL_UNITS.items())[:2]:
+        if name in fit.values or name in fit.known.values:
+            continue
+        drive = float((fit.data.h - fit.data.l).min())
+        size = 10.0 ** floor(log10(drive * (fit.estimate.values["gravity"] if name == "axle" else 1)))
+        changes = []
+        for i, other in enumerate(fit.estimate.found):
+            change = float(fit.estimate.by_known[name][i]) * size
+            verb = f"take {few(1000 * -change)}" if change < 0 else f"add {few(1000 * change)}"
+            to, what = SMALL_UNITS[other]
+            changes.append(f"{verb} {to} {'off' if change < 0 else 'to'} {what}")
+        yield (
+            f"{_capital(thing)} is neither fitted nor given, and so taken to be 0:"
+            f" {few(1000 * size, 1)} {unit} would {' and '.join(changes)}."
+        )
+
+
+def one_sided(fit: Fit) -> bool:
+    """Whether the same side is the heavier in all runs."""
+    return len({run.m2.value > run.m1.value for run in fit.used}) == 1
+
+
+def _spread(fit: Fit) -> Iterator[str]:
+    data, between = fit.data, fit.between_runs
+    by = "their repeats explain" if isfinite(data.within) else "their uncertainties say"
+    what = _quantity(fit)
+    if not data.spread.any() and data.uncertain:
+        yield (
+            f"The uncertainty of a single {what} is neither given nor told by repeats: u is the scatter that"
+            " the runs have beside the uncertainties given."
+        )
+    elif not data.spread.any():
+        yield (
+            f"Without repeats nothing separates the scatter of the {what}s from what differs between runs: u"
+            " is the scatter of the runs."
+        )
+    elif not fit.dof:
+        yield f"As many runs as results: nothing shows whether the runs differ more than {by}."
+    elif between and fit.chi2 is not None:
+        percent = 100 * fisher_beyond(fit.chi2 / fit.dof, fit.dof, data.within)
+        chance = few(percent) if percent >= 0.1 else "less than 0.1"
+        yield (
+            f"The runs differ by {few(1000 * between)} g of mass more than {by}, as masses may; chance alone"
+            f" does as much in {chance} % of all sets."
+        )
+
+
+def _told_apart(fit: Fit) -> Iterator[str]:
+    if "axle" in fit.values and fit.significant("axle") > 0 and one_sided(fit):
+        mass = physics.axle_mass(fit.values["axle"], fit.estimate.values["gravity"])
+        yield (
+            f"The friction of the axle may as well be {few(1000 * mass)} g of mass unaccounted for on"
+            " the lighter side, as the same side is the heavier in all runs: swap the sides to tell."
+        )
+    sums, pair = fit.data.l + fit.data.h, fit.correlation
+    if pair and abs(pair[2]) > MUCH:
+        yield (
+            f"The runs hardly tell {WORDS[pair[0]]} from {WORDS[pair[1]]} (their correlation is"
+            f" {few(pair[2], 3)}): {to_vary(fit.used)}."
+        )
+    elif np.ptp(sums) < SAME * sums.max() and "rim_mass" in fit.values and "gravity" not in fit.values:
+        more = 0.001 * (sums.mean() + fit.values["rim_mass"])
+        yield (
+            "m1 + m2 is the same in all runs, so that an error of 0.1 % in g, or in all masses, is one"
+            f" of {few(1000 * more)} g in the rim mass: vary m1 + m2 as well."
+        )
+
+
+def _more(runs: Sequence[Run], what: str) -> Iterator[str]:
+    """The sentence on those that have none of their own."""
+    if more := runs[MOST_NAMED:]:
+        numbers = ", ".join(str(run.rows[0]) for run in more[: 4 * MOST_NAMED])
+        yield f"{len(more)} more {what}: rows {numbers}{', ...' * (len(more) > 4 * MOST_NAMED)}."
+
+
+def _capital(words: str) -> str:
+    return f"{words[0].upper()}{words[1:]}"
+
+
+def _joined(names: Sequence[str]) -> str:
+    return names[0] if not names[1:] else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _quantity(fit: Fit) -> str:
+    return {"a": "acceleration", "time": "time"}[fit.runs.kind]

@@ -1,0 +1,357 @@
+"""Every sentence said of a scene is true: what it claims is asked of the oracle, at the numbers it names."""
+
+import re
+from collections import Counter
+from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
+from math import inf
+from random import Random
+from typing import Any
+
+import pytest
+
+from atwood_cli.model import machine
+from atwood_cli.model.scene import Scene
+from atwood_cli.solver import answers as answers_
+from atwood_cli.solver.answers import Answers
+from atwood_cli.solver.messages import notes
+
+from . import oracle
+
+NUMBER = r"([-+\d.e]+)"
+
+
+class Claims:
+    """A scene, and what the oracle says of it and of others like it."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene = scene
+        self.heavy = "m1" if scene.m1 > scene.m2 else "m2"
+        self.l, self.h = sorted((scene.m1, scene.m2))
+        axle = scene.axle
+        f = 0 if axle is None else axle.number / (scene.R or 1) if axle.unit == "N m" else axle.number
+        self.b = Fraction(f / scene.g)
+
+    def regime(self, **other: Any) -> str:
+        return str(self.expected(**other)["regime"])
+
+    def expected(self, pulley: Any = None, h: Fraction | None = None, **other: Any) -> dict[str, Any]:
+        """The oracle's answers with another pulley, of that mass at the rim, another heavier mass, or mu."""
+        if pulley is not None:
+            other |= {"M": pulley, "I": None, "inertia": Fraction(1)}
+        if h is not None:
+            other[self.heavy] = h
+        return oracle.expected(self.scene._replace(**other))
+
+    def any_pulley(self, **other: Any) -> set[str]:
+        """The regimes on pulleys from none to a locked one; all that turn are as one with an axle."""
+        masses = [Fraction(m) for m in ("1e-9", "0.01", "1", "1e9")]
+        return {self.regime(pulley=m, **other) for m in [*masses, *[Fraction(0)] * bool(self.b), inf]}
+
+    def is_shown(self, shown: str, value: Any, digits: int) -> bool:
+        """Whether a number is the oracle's, rounded to so many digits."""
+        return Decimal(shown) == oracle.correctly_rounded(value, digits)
+
+    def least_mu(self, text: str, **other: Any) -> None:
+        """That mu holds the string, and less by one in its last digit does not."""
+        assert self.regime(mu=Fraction(text), mu_k=None, **other) == "no-slip", text
+        assert self.regime(mu=below(text), mu_k=None, **other) == "slip", text
+
+    def least_mass(self, text: str) -> None:
+        """Under that heavier mass no pulley slips, and under more by one in its last digit a locked one does."""
+        assert self.regime(pulley=inf, h=Fraction(text)) == "no-slip", text
+        assert self.regime(pulley=inf, h=above(text)) == "slip", text
+
+
+def last_place(text: str) -> Fraction:
+    """One in the last digit of a number of three at least, some of which may be zeros before the point."""
+    number = Decimal(text)
+    exponent = number.as_tuple().exponent
+    assert isinstance(exponent, int)
+    zeros = (len(text) - len(text.rstrip("0"))) * (exponent == 0)
+    return Fraction(10) ** (exponent + min(zeros, max(number.adjusted() - 2, 0)))
+
+
+def below(text: str) -> Fraction:
+    return max(Fraction(text) - last_place(text), Fraction(0))
+
+
+def above(text: str) -> Fraction:
+    return Fraction(text) + last_place(text)
+
+
+# By the words of a sentence, what is asked of the oracle: the scene, its numbers and words, digits of the table.
+
+
+def rest(c: Claims, held: str, unit: str, then: str, digits: int) -> None:
+    difference = Fraction(held) / (1000 if unit == "g" else 1)
+    assert c.h - c.l <= difference <= c.b
+    assert c.b < difference + last_place(held) / (1000 if unit == "g" else 1)
+    if match := re.search(f"at least {NUMBER}\\.$|, and {NUMBER} is enough", then):
+        c.least_mu(match[1] or match[2])
+        assert match[1] or Fraction(match[2]) <= (c.scene.mu or 0)
+
+
+def on_the_verge(c: Claims, critical: str, a: str, digits: int) -> None:
+    answers = c.expected()
+    assert c.is_shown(critical, answers["critical_pulley_mass"], digits)
+    for factor, regime in (("0.99", "no-slip"), ("1.01", "slip")):
+        share = Fraction(factor) if digits > 2 else Fraction(factor) ** 60
+        mass = Fraction(critical) * share
+        assert c.regime(M=mass) == regime
+    assert c.is_shown(a, c.expected(pulley=Fraction(0), mu=None, mu_k=None)["acceleration"], digits)
+
+
+def slips_on_any(c: Claims, mu: str, least: str, kinetic: str, digits: int) -> None:
+    assert Fraction(mu) == c.scene.mu
+    assert c.any_pulley() == {"slip"}
+    c.least_mu(least, pulley=Fraction(0))
+
+
+def slips(c: Claims, where: str, mu: str, least: str, kinetic: str, digits: int) -> None:
+    answers = c.expected()
+    assert (answers["regime"], Fraction(mu)) == ("slip", c.scene.mu)
+    assert bool(where) == (c.b > 0 and answers["rim_acceleration"] == 0 and c.scene.M != inf)
+    assert (kinetic != "") == (c.scene.mu_k is not None)
+    assert not kinetic or Fraction(kinetic.split()[-1]) == c.scene.mu_k
+    c.least_mu(least)
+
+
+def assumed(c: Claims, where: str, least: str, digits: int) -> None:
+    assert bool(where) == (c.scene.M is None and c.scene.I is None)
+    c.least_mu(least, **({"pulley": Fraction(0)} if where else {}))
+
+
+def holds(c: Claims, from_rest: str, mu: str, least: str, digits: int) -> None:
+    assert c.regime() == "no-slip"
+    assert Fraction(least) < Fraction(mu) == c.scene.mu
+    sliding = c.scene.mu_k is not None and c.regime(mu=c.scene.mu_k) == "slip"
+    assert bool(from_rest) == sliding
+    c.least_mu(least)
+
+
+def holds_on_any(c: Claims, heavy: str, least: str, digits: int) -> None:
+    assert Fraction(heavy) == c.h < Fraction(least)
+    assert c.any_pulley() == {"no-slip"}
+    c.least_mass(least)
+
+
+def holds_again(c: Claims, least: str, digits: int) -> None:
+    assert c.regime(h=above(least)) == "no-slip"
+    assert c.regime(h=below(least)) == "slip" or below(least) <= c.l + c.b
+    assert c.regime(h=10**30 * above(least)) == "no-slip"
+    assert (Fraction(least) < c.h) == (c.regime() == "no-slip" and c.h > c.l + c.b)
+
+
+def goes_on(c: Claims, mu_k: str, verge: str, a: str, digits: int) -> None:
+    assert c.scene.mu_k == Fraction(mu_k) < Fraction(verge)
+    assert c.regime(mu=Fraction(verge)) == "slip"
+    assert c.regime(mu=above(verge)) == "no-slip"
+    sliding = c.expected(mu=c.scene.mu_k)
+    assert sliding["regime"] == "slip"
+    assert c.is_shown(a, sliding["acceleration"], digits)
+
+
+def open_range(c: Claims, *numbers: Any) -> None:
+    *shown, digits = numbers
+    ends = [c.expected(pulley=mass, mu=None, mu_k=None) for mass in (Fraction(0), inf)]
+    names = ("acceleration", "tension_1", "tension_2", "mu_verge")
+    for i, name in enumerate(names):
+        for j, end in enumerate(ends):
+            assert c.is_shown(shown[2 * i + j], end[name], digits), name
+
+
+def may_slip_somewhere(c: Claims) -> bool:
+    """Whether the string slips on this pulley under some heavier mass: the ratio is greatest at these."""
+    return "slip" in {c.regime(h=c.l + c.b), c.regime(h=c.h * 10**300)}
+
+
+def conditions(c: Claims, heavy: str, least: str, met: str, rest: str, digits: int) -> None:
+    answers = c.expected()
+    assert Fraction(heavy) == c.h
+    assert (met == "met") == (c.regime(pulley=inf) == "slip")
+    least = least.removesuffix(" kg")
+    if "too large" in least or Decimal(least).adjusted() > 1000:  # its fraction may have millions of digits
+        assert met == "not met"
+        return
+    near = abs(Fraction(least) / c.h - 1) < Fraction(10) ** (1 - digits)  # so more digits tell it from h
+    assert near or c.is_shown(least, answers["least_heavier_mass"], digits)
+    assert (Fraction(least) < c.h) == (met == "met")
+    match = re.fullmatch(
+        r"; the pulley's mass(?:, (.*?) kg,|, infinite,)? must exceed (.*) kg \((.*)\)", rest
+    )
+    assert bool(match) == bool(rest)
+    if match:
+        mass, least, met = match.groups()
+        value = answers["least_pulley_mass"]
+        assert c.is_shown(least, value, digits) or mass is not None
+        if mass is not None:
+            assert (met == "met") == may_slip_somewhere(c) == (Fraction(mass) > Fraction(least))
+        elif c.scene.M is None:
+            assert (met == "open without M") == (c.regime() == "no-slip")
+
+
+def inertia(c: Claims, shown: str, digits: int) -> None:
+    scene = c.scene
+    beta = scene.inertia
+    if beta is None:
+        assert isinstance(scene.M, Fraction)
+        assert scene.I is not None
+        assert scene.R is not None
+        beta = scene.I / scene.M / scene.R**2
+    assert Fraction(shown) > 1
+    assert abs(Fraction(shown) / beta - 1) < Fraction(1, 10**5)
+
+
+def out_of_range(c: Claims, names: str, why: str, digits: int) -> None:
+    answers = c.expected()
+    for name in names.split(", "):
+        as_decimal, as_double = (oracle.correctly_rounded(answers[name], n) for n in (6, None))
+        if why == answers_.TOO_LARGE:
+            assert as_decimal == inf
+        elif why == answers_.ABOVE_DOUBLES:
+            assert abs(as_double) == inf
+        else:
+            assert as_double == 0 != as_decimal
+
+
+def check(truth: Callable[[Claims], bool]) -> Callable[..., None]:
+    def checked(c: Claims, *_: Any) -> None:
+        assert truth(c)
+
+    return checked
+
+
+RANGES = "|".join(map(re.escape, (answers_.TOO_LARGE, answers_.ABOVE_DOUBLES, answers_.BELOW_DOUBLES)))
+KINETIC = "(, and slides with mu_k = .*)?"
+SENTENCES: dict[str, Callable[..., None]] = {
+    r"At rest: the masses are equal, so no friction is needed\.": check(lambda c: c.scene.m1 == c.scene.m2),
+    rf"At rest: the axle holds up to {NUMBER} (k?g) of difference\.(.*)": rest,
+    r"Slips on any pulley that has mass, for want of friction; the values are for one without\.": check(
+        lambda c: c.any_pulley() == {"slip"} and c.regime(pulley=Fraction(0)) == "no-slip"
+    ),
+    rf"On the verge of slipping: as M is not given, this is for the critical pulley mass, {NUMBER} kg\. On a"
+    rf" heavier pulley the string slips; on one without mass the acceleration is {NUMBER} m/s²\.": on_the_verge,
+    rf"Slips on any pulley, for the friction of its axle: mu = {NUMBER} is below the {NUMBER} that would hold"
+    rf" it on one without mass{KINETIC}\.": slips_on_any,
+    rf"Slips( over a pulley that its axle holds)?: mu = {NUMBER} is below the {NUMBER} that would hold"
+    rf" it{KINETIC}\.": slips,
+    r"Holds: a pulley without mass needs no friction to turn, so both tensions are equal\.": check(
+        lambda c: c.l == 0 or c.expected(pulley=Fraction(0), mu=Fraction(0))["regime"] == "no-slip"
+    ),
+    r"Holds: the string's end is fixed to the pulley\.": check(lambda c: c.l == 0),
+    rf"Assumed to hold, without mu: it does( on a pulley without mass)? if mu is at least {NUMBER}\.": assumed,
+    rf"Holds( from rest)?: mu = {NUMBER}, and {NUMBER} is enough\.": holds,
+    rf"Holds on any pulley: the heavier mass, {NUMBER} kg, would have to exceed {NUMBER} kg to slip\.": (
+        holds_on_any
+    ),
+    r"Holds on any pulley, under any mass that can be given in place of the heavier one\.": check(
+        lambda c: c.regime(pulley=inf, h=Fraction(10**500)) == "no-slip"
+    ),
+    rf"Under more than {NUMBER} kg it holds again: .*": holds_again,
+    r"mu_k has no part in this, .*": check(lambda c: c.scene.M is None),
+    r"mu_k = .* is enough, too: .*": check(lambda c: c.regime(mu=c.scene.mu_k) == "no-slip"),
+    rf"A string that slides already goes on sliding, as mu_k = {NUMBER} is below {NUMBER}: the masses then"
+    rf" have the acceleration {NUMBER} m/s²\.": goes_on,
+    "From a massless to a locked pulley: "
+    + ", ".join(
+        f"{name} from {NUMBER} to {NUMBER}" for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
+    )
+    + r"\.": open_range,
+    rf"Conditions \(36\) for the verge: the heavier mass, {NUMBER} kg, must exceed (.*?) \((met|not met)\)"
+    r"(;.*)?\.": conditions,
+    rf"(.*?): ({RANGES})\.": out_of_range,
+    rf"The inertia factor I/\(M R\^2\) is {NUMBER}, above 1: .*": inertia,
+}
+"""What is said of a scene, and the claim in it."""
+
+REASONS: dict[str, Callable[[Claims], bool]] = {
+    machine.NO_CRITICAL_MASS: lambda c: c.any_pulley() == {"no-slip"},
+    machine.AXLE_HOLDS: lambda c: c.any_pulley() == {"no-slip"} and c.h - c.l <= c.b,
+    machine.ALWAYS_SLIPS: lambda c: c.any_pulley() == {"slip"} and c.b > 0,
+    machine.NO_CRITICAL_HEAVIER_MASS: lambda c: not may_slip_somewhere(c),
+    machine.AXLE_ENOUGH: lambda c: c.any_pulley(h=c.l + c.b) == {"slip"},
+    machine.NO_WRAP: lambda c: c.regime(mu=Fraction(0)) == "slip",
+    machine.NOT_APPLICABLE: lambda c: c.scene.mu == c.b == 0 and c.scene.M is None,
+    machine.FREE_END: lambda c: c.l == 0,
+    machine.DEFINITE: lambda c: c.regime() != "no-slip",
+    machine.NOT_DEFINITE: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
+    machine.NOT_BOUNDED: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
+    machine.LONG_WRAP: lambda c: c.scene.wrap.number > 180,
+    machine.NEEDS_MU: lambda c: c.scene.mu is None,
+    machine.NEEDS_M: lambda c: c.scene.M is None,
+    machine.NEEDS_R: lambda c: c.scene.R is None,
+    machine.UNKNOWN_SHAPE: lambda c: c.scene.I is not None and c.scene.M is None,
+    machine.LOCKED_AXLE: lambda c: c.scene.M == inf,
+    machine.ONE_SIDED: lambda c: (c.scene.wrap.number - 180) % 360 != 0,
+}
+"""Why something is missing, and whether that is so."""
+
+
+def drawn(rng: Random) -> dict[str, str]:
+    """A scene of any kind, some of them near a threshold."""
+    size = rng.choice([1, 1, 1, 1e-200, 1e150])
+    m1 = size * 10 ** rng.uniform(-2, 2)
+    m2 = m1 * rng.choice(
+        [1, 1 + 10 ** rng.uniform(-6, -1), 10 ** rng.uniform(0, 3), 10 ** rng.uniform(-2, 0)]
+    )
+    words = {"m1": f"{m1:.4g}", "m2": f"{m2:.4g}"}
+    if rng.random() < 0.5:
+        words["g"] = f"{rng.uniform(1, 20):.3g}"
+    if rng.random() < 0.4:
+        words["wrap"] = rng.choice(["90", "540", f"{rng.uniform(10, 800):.3g}"])
+    if rng.random() < 0.4:
+        words["R"] = f"{10 ** rng.uniform(-2, 1):.3g}"
+    if rng.random() < 0.65:
+        unit = "Nm" if "R" in words and rng.random() < 0.3 else ""
+        words["axle"] = f"{10 * abs(m2 - m1) * 10 ** rng.uniform(-2, 0.3) + size * 1e-3:.3g}{unit}"
+    if rng.random() < 0.65:
+        words["M"] = rng.choice(["0", "inf", *[f"{m1 * 10 ** rng.uniform(-3, 3):.3g}"] * 5])
+    if "R" in words and words.get("M") not in ("0", "inf") and rng.random() < 0.3:
+        words["I"] = f"{m1 * 10 ** rng.uniform(-3, 1):.3g}"
+    elif rng.random() < 0.2:
+        words["inertia"] = rng.choice(["hoop", "1.5", "1.00000001"])
+    if rng.random() < 0.75:
+        words["mu"] = rng.choice(["0", *[f"{10 ** rng.uniform(-3, 0.2):.3g}"] * 5, "1e9"])
+        verge = Answers(Scene.read({**words, "mu": None}), 20)["mu_verge"]
+        if verge and rng.random() < 0.4:
+            words["mu"] = str(verge * (1 + Decimal(10) ** -rng.randint(1, 9) * rng.choice([-1, 1])))
+        if rng.random() < 0.4:
+            words["mu_k"] = str(
+                Decimal(words["mu"]) * Decimal(rng.choice(["0", "0.3", "0.9", "0.9999", "1"]))
+            )
+    elif rng.random() < 0.1:
+        words["m1"] = "0"
+    return words
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_every_sentence_is_true(seed: int) -> None:
+    rng, said = Random(f"sentences {seed}"), Counter[str]()
+    for _ in range(60):
+        words, digits = drawn(rng), rng.choice([None, 2, 12])
+        try:
+            scene = Scene.read(words)
+        except ValueError:
+            continue
+        answers, claims = Answers(scene, digits), Claims(scene)
+        for name in answers.names:
+            _ = answers[name]
+        for sentence in notes(answers):
+            try:
+                said[hold(claims, sentence, digits or 6)] += 1
+            except Exception as error:
+                raise AssertionError(f"{words}, digits={digits}: {sentence}") from error
+    assert len(said) > 20, said
+
+
+def hold(claims: Claims, sentence: str, digits: int) -> str:
+    """Hold a sentence to the oracle; the words by which it was known."""
+    for words, truth in SENTENCES.items():
+        if match := re.fullmatch(words, sentence):
+            truth(claims, *(group or "" for group in match.groups()), digits)
+            return words
+    reason = next(reason for reason in REASONS if sentence.endswith(f": {reason}."))
+    assert REASONS[reason](claims)
+    return reason
