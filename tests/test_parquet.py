@@ -2,6 +2,7 @@
 
 import io
 import math
+from concurrent.futures import ThreadPoolExecutor
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,8 @@ import pyarrow.parquet as pq
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+from atwood_cli.batch.parquet import write_frames
 
 from .running import Atwood, process
 
@@ -283,3 +286,16 @@ def test_what_cannot_be_written_ends(tmp_path: Path) -> None:
     pl.DataFrame({"m1": [1.0] * 300_000, "m2": [3.0] * 300_000}).write_parquet(tmp_path / "in.parquet")
     ran = process("batch", str(tmp_path / "in.parquet"), "--to", "parquet", "-o", "/dev/full")
     assert (ran.status, ran.err) == (1, "atwood: cannot write the output: No space left on device\n")
+
+
+def test_an_interrupt_as_the_writer_starts_ends_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It waited for frames that nobody would make, for good."""
+    submit = ThreadPoolExecutor.submit
+
+    def interrupted(*work: Any, **more: Any) -> None:
+        submit(*work, **more)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(ThreadPoolExecutor, "submit", interrupted)
+    with (tmp_path / "out.parquet").open("wb") as file, pytest.raises(KeyboardInterrupt):
+        write_frames(file, iter([pl.DataFrame({"m1": [1.0]})]))

@@ -3,9 +3,9 @@
 import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from itertools import chain
-from queue import Full, Queue
+from queue import SimpleQueue
 from typing import IO, TYPE_CHECKING
 
 from .quoted import Unreadable
@@ -90,27 +90,27 @@ def write_frames(file: IO[bytes], frames: "Iterator[pl.DataFrame]") -> None:
     from polars.io.plugins import register_io_source
 
     first = next(frames)
-    handed: Queue[pl.DataFrame | None] = Queue(1)
+    # Of this kind of queue alone, whoever waits can be interrupted and leaves no lock behind.
+    asked: SimpleQueue[bool] = SimpleQueue()
+    handed: SimpleQueue[pl.DataFrame | None] = SimpleQueue()
 
     def source(*_: object) -> "Iterator[pl.DataFrame]":
+        asked.put(True)
         while (frame := handed.get()) is not None:
             yield frame
-
-    def hand(frame: "pl.DataFrame | None") -> bool:
-        """Whether the writer took it; one that failed takes no more."""
-        while not writing.done():
-            with suppress(Full):
-                handed.put(frame, timeout=0.1)
-                return True
-        return False
+            asked.put(True)
 
     table = register_io_source(source, schema=first.schema)
-    with ThreadPoolExecutor(1) as writer:
+    with ExitStack() as stack:
+        writer = stack.enter_context(ThreadPoolExecutor(1))
+        stack.callback(handed.put, None)  # whatever happens from here on, before the writer is waited for
         writing = writer.submit(
             table.sink_parquet, file, compression="snappy", row_group_size=_rows_of(first)
         )
-        try:
-            all(map(hand, chain([first], frames)))
-        finally:
-            hand(None)
+        writing.add_done_callback(lambda _: asked.put(False))  # one that failed asks no more
+        for frame in chain([first], frames):
+            if not asked.get():
+                break
+            handed.put(frame)
+        handed.put(None)
         writing.result()
