@@ -30,6 +30,10 @@ def printable(words: str, keep: str = "\n") -> str:
     return STEERING.sub(lambda found: found[0] if found[0] in keep else ascii(found[0])[1:-1], words)
 
 
+class Unreadable(Exception):
+    """What was given is no table; the message says why."""
+
+
 class Stdout:
     """Standard output for tables: the bytes as they are, but for what could steer a terminal."""
 

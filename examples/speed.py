@@ -13,9 +13,9 @@ from statistics import median
 
 from rich.console import Console
 
-from atwood_cli.cli.page import Page, watched
 from atwood_cli.cli.tradeoff import print_front
-from atwood_cli.cli.tradeoff_figure import save
+from atwood_cli.output.page import Page, watched
+from atwood_cli.output.tradeoff_figure import save
 from atwood_cli.tradeoff.measure import USUAL_ELEMENTS, front
 from atwood_cli.tradeoff.outcome import Tradeoff, in_seconds, percent, scientific, short, tradeoff
 from atwood_cli.tradeoff.scenes import FAMILIES

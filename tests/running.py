@@ -20,7 +20,7 @@ PAPER = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 QUICK = """
 import sys
 from atwood_cli.__main__ import main
-from atwood_cli.cli import page
+from atwood_cli.output import page
 page.monotonic = lambda: 0
 sys.exit(main())
 """

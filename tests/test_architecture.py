@@ -22,7 +22,8 @@ MAY_IMPORT = {
     "batch": "files arithmetic model solver arrays",
     "laboratory": "files arithmetic model solver arrays derivation batch",
     "tradeoff": "files arithmetic model solver arrays",
-    "cli": "files arithmetic model solver api arrays derivation batch laboratory tradeoff",
+    "output": "files arithmetic model solver derivation laboratory tradeoff",
+    "cli": "files arithmetic model solver api arrays derivation batch laboratory tradeoff output",
     "__main__": "cli",
 }
 """What each folder, or module at the top, may import beside itself."""

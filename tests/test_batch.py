@@ -1229,11 +1229,11 @@ def test_closed_streams(table: Table) -> None:
 
 BAR = """
 import sys
-from atwood_cli.cli import page as output
+from atwood_cli.output import page
 from atwood_cli.batch import formats as tables
 tables.PIECE_BYTES = 64
 clock = CLOCK
-output.monotonic = lambda: next(clock)
+page.monotonic = lambda: next(clock)
 sys.argv[0] = "atwood"
 from atwood_cli.__main__ import main
 sys.exit(main())

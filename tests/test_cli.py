@@ -14,8 +14,8 @@ import pytest
 from atwood_cli import solve
 from atwood_cli.__main__ import main
 from atwood_cli.cli.options import read_names
-from atwood_cli.cli.text import ASCII
 from atwood_cli.model.quantities import MEASURED_NAMES, QUANTITIES
+from atwood_cli.output.text import ASCII
 
 from . import oracle, startup_baseline
 from .running import PAPER, Atwood, on_terminal, plain, process
@@ -635,8 +635,10 @@ def test_a_command_brings_only_its_own_module() -> None:
     done = subprocess.run(
         [sys.executable, "-c", LOADED, *PAPER, "--json"], capture_output=True, text=True, check=True
     )
-    loaded = {name for name in done.stderr.split() if name.startswith("atwood_cli.cli.")}
-    assert loaded == {"atwood_cli.cli.options", "atwood_cli.cli.solve", "atwood_cli.cli.text"}
+    loaded = {
+        name for name in done.stderr.split() if name.startswith(("atwood_cli.cli.", "atwood_cli.output."))
+    }
+    assert loaded == {"atwood_cli.cli.options", "atwood_cli.cli.solve", "atwood_cli.output.text"}
 
 
 @pytest.mark.parametrize("output", ["--json", ""])

@@ -14,16 +14,16 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from atwood_cli.arithmetic.double import DOUBLES, Uncertified, joined
-from atwood_cli.arithmetic.double_double import QUICK, ROUNDED, Pair, Quick
-from atwood_cli.arithmetic.error_free import UNIT, head_of, two_product
-from atwood_cli.arithmetic.expansion import PAIRS, TRIPLES, Expansion
-from atwood_cli.arithmetic.gap import gap, ratio
 from atwood_cli.arithmetic.rational import Irrational
 from atwood_cli.arithmetic.symbolic import Formula, Term
-from atwood_cli.arithmetic.tables import cosines_and_sines, powers
+from atwood_cli.arrays.double import DOUBLES, Uncertified, joined
+from atwood_cli.arrays.double_double import QUICK, ROUNDED, Pair, Quick
+from atwood_cli.arrays.error_free import UNIT, head_of, two_product
+from atwood_cli.arrays.expansion import PAIRS, TRIPLES, Expansion
+from atwood_cli.arrays.gap import gap, ratio
 from atwood_cli.arrays.plan import COLUMN, Pattern, _value, questioning
 from atwood_cli.arrays.program import OPERATIONS, Program, Room
+from atwood_cli.arrays.tables import cosines_and_sines, powers
 from atwood_cli.model.scene import COLUMNS
 
 from . import oracle

@@ -899,7 +899,7 @@ def test_figures_know_no_settings_but_ours(tmp_path: Path) -> None:
 def test_what_matplotlib_warns_of_reaches_nobody(
     atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    figure = pytest.importorskip("atwood_cli.cli.arc_figure")
+    figure = pytest.importorskip("atwood_cli.output.arc_figure")
 
     def warn(*_: object) -> list[object]:
         warnings.warn("a source line", UserWarning, stacklevel=1)

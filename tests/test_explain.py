@@ -16,13 +16,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from atwood_cli.arithmetic.rounding import to_digits
-from atwood_cli.cli.text import describe
 from atwood_cli.derivation.equations import HELD, Equation, Law
 from atwood_cli.derivation.steps import Explanation, explain
 from atwood_cli.derivation.typeset import as_markdown, as_text, chain
 from atwood_cli.model.case import Case
 from atwood_cli.model.quantities import NAMES
 from atwood_cli.model.scene import Scene
+from atwood_cli.output.text import describe
 from atwood_cli.solver.answers import Answers
 
 from . import oracle

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from atwood_cli.batch.quoted import Unreadable
+from atwood_cli.files import Unreadable
 from atwood_cli.laboratory.runs import Runs, read_runs
 from atwood_cli.model.scene import SceneError, read_input
 

@@ -24,11 +24,11 @@ from hypothesis import strategies as st
 
 from atwood_cli import solve
 from atwood_cli.arithmetic.interval import LARGEST_EXPONENT
-from atwood_cli.cli.curves import picture
-from atwood_cli.cli.page import watched
 from atwood_cli.cli.sweep import HELP
 from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import PARAMETERS, SceneError
+from atwood_cli.output.curves import picture
+from atwood_cli.output.page import watched
 from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows
 
 from .running import HANGS, PIP, Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
@@ -452,7 +452,7 @@ def test_a_long_run_shows_a_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -
             shown.append((shown[-1][0] + by, 5))
 
     monkeypatch.setattr("rich.progress.Progress", Bar)
-    monkeypatch.setattr("atwood_cli.cli.page.monotonic", lambda: next(clock))
+    monkeypatch.setattr("atwood_cli.output.page.monotonic", lambda: next(clock))
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
     assert list(watched(iter(rows), 5)) == rows
     assert shown == [(2, 5), (3, 5), (4, 5), (5, 5)]

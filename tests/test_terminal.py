@@ -10,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from atwood_cli.cli.text import wrapped
+from atwood_cli.output.text import wrapped
 
 from . import running
 from .running import HANGS, plain

@@ -17,9 +17,9 @@ import numpy as np
 import pytest
 
 from atwood_cli import solve_arrays
-from atwood_cli.arithmetic.double_double import Pair, Quick, Rounded
-from atwood_cli.arithmetic.expansion import Expansion, Expansions
 from atwood_cli.arithmetic.symbolic import Formula
+from atwood_cli.arrays.double_double import Pair, Quick, Rounded
+from atwood_cli.arrays.expansion import Expansion, Expansions
 from atwood_cli.arrays.plan import plan, questioning
 from atwood_cli.arrays.program import OPERATIONS
 from atwood_cli.cli import tradeoff as command
@@ -555,7 +555,7 @@ def test_words_stand_by_their_own_points(tmp_path: Path, monkeypatch: pytest.Mon
     pytest.importorskip("matplotlib")
     from matplotlib.text import Text
 
-    from atwood_cli.cli.tradeoff_figure import save
+    from atwood_cli.output.tradeoff_figure import save
 
     with pages_seen(monkeypatch) as pages:
         save(OUTCOMES["all lost"], str(tmp_path / "a.svg"), force=False)
@@ -765,7 +765,7 @@ def test_nothing_in_a_figure_overlaps(name: str, tmp_path: Path, monkeypatch: py
     pytest.importorskip("matplotlib")
     from matplotlib.text import Text
 
-    from atwood_cli.cli.tradeoff_figure import save
+    from atwood_cli.output.tradeoff_figure import save
 
     shown = OUTCOMES[name]
     with pages_seen(monkeypatch) as pages:

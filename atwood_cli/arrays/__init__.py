@@ -19,14 +19,14 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..arithmetic.double_double import WINDOW
-from ..arithmetic.tables import Column
 from ..model.quantities import ACCURACIES, NAMES, STANDARD, Accuracy
 from ..model.scene import COLUMNS, MASSES, MISSING_MASS, PARAMETERS, SceneError
 from ..model.units import nearest
+from .double_double import WINDOW
 from .plan import COLUMN, LEVELS, Pattern, Task
 from .program import Room
 from .rows import Index, Rows, size_of
+from .tables import Column
 
 BLOCK = 131_072  # rows, as measured
 THREADS = 4  # more would wait for the interpreter's lock

@@ -41,7 +41,14 @@ from functools import lru_cache, reduce
 from math import inf
 from typing import Any, NamedTuple
 
-from ..arithmetic.double import (
+from ..arithmetic.lazy import lazy
+from ..arithmetic.symbolic import Formula, Term, formula
+from ..model.angle import Angle
+from ..model.case import Case, Excess, is_zero
+from ..model.machine import Machine, Undetermined
+from ..model.quantities import REGIMES, Accuracy
+from ..model.scene import COLUMNS, Scene
+from .double import (
     DOUBLES,
     Conditions,
     Uncertified,
@@ -53,16 +60,9 @@ from ..arithmetic.double import (
     is_finite,
     less,
 )
-from ..arithmetic.double_double import QUICK, ROUNDED, Pair
-from ..arithmetic.error_free import UNIT, two_sum
-from ..arithmetic.expansion import PAIRS, TRIPLES, Expansion, times_power_of_two
-from ..arithmetic.lazy import lazy
-from ..arithmetic.symbolic import Formula, Term, formula
-from ..model.angle import Angle
-from ..model.case import Case, Excess, is_zero
-from ..model.machine import Machine, Undetermined
-from ..model.quantities import REGIMES, Accuracy
-from ..model.scene import COLUMNS, Scene
+from .double_double import QUICK, ROUNDED, Pair
+from .error_free import UNIT, two_sum
+from .expansion import PAIRS, TRIPLES, Expansion, times_power_of_two
 from .program import Program
 
 CERTIFIED = 3.49 * UNIT

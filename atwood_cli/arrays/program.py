@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic.expansion import NOTHING
 from ..arithmetic.symbolic import Formula, Term, formula
-from ..arithmetic.tables import HEAD, Column
+from .expansion import NOTHING
+from .tables import HEAD, Column
 
 Operation = Callable[..., Any]
 

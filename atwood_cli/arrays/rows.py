@@ -14,18 +14,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic.double import DOUBLES
-from ..arithmetic.expansion import PAIRS, TRIPLES
-from ..arithmetic.gap import gap, ratio
 from ..arithmetic.rational import Irrational
-from ..arithmetic.tables import Column
 from ..model.angle import Angle
 from ..model.case import Case
 from ..model.quantities import REGIMES, Accuracy
 from ..model.scene import COLUMNS, Scene
 from ..solver.answers import Answers
+from .double import DOUBLES
+from .expansion import PAIRS, TRIPLES
+from .gap import gap, ratio
 from .plan import COLUMN, LEVELS, Pattern, Plan, Task, in_pairs, plan, questioning
 from .program import Program, Room
+from .tables import Column
 
 ROOM = 10_000_000  # bytes for the columns of a tile
 SMALLEST, LARGEST = 8_192, 65_536  # rows of a tile

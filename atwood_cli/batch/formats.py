@@ -17,11 +17,11 @@ from io import BytesIO, StringIO
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn
 
-from ..files import FORMATS, LONGEST_NAME, STREAM, Stdout
+from ..files import FORMATS, LONGEST_NAME, STREAM, Stdout, Unreadable
 from ..model.scene import SceneError
 from ..model.units import in_quotes, shortened
 from .parquet import PIECE_CELLS, PIECE_ROWS, read_frames, write_frames
-from .quoted import Unreadable, checked, first_end, last_end, portions, split, widths
+from .quoted import checked, first_end, last_end, portions, split, widths
 
 if TYPE_CHECKING:
     import polars as pl

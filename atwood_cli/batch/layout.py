@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, NamedTuple
 from unicodedata import normalize
 
 from ..arithmetic.rounding import to_double
+from ..files import Unreadable
 from ..model.scene import COLUMNS, MASSES, MEASURED, SceneError, parameter_of, read_plain, read_value
 from ..model.units import Malformed, in_quotes, read_unit, symbol_of, without_blanks
 from .formats import PARTED_BY, Piece
-from .quoted import Unreadable
 
 if TYPE_CHECKING:
     import polars as pl

@@ -8,7 +8,7 @@ from itertools import chain
 from queue import SimpleQueue
 from typing import IO, TYPE_CHECKING
 
-from .quoted import Unreadable
+from ..files import Unreadable
 
 if TYPE_CHECKING:
     import polars as pl

@@ -13,9 +13,7 @@ import re
 from collections.abc import Iterator
 from itertools import islice, pairwise
 
-
-class Unreadable(Exception):
-    """What was given is no table; the message says why."""
+from ..files import Unreadable
 
 
 def last_end(text: bytes) -> int:

@@ -17,7 +17,7 @@ from tempfile import NamedTemporaryFile
 from typing import IO, TYPE_CHECKING, Any
 
 from ..arrays import solve_and_count, solve_arrays
-from ..files import LONGEST_NAME, STREAM, Stdout, written_beside
+from ..files import LONGEST_NAME, STREAM, Stdout, Unreadable, written_beside
 from ..model.quantities import NAMES, REGIMES, Accuracy
 from ..model.scene import Given, Scene, SceneError
 from ..model.units import in_quotes, read_number, shortened
@@ -35,7 +35,6 @@ from .formats import (
 )
 from .layout import Layout, inputs_among, read_layout
 from .parquet import count_rows
-from .quoted import Unreadable
 
 if TYPE_CHECKING:
     import polars as pl

@@ -15,8 +15,8 @@ from .. import __version__
 from ..files import LONGEST_NAME, ClosedStdout
 from ..model.scene import SceneError
 from ..model.units import in_quotes, near, shortened
+from ..output.text import drop, finish, say
 from .options import COMPLETING, COULD_NOT, DONE, WORDS, WRONG_USAGE, flag
-from .text import drop, finish, say
 
 COMMANDS = ("solve", "fit", "sweep", "contact", "batch", "tradeoff")
 EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}

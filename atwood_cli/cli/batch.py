@@ -7,8 +7,8 @@ import typer
 from ..files import FORMATS
 from ..model.quantities import ACCURACIES, STANDARD
 from ..model.scene import COLUMNS, SceneError
+from ..output.text import say
 from .options import COULD_NOT, DONE, Columns, Force, Labels, near_or_all, option, read_names
-from .text import say
 
 Table = Annotated[
     str,
@@ -77,7 +77,7 @@ def batch(
 ) -> int:
     from ..batch.formats import read_format
     from ..batch.run import Job, run_batch
-    from .page import watched
+    from ..output.page import watched
 
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
     if accuracy not in ACCURACIES:

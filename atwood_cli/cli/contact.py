@@ -6,6 +6,7 @@ from typing import Annotated
 
 from ..arithmetic.rounding import tidy
 from ..model.scene import Scene, read_digits
+from ..output.text import Forms, cell, say, scene_record, show
 from ..solver.answers import Answers
 from ..solver.contact import TO_SPARE, Contact
 from ..solver.contact import contact as solve_contact
@@ -26,7 +27,6 @@ from .options import (
     option,
     takes_scene,
 )
-from .text import Forms, cell, say, scene_record, show
 
 DEFAULT_POINTS = 13
 Points = Annotated[
@@ -119,7 +119,7 @@ def contact(
         arc = solve_contact(answers, points or DEFAULT_POINTS, profile)
         forms = _forms(answers, arc)
         if figure is not None:
-            from .arc_figure import save
+            from ..output.arc_figure import save
 
             save(answers, arc, figure, force, m1_side)
     say(*show(forms, json, csv))
@@ -160,7 +160,7 @@ def _forms_of_elements(answers: Answers, solved: Solved) -> Forms:
 
 def _print_arc(answers: Answers, arc: Contact) -> None:
     """The scene, the verdict, the points along the arc, the balance of forces, and the notes."""
-    from .page import Page, aligned
+    from ..output.page import Page, aligned
 
     page = Page()
     page.head(answers)
@@ -184,7 +184,7 @@ def _print_arc(answers: Answers, arc: Contact) -> None:
 
 def _print_elements(answers: Answers, solved: Solved) -> None:
     """What the elements give beside the exact values, and the notes."""
-    from .page import Page, aligned
+    from ..output.page import Page, aligned
 
     page = Page()
     page.head(answers)

@@ -9,6 +9,7 @@ import typer
 
 from ..arithmetic.rounding import as_typed, to_digits
 from ..model.scene import INPUTS, Input, SceneError, parameter_of, read_digits, read_input, read_whole, stated
+from ..output.text import Forms, cell, say, show
 from .options import (
     COULD_NOT,
     DONE,
@@ -30,11 +31,10 @@ from .options import (
     option,
     scene_option,
 )
-from .text import Forms, cell, say, show
 
 if TYPE_CHECKING:
     from ..laboratory.fitting import Fit
-    from .page import Page
+    from ..output.page import Page
 
 Table = Annotated[
     str,
@@ -167,12 +167,12 @@ def fit(
     found = fit_of(table, inputs, height, to_find(divided(find or []), inputs), label or [], out)
     if explain:
         from ..laboratory.explained import explained
-        from .page import print_explanation
+        from ..output.page import print_explanation
 
         print_explanation(_head(found, inputs), explained(found, inputs), markdown)
         return DONE
     if figure is not None:
-        from .fit_figure import save
+        from ..output.fit_figure import save
 
         save(found, None if bare else _head(found, inputs), figure, force)
     forms = _Forms(found, inputs, names, precision, plot)
@@ -232,12 +232,12 @@ class _Forms:
                 print(*values, sep="\n")
             return
         from ..laboratory.results import prediction
+        from ..output.page import Page
         from .help import command_lines
-        from .page import Page
 
         page = Page()
         if self.plot:
-            from .plot import print_fit_plot
+            from ..output.plot import print_fit_plot
 
             print_fit_plot(page, [_head(self.fit, self.inputs), *self.head], self.fit)
         else:
@@ -304,7 +304,7 @@ class _Forms:
 
 def _print_table(page: "Page", columns: Mapping[str, Sequence[str]], words: Collection[str]) -> None:
     """A table whose numbers have their points below each other; columns of words are as they are."""
-    from .page import aligned
+    from ..output.page import aligned
 
     cells = (column if name in words else aligned(column) for name, column in columns.items())
     page.table(list(columns), [list(zip(*cells, strict=True))])

@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from textwrap import wrap
 from typing import Any
 
-from .text import for_stream
+from ..output.text import for_stream
 
 NARROWEST, WIDEST = 24, 100
 LEAST_BESIDE = 40

@@ -12,7 +12,7 @@ import typer
 from ..model.quantities import NAMES, QUANTITIES
 from ..model.scene import INPUTS, SceneError, parameter_of
 from ..model.units import nearest, read_number, shortened
-from .text import ASCII, say
+from ..output.text import ASCII, say
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """Set where a shell asks what a word could be."""
@@ -220,7 +220,7 @@ def check_extras(plot: str | bool | None, figure: str | None, force: bool) -> No
     if plot:
         import_module("plotille")
     if figure is not None:
-        from .figure import check_file
+        from ..output.figure import check_file
 
         check_file(figure, force)
 

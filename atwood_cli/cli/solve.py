@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from ..model.scene import read_digits
+from ..output.text import Forms, cell, describe, for_stream, say, scene_record, show
 from ..solver.answers import Answers
 from ..solver.messages import conditions, notes, reasons, remarks
 from ..solver.reading import read_answers
@@ -29,12 +30,11 @@ from .options import (
     scene_option,
     takes_scene,
 )
-from .text import Forms, cell, describe, for_stream, say, scene_record, show
 
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from .page import Page
+    from ..output.page import Page
 
 
 def _answers() -> Mapping[str, str]:
@@ -146,7 +146,7 @@ def solve(
     check(RULES_OF_THE_SCENE, {**options, "bare": bare, "uncertain": answers.uncertainties})
     if explain:
         from ..derivation.steps import explain as explained
-        from .page import print_explanation
+        from ..output.page import print_explanation
 
         print_explanation(describe(answers.case.scene), explained(answers), markdown)
         return DONE
@@ -205,7 +205,7 @@ def print_table(
     answers: Answers, whole: bool = False, budget: bool = False, console: "Console | None" = None
 ) -> None:
     """The scene, the verdict, the quantities that it is about, or all that exist, notes, and the budget."""
-    from .page import Page, table_width
+    from ..output.page import Page, table_width
 
     answers, page, columns = answers.shown, Page(console), list(COLUMNS)
     names = answers.names[1:] if whole else answers.main
@@ -227,7 +227,7 @@ def print_table(
 
 def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     """The cells of the table, a row for each of the quantities that exists, by group."""
-    from .page import aligned
+    from ..output.page import aligned
 
     values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
     groups: dict[str, list[list[str]]] = {}
@@ -250,7 +250,7 @@ def _with_uncertainty(answers: Answers, name: str) -> str:
 
 def _print_budget(page: "Page", answers: Answers, names: Sequence[str]) -> None:
     """By quantity, each uncertain input's share of the variance."""
-    from .page import aligned
+    from ..output.page import aligned
 
     page.say("Each input's share of the variance, in percent:")
     shares = {name: one for name in names if (one := answers.budget(name, to_place(-1)))}

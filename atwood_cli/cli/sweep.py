@@ -13,11 +13,13 @@ from ..arithmetic.rounding import text, to_digits, to_double
 from ..files import STREAM, stdout_into
 from ..model.quantities import QUANTITIES, STANDARD
 from ..model.scene import SceneError, read_digits
+from ..output.curves import MAX_CURVES, axis_words, check_drawable, longest, picture, regimes
+from ..output.page import Page, aligned, watched
+from ..output.text import Forms, cell, inputs_in_words, say, scene_record, show
 from ..solver.answers import SHOWN_DIGITS
 from ..solver.messages import reasons_at
 from ..solver.regimes import changes
 from ..solver.sweep import Row, Sweep, read_sweep, solve_rows, stated_point
-from .curves import MAX_CURVES, axis_words, check_drawable, longest, picture, regimes
 from .options import (
     COULD_NOT,
     DONE,
@@ -37,8 +39,6 @@ from .options import (
     read_names,
     takes_scene,
 )
-from .page import Page, aligned, watched
-from .text import Forms, cell, inputs_in_words, say, scene_record, show
 
 Plot = Annotated[
     str | None,
@@ -118,7 +118,7 @@ def sweep(
         raise SceneError("figure", figure[0], "is the file of --output; name another")
     with stdout_into(output, force):
         if figure is not None:
-            from .sweep_figure import save
+            from ..output.sweep_figure import save
 
             curves = picture(swept, "figure", drawn["figure"], precision)
             save(curves, _caption(swept, drawn["figure"]), figure[0], force)
@@ -193,7 +193,7 @@ class _Forms:
     def _page(self) -> None:
         page, head = Page(plain=self.plain), ", ".join(_inputs(self.sweep).values())
         if self.plot is not None:
-            from .plot import print_plot
+            from ..output.plot import print_plot
 
             print_plot(page, head, picture(self.sweep, "plot", self.plot, self.digits))
         else:

@@ -7,6 +7,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated
 
 from ..model.scene import Scene, SceneError, read_whole
+from ..output.text import Forms, describe, for_stream, say, scene_record, show
 from .options import (
     DONE,
     FIGURE_TO_REPLACE,
@@ -23,12 +24,11 @@ from .options import (
     option,
     takes_scene,
 )
-from .text import Forms, describe, for_stream, say, scene_record, show
 
 if TYPE_CHECKING:
+    from ..output.page import Page
     from ..tradeoff.measure import March, Measured
     from ..tradeoff.outcome import Tradeoff
-    from .page import Page
 
 
 def _families() -> Mapping[str, str]:
@@ -107,11 +107,11 @@ def tradeoff(
     csv: AsCsv = False,
 ) -> int:
     options = dict(locals())
+    from ..output.page import watched
     from ..solver.elements import MAX_ELEMENTS
     from ..tradeoff.measure import COUNTS, MOST_SCENES, USUAL_ELEMENTS
     from ..tradeoff.outcome import tradeoff as measure
     from ..tradeoff.scenes import FAMILIES
-    from .page import watched
 
     check([ONE_FORM, FIGURE_TO_REPLACE], options)
     scene = Scene.read(given) if any(value is not None for value in given.values()) else None
@@ -127,7 +127,7 @@ def tradeoff(
     most = read_whole("elements", elements or USUAL_ELEMENTS, COUNTS[0], MAX_ELEMENTS)
     outcome = measure(families, count, start, scene, most, watched)
     if figure is not None:
-        from .tradeoff_figure import save
+        from ..output.tradeoff_figure import save
 
         save(outcome, figure, force)
     say(*show(_forms(outcome, all), json, csv))
@@ -139,7 +139,7 @@ def _forms(outcome: "Tradeoff", everything: bool) -> Forms:
         if everything:
             _print_all(outcome)
         else:
-            from .page import Page
+            from ..output.page import Page
 
             print_front(outcome, Page())
 
@@ -209,9 +209,9 @@ def _measured_on(outcome: "Tradeoff") -> str:
 
 def _print_all(outcome: "Tradeoff") -> None:
     """A table of the settings for each family of scenes, one of string elements, and what follows."""
+    from ..output.page import Page
     from ..tradeoff.outcome import ELEMENTS_LEGEND, LEGEND
     from ..tradeoff.scenes import FAMILIES
-    from .page import Page
 
     page = Page()
     for family, settings in groupby(outcome.measured, attrgetter("family")):

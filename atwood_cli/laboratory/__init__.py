@@ -7,7 +7,7 @@ from os import PathLike, fspath
 from typing import Any, Protocol
 
 from ..batch.formats import cannot_read
-from ..batch.quoted import Unreadable
+from ..files import Unreadable
 from ..model.scene import INPUTS, Given, Input, read_input
 from .fitting import Fit, fitted, known_of, to_find
 from .results import Results, results

@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.rounding import text
-from ..arithmetic.tables import Column
-from ..batch.quoted import Unreadable
+from ..arrays.tables import Column
+from ..files import Unreadable
 from ..model import physics
 from ..model.axle import Axle
 from ..model.case import Case

@@ -10,7 +10,7 @@ from typing import Literal, NamedTuple
 from unicodedata import normalize
 
 from ..batch.layout import NO_UNIT, Heading, is_unit, listed, meant, refused, unit_factor
-from ..batch.quoted import Unreadable
+from ..files import Unreadable
 from ..model.scene import parameter_of
 from ..model.units import PERCENT, in_quotes, without_blanks
 

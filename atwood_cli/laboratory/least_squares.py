@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.tables import Column
+from ..arrays.tables import Column
 from ..model import physics
 from .model import expected
 from .runs import Kind

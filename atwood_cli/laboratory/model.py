@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from ..arithmetic.dual import Dual, Duals
-from ..arithmetic.tables import Column
+from ..arrays.tables import Column
 from ..model import physics
 from .runs import Kind
 

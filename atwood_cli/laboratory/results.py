@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..arithmetic.rounding import as_typed
-from ..arithmetic.tables import Column
+from ..arrays.tables import Column
 from ..derivation.typeset import wrapped
 from ..model import physics
 from ..model.scene import Input

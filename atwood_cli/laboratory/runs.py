@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 from ..batch.formats import Cells, opened, read_cells, whole_rows
 from ..batch.layout import Heading, decimal_commas_in, listed, read_as
-from ..batch.quoted import Unreadable
+from ..files import Unreadable
 from ..model.scene import Input, SceneError, read_input
 from ..model.units import PERCENT, in_quotes
 from .headings import (

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic.tables import Column
+from ..arrays.tables import Column
 from .probability import student_beyond
 
 MOST_STEPS = 100

@@ -22,10 +22,10 @@ from fractions import Fraction
 from math import frexp, log
 from typing import Any
 
+from ..arithmetic.lazy import lazy
+from ..arithmetic.symbolic import Formula, Term, formula
 from .double import Conditions, Uncertified, absolute, at_most, joined, looked_up, maximum, minimum, with_all
 from .error_free import UNIT, fast_two_difference, fast_two_sum, head_of, two_difference, two_sum
-from .lazy import lazy
-from .symbolic import Formula, Term, formula
 from .tables import STEPS, heads_and_tails, in_parts, ln2, pi, precise_cos_sin, whole_powers
 
 WINDOW = 2.0**-120, 2.0**120

@@ -8,8 +8,8 @@ from math import frexp, inf, ldexp
 import numpy as np
 from numpy.typing import NDArray
 
-from .interval import enclosures
-from .rational import EXACT, Irrational
+from ..arithmetic.interval import enclosures
+from ..arithmetic.rational import EXACT, Irrational
 
 Column = NDArray[np.float64]
 

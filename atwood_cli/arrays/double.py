@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from .symbolic import Formula, Formulas, Term, formula
+from ..arithmetic.symbolic import Formula, Formulas, Term, formula
 from .tables import precise_cos_sin
 
 

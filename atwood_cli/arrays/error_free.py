@@ -10,7 +10,7 @@ from __future__ import annotations
 from math import frexp, ldexp
 from typing import Any
 
-from .symbolic import Formula, Term
+from ..arithmetic.symbolic import Formula, Term
 
 UNIT = 2.0**-53  # u, the largest relative error of a rounding
 

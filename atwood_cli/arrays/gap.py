@@ -13,8 +13,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .rational import Irrational
-from .symbolic import Formula
+from ..arithmetic.rational import Irrational
+from ..arithmetic.symbolic import Formula
 from .tables import Column
 
 

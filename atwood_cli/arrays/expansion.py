@@ -30,10 +30,10 @@ from fractions import Fraction
 from math import factorial, frexp, inf, ldexp, log
 from typing import Any
 
+from ..arithmetic.lazy import lazy
+from ..arithmetic.symbolic import Formula, Term, formula
 from .double import Uncertified, absolute, both, equal, fold, joined, less, looked_up, maximum, minimum, where
 from .error_free import UNIT, two_product, two_sum
-from .lazy import lazy
-from .symbolic import Formula, Term, formula
 from .tables import (
     FINE,
     FINER,

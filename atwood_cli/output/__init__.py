@@ -1,0 +1,1 @@
+"""What commands share in showing: tables, text, curves and pictures."""
