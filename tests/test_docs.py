@@ -67,27 +67,41 @@ def test_the_python_in_the_pages_runs(name: str) -> None:
 
 def test_transcripts_and_python_are_found_in_the_pages() -> None:
     shown = Counter(str(block.id).split(":")[0] for block in BLOCKS)
-    assert shown["README.md"] == 4
+    assert shown["README.md"] == 2
     assert shown["examples/laboratory.md"] >= 4
     assert shown["examples/README.md"] >= 15
     assert list(PYTHON) == ["README.md", "examples/README.md"]
+    assert len(TASKS) == 4
+
+
+def anchors(page: Path) -> set[str]:
+    headings = re.findall(r"^#+ (.*)", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings}
 
 
 @pytest.mark.parametrize("name", PAGES)
 def test_links_lead_somewhere(name: str) -> None:
-    page = TOP / name
-    anchors = {
-        "#" + re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-")
-        for heading in re.findall(r"^#+ (.*)", PAGES[name], re.MULTILINE)
-    }
     for target in re.findall(r"\]\((?!https?:)(.*?)\)", PAGES[name]):
-        assert target in anchors or (page.parent / target).exists(), target
+        path, _, anchor = target.partition("#")
+        page = (TOP / name).parent / path if path else TOP / name
+        assert page.exists(), target
+        assert not anchor or anchor in anchors(page), target
+
+
+TASKS = re.findall(r"^\| [^|]+ \| `(atwood .*?)` \| (.*) \|$", README, re.MULTILINE)
+
+
+@pytest.mark.parametrize(("command", "shown"), TASKS, ids=[command for command, _ in TASKS])
+def test_the_readmes_tasks_print_what_it_says(command: str, shown: str) -> None:
+    ran = process(shell=f"cd '{TOP}'; {command}")
+    assert (ran.status, ran.err) == (0, "")
+    for words in re.findall(r"""`(.*?)`|"(.*?)\"""", shown):
+        assert "".join(words) in " ".join(ran.out.split())
 
 
 def test_the_tour_leads_to_every_example() -> None:
     kept = {path.name for path in (TOP / "examples").iterdir() if path.is_file()}
     assert {name for name in kept - {"README.md", "__init__.py"} if name not in TOUR} == {
-        "solve.svg",  # the README's picture
         "tradeoff.svg",  # on its own page
     }
 
@@ -140,21 +154,6 @@ def test_engines_keep_rows_that_are_no_scenes() -> None:
             assert run["share_of_slip"](M, mu) == 0.5
     with_rows = [path for path in (TOP / "examples").glob("*.py") if "solve_arrays" in path.read_text()]
     assert sorted(with_rows) == ENGINES
-
-
-def test_the_picture_shows_todays_table() -> None:
-    fresh = subprocess.run(
-        [sys.executable, "-c", "from examples.picture import picture; print(picture())"],
-        capture_output=True,
-        cwd=TOP,
-        check=True,
-        env={"PYTHONIOENCODING": "utf-8", "PATH": ""},
-    ).stdout.decode()
-
-    def words(svg: str) -> list[str]:
-        return re.findall(r"<text[^>]*>([^<]*)</text>", svg)
-
-    assert words(fresh) == words((TOP / "examples" / "solve.svg").read_text(encoding="utf-8"))
 
 
 def test_what_was_measured_is_of_todays_settings() -> None:
