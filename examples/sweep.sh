@@ -13,7 +13,7 @@ atwood sweep --m1 1 --m2 3 --M 1:1000:4:log --mu 0.2:0.4:3 --only regime --csv |
 
 echo "a row again by itself:"
 atwood sweep --m1 1 --m2 3 --M 0:1:4 --only acceleration --csv | sed -n 3p
-atwood solve --m1 1 --m2 3 --M 0.33333333333333333 --only acceleration
+atwood solve --m1 1 --m2 3 --M 0.333333 --only acceleration
 
 echo "the curve, in a file that is there whole or not at all:"
 folder=$(mktemp -d)
