@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from atwood_cli import REGIMES, SceneError, Solution, solve, solve_arrays
+from atwood_cli.arithmetic.interval import enclosures
 from atwood_cli.model.scene import INPUTS, MEASURED
 
 from . import oracle
@@ -443,6 +444,15 @@ def test_a_huge_wrap_in_radians_settles() -> None:
     s = solve(m1=1, m2=3, M=10, mu="0.3", wrap="1e499rad", digits=200)
     assert s.regime == "no-slip"
     assert s.least_heavier_mass == Decimal("Infinity")
+
+
+def test_nothing_is_divided_by_a_number_too_large_to_be_written() -> None:
+    """The quotient was an exact 0: infinity stands for e^{μφ} = e^1000000000."""
+    ar = enclosures(20)
+    huge = ar.expm1(ar.number(10**9))
+    assert huge.lo == huge.hi == Decimal("inf")
+    with pytest.raises(OverflowError, match="a denominator is beyond 10\\^100000000"):
+        1 / huge
 
 
 def test_an_inertia_factor_of_thousands_of_digits_is_written_shortly() -> None:

@@ -83,8 +83,11 @@ class Enclosure:
         """The quotient by a positive number, as every denominator of the equations is positive.
 
         Raises Unsettled for a denominator that may be zero, ZeroDivisionError for one that is.
+        Raises OverflowError for one beyond 10^LARGEST_EXPONENT, which is infinity: a quotient would be 0.
         """
         other, at = self._lift(other), self.arithmetic
+        if other.lo == INFINITY:
+            raise OverflowError(f"a denominator is beyond 10^{LARGEST_EXPONENT}")
         if other.lo <= 0:
             raise ZeroDivisionError if other.hi == 0 == other.lo else Unsettled
         lo = at.down.divide(self.lo, other.hi if self.lo >= 0 else other.lo)
