@@ -15,7 +15,7 @@ from atwood_cli.model import machine
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver import answers as answers_
 from atwood_cli.solver.answers import Answers
-from atwood_cli.solver.messages import notes
+from atwood_cli.solver.messages import notes, unmarked
 
 from . import oracle
 
@@ -352,6 +352,6 @@ def hold(claims: Claims, sentence: str, digits: int) -> str:
         if match := re.fullmatch(words, sentence):
             truth(claims, *(group or "" for group in match.groups()), digits)
             return words
-    reason = next(reason for reason in REASONS if sentence.endswith(f": {reason}."))
+    reason = next(reason for reason in REASONS if sentence.endswith(f": {unmarked(reason)}."))
     assert REASONS[reason](claims)
     return reason

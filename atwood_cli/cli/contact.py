@@ -12,7 +12,7 @@ from ..solver.contact import TO_SPARE, Contact
 from ..solver.contact import contact as solve_contact
 from ..solver.elements import Elements as Solved
 from ..solver.elements import elements as march_elements
-from ..solver.messages import verdict
+from ..solver.messages import unmarked, verdict
 from .options import (
     DONE,
     FIGURE_TO_REPLACE,
@@ -134,7 +134,7 @@ def _forms(answers: Answers, arc: Contact) -> Forms:
             "profile": arc.kind,
             "points": arc.points,
             "balance": arc.balance,
-            "notes": [verdict(answers), *arc.notes],
+            "notes": [unmarked(verdict(answers)), *arc.notes],
         },
         records=lambda: arc.points,
         page=lambda: _print_arc(answers, arc),
@@ -150,7 +150,7 @@ def _forms_of_elements(answers: Answers, solved: Solved) -> Forms:
             "elements": {
                 row.name: {"value": row.value, "exact": row.exact, "error": row.error} for row in solved.rows
             },
-            "notes": [verdict(answers), *solved.notes],
+            "notes": [unmarked(verdict(answers)), *solved.notes],
         },
         records=lambda: [row._asdict() for row in solved.rows],
         page=lambda: _print_elements(answers, solved),

@@ -169,7 +169,7 @@ def fit(
         from ..laboratory.explained import explained
         from ..output.page import print_explanation
 
-        print_explanation(_head(found, inputs), explained(found, inputs), markdown)
+        print_explanation(_given(found, inputs), explained(found, inputs), markdown)
         return DONE
     if figure is not None:
         from ..output.fit_figure import save
@@ -325,12 +325,17 @@ WITHOUT = {
 
 def _head(fit: "Fit", inputs: Mapping[str, Input]) -> str:
     """What is the same in all runs, in a line."""
+    return ", ".join(_given(fit, inputs))
+
+
+def _given(fit: "Fit", inputs: Mapping[str, Input]) -> list[str]:
+    """What is the same in all runs."""
     g = "g" if "gravity" not in fit.values else None
     shared = {name: one for name, one in inputs.items() if one.given is not None or name == g}
     parts = [_stated(name, one) for name, one in shared.items()]
     if fit.runs.one_drop and (drop := fit.used[0].drop) is not None:
         parts.append(_stated("drop", drop))
-    return ", ".join(parts)
+    return parts
 
 
 def _stated(name: str, one: Input) -> str:

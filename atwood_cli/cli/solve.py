@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from ..model.scene import read_digits
-from ..output.text import Forms, cell, describe, for_stream, say, scene_record, show
+from ..output.text import Forms, cell, for_stream, inputs_in_words, say, scene_record, show
 from ..solver.answers import Answers
-from ..solver.messages import conditions, notes, reasons, remarks
+from ..solver.messages import conditions, notes, reasons, remarks, unmarked
 from ..solver.reading import read_answers
 from .options import (
     COULD_NOT,
@@ -148,7 +148,7 @@ def solve(
         from ..derivation.steps import explain as explained
         from ..output.page import print_explanation
 
-        print_explanation(describe(answers.case.scene), explained(answers), markdown)
+        print_explanation([*inputs_in_words(answers.case.scene).values()], explained(answers), markdown)
         return DONE
     say(*show(_forms(answers, names, bare, budget, all), json, csv, bare=bool(names)))
     return COULD_NOT if "" in [cell(answers[name]) for name in names] else DONE
@@ -220,7 +220,7 @@ def print_table(
         for name, value, unit, *_ in chain.from_iterable(_rows(answers, names)):
             page.say(f"{name} = {value.lstrip()} {unit}".rstrip())
     for note in [*remarks(answers), *(conditions(answers) if whole else ()), *reasons(answers)]:
-        page.say(note)
+        page.say(unmarked(note))
     if budget:
         _print_budget(page, answers, names)
 

@@ -14,9 +14,9 @@ from ..solver.messages import (
     conditions,
     holding_again,
     kinetic,
+    missing,
     odd_inertia,
     open_range,
-    reasons_at,
     verdict,
 )
 from .equations import Derivation, Law, Part
@@ -113,7 +113,7 @@ def _pulley(derivation: Derivation) -> Step:
     elif case.sign == 0:
         body.append("The masses are at rest, and the pulley with them: equal tensions do not turn it.")
     elif case.locked:
-        body.append("M = inf is a pulley that is locked: `α = 0`, whatever the torque.")
+        body.append("`M` = `inf` is a pulley that is locked: `α = 0`, whatever the torque.")
     elif case.tensions_equal:
         body.append(
             "Without mass `I = 0`, so `c = I/R^2 = 0`, and it takes no torque to turn the pulley:"
@@ -360,13 +360,13 @@ def _model(derivation: Derivation) -> Step:
     rubs = case.axle_friction is not None
     axle = "an axle with constant friction" if rubs else "an axle without friction"
     missing_axle = "" if rubs else " friction in the axle,"
-    missing = {item: 1 for item in derivation.answers.reasons.items() if item[0] not in derivation.explained}
+    reasons = {item: 1 for item in derivation.answers.reasons.items() if item[0] not in derivation.explained}
     return Step(
         "What is modelled and what is not",
         [
             f"Modelled: a string without mass that does not stretch, {pulley}, {axle}{sheaves}{friction}.",
             f"Not modelled: the string's mass, stretch and stiffness,{missing_axle} air."
             " Nothing in these numbers says how much they matter.",
-            *reasons_at(missing, 1),
+            *missing(reasons),
         ],
     )

@@ -4,13 +4,14 @@ Formulas come first, from symbols and numbers to a line; then the page that sent
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from decimal import Decimal
 from textwrap import wrap
 
 from ..arithmetic.rounding import text
 from ..arithmetic.symbolic import Formula, Symbol
 from ..model.quantities import QUANTITIES
+from ..model.scene import INPUTS
 from .equations import HELD, Equation, Law, Part, plain
 from .steps import Explanation
 
@@ -130,17 +131,17 @@ def in_math(words: str) -> str:
 
 
 def as_text(
-    scene: str, explanation: Explanation, width: int, spell: Spell = str
+    given: Iterable[str], explanation: Explanation, width: int, spell: Spell = str
 ) -> Iterator[tuple[str, str]]:
     """Lines of at most that width, but for what has no blank to break at, and a style for each.
 
-    ``spell`` rewrites symbols that the stream cannot take.
+    ``given`` says what each input is, as "m1 = 1 kg". ``spell`` rewrites symbols that the stream cannot take.
     """
     room = max(
         len(part.label) for step in explanation.steps for part in step.body if not isinstance(part, str)
     )
     for words, style in (
-        (scene, ""),
+        (", ".join(given), ""),
         *((words, "bold") for words in explanation.answer),
         (explanation.reading, ""),
     ):
@@ -214,9 +215,13 @@ def _equation_lines(part: Law | Equation, width: int, spell: Spell, label: str) 
     return lines
 
 
-def as_markdown(scene: str, explanation: Explanation) -> Iterator[str]:
+def as_markdown(given: Iterable[str], explanation: Explanation) -> Iterator[str]:
     """A page of Markdown, its mathematics in LaTeX between dollars."""
     yield f"# {explanation.title}"
+    scene = ", ".join(
+        f"`{name}` = {PRINTED.get(value, value)}"
+        for name, _, value in (one.partition(" = ") for one in given)
+    )
     for words in (scene, *explanation.answer, explanation.reading):
         yield ""
         yield in_markdown(words)
@@ -243,18 +248,24 @@ def _aligned(part: Law | Equation) -> str:
 
 
 def in_markdown(words: str) -> str:
-    """A sentence with its symbols as mathematics, and no character of it mistaken for markup.
+    """A sentence with its names and symbols as mathematics, and no character of it mistaken for markup.
 
     All that is not ASCII is mathematics, but for signs of units, so that any LaTeX can set it.
     """
     pieces = words.split("`")
-    pieces[::2] = map(_without_names, pieces[::2])
+    pieces[1::2] = (PRINTED.get(piece, f"`{piece}`") for piece in pieces[1::2])
+    if words.startswith("`"):
+        pieces[1] = f"{pieces[1][0].upper()}{pieces[1][1:]}"
+    pieces = "".join(pieces).split("`")
+    pieces[::2] = (NOT_ASCII.sub(r"`\g<0>`", piece) for piece in pieces[::2])
     pieces = "`".join(pieces).split("`")  # there are more of them now
     pieces[::2] = (re.sub(r"([][*_|<>$\\^~@#]|-(?=-))", r"\\\1", piece) for piece in pieces[::2])
     pieces[1::2] = (f"${in_math(piece)}$" for piece in pieces[1::2])
     return "".join(pieces).replace(HELD, " ")
 
 
+NOT_ASCII = re.compile(r"\(-?[\d.]+ ± [\d.]+\)e-?\d+|-?[\d.]+ ± [\d.]+|[μπφθαβτ≈≤≥√±]")
+"""Signs in a sentence, and numbers with their uncertainties."""
 IN_WORDS = {
     "tension_1": "tension",
     "tension_2": "tension",
@@ -265,29 +276,17 @@ IN_WORDS = {
     "friction_force_y": "friction force",
 }
 """What a page calls a quantity where its name with blanks says less."""
-SYMBOLS = {"mu": "`μ`", "mu_k": "`μ_k`", "inf": "`∞`"} | {
-    "inertia =": "inertia factor `β` =",
-    "wrap =": "angle of wrap `φ` =",
-    "axle =": "axle friction =",
-    ": give ": ": not known without ",
+PRINTED = {
+    name: f"the {IN_WORDS.get(name, name.replace('_', ' '))} `{plain(about.symbol)}`"
+    for name, about in QUANTITIES.items()
+    if name not in INPUTS
+} | {
+    "mu": "`μ`",
+    "mu_k": "`μ_k`",
+    "inertia": "inertia factor `β`",
+    "wrap": "angle of wrap `φ`",
+    "axle": "axle friction",
+    "inf": "`∞`",
+    "give": "not known without",
 }
-QUANTITY = "|".join(name for name in QUANTITIES if "_" in name and name not in SYMBOLS)
-NAMED = re.compile(
-    rf"\b(?P<quantity>{QUANTITY})\b|\b(?:mu|mu_k|inf)\b|\b(?<!of )(?:inertia|wrap|axle) =|: give "
-    r"|(?P<symbol>I/\(M R\^2\)|\(-?[\d.]+ ± [\d.]+\)e-?\d+|-?[\d.]+ ± [\d.]+|[μπφθαβτ≈≤≥√±]"
-    r"|\bm[12]\b|\b[MIR]\b|\bg(?= =))"
-)
-
-
-def _without_names(words: str) -> str:
-    """A sentence with words and symbols (between backticks) for the names that the program has."""
-
-    def spelled(match: re.Match[str]) -> str:
-        if match["symbol"]:
-            return f"`{match[0]}`"
-        if not (name := match["quantity"]):
-            return SYMBOLS[match[0]]
-        the = "the" if match.start() else "The"
-        return f"{the} {IN_WORDS.get(name, name.replace('_', ' '))} `{plain(QUANTITIES[name].symbol)}`"
-
-    return NAMED.sub(spelled, words)
+"""What a page says for a name of the program; one that is not here is its own symbol."""

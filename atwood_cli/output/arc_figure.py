@@ -11,7 +11,7 @@ from ..model.machine import Machine
 from ..model.scene import SceneError
 from ..solver.answers import Answers
 from ..solver.contact import Contact, contact
-from ..solver.messages import verdict
+from ..solver.messages import unmarked, verdict
 from .figure import BLUE, FAINT, GREY, RED, check_file, page
 from .labels import Label, write_labels
 from .machine_figure import Numbers, draw
@@ -43,7 +43,7 @@ def save(answers: Answers, shown: Contact, path: str, force: bool, m1_side: str 
         raise SceneError("figure", path, f"draws wraps between {WRAPS[0]} and {WRAPS[1]:.0e} degrees only")
     numbers = Numbers(Answers(scene, min(answers.digits or DIGITS, DIGITS)))
     with page(path, force) as figure:
-        head = [_lines(words, TITLE_WIDTH) for words in (describe(scene), verdict(numbers.answers))]
+        head = [_lines(words, TITLE_WIDTH) for words in (describe(scene), unmarked(verdict(numbers.answers)))]
         figure.suptitle("\n".join(head), fontsize=10)
         caption = [
             "The string acts on the pulley along the arc of contact only: it presses with the normal force"

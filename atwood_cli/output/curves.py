@@ -8,7 +8,7 @@ from ..model.case import Case
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, SceneError
 from ..solver.answers import Answers
-from ..solver.messages import reasons_at
+from ..solver.messages import reasons_at, unmarked
 from ..solver.regimes import Change, changes, with_value
 from ..solver.sweep import Range, Sweep, point_in_units, stated_point
 
@@ -97,7 +97,7 @@ def picture(sweep: Sweep, option: str, name: str, digits: int | None) -> Picture
     curves = [_curve(x, at, name, digits, reasons) for at in sweep.along(x)]
     ys = [y for curve in curves for line in curve.lines for y in line if y is not None]
     if not ys:
-        why = "; ".join(dict.fromkeys(reason for _, reason in reasons))
+        why = unmarked("; ".join(dict.fromkeys(reason for _, reason in reasons)))
         raise ArithmeticError(f"{name} exists at no point, so there is nothing to draw: {why}")
     xs = curves[0].xs
     if max(map(abs, [*xs, *ys])) > LARGEST_DRAWN or (x.log and min(xs) < 1 / LARGEST_DRAWN):

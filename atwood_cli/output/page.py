@@ -8,7 +8,7 @@ from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
 from ..solver.answers import Answers
-from ..solver.messages import verdict
+from ..solver.messages import unmarked, verdict
 from .text import describe, for_stream, spelled, wrapped
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ class Page:
         """The scene and the verdict."""
         scene, motion, known = answers.case.scene, answers.case.motion, answers.uncertainties
         self.say(describe(scene, motion, known.given if known else {}))
-        self.say(verdict(answers), f"bold {REGIME_STYLES[answers.case.regime]}")
+        self.say(unmarked(verdict(answers)), f"bold {REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Groups, keys: int = 1) -> None:
         """A table, with a line between groups of rows, and as wide as its numbers ask.
@@ -105,17 +105,17 @@ class Page:
             yield from self.parts([*columns[:keys], *columns[part]], rows, keys)
 
 
-def print_explanation(scene: str, explanation: "Explanation", markdown: bool) -> None:
+def print_explanation(given: Sequence[str], explanation: "Explanation", markdown: bool) -> None:
     """A derivation, step by step: on a terminal in its columns, or as Markdown."""
     from ..derivation.typeset import as_markdown, as_text
 
     if markdown:
-        for line in as_markdown(scene, explanation):
+        for line in as_markdown(given, explanation):
             print(for_stream(line, sys.stdout))
         return
     page = Page()
     width = max(NARROWEST, min(READABLE, page.room or READABLE))
-    for line, style in as_text(scene, explanation, width, lambda words: spelled(words, sys.stdout)):
+    for line, style in as_text(given, explanation, width, lambda words: spelled(words, sys.stdout)):
         page.line(line, style)
 
 

@@ -20,6 +20,7 @@ from ..model.case import Case
 from ..model.machine import FREE_END, NEEDS_M, Machine
 from ..model.scene import SceneError, read_whole
 from .answers import Answers
+from .messages import unmarked
 
 Number = float | Decimal
 
@@ -68,7 +69,7 @@ def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -
     case = answers.case
     check_arc(case)
     if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
-        raise SceneError("M", None, f"is missing: {NEEDS_M}")
+        raise SceneError("M", None, f"is missing: {unmarked(NEEDS_M)}")
     if kind not in (None, *TO_SPARE):
         raise SceneError("profile", kind, f"must be {' or '.join(TO_SPARE)}")
     spare = case.regime == "no-slip" and case.scene.mu is not None and not case.tensions_equal

@@ -1,4 +1,9 @@
-"""A solved scene in words: what the string does and why, and what is missing and why."""
+"""A solved scene in words: what the string does and why, and what is missing and why.
+
+In sentences, as in the reasons of `Undetermined`, names of inputs and quantities stand between backticks.
+`unmarked` takes these out, for the program's own output, where a name is what is typed. `derivation.typeset`
+puts symbols for the names, for a page of mathematics.
+"""
 
 from collections import Counter
 from collections.abc import Mapping
@@ -11,30 +16,41 @@ from ..model.units import MAX_MAGNITUDE
 from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
 
 
+def unmarked(words: str) -> str:
+    """A sentence, or a reason, without backticks."""
+    return words.replace("`", "")
+
+
 def notes(answers: Answers) -> list[str]:
     """Sentences on the regime and why, on conditions (36), on what is missing and what is in doubt."""
-    return [verdict(answers), *remarks(answers.shown), *conditions(answers.shown), *reasons(answers)]
+    said = [verdict(answers), *remarks(answers.shown), *conditions(answers.shown)]
+    return [*map(unmarked, said), *reasons(answers)]
 
 
 def reasons(answers: Answers) -> list[str]:
     """What there is to say of the values asked for so far: why some are missing, what is in doubt."""
-    missing = reasons_at(Counter(answers.reasons.items()), 1)
+    said = reasons_at(Counter(answers.reasons.items()), 1)
     uncertainties = answers.uncertainties
     if uncertainties is None:
-        return missing
+        return said
     unsure = {(f"u_{name}", reason): 1 for name, reason in answers.unsure.items()}
     shown = {name: u for name, u in answers.spread.items() if name not in answers.unsure}
     misled = uncertainties.misled(shown, answers.digits or DOUBLE_DIGITS)
-    return [*missing, *uncertainties.doubts(answers.asked), *misled, *reasons_at(unsure, 1)]
+    return [*said, *uncertainties.doubts(answers.asked), *misled, *reasons_at(unsure, 1)]
 
 
 def reasons_at(
     counted: Mapping[tuple[str, str], int], points: int, where: str = "at {} of {} points"
 ) -> list[str]:
-    """Why values are missing: a sentence a reason, with the names, and where."""
+    """Why values are missing, in how many places: a sentence for each reason, without backticks."""
+    return [unmarked(one) for one in missing(counted, points, where)]
+
+
+def missing(counted: Mapping[tuple[str, str], int], points: int = 1, where: str = "") -> list[str]:
+    """Why values are missing, in how many places: a sentence for each reason, with the names."""
     names: dict[tuple[str, int], list[str]] = {}
     for (name, reason), times in counted.items():
-        names.setdefault((reason, times), []).append(name)
+        names.setdefault((reason, times), []).append(f"`{name}`")
     return [
         f"{', '.join(group)}: {reason}{'' if times == points else f' ({where.format(times, points)})'}."
         for (reason, times), group in names.items()
@@ -55,24 +71,24 @@ def verdict(answers: Answers) -> str:
     if case.regime == "verge":
         massless = answers.with_pulley(Fraction(0))
         return (
-            "On the verge of slipping: as M is not given, this is for the critical pulley mass,"
+            "On the verge of slipping: as `M` is not given, this is for the critical pulley mass,"
             f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on one"
             f" without mass the acceleration is {_say(massless, 'acceleration')} m/s²."
         )
     if case.slide_measured and scene.mu is None:
-        return f"Slides over the locked pulley, with mu_k = {_say(answers, 'mu_k')}."
+        return f"Slides over the locked pulley, with `mu_k` = {_say(answers, 'mu_k')}."
     if case.regime == "slip" and scene.mu is not None:
         mu_k = _say(answers, "mu_k") if case.slide_measured else scene.mu_k and as_typed(scene.mu_k)
-        kinetic = "" if mu_k is None else f", and slides with mu_k = {mu_k}"
+        kinetic = "" if mu_k is None else f", and slides with `mu_k` = {mu_k}"
         if not case.pulley_known:
             verge = _threshold(answers, "massless_verge", up=True)
             return (
-                f"Slips on any pulley, for the friction of its axle: mu = {as_typed(scene.mu)} is below the"
+                f"Slips on any pulley, for the friction of its axle: `mu` = {as_typed(scene.mu)} is below the"
                 f" {verge} that would hold it on one without mass{kinetic}."
             )
         verge = _threshold(answers, "mu_verge", up=True)
         where = " over a pulley that its axle holds" * (case.rim_stands and not case.locked)
-        return f"Slips{where}: mu = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
+        return f"Slips{where}: `mu` = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
     if case.tensions_equal:
         return "Holds: a pulley without mass needs no friction to turn, so both tensions are equal."
     if not case.light:
@@ -80,11 +96,11 @@ def verdict(answers: Answers) -> str:
     if scene.mu is None:
         where = " on a pulley without mass" * (scene.M is None and scene.I is None)
         verge = _threshold(answers, "mu_verge", up=True)
-        return f"Assumed to hold, without mu: it does{where} if mu is at least {verge}."
+        return f"Assumed to hold, without `mu`: it does{where} if `mu` is at least {verge}."
     if case.pulley_known:
         verge = _threshold(answers, "mu_verge", up=True, given=scene.mu)
         at_rest = " from rest" * (_sliding(answers) is not None)
-        return f"Holds{at_rest}: mu = {as_typed(scene.mu)}, and {verge} is enough."
+        return f"Holds{at_rest}: `mu` = {as_typed(scene.mu)}, and {verge} is enough."
     least = answers.rounded("least_heavier_mass", to_threshold(up=False, given=case.heavy))
     if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
         return "Holds on any pulley, under any mass that can be given in place of the heavier one."
@@ -107,9 +123,9 @@ def _string_at_rest(answers: Answers) -> str:
         return ""
     if mu is None:
         least = _threshold(answers, "mu_verge", up=True)
-        return f" The string is assumed to hold, without mu: it does if mu is at least {least}."
+        return f" The string is assumed to hold, without `mu`: it does if `mu` is at least {least}."
     verge = _threshold(answers, "mu_verge", up=True, given=mu)
-    return f" The string holds: mu = {as_typed(mu)}, and {verge} is enough."
+    return f" The string holds: `mu` = {as_typed(mu)}, and {verge} is enough."
 
 
 def remarks(answers: Answers) -> list[str]:
@@ -124,8 +140,8 @@ def odd_inertia(answers: Answers) -> list[str]:
         return []
     shown = tidy(to_side_of(Fraction(1), SHOWN_DIGITS)(beta))
     return [
-        f"The inertia factor I/(M R^2) is {text(shown)}, above 1: the mass lies outside"
-        " the rim the string runs on. If that is not so, check inertia, I and R."
+        f"The inertia factor `I/(M R^2)` is {text(shown)}, above 1: the mass lies outside"
+        " the rim the string runs on. If that is not so, check `inertia`, `I` and `R`."
     ]
 
 
@@ -147,7 +163,7 @@ def open_range(answers: Answers) -> list[str]:
         return []
     ends = [answers.with_pulley(mass) for mass in (Fraction(0), inf)]
     ranges = (
-        f"{name} from {_say(ends[0], name)} to {_say(ends[1], name)}"
+        f"`{name}` from {_say(ends[0], name)} to {_say(ends[1], name)}"
         for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
     )
     return [f"From a massless to a locked pulley: {', '.join(ranges)}."]
@@ -159,15 +175,17 @@ def kinetic(answers: Answers) -> list[str]:
     if mu_k is None or case.regime == "slip" or case.tensions_equal:
         return []
     if not case.pulley_known:
-        return ["mu_k has no part in this, which starts from rest; what a sliding string does depends on M."]
+        return [
+            "`mu_k` has no part in this, which starts from rest; what a sliding string does depends on `M`."
+        ]
     sliding = _sliding(answers)
     if sliding is None:
         return [
-            f"mu_k = {as_typed(mu_k)} is enough, too: a string that slides already is caught by the pulley."
+            f"`mu_k` = {as_typed(mu_k)} is enough, too: a string that slides already is caught by the pulley."
         ]
     verge = _threshold(answers, "mu_verge", up=False, given=mu_k)
     return [
-        f"A string that slides already goes on sliding, as mu_k = {as_typed(mu_k)} is below {verge}:"
+        f"A string that slides already goes on sliding, as `mu_k` = {as_typed(mu_k)} is below {verge}:"
         f" the masses then have the acceleration {_say(sliding, 'acceleration')} m/s²."
     ]
 
@@ -192,7 +210,7 @@ def conditions(answers: Answers) -> list[str]:
     if answers["least_pulley_mass"] is None:
         pass  # the pulley's shape is not known
     elif mass is None:
-        answer = "met by the critical one" if case.can_slip else "open without M"
+        answer = "met by the critical one" if case.can_slip else "open without `M`"
         parts.append(f"the pulley's mass must exceed {_least(answers, 'least_pulley_mass')} ({answer})")
     elif isinstance(mass, Fraction):
         least = _least(answers, "least_pulley_mass", mass)

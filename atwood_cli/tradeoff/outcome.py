@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 from ..arithmetic.rounding import as_typed, text, to_double
 from ..model.machine import Undetermined
 from ..model.scene import COLUMNS, Scene, SceneError
+from ..solver.messages import unmarked
 from .measure import (
     MARGIN,
     PRECISE_SCENES,
@@ -86,7 +87,7 @@ def tradeoff(
     except SceneError as error:
         notes.append(f"String elements {error.rule}.")
     except Undetermined as reason:
-        notes.append(f"String elements: {reason}.")
+        notes.append(unmarked(f"String elements: {reason}."))
     if scene is not None:
         return Tradeoff(marched, 1, None, measured, run, notes)
     return Tradeoff(marched, scenes, seed, measured, run, notes)
