@@ -44,17 +44,17 @@ def test_newtons_equations_hold_exactly_while_the_pulley_turns(
 ) -> None:
     b = physics.axle_mass(f, g)
     h = l + b + more
-    a = physics.acceleration(physics.drive_beside_axle(l, h, b), physics.load(l, h, c), g)
+    a = physics.acceleration(physics.drive(l, h, b), physics.load(l, h, c), g)
     t_l = physics.light_tension(l, a, g)
-    t_h = t_l + physics.difference_beside_axle(c, a, f)
+    t_h = t_l + physics.difference_of_a_pulley(c, a, f)
     assert a > 0
     assert t_l - l * g == l * a  # (1a)
     assert h * g - t_h == h * a  # (1b)
     assert t_h - t_l == c * a + f  # (3) with f
-    assert t_l * (1 + physics.excess_ratio_beside_axle(l, h, c, b)) == t_h
+    assert t_l * (1 + physics.excess_ratio(l, h, c, b)) == t_h
     if not c:
         assert t_l * (1 + physics.massless_excess(l, h, b)) == t_h
-    assert physics.gravity_under_beside_axle(l, h, physics.load(l, h, c), a, f) == g
+    assert physics.gravity_under(l, h, physics.load(l, h, c), a, f) == g
     # Just held: the weights differ by f.
     assert l * g * (1 + physics.held_excess(l, b)) == (l + b) * g
 
@@ -65,17 +65,17 @@ def test_verge_and_slip_solve_newtons_equations_exactly(
 ) -> None:
     b, z = physics.axle_mass(f, g), physics.transfer_at_limit(l, k - 1)
     h = l * k + more
-    d = physics.drive_at_limit(l, h, z)
+    d = physics.drive(l, h, z)
     a = physics.acceleration(d, physics.load(l, h, z), g)
     t_l = physics.light_tension(l, a, g)
     difference = physics.difference_of_friction(t_l, k - 1)
     assert h * g - (t_l + difference) == h * a
-    c = beta * physics.critical_pulley_mass_beside_axle(l, h, z, d, beta, b)
+    c = beta * physics.critical_pulley_mass(l, h, z, d, beta, b)
     assert difference == c * a + f  # (3) with f: what is left for the pulley is its inertia
     assert (c > 0) == (difference > f)
     if c > 0:
-        assert physics.rim_acceleration_beside_axle(difference, c, f) == a
-        assert c * physics.rim_acceleration_beside_axle(difference, 2 * c, f) * 2 == difference - f
+        assert physics.rim_acceleration(difference, c, f) == a
+        assert c * physics.rim_acceleration(difference, 2 * c, f) * 2 == difference - f
 
 
 @given(masses, ratios, masses, masses)
@@ -85,33 +85,33 @@ def test_the_critical_heavier_mass_is_where_the_ratio_is_the_capstans(
     z = l * (k - 1)
     assume(c != b and c + b != 2 * z)
     for side in (1, -1):
-        h = physics.critical_heavier_mass_beside_axle(l, c, z, b, side)
+        h = physics.critical_heavier_mass(l, c, z, b, side)
         if h - l > b:
-            assert physics.excess_ratio_beside_axle(l, h, c, b) == k - 1
+            assert physics.excess_ratio(l, h, c, b) == k - 1
     if 2 * z > b:
-        pulley = physics.least_pulley_mass_beside_axle(z, Fraction(1, 2), b)
+        pulley = physics.least_pulley_mass(z, Fraction(1, 2), b)
         assert physics.heaviest_excess(l, pulley / 2 + b) == k - 1
 
 
 def test_without_friction_they_are_the_papers() -> None:
     l, h, c, g, z, beta = sp.symbols("l h c g z beta", positive=True)
-    d = physics.drive_at_limit(l, h, z)
+    d = physics.drive(l, h, z)
     none = sp.Integer(0)
     for beside, freely in (
-        (physics.drive_beside_axle(l, h, none), h - l),
-        (physics.difference_beside_axle(c, g, none), physics.difference_of_a_pulley(c, g)),
-        (physics.excess_ratio_beside_axle(l, h, c, none), physics.excess_ratio(l, h, c)),
+        (physics.drive(l, h, none), physics.drive(l, h)),
+        (physics.difference_of_a_pulley(c, g, none), physics.difference_of_a_pulley(c, g)),
+        (physics.excess_ratio(l, h, c, none), physics.excess_ratio(l, h, c)),
         (
-            physics.critical_pulley_mass_beside_axle(l, h, z, d, beta, none),
-            physics.critical_pulley_mass(h, z, d, beta),
+            physics.critical_pulley_mass(l, h, z, d, beta, none),
+            physics.critical_pulley_mass(l, h, z, d, beta),
         ),
         (
-            physics.critical_heavier_mass_beside_axle(l, c, z, none, 1),
+            physics.critical_heavier_mass(l, c, z, none),
             physics.critical_heavier_mass(l, c, z),
         ),
-        (physics.least_pulley_mass_beside_axle(z, beta, none), physics.least_pulley_mass(z, beta)),
-        (physics.rim_acceleration_beside_axle(d, c, none), physics.rim_acceleration(d, c)),
-        (physics.gravity_under_beside_axle(l, h, z, d, none), physics.gravity_under(h - l, z, d)),
+        (physics.least_pulley_mass(z, beta, none), physics.least_pulley_mass(z, beta)),
+        (physics.rim_acceleration(d, c, none), physics.rim_acceleration(d, c)),
+        (physics.gravity_under(l, h, z, d, none), physics.gravity_under(l, h, z, d)),
     ):
         assert sp.simplify(beside - freely) == 0
 

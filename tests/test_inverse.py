@@ -55,7 +55,8 @@ def test_they_undo_the_acceleration_and_the_load() -> None:
     d, s, g, l, h, c, H, a = sp.symbols("d s g l h c H a", positive=True)
     forwards = physics.acceleration(d, s, g)
     assert sp.simplify(physics.load_under(d, forwards, g) - s) == 0
-    assert sp.simplify(physics.gravity_under(d, s, forwards) - g) == 0
+    weights = physics.acceleration(physics.drive(l, h), s, g)
+    assert sp.simplify(physics.gravity_under(l, h, s, weights) - g) == 0
     assert sp.simplify(physics.added_load(l, h, physics.load(l, h, c)) - c) == 0
     # Constant acceleration: H = a t²/2 and v = a t.
     t, v = physics.fall_time(H, a, sp.sqrt), physics.final_speed(H, a, sp.sqrt)
@@ -68,7 +69,7 @@ def test_they_undo_the_acceleration_and_the_load() -> None:
     assert sp.simplify(mass * g - T - mass * a) == 0
     k1 = sp.symbols("k1", positive=True)
     z = physics.transfer_at_limit(l, k1)
-    slide = physics.acceleration(physics.drive_at_limit(l, h, z), physics.load(l, h, z), g)
+    slide = physics.acceleration(physics.drive(l, h, z), physics.load(l, h, z), g)
     assert sp.simplify(physics.slide_excess(l, h, slide, g) - k1) == 0
     R = sp.symbols("R", positive=True)
     # A disk: I = M R²/2, c = M/2.

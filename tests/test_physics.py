@@ -38,7 +38,7 @@ def test_newtons_equations_hold_exactly_in_slip(
 ) -> None:
     l, h = sorted((a, b))
     z = physics.transfer_at_limit(l, ratio - 1)
-    acceleration = physics.acceleration(physics.drive_at_limit(l, h, z), physics.load(l, h, z), g)
+    acceleration = physics.acceleration(physics.drive(l, h, z), physics.load(l, h, z), g)
     t_l = physics.light_tension(l, acceleration, g)
     t_h = t_l + physics.difference_of_friction(t_l, ratio - 1)
     assert t_l - l * g == l * acceleration
@@ -67,7 +67,7 @@ def test_verge_coefficient_solves_26() -> None:
 
 
 def _critical_pulley_mass() -> sp.Expr:
-    return physics.critical_pulley_mass(h, l * k1, physics.drive_at_limit(l, h, l * k1), beta)
+    return physics.critical_pulley_mass(l, h, l * k1, physics.drive(l, h, l * k1), beta)
 
 
 def test_critical_pulley_mass_solves_33() -> None:

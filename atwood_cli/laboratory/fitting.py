@@ -179,7 +179,7 @@ class Fit(NamedTuple):
         """Whether a run is faster than a massless pulley without friction allows, be it by chance."""
         data, g, none = self.data, np.float64(self.estimate.values["gravity"]), np.float64(0)
         l, h, a = data.l[i], data.h[i], data.measured[i]
-        limit = physics.acceleration(physics.drive_beside_axle(l, h, none), physics.load(l, h, none), g)
+        limit = physics.acceleration(physics.drive(l, h, none), physics.load(l, h, none), g)
         if data.kind == "time" and data.drop is not None:
             a = physics.acceleration_of_fall(data.drop[i], a)
         return bool(a > limit)

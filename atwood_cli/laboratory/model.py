@@ -34,6 +34,6 @@ def _moving(given: Mapping[str, Any], x: str) -> dict[str, Dual[Any]]:
 
 def _expected(kind: Kind, x: Mapping[str, Dual[Any]]) -> Dual[Any]:
     b = physics.axle_mass(x["axle"], x["gravity"])
-    drive = physics.drive_beside_axle(x["l"], x["h"], b)
+    drive = physics.drive(x["l"], x["h"], b)
     a = physics.acceleration(drive, physics.load(x["l"], x["h"], x["rim_mass"]), x["gravity"])
     return a if kind == "a" else physics.fall_time(x["drop"], a, DUALS.sqrt)

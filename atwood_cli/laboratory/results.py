@@ -154,7 +154,7 @@ def points(fit: Fit) -> Points:
     if data.kind == "time":
         u = u * 2 * a / data.measured
     c, f = values["rim_mass"], values["axle"]
-    line: Any = physics.difference_beside_axle(np.float64(c), a, np.float64(f))
+    line: Any = physics.difference_of_a_pulley(np.float64(c), a, np.float64(f))
     masses = data.l + data.h
     return Points(a, y, u, masses * u, y - line, (masses + c) * u, c, f)
 

@@ -226,10 +226,10 @@ class Case:
         """T_h/T_l - 1 of a string that grips."""
         if self.stands or self.rim_mass is None:
             return self.locked_excess(ar)
+        given = [self.light, self.heavy, self.rim_mass]
         if self.axle_mass is not None and self.sign:  # equal masses rest, whatever the axle
-            given = (self.light, self.heavy, self.rim_mass, self.axle_mass)
-            return physics.excess_ratio_beside_axle(*map(ar.number, given))
-        return physics.excess_ratio(*map(ar.number, (self.light, self.heavy, self.rim_mass)))
+            given.append(self.axle_mass)
+        return physics.excess_ratio(*map(ar.number, given))
 
     def massless_excess(self, ar: Arithmetic[N]) -> N:
         """T_h/T_l - 1 on a pulley without mass that turns an axle that rubs."""

@@ -89,16 +89,14 @@ class Machine(Generic[N]):
         return self.ar.number(self.scene.g)
 
     @property
-    def f(self) -> N:
-        """The axle's friction as a force at the rim (N), where there is some."""
-        assert self.case.axle_friction is not None
-        return self.ar.number(self.case.axle_friction)
+    def f(self) -> N | None:
+        """The axle's friction as a force at the rim (N), if it has any."""
+        return None if self.case.axle_friction is None else self.ar.number(self.case.axle_friction)
 
     @property
-    def b(self) -> N:
+    def b(self) -> N | None:
         """That friction as a mass (kg)."""
-        assert self.case.axle_mass is not None
-        return self.ar.number(self.case.axle_mass)
+        return None if self.case.axle_mass is None else self.ar.number(self.case.axle_mass)
 
     @lazy
     def phi(self) -> N:
@@ -148,7 +146,7 @@ class Machine(Generic[N]):
     @lazy
     def drive(self) -> N:
         """Drive d at the limit of static friction (kg); see `physics`."""
-        return physics.drive_at_limit(self.l, self.h, self.transfer)
+        return physics.drive(self.l, self.h, self.transfer)
 
     @lazy
     def limiting_k1(self) -> N:
@@ -169,7 +167,7 @@ class Machine(Generic[N]):
         """Drive d at the limit of the friction that acts, kinetic in slip (kg)."""
         if self.case.at_static_limit:
             return self.drive
-        return physics.drive_at_limit(self.l, self.h, self.limiting_transfer)
+        return physics.drive(self.l, self.h, self.limiting_transfer)
 
     @lazy
     def magnitude(self) -> N:
@@ -180,7 +178,7 @@ class Machine(Generic[N]):
         elif case.sign == 0 or case.stands:
             return self.ar.number(0)
         else:
-            drive = h - l if case.axle_friction is None else physics.drive_beside_axle(l, h, self.b)
+            drive = physics.drive(l, h, self.b)
             load = physics.load(l, h, self._given(case.rim_mass, NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
@@ -277,9 +275,7 @@ class Machine(Generic[N]):
         if case.stands:
             return physics.difference_of_a_locked_pulley(self.l, self.h, self.g)
         c = self._given(case.rim_mass, NEEDS_M)
-        if case.axle_friction is not None:
-            return physics.difference_beside_axle(c, self.magnitude, self.f)
-        return physics.difference_of_a_pulley(c, self.magnitude)
+        return physics.difference_of_a_pulley(c, self.magnitude, self.f)
 
     @property
     def tension_difference(self) -> N:
@@ -398,9 +394,7 @@ class Machine(Generic[N]):
         if self.case.rim_stands:
             return self.ar.number(0)
         c = self._given(self.case.rim_mass, NEEDS_M)
-        if self.case.axle_friction is not None:
-            return physics.rim_acceleration_beside_axle(self.difference, c, self.f) * self.case.sign
-        return physics.rim_acceleration(self.tension_difference, c)
+        return physics.rim_acceleration(self.difference, c, self.f) * self.case.sign
 
     @lazy
     def angular_acceleration(self) -> N:
@@ -418,11 +412,7 @@ class Machine(Generic[N]):
             raise Undetermined(ALWAYS_SLIPS)
         transfer = self.transfer
         beta = self._given(self.case.beta, UNKNOWN_SHAPE)
-        if self.case.axle_friction is not None:
-            return physics.critical_pulley_mass_beside_axle(
-                self.l, self.h, transfer, self.drive, beta, self.b
-            )
-        return physics.critical_pulley_mass(self.h, transfer, self.drive, beta)
+        return physics.critical_pulley_mass(self.l, self.h, transfer, self.drive, beta, self.b)
 
     @lazy
     def critical_heavier_mass(self) -> N:
@@ -433,15 +423,13 @@ class Machine(Generic[N]):
         c = self._given(self.case.rim_mass, NEEDS_M)
         if not self.case.can_be_made_slip:
             raise Undetermined(NO_CRITICAL_HEAVIER_MASS)
-        if self.case.axle_friction is not None:
-            return physics.critical_heavier_mass_beside_axle(self.l, c, transfer, self.b, 1)
-        return physics.critical_heavier_mass(self.l, c, transfer)
+        return physics.critical_heavier_mass(self.l, c, transfer, self.b)
 
     @lazy
     def holding_heavier_mass(self) -> N:
         """Heavier mass above which a string that slips under the critical one holds again (kg)."""
         c = self._given(self.case.rim_mass, NEEDS_M)
-        return physics.critical_heavier_mass_beside_axle(self.l, c, self.transfer, self.b, -1)
+        return physics.critical_heavier_mass(self.l, c, self.transfer, self.b, -1)
 
     @lazy
     def least_heavier_mass(self) -> N:
@@ -457,9 +445,7 @@ class Machine(Generic[N]):
         if self.case.slips_once_it_moves:
             raise Undetermined(AXLE_ENOUGH)
         beta = self._given(self.case.beta, UNKNOWN_SHAPE)
-        if self.case.axle_friction is not None:
-            return physics.least_pulley_mass_beside_axle(transfer, beta, self.b)
-        return physics.least_pulley_mass(transfer, beta)
+        return physics.least_pulley_mass(transfer, beta, self.b)
 
     def _check_applicable(self) -> None:
         """Raise Undetermined where (36) has no meaning: where the critical pulley has no mass."""

@@ -152,24 +152,16 @@ def _mass(case: Case, unknown: str) -> Fraction | None:
     down = a if unknown == "m2" else -1 * a
     if not scene.g > down:
         return None
-    difference = physics.difference_of_a_pulley(case.rim_mass, down)
-    if case.axle_friction is not None:
-        against = case.axle_friction * (1 if down > 0 else -1)
-        difference = physics.difference_beside_axle(case.rim_mass, down, against)
+    against = case.axle_friction and case.axle_friction * (1 if down > 0 else -1)
+    difference = physics.difference_of_a_pulley(case.rim_mass, down, against)
     return physics.hanging_mass(physics.light_tension(known, down, scene.g) + difference, down, scene.g)
 
 
 def _most(case: Case) -> Fraction:
     """The magnitude of the acceleration on a massless pulley, or of a slide without friction."""
     l, h = case.light, case.heavy
-    drive = h - l if case.slide_measured else _drive(case)
+    drive = physics.drive(l, h, None if case.slide_measured else case.axle_mass)
     return physics.acceleration(drive, physics.load(l, h, Fraction(0)), case.scene.g)
-
-
-def _drive(case: Case) -> Fraction:
-    """The drive of a string that grips."""
-    l, h, b = case.light, case.heavy, case.axle_mass
-    return h - l if b is None else physics.drive_beside_axle(l, h, b)
 
 
 def _beyond(scene: Scene, motion: Motion, uncertain: Mapping[str, Fraction]) -> str:
@@ -229,11 +221,10 @@ def completed(scene: Scene, motion: Motion) -> Scene:
     l, h, a = case.light, case.heavy, case.measured_acceleration
     if motion.finds == "g":
         assert case.rim_mass is not None
-        load, f = physics.load(l, h, case.rim_mass), case.axle_friction
-        if f is not None:
-            return scene._replace(g=physics.gravity_under_beside_axle(l, h, load, a, f))
-        return scene._replace(g=physics.gravity_under(h - l, load, a))
-    c = physics.added_load(l, h, physics.load_under(_drive(case), a, scene.g))
+        load = physics.load(l, h, case.rim_mass)
+        return scene._replace(g=physics.gravity_under(l, h, load, a, case.axle_friction))
+    drive = physics.drive(l, h, case.axle_mass)
+    c = physics.added_load(l, h, physics.load_under(drive, a, scene.g))
     if c < 0:
         raise Undetermined(NO_PULLEY)
     assert scene.inertia is not None

@@ -19,8 +19,8 @@ side's tension and what friction makes up. What differs between regimes is only 
 
 An axle that rubs takes a constant force f at the rim from what turns the pulley, so (3) becomes
 T_h - T_l = c a + f. As a mass it is ``b`` = f/g: without slip d = h - l - b, and for h - l <= b all rests.
-These equations are apart, as a scene without friction of the axle must not pay for it; with b = 0 they are
-the ones above them.
+Equations that f or b changes take it as their last argument: None is an axle without friction, for which
+the paper's own equation is run. It is the limit b = 0.
 
 Divisions come before products where a product could leave the range of doubles and the result not.
 
@@ -44,13 +44,15 @@ def transfer_at_limit(l: N, k1: N) -> N:
     return l * k1
 
 
-def drive_at_limit(l: N, h: N, transfer: N) -> N:
-    """Drive d = h - l k (kg) at the limit of friction; positive where a heavy enough pulley makes it slip.
+def drive(l: N, h: N, taken: N | None = None) -> N:
+    """Drive d = h - l (kg), less what friction takes of it: the transfer at its limit, b in an axle.
 
-    >>> drive_at_limit(1, 3, 1)
-    1
+    At the limit of friction, d = h - l k is positive where a heavy enough pulley makes the string slip.
+
+    >>> drive(1, 3), drive(1, 3, 1)
+    (2, 1)
     """
-    return h - l - transfer
+    return h - l if taken is None else h - l - taken
 
 
 def axle_mass(f: N, g: N) -> N:
@@ -60,15 +62,6 @@ def axle_mass(f: N, g: N) -> N:
     1.0
     """
     return f / g
-
-
-def drive_beside_axle(l: N, h: N, b: N) -> N:
-    """Drive d = h - l - b (kg) of a string that grips, where the axle takes b of it.
-
-    >>> drive_beside_axle(1, 3, 1)
-    1
-    """
-    return h - l - b
 
 
 def load(l: N, h: N, added: N) -> N:
@@ -98,22 +91,14 @@ def load_under(drive: N, a: N, g: N) -> N:
     return g * (drive / a)
 
 
-def gravity_under(drive: N, load: N, a: N) -> N:
-    """Gravity (m/s²) under which the drive sets the load moving with a; inverse of `acceleration`.
+def gravity_under(l: N, h: N, load: N, a: N, f: N | None = None) -> N:
+    """Gravity (m/s²) under which the load has a measured acceleration a, beside an axle with f (N).
 
-    >>> gravity_under(2, 9, 2)
-    9.0
+    >>> gravity_under(1, 3, 9, 2), gravity_under(1, 3, 9, 1, 9)
+    (9.0, 9.0)
     """
-    return a * (load / drive)
-
-
-def gravity_under_beside_axle(l: N, h: N, load: N, a: N, f: N) -> N:
-    """Gravity (m/s²) under which the masses move with a, with f (N) for the axle.
-
-    >>> gravity_under_beside_axle(1, 3, 9, 1, 9)
-    9.0
-    """
-    return (a * load + f) / (h - l)
+    weights = a * load if f is None else a * load + f
+    return weights / (h - l)
 
 
 def hanging_mass(tension: N, a: N, g: N) -> N:
@@ -190,40 +175,22 @@ def light_tension(l: N, a: N, g: N) -> N:
     return l * (g + a)
 
 
-def difference_of_a_pulley(c: N, a: N) -> N:
-    """T_h - T_l (N) that turns a pulley whose rim has the acceleration a (3).
+def difference_of_a_pulley(c: N, a: N, f: N | None = None) -> N:
+    """T_h - T_l (N) that turns a pulley whose rim has the acceleration a, against the axle's f (N) (3).
 
-    >>> difference_of_a_pulley(5, 2)
-    10
+    >>> difference_of_a_pulley(5, 2), difference_of_a_pulley(5, 1, 9)
+    (10, 14)
     """
-    return c * a
+    return c * a if f is None else c * a + f
 
 
-def difference_beside_axle(c: N, a: N, f: N) -> N:
-    """T_h - T_l (N) that turns a pulley, and its axle against the friction f (N); (3) with f.
+def rim_acceleration(difference: N, c: N, f: N | None = None) -> N:
+    """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns, against the axle's f (N) (3).
 
-    >>> difference_beside_axle(5, 1, 9)
-    14
+    >>> rim_acceleration(10, 5), rim_acceleration(14, 5, 9)
+    (2.0, 1.0)
     """
-    return c * a + f
-
-
-def rim_acceleration(difference: N, c: N) -> N:
-    """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns (3).
-
-    >>> rim_acceleration(10, 5)
-    2.0
-    """
-    return difference / c
-
-
-def rim_acceleration_beside_axle(difference: N, c: N, f: N) -> N:
-    """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns against the axle; (3) with f.
-
-    >>> rim_acceleration_beside_axle(14, 5, 9)
-    1.0
-    """
-    return (difference - f) / c
+    return (difference if f is None else difference - f) / c
 
 
 def difference_of_a_locked_pulley(l: N, h: N, g: N) -> N:
@@ -253,21 +220,14 @@ def difference_of_friction(light: N, k1: N) -> N:
     return light * k1
 
 
-def excess_ratio(l: N, h: N, c: N) -> N:
-    """T_h/T_l - 1 of a string that grips, from (4); without cancellation.
+def excess_ratio(l: N, h: N, c: N, b: N | None = None) -> N:
+    """T_h/T_l - 1 of a string that grips, from (4), without cancellation; beside an axle, h - l > b.
 
-    >>> excess_ratio(1, 3, 6)
-    1.0
+    >>> excess_ratio(1, 3, 6), excess_ratio(1, 3, 5, 1)
+    (1.0, 1.4)
     """
-    return locked_excess(l, h) * (c / (2 * h + c))
-
-
-def excess_ratio_beside_axle(l: N, h: N, c: N, b: N) -> N:
-    """T_h/T_l - 1 of a string that grips and turns an axle that rubs; h - l > b.
-
-    >>> excess_ratio_beside_axle(1, 3, 5, 1)
-    1.4
-    """
+    if b is None:
+        return locked_excess(l, h) * (c / (2 * h + c))
     return (c * (h - l) + b * (h + l)) / (l * (2 * h - b + c))
 
 
@@ -316,43 +276,33 @@ def verge_coefficient(log_ratio: N, phi: N) -> N:
     return log_ratio / phi
 
 
-def critical_pulley_mass(h: N, transfer: N, drive: N, beta: N) -> N:
+def critical_pulley_mass(l: N, h: N, transfer: N, drive: N, beta: N, b: N | None = None) -> N:
     """Pulley mass (kg) above which the string slips (34); transfer and drive at the limit of friction.
 
     >>> z = 1.56633  # e^{0.3 π} - 1, the paper's example
-    >>> round(critical_pulley_mass(3, z, drive_at_limit(1, 3, z), 0.5))
+    >>> round(critical_pulley_mass(1, 3, z, drive(1, 3, z), 0.5))
     43
-    """
-    return transfer / drive * (2 * h / beta)
-
-
-def critical_pulley_mass_beside_axle(l: N, h: N, transfer: N, drive: N, beta: N, b: N) -> N:
-    """Pulley mass (kg) above which the string slips, where it turns an axle that rubs; (34) with b.
-
-    >>> critical_pulley_mass_beside_axle(1, 3, 1, 1, 0.5, 1)
+    >>> critical_pulley_mass(1, 3, 1, 1, 0.5, 1)
     2.0
     """
+    if b is None:
+        return transfer / drive * (2 * h / beta)
     return (2 * h * transfer - b * (h + l + transfer)) / (drive * beta)
 
 
-def critical_heavier_mass(l: N, c: N, transfer: N) -> N:
+def critical_heavier_mass(l: N, c: N, transfer: N, b: N | None = None, side: int = 1) -> N:
     """Heavier mass (kg) at which the string is on the verge (35); needs c > 2 l (k - 1).
 
-    >>> critical_heavier_mass(1, 4, 1)
-    4.0
+    Beside an axle ``side`` is 1 for c > b, where it slips above that mass, and -1 for c < b, where it
+    slips below.
+
+    >>> critical_heavier_mass(1, 4, 1), critical_heavier_mass(1, 6, 2, 1)
+    (4.0, 5.0)
     """
-    return c / (c - 2 * transfer) * least_heavier_mass(l, transfer)
-
-
-def critical_heavier_mass_beside_axle(l: N, c: N, transfer: N, b: N, side: int) -> N:
-    """Heavier mass (kg) at which the string that turns an axle that rubs is on the verge; (35) with b.
-
-    ``side`` is 1 for c > b, where it slips above that mass, and -1 for c < b, where it slips below.
-
-    >>> critical_heavier_mass_beside_axle(1, 6, 2, 1, 1)
-    5.0
-    """
-    return (c - b) * side / ((c + b - 2 * transfer) * side) * least_heavier_mass(l, transfer)
+    least = least_heavier_mass(l, transfer)
+    if b is None:
+        return c / (c - 2 * transfer) * least
+    return (c - b) * side / ((c + b - 2 * transfer) * side) * least
 
 
 def least_heavier_mass(l: N, transfer: N) -> N:
@@ -364,22 +314,13 @@ def least_heavier_mass(l: N, transfer: N) -> N:
     return l + transfer
 
 
-def least_pulley_mass(transfer: N, beta: N) -> N:
-    """What the pulley's mass (kg) must exceed for any mass to slip: second condition of (36).
+def least_pulley_mass(transfer: N, beta: N, b: N | None = None) -> N:
+    """What the pulley's mass (kg) must exceed for any mass to slip: second condition of (36); z >= b.
 
-    >>> least_pulley_mass(1, 0.5)
-    4.0
+    >>> least_pulley_mass(1, 0.5), least_pulley_mass(2, 0.5, 1)
+    (4.0, 6.0)
     """
-    return 2 * transfer / beta
-
-
-def least_pulley_mass_beside_axle(transfer: N, beta: N, b: N) -> N:
-    """What the pulley's mass (kg) must exceed for any mass to slip, beside an axle that rubs; z >= b.
-
-    >>> least_pulley_mass_beside_axle(2, 0.5, 1)
-    6.0
-    """
-    return (2 * transfer - b) / beta
+    return (2 * transfer if b is None else 2 * transfer - b) / beta
 
 
 def half_turn_resultant(t1: N, t2: N) -> N:

@@ -196,14 +196,10 @@ class _Doubles:
         if answers["critical_pulley_mass"] is not None:
             beta = self._double(lambda machine: machine.ar.number(case.beta or 0))
             transfer = physics.transfer_at_limit(l, k1)
-            drive = physics.drive_at_limit(l, h, transfer)
-            values["critical_pulley_mass"] = inf
-            if drive > 0 and case.axle_friction is None:
-                values["critical_pulley_mass"] = physics.critical_pulley_mass(h, transfer, drive, beta)
-            elif drive > 0:
-                b = self._double(lambda machine: machine.b)
-                mass = physics.critical_pulley_mass_beside_axle(l, h, transfer, drive, beta, b)
-                values["critical_pulley_mass"] = mass
+            drive = physics.drive(l, h, transfer)
+            b = None if case.axle_mass is None else self._double(lambda machine: machine.b)
+            mass = physics.critical_pulley_mass(l, h, transfer, drive, beta, b) if drive > 0 else inf
+            values["critical_pulley_mass"] = mass
         if answers["friction_force"] is None:
             return values
         if case.regime == "slip" and case.scene.mu_k is not None:
@@ -212,7 +208,7 @@ class _Doubles:
         light = self._double(lambda machine: machine.light_tension)
         if case.regime != "no-slip":
             transfer, g = physics.transfer_at_limit(l, k1), self._double(lambda machine: machine.g)
-            drive, load = physics.drive_at_limit(l, h, transfer), physics.load(l, h, transfer)
+            drive, load = physics.drive(l, h, transfer), physics.load(l, h, transfer)
             light = physics.light_tension(l, physics.acceleration(drive, load, g), g)
         values["tension_ratio"] = k if case.sign >= 0 else 1 / k
         values["friction_force"] = light * hypot(x, y)

@@ -173,7 +173,7 @@ class Uncertainties:
 
         def margin(machine: Machine[N]) -> N:
             """What the masses drive with once the axle has its part."""
-            return physics.drive_beside_axle(machine.l, machine.h, machine.b)
+            return physics.drive(machine.l, machine.h, machine.b)
 
         return _doubt(
             "Whether the axle holds the difference",
