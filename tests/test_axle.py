@@ -12,14 +12,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-import sympy as sp
 import uncertainties as unc
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
 from uncertainties import umath
 
 from atwood_cli import SceneError, solve, solve_arrays
-from atwood_cli.model import physics
+from atwood_cli.arithmetic.rational import EXACT
 from atwood_cli.model.axle import Axle
 from atwood_cli.model.case import Case
 from atwood_cli.model.scene import Scene
@@ -30,90 +29,8 @@ from .running import Atwood
 from .scenes import FAMILIES, Given, scenes
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
-ratios = st.fractions(min_value=Fraction(1), max_value=20)
 forces = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
 NAMES = [name for name in oracle.NAMES[1:] if name not in ("friction_force_min", "friction_force_max")]
-
-
-# The equations
-
-
-@given(masses, masses, st.fractions(min_value=0, max_value=10**6), masses, forces)
-def test_newtons_equations_hold_exactly_while_the_pulley_turns(
-    l: Fraction, more: Fraction, c: Fraction, g: Fraction, f: Fraction
-) -> None:
-    b = physics.axle_mass(f, g)
-    h = l + b + more
-    a = physics.acceleration(physics.drive(l, h, b), physics.load(l, h, c), g)
-    t_l = physics.light_tension(l, a, g)
-    t_h = t_l + physics.difference_of_a_pulley(c, a, f)
-    assert a > 0
-    assert t_l - l * g == l * a  # (1a)
-    assert h * g - t_h == h * a  # (1b)
-    assert t_h - t_l == c * a + f  # (3) with f
-    assert t_l * (1 + physics.excess_ratio(l, h, c, b)) == t_h
-    if not c:
-        assert t_l * (1 + physics.massless_excess(l, h, b)) == t_h
-    assert physics.gravity_under(l, h, physics.load(l, h, c), a, f) == g
-    # Just held: the weights differ by f.
-    assert l * g * (1 + physics.held_excess(l, b)) == (l + b) * g
-
-
-@given(masses, masses, ratios, masses, forces, masses)
-def test_verge_and_slip_solve_newtons_equations_exactly(
-    l: Fraction, more: Fraction, k: Fraction, g: Fraction, f: Fraction, beta: Fraction
-) -> None:
-    b, z = physics.axle_mass(f, g), physics.transfer_at_limit(l, k - 1)
-    h = l * k + more
-    d = physics.drive(l, h, z)
-    a = physics.acceleration(d, physics.load(l, h, z), g)
-    t_l = physics.light_tension(l, a, g)
-    difference = physics.difference_of_friction(t_l, k - 1)
-    assert h * g - (t_l + difference) == h * a
-    c = beta * physics.critical_pulley_mass(l, h, z, d, beta, b)
-    assert difference == c * a + f  # (3) with f: what is left for the pulley is its inertia
-    assert (c > 0) == (difference > f)
-    if c > 0:
-        assert physics.rim_acceleration(difference, c, f) == a
-        assert c * physics.rim_acceleration(difference, 2 * c, f) * 2 == difference - f
-
-
-@given(masses, ratios, masses, masses)
-def test_the_critical_heavier_mass_is_where_the_ratio_is_the_capstans(
-    l: Fraction, k: Fraction, c: Fraction, b: Fraction
-) -> None:
-    z = l * (k - 1)
-    assume(c != b and c + b != 2 * z)
-    for side in (1, -1):
-        h = physics.critical_heavier_mass(l, c, z, b, side)
-        if h - l > b:
-            assert physics.excess_ratio(l, h, c, b) == k - 1
-    if 2 * z > b:
-        pulley = physics.least_pulley_mass(z, Fraction(1, 2), b)
-        assert physics.heaviest_excess(l, pulley / 2 + b) == k - 1
-
-
-def test_without_friction_they_are_the_papers() -> None:
-    l, h, c, g, z, beta = sp.symbols("l h c g z beta", positive=True)
-    d = physics.drive(l, h, z)
-    none = sp.Integer(0)
-    for beside, freely in (
-        (physics.drive(l, h, none), physics.drive(l, h)),
-        (physics.difference_of_a_pulley(c, g, none), physics.difference_of_a_pulley(c, g)),
-        (physics.excess_ratio(l, h, c, none), physics.excess_ratio(l, h, c)),
-        (
-            physics.critical_pulley_mass(l, h, z, d, beta, none),
-            physics.critical_pulley_mass(l, h, z, d, beta),
-        ),
-        (
-            physics.critical_heavier_mass(l, c, z, none),
-            physics.critical_heavier_mass(l, c, z),
-        ),
-        (physics.least_pulley_mass(z, beta, none), physics.least_pulley_mass(z, beta)),
-        (physics.rim_acceleration(d, c, none), physics.rim_acceleration(d, c)),
-        (physics.gravity_under(l, h, z, d, none), physics.gravity_under(l, h, z, d)),
-    ):
-        assert sp.simplify(beside - freely) == 0
 
 
 def test_the_ratio_grows_with_the_pulley_and_bends_where_the_axle_lets_go() -> None:
@@ -123,21 +40,11 @@ def test_the_ratio_grows_with_the_pulley_and_bends_where_the_axle_lets_go() -> N
             Case(Scene.read({"m1": l, "m2": l + b * h, "M": c, "inertia": "1", "g": 1, "axle": b}))
             for h in (Fraction(1, 2), 1, Fraction(3, 2), 10, 10**6)
         ]
-        ratios_ = [case.excess_ratio(RATIONAL) for case in steps]
+        ratios_ = [case.excess_ratio(EXACT) for case in steps]
         assert ratios_[:2] == [b / 2, b]  # the axle holds
         falls = [later < earlier for earlier, later in pairwise(ratios_[1:])]
         assert falls == [c < b] * 3
         assert abs(ratios_[-1] - (c + b) / 2) < Fraction(1, 10**5)
-
-
-class _Rational:
-    """Fractions, as `EXACT` takes them."""
-
-    def number(self, q: Fraction) -> Fraction:
-        return Fraction(q)
-
-
-RATIONAL: Any = _Rational()
 
 
 # Every digit
