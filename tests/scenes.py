@@ -1,14 +1,28 @@
 """Seeded scenes of every stress family, as the texts that a user would type."""
 
+import re
 from collections.abc import Callable, Iterator, Mapping
 from math import isnan
 from random import Random
+from typing import Any
 
 import flint
 
 from atwood_cli.model.scene import Scene
 
 Given = dict[str, str]
+
+
+def table(words: str) -> list[list[str]]:
+    """The rows of a table, with bars between cells; an indented line goes on with the row above it."""
+    rows = re.sub(r"\n\s+", " ", words.strip("\n")).splitlines()
+    return [[cell.strip() for cell in row.split("|")] for row in rows]
+
+
+def inputs(words: str) -> dict[str, Any]:
+    """What is given, from words such as "m1=1 M=None"; m1 is 1 and m2 is 3 if they are not named."""
+    given = dict(word.split("=", 1) for word in words.split())
+    return {"m1": "1", "m2": "3", **{name: None if x == "None" else x for name, x in given.items()}}
 
 
 def _log_uniform(rng: Random, low: float, high: float) -> float:

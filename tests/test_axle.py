@@ -26,7 +26,7 @@ from atwood_cli.solver.answers import Answers
 
 from . import oracle
 from .running import Atwood
-from .scenes import FAMILIES, Given, scenes
+from .scenes import FAMILIES, Given, inputs, scenes, table
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
 forces = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
@@ -105,59 +105,33 @@ def test_every_digit_beside_an_axle(family: str) -> None:
 # What is said of it
 
 
-@pytest.mark.parametrize(
-    ("given_", "verdict"),
-    [
-        (
-            {"m1": "200g", "m2": "201g", "axle": "16mN"},
-            "At rest: the axle holds up to 1.63 g of difference. The string is assumed to hold, without mu: it"
-            " does if mu is at least 0.00159.",
-        ),
-        (
-            {"m1": "200g", "m2": "201g", "axle": "16mN", "mu": "0.1"},
-            "At rest: the axle holds up to 1.63 g of difference. The string holds: mu = 0.1, and 0.00159 is enough.",
-        ),
-        ({"m1": "0", "m2": "1g", "axle": "16mN"}, "At rest: the axle holds up to 1.63 g of difference."),
-        ({"m1": "0", "m2": "2g", "axle": "16mN"}, "Holds: the string's end is fixed to the pulley."),
-        # Not 1.63, which would not hold it; and just held.
-        (
-            {"m1": "0", "m2": "1.63153g", "axle": "16mN"},
-            "At rest: the axle holds up to 1.63154 g of difference.",
-        ),
-        ({"m1": "0", "m2": "1", "axle": "9.80665"}, "At rest: the axle holds up to 1.00 kg of difference."),
-        (
-            {"m1": "1", "m2": "3", "M": "inf", "axle": "5N", "mu": "0.2"},
-            "Slips: mu = 0.2 is below the 0.350 that would hold it.",
-        ),
-        (
-            {"m1": "1", "m2": "1.2", "axle": "5N", "mu": "0.01", "mu_k": "0.005"},
-            "Slips over a pulley that its axle holds: mu = 0.01 is below the 0.0581 that would hold it, and"
-            " slides with mu_k = 0.005.",
-        ),
-        (
-            {"m1": "1", "m2": "3", "M": "300", "axle": "5N", "mu": "0.2", "mu_k": "0.1"},
-            "Slips over a pulley that its axle holds: mu = 0.2 is below the 0.344 that would hold it, and"
-            " slides with mu_k = 0.1.",
-        ),
-        (
-            {"m1": "1", "m2": "3", "M": "300", "axle": "5N", "mu": "0.2"},
-            "Slips: mu = 0.2 is below the 0.344 that would hold it.",
-        ),
-        (
-            {"m1": "1", "m2": "3", "axle": "5N", "mu": "0.05"},
-            "Slips on any pulley, for the friction of its axle: mu = 0.05 is below the 0.101 that would hold"
-            " it on one without mass.",
-        ),
-        (
-            {"m1": "1", "m2": "3", "axle": "5N", "mu": "0"},
-            "Slips on any pulley, for the friction of its axle: mu = 0 is below the 0.101 that would hold it"
-            " on one without mass.",
-        ),
-        ({"m1": "1", "m2": "1", "axle": "5N"}, "At rest: the masses are equal, so no friction is needed."),
-    ],
-)
-def test_verdicts(given_: dict[str, Any], verdict: str) -> None:
-    assert solve(**given_, digits=6).notes[0] == verdict
+VERDICTS = """
+m1=200g m2=201g axle=16mN | At rest: the axle holds up to 1.63 g of difference. The string is assumed to
+    hold, without mu: it does if mu is at least 0.00159.
+m1=200g m2=201g axle=16mN mu=0.1 | At rest: the axle holds up to 1.63 g of difference. The string holds:
+    mu = 0.1, and 0.00159 is enough.
+m1=0 m2=1g axle=16mN | At rest: the axle holds up to 1.63 g of difference.
+m1=0 m2=2g axle=16mN | Holds: the string's end is fixed to the pulley.
+m1=0 m2=1.63153g axle=16mN | At rest: the axle holds up to 1.63154 g of difference.
+m1=0 m2=1 axle=9.80665 | At rest: the axle holds up to 1.00 kg of difference.
+m1=1 m2=3 M=inf axle=5N mu=0.2 | Slips: mu = 0.2 is below the 0.350 that would hold it.
+m1=1 m2=1.2 axle=5N mu=0.01 mu_k=0.005 | Slips over a pulley that its axle holds: mu = 0.01 is below the
+    0.0581 that would hold it, and slides with mu_k = 0.005.
+m1=1 m2=3 M=300 axle=5N mu=0.2 mu_k=0.1 | Slips over a pulley that its axle holds: mu = 0.2 is below the
+    0.344 that would hold it, and slides with mu_k = 0.1.
+m1=1 m2=3 M=300 axle=5N mu=0.2 | Slips: mu = 0.2 is below the 0.344 that would hold it.
+m1=1 m2=3 axle=5N mu=0.05 | Slips on any pulley, for the friction of its axle: mu = 0.05 is below the
+    0.101 that would hold it on one without mass.
+m1=1 m2=3 axle=5N mu=0 | Slips on any pulley, for the friction of its axle: mu = 0 is below the 0.101
+    that would hold it on one without mass.
+m1=1 m2=1 axle=5N | At rest: the masses are equal, so no friction is needed.
+"""
+
+
+@pytest.mark.parametrize(("given_", "verdict"), table(VERDICTS))
+def test_verdicts(given_: str, verdict: str) -> None:
+    """What the axle holds is rounded down, but not below what it does hold: 1.63 g would not be enough."""
+    assert solve(**inputs(given_), digits=6).notes[0] == verdict
 
 
 def test_the_rim_turns_or_is_held_in_slip() -> None:
@@ -179,25 +153,20 @@ def test_the_rim_turns_or_is_held_in_slip() -> None:
     assert measured.rim_acceleration == 0
 
 
-@pytest.mark.parametrize(
-    ("given_", "missing", "why"),
-    [
-        (
-            {"m2": "1.2", "mu": "0.3", "M": "1"},
-            "critical_pulley_mass",
-            "the axle holds the difference on any",
-        ),
-        ({"m2": "3", "mu": "0.05"}, "critical_pulley_mass", "slips on any pulley, however light"),
-        # The axle holds the pulley, and the string slips over it.
-        ({"m2": "1.2", "mu": "0.05", "M": "1"}, "critical_pulley_mass", "slips on any pulley, however light"),
-        ({"m2": "1.2", "mu": "0"}, "least_pulley_mass", "no condition here, as the friction of the axle"),
-        ({"m2": "3", "mu": "0.05"}, "least_pulley_mass", "no condition here, as the friction of the axle"),
-        ({"m2": "3", "mu": "0.05"}, "mu_verge", "give M"),
-        ({"m2": "3", "mu": "0.3", "M": "1"}, "critical_heavier_mass", "holds under any heavier mass"),
-    ],
-)
-def test_what_does_not_exist_beside_an_axle(given_: dict[str, Any], missing: str, why: str) -> None:
-    s = solve(m1="1", axle="5N", **given_)
+MISSING = """
+m2=1.2 mu=0.3 M=1 | critical_pulley_mass | the axle holds the difference on any
+m2=3 mu=0.05 | critical_pulley_mass | slips on any pulley, however light
+m2=1.2 mu=0.05 M=1 | critical_pulley_mass | slips on any pulley, however light
+m2=1.2 mu=0 | least_pulley_mass | no condition here, as the friction of the axle
+m2=3 mu=0.05 | least_pulley_mass | no condition here, as the friction of the axle
+m2=3 mu=0.05 | mu_verge | give M
+m2=3 mu=0.3 M=1 | critical_heavier_mass | holds under any heavier mass
+"""
+
+
+@pytest.mark.parametrize(("given_", "missing", "why"), table(MISSING))
+def test_what_does_not_exist_beside_an_axle(given_: str, missing: str, why: str) -> None:
+    s = solve(axle="5N", **inputs(given_))
     assert getattr(s, missing) is None
     assert any(missing in note and why in note for note in s.notes), s.notes
 
@@ -272,35 +241,31 @@ def test_it_is_a_force_at_the_rim_or_a_torque(axle: Any, newtons: Any) -> None:
     assert Case(scene).axle_friction == Fraction(newtons)
 
 
-@pytest.mark.parametrize(
-    ("given_", "message"),
-    [
-        ({"axle": "-1"}, "axle '-1' must be 0 or more, and finite"),
-        ({"axle": "0.5Nm"}, "axle '0.5Nm' is a torque, which needs the radius R as well"),
-        (
-            {"axle": "5g"},
-            "axle '5g' has a unit of mass; it takes one of torque or force (Nm, mNm, N, mN, kN, lbf, kgf)",
-        ),
-        ({"axle": "1MN"}, "axle '1MN' has the unknown unit 'MN'; there are Nm, mNm, N, mN, kN, lbf, kgf"),
-        ({"axle": (1, "N")}, "axle (1, 'N') must be text or a number (str, int, float, Decimal, Fraction)"),
-        (
-            {"R": Axle(1)},
-            "R Axle(number=1, unit='N') must be text or a number (str, int, float, Decimal, Fraction)",
-        ),
-        (
-            {"axle": "30", "a": "1"},
-            "a '1' has no place beside an axle whose friction holds the masses at rest; leave one of them out",
-        ),
-        (
-            {"axle": "1", "a": "0", "M": "1", "m2": None},
-            "a '0' tells nothing of m2, as the axle holds a difference at rest; leave one of them out",
-        ),
-    ],
-)
-def test_errors(given_: dict[str, Any], message: str) -> None:
+ERRORS = """
+axle=-1 | axle '-1' must be 0 or more, and finite
+axle=0.5Nm | axle '0.5Nm' is a torque, which needs the radius R as well
+axle=5g | axle '5g' has a unit of mass; it takes one of torque or force (Nm, mNm, N, mN, kN, lbf, kgf)
+axle=1MN | axle '1MN' has the unknown unit 'MN'; there are Nm, mNm, N, mN, kN, lbf, kgf
+axle=30 a=1 | a '1' has no place beside an axle whose friction holds the masses at rest; leave one of
+    them out
+axle=1 a=0 M=1 m2=None | a '0' tells nothing of m2, as the axle holds a difference at rest; leave one of
+    them out
+"""
+
+
+@pytest.mark.parametrize(("given_", "message"), table(ERRORS))
+def test_errors(given_: str, message: str) -> None:
     with pytest.raises(SceneError) as caught:
-        solve(**{"m1": "1", "m2": "3", **given_})
+        solve(**inputs(given_))
     assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(("name", "given_"), [("axle", (1, "N")), ("R", Axle(1))])
+def test_what_is_no_number_is_refused(name: str, given_: Any) -> None:
+    with pytest.raises(
+        SceneError, match=rf"^{name} .* must be text or a number \(str, int, float, Decimal, Fr"
+    ):
+        solve(**{"m1": 1, "m2": 3, name: given_})
 
 
 def test_not_given_nothing_of_it_shows(atwood: Atwood) -> None:

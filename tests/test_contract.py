@@ -18,6 +18,7 @@ from atwood_cli.arithmetic.interval import enclosures
 from atwood_cli.model.scene import INPUTS, MEASURED
 
 from . import oracle
+from .scenes import inputs, table
 
 
 def nulls(solution: Solution[Any]) -> set[str]:
@@ -64,7 +65,7 @@ GROUPS = {
     "critical": "critical_pulley_mass",
 }
 CORNERS = """
-                     | regime=no-slip tension_1=14.709975 tension_2=14.709975 friction=0
+m1=1                 | regime=no-slip tension_1=14.709975 tension_2=14.709975 friction=0
 M=10                 | regime=no-slip                                       | Assumed to hold
 mu=0.35              | regime=no-slip moving=None mu_verge=None friction_force=None critical=None | give M
 mu=0.35              | | acceleration from 4.90332 to 0, tension_1 from 14.7100 to 9.80665, tension_2 from
@@ -93,11 +94,10 @@ I=5 R=1 M=1          | | above 1
 """
 
 
-@pytest.mark.parametrize("corner", CORNERS.strip("\n").splitlines())
-def test_what_is_given_decides_what_follows(corner: str) -> None:
-    given, expected, note = (*map(str.strip, corner.split("|")), "")[:3]
-    scene: Any = {"m1": "1", "m2": "3", **dict(word.split("=") for word in given.split())}
-    solution = solve(**scene)
+@pytest.mark.parametrize("corner", table(CORNERS))
+def test_what_is_given_decides_what_follows(corner: list[str]) -> None:
+    given, expected, note = (*corner, "")[:3]
+    solution = solve(**inputs(given))
     for name, value in (word.split("=") for word in expected.split()):
         for one in GROUPS.get(name, name).split():
             wanted = value if name == "regime" else None if value == "None" else float(value)
@@ -207,37 +207,22 @@ def test_a_free_end_is_not_told_to_give_mu() -> None:
         assert "least_pulley_mass, least_wrap: not defined for a free end" in notes
 
 
-@pytest.mark.parametrize(
-    ("given", "verdict", "note"),
-    [
-        (
-            {"M": 50, "mu": "0.31", "mu_k": "0.1"},
-            "Holds from rest: mu = 0.31, and 0.306 is enough.",
-            "A string that slides already goes on sliding, as mu_k = 0.1 is below 0.305:"
-            " the masses then have the acceleration 3.66061 m/s².",
-        ),
-        (
-            {"M": 50, "mu": "0.31", "mu_k": "0.306"},
-            "Holds: mu = 0.31, and 0.306 is enough.",
-            "mu_k = 0.306 is enough, too: a string that slides already is caught by the pulley.",
-        ),
-        (
-            {"mu": "0.5", "mu_k": "0.1"},
-            "Holds on any pulley: the heavier mass, 3 kg, would have to exceed 4.81 kg to slip.",
-            "mu_k has no part in this, which starts from rest; what a sliding string does depends on M.",
-        ),
-        (
-            {"mu": "0.3", "mu_k": "0.1"},
-            "On the verge of slipping: as M is not given, this is for the critical pulley mass, 43.3419 kg."
-            " On a heavier pulley the string slips; on one without mass the acceleration is 4.90332 m/s².",
-            "mu_k has no part in this, which starts from rest; what a sliding string does depends on M.",
-        ),
-    ],
-)
-def test_what_mu_k_does_where_the_string_holds_is_said(
-    given: dict[str, Any], verdict: str, note: str
-) -> None:
-    notes = solve(m1=1, m2=3, digits=6, **given).notes
+SLIDING = """
+M=50 mu=0.31 mu_k=0.1 | Holds from rest: mu = 0.31, and 0.306 is enough. | A string that slides already
+    goes on sliding, as mu_k = 0.1 is below 0.305: the masses then have the acceleration 3.66061 m/s².
+M=50 mu=0.31 mu_k=0.306 | Holds: mu = 0.31, and 0.306 is enough. | mu_k = 0.306 is enough, too: a string
+    that slides already is caught by the pulley.
+mu=0.5 mu_k=0.1 | Holds on any pulley: the heavier mass, 3 kg, would have to exceed 4.81 kg to slip. |
+    mu_k has no part in this, which starts from rest; what a sliding string does depends on M.
+mu=0.3 mu_k=0.1 | On the verge of slipping: as M is not given, this is for the critical pulley mass,
+    43.3419 kg. On a heavier pulley the string slips; on one without mass the acceleration is 4.90332
+    m/s². | mu_k has no part in this, which starts from rest; what a sliding string does depends on M.
+"""
+
+
+@pytest.mark.parametrize(("given", "verdict", "note"), table(SLIDING))
+def test_what_mu_k_does_where_the_string_holds_is_said(given: str, verdict: str, note: str) -> None:
+    notes = solve(**inputs(given), digits=6).notes
     assert notes[0] == verdict
     assert note in notes
 
@@ -334,28 +319,19 @@ def test_values_below_the_doubles_are_zero_and_said() -> None:
     assert any("below the range of doubles" in note for note in s.notes)
 
 
-@pytest.mark.parametrize(
-    ("given", "verdict"),
-    [
-        (
-            {"M": "43.34192486321087"},
-            "Slips: mu = 0.3 is below the 0.301 that would hold it.",
-        ),
-        (
-            {"m1": "1 t", "m2": "2 t"},
-            "Holds on any pulley: the heavier mass, 2000 kg, would have to exceed 2560 kg to slip.",
-        ),
-        ({"M": 43, "digits": 2}, "Holds: mu = 0.3, and 0.2997 is enough."),
-        ({"M": "43.5", "digits": 2}, "Slips: mu = 0.3 is below the 0.301 that would hold it."),
-        (
-            {"m2": "2.566332395208135"},
-            "Holds on any pulley: the heavier mass, 2.566332395208135 kg, would have to exceed"
-            " 2.5663323952081353 kg to slip.",
-        ),
-    ],
-)
-def test_a_verdict_tells_near_numbers_apart(given: dict[str, Any], verdict: str) -> None:
-    assert solve(**{"m1": 1, "m2": 3, "mu": "0.3", **given}).notes[0] == verdict
+VERDICTS = """
+M=43.34192486321087 | Slips: mu = 0.3 is below the 0.301 that would hold it.
+m1=1t m2=2t | Holds on any pulley: the heavier mass, 2000 kg, would have to exceed 2560 kg to slip.
+M=43 digits=2 | Holds: mu = 0.3, and 0.2997 is enough.
+M=43.5 digits=2 | Slips: mu = 0.3 is below the 0.301 that would hold it.
+m2=2.566332395208135 | Holds on any pulley: the heavier mass, 2.566332395208135 kg, would have to exceed
+    2.5663323952081353 kg to slip.
+"""
+
+
+@pytest.mark.parametrize(("given", "verdict"), table(VERDICTS))
+def test_a_verdict_tells_near_numbers_apart(given: str, verdict: str) -> None:
+    assert solve(**{"mu": "0.3", **inputs(given)}).notes[0] == verdict
 
 
 def test_a_verdict_on_a_number_of_millions_of_digits_makes_no_fraction_of_it() -> None:

@@ -24,6 +24,7 @@ from atwood_cli.model.angle import Angle
 from atwood_cli.model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 
 from .running import Atwood, process
+from .scenes import inputs, table
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
 
@@ -300,129 +301,74 @@ def test_a_fall_in_doubt_of_slipping() -> None:
 # What cannot be
 
 
-@pytest.mark.parametrize(
-    ("given", "message"),
-    [
-        ({"a": "inf"}, "a 'inf' must be finite"),
-        ({"a": float("nan")}, "a nan must be finite"),
-        ({"a": float("-inf")}, "a -inf must be finite"),
-        ({"a": "1kg"}, "a '1kg' has a unit of mass; it takes one of acceleration (m/s2, cm/s2, ft/s2, N/kg)"),
-        ({"drop": "0"}, "drop '0' must be above 0, and finite"),
-        (
-            {"drop": "1s"},
-            "drop '1s' has a unit of time; it takes one of length (m, km, dm, cm, mm, um, in, ft, yd)",
-        ),
-        ({"drop": "1", "time": "-1"}, "time '-1' must be above 0, and finite"),
-        ({"time": "1"}, "time '1' needs drop, the height fallen in it"),
-        (
-            {"time": "1", "drop": "1", "a": "1"},
-            "time '1' and a both tell the acceleration; give one of them",
-        ),
-        (
-            {"a": "1", "mu": "0.3"},
-            "a '1' has no place beside mu, as a string that slips moves alike on any pulley; leave mu out",
-        ),
-        (
-            {"a": "1", "I": "1", "R": "1", "g": "9.8"},
-            "a '1' leaves nothing to find beside both I and g; leave one of them out",
-        ),
-        ({"a": "1", "m2": None}, "m2 is missing; give it, or M, beside which a finds it"),
-        ({"a": "1", "m2": None, "m1": None}, "m1 is missing; give both masses, m1 and m2"),
-        ({"m2": None, "M": "1"}, "m2 is missing; give both masses, m1 and m2"),
-        (
-            {"a": "1", "m2": None, "M": "1", "mu": "0.3"},
-            "a '1' has no place beside mu, as a string that slips moves alike on any pulley; leave mu out",
-        ),
-        (
-            {"drop": "1", "time": "1", "m2": None, "M": "1"},
-            "time '1' does not tell which way m2 moves; give a in its place, positive when m2 descends",
-        ),
-        (
-            {"a": "1", "m1": "0", "m2": None, "M": "0"},
-            "a '1' tells nothing of m2, which falls freely; give the other mass or M above 0",
-        ),
-        *(
-            (
-                {"a": a, "m2": None, "M": "10"},
-                f"a {a!r} must be between -1.63 (no m2 at all) and 9.80665 m/s² (m2 in free fall)",
-            )
-            for a in ("9.80665", "11", "-1.7")
-        ),
-        (
-            {"a": "-9.9", "m1": None, "M": "10"},
-            "a '-9.9' must be between 3.67 (no m1 at all) and -9.80665 m/s² (m1 in free fall)",
-        ),
-        (
-            {"a": "0", "m1": "0", "m2": None, "M": "10"},
-            "a '0' must be between 0 (no m2 at all) and 9.80665 m/s² (m2 in free fall)",
-        ),
-        *(
-            (
-                {"a": a, "M": "inf"},
-                f"a {a!r} must be between 0 (a string that holds) and 4.90 m/s² (no friction), as m2 is"
-                " the heavier mass",
-            )
-            for a in ("0", "5", "-1")
-        ),
-        (
-            {"a": "1", "M": "inf", "m1": "0"},
-            "a '1' has no place beside M = inf and a free end, which is fixed to the pulley; leave it out",
-        ),
-        (
-            {"a": "1", "M": "inf", "mu": "0.3", "mu_k": "0.2"},
-            "a '1' and mu_k both tell how the string slides; leave one of them out",
-        ),
-        (
-            {"a": "1", "M": "10", "mu": "0.3"},
-            "a '1' has no place beside mu = 0.3, with which the string does not slip; leave mu out",
-        ),
-        (
-            {"a": "0.7", "M": "inf", "mu": "0.3"},
-            "a '0.7' is that of a string with more kinetic friction than mu; check both",
-        ),
-        (
-            {"a": "1", "M": "inf", "m2": None},
-            "a '1' has no place beside M = inf, which lets nothing move; leave one of them out",
-        ),
-        (
-            {"a": "1", "M": "1", "g": "9.8"},
-            "a '1' leaves nothing to find beside both M and g; leave one of them out",
-        ),
-        (
-            {"a": "1", "m2": "1"},
-            "a '1' tells nothing of equal masses, which rest on any pulley; leave it out",
-        ),
-        *(
-            (
-                {"a": a},
-                f"a {a!r} must be between 0 (a locked pulley: M = inf) and 4.90 m/s² (a massless one),"
-                " as m2 is the heavier mass",
-            )
-            for a in ("0", "-1", "4.9034", "5.00(3)")
-        ),
-        (
-            {"a": "1", "m1": "3", "m2": "1"},
-            "a '1' must be between 0 (a locked pulley: M = inf) and -4.90 m/s² (a massless one),"
-            " as m1 is the heavier mass",
-        ),
-        (
-            {"drop": "1", "time": "0.500(5)"},
-            "time '0.500(5)' implies a = 8 m/s², which must be between 0 (a locked pulley: M = inf) and 4.90 m/s²"
-            " (a massless one), as m2 is the heavier mass",
-        ),
-        ({"a": "-1", "M": "1"}, "a '-1' must be above 0, as m2 is the heavier mass"),
-        ({"a": "0", "M": "1", "m1": "4"}, "a '0' must be below 0, as m1 is the heavier mass"),
-        (
-            {"a": "1.0(0.1)"},
-            "a '1.0(0.1)' is not a number with its uncertainty; write it like 1.000±0.002,"
-            " 1.000+/-0.002 or 1.000(2), and a unit after that",
-        ),
-    ],
-)
-def test_errors(given: dict[str, Any], message: str) -> None:
+ERRORS = """
+a=inf | a 'inf' must be finite
+a=1kg | a '1kg' has a unit of mass; it takes one of acceleration (m/s2, cm/s2, ft/s2, N/kg)
+drop=0 | drop '0' must be above 0, and finite
+drop=1s | drop '1s' has a unit of time; it takes one of length (m, km, dm, cm, mm, um, in, ft, yd)
+drop=1 time=-1 | time '-1' must be above 0, and finite
+time=1 | time '1' needs drop, the height fallen in it
+time=1 drop=1 a=1 | time '1' and a both tell the acceleration; give one of them
+a=1 mu=0.3 | a '1' has no place beside mu, as a string that slips moves alike on any pulley; leave mu out
+a=1 I=1 R=1 g=9.8 | a '1' leaves nothing to find beside both I and g; leave one of them out
+a=1 m2=None | m2 is missing; give it, or M, beside which a finds it
+a=1 m2=None m1=None | m1 is missing; give both masses, m1 and m2
+m2=None M=1 | m2 is missing; give both masses, m1 and m2
+a=1 m2=None M=1 mu=0.3 | a '1' has no place beside mu, as a string that slips moves alike on any pulley;
+    leave mu out
+drop=1 time=1 m2=None M=1 | time '1' does not tell which way m2 moves; give a in its place, positive when
+    m2 descends
+a=1 m1=0 m2=None M=0 | a '1' tells nothing of m2, which falls freely; give the other mass or M above 0
+a=9.80665 m2=None M=10 | a '9.80665' must be between -1.63 (no m2 at all) and 9.80665 m/s² (m2 in free
+    fall)
+a=11 m2=None M=10 | a '11' must be between -1.63 (no m2 at all) and 9.80665 m/s² (m2 in free fall)
+a=-1.7 m2=None M=10 | a '-1.7' must be between -1.63 (no m2 at all) and 9.80665 m/s² (m2 in free fall)
+a=-9.9 m1=None M=10 | a '-9.9' must be between 3.67 (no m1 at all) and -9.80665 m/s² (m1 in free fall)
+a=0 m1=0 m2=None M=10 | a '0' must be between 0 (no m2 at all) and 9.80665 m/s² (m2 in free fall)
+a=0 M=inf | a '0' must be between 0 (a string that holds) and 4.90 m/s² (no friction), as m2 is the
+    heavier mass
+a=5 M=inf | a '5' must be between 0 (a string that holds) and 4.90 m/s² (no friction), as m2 is the
+    heavier mass
+a=-1 M=inf | a '-1' must be between 0 (a string that holds) and 4.90 m/s² (no friction), as m2 is the
+    heavier mass
+a=1 M=inf m1=0 | a '1' has no place beside M = inf and a free end, which is fixed to the pulley; leave it
+    out
+a=1 M=inf mu=0.3 mu_k=0.2 | a '1' and mu_k both tell how the string slides; leave one of them out
+a=1 M=10 mu=0.3 | a '1' has no place beside mu = 0.3, with which the string does not slip; leave mu out
+a=0.7 M=inf mu=0.3 | a '0.7' is that of a string with more kinetic friction than mu; check both
+a=1 M=inf m2=None | a '1' has no place beside M = inf, which lets nothing move; leave one of them out
+a=1 M=1 g=9.8 | a '1' leaves nothing to find beside both M and g; leave one of them out
+a=1 m2=1 | a '1' tells nothing of equal masses, which rest on any pulley; leave it out
+a=0 | a '0' must be between 0 (a locked pulley: M = inf) and 4.90 m/s² (a massless one), as m2 is the
+    heavier mass
+a=-1 | a '-1' must be between 0 (a locked pulley: M = inf) and 4.90 m/s² (a massless one), as m2 is the
+    heavier mass
+a=4.9034 | a '4.9034' must be between 0 (a locked pulley: M = inf) and 4.90 m/s² (a massless one), as m2
+    is the heavier mass
+a=5.00(3) | a '5.00(3)' must be between 0 (a locked pulley: M = inf) and 4.90 m/s² (a massless one), as
+    m2 is the heavier mass
+a=1 m1=3 m2=1 | a '1' must be between 0 (a locked pulley: M = inf) and -4.90 m/s² (a massless one), as m1
+    is the heavier mass
+drop=1 time=0.500(5) | time '0.500(5)' implies a = 8 m/s², which must be between 0 (a locked pulley: M =
+    inf) and 4.90 m/s² (a massless one), as m2 is the heavier mass
+a=-1 M=1 | a '-1' must be above 0, as m2 is the heavier mass
+a=0 M=1 m1=4 | a '0' must be below 0, as m1 is the heavier mass
+a=1.0(0.1) | a '1.0(0.1)' is not a number with its uncertainty; write it like 1.000±0.002, 1.000+/-0.002
+    or 1.000(2), and a unit after that
+"""
+
+
+@pytest.mark.parametrize(("given", "message"), table(ERRORS))
+def test_errors(given: str, message: str) -> None:
     with pytest.raises(SceneError) as caught:
-        solve(**{"m1": "1", "m2": "3", **given})
+        solve(**inputs(given))
     assert str(caught.value) == message
+
+
+@pytest.mark.parametrize("a", [float("nan"), float("-inf")])
+def test_an_acceleration_is_a_finite_number(a: float) -> None:
+    with pytest.raises(SceneError, match=f"^a {a} must be finite$"):
+        solve(m1=1, m2=3, a=a)
 
 
 def test_only_of_what_the_scene_does_not_ask_names_the_option(atwood: Atwood) -> None:
