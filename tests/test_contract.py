@@ -5,17 +5,22 @@ import pydoc
 import re
 import subprocess
 import sys
+from collections.abc import Iterable
 from contextlib import suppress
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
+from functools import partial
 from math import inf
 from typing import Any
 
 import pytest
 
-from atwood_cli import REGIMES, SceneError, Solution, solve, solve_arrays
+from atwood_cli import REGIMES, Scene, SceneError, Solution, solve, solve_arrays
+from atwood_cli.api import Inputs, MeasuredSolution
 from atwood_cli.arithmetic.interval import enclosures
-from atwood_cli.model.scene import INPUTS, MEASURED
+from atwood_cli.model.machine import Machine
+from atwood_cli.model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
+from atwood_cli.model.scene import INPUTS, MEASURED, Motion
 
 from . import oracle
 from .scenes import inputs, table
@@ -389,8 +394,29 @@ def test_help_begins_with_what_a_function_does(function: Any) -> None:
     assert described.index((function.__doc__ or "").split("\n")[0]) < 500
 
 
-def test_solve_names_its_inputs_and_takes_no_others() -> None:
-    assert list(inspect.signature(solve).parameters) == [*INPUTS, *MEASURED, "digits"]
+def test_what_is_registered_is_everywhere() -> None:
+    """A quantity or an input that is added fails here, by the places that lack it."""
+    everything, of_scenes, inputs_ = (*NAMES, *MEASURED_NAMES), ("scene", "notes"), (*INPUTS, *MEASURED)
+    places: dict[str, tuple[Iterable[str], Iterable[str]]] = {
+        "quantities.NAMES": (everything, ("regime", *QUANTITIES)),
+        "api.Solution": (Solution.__slots__, (*of_scenes, *NAMES, "uncertainty")),
+        "api.MeasuredSolution": (MeasuredSolution.__slots__, MEASURED_NAMES),
+        "api.Inputs": (Inputs.__annotations__, inputs_),
+        "scene.Scene, scene.Motion": ((*Scene._fields, *Motion._fields[:3]), inputs_),
+        "machine.Machine": (filter(partial(hasattr, Machine), QUANTITIES), QUANTITIES),
+        "oracle.NAMES": (oracle.NAMES, NAMES),
+        "solve's signature": (inspect.signature(solve).parameters, (*inputs_, "digits")),
+    }
+    assert {place: list(has) for place, (has, _) in places.items()} == {
+        place: list(wanted) for place, (_, wanted) in places.items()
+    }
+    described = f"{Solution.__doc__}{MeasuredSolution.__doc__}"
+    for name, about in QUANTITIES.items():
+        line = rf"\n    {name} +{re.escape(about.meaning)}.*{re.escape(about.unit)}.*{re.escape(about.equation)}\n"
+        assert re.search(line, described), name
+
+
+def test_solve_takes_no_other_inputs() -> None:
     unknown: Any = {"m1": 1, "m2": 3, "m3": 2}
     with pytest.raises(TypeError, match="unexpected keyword argument 'm3'"):
         solve(**unknown)

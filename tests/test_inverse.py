@@ -4,7 +4,6 @@ import csv
 import io
 import json
 from collections.abc import Sequence
-from dataclasses import fields
 from decimal import Decimal
 from fractions import Fraction
 from math import pi, sqrt
@@ -21,7 +20,7 @@ from atwood_cli import Scene, SceneError, Solution, solve
 from atwood_cli.api import MeasuredSolution
 from atwood_cli.model import physics
 from atwood_cli.model.angle import Angle
-from atwood_cli.model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
+from atwood_cli.model.quantities import MEASURED_NAMES, NAMES
 
 from .running import Atwood, process
 from .scenes import inputs, table
@@ -33,20 +32,6 @@ def measured(**given: Any) -> MeasuredSolution[Any]:
     solution = solve(**{"m1": "1", "m2": "3", **given})
     assert isinstance(solution, MeasuredSolution)
     return solution
-
-
-def test_solutions_have_what_is_registered_and_say_what_it_is() -> None:
-    assert tuple(QUANTITIES) == (*NAMES[1:], *MEASURED_NAMES)
-    known = {"scene", "notes", "uncertainty"}
-    every = [f.name for f in fields(Solution) if f.name not in known]
-    assert every == list(NAMES)
-    measured_ones = [f.name for f in fields(MeasuredSolution) if f.name not in known]
-    assert measured_ones == [*NAMES, *MEASURED_NAMES]
-    for kind, names in ((Solution, NAMES[1:]), (MeasuredSolution, MEASURED_NAMES)):
-        for name in names:
-            about = QUANTITIES[name]
-            line = next(line for line in (kind.__doc__ or "").splitlines() if line.split()[:1] == [name])
-            assert all(part in line for part in (about.meaning, about.unit, about.equation))
 
 
 # The equations are inverses of those that they invert
