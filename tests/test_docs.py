@@ -3,11 +3,8 @@
 import doctest
 import re
 import runpy
-import subprocess
-import sys
 from collections import Counter
 from math import inf, nan
-from pathlib import Path
 
 import pytest
 
@@ -16,9 +13,9 @@ from atwood_cli.tradeoff.measure import SETTINGS, March, Measured, counts
 from atwood_cli.tradeoff.outcome import PAPERS_SCENE, Tradeoff, front_legend
 from atwood_cli.tradeoff.scenes import FAMILIES
 
-from .running import labels, process
+from .regenerate import ENGINES, KEPT, SCRIPTS, TOP, Kept, essence
+from .running import labels
 
-TOP = Path(__file__).parent.parent
 PAGES = {
     path.relative_to(TOP).as_posix(): path.read_text(encoding="utf-8")
     for path in (
@@ -28,32 +25,16 @@ PAGES = {
     )
 }
 README, TOUR, TRADEOFF = (PAGES[name] for name in ("README.md", "examples/README.md", "examples/tradeoff.md"))
-BLOCKS = [
-    pytest.param(block, id=f"{name}: {block.splitlines()[0]}")
-    for name, page in PAGES.items()
-    for block in re.findall(r"```console\n(.*?)```", page, re.DOTALL)
-]
 PYTHON = {
     name: "\n".join(blocks)
     for name, page in PAGES.items()
     if (blocks := re.findall(r"```python\n(.*?)```", page, re.DOTALL))
 }
-EXAMPLES = sorted((TOP / "examples").glob("*.sh"))
-ENGINES = [TOP / "examples" / name for name in ("dask_blocks.py", "polars_lazy.py")]
 
 
-def transcript(block: str) -> str:
-    """The block as running its commands gives it, stderr where a terminal would show it."""
-    shown = []
-    for command in re.findall(r"^\$ (.*)", block, re.MULTILINE):
-        ran = process(shell=f"cd '{TOP}'; {{ {command}\n}} 2>&1")
-        shown.append(f"$ {command}\n{ran.out}")
-    return "".join(shown)
-
-
-@pytest.mark.parametrize("block", BLOCKS)
-def test_transcripts_show_what_happens(block: str) -> None:
-    assert transcript(block) == block
+@pytest.mark.parametrize("kept", KEPT, ids=lambda kept: f"{kept.file.name}: {kept.text[:60]!r}")
+def test_what_is_kept_is_what_is_printed_today(kept: Kept) -> None:
+    assert essence(kept.today()) == essence(kept.text), "after a look: python -m tests.regenerate"
 
 
 @pytest.mark.parametrize("name", PYTHON)
@@ -66,7 +47,7 @@ def test_the_python_in_the_pages_runs(name: str) -> None:
 
 
 def test_transcripts_and_python_are_found_in_the_pages() -> None:
-    shown = Counter(str(block.id).split(":")[0] for block in BLOCKS)
+    shown = Counter(kept.file.relative_to(TOP).as_posix() for kept in KEPT)
     assert shown["README.md"] == 2
     assert shown["examples/laboratory.md"] >= 4
     assert shown["examples/README.md"] >= 15
@@ -119,20 +100,6 @@ def test_both_setup_commands_are_there() -> None:
     commands = re.findall(r"```sh\n(.*)\n```", README)
     assert [command.split()[-1] for command in commands] == ["0.3", "pytest"]
     assert all(command.startswith("python3 -m venv .venv && .venv/bin/pip install") for command in commands)
-
-
-@pytest.mark.parametrize("script", EXAMPLES, ids=lambda script: script.name)
-def test_examples_print_what_is_kept_beside_them(script: Path) -> None:
-    # The scripts call `atwood` and `python3`; both are this interpreter here.
-    ran = process(shell=f'python3() {{ "$PYTHON" "$@"; }}; . "{script}"')
-    assert (ran.status, ran.err) == (0, "")
-    assert ran.out == script.with_suffix(".txt").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize("script", ENGINES, ids=lambda script: script.name)
-def test_engines_print_what_is_kept_beside_them(script: Path) -> None:
-    ran = subprocess.run([sys.executable, str(script)], capture_output=True, text=True, check=True)
-    assert ran.stdout == script.with_suffix(".txt").read_text(encoding="utf-8")
 
 
 def test_engines_keep_rows_that_are_no_scenes() -> None:
@@ -208,13 +175,8 @@ def test_the_measuring_script_fills_its_place() -> None:
 
 
 def test_every_example_is_tested() -> None:
-    assert [script.name for script in EXAMPLES] == [
-        "capstan.sh",
-        "ci-smoke.sh",
-        "lift.sh",
-        "measure-mu.sh",
-        "paper.sh",
-        "scripts.sh",
-        "sweep.sh",
-    ]
-    assert all(script.with_suffix(".txt").exists() for script in EXAMPLES)
+    names = "capstan ci-smoke lift measure-mu paper scripts sweep"
+    assert [script.stem for script in SCRIPTS] == names.split()
+    outputs = {path for suffix in ("txt", "svg") for path in (TOP / "examples").glob(f"*.{suffix}")}
+    measured = TOP / "examples" / "tradeoff.svg"
+    assert outputs == {kept.file for kept in KEPT if kept.file.suffix != ".md"} | {measured}
