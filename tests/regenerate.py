@@ -57,7 +57,7 @@ KEPT = [
     whole(EXAMPLES / "handout.md", f"atwood solve {SCENE} --explain --markdown"),
     whole(
         EXAMPLES / "contact.svg",
-        f"cd $(mktemp -d); atwood contact {SCENE} --figure it.svg > table; cat it.svg; rm it.svg",
+        f'cd $(mktemp -d); atwood contact {SCENE} --figure it.svg > table; cat it.svg; rm -r "$PWD"',
     ),
 ]
 
