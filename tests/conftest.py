@@ -1,4 +1,4 @@
-"""The command line, called in process, and the option that has every digit tried."""
+"""The command line, called in process, and the option that has every example tried."""
 
 import os
 
@@ -11,18 +11,24 @@ from .running import Atwood, Ran
 
 # No test fails where a machine is slow.
 ANYWHERE = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
-settings.register_profile("anywhere", deadline=None, suppress_health_check=ANYWHERE)
-settings.load_profile("anywhere")
+settings.register_profile("every-digit", deadline=None, suppress_health_check=ANYWHERE)
+settings.register_profile("usual", settings.get_profile("every-digit"), max_examples=25)
+
+
+def examples(most: int) -> settings:
+    """That many with --every-digit, and otherwise as large a share of them as of the usual 100."""
+    return settings(max_examples=most * settings().max_examples // 100)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
-        "--every-digit", action="store_true", help="Try every scene and row that is kept: every digit."
+        "--every-digit", action="store_true", help="Try all scenes, rows and examples, not a quarter of them."
     )
 
 
-def pytest_configure() -> None:
+def pytest_configure(config: pytest.Config) -> None:
     """What the suite starts is not told how Python is to run: PYTHONUNBUFFERED hides what users meet."""
+    settings.load_profile("every-digit" if config.getoption("every_digit") else "usual")
     for name in [name for name in os.environ if name.startswith("PYTHON") and name != "PYTHONPATH"]:
         del os.environ[name]
 

@@ -17,7 +17,7 @@ from unittest.mock import Mock
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
@@ -30,6 +30,7 @@ from atwood_cli.model.scene import COLUMNS, Scene
 from atwood_cli.solver.answers import Answers
 
 from . import oracle
+from .conftest import examples
 from .running import HANGS
 from .scenes import FAMILIES, exact_scene, scenes
 
@@ -281,7 +282,7 @@ mixed_rows = st.fixed_dictionaries(
 )
 
 
-@settings(max_examples=40)
+@examples(40)
 @given(st.lists(odd_rows | mixed_rows, min_size=1, max_size=30), st.permutations(NAMES))
 def test_any_rows_side_by_side(some: list[dict[str, float]], names: list[str]) -> None:
     """Bad rows get a code and stop nobody, and whoever stands beside whom, each gets its own."""
@@ -329,7 +330,7 @@ def _solved(row: Row) -> tuple[Any, SceneError | None]:
 numbers = st.floats(1e-3, 1e3)
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(
     st.lists(numbers, min_size=3, max_size=3),
     st.lists(numbers, min_size=4, max_size=4),

@@ -21,7 +21,7 @@ from typing import Any
 
 import polars as pl
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import SceneError, solve
@@ -32,6 +32,7 @@ from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import COLUMNS
 
+from .conftest import examples
 from .running import HANGS, PIP, Atwood, Ran, plain, process
 
 SCENES = [
@@ -253,7 +254,7 @@ ODD_TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="
 
 @pytest.mark.parametrize("kind", ["csv", "tsv"])
 @given(cells=st.lists(st.tuples(ODD_TEXT, ODD_TEXT), max_size=12), size=st.sampled_from([16, 64, 1 << 20]))
-@settings(max_examples=60)
+@examples(60)
 def test_other_columns_pass_through(
     atwood: Atwood, table: Table, kind: str, cells: list[tuple[str, str]], size: int
 ) -> None:
@@ -419,7 +420,7 @@ def mixed_rows(draw: st.DrawFn) -> tuple[dict[str, str], str | None]:
     size=st.sampled_from([32, 1 << 20]),
     kind=st.sampled_from(FORMATS[:3]),
 )
-@settings(max_examples=60)
+@examples(60)
 def test_nothing_is_lost_among_bad_rows(
     atwood: Atwood, table: Table, rows: list[tuple[dict[str, str], str | None]], size: int, kind: str
 ) -> None:

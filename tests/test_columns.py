@@ -11,7 +11,7 @@ from typing import Any
 import flint
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli.arithmetic.rational import Irrational
@@ -27,6 +27,7 @@ from atwood_cli.arrays.tables import cosines_and_sines, powers
 from atwood_cli.model.scene import COLUMNS
 
 from . import oracle
+from .conftest import examples
 
 LEVELS: dict[str, Any] = {
     "rounded": ROUNDED,
@@ -284,7 +285,7 @@ def test_bounds_are_as_tight_as_they_need_be() -> None:
 doubles = st.floats(2.0**-120, 2.0**120)
 
 
-@settings(max_examples=100)
+@examples(100)
 @given(doubles, doubles, st.sampled_from([ROUNDED, QUICK, PAIRS]))
 def test_sums_and_products_of_doubles_are_exact(x: float, y: float, ar: Any) -> None:
     a, b = symbols(ar, 2)

@@ -19,7 +19,7 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import linprog, minimize_scalar
 from scipy.sparse import diags_array, vstack
@@ -31,6 +31,7 @@ from atwood_cli.solver.contact import Contact, contact
 from atwood_cli.solver.elements import Comparison, elements, march, march_ratio
 
 from . import oracle
+from .conftest import examples
 from .running import PIP, Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
 
 PAPER = ["contact", "--m1", "1", "--m2", "3", "--mu", "0.3"]
@@ -72,7 +73,7 @@ def test_contact_forces_add_up_to_what_the_tensions_would_do(scene: dict[str, st
     assert abs(Fraction(torque["ends"]) - (t2 - t1) * radius) <= 2 * rounding
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(scenes(), st.sampled_from(["creep", "least"]))
 def test_profiles_run_from_t1_to_t2_within_the_limits_of_friction(scene: dict[str, str], kind: str) -> None:
     solution = solve(**scene)

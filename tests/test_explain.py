@@ -12,7 +12,7 @@ from typing import Any
 import latex2mathml.converter
 import mpmath as mp
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli.arithmetic.rounding import to_digits
@@ -28,6 +28,7 @@ from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.messages import unmarked
 
 from . import oracle
+from .conftest import examples
 from .running import Atwood, on_terminal, plain, process
 from .scenes import FAMILIES, Given, inputs, of_all_kinds, scenes, table
 
@@ -145,7 +146,7 @@ def test_every_line_gives_its_result(kind: str, digits: int | None) -> None:
         check_numbers(equation, digits or 6)
 
 
-@settings(max_examples=60)
+@examples(60)
 @given(st.sampled_from(sorted(FAMILIES)), st.integers(0, 10**9), st.sampled_from([None, 2, 17]))
 def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits: int | None) -> None:
     scene = Scene.read(next(scenes(family, 1, seed)))

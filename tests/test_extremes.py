@@ -16,12 +16,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import MPContext
 
 from atwood_cli import REGIMES, solve, solve_arrays
 from atwood_cli.model.quantities import NAMES
+
+from .conftest import examples
 
 mp: Any = MPContext()
 mp.dps = 60
@@ -35,7 +37,7 @@ arrays_any: Any = solve_arrays
 
 everywhere = pytest.mark.parametrize("door", DOORS)
 where_regimes_are_right = pytest.mark.parametrize("door", [door for door in DOORS if door != "fast"])
-few = settings(max_examples=40)
+few = examples(40)
 
 masses = st.floats(1e-3, 1e3)
 coefficients = st.floats(0.01, 2)
@@ -469,7 +471,7 @@ def powers(units: tuple[int, ...], name: str) -> int:
 
 
 @pytest.mark.parametrize("door", [door for door in DOORS if door != "digits"])
-@settings(max_examples=30)
+@examples(30)
 @given(scenes, exponents)
 def test_units_smaller_by_powers_of_four_change_no_bit(
     door: str, scene: dict[str, float], units: tuple[int, ...]
@@ -481,7 +483,7 @@ def test_units_smaller_by_powers_of_four_change_no_bit(
         assert there == (here if name == "regime" or here is None else ldexp(here, powers(units, name))), name
 
 
-@settings(max_examples=30)
+@examples(30)
 @given(scenes, exponents, st.none() | masses)
 def test_units_smaller_by_powers_of_ten_move_the_point_alone(
     scene: dict[str, Any], units: tuple[int, ...], moment: float | None
@@ -503,7 +505,7 @@ SIGNED = ("acceleration", "rim_acceleration", "angular_acceleration", "torque")
 
 
 @everywhere
-@settings(max_examples=30)
+@examples(30)
 @given(scenes)
 def test_from_behind_everything_is_mirrored(door: str, scene: dict[str, float]) -> None:
     vector = ("friction_force_x", "friction_force_y") if "wrap" in scene else ()
@@ -580,7 +582,7 @@ def test_gravity_at_the_ends_of_the_doubles_scales_the_motion_alone(
 # One digit, and a thousand
 
 
-@settings(max_examples=8)
+@examples(8)
 @given(unequal, masses)
 def test_a_thousand_digits_are_all_right_and_one_is_their_rounding(
     pair: tuple[float, float], M: float

@@ -12,11 +12,12 @@ import polars as pl
 import pyarrow as pa
 import pyarrow.parquet as pq
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli.batch.parquet import write_frames
 
+from .conftest import examples
 from .running import Atwood, process
 
 
@@ -48,7 +49,7 @@ def test_parquet_keeps_its_types(atwood: Atwood, tmp_path: Path) -> None:
         max_size=20,
     )
 )
-@settings(max_examples=40)
+@examples(40)
 def test_nan_in_parquet_is_bad_and_null_is_not_given(
     atwood: Atwood, tmp_path: Path, rows: list[tuple[float | None, ...]]
 ) -> None:

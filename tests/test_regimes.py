@@ -8,7 +8,7 @@ from random import Random
 from typing import Any
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve
@@ -17,6 +17,7 @@ from atwood_cli.solver.regimes import changes, with_value
 from atwood_cli.solver.sweep import read_sweep
 
 from . import oracle
+from .conftest import examples
 
 
 def found(digits: int | None = None, **given: str) -> list[tuple[str, str, str]]:
@@ -115,7 +116,7 @@ def check_with_oracle(words: dict[str, str], *places: float) -> int:
     return len(said)
 
 
-@settings(max_examples=300)
+@examples(300)
 @given(st.integers(0), st.sampled_from(["m1", "m2"]), st.booleans())
 def test_windows_narrower_than_any_step_are_found(seed: int, name: str, down: bool) -> None:
     """With b > c the tension ratio peaks where the axle lets go of a swept mass, at m + b."""
@@ -150,7 +151,7 @@ RANGES = {
 }
 
 
-@settings(max_examples=400)
+@examples(400)
 @given(st.integers(0), st.sampled_from(sorted(RANGES)), st.sampled_from(["", ":log"]))
 def test_what_is_said_of_any_parameter_is_so(seed: int, name: str, log_: str) -> None:
     rng = Random(seed)
