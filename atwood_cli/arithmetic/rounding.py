@@ -159,19 +159,25 @@ def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits:
     raise ArithmeticError(f"not settled within {LARGEST_PRECISION} digits")
 
 
-def as_typed(q: Fraction) -> str:
-    """The exact decimal of a rational number, or n/d where it has none."""
+def exact_decimal(q: Fraction) -> Decimal | None:
+    """The decimal that a rational number is, without the zeros of a huge one; None if it is none."""
     context = decimal_context(WIDE, ROUND_HALF_EVEN)
     value = context.divide(Decimal(q.numerator), Decimal(q.denominator))
     if context.flags[Inexact]:
-        return str(q)
-    return text(context.normalize(value) if value.adjusted() >= 16 else value)
+        return None
+    return context.normalize(value) if value.adjusted() >= 16 else value
 
 
-def as_decimal(q: Fraction, round_: Rounding[T]) -> T | Decimal:
+def as_typed(q: Fraction) -> str:
+    """The exact decimal of a rational number, or n/d where it has none."""
+    value = exact_decimal(q)
+    return str(q) if value is None else text(value)
+
+
+def exact_or_rounded(q: Fraction, round_: Rounding[T]) -> T | Decimal:
     """The exact number if it is a decimal, else the rounded one."""
-    typed = as_typed(q)
-    return round_(q) if "/" in typed else Decimal(typed)
+    value = exact_decimal(q)
+    return round_(q) if value is None else value
 
 
 def with_uncertainty(cut: Callable[[int], Decimal], u: Decimal) -> str:

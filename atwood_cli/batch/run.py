@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from inspect import signature
-from math import nan
+from math import inf, nan
 from pathlib import Path
 from shutil import copyfileobj
 from tempfile import NamedTemporaryFile
@@ -20,7 +20,7 @@ from ..arrays import solve_and_count, solve_arrays
 from ..files import LONGEST_NAME, STREAM, Stdout, Unreadable, written_beside
 from ..model.quantities import NAMES, REGIMES, Accuracy
 from ..model.scene import Given, Scene, SceneError
-from ..model.units import in_quotes, read_number, shortened
+from ..model.units import in_quotes, shortened
 from ..solver.messages import reasons_at
 from .formats import (
     SEPARATORS,
@@ -340,9 +340,10 @@ def _why(row: Mapping[str, Any], layout: Layout) -> str:
         text = layout.pointed(cell).strip() if isinstance(cell, str) else cell
         if text is None or text == "":
             continue
-        is_number = read_number(str(text), None) is not None
-        as_text = is_number and (unit or isinstance(text, str))
-        cells[name] = f"{text}{unit}" if as_text else float(text)
+        if layout.double(name, cell) == inf:
+            cells[name] = inf
+        else:
+            cells[name] = f"{text}{unit}" if unit or isinstance(text, str) else float(text)
     try:
         Scene.read(cells)
     except SceneError as error:

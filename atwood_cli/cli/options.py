@@ -121,7 +121,7 @@ def _may_be_radians(typed: str) -> bool:
     """Whether a valid angle, or both ends of a range, has no unit and the size of radians."""
     least, most = LIKE_RADIANS
     ends = [read_number(word, "angle") for word in typed.split(":")[:2]]
-    return all(end and not end.unit for end in ends) and least < max(end.value for end in ends if end) < most
+    return not any(end.unit for end in ends) and least < max(end.value for end in ends) < most
 
 
 def numbers() -> Mapping[str, str]:

@@ -14,16 +14,17 @@ from .axle import Axle
 from .units import (
     MAX_DIGITS,
     MAX_MAGNITUDE,
+    NOT_A_NUMBER,
     NUMBER,
-    PERCENT,
     Malformed,
+    NotANumber,
+    Number,
     dimension_of,
     in_quotes,
     is_uncertain,
     nearest,
     read_number,
     shortened,
-    split_uncertainty,
     without_blanks,
 )
 
@@ -48,7 +49,6 @@ BODIES = {
 MASSES = ("m1", "m2")
 DEFAULTS = {"g": STANDARD_GRAVITY, "wrap": "180"}
 MISSING_MASS = "is missing; give both masses, m1 and m2"
-NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
 
 
 class SceneError(ValueError):
@@ -234,32 +234,23 @@ UNMEASURED = Motion()
 
 def read_input(name: str, given: Given | None) -> Input:
     """One parameter, whose text may carry a standard uncertainty. Raises SceneError."""
-    if not isinstance(given, str) or not is_uncertain(given):
-        return read_exactly(name, given)
-    try:
-        texts = split_uncertainty(given)
-    except Malformed as error:
-        raise SceneError(name, given, str(error)) from None
-    number, unit = _read_text(name, given, texts[0])
-    value = _checked(name, given, number, unit)
-    uncertainty = Fraction(_read_text(name, given, texts[1].rstrip(PERCENT))[0])
-    if texts[1].endswith(PERCENT):
-        uncertainty *= abs(Fraction(number)) / 100
-    return Input(value, uncertainty, given)
-
-
-def read_exactly(name: str, given: Given | None) -> Input:
-    """One parameter, without an uncertainty. Raises SceneError."""
     if given is None:
         default = DEFAULTS.get(name)
         return Input(default and read_value(name, default), Fraction(0), None)
     if isinstance(given, str):
-        number, unit = _read_text(name, given, given)
+        number = _read_text(name, given, given)
     elif (isinstance(given, Angle) and name == "wrap") or (isinstance(given, Axle) and name == "axle"):
-        number, unit = _read_number(name, given.number), given.unit
+        number = Number(_read_number(name, given.number), given.unit)
     else:
-        number, unit = _read_number(name, given), ""
-    return Input(_checked(name, given, number, unit), Fraction(0), given)
+        number = Number(_read_number(name, given))
+    return Input(_checked(name, given, number), number.uncertainty, given)
+
+
+def read_exactly(name: str, given: Given | None) -> Input:
+    """One parameter, without an uncertainty. Raises SceneError."""
+    if isinstance(given, str) and is_uncertain(given):
+        raise SceneError(name, given, NO_UNCERTAINTY)
+    return read_input(name, given)
 
 
 def read_value(name: str, given: Given | None) -> Any:
@@ -269,7 +260,9 @@ def read_value(name: str, given: Given | None) -> Any:
 
 def read_plain(name: str, given: str, text: str) -> Fraction | float:
     """The number that a cell of a table stands for, by a text without unit or name. Raises SceneError."""
-    return _read_text(name, given, text, PARAMETERS[name]._replace(dimension=None, names={}))[0]
+    if is_uncertain(text):
+        raise SceneError(name, given, NO_UNCERTAINTY)
+    return _read_text(name, given, text, PARAMETERS[name]._replace(dimension=None, names={})).value
 
 
 def read_whole(name: str, given: int | str, least: int, most: int) -> int:
@@ -287,41 +280,38 @@ def read_digits(given: int | str | None) -> int | None:
     return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
 
 
-def _checked(name: str, given: Given, number: Fraction | float, unit: str) -> Any:
+def _checked(name: str, given: Given, number: Number) -> Any:
     """The number as the parameter's value, an angle if it is one. Raises SceneError outside its domain."""
-    parameter = parameter_of(name)
+    parameter, (value, unit, _) = parameter_of(name), number
     if (
-        (number < 0 and not parameter.signed)
-        or (number == 0 and not (parameter.zero or parameter.signed))
-        or (abs(number) == inf and not parameter.inf)
+        (value < 0 and not parameter.signed)
+        or (value == 0 and not (parameter.zero or parameter.signed))
+        or (abs(value) == inf and not parameter.inf)
     ):
         raise SceneError(name, given, parameter.domain)
     if parameter.dimension == "angle":
-        return Angle(number, "rad" if unit == "rad" else "°")
+        return Angle(value, "rad" if unit == "rad" else "°")
     if name == "axle":
-        return Axle(number, "N m" if unit and dimension_of(unit) == "torque" else "N")
-    return number
+        return Axle(value, "N m" if unit and dimension_of(unit) == "torque" else "N")
+    return value
 
 
-def _read_text(
-    name: str, given: Given, text: str, parameter: Parameter | None = None
-) -> tuple[Fraction | float, str]:
-    """The number that a text, or part of it, stands for, and its unit; errors show all that was given."""
+def _read_text(name: str, given: Given, text: str, parameter: Parameter | None = None) -> Number:
+    """The number that a text, or part of it, stands for; errors show all that was given."""
     parameter = parameter or parameter_of(name)
     word = without_blanks(text).lower()
     if parameter.inf and word == "inf":
-        return inf, ""
-    if word in parameter.names:
-        return Fraction(parameter.names[word]), ""
+        return Number(inf)
     try:
-        number = read_number(text, parameter.dimension)
+        return read_number(parameter.names.get(word, text), parameter.dimension)
+    except NotANumber:
+        rule = _not_a_number(parameter, without_blanks(text))
     except Malformed as error:
-        raise SceneError(name, given, str(error)) from None
-    if number is None:
-        raise SceneError(name, given, _not_a_number(parameter, without_blanks(text)))
-    return number
+        rule = str(error)
+    raise SceneError(name, given, rule)
 
 
+NO_UNCERTAINTY = "carries an uncertainty, which only solve takes; give the value alone"
 THOUSANDS = re.compile(r"[+-]?\d{1,3},\d{3}[^,]*", re.ASCII)
 """With more commas it may as well be a list."""
 
@@ -331,8 +321,6 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
         return "is empty; give a value, or leave it out"
     if word.lower() in ("nan", "inf", "+inf", "-inf", "infinity"):
         return parameter.domain
-    if is_uncertain(word):
-        return "carries an uncertainty, which only solve takes; give the value alone"
     if re.match(r"[-+.]?\d.*:", word):
         return "is a range, not a number; atwood sweep takes ranges"
     number, pointed = word.replace(",", ""), word.replace(",", ".")
@@ -342,12 +330,8 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
         return f"is not a number; write {shortened(number)}{how}"
     if pointed != word and NUMBER.fullmatch(pointed):
         return f"is not a number; write it with a decimal point, {shortened(pointed)}"
-    near = nearest(word, parameter.names)
-    return f"{NOT_A_NUMBER}{_or_one_of(parameter.names)}{near}"
-
-
-def _or_one_of(names: Mapping[str, str]) -> str:
-    return f", or one of {', '.join(names)}" if names else ""
+    names = f", or one of {', '.join(parameter.names)}" if parameter.names else ""
+    return f"{NOT_A_NUMBER}{names}{nearest(word, parameter.names)}"
 
 
 def _longest(number: Decimal) -> int:

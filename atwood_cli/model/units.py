@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterable, Mapping
-from decimal import ROUND_FLOOR
+from decimal import ROUND_FLOOR, Decimal
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -63,19 +63,21 @@ MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 
 _TERM = r"[A-Za-zµμ]+(?:\^?-?[1-9]|⁻?[¹²³])?"
 _UNIT = rf"(?:{_TERM}(?: ?[*·/ ] ?{_TERM})*|°)"
-NUMBER = re.compile(rf"([+-]?)(\d+(?:\.\d*)?|\.\d+)(?:[eE]([+-]?\d+))?(?: ?({_UNIT}))?", re.ASCII)
+_DIGITS, _POWER, _TAIL = r"(?:\d+(?:\.\d*)?|\.\d+)", r"(?:[eE][+-]?\d+)?", rf"(?: ?{_UNIT})?"
+NUMBER = re.compile(rf"([+-]?{_DIGITS}{_POWER})(?: ?({_UNIT}))?", re.ASCII)
 MEGA = re.compile("M[a-z]|MN.*")
 """Megagrams, megametres and meganewtons are no thousandths in capitals."""
 _FACTOR = re.compile(r"([*·/ ]*)([A-Za-z]+|°)\^?(-?[1-9])?")
 _PLAIN = str.maketrans("µμ⁻¹²³", "uu-123")
 
 # An uncertainty: in units of the last digit, 1.000(2), or written out, 1.000±0.002, (1.000±0.002)g, 1g±2%.
-_DIGITS, _EXPONENT, _TAIL = r"(?:\d+(?:\.\d*)?|\.\d+)", r"(?:[eE][+-]?\d+)?", rf"(?: ?{_UNIT})?"
-IN_LAST_DIGITS = rf"([+-]?{_DIGITS})\((\d+)\)({_EXPONENT}{_TAIL})"
-IN_BRACKETS = rf"\(([+-]?{_DIGITS}) ?(?:±|\+/-) ?({_DIGITS})( ?%)?\)({_EXPONENT}{_TAIL})"
-WRITTEN_OUT = rf"([+-]?{_DIGITS}{_EXPONENT})({_TAIL}) ?(?:±|\+/-) ?({_DIGITS}{_EXPONENT})({_TAIL}| ?%)"
+_SIGN = r" ?(?:±|\+/-) ?"
+IN_LAST_DIGITS = rf"([+-]?{_DIGITS})\((\d+)\)({_POWER}{_TAIL})"
+IN_BRACKETS = rf"\(([+-]?{_DIGITS}){_SIGN}({_DIGITS})( ?%)?\)({_POWER}{_TAIL})"
+WRITTEN_OUT = rf"([+-]?{_DIGITS}{_POWER})({_TAIL}){_SIGN}({_DIGITS}{_POWER})({_TAIL}| ?%)"
 UNCERTAIN = ("(", "±", "+/-")
 PERCENT = "%"
+NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
 NOT_UNCERTAIN = (
     "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+/-0.002 or 1.000(2),"
     " and a unit after that"
@@ -86,14 +88,20 @@ class Malformed(ValueError):
     """A text that is no such number; the message is the rule it breaks."""
 
 
-class Typed(NamedTuple):
-    """A number that was typed: its exact value in SI units, degrees or radians, and its unit, if it has one.
+class NotANumber(Malformed):
+    """A text that does not look like a number at all."""
 
-    The unit is a symbol, or as it was typed where it is made of several.
+
+class Number(NamedTuple):
+    """A number as it was typed: exact, with its standard uncertainty, in SI units, degrees or radians.
+
+    ``unit`` is the symbol of the unit, or its text if it is made of several, and is empty if there is none.
+    The value is a float only where it is infinite.
     """
 
-    value: Fraction
-    unit: str
+    value: Fraction | float
+    unit: str = ""
+    uncertainty: Fraction = Fraction(0)
 
 
 def shortened(text: str, most: int = 60) -> str:
@@ -116,21 +124,34 @@ def is_uncertain(text: str) -> bool:
     return any(mark in text for mark in UNCERTAIN)
 
 
-def split_uncertainty(text: str) -> tuple[str, str]:
+def read_number(text: str, dimension: str | None) -> Number:
+    """The number that a text is, with its unit and its uncertainty if it has them.
+
+    ``dimension`` is one of `DIMENSIONS`, or two with an "or" between, or None for a number that takes no
+    unit. Raises Malformed.
+    """
+    text = without_blanks(text)
+    if not is_uncertain(text):
+        return Number(*_read_exactly(text, dimension))
+    typed, u = _split_uncertainty(text)
+    value, unit = _read_exactly(typed, dimension)
+    if u.endswith(PERCENT):
+        return Number(value, unit, _read_exactly(u.removesuffix(PERCENT), None)[0] * abs(value) / 100)
+    return Number(value, unit, _read_exactly(u, dimension)[0])
+
+
+def _split_uncertainty(text: str) -> tuple[str, str]:
     """The texts of a value and of its uncertainty: 0.25(12)g is 0.25g and 0.12g, 55g±1% is 55g and 1%.
 
     Raises Malformed.
     """
-    text = without_blanks(text)
     if match := re.fullmatch(IN_LAST_DIGITS, text, re.ASCII):
         value, digits, tail = match.groups()
         places = len(value.partition(".")[2])
-        point = max(1, len(digits) - places)
-        digits = digits.zfill(point + places)
-        return value + tail, f"{digits[:point]}{'.' * bool(places)}{digits[point:]}{tail}"
+        return value + tail, f"{Decimal((0, tuple(map(int, digits)), -places)):f}{tail}"
     if match := re.fullmatch(IN_BRACKETS, text, re.ASCII):
-        value, uncertainty, percent, tail = match.groups()
-        return value + tail, uncertainty + (PERCENT if percent else tail)
+        value, u, percent, tail = match.groups()
+        return value + tail, u + (PERCENT if percent else tail)
     match = re.fullmatch(WRITTEN_OUT, text, re.ASCII)
     if match and match[4].endswith(PERCENT):
         return match[1] + match[2], match[3] + PERCENT
@@ -139,30 +160,25 @@ def split_uncertainty(text: str) -> tuple[str, str]:
     return match[1] + match[4], match[3] + match[4]
 
 
-def read_number(text: str, dimension: str | None) -> Typed | None:
-    """The number that was typed; None if it is no number at all.
-
-    ``dimension`` is one of `DIMENSIONS`, or two with an "or" between, or None for a number that takes no
-    unit. Raises Malformed.
-    """
-    match = NUMBER.fullmatch(without_blanks(text))
+def _read_exactly(text: str, dimension: str | None) -> tuple[Fraction, str]:
+    """The value of a number without an uncertainty, and its unit. Raises Malformed."""
+    match = NUMBER.fullmatch(text)
     if not match:
-        return None
-    sign, mantissa, exponent, unit = match.groups(default="")
-    power = exponent.lstrip("+-").lstrip("0")[:5] or "0"  # enough to see that it is too large
-    power = f"{'-' * exponent.startswith('-')}{power}"
-    _check_size(len(mantissa.replace(".", "")), int(power))
-    value = Fraction(f"{sign}{mantissa}e{power}")
+        raise NotANumber(NOT_A_NUMBER)
+    number, unit = match.groups(default="")
+    mantissa, _, exponent = number.lower().partition("e")
+    power = int(f"{'-' * exponent.startswith('-')}{exponent.lstrip('+-0')[:5] or 0}")  # or beyond all bounds
+    _check_size(len(re.sub("[^0-9]", "", mantissa)), power)
+    value = Fraction(f"{mantissa}e{power}")
     if not unit:
-        return Typed(value, "")
+        return value, ""
     if dimension is None:
         raise Malformed(f"must be a plain number, without the {in_quotes(unit)}")
     factor = read_unit(unit, dimension)
     value *= factor
     digits = re.sub("[^0-9]", "", as_typed(value).partition("e")[0]).lstrip("0")
-    exponent_of_unit = to_digits(1, ROUND_FLOOR)(factor).adjusted()
-    _check_size(len(digits), int(power) + exponent_of_unit, ", its unit included")
-    return Typed(value, symbol_of(unit) or unit)
+    _check_size(len(digits), power + to_digits(1, ROUND_FLOOR)(factor).adjusted(), ", its unit included")
+    return value, symbol_of(unit) or unit
 
 
 def _check_size(digits: int, exponent: int, how: str = "") -> None:

@@ -10,7 +10,7 @@ from fractions import Fraction
 from math import inf
 from typing import Any, NamedTuple, TextIO
 
-from ..arithmetic.rounding import Rounding, as_decimal, as_typed, is_infinite, text, to_double
+from ..arithmetic.rounding import Rounding, as_typed, exact_or_rounded, is_infinite, text, to_double
 from ..files import Stdout, printable
 from ..model.angle import Angle
 from ..model.axle import Axle
@@ -171,7 +171,7 @@ def scene_record(
     def written(value: object, unit: str) -> object:
         if not isinstance(value, Fraction):
             return value
-        number = as_decimal(value, round_)
+        number = exact_or_rounded(value, round_)
         return f"{text(number)}{unit}" if unit else number
 
     return {name: written(*one) for name, one in _given(scene, motion).items()}

@@ -14,7 +14,7 @@ from math import lcm
 from typing import NamedTuple
 
 from ..arithmetic.interval import decimal_context
-from ..arithmetic.rounding import as_decimal, as_typed, text, tidy, to_digits
+from ..arithmetic.rounding import exact_decimal, exact_or_rounded, text, tidy, to_digits
 from ..model.scene import INPUTS, Scene, SceneError, in_units, read_value, read_whole
 from ..model.units import MAX_DIGITS, in_quotes, read_number
 from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
@@ -145,7 +145,7 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     if kept > MAX_DIGITS:
         rule = f"has points closer together than {MAX_DIGITS} digits can tell"
         raise SceneError(name, typed, f"{rule}; take fewer points, or ends further apart")
-    ends = [tidy(as_decimal(end, to_digits(kept))) for end in (start, stop)]
+    ends = [tidy(exact_or_rounded(end, to_digits(kept))) for end in (start, stop)]
     points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last, kept), ends[1]]
     return Range(name, typed, [f"{text(point)}{unit}" if unit else point for point in points], log)
 
@@ -161,7 +161,7 @@ def _read_end(name: str, typed: str, word: str) -> tuple[Fraction, str]:
 def _check_units(name: str, typed: str, ends: Sequence[str], has_zero: bool) -> None:
     """100:500g is from 100 kg to half a kilogram: hardly what was meant."""
     numbers = (read_number(word, INPUTS[name].dimension) for word in ends)
-    if len({bool(number and number.unit) for number in numbers}) > 1 and not has_zero:
+    if len({bool(number.unit) for number in numbers}) > 1 and not has_zero:
         raise SceneError(name, typed, "has a unit at one end only; write it at both")
 
 
@@ -171,7 +171,7 @@ def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: 
         steps = last / min(abs(1 - start / stop), abs(1 - stop / start))
     else:
         step = (stop - start) / last
-        if not digits and "/" not in as_typed(start) + as_typed(step):
+        if not digits and None not in (exact_decimal(start), exact_decimal(step)):
             return MAX_DIGITS
         steps = max(abs(start), abs(stop)) / abs(step)
     return max(digits or SHOWN_DIGITS, len(str(int(steps))) + 3)
