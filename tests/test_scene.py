@@ -1,5 +1,6 @@
 """Bad input: one clear sentence that names the parameter, the value and the rule."""
 
+import json
 import re
 from decimal import Decimal
 from fractions import Fraction
@@ -14,6 +15,8 @@ from hypothesis import strategies as st
 from atwood_cli import Scene, SceneError, solve
 from atwood_cli.model.scene import BODIES
 from atwood_cli.model.units import LENGTH, MASS
+
+from .running import Atwood, process
 
 NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
@@ -139,6 +142,15 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
         "mu_k '0.3' must not be above mu; exactly, 0.3 > "
         "0.299999999999999988897769753748434595763683319091796875",
     ),
+    ({"m1": "1/0"}, "m1 '1/0' divides by 0"),
+    ({"wrap": "pi/0"}, "wrap 'pi/0' divides by 0"),
+    ({"m1": "1/1e501"}, "m1 '1/1e501' has an exponent beyond 500 in magnitude"),
+    (
+        {"m1": f"1.{'1' * 999}/{'7' * 999}e500"},
+        f"m1 '1.{'1' * 37}...{'7' * 5}e500' is too long; numerator and denominator may have 1500 digits",
+    ),
+    *(({"m1": bad}, f"m1 {bad!r} {NOT_A_NUMBER}") for bad in ("1/2/3", "1kg/3", "3g/4", "/3", "1/", "pi")),
+    ({"R": "g/4"}, f"R 'g/4' {NOT_A_NUMBER}"),
     ({"I": "1"}, "I '1' needs the radius R as well"),
     ({"I": "1", "R": "1", "inertia": "1"}, "I '1' and inertia both describe the pulley; give one of them"),
     ({"I": "1", "R": "1", "M": "0"}, "I '1' contradicts M = 0; leave one of them out"),
@@ -209,6 +221,10 @@ def test_the_grammar_of_numbers(text: str) -> None:
         ("2 tonnes", 2000),
         ("500 grams", "1/2"),
         ("1 Pound", "0.45359237"),
+        ("1/3", "1/3"),
+        ("1 / 3 kg", "1/3"),
+        ("-1/-1.5e1", "1/15"),
+        ("1/3g", "1/3000"),
     ],
 )
 def test_text_means_exactly_itself(text: str, value: Any) -> None:
@@ -230,6 +246,11 @@ def test_text_means_exactly_itself(text: str, value: Any) -> None:
         ("R", "5µm", "5e-6"),
         ("wrap", "1.5 turns", 540),
         ("wrap", "90 Degrees", 90),
+        ("wrap", "1/2turn", 180),
+        *(("wrap", word, 270) for word in ("3pi/2", "3π/2", "1.5 PI", "3/2*pi", "3 / 2 π", "3π / 2 rad")),
+        ("wrap", "pi", 180),
+        ("g", "g/4", "2.4516625"),
+        ("g", "0.25 g", "2.4516625"),
         ("inertia", "Hoop", 1),
         ("M", " INF ", "inf"),
     ],
@@ -244,6 +265,35 @@ def test_what_was_measured_takes_units_too() -> None:
     assert a == solve(m1="0.055", m2="0.060", a="0.38")
     fall = solve(m1="55g", m2="60g", drop="2 feet", time="2.05 Secs")
     assert fall == solve(m1="0.055", m2="0.060", drop="0.6096", time="2.05")
+
+
+def test_a_measured_acceleration_may_be_a_multiple_of_g() -> None:
+    """Of the scene's g: (m2 - m1)/(m1 + m2 + M/2) is 1/4 for M = 8."""
+    assert solve(m1=1, m2=3, a="g/4") == solve(m1=1, m2=3, a="2.4516625")
+    for m1, m2, a in ((1, 3, "0.25g"), (3, 1, "-g/4"), (1, 3, "1/4 g")):
+        assert solve(m1=m1, m2=m2, a=a, g="moon", digits=5).pulley_mass == 8  # type: ignore[attr-defined]
+    u = solve(m1=1, m2=3, a="0.25(1)g", g=10).uncertainty
+    assert u == solve(m1=1, m2=3, a="2.5(1)", g=10).uncertainty
+    with pytest.raises(SceneError, match="a 'g/4' is a multiple of g, which is uncertain; give it in m/s2"):
+        solve(m1=1, m2=3, a="g/4", g="9.81(1)")
+
+
+def test_quotients_are_taken_wherever_numbers_are(atwood: Atwood) -> None:
+    assert solve(m1="1/3±1/300", m2=1).uncertainty == solve(m1="1/3±1%", m2=1).uncertainty
+    scene = json.loads(atwood("solve", "--m1", "1/3", "--m2", "1/4", "--wrap", "2/3rad", "--json").out)[
+        "scene"
+    ]
+    assert [scene[name] for name in ("m1", "m2", "wrap")] == [1 / 3, 0.25, "0.6666666666666666rad"]
+    assert atwood("solve", "--m1", "1/3", "--m2", "1").out.startswith("m1 = 1/3 kg, ")
+    swept = atwood("sweep", "--m1", "1/3:2/3:3", "--m2", "1", "--csv", "--only", "regime")
+    assert swept.out == "m1,regime\n0.333333,no-slip\n0.5,no-slip\n0.666667,no-slip\n"
+    assert atwood("sweep", "--m1", "1/0:2:3", "--m2", "1").err == "atwood: --m1 '1/0' divides by 0\n"
+    ran = process(
+        shell="printf 'm1 (g),m2\n1/3,1\n1/0,1\n' | atwood batch - --only acceleration --accuracy exact"
+    )
+    third, error = ran.out.splitlines()[1:]
+    assert third == f"1/3,1,{solve(m1=1 / 3000, m2=1).acceleration},"
+    assert error == "1/0,1,,m1 '1/0' divides by 0"
 
 
 @pytest.mark.parametrize("text", ["250±2.5g", "250g±1%", "(250±1%)g", "250 g +/- 1 %", "250g±10E-1%"])

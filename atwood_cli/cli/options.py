@@ -23,14 +23,14 @@ DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 
 ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
 REMARKS = {
-    "m1": ', as 1.5, 250g or "2 lb"',
+    "m1": ', as 1.5, 1/3, 250g or "2 lb"',
     "M": "; inf locks it",
     "mu_k": "; mu if not given",
     "g": " by NASA's fact sheets; 9.80665 if not given",
     "inertia": "; 0.5 if not given",
     "I": ", in place of inertia; needs R",
     "R": ", as 0.1 or 5cm",
-    "wrap": ", in degrees, or as 1.5turn or 3rad; 180 if not given",
+    "wrap": ", in degrees, or as 1.5turn, 3rad or pi/2; 180 if not given",
     "axle": ", as 15mN or 0.4mNm",
     "a": ": finds M; beside M, a mass or gravity; of a string that slips, mu_k",
     "drop": ": gives the time and the speed",

@@ -16,6 +16,8 @@ from .units import (
     MAX_MAGNITUDE,
     NOT_A_NUMBER,
     NUMBER,
+    STANDARD_GRAVITY,
+    TOO_LONG,
     Malformed,
     NotANumber,
     Number,
@@ -32,9 +34,6 @@ Given = str | int | float | Decimal | Fraction | Angle | Axle
 """An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
 
 INERTIA_FACTORS = {"disk": "0.5", "hoop": "1"}
-
-STANDARD_GRAVITY = "9.80665"
-"""m/s², exact by definition: 3rd General Conference on Weights and Measures, 1901."""
 
 BODIES = {
     "mercury": "3.70",
@@ -353,7 +352,7 @@ def _read_number(name: str, given: object) -> Fraction | float:
             return float(given)
         if max(abs(value.numerator), value.denominator) < 10**MAX_MAGNITUDE:
             return value
-    raise SceneError(name, given, f"is too long; numerator and denominator may have {MAX_MAGNITUDE} digits")
+    raise SceneError(name, given, TOO_LONG)
 
 
 def _ratio(given: Any) -> tuple[SupportsInt, SupportsInt]:

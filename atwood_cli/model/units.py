@@ -1,4 +1,4 @@
-"""Numbers as people type them: 1.5e-3, 250g, 9.81 m/s2, 1.000(2), (250±1)g. All exact; nothing is rounded."""
+"""Numbers as people type them, exactly: 1.5e-3, 1/3, 250g, 9.81 m/s2, 3pi/2, 1.000(2), (250±1)g."""
 
 import re
 from collections.abc import Iterable, Mapping
@@ -7,6 +7,9 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ..arithmetic.rounding import as_typed, to_digits
+
+STANDARD_GRAVITY = "9.80665"
+"""m/s², exact by definition: 3rd General Conference on Weights and Measures, 1901."""
 
 # fmt: off
 MASS = {
@@ -21,7 +24,7 @@ LENGTH = {
 ANGLE = {"deg": "1", "°": "1", "turn": "360", "rad": "1"}
 """In degrees, but for radians, which stay what they are."""
 TIME = {"s": "1", "ms": "1e-3", "min": "60", "h": "3600"}
-FORCE = {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": "4.4482216152605", "kgf": "9.80665"}
+FORCE = {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": "4.4482216152605", "kgf": STANDARD_GRAVITY}
 TORQUE = {"Nm": "1", "mNm": "1e-3"}
 COMPOUND = {
     "acceleration": ("m/s2", "cm/s2", "ft/s2", "N/kg"),
@@ -60,11 +63,20 @@ MAX_UNIT = 60
 """Characters of a unit."""
 # No text within those limits is longer as a numerator or denominator.
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
+TOO_LONG = f"is too long; numerator and denominator may have {MAX_MAGNITUDE} digits"
 
 _TERM = r"[A-Za-zµμ]+(?:\^?-?[1-9]|⁻?[¹²³])?"
 _UNIT = rf"(?:{_TERM}(?: ?[*·/ ] ?{_TERM})*|°)"
 _DIGITS, _POWER, _TAIL = r"(?:\d+(?:\.\d*)?|\.\d+)", r"(?:[eE][+-]?\d+)?", rf"(?: ?{_UNIT})?"
-NUMBER = re.compile(rf"([+-]?{_DIGITS}{_POWER})(?: ?({_UNIT}))?", re.ASCII)
+_DECIMAL = rf"[+-]?{_DIGITS}{_POWER}"
+_QUOTIENT = rf"{_DECIMAL}(?: ?/ ?{_DECIMAL})?"
+NUMBER = re.compile(rf"({_QUOTIENT})(?: ?({_UNIT}))?", re.ASCII)
+_MULTIPLE = rf"({_QUOTIENT}|[+-]?) ?\*? ?(?:%s)(?: ?/ ?({_DECIMAL}))?"
+MULTIPLES = {
+    "angle": (_MULTIPLE % "(?i:pi)|π" + "(?: ?rad)?", "pi", Fraction(180)),
+    "acceleration": (_MULTIPLE % "g", "g", Fraction(STANDARD_GRAVITY)),
+}
+"""By dimension, the constant of which a number may be a multiple, as in 3pi/2, and what that is."""
 MEGA = re.compile("M[a-z]|MN.*")
 """Megagrams, megametres and meganewtons are no thousandths in capitals."""
 _FACTOR = re.compile(r"([*·/ ]*)([A-Za-z]+|°)\^?(-?[1-9])?")
@@ -74,7 +86,7 @@ _PLAIN = str.maketrans("µμ⁻¹²³", "uu-123")
 _SIGN = r" ?(?:±|\+/-) ?"
 IN_LAST_DIGITS = rf"([+-]?{_DIGITS})\((\d+)\)({_POWER}{_TAIL})"
 IN_BRACKETS = rf"\(([+-]?{_DIGITS}){_SIGN}({_DIGITS})( ?%)?\)({_POWER}{_TAIL})"
-WRITTEN_OUT = rf"([+-]?{_DIGITS}{_POWER})({_TAIL}){_SIGN}({_DIGITS}{_POWER})({_TAIL}| ?%)"
+WRITTEN_OUT = rf"({_QUOTIENT})({_TAIL}){_SIGN}(?![+-])({_QUOTIENT})({_TAIL}| ?%)"
 UNCERTAIN = ("(", "±", "+/-")
 PERCENT = "%"
 NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
@@ -162,31 +174,67 @@ def _split_uncertainty(text: str) -> tuple[str, str]:
 
 def _read_exactly(text: str, dimension: str | None) -> tuple[Fraction, str]:
     """The value of a number without an uncertainty, and its unit. Raises Malformed."""
+    pattern, constant, worth = MULTIPLES.get(dimension or "", ("", "", Fraction(0)))
+    if pattern and (multiple := re.fullmatch(pattern, text, re.ASCII)):
+        times, parts = multiple.groups(default="1")
+        one = "1" * (not times.strip("+-"))
+        return _limited(_quotient(times + one) * worth * _quotient(f"1/{parts}")), constant
     match = NUMBER.fullmatch(text)
     if not match:
         raise NotANumber(NOT_A_NUMBER)
     number, unit = match.groups(default="")
-    mantissa, _, exponent = number.lower().partition("e")
-    power = int(f"{'-' * exponent.startswith('-')}{exponent.lstrip('+-0')[:5] or 0}")  # or beyond all bounds
-    _check_size(len(re.sub("[^0-9]", "", mantissa)), power)
-    value = Fraction(f"{mantissa}e{power}")
+    value = _quotient(number)
     if not unit:
         return value, ""
     if dimension is None:
         raise Malformed(f"must be a plain number, without the {in_quotes(unit)}")
     factor = read_unit(unit, dimension)
     value *= factor
-    digits = re.sub("[^0-9]", "", as_typed(value).partition("e")[0]).lstrip("0")
-    _check_size(len(digits), power + to_digits(1, ROUND_FLOOR)(factor).adjusted(), ", its unit included")
+    if "/" in number:
+        _limited(value)
+    else:
+        digits = re.sub("[^0-9]", "", as_typed(value).partition("e")[0]).lstrip("0")
+        exponent = _power(number) + to_digits(1, ROUND_FLOOR)(factor).adjusted()
+        _check_size(len(digits), exponent, ", its unit included")
     return value, symbol_of(unit) or unit
 
 
+def _quotient(text: str) -> Fraction:
+    """The value of a decimal or a quotient of two. Raises Malformed."""
+    over, slash, under = text.partition("/")
+    if not slash:
+        return _decimal(text)
+    if not (divisor := _decimal(under.strip())):
+        raise Malformed("divides by 0")
+    return _limited(_decimal(over.strip()) / divisor)
+
+
+def _decimal(text: str) -> Fraction:
+    """The value of a decimal. Raises Malformed."""
+    mantissa = re.split("[eE]", text)[0]
+    _check_size(len(re.sub("[^0-9]", "", mantissa)), _power(text))
+    return Fraction(f"{mantissa}e{_power(text)}")
+
+
+def _power(decimal: str) -> int:
+    """The power of ten that a decimal is written with; of one beyond all bounds, its first digits."""
+    exponent = decimal.lower().partition("e")[2]
+    return int(f"{'-' * exponent.startswith('-')}{exponent.lstrip('+-0')[:5] or 0}")
+
+
 def _check_size(digits: int, exponent: int, how: str = "") -> None:
-    """Refuse a number that would take long. Raises Malformed."""
+    """Refuse a decimal that would take long. Raises Malformed."""
     if digits > MAX_DIGITS:
         raise Malformed(f"has {digits} digits{how}; at most {MAX_DIGITS} are taken")
     if abs(exponent) > MAX_EXPONENT:
         raise Malformed(f"has an exponent beyond {MAX_EXPONENT} in magnitude{how}")
+
+
+def _limited(value: Fraction) -> Fraction:
+    """A fraction that does not take long. Raises Malformed."""
+    if max(abs(value.numerator), value.denominator) >= 10**MAX_MAGNITUDE:
+        raise Malformed(TOO_LONG)
+    return value
 
 
 def read_unit(unit: str, wanted: str) -> Fraction:

@@ -22,7 +22,8 @@ from ..arithmetic.interval import decimal_context
 from ..arithmetic.rounding import to_double
 from ..arrays import solve_arrays
 from ..model.quantities import ACCURACIES, REGIMES, STANDARD
-from ..model.scene import STANDARD_GRAVITY, Scene, SceneError
+from ..model.scene import Scene, SceneError
+from ..model.units import STANDARD_GRAVITY
 from ..solver.answers import Answers
 from ..solver.elements import MAX_ELEMENTS, TOO_LARGE, balanced, extrapolated, march_ratio
 from .baseline import paper_in_numpy
