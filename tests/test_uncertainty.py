@@ -29,7 +29,6 @@ from atwood_cli.model.quantities import NAMES
 from atwood_cli.model.scene import Scene, read_input
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.reading import read_answers
-from atwood_cli.solver.uncertainty import Uncertainties
 
 from . import oracle
 from .running import Atwood, on_terminal, plain, process
@@ -318,8 +317,7 @@ def test_every_family_against_flint(family: str) -> None:
         scene = Scene.read(given)
         numbers = scene._asdict() | {"wrap": scene.wrap.number}
         inputs = {x: numbers[x] for x in given if numbers[x] != inf}
-        found = Answers(scene, 25)
-        found.uncertainties = Uncertainties(found.case, {x: v / 100 for x, v in inputs.items()})
+        found = Answers(scene, 25, uncertain={x: v / 100 for x, v in inputs.items()})
         variances: dict[str, Any] = {}
         for x, v in inputs.items():
             moved = (v + v * step for step in (TINY, -TINY))
@@ -695,6 +693,14 @@ def is_far(here: Any, ends: list[Any], name: str) -> bool:
         return u is not None
     u = u.copy_sign(high - low)
     return bool(5 * max(abs(high - value - u), abs(value - low - u)) > abs(u) + abs(value) / 10**25)
+
+
+def test_what_is_in_doubt_beside_what_was_measured() -> None:
+    """A pulley without mass was followed to scenes beside it, which none fits, and solve ended in an error."""
+    notes = solve(m1="1.0(1)", m2=3, g=10, axle=10, a="2.5").notes
+    assert notes[-1].endswith("u_pulley_mass: unknown, as inputs a little different fit no pulley.")
+    found = solve(m1="1.0(5)", M=5, g=10, a="0.01(1)").notes  # m2, which is as uncertain as m1
+    assert any("m2 - m1 = 0.0045 ± 0.0046 kg is within" in note for note in found)
 
 
 def test_existence_is_in_doubt_only_of_what_is_asked_for(atwood: Atwood) -> None:

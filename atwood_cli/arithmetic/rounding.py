@@ -39,8 +39,8 @@ CLOSEST, ENOUGH = 6000, 6050
 """The digits in which a value must agree with a tie to be taken for it; and a precision that shows them."""
 SUSPECT = 800
 """If a value is not settled at this precision, the next one is `ENOUGH`, as it may be a tie."""
-THRESHOLD_DIGITS = 3
-"""Significant digits of thresholds in sentences."""
+DOUBLE_DIGITS, SHOWN_DIGITS, THRESHOLD_DIGITS = 17, 6, 3
+"""Significant digits: that tell doubles apart; of tables and sentences; of thresholds in sentences."""
 GUARD = 8
 """Digits beyond the wanted ones in the first computation of a quantity."""
 WIDE = 5000  # digits, more than any two numbers shown side by side differ in size

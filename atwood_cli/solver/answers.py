@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable
+from collections.abc import Container, Iterable, Mapping
 from copy import copy
 from decimal import Decimal
 from fractions import Fraction
@@ -12,14 +12,9 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.interval import LARGEST_EXPONENT
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import EXACT, Irrational
-from ..arithmetic.rounding import (
-    Rounding,
-    is_infinite,
-    is_positive,
-    settle,
-    to_digits,
-    to_double,
-)
+from ..arithmetic.rounding import DOUBLE_DIGITS as DOUBLE_DIGITS  # others have these from here
+from ..arithmetic.rounding import SHOWN_DIGITS as SHOWN_DIGITS
+from ..arithmetic.rounding import Rounding, is_infinite, is_positive, settle, to_digits, to_double
 from ..model.case import Case
 from ..model.machine import Machine, Undetermined
 from ..model.quantities import FROM_MOTION, MAIN, NAMES
@@ -27,32 +22,40 @@ from ..model.scene import UNMEASURED, Motion, Scene
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, N, Quantity
-    from .uncertainty import Uncertainties
-
-DOUBLE_DIGITS = 17
-SHOWN_DIGITS = 6
-"""Significant digits of tables and sentences, unless others are asked for."""
+    from .uncertainty import OnMachine, Uncertainties
 
 TOO_LARGE = f"beyond 10^{LARGEST_EXPONENT}, the largest number written out"
 ABOVE_DOUBLES = "beyond the range of doubles; ask for digits (--digits 17) to see it"
 BELOW_DOUBLES = "not 0 but below the range of doubles; ask for digits (--digits 17) to see it"
 
-OnMachine = Callable[[Machine[Any]], Any]
-
 
 class Answers:
     """The quantities of a scene, settled when asked for: to doubles or to ``digits`` digits.
 
-    ``reasons`` says by name why one asked for shows no value, ``unsure`` why one shows no uncertainty, and
-    ``spread`` has the uncertainties asked for.
-    ``uncertainties`` is None where all inputs are exact.
+    ``uncertain`` has the standard uncertainties of the inputs that have one. Of the quantities asked for,
+    ``reasons`` says by name why one shows no value, ``unsure`` why one shows no uncertainty, and ``spread``
+    has the uncertainties.
     """
 
-    def __init__(self, scene: Scene, digits: int | None = None, motion: Motion = UNMEASURED) -> None:
-        self.case = Case(scene, motion)
-        self.uncertainties: Uncertainties | None = None
+    def __init__(
+        self,
+        scene: Scene,
+        digits: int | None = None,
+        motion: Motion = UNMEASURED,
+        uncertain: Mapping[str, Fraction] = {},
+    ) -> None:
+        self.case, self.uncertain = Case(scene, motion), uncertain
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._round_to(digits)
+
+    @lazy
+    def uncertainties(self) -> Uncertainties | None:
+        """The uncertainties of quantities; None where all inputs are exact."""
+        if not self.uncertain:
+            return None
+        from .uncertainty import Uncertainties
+
+        return Uncertainties(self.case, self.uncertain)
 
     def _round_to(self, digits: int | None) -> None:
         self.digits = digits
@@ -63,7 +66,7 @@ class Answers:
         self.spread: dict[str, Any] = {}
 
     def to(self, digits: int | None) -> Answers:
-        """The same quantities to so many digits, what was computed for these with them."""
+        """The same quantities to so many digits; they share the machines, and so what these computed."""
         other = copy(self)
         vars(other).pop("shown", None)
         other._round_to(digits)
@@ -129,7 +132,7 @@ class Answers:
         value, known, quantity = self[name], self.uncertainties, attrgetter(name)
         if known is None or value is None:
             return None
-        if is_infinite(value) and is_infinite(self._settle(quantity, to_digits(1))):
+        if is_infinite(value) and is_infinite(self.settle(quantity, to_digits(1))):
             return None
         of, digits = known.of(quantity), self.digits or DOUBLE_DIGITS
         try:
@@ -161,17 +164,12 @@ class Answers:
 
     def rounded(self, name: str, round_: Rounding[Decimal]) -> Decimal:
         """The value of a quantity that exists, rounded in another way."""
-        value = self._settle(attrgetter(name), round_)
-        assert isinstance(value, Decimal)
-        return value
+        return Decimal(self.settle(attrgetter(name), round_))
 
-    def settle(self, quantity: OnMachine) -> float | Decimal:
-        """Anything that a machine has, correctly rounded. Raises Undetermined."""
-        return self._settle(quantity, self.round)
-
-    def _settle(self, quantity: OnMachine, round_: Rounding[Any]) -> float | Decimal:
-        digits = max(self.digits or 0, DOUBLE_DIGITS)  # so that fewer are had from what doubles took
-        value: float | Decimal = settle(self._on_machines(quantity), round_, digits)
+    def settle(self, quantity: OnMachine, round_: Rounding[Any] | None = None) -> float | Decimal:
+        """Anything that a machine has, rounded as quantities are or in another way. Raises Undetermined."""
+        digits = max(self.digits or 0, DOUBLE_DIGITS)  # so that fewer digits need no second computation
+        value: float | Decimal = settle(self._on_machines(quantity), round_ or self.round, digits)
         return value
 
     def exactly(self, quantity: OnMachine) -> Fraction | None:

@@ -12,14 +12,17 @@ from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
 from math import atan2, cos, floor, hypot, inf, isfinite, tan
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.rounding import to_digits
 from ..model import physics
 from ..model.machine import Machine
 from ..model.scene import SceneError, read_whole
-from .answers import Answers, OnMachine
+from .answers import Answers
 from .contact import check_arc
+
+if TYPE_CHECKING:
+    from .uncertainty import OnMachine
 
 BLOCK = 1 << 16  # elements at a time: arrays of half a megabyte, which stay in the cache
 MAX_ELEMENTS = 10_000_000

@@ -19,12 +19,8 @@ def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answe
 
         scene, motion = motions.read(inputs)
         scene = motions.completed(scene, motion)
-    answers = Answers(scene, digits, motion)
-    if uncertain := {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}:
-        from .uncertainty import Uncertainties
-
-        answers.uncertainties = Uncertainties(answers.case, uncertain)
-    return answers
+    uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
+    return Answers(scene, digits, motion, uncertain)
 
 
 def _of_gravity(a: Input, g: Input) -> Input:

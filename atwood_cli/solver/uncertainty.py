@@ -5,10 +5,10 @@ For inputs x that are known to u(x), independently of each other, u(q)² = Σ (�
 duals (see `arithmetic.dual`), differentiate themselves. So an uncertainty is a quantity like any other,
 one that can be computed in every arithmetic, and its digits are settled like those of a value.
 
-What is decided about a scene is decided for the one an infinitesimal step beside it. Mostly that makes no
-difference. It does at equal masses, where the friction needed, which goes with |m2 - m1|, has a kink: the
-slopes to the two sides disagree, and there is no uncertainty. An input of 0, which must not be negative,
-has a right side only, and what has no value to one side has no slope.
+A slope is that towards a scene an infinitesimal step beside the given one, to the right and to the left.
+Mostly both are the same, and only the right one is computed. They differ at a kink: the friction needed goes
+with |m2 - m1|, so at equal masses it rises to both sides, and has no uncertainty. An input of 0, which must
+not be negative, has a right side only. A quantity without a value on one side has no slope there.
 
 First order takes a quantity for linear over ± u(x). That is tried, too: where the quantity at x - u(x) or
 x + u(x) is far from where its slope puts it, a sentence gives both values.
@@ -21,7 +21,7 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cache, partial
 from itertools import islice
-from operator import attrgetter
+from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Any
 
 from ..arithmetic.dual import Dual, Duals
@@ -30,6 +30,7 @@ from ..arithmetic.lazy import lazy
 from ..arithmetic.protocol import N
 from ..arithmetic.rounding import (
     GUARD,
+    SHOWN_DIGITS,
     as_typed,
     settle,
     text,
@@ -43,20 +44,21 @@ from ..model.machine import Machine, Undetermined
 from ..model.motion import completed, impossible, moved, number_of, with_number
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, parameter_of
-from .answers import SHOWN_DIGITS
 
 if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, Quantity
-    from .answers import OnMachine
+
+OnMachine = Callable[[Machine[Any]], Any]
+"""Anything that a machine has, as a function of the machine."""
 
 SURE = 20
-"""Digits to which it is told whether a case is in doubt."""
+"""Digits of the numbers that tell whether a case is in doubt."""
 FAR = 5
-"""The fraction, a fifth, of its uncertainty that a quantity may be off where first order puts it."""
+"""A quantity is far from linear where it is off by more than a fifth of its uncertainty."""
 NAMED = 3
 """How many quantities a sentence names."""
 COVERAGE = 2
-"""How many standard uncertainties from the line between two cases leave the case in doubt."""
+"""A case is in doubt within so many standard uncertainties of the line to another case."""
 
 KINK = "unknown where the masses are equal, as there it has a kink"
 KINK_OF_AXLE = "unknown where the axle just holds the difference, as there it has a kink"
@@ -86,15 +88,17 @@ class Uncertainties:
     def __init__(self, case: Case, given: Mapping[str, Fraction]) -> None:
         self.case, self.given = case, given
         self._beside = cache(partial(beside, case))
-        self._machine: Callable[..., Machine[Any]] = cache(lambda case, ar: MachineBeside(case, Duals(ar)))
-        self._plain: Callable[..., Machine[Any]] = cache(Machine)
+        self._machine_beside: Callable[..., Machine[Any]] = cache(
+            lambda case, ar: MachineBeside(case, Duals(ar))
+        )
+        self._machine: Callable[..., Machine[Any]] = cache(Machine)
 
     def of(self, quantity: OnMachine) -> Quantity:
         """The standard uncertainty of a quantity that has a value. It raises Undetermined."""
-        return lambda ar: ar.sqrt(_sum_of_squares(ar, self._parts(quantity, ar).values()))
+        return lambda ar: _length(ar, self._parts(quantity, ar).values())
 
     def share(self, quantity: OnMachine, x: str) -> Quantity:
-        """The share of an input in the square of that, which must not be 0."""
+        """The share of an input in the variance of a quantity, which must not be 0."""
 
         def share(ar: Arithmetic[N]) -> N:
             parts = self._parts(quantity, ar)
@@ -107,80 +111,73 @@ class Uncertainties:
     def _parts(
         self, quantity: OnMachine, ar: Arithmetic[N], choose: Callable[[list[N]], N] | None = None
     ) -> dict[str, N]:
-        """By input, what its uncertainty makes of the quantity's, but for those that make nothing.
+        """By input x on which the quantity depends, its slope times u(x).
 
-        ``choose`` says which slope counts at a kink, where otherwise none does.
+        ``choose`` picks one of the slopes to both sides. Without it a kink raises Undetermined.
         """
         parts = {}
         for x, u in self.given.items():
             slopes = list(self._slopes(quantity, x, ar))
-            if slopes != [None] * len(slopes):
-                two = [ar.number(0) if slope is None else slope for slope in slopes]
-                if choose is None and not _agree(two):
+            if any(slope is not None for slope in slopes):
+                known = [ar.number(0) if slope is None else slope for slope in slopes]
+                if choose is None and any(_size(slope - known[0], least=True) for slope in known):
                     raise Undetermined(KINK_OF_AXLE if self.case.axle_holds else KINK)
-                parts[x] = (choose or _first)(two) * ar.number(u)
+                parts[x] = (choose or itemgetter(0))(known) * ar.number(u)
         return parts
 
     def _slopes(self, quantity: OnMachine, x: str, ar: Arithmetic[N]) -> Iterator[N | None]:
         """The slope of the quantity with an input to its right, and to its left where it may be another."""
         for side, case in self._beside(x):
             try:
-                slope: N | None = quantity(self._machine(case, ar)).slope
+                slope: N | None = quantity(self._machine_beside(case, ar)).slope
             except Undetermined as reason:
                 raise Undetermined(f"unknown, as with another {x} it may have no value: {reason}") from None
             except ZeroDivisionError:
                 raise Undetermined(JUMP.format(x)) from None
             yield None if slope is None else side * slope
 
+    # What may be otherwise
+
     def doubts(self, asked: Container[str]) -> list[str]:
         """Sentences on what may be otherwise: which mass is heavier, whether the string slips.
 
-        And whether it can, where a quantity is asked for that exists only then.
+        And whether it can, where a quantity is asked for that exists only then. Each is decided by the sign
+        of a margin, so it is in doubt where the margin is within its own uncertainty of 0.
         """
-        scene = self.case.scene
-        masses = [self.given[x] for x in ("m1", "m2") if x in self.given]
-        sentences = [
-            _doubt(
-                "Which mass is heavier",
-                "m2 - m1",
-                lambda ar: ar.number(scene.m2 - scene.m1),
-                lambda ar: ar.sqrt(_sum_of_squares(ar, map(ar.number, masses))),
-                " kg",
-            )
+        case, difference = self.case, "m1 - m2" if self.case.sign < 0 else "m2 - m1"
+        margins: list[tuple[str, str, OnMachine, str]] = [
+            ("Which mass is heavier", "m2 - m1", lambda m: m.ar.number(m.scene.m2 - m.scene.m1), " kg")
         ]
-        if self.case.axle_mass is not None:
-            sentences.append(self._doubt_of_axle())
-        for excess, what, where in self._ways_to_slip(asked) if scene.mu is not None else ():
+        if case.axle_mass is not None:
+            what = "Whether the axle holds the difference"
+            margins.append((what, f"{difference} - axle/g", lambda m: physics.drive(m.l, m.h, m.b), " kg"))
+        if case.scene.mu is not None:
+            for excess, what, where in self._ways_to_slip(asked):
+                margins.append((what, f"mu - mu_verge{where}", _friction_to_spare(excess), ""))
+        return [sentence for margin in margins if (sentence := self._doubt(*margin))]
 
-            def margin(machine: Machine[N], excess: Excess = excess) -> N:
-                """What friction there is above what is needed at that excess of the tension ratio."""
-                case, ar = machine.case, machine.ar
-                needed = physics.verge_coefficient(ar.log1p(getattr(case, excess)(ar)), machine.phi)
-                return machine.reference_mu - needed
+    def _doubt(self, what: str, name: str, margin: OnMachine, unit: str) -> str:
+        """The sentence that what the sign of a margin decides is in doubt; empty if it is not."""
 
-            def u(ar: Arithmetic[N], margin: OnMachine = margin) -> N:
-                return ar.sqrt(_sum_of_squares(ar, self._parts(margin, ar, _steepest).values()))
+        def value(ar: Arithmetic[N]) -> N:
+            here: N = margin(self._machine(self.case, ar))
+            return here
 
-            def value(ar: Arithmetic[N], margin: OnMachine = margin) -> N:
-                here: N = margin(Machine(self.case, ar))
-                return here
+        def u(ar: Arithmetic[N]) -> N:
+            return _length(ar, self._parts(margin, ar, choose=_steepest).values())
 
-            sentences.append(_doubt(what, f"mu - mu_verge{where}", value, u))
-        return [sentence for sentence in sentences if sentence]
-
-    def _doubt_of_axle(self) -> str:
-        """The sentence that the axle may hold the difference, or not, if that is in doubt."""
-
-        def margin(machine: Machine[N]) -> N:
-            """What the masses drive with once the axle has its part."""
-            return physics.drive(machine.l, machine.h, machine.b)
-
-        return _doubt(
-            "Whether the axle holds the difference",
-            f"{'m1 - m2' if self.case.sign < 0 else 'm2 - m1'} - axle/g",
-            lambda ar: margin(Machine(self.case, ar)),
-            lambda ar: ar.sqrt(_sum_of_squares(ar, self._parts(margin, ar, _steepest).values())),
-            " kg",
+        try:
+            shift, spread = (Fraction(settle(one, to_digits(SURE), SURE)) for one in (value, u))
+        except Undetermined:  # with inputs beside these there is no such scene
+            return ""
+        if not spread or abs(shift) > COVERAGE * spread:
+            return ""
+        shown = with_uncertainty(
+            lambda place: settle(value, to_place(place), SURE), settle(u, to_digits(2), 2)
+        )
+        return (
+            f"{what} is in doubt: {name} = {shown}{unit} is within {COVERAGE} standard uncertainties of 0"
+            " (95 % of a normal distribution). The results are for the inputs as given."
         )
 
     def _ways_to_slip(self, asked: Container[str]) -> Iterator[tuple[Excess, str, str]]:
@@ -197,6 +194,8 @@ class Uncertainties:
             yield "massless_excess", "Whether the string slips on any pulley", " of a massless pulley"
         if case.rim_mass is not None and "critical_heavier_mass" in asked:
             yield "heaviest_excess", "Whether there is a critical_heavier_mass", heaviest
+
+    # Where first order misleads
 
     def misled(self, spread: Mapping[str, float | Decimal], digits: int) -> list[str]:
         """Sentences, by uncertain input, on where first order misleads: the values an uncertainty off.
@@ -218,14 +217,17 @@ class Uncertainties:
         return sentences
 
     def _is_far(self, quantity: OnMachine, x: str, cases: Sequence[Case], ar: Arithmetic[Enclosure]) -> bool:
-        """Whether the quantity is far from linear between the cases, or lacks a value or a case there."""
+        """Whether first order misleads on the quantity, over the cases an uncertainty of x off.
+
+        It does where the quantity has no value there, or is certainly more than a fifth of its uncertainty
+        away from the line q(x) ± q'(x) u(x). Where x has no such case, it does on all that depends on x.
+        """
         try:
-            parts = self._parts(quantity, ar, _first)
+            parts = self._parts(quantity, ar, choose=itemgetter(0))
             if len(cases) < 2:
                 return x in parts
-            most = _size(ar.sqrt(_sum_of_squares(ar, parts.values())))
-            low, here, high = (quantity(self._plain(case, ar)) for case in (cases[0], self.case, cases[1]))
-            part = parts.get(x, ar.number(0))
+            part, most = parts.get(x, ar.number(0)), _size(_length(ar, parts.values()))
+            low, here, high = (quantity(self._machine(case, ar)) for case in (cases[0], self.case, cases[1]))
             return any(_size(FAR * off, least=True) > most for off in (here - low - part, high - here - part))
         except Unsettled:  # nearer to a pole than anything that is measured
             return False
@@ -233,22 +235,40 @@ class Uncertainties:
             return True
 
     def _from_end_to_end(self, spread: Mapping[str, float | Decimal], cases: Sequence[Case]) -> str:
-        """The values in the cases, as a table cuts them here, of the first few quantities."""
+        """The values in the cases, of the first few quantities, as a table cuts them in the middle."""
         words: list[str] = []
         for name, u in islice(spread.items(), NAMED):
-            quantity, unit = attrgetter(name), QUANTITIES[name].unit
             exact = Fraction(u) if isinstance(u, float) else u
             round_ = to_place(to_digits(2)(exact).adjusted() - 1) if u else to_digits(SHOWN_DIGITS)
-            values = []
-            for case in cases:
-                try:
-                    shown = settle(lambda ar, q=quantity, c=case: q(self._plain(c, ar)), round_, SURE)
-                    number = f"{shown:f}" if -4 <= shown.adjusted() < 16 else text(shown)
-                    values.append(f"{number} {unit}".rstrip())
-                except (Undetermined, ZeroDivisionError):
-                    values.append("no value")
-            words.append(f"{name} {'goes ' * (not words)}from {' to '.join(values)}")
+            values = " to ".join(self._in_words(name, case, round_) for case in cases)
+            words.append(f"{name} {'goes ' * (not words)}from {values}")
         return ", ".join(words) + f", and so on for {len(spread) - NAMED} more" * (len(spread) > NAMED)
+
+    def _in_words(self, name: str, case: Case, round_: Callable[[Any], Decimal]) -> str:
+        """The value of a quantity in a case, with its unit."""
+
+        def value(ar: Arithmetic[N]) -> N:
+            there: N = getattr(self._machine(case, ar), name)
+            return there
+
+        try:
+            shown = settle(value, round_, SURE)
+        except (Undetermined, ZeroDivisionError):
+            return "no value"
+        number = f"{shown:f}" if -4 <= shown.adjusted() < 16 else text(shown)
+        return f"{number} {QUANTITIES[name].unit}".rstrip()
+
+
+def _friction_to_spare(excess: Excess) -> OnMachine:
+    """The friction there is above what is needed at that excess of the tension ratio."""
+
+    def margin(machine: Machine[N]) -> N:
+        needed = physics.verge_coefficient(
+            machine.ar.log1p(getattr(machine.case, excess)(machine.ar)), machine.phi
+        )
+        return machine.reference_mu - needed
+
+    return margin
 
 
 def _sum_of_squares(ar: Arithmetic[N], parts: Iterable[N]) -> N:
@@ -258,13 +278,8 @@ def _sum_of_squares(ar: Arithmetic[N], parts: Iterable[N]) -> N:
     return total
 
 
-def _agree(slopes: list[N]) -> bool:
-    """Whether the slope is the same to all sides."""
-    return not any(_size(slope - slopes[0], least=True) for slope in slopes)
-
-
-def _first(slopes: list[N]) -> N:
-    return slopes[0]
+def _length(ar: Arithmetic[N], parts: Iterable[N]) -> N:
+    return ar.sqrt(_sum_of_squares(ar, parts))
 
 
 def _steepest(slopes: list[N]) -> N:
@@ -278,18 +293,6 @@ def _size(x: Any, least: bool = False) -> Fraction | Decimal:
     if least and x.lo <= 0 <= x.hi:
         return ZERO
     return (min if least else max)(x.lo.copy_abs(), x.hi.copy_abs())
-
-
-def _doubt(what: str, name: str, value: Quantity, u: Quantity, unit: str = "") -> str:
-    """The sentence that what the sign of a value decides is in doubt; empty if it is not."""
-    margin, spread = (Fraction(settle(one, to_digits(SURE), SURE)) for one in (value, u))
-    if not spread or abs(margin) > COVERAGE * spread:
-        return ""
-    shown = with_uncertainty(lambda place: settle(value, to_place(place), SURE), settle(u, to_digits(2), 2))
-    return (
-        f"{what} is in doubt: {name} = {shown}{unit} is within {COVERAGE} standard uncertainties of 0"
-        " (95 % of a normal distribution). The results are for the inputs as given."
-    )
 
 
 def _one_off(case: Case, x: str, u: Fraction) -> Fraction:
@@ -320,18 +323,14 @@ def _with_unit(case: Case, x: str, number: Fraction) -> str:
     return f"{as_typed(number)}{' ' * (unit not in ('', '°'))}{unit}"
 
 
-def _just_held(case: Case) -> bool:
-    """Whether the axle holds just the difference of the masses."""
-    return case.axle_mass is not None and case.heavy - case.light == case.axle_mass
-
-
 def beside(case: Case, x: str) -> list[tuple[int, Case]]:
     """The cases of scenes in which an input is infinitesimally more, and less where that may differ.
 
     Raises Undetermined where no pulley fits what was measured.
     """
     scene, motion = case.scene, case.motion
-    bends = scene.m1 == scene.m2 or scene.M == 0 or x == "wrap" or _just_held(case)
+    just_held = case.axle_mass is not None and case.heavy - case.light == case.axle_mass
+    bends = scene.m1 == scene.m2 or scene.M == 0 or x == "wrap" or just_held
     ends = number_of(scene, motion, x) == 0 and x != "a"
     cases = []
     for side in (1, -1) if bends and not ends else (1,):
