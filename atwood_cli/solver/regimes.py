@@ -42,12 +42,16 @@ from .answers import SHOWN_DIGITS
 from .sweep import Point, Range, about_power
 
 CLOSER = 50
-"""Digits, beyond those shown, to which both sides of a change agree where it is just at a number shown."""
+"""Both sides of a change at a number itself are narrowed to so many digits beyond those shown."""
 SMALLEST = Fraction(1, 10**MAX_MAGNITUDE)
+"""No input but 0 is smaller."""
 
 
 class Change(NamedTuple):
-    """Where something changes along a range, rounded towards what was before; the last value and the next."""
+    """A change along a range: ``at`` its place, rounded towards what was before, and its bracket.
+
+    At ``last`` is still what was ``before``, at ``first`` what is ``after``.
+    """
 
     at: Point
     before: Any
@@ -70,24 +74,25 @@ def changes(
 ) -> Iterator[Change]:
     """The changes of regime along a range, in its direction, or of anything else about its cases.
 
-    ``known`` is what it is at some values.
+    ``known`` is what it is at some values, which a place of a change must not contradict.
     """
 
-    def there(value: Fraction) -> Any:
+    def state(value: Fraction) -> Any:
         return what(Case(with_value(scene, along.name, value)))
 
     start, stop = along.ends
-    turns = (value for value in _turns(scene, along.name) if min(start, stop) < value < max(start, stop))
-    seen = {value: there(value) for value in (start, *turns, stop) if value not in known} | dict(known)
-    firm = start  # the last value of which a sentence should say no other than is so
-    for last, other in pairwise(sorted(seen, reverse=start > stop)):
-        firm = last if last in known else firm
-        while seen[last] != seen[other]:
-            before = seen[last]
-            at, last, first = _between(there, before, last, other, firm, digits)
-            seen[first] = there(first)
-            yield Change(along.point(at), before, seen[first], last, first)
-            last = firm = first
+    low, high = sorted(along.ends)
+    asked = [start, *(value for value in _turns(scene, along.name) if low < value < high), stop]
+    states = {value: state(value) for value in asked if value not in known} | dict(known)
+    bound = start
+    for last, other in pairwise(sorted(states, reverse=start > stop)):
+        bound = last if last in known else bound
+        while states[last] != states[other]:
+            before = states[last]
+            at, last, first = _between(state, before, last, other, bound, digits or SHOWN_DIGITS)
+            states[first] = state(first)
+            yield Change(along.point(at), before, states[first], last, first)
+            last = bound = first
 
 
 def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
@@ -99,28 +104,42 @@ def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
 
 
 def _between(
-    there: Callable[[Fraction], Any],
+    state: Callable[[Fraction], Any],
     before: Any,
     last: Fraction,
     first: Fraction,
-    firm: Fraction,
-    digits: int | None,
+    bound: Fraction,
+    digits: int,
 ) -> tuple[Decimal, Fraction, Fraction]:
-    """Where what is so at ``last`` ends, before ``first``: rounded, not beyond ``firm``; and both sides."""
-    up, least = last < first, digits or SHOWN_DIGITS
-    rounding, kept = ROUND_FLOOR if up else ROUND_CEILING, least
-    while max(last, first) > SMALLEST and abs(first - last) * 10 ** (kept + CLOSER) > max(last, first):
-        at, other = (to_digits(kept, rounding)(value) for value in (last, first))
-        if at == other:
-            if firm <= at if up else at <= firm:
-                return tidy(at) if at == last else at, last, first
-            if kept == least + CLOSER:  # just at a number that is no decimal, as a third
-                return to_digits(least, rounding)(last), last, first
-            kept += 1
-            continue
-        middle = _middle(last, first)
-        last, first = (middle, first) if there(middle) == before else (last, middle)
-    return tidy(to_digits(kept)(first if max(last, first) > SMALLEST else Fraction(0))), last, first
+    """A change between two values: its place, and both sides of it.
+
+    The interval from ``last``, where the state is the one ``before``, to ``first``, where it is not, is
+    halved until the place of the change can be written down. That ends in one of these ways:
+
+    - Both sides round, towards ``last``, to the same digits. These are the place, unless they lie before
+      ``bound``: a row there says otherwise, so more digits are taken.
+    - Both sides agree in far more digits than are shown, and still round to two numbers. Then the change is
+      at a number of so few digits itself, like that of a regime at one point.
+    - The same where the number is no decimal, as 1/14 kg: however many digits are taken, rounded they lie
+      before ``bound``. Then the digits asked for have to do.
+    - Both sides are smaller than any input: the change is at 0.
+    """
+    up, shown = last < first, digits
+    towards_last = ROUND_FLOOR if up else ROUND_CEILING
+    while max(last, first) > SMALLEST:
+        at, other = (to_digits(shown, towards_last)(value) for value in (last, first))
+        if at != other:
+            if abs(first - last) * 10 ** (shown + CLOSER) <= max(last, first):
+                return tidy(to_digits(shown)(first)), last, first
+            middle = _middle(last, first)
+            last, first = (middle, first) if state(middle) == before else (last, middle)
+        elif bound <= at if up else at <= bound:
+            return tidy(at) if at == last else at, last, first
+        elif shown == digits + CLOSER:
+            return to_digits(digits, towards_last)(last), last, first
+        else:
+            shown += 1
+    return Decimal(0), last, first
 
 
 def _middle(one: Fraction, other: Fraction) -> Fraction:

@@ -1,9 +1,9 @@
 """Ranges in place of values: the points of a sweep, and the answers there.
 
 A point is the number that is printed, exactly, so that `solve` given that number prints the same row.
-Linear ranges step in exact fractions from one end to the other: steps of 0.1 are 0.1. Where the step is
-no decimal (a third), or the points are at equal ratios, they are rounded to so many digits as results are
-shown with, or as it takes to tell them apart well. The ends are hit exactly, unless they are no decimals.
+Linear ranges step in exact fractions from one end to the other: steps of 0.1 are 0.1. Points that are no
+decimals (steps of a third), or at equal ratios, are rounded to as many digits as results are shown with, or
+to more if it takes more to tell them apart well. Ends that are decimals are hit exactly.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -29,12 +29,13 @@ FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
 
 
 class Range(NamedTuple):
-    """A parameter that is swept: as typed, and its points."""
+    """A parameter that is swept: as typed, its points, and the unit that they carry, if any."""
 
     name: str
     typed: str
     points: list[Point]
     log: bool
+    suffix: str
 
     @property
     def words(self) -> str:
@@ -44,8 +45,7 @@ class Range(NamedTuple):
 
     @property
     def unit(self) -> str:
-        first = self.points[0]
-        return first.lstrip("-+.e0123456789") if isinstance(first, str) else INPUTS[self.name].unit
+        return self.suffix or INPUTS[self.name].unit
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
@@ -63,11 +63,11 @@ class Range(NamedTuple):
 
     def point(self, number: Decimal) -> Point:
         """A number as a point of it."""
-        return f"{text(number)}{self.unit}" if isinstance(self.points[0], str) else number
+        return f"{text(number)}{self.suffix}" if self.suffix else number
 
     def bare(self, point: Point) -> Decimal:
         """A point without its unit."""
-        return Decimal(str(point).removesuffix(self.unit))
+        return Decimal(str(point).removesuffix(self.suffix))
 
 
 class Sweep(NamedTuple):
@@ -121,20 +121,28 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
     return sweep
 
 
+class _End(NamedTuple):
+    """An end of a range, the unit that points carry for it, and whether it was typed with a unit."""
+
+    value: Fraction
+    suffix: str
+    has_unit: bool
+
+
 def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     """A range of a parameter, its points to about so many digits. Raises SceneError."""
     words = typed.split(":")
     if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
         raise SceneError(name, typed, f"is no range; write {FORM}")
-    (start, unit), (stop, other) = (_read_end(name, typed, word) for word in words[:2])
-    _check_units(name, typed, words[:2], start == 0 or stop == 0)
-    if unit != other:
-        if start and stop:
-            raise SceneError(name, typed, "has ends in units of two kinds; write both in the same unit")
-        unit = unit if start else other
+    one, other = (_read_end(name, typed, word) for word in words[:2])
+    start, stop, log = one.value, other.value, len(words) == 4
+    if one.has_unit != other.has_unit and start and stop:
+        # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
+        raise SceneError(name, typed, "has a unit at one end only; write it at both")
+    if one.suffix != other.suffix and start and stop:
+        raise SceneError(name, typed, "has ends in units of two kinds; write both in the same unit")
     if start == stop:
         raise SceneError(name, typed, "has equal ends; a range runs from one value to another")
-    log = len(words) == 4
     if log and not (start > 0 and stop > 0):
         raise SceneError(name, typed, "has no equal ratios from or to 0; both ends must be above 0")
     try:
@@ -147,37 +155,38 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
         raise SceneError(name, typed, f"{rule}; take fewer points, or ends further apart")
     ends = [tidy(exact_or_rounded(end, to_digits(kept))) for end in (start, stop)]
     points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last, kept), ends[1]]
-    return Range(name, typed, [f"{text(point)}{unit}" if unit else point for point in points], log)
+    suffix = one.suffix if start else other.suffix
+    return Range(name, typed, [f"{text(x)}{suffix}" if suffix else x for x in points], log, suffix)
 
 
-def _read_end(name: str, typed: str, word: str) -> tuple[Fraction, str]:
-    """An end of a range, and its unit if that is not the usual one. Raises SceneError."""
+def _read_end(name: str, typed: str, word: str) -> _End:
+    """An end of a range. Raises SceneError."""
     if word.strip().lower() in ("inf", *INPUTS[name].names):
         raise SceneError(name, typed, f"has the end {in_quotes(word)}; a range runs between finite numbers")
     value = read_value(name, word)
-    return (value.number, UNUSUAL.get(value.unit, "")) if name in ("wrap", "axle") else (value, "")
-
-
-def _check_units(name: str, typed: str, ends: Sequence[str], has_zero: bool) -> None:
-    """100:500g is from 100 kg to half a kilogram: hardly what was meant."""
-    numbers = (read_number(word, INPUTS[name].dimension) for word in ends)
-    if len({bool(number.unit) for number in numbers}) > 1 and not has_zero:
-        raise SceneError(name, typed, "has a unit at one end only; write it at both")
+    has_unit = bool(read_number(word, INPUTS[name].dimension).unit)
+    if name in ("wrap", "axle"):
+        return _End(value.number, UNUSUAL.get(value.unit, ""), has_unit)
+    return _End(value, "", has_unit)
 
 
 def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: int | None) -> int:
-    """The significant digits of points: as many as wanted and as differ; all where steps are decimals."""
-    if log:  # the step is not below value * |ln ratio| / last
-        steps = last / min(abs(1 - start / stop), abs(1 - stop / start))
+    """The significant digits of points: all where ends and steps are decimals, unless fewer are wanted.
+
+    Else as many as are wanted, but three more than it takes to tell neighbours apart.
+    """
+    if log:  # neighbours differ by at least |ln ratio|/last of their size
+        apart = min(abs(1 - start / stop), abs(1 - stop / start)) / last
     else:
         step = (stop - start) / last
         if not digits and None not in (exact_decimal(start), exact_decimal(step)):
             return MAX_DIGITS
-        steps = max(abs(start), abs(stop)) / abs(step)
-    return max(digits or SHOWN_DIGITS, len(str(int(steps))) + 3)
+        apart = abs(step) / max(abs(start), abs(stop))
+    return max(digits or SHOWN_DIGITS, len(str(int(1 / apart))) + 3)
 
 
 def _equal_steps(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
+    """The points between the ends, each of them from integers over one denominator, rounded once."""
     step = (stop - start) / last
     unit = lcm(start.denominator, step.denominator)
     context = decimal_context(kept, ROUND_HALF_EVEN)
@@ -187,6 +196,7 @@ def _equal_steps(start: Fraction, stop: Fraction, last: int, kept: int) -> Itera
 
 
 def _equal_ratios(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
+    """The points between the ends, each the one before times the same factor, in 20 digits more."""
     context, finer = (decimal_context(n, ROUND_HALF_EVEN) for n in (kept, max(kept, DOUBLE_DIGITS) + 20))
     value, whole = (finer.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (start, stop / start))
     by = finer.exp(finer.divide(finer.ln(whole), Decimal(last)))
