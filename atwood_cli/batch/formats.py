@@ -3,7 +3,6 @@
 Cells of CSV and NDJSON stay the text they were, the columns of Parquet keep their types.
 """
 
-import csv
 import json
 import os
 import re
@@ -13,7 +12,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import ExitStack
 from functools import partial
-from io import BytesIO, StringIO
+from io import BytesIO
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn
 
@@ -35,8 +34,6 @@ MOST_COLUMNS = 1024
 """Each column of a piece takes a kilobyte and some microseconds, whatever is in it."""
 LONGEST_RECORD = 1 << 20
 """Bytes: a quotation mark that is never closed must not make one record of the whole file."""
-MOST_ABOVE = 40
-"""Lines in which the header of a small table is looked for, as titles may stand above."""
 
 
 WIDE_TEXT = "in UTF-16 or UTF-32; save it as UTF-8"
@@ -51,15 +48,6 @@ FOREIGN = {
 }
 """What a file is that begins so, and what to do: no table of CSV or NDJSON does."""
 JSON_FOR_CSV = {b'{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
-
-
-class Cells(NamedTuple):
-    """A small table, all of it: its columns, its rows, what parts their cells, and how else it was read."""
-
-    columns: Sequence[str]
-    rows: Sequence[Sequence[str]]
-    separator: str
-    remarks: Sequence[str] = ()
 
 
 Inputs = Callable[[Sequence[str]], Sequence[str]]
@@ -137,7 +125,7 @@ def block_of(file: IO[bytes]) -> bytes:
         raise Unreadable(error.strerror or str(error)) from None
 
 
-def _records(file: IO[bytes], quoted: bool) -> Iterator[tuple[bytes, int, int]]:
+def records(file: IO[bytes], quoted: bool) -> Iterator[tuple[bytes, int, int]]:
     """A file in pieces that end where a record ends, with the line each begins in and its line ends."""
     rest, line = b"", 1
     while block := block_of(file):
@@ -181,98 +169,13 @@ def check_distinct(columns: Sequence[str]) -> None:
             raise Unreadable(f"column {in_quotes(name)} is there {times} times" if name else unnamed)
 
 
-def read_cells(file: IO[bytes], usual: str, inputs: Inputs) -> Cells:
-    """A small table of CSV as people keep it, for which polars is not needed. Raises Unreadable.
-
-    Its rows are those with anything in them, of as many cells as they have.
-    """
-    text = b"".join(lines for lines, _, _ in _records(file, quoted=False))
-    remarks: list[str] = []
-    if b"\0" not in text:  # of a file that is no text, `_rows_of_csv` says so
-        text, usual, remarks = _tidied(text, usual, inputs)
-    rows: list[list[str]] = []
-    columns: list[str] = []
-    separator = usual
-    csv.field_size_limit(LONGEST_RECORD + PIECE_BYTES)  # no row is longer, and by default it would be less
-    for header, separator, piece, _, _ in _rows_of_csv(BytesIO(text), usual, inputs):
-        decoded = _decode(piece, partial(_row_of_csv, piece, len(rows), separator))
-        parsed = csv.reader(StringIO(decoded, newline=""), delimiter=separator)
-        rows += [row for row in parsed if "".join(row).strip()]
-        columns = header
-    while columns and not columns[-1].strip():
-        columns = columns[:-1]
-    return Cells(columns, rows, separator, remarks)
-
-
-def whole_rows(cells: Cells) -> list[Sequence[str]]:
-    """The rows, of as many cells as there are columns. Raises Unreadable.
-
-    A row may be shorter if it has no numbers: it could be a remark below the table, and is not cut off.
-    """
-    rows: list[Sequence[str]] = []
-    width = len(cells.columns)
-    for number, row in enumerate(cells.rows, 1):
-        if any(cell.strip() for cell in row[width:]):
-            _refuse_long(number, len(row), width, cells.separator)
-        if len(row) < width and re.search(r"\d", "".join(row)):
-            raise Unreadable(f"row {number} has {len(row)} cells, and the header {width}")
-        rows.append([*row[:width], *[""] * (width - len(row))])
-    return rows
-
-
-def _tidied(text: bytes, usual: str, inputs: Inputs) -> tuple[bytes, str, list[str]]:
-    """A text in UTF-8 that begins with its header, its usual separator, and how it was read.
-
-    Lines that are left out become blank, so that all keep their numbers.
-    """
-    remarks: list[str] = []
-    try:
-        lines = text.decode("utf-8-sig").split("\n")
-    except UnicodeDecodeError:
-        try:
-            lines = text.decode("cp1252").split("\n")
-        except UnicodeDecodeError:
-            return text, usual, []
-        remarks.append("text in Windows-1252")
-    first = next((i for i, line in enumerate(lines) if line.strip()), 0)
-    if found := re.fullmatch(r'"?sep=([,;\t])"?\r?', lines[first], re.IGNORECASE):
-        usual, lines[first] = found[1], ""
-    comments: dict[int, str] = {}
-    marks = 0
-    for i, line in enumerate(lines):
-        if line.lstrip().startswith("#") and not marks % 2:
-            comments[i], lines[i] = line.lstrip("# \t"), ""
-        marks += lines[i].count('"')
-
-    def score(i: int) -> tuple[int, int]:
-        """How many inputs a line has, and how many cells that begin with a letter."""
-        line = comments.get(i, lines[i])
-        # A heading in quotation marks may be of two lines.
-        ends = (line, *("\n".join(lines[i:end]) for end in range(i + 2, i + MOST_ABOVE)))
-        line = next((text for text in ends if text.count('"') % 2 == 0), line)
-        rows = [split(line, mark) for mark in PARTED_BY]
-        return max((len(inputs(row)), sum(cell.strip()[:1].isalpha() for cell in row)) for row in rows)
-
-    above = [i for i, line in enumerate(lines[:MOST_ABOVE]) if line.strip()]
-    header = next((i for i in (*above, *comments) if score(i)[0] > 1), None)
-    if header is None:
-        header = max(above, key=score, default=0)
-    lines[header] = comments.pop(header, lines[header])
-    if any(i < header for i in above):
-        lines[:header] = [""] * header
-        remarks.append(f"header in line {header + 1}")
-    if comments:
-        remarks.append("lines that begin with # left out")
-    return "\n".join(lines).encode(), usual, remarks
-
-
-def _rows_of_csv(
+def rows_of_csv(
     file: IO[bytes], usual: str, inputs: Inputs
 ) -> Iterator[tuple[list[str], str, bytes, int, int]]:
     """The columns, what parts them, rows as a parser takes them; how much of the file it is, and lines."""
     header: list[str] = []
     separator = usual
-    for text, line, lines in _records(file, quoted=True):
+    for text, line, lines in records(file, quoted=True):
         rows, before = text, 0
         if not header:
             rows = text.lstrip(b"\r\n")
@@ -291,7 +194,7 @@ def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
     import polars as pl
 
     done = 0
-    for header, separator, rows, size, lines in _rows_of_csv(file, usual, inputs):
+    for header, separator, rows, size, lines in rows_of_csv(file, usual, inputs):
         # Stand-ins, as polars renames what is there twice and drops what is empty.
         names = separator.join(map(str, range(len(header)))).encode() + b"\n"
         most = PIECE_CELLS // len(header)
@@ -374,7 +277,7 @@ def _refuse_csv(error: Exception, rows: bytes, width: int, done: int, separator:
     _decode(rows, partial(_row_of_csv, rows, done, separator))
     for number, cells in enumerate(filter(None, widths(rows, separator)), done + 1):
         if cells > width:
-            _refuse_long(number, cells, width, separator)
+            refuse_long(number, cells, width, separator)
     raise Unreadable(shortened(str(error).splitlines()[0], LONGEST_NAME))
 
 
@@ -383,7 +286,7 @@ def _row_of_csv(rows: bytes, done: int, separator: str, at: int) -> str:
     return f"row {done + sum(map(bool, widths(rows[:at] + b'.', separator)))}"
 
 
-def _refuse_long(number: int, cells: int, width: int, separator: str) -> NoReturn:
+def refuse_long(number: int, cells: int, width: int, separator: str) -> NoReturn:
     how = "; is there a decimal comma (write a point), or one at its end?" if separator == "," else ""
     if width == 1:
         how = "; the headings must come first, without lines above them"
@@ -430,7 +333,7 @@ def _read_ndjson(file: IO[bytes], inputs: Inputs | None) -> Iterator[Piece]:
 def _lines(file: IO[bytes]) -> Iterator[tuple[list[str], int]]:
     """Lines that are not blank, as many as may be objects at a time, and how much of the file they are."""
     done = 0
-    for text, _, _ in _records(file, quoted=False):
+    for text, _, _ in records(file, quoted=False):
         texts = _decode(text, partial(_row, text, done)).split("\n")
         lines = [line for line in map(str.strip, texts) if line]
         done, size = done + len(lines), len(text)

@@ -10,11 +10,12 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..batch.formats import Cells, opened, read_cells, whole_rows
+from ..batch.formats import opened
 from ..batch.layout import Heading, decimal_commas_in, listed, read_as
 from ..files import Unreadable
 from ..model.scene import Input, SceneError, read_input
 from ..model.units import PERCENT, in_quotes
+from .cells import Cells, read_cells, whole_rows
 from .headings import (
     MASSES,
     Quantity,
