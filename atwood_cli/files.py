@@ -97,10 +97,8 @@ def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
         yield beside
         if mode is not None:
             beside.chmod(mode)
-        if force:
-            os.replace(beside, target)
-        else:
-            _take_name(beside, target, path)
+        check_free(path, force)
+        os.replace(beside, target)
     except OSError as error:
         if error.errno and error.filename in (None, str(beside), str(target)):  # not the name asked for
             raise type(error)(error.errno, error.strerror, str(path)) from None
@@ -115,21 +113,6 @@ def _mode(target: Path) -> int | None:
         return stat.S_IMODE(target.stat().st_mode)
     except FileNotFoundError:
         return None
-
-
-def _take_name(beside: Path, target: Path, asked: Path) -> None:
-    """Give a file its name, unless there is one of that name by now. Raises FileExistsError."""
-    try:
-        try:
-            os.link(beside, target)
-        except FileExistsError:
-            raise
-        except OSError:  # a file system without links
-            target.touch(exist_ok=False)
-            os.replace(beside, target)
-    except FileExistsError:
-        how = "a file of that name came to be meanwhile; --force replaces it"
-        raise FileExistsError(errno.EEXIST, how, str(asked)) from None
 
 
 @contextmanager
