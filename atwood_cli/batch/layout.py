@@ -33,6 +33,12 @@ OTHER_NAMES = {
 }
 # fmt: on
 """In small ASCII letters, what else people call the inputs."""
+TAKEN_ELSEWHERE = {
+    "I": "is not taken here; give inertia, I/(M R^2)",
+    "axle": "is not taken here; solve and sweep take --axle",
+    **dict.fromkeys(MEASURED, "tells of a motion, which only solve takes"),
+}
+"""What only other commands take, and what to do about a column of it."""
 GREEK = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
 
 
@@ -114,14 +120,11 @@ def read_layout(piece: Piece, labels: Collection[str] = ()) -> Layout:
         if name not in headings:
             raise Unreadable(f"column {name} is missing; there are {listed(piece.columns)}")
     for column, name in others.items():
-        if name == "I":
-            raise refused(column, "is not taken here; give inertia, I/(M R^2)")
-        if name == "axle":
-            raise refused(column, "is not taken here; solve and sweep take --axle")
-        if name in MEASURED:
-            raise refused(column, "tells of a motion, which only solve takes")
-    columns = [heading.column for heading in headings.values()]
-    return Layout(headings, piece.separator, _has_decimal_commas(piece, columns))
+        if name in TAKEN_ELSEWHERE:
+            raise refused(column, TAKEN_ELSEWHERE[name])
+    cells = piece.frame.select(heading.column for heading in headings.values())
+    comma = decimal_commas_in(cells.rows(), range(cells.width), piece.separator)
+    return Layout(headings, piece.separator, comma)
 
 
 def read_as(
@@ -145,24 +148,13 @@ PART_THOUSANDS = r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$"
 
 
 def decimal_commas_in(rows: Sequence[Sequence[str]], places: Collection[int], separator: str) -> bool:
-    """As `_has_decimal_commas`, of the cells in those places of a small table."""
-    if separator == ",":
+    """Whether commas in those places of rows are decimal: between semicolons all are, and between tabs
+    unless each separates thousands.
+    """
+    if separator in ("", ","):
         return False
-    with_comma = [row[at] for row in rows for at in places if "," in row[at]]
+    with_comma = [cell for row in rows for at in places if (cell := row[at]) and "," in cell]
     return any(separator == ";" or not re.match(PART_THOUSANDS, cell) for cell in with_comma)
-
-
-def _has_decimal_commas(piece: Piece, columns: Sequence[str]) -> bool:
-    """Whether commas in cells are decimal: beside semicolons, and beside tabs unless all part thousands."""
-    import polars as pl
-
-    if piece.separator in ("", ","):
-        return False
-
-    part_thousands = pl.all().str.contains(PART_THOUSANDS)
-    has_comma = pl.all().str.contains(",", literal=True)
-    decimal = has_comma if piece.separator == ";" else has_comma & ~part_thousands
-    return any(piece.frame.select(columns).select(decimal.any()).row(0))
 
 
 def inputs_among(columns: Sequence[str], labels: Collection[str] = ()) -> list[str]:

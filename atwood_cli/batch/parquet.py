@@ -3,7 +3,7 @@
 import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from itertools import chain
 from queue import SimpleQueue
 from typing import IO, TYPE_CHECKING
@@ -19,33 +19,23 @@ PIECE_ROWS, PIECE_CELLS = 1 << 16, 1 << 20
 
 @contextmanager
 def _decoding() -> Iterator[None]:
-    """Whatever polars makes of damaged Parquet is Unreadable, and nothing of it goes to stderr."""
+    """Raises Unreadable for whatever polars makes of damaged Parquet.
+
+    Its threads that panic write to the descriptor of stderr, which meanwhile leads nowhere.
+    """
     import polars as pl
 
-    with _nothing_on_stderr():
+    with ExitStack() as stack:
+        with suppress(OSError):  # stderr may be closed
+            kept = os.dup(2)
+            stack.callback(os.close, kept)
+            stack.callback(os.dup2, kept, 2)
+            os.dup2(stack.enter_context(open(os.devnull, "w")).fileno(), 2)
         try:
             yield
         except (pl.exceptions.PolarsError, pl.exceptions.PanicException, OSError, MemoryError) as error:
             why = str(error).splitlines() or ["it does not fit into memory"]
             raise Unreadable(f"it is not Parquet that polars can read: {why[0]}") from None
-
-
-@contextmanager
-def _nothing_on_stderr() -> Iterator[None]:
-    """Threads of Rust that panic write to the descriptor, and know no sys.stderr."""
-    try:
-        kept = os.dup(2)
-    except OSError:  # it is closed
-        yield
-        return
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 2)
-    os.close(nowhere)
-    try:
-        yield
-    finally:
-        os.dup2(kept, 2)
-        os.close(kept)
 
 
 def count_rows(file: IO[bytes]) -> int:

@@ -4,11 +4,11 @@ import os
 import signal
 import stat
 import sys
-import warnings
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
+from functools import cache
 from inspect import signature
 from math import inf, nan
 from pathlib import Path
@@ -27,7 +27,6 @@ from .formats import (
     Piece,
     block_of,
     cannot_read,
-    check_distinct,
     is_stream,
     opened,
     read,
@@ -93,11 +92,8 @@ class Job:
 
 def run_batch(job: Job, watch: Watch) -> Tally:
     """Solve a table of scenes, under ``watch`` unless results go to a terminal. Raises OSError."""
-    _check_environment()
     _check_apart(job)
     with ExitStack() as stack:
-        # Of polars, about its other settings.
-        stack.enter_context(warnings.catch_warnings(action="ignore", category=UserWarning))
         import polars as pl
 
         if hasattr(signal, "siginterrupt"):  # as it is imported, polars has Ctrl-C wait for a pipe
@@ -122,17 +118,6 @@ def run_batch(job: Job, watch: Watch) -> Tally:
             raise OSError(f"cannot write {job.target_format}: {why}") from None
         target.flush()
     return tally
-
-
-THREADS = "POLARS_MAX_THREADS"
-
-
-def _check_environment() -> None:
-    """Refuse a number of threads over which polars would panic. Raises OSError."""
-    os.environ.pop("POLARS_PANIC_ON_ERR", None)  # its errors would be panics
-    threads = os.environ.get(THREADS, "1")
-    if not (threads.isascii() and threads.isdigit() and int(threads)):
-        raise OSError(f"{THREADS} is set to {in_quotes(threads)}; it must be a whole number from 1, or unset")
 
 
 def _check_apart(job: Job) -> None:
@@ -199,8 +184,7 @@ def _size(job: Job, source: IO[bytes]) -> int | None:
 
 
 def _check_columns(columns: Sequence[str], results: Sequence[str]) -> None:
-    """Refuse a table whose columns come twice, or would with the results."""
-    check_distinct(columns)
+    """Refuse a table with a column that is named as a result is."""
     for name in columns:
         if name in results:
             how = "rename it" if name == ERROR else "rename it, or name other results by --only"
@@ -219,26 +203,25 @@ def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "pl.DataFram
     scenes["m1"][list(errors)] = nan  # such a row has no results
     wanted = list(dict.fromkeys(["regime", *job.names]))
     results, reasons = solve_and_count(scenes, job.accuracy, wanted)
-    tally.reasons += reasons
     bad = [row for row in results["status"].nonzero()[0].tolist() if row not in errors]
-    given = _inputs(frame, layout)[bad]
-    whys: dict[str, str] = {}  # those of rows that are alike are found once
-    for row, values in zip(bad, given.rows(), strict=True):
-        errors[row] = whys.get(str(values)) or whys.setdefault(
-            str(values), _why(dict(zip(given.columns, values, strict=True)), layout)
-        )
-    failed = sorted(errors)
-    texts = [errors.get(row) for row in range(frame.height)] if errors else []
+    inputs = _inputs(frame, layout)[bad]
+
+    @cache  # as many rows may be alike
+    def why(*cells: Any) -> str:
+        return _why(dict(zip(inputs.columns, cells, strict=True)), layout)
+
+    errors |= {row: why(*cells) for row, cells in zip(bad, inputs.iter_rows(), strict=True)}
+    if errors and not tally.errors:
+        tally.first_error = f"row {tally.rows + min(errors) + 1}: {errors[min(errors)]}"
     columns = {
         "regime": _regimes(results["regime"], tally),
         **{name: _finite(results[name], tally) for name in wanted[1:]},
-        ERROR: pl.Series(texts, dtype=pl.String)
-        if texts
-        else pl.repeat(None, frame.height, dtype=pl.String, eager=True),
+        ERROR: pl.repeat(None, frame.height, dtype=pl.String, eager=True).scatter(
+            list(errors), list(errors.values())
+        ),
     }
-    if errors and not tally.errors:
-        tally.first_error = f"row {tally.rows + failed[0] + 1}: {errors[failed[0]]}"
     tally.missing -= {name for name in job.names if columns[name].null_count() < frame.height}
+    tally.reasons += reasons
     tally.errors += len(errors)
     tally.rows += frame.height
     return pl.DataFrame({name: columns[name] for name in [*job.names, ERROR]})

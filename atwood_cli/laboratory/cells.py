@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from io import BytesIO, StringIO
 from typing import IO, NamedTuple
 
+from ..batch.csv_quotes import split
 from ..batch.formats import LONGEST_RECORD, PARTED_BY, PIECE_BYTES, Inputs, records, refuse_long, rows_of_csv
-from ..batch.quoted import split
 from ..files import Unreadable
 
 MOST_ABOVE = 40

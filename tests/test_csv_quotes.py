@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from atwood_cli.batch.quoted import checked, first_end, portions
+from atwood_cli.batch.csv_quotes import checked, first_end, portions
 from atwood_cli.files import Unreadable
 
 texts = st.text(st.sampled_from('""",,\n\r\nax'), max_size=16)
