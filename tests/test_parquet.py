@@ -19,14 +19,10 @@ from hypothesis import strategies as st
 
 from atwood_cli.batch.parquet import write_frames
 
-<<<<<<< HEAD
 from .conftest import examples
-from .running import Atwood, process
-=======
 from .running import Atwood, Ran, process
 
 Batch = Callable[..., Ran]
->>>>>>> 743f351 (batch: half as many ways to refuse a table, polars' own settings are polars' matter)
 
 
 @pytest.fixture

@@ -188,16 +188,16 @@ def rows_of_csv(
     header: list[str] = []
     separator = usual
     for text, line, lines in records(file, quoted=True):
-        rows, before = text, 0
+        rows = text
         if not header:
             rows = text.lstrip(b"\r\n")
             if not rows:
                 continue
-            end, before = first_end(rows), lines - rows.count(b"\n")
-            header, separator = _header(rows[:end], line + before, usual, inputs)
-            before += rows.count(b"\n", 0, end)
+            end = first_end(rows)
+            header, separator = _header(rows[:end], line + lines - rows.count(b"\n"), usual, inputs)
             rows = rows[end:]
-        yield header, separator, checked(rows, separator, line + before), len(text), lines
+            line += lines - rows.count(b"\n")
+        yield header, separator, checked(rows, separator, line), len(text), lines
     if not header:
         raise Unreadable("it is empty")
 

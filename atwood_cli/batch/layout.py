@@ -61,36 +61,36 @@ class Layout(NamedTuple):
     separator: str = ""
     comma: bool = False
 
-    def remarks(self, usual: str) -> list[str]:
-        """What was understood, in a line, unless it is just the names of inputs and the usual separator."""
-        return read_as(self.headings.items(), self.separator, usual, self.comma)
-
     def pointed(self, cell: str) -> str:
         """A cell with a decimal point."""
         return cell.replace(",", ".") if self.comma else cell
 
     def as_doubles(self, name: str, kind: "pl.DataType") -> "pl.Expr":
-        """A column's cells as the doubles nearest to them; null are those that must be asked of `double`."""
+        """The double nearest to each cell of a column, null where only `double` can tell."""
         import polars as pl
 
         cells, factor = pl.col(name), self.headings[name].factor
-        if kind == pl.String and self.comma:
-            pointed = cells.str.replace(",", ".", literal=True)
-            cells = pl.when(~cells.str.contains(".", literal=True)).then(pointed)
         power = len(str(max(factor, 1 / factor))) - 1
         if power > LARGEST_POWER or max(factor, 1 / factor) != 10**power:
             return cells.cast(pl.Float64, strict=False) * pl.lit(None, pl.Float64)
-        if power and kind == pl.String:
-            cells = cells + f"e{power if factor > 1 else -power}"
+        if kind == pl.String:
+            cells = cells.str.strip_chars()
+            if self.comma:
+                pointed = cells.str.replace(",", ".", literal=True)
+                cells = pl.when(~cells.str.contains(".", literal=True)).then(pointed)
+            return (cells + f"e{power if factor > 1 else -power}" if power else cells).cast(
+                pl.Float64, strict=False
+            )
         doubles = cells.cast(pl.Float64, strict=False)
-        if power and kind != pl.String:  # a power of ten that is a double: rounded once
+        if power:  # a power of ten that is a double: rounded once
             doubles = doubles * float(10**power) if factor > 1 else doubles / float(10**power)
         return doubles
 
     def double(self, name: str, cell: str | float) -> float:
         """A cell as the double nearest to it in the SI, NaN if it is empty. Raises SceneError."""
         if isinstance(cell, str):
-            if not cell.strip():
+            cell = cell.strip()
+            if not cell:
                 return nan
             if self.comma and "." in cell:
                 raise SceneError(name, cell, "has a point in a table of decimal commas; write all alike")
@@ -123,7 +123,7 @@ def read_layout(piece: Piece, labels: Collection[str] = ()) -> Layout:
         if name in TAKEN_ELSEWHERE:
             raise refused(column, TAKEN_ELSEWHERE[name])
     cells = piece.frame.select(heading.column for heading in headings.values())
-    comma = decimal_commas_in(cells.rows(), range(cells.width), piece.separator)
+    comma = decimal_commas_in(cells.iter_rows(), range(cells.width), piece.separator)
     return Layout(headings, piece.separator, comma)
 
 
@@ -147,7 +147,7 @@ def read_as(
 PART_THOUSANDS = r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$"
 
 
-def decimal_commas_in(rows: Sequence[Sequence[str]], places: Collection[int], separator: str) -> bool:
+def decimal_commas_in(rows: Iterable[Sequence[str]], places: Collection[int], separator: str) -> bool:
     """Whether commas in those places of rows are decimal: between semicolons all are, and between tabs
     unless each separates thousands.
     """

@@ -32,7 +32,7 @@ from .formats import (
     read,
     write,
 )
-from .layout import Layout, inputs_among, read_layout
+from .layout import Layout, inputs_among, read_as, read_layout
 from .parquet import count_rows
 
 if TYPE_CHECKING:
@@ -170,7 +170,8 @@ def _solved(
         if piece.columns != known:
             _check_columns(piece.columns, [*job.names, ERROR])
             layout = read_layout(piece, job.labels)
-            tally.remarks = layout.remarks(SEPARATORS.get(job.source_format, ""))
+            usual = SEPARATORS.get(job.source_format, "")
+            tally.remarks = read_as(layout.headings.items(), layout.separator, usual, layout.comma)
             known = piece.columns
         yield piece, _solve(piece, layout, job, tally)
 
@@ -260,25 +261,23 @@ def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict
     """The inputs as doubles by name, and by row the error of the first cell that is no double."""
     import polars as pl
 
-    for name, heading in layout.headings.items():
-        kind = frame[heading.column].dtype
+    cells = _inputs(frame, layout)
+    for name, kind in cells.schema.items():
         if not (kind.is_numeric() or kind in (pl.String, pl.Null)):
             raise Unreadable(f"column {name} holds {shortened(str(kind))}, not numbers")
-    cells = _inputs(frame, layout)
     doubles = cells.select(
-        layout.as_doubles(name, cells[name].dtype) for name in cells.columns
+        layout.as_doubles(name, kind) for name, kind in cells.schema.items()
     )  # in parallel
     scenes: dict[str, Any] = {**DEFAULTS}
     errors: dict[int, str] = {}
     for name in cells.columns:
-        scenes[name], odd = _column(cells[name], doubles[name], layout.as_doubles(name, cells[name].dtype))
-        for row, cell in odd.items():
+        values = scenes[name] = doubles[name].to_numpy(writable=True)
+        for row, cell in _odd_cells(cells[name], values).items():
             try:
-                scenes[name][row] = layout.double(name, cell)
+                values[row] = layout.double(name, cell)
             except SceneError as error:
                 errors.setdefault(row, str(error))
-        if name in DEFAULTS:
-            scenes[name][scenes[name] != scenes[name]] = DEFAULTS[name]
+        values[values != values] = DEFAULTS.get(name, nan)
     return scenes, errors
 
 
@@ -289,30 +288,25 @@ DEFAULTS = {
 }
 """Of inputs that an empty cell, or no column, leaves at what is usual."""
 LONG = 100
-"""Characters: a shorter text that is a double other than 0 has no more digits and no larger exponent than are
-taken."""
+"""Characters: a shorter text that is a nonzero double is within the limits of digits and exponents."""
 
 
-def _column(cells: "pl.Series", doubles: "pl.Series", as_doubles: "pl.Expr") -> tuple[Any, dict[int, Any]]:
-    """A column's cells as doubles, NaN where empty, and by row those cells that may be no doubles."""
+def _odd_cells(cells: "pl.Series", values: Any) -> dict[int, Any]:
+    """The cells, by row, that may be other than the doubles that polars made of them."""
     import numpy as np
     import polars as pl
 
     text = cells.dtype == pl.String
-    if doubles.null_count() > cells.null_count() and text:
-        cells = cells.str.strip_chars()
-        doubles = cells.to_frame().select(as_doubles).to_series()
-    array = doubles.to_numpy(writable=True)
-    odd = ~np.isfinite(array)
+    odd = ~np.isfinite(values)
     if odd.any():
         odd &= cells.is_not_null().to_numpy()
-    if (zero := array == 0).any():  # what is too small for a double would be another scene
+    if (zero := values == 0).any():  # what is too small for a double would be another scene
         some = cells.str.contains("[1-9]") if text else cells != 0  # in an exponent it may be beyond bounds
         odd |= zero & some.fill_null(False).to_numpy()
     if text and (cells.str.len_bytes().max() or 0) > LONG:  # type: ignore[operator]
         odd |= (cells.str.len_bytes() > LONG).fill_null(False).to_numpy()
     rows = odd.nonzero()[0]
-    return array, dict(zip(rows.tolist(), cells.gather(rows).to_list(), strict=True)) if len(rows) else {}
+    return dict(zip(rows.tolist(), cells.gather(rows).to_list(), strict=True)) if len(rows) else {}
 
 
 def _why(row: Mapping[str, Any], layout: Layout) -> str:
