@@ -15,9 +15,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from atwood_cli.laboratory.fitting import Fit, Odd, fitted, known_of
+from atwood_cli.laboratory.headings import Kind
 from atwood_cli.laboratory.model import expected
 from atwood_cli.laboratory.probability import student_within
-from atwood_cli.laboratory.runs import Kind, Run, Runs
+from atwood_cli.laboratory.runs import Run, Runs
 from atwood_cli.laboratory.statistics import Alike
 from atwood_cli.model.scene import INPUTS, Input, read_input
 

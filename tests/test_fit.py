@@ -23,6 +23,7 @@ from atwood_cli import SceneError, solve
 from atwood_cli import fit as laboratory_fit
 from atwood_cli.laboratory import model
 from atwood_cli.laboratory.fitting import Fit, as_data, fitted, known_of
+from atwood_cli.laboratory.headings import Kind
 from atwood_cli.laboratory.least_squares import Data, estimate
 from atwood_cli.laboratory.numbers import published
 from atwood_cli.laboratory.probability import (
@@ -33,7 +34,7 @@ from atwood_cli.laboratory.probability import (
     student_within,
 )
 from atwood_cli.laboratory.results import Results, points
-from atwood_cli.laboratory.runs import Kind, Run, Runs
+from atwood_cli.laboratory.runs import Run, Runs
 from atwood_cli.laboratory.statistics import Alike, sum_of_squares
 from atwood_cli.model.scene import INPUTS, Input, read_input
 
@@ -417,30 +418,6 @@ def test_runs_too_few_for_both_say_what_is_assumed(fit: Any) -> None:
 PLAIN = "m1,m2,time\n0.2,0.207,3.99\n0.2005,0.2065,4.58\n0.201,0.206,5.02\n0.2015,0.2055,6.16\n0.202,0.205,7.873\n"
 
 
-@pytest.mark.parametrize(
-    "table",
-    [
-        PLAIN.replace(",", ";").replace(".", ","),
-        PLAIN.replace(",", "\t"),
-        "\ufeff" + PLAIN.replace("\n", "\r\n"),
-        PLAIN.replace("\n", "\n\n"),
-        PLAIN.replace("time", "Team,time 1").replace("\n0", "\nA,0").replace("m1,m2,Team", "Team,m1,m2"),
-        re.sub(r"^(0.2\d*),(0.2\d*)", lambda m: f"{m[1]}kg,{1000 * float(m[2]):g} g", PLAIN, flags=re.M),
-        PLAIN.replace("time", "time,drop")
-        .replace("\n0", ",98 cm\n0")
-        .replace("873\n", "873,0.98\n")
-        .replace("drop,98 cm", "drop"),
-        PLAIN.replace("m1,m2,time", "m2,m1,time_1"),
-    ],
-)
-def test_what_spreadsheets_write_is_the_same(fit: Any, table: str) -> None:
-    drop = [] if "drop" in table else ["--drop", "98cm"]
-    both = ["--find", "c,f", "--json"]
-    want, got = found(fit(PLAIN, "--drop", "98cm", *both)), found(fit(table, *drop, *both))
-    for name in ("rim_mass", "axle", "uncertainty", "dof"):
-        assert got[name] == pytest.approx(want[name], rel=1e-12)
-
-
 def test_repeats_are_columns_or_rows(fit: Any) -> None:
     columns = "rig,m1,m2,time1,time 2,time_3\nA,.2,.207,4.06,4.03,3.88\nB,.201,.206,5,,5.06\nC,.202,.205,8,7.75,7.87\n"
     rows = (
@@ -715,72 +692,20 @@ def test_two_runs_with_uncertainties_are_enough(fit: Any) -> None:
     assert result["uncertainty"]["rim_mass"] > 0
 
 
+HELD = "no run can be used: in row 1, an axle with the friction given holds its masses"
+
+
 @pytest.mark.parametrize(
     ("table", "more", "error"),
     [
-        ("m1,m2\n1,2\n", (), "column a or time is missing; there are 'm1', 'm2'"),
-        ("m1,a\n1,2\n", (), "column m2 is missing; there are 'm1', 'a'"),
-        (
-            "m1,m2,a,time\n1,2,1,1\n",
-            (),
-            "columns a and time both tell the acceleration; keep one, or let one pass by --label",
-        ),
-        ("m1,m2,time\n1,2,1\n", (), "times need the height of fall: a column drop, or --drop"),
-        (
-            "m1,m2,a,a (m/s2)\n1,2,1,1\n",
-            (),
-            "columns 'a' and 'a (m/s2)' are both a; number what is repeated, as in 'time 1', or let one pass by --label 'a (m/s2)'",
-        ),
-        ("m1,m2,a,Team,Team\n1,2,1,x,y\n", (), "column 'Team' is there 2 times"),
-        (
-            "m1,m2,a,rows\n1,2,1,1\n",
-            (),
-            "column 'rows' would be there twice, as a result is named so; rename it",
-        ),
-        ("m1,m2,a\n", (), "it has no runs"),
         ("m1,m2,a\n1,1,1\n", (), "no run can be used: in row 1, its masses are equal, and rest"),
-        ("m1,m2,a\n1,x,1\n", (), "row 1: m2 'x' is not a number; write it like 2, 0.5 or 1.5e-3"),
-        ("m1,m2,a\n1,,1\n", (), "row 1 has no m2"),
-        ("m1,m2,a\n1,2\n", (), "row 1 has 2 cells, and the header 3"),
-        (
-            "m1,m2,a\n1,2,1,5\n",
-            (),
-            "row 1 has 4 cells, and the header 3; is there a decimal comma (write a point), or one at its end?",
-        ),
-        (
-            "m1;m2;a\n1,5;2.5;1\n",
-            (),
-            "row 1: m2 '2.5' has a point in a table of decimal commas; write all alike",
-        ),
-        (
-            "m1,m2,a,M\n1,2,1,1\n",
-            (),
-            "column 'M' holds for all runs, so it is an option: give --M; or let it pass by --label 'M'",
-        ),
-        (
-            "m1 (s),m2,a\n1,2,1\n",
-            (),
-            "column 'm1 (s)' has a unit of time; it takes one of mass (kg, g, mg, ug, t, lb, lbs, oz, st); or let it pass by --label 'm1 (s)'",
-        ),
-        (
-            "m1,m2,a\n1,2,1(1)\n1,3,2\n",
-            (),
-            "row 2 has no uncertainty of its a, as others have; give all",
-        ),
-        (
-            'm1,m2,a\n1,"2,1\n',
-            (),
-            "it ends within quotation marks, in the row that begins in line 2: it is truncated, or one is left open",
-        ),
-        ("", (), "it is empty"),
-        ("m1,m2,a\n1e31,2,1\n", (), "row 1: m1 '1e31' is beyond what a fit computes with, 1e-30 to 1e+30"),
-        (
-            "m1,m2,a\n1,2,1\n",
-            ("--axle", "10N"),
-            "no run can be used: in row 1, an axle with the friction given holds its masses",
-        ),
+        ("m1,m2,a\n1,2,1\n", ("--axle", "10N"), HELD),
+        ("m1,m2,a\n1,2,1(1)\n1,3,2\n", (), "row 2 has no uncertainty of its a, as others have; give all"),
+        ("m1,m2,a1,a2,±\n1,2,3,4,5\n", (), "row 1 has no uncertainty of its a, as others have; give all"),
+        ("Masse 1;Masse 2;t\n1;2;3\n", (), "columns 'Masse 1', 'Masse 2' are not known; a row is a run, with"
+            " m1, m2, and a or time: name them so, with units, as in 'm1 (g)'"),
     ],
-)
+)  # fmt: skip
 def test_a_table_that_is_none(fit: Any, table: str, more: tuple[str, ...], error: str) -> None:
     ran = fit(table, *more)
     assert (ran.status, ran.out, ran.err) == (1, "", f"atwood: cannot read RUNS: {error}\n")

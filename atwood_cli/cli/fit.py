@@ -115,8 +115,8 @@ Examples:
 A row a run, with columns m1, m2, and a or time with drop, the height of fall (or --drop for all). Units
 stand in headings, as m1 (g) or t/s, or in cells, as solve takes them. Repeats are further rows, or columns
 t1, t2 and so on. Uncertainties are in cells, 2.05(2), or in columns u(t), t_err, or ± behind their own.
-Total mass and difference, m1+m2 and dm, do for m1 and m2. How a file was read is said; columns by other
-names are labels. Either mass may be the heavier. What --M, --I, --axle and --g say is known, and not fitted.
+How a file was read is said; columns by other names are labels. Either mass may be the heavier. What --M, --I,
+--axle and --g say is given, and not fitted.
 Results: rim_mass is the pulley's inertia as a mass at its rim, c = I/R², of a disk half its mass; axle is
 the friction of its axle as a force there. Both are always fitted where runs tell them apart; --find rim_mass
 says that the axle is free. Rows are left out only by --without.

@@ -1,4 +1,4 @@
-"""A table of runs as texts: CSV as spreadsheets, loggers and people write it."""
+"""A table of runs as texts: CSV as spreadsheets and people write it."""
 
 import csv
 import re
@@ -23,81 +23,60 @@ class Cells(NamedTuple):
     remarks: Sequence[str] = ()
 
 
-def read_cells(file: IO[bytes], usual: str, inputs: Inputs) -> Cells:
-    """A table, without its blank rows. Raises Unreadable."""
-    text = b"".join(lines for lines, _, _ in records(file, quoted=False))
-    text, usual, remarks = _tidied(text, usual, inputs)
-    rows: list[list[str]] = []
+def read_cells(file: IO[bytes], usual: str, recognised: Inputs) -> Cells:
+    """A table without its blank rows; each row has as many cells as the header, or more. Raises Unreadable.
+
+    ``recognised`` returns those of some headings that a run is made of.
+    """
+    text, remarks = _tidied(b"".join(lines for lines, _, _ in records(file, quoted=False)), recognised)
     columns: list[str] = []
+    rows: list[list[str]] = []
     separator = usual
     csv.field_size_limit(LONGEST_RECORD + PIECE_BYTES)  # no row is longer, and by default it would be less
-    for header, separator, piece, _, _ in rows_of_csv(BytesIO(text), usual, inputs):
+    for header, separator, piece, _, _ in rows_of_csv(BytesIO(text), usual, recognised):
+        columns = header
         parsed = csv.reader(StringIO(piece.decode(), newline=""), delimiter=separator)
         rows += [row for row in parsed if "".join(row).strip()]
-        columns = header
     while columns and not columns[-1].strip():
         columns = columns[:-1]
+    for number, row in enumerate(rows, 1):
+        if len(row) < len(columns):
+            raise Unreadable(f"row {number} has {len(row)} cells, and the header {len(columns)}")
+        if any(cell.strip() for cell in row[len(columns) :]):
+            refuse_long(number, len(row), len(columns), separator)
     return Cells(columns, rows, separator, remarks)
 
 
-def whole_rows(cells: Cells) -> list[Sequence[str]]:
-    """The rows, of as many cells as there are columns. Raises Unreadable.
+def _tidied(text: bytes, recognised: Inputs) -> tuple[bytes, list[str]]:
+    """The text in UTF-8, its header first, and how it was read.
 
-    A row may be shorter if it has no numbers: it could be a remark below the table, and is not cut off.
-    """
-    rows: list[Sequence[str]] = []
-    width = len(cells.columns)
-    for number, row in enumerate(cells.rows, 1):
-        if any(cell.strip() for cell in row[width:]):
-            refuse_long(number, len(row), width, cells.separator)
-        if len(row) < width and re.search(r"\d", "".join(row)):
-            raise Unreadable(f"row {number} has {len(row)} cells, and the header {width}")
-        rows.append([*row[:width], *[""] * (width - len(row))])
-    return rows
-
-
-def _tidied(text: bytes, usual: str, inputs: Inputs) -> tuple[bytes, str, list[str]]:
-    """A text in UTF-8 that begins with its header, its usual separator, and how it was read.
-
-    Lines that are left out become blank, so that all keep their numbers. Raises Unreadable.
+    Titles and comments become blank lines, so that the other lines keep their numbers.
     """
     remarks: list[str] = []
     try:
         lines = text.decode("utf-8-sig").split("\n")
-    except UnicodeDecodeError as error:
-        try:
-            lines = text.decode("cp1252").split("\n")
-        except UnicodeDecodeError:
-            number, byte = text.count(b"\n", 0, error.start) + 1, text[error.start]
-            raise Unreadable(f"line {number} is not UTF-8: byte 0x{byte:02x}; save it as UTF-8") from None
+    except UnicodeDecodeError:
+        lines = text.decode("cp1252", "replace").split("\n")
         remarks.append("text in Windows-1252")
-    first = next((i for i, line in enumerate(lines) if line.strip()), 0)
-    if found := re.fullmatch(r'"?sep=([,;\t])"?\r?', lines[first], re.IGNORECASE):
-        usual, lines[first] = found[1], ""
-    comments: dict[int, str] = {}
-    marks = 0
-    for i, line in enumerate(lines):
-        if line.lstrip().startswith("#") and not marks % 2:
-            comments[i], lines[i] = line.lstrip("# \t"), ""
-        marks += lines[i].count('"')
+    if re.fullmatch(r'"?sep=[,;\t]"?\r?', lines[0], re.IGNORECASE):  # Excel's
+        lines[0] = ""
+    filled = [i for i, line in enumerate(lines) if line.strip()]
+    comments = [i for i in filled if lines[i].lstrip().startswith("#")]
+    plain = [i for i in filled[:MOST_ABOVE] if i not in comments]
 
-    def score(i: int) -> tuple[int, int]:
-        """How many inputs a line has, and how many cells that begin with a letter."""
-        line = comments.get(i, lines[i])
-        # A heading in quotation marks may be of two lines.
-        ends = (line, *("\n".join(lines[i:end]) for end in range(i + 2, i + MOST_ABOVE)))
-        line = next((text for text in ends if text.count('"') % 2 == 0), line)
-        rows = [split(line, mark) for mark in PARTED_BY]
-        return max((len(inputs(row)), sum(cell.strip()[:1].isalpha() for cell in row)) for row in rows)
+    def is_header(i: int) -> bool:
+        line = lines[i].lstrip("# \t")
+        return line.count('"') % 2 == 0 and any(len(recognised(split(line, mark))) > 1 for mark in PARTED_BY)
 
-    above = [i for i, line in enumerate(lines[:MOST_ABOVE]) if line.strip()]
-    header = next((i for i in (*above, *comments) if score(i)[0] > 1), None)
-    if header is None:
-        header = max(above, key=score, default=0)
-    lines[header] = comments.pop(header, lines[header])
-    if any(i < header for i in above):
-        lines[:header] = [""] * header
+    # NumPy writes the header as a comment. Where there seems to be none, the first line is called one.
+    header = next(filter(is_header, [*plain, *comments]), min(plain, default=0))
+    titles = [i for i in plain if i < header]
+    if titles:
         remarks.append(f"header in line {header + 1}")
-    if comments:
+    if set(comments) - {header}:
         remarks.append("lines that begin with # left out")
-    return "\n".join(lines).encode(), usual, remarks
+    if header in comments:
+        lines[header] = lines[header].lstrip("# \t")
+    for i in {*titles, *comments} - {header}:
+        lines[i] = ""
+    return "\n".join(lines).encode(), remarks

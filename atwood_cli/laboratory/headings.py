@@ -1,11 +1,10 @@
-"""Headings as laboratories write them: which columns of a table are what runs are made of.
+"""Headings as laboratories write them: which columns of a table make a run.
 
-A heading is known by its spelling and its unit alone. What could be two things is refused.
+A heading is recognised by its spelling and its unit. What could be two things is refused.
 """
 
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from itertools import combinations
 from typing import Literal, NamedTuple
 from unicodedata import normalize
 
@@ -16,39 +15,26 @@ from ..model.units import PERCENT, in_quotes, without_blanks
 
 Kind = Literal["a", "time"]
 
-RESULTS = ("rows", "u", "expected", "residual")
-"""What else is said of a run, by names that no label may have."""
 TAKEN = ("m1", "m2", "drop", "a", "time")
-"""What a run is made of; what else a scene has is the same in all of them."""
+"""The quantities of a run; what else a scene has is the same in all runs."""
 MEASURED = ("a", "time")
-"""What may be measured more than once, in numbered columns."""
-MASSES = {"m1": (1, 0), "m2": (0, 1), "m1+m2": (1, 1), "m2-m1": (-1, 1), "m1-m2": (1, -1)}
-"""Multiples of m1 and m2 that a column may hold. Two such columns are taken, the first of these."""
+"""The quantities that may be repeated, in numbered columns."""
+RESULTS = ("rows", "u", "expected", "residual")
+"""The other columns of results, which no label may be called."""
 SPELLINGS = {
     spelling: name
     for name, spellings in {
         "m1": "m1 M1 mass1 massm1 lightermass mlight",
         "m2": "m2 M2 mass2 massm2 heaviermass mheavy",
-        "m1+m2": "m1+m2 m2+m1 mtotal mtot totalmass masstotal",
-        "m2-m1": "m2-m1 dm deltam massdifference mdiff",
-        "m1-m2": "m1-m2",
         "drop": "drop dropheight dropdistance height heighth fallheight heightoffall distance fall",
         "a": "a acc accel acceleration accelerationa aexp ameas ameasured measuredacceleration",
         "time": "t time timet times falltime timeoffall droptime",
     }.items()
     for spelling in spellings.split()
 }
-"""What a heading may call it, as `_key` writes it."""
+"""The quantities by their names, written as `_key` writes them."""
 WITH_UNIT = SPELLINGS | {"T": "time", "A": "a", "h": "drop", "H": "drop", "s": "drop", "d": "drop"}
-"""The same with letters that have other meanings too, but for their unit."""
-EITHER = ("dm", "deltam")
-"""A difference or an uncertainty."""
-REWRITTEN = (
-    (r"(?:latest|data ?set(?: ?\d+)?) ?[:|](.*)", r"\1"),
-    (r"(run ?#?\d+) ?[:|]([^(\[]+)(.*)", r"\2 \1 \3"),
-    (r"([^(\[]+)([(\[].*[)\]]) ((?:run|trial)? ?#?\d+)", r"\1 \3 \2"),
-)
-"""Headings of loggers: `Latest: Time (s)` and `Run 1: Time (s)` (Vernier), `Time (s) Run #1` (PASCO)."""
+"""The same with letters that are clear only beside a unit."""
 DIVIDED = (
     r"(.+?)[ /]*[(\[{]([^()\[\]{}]*)[)\]}]",
     r"(.+)[ _](kg|g|mg|m|cm|mm|s|ms|c?m/s(?:\^?2|²)|%)",
@@ -56,18 +42,20 @@ DIVIDED = (
 )
 """A name and its unit: m1 (g), m1 [g], a/(m/s²); m1_g; m1/g, "m1, g" and m1 in g."""
 LONGEST = 80
-"""Characters of a heading that may be known: the patterns take long for long texts."""
+"""Characters of a heading that may be recognised: the patterns take long for long texts."""
 NUMBERED = re.compile(r"(.*?)((?:run|trial)?#?)(\d+)")
 ALONE = ("±", "+/-", "+-", "u", "uncertainty")
 """The uncertainty of the column before."""
 _U = r"(?:uncertainty|uncert|unc|u|error|err|delta|sigma|±|\+/-|\+-)"
 UNCERTAIN = re.compile(rf"(?:{_U}|d)(?:of|in)?(?P<behind>\w.*)|{_U}\((?P<within>.+)\)|(?P<before>.+?){_U}")
-"""u_a, u(a) and a_u, in all ways to say u."""
+"""u_a, u(a) and a_u, in all ways to write u."""
+UNCERTAIN_OF_WHAT = re.compile(rf"{_U}|dm|deltam")
+"""Δm is the difference of the masses, or an uncertainty."""
 MINUS, GREEK = str.maketrans("−", "-"), str.maketrans({"δ": "delta", "σ": "sigma"})
 
 
 class Named(NamedTuple):
-    """What a heading says: a quantity, the number of a repeat, a unit; each is empty if it says none.
+    """What a heading names: a quantity, the number of a repeat, a unit; each is empty if there is none.
 
     If ``uncertain`` it is the uncertainty of that quantity, without a name that of the column before.
     """
@@ -79,7 +67,7 @@ class Named(NamedTuple):
 
 
 class Quantity(NamedTuple):
-    """A column that runs are made of, with the place and heading of the column of its uncertainties."""
+    """A column of a run, with the place and heading of the column of its uncertainties."""
 
     at: int
     name: str
@@ -88,14 +76,19 @@ class Quantity(NamedTuple):
     u: tuple[int, Heading] | None = None
 
 
+class Header(NamedTuple):
+    """The columns of a table: those of a run, and the places of all others, by their headings."""
+
+    kind: Kind
+    quantities: Sequence[Quantity]
+    others: Mapping[str, int]
+
+
 def _named(heading: str) -> Named | None:
-    """What a heading says of a run; None if it is not known."""
+    """What a heading names; None if it is not recognised."""
     text = without_blanks(heading)
     if len(text) > LONGEST:
         return None
-    for pattern, order in REWRITTEN:
-        if found := re.fullmatch(pattern, text, re.IGNORECASE):
-            text = without_blanks(found.expand(order))
     for name, unit in _divisions(text):
         key = _key(name)
         if key in ALONE:
@@ -111,7 +104,7 @@ def _named(heading: str) -> Named | None:
 
 
 def _divisions(text: str) -> Iterator[tuple[str, str]]:
-    """The ways in which a heading may be a name and a unit."""
+    """The ways to read a heading as a name and a unit."""
     yield text, ""
     for pattern in DIVIDED:
         if found := re.fullmatch(pattern, text):
@@ -120,38 +113,31 @@ def _divisions(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _key(name: str) -> str:
-    """A name in small letters, but for one capital alone (a tension T), without blanks, dots, underscores."""
+    """A name in small letters (but for one capital alone, as T) without blanks, dots and underscores."""
     plain = re.sub(r"[\s_.]+(?!\()", "", normalize("NFKC", name).translate(MINUS))
     return plain if re.fullmatch(r"[A-Z]\d*", plain) else plain.casefold().translate(GREEK)
 
 
-def _quantity(key: str, known: Mapping[str, str], unit: str = "") -> tuple[str, str] | None:
-    """The quantity that a key names, and its number, empty if it has none."""
-    if name := known.get(key) or known.get(key.replace("-", "")):
+def _quantity(key: str, spellings: Mapping[str, str], unit: str = "") -> tuple[str, str] | None:
+    """The quantity that a key names, and the number of its repeat, empty if it has none."""
+    if name := spellings.get(key) or spellings.get(key.replace("-", "")):
         return name, ""
     if not (found := NUMBERED.fullmatch(key)):
         return None
     base, run, number = found.groups()
-    name = known.get(base.rstrip("-"))
+    name = spellings.get(base.rstrip("-"))
     if run and not base and unit:  # Trial 1 (s)
         name = next((one for one in MEASURED if is_unit(unit, one)), None)
-    return (name, number) if name and (run or name in MEASURED) else None
+    return (name, number) if name in MEASURED else None
 
 
 def recognised(columns: Sequence[str]) -> list[str]:
     return [column for column in columns if _named(column)]
 
 
-def as_parameter(name: str) -> str:
-    """The parameter that has the unit and the domain of a quantity."""
-    return "m1" if name in MASSES else name
-
-
-def quantities_among(
-    columns: Sequence[str], labels: Collection[str]
-) -> tuple[list[Quantity], dict[str, int]]:
-    """What is taken of the columns, and the places of all others that have a heading. Raises Unreadable."""
-    quantities: list[Quantity] = []
+def read_header(columns: Sequence[str], labels: Collection[str]) -> Header:
+    """The columns by what they are; ``labels`` belong to no run, however they look. Raises Unreadable."""
+    quantities: dict[tuple[str, str], Quantity] = {}
     others: dict[str, int] = {}
     uncertain: list[tuple[int, Named]] = []
     for at, column in enumerate(columns):
@@ -159,120 +145,86 @@ def quantities_among(
         if named and named.uncertain:
             uncertain.append((at, named))
         elif named:
-            for one in quantities:
-                if one.name == named.name and (one.number == named.number or one.name not in MEASURED):
-                    both = (
-                        f"columns {in_quotes(one.heading.column)} and {in_quotes(column)} are both {one.name}"
-                    )
-                    repeats = "number what is repeated, as in 'time 1', or " * (one.name in MEASURED)
-                    raise Unreadable(f"{both}; {repeats}let one pass by --label {in_quotes(column)}")
-            factor = unit_factor(as_parameter(named.name), named.unit, column)
-            quantities.append(Quantity(at, named.name, named.number, Heading(column, named.unit, factor)))
+            if other := quantities.get(named[:2]):
+                two = (
+                    f"columns {in_quotes(other.heading.column)} and {in_quotes(column)} are both {named.name}"
+                )
+                repeats = "number what is repeated, as in 'time 1', or " * (named.name in MEASURED)
+                raise Unreadable(f"{two}; {repeats}let one pass by --label {in_quotes(column)}")
+            heading = Heading(column, named.unit, unit_factor(named.name, named.unit, column))
+            quantities[named[:2]] = Quantity(at, named.name, named.number, heading)
         elif column.strip():
             if column in others:
                 raise Unreadable(f"column {in_quotes(column)} is there {columns.count(column)} times")
             if column in RESULTS:
-                raise Unreadable(
-                    f"column {in_quotes(column)} would be there twice, as a result is named so; rename it"
-                )
+                raise Unreadable(f"column {in_quotes(column)} is called as a result is; rename it")
             if column not in labels:
-                _check_unknown(column)
+                _check_label(column)
             others[column] = at
     for at, named in uncertain:
-        quantities = _with_uncertainty(quantities, at, columns[at], named)
-    for one in quantities:
-        if one.u and any(one.name == other.name and not other.u for other in quantities):
-            how = f"name it u({one.name}) if it is that of each {one.name}"
-            raise refused(
-                one.u[1].column, f"is the uncertainty of {in_quotes(one.heading.column)} alone; {how}"
-            )
-    return quantities, others
+        quantities |= _with_uncertainty(quantities, at, columns[at], named)
+    taken = list(quantities.values())
+    kind = _kind_of({name for name, _ in quantities}, [x for x in others if x not in labels], columns)
+    if kind == "a":  # a height says nothing then
+        others |= {one.heading.column: one.at for one in taken if one.name == "drop"}
+        taken = [one for one in taken if one.name != "drop"]
+    return Header(kind, taken, others)
 
 
-def _with_uncertainty(quantities: list[Quantity], at: int, column: str, named: Named) -> list[Quantity]:
-    """The quantities, one or more of them with that column as their uncertainty. Raises Unreadable."""
-
-    def belongs(one: Quantity) -> bool:
-        if not named.name:
-            return one.at == at - 1
-        return one.name == named.name and named.number in ("", one.number)
-
-    of = [one for one in quantities if belongs(one)]
+def _with_uncertainty(
+    quantities: Mapping[tuple[str, str], Quantity], at: int, column: str, named: Named
+) -> dict[tuple[str, str], Quantity]:
+    """The quantities whose uncertainties are in that column. Raises Unreadable."""
+    if named.name:
+        of = {
+            key: one
+            for key, one in quantities.items()
+            if one.name == named.name and named.number in ("", one.number)
+        }
+        why = f"no column is {named.name}"
+    else:
+        of = {key: one for key, one in quantities.items() if one.at == at - 1}
+        why = "the column before is no part of a run"
     if not of:
-        why = f"no column is {named.name}" if named.name else "the column before is no part of a run"
         raise refused(column, f"could be an uncertainty, but {why}")
-    name = of[0].name
-    if name not in TAKEN:
-        raise refused(column, f"is an uncertainty of {name}, which is not taken; give m1 and m2 with theirs")
-    if any(one.u for one in of):
-        raise refused(column, f"is a second uncertainty of {name}")
-    factor = unit_factor(name, named.unit, column) if named.unit not in ("", PERCENT) else None
-    return [
-        one._replace(u=(at, Heading(column, named.unit, factor or one.heading.factor))) if one in of else one
-        for one in quantities
-    ]
+    for key, one in of.items():
+        if one.u:
+            raise refused(column, f"is a second uncertainty of {one.name}")
+        own_unit = named.unit not in ("", PERCENT)
+        factor = unit_factor(one.name, named.unit, column) if own_unit else one.heading.factor
+        of[key] = one._replace(u=(at, Heading(column, named.unit, factor)))
+    return of
 
 
-def _check_unknown(column: str) -> None:
+def _check_label(column: str) -> None:
     """Refuse a heading that is likely to be no label. Raises Unreadable."""
     if len(column) > LONGEST:
         return
-    key = _key(column)
-    if letter := _quantity(key, WITH_UNIT):
-        like = f"{column} ({parameter_of(letter[0]).unit})"
-        raise refused(column, f"could be meant for {letter[0]}; give its unit, as in {in_quotes(like)}")
-    if any(re.fullmatch(_U, _key(name)) for name, _ in _divisions(without_blanks(column))):
+    if any(UNCERTAIN_OF_WHAT.fullmatch(_key(name)) for name, _ in _divisions(without_blanks(column))):
         raise refused(column, "could be an uncertainty; name what of, as in 'u(a)'")
-    name = meant(column)
+    letter = _quantity(_key(column), WITH_UNIT)
+    name = letter[0] if letter else meant(column)
     if name in TAKEN:
         like = f"{name} ({parameter_of(name).unit})"
-        raise refused(column, f"could be meant for {name}; name it so, with a unit like {in_quotes(like)}")
+        raise refused(column, f"could be meant for {name}; name it so, with a unit, like {in_quotes(like)}")
     if name is not None:
         raise refused(column, f"holds for all runs, so it is an option: give --{name.replace('_', '-')}")
 
 
-def _missing(what: str, unknown: Sequence[str], columns: Sequence[str]) -> Unreadable:
-    """The error where no column is what a run needs: of headings that are not known, one may be it."""
-    if not unknown:
-        return Unreadable(f"column {what} is missing; there are {listed(columns) or 'none'}")
-    how = "a row is a run, with m1, m2, and a or time: name them so, with units, as in 'm1 (g)'"
-    return Unreadable(f"{not_known(unknown)}; {how}")
+def _kind_of(names: Collection[str], unknown: Sequence[str], columns: Sequence[str]) -> Kind:
+    """Whether accelerations or times were measured; Unreadable if a run lacks a column, or has both."""
+    if "a" in names and "time" in names:
+        raise Unreadable("there are columns a and time; keep one, or let one pass by --label")
+    kind: Kind = "a" if "a" in names else "time"
+    for name, words in (("m1", "m1"), ("m2", "m2"), (kind, "a or time")):
+        if name not in names and unknown:
+            how = "a row is a run, with m1, m2, and a or time: name them so, with units, as in 'm1 (g)'"
+            raise Unreadable(f"{not_recognised(unknown)}; {how}")
+        if name not in names:
+            raise Unreadable(f"column {words} is missing; there are {listed(columns) or 'none'}")
+    return kind
 
 
-def not_known(unknown: Sequence[str]) -> str:
+def not_recognised(unknown: Sequence[str]) -> str:
     many = len(unknown) > 1
     return f"column{'s' * many} {listed(unknown)} {'are' if many else 'is'} not known"
-
-
-def two_of_masses(
-    quantities: Sequence[Quantity], unknown: Sequence[str], columns: Sequence[str]
-) -> tuple[Quantity, Quantity]:
-    """The two columns that tell the masses. Raises Unreadable."""
-    there = {one.name: one for one in quantities}
-    pairs = combinations([there[name] for name in MASSES if name in there], 2)
-    pair = next((pair for pair in pairs if determinant(*pair)), None)
-    if pair is None:
-        raise _missing(next(name for name in MASSES if name not in there), unknown, columns)
-    for one in there.values():
-        if one not in pair and any(_key(name) in EITHER for name, _ in _divisions(one.heading.column)):
-            how = "name it m2-m1, or u(m1) and u(m2)"
-            raise refused(
-                one.heading.column, f"could be the difference of the masses, or their uncertainty; {how}"
-            )
-    return pair
-
-
-def determinant(one: Quantity, other: Quantity) -> int:
-    (a, b), (c, d) = MASSES[one.name], MASSES[other.name]
-    return a * d - b * c
-
-
-def kind_of(quantities: Sequence[Quantity], unknown: Sequence[str], columns: Sequence[str]) -> Kind:
-    names = [one.name for one in quantities]
-    if "a" in names and "time" in names:
-        raise Unreadable(
-            "columns a and time both tell the acceleration; keep one, or let one pass by --label"
-        )
-    if "a" not in names and "time" not in names:
-        raise _missing("a or time", unknown, columns)
-    return "a" if "a" in names else "time"

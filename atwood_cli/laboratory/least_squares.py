@@ -8,8 +8,8 @@ import numpy as np
 
 from ..arrays.tables import Column
 from ..model import physics
+from .headings import Kind
 from .model import expected
-from .runs import Kind
 from .statistics import Alike, LinearFit, fit_line, sum_of_squares
 
 CLOSE = 1e-10

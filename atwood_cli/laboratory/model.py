@@ -8,7 +8,7 @@ import numpy as np
 from ..arithmetic.dual import Dual, Duals
 from ..arrays.tables import Column
 from ..model import physics
-from .runs import Kind
+from .headings import Kind
 
 NUMPY: Any = np
 DUALS: Duals[Any] = Duals(NUMPY)
