@@ -14,9 +14,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atwood_cli.laboratory.fitting import Fit, Odd, fitted, known_of
+from atwood_cli.laboratory.fitting import Fit, Odd, conditions_of, fitted
 from atwood_cli.laboratory.headings import Kind
-from atwood_cli.laboratory.model import expected
+from atwood_cli.laboratory.least_squares import expected
 from atwood_cli.laboratory.probability import student_within
 from atwood_cli.laboratory.runs import Run, Runs
 from atwood_cli.laboratory.statistics import Alike
@@ -146,7 +146,7 @@ def drawn(design: Design, random: Random) -> Set:
 
 def fit_of(made: Set) -> Fit:
     runs = made.runs()
-    return fitted(runs, known_of(NOTHING, runs), [])
+    return fitted(runs, conditions_of(NOTHING, runs), [])
 
 
 def named(made: Set) -> Odd:

@@ -21,10 +21,9 @@ from scipy import optimize, stats
 
 from atwood_cli import SceneError, solve
 from atwood_cli import fit as laboratory_fit
-from atwood_cli.laboratory import model
-from atwood_cli.laboratory.fitting import Fit, as_data, fitted, known_of
+from atwood_cli.laboratory.fitting import Fit, as_data, conditions_of, fitted
 from atwood_cli.laboratory.headings import Kind
-from atwood_cli.laboratory.least_squares import Data, estimate
+from atwood_cli.laboratory.least_squares import Data, estimate, expected
 from atwood_cli.laboratory.numbers import published
 from atwood_cli.laboratory.probability import (
     beta_share,
@@ -134,7 +133,7 @@ def test_what_made_exact_runs_is_found(kind: Kind) -> None:
     runs = made(kind, Random(1), 0, False)
     for find, known in ((["rim_mass", "axle"], {}), (["axle", "gravity"], {"M": "42g", "inertia": "1"})):
         inputs = NOTHING | {x: read_input(x, word) for x, word in known.items()}
-        best = fitted(runs, known_of(inputs, runs), find)
+        best = fitted(runs, conditions_of(inputs, runs), find)
         for name in find:
             assert best.values[name] == pytest.approx(
                 {"rim_mass": C, "axle": F, "gravity": G}[name], rel=1e-9
@@ -158,7 +157,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
 def test_the_scatter_of_times_is_found_beside_uncertain_masses() -> None:
     """It was taken to be 0, and the same stopwatch had an uncertainty of 0.028 s and of 0.006 s."""
     runs = made("time", Random(4), 0.06, False, 1e-4)
-    best = fitted(runs, known_of(NOTHING, runs), [])
+    best = fitted(runs, conditions_of(NOTHING, runs), [])
     scatter = best.estimate.linear.variance - best.estimate.known
     assert scatter == pytest.approx(scatter[0])
     assert 0.02 < sqrt(scatter[0]) < 0.12
@@ -186,7 +185,7 @@ def test_both_terms_are_fitted_however_small(repeats: int) -> None:
     random = Random(95)
     for _ in range(20):
         runs = made("a", random, 0.01, False, repeats=repeats)
-        best = fitted(runs, known_of(NOTHING, runs), [])
+        best = fitted(runs, conditions_of(NOTHING, runs), [])
         assert list(best.values) == ["rim_mass", "axle"]
 
 
@@ -199,7 +198,7 @@ def test_slopes_are_those_of_differences(kind: Kind) -> None:
         **{"rim_mass": C, "axle": F, "gravity": G},
     }
     names = [name for name in given if kind == "time" or name != "drop"]
-    value, slopes = model.expected(kind, given, names)
+    value, slopes = expected(kind, given, names)
     for i in range(2):
         scene = solve(m1=given["l"][i], m2=given["h"][i], M=C, inertia=1, axle=F, g=G)
         assert scene.acceleration is not None
@@ -207,9 +206,9 @@ def test_slopes_are_those_of_differences(kind: Kind) -> None:
         assert value[i] == pytest.approx(wanted, rel=1e-13)
     for name in names:
         step = 1e-6 * given[name]
-        ends = [model.expected(kind, given | {name: given[name] + side * step}, [])[0] for side in (-1, 1)]
+        ends = [expected(kind, given | {name: given[name] + side * step}, [])[0] for side in (-1, 1)]
         assert slopes[name] == pytest.approx((ends[1] - ends[0]) / (2 * step), rel=1e-5)
-    nowhere, _ = model.expected("time", given | {"axle": 1.0}, [])
+    nowhere, _ = expected("time", given | {"axle": 1.0}, [])
     assert np.isnan(nowhere).all()
 
 
@@ -241,9 +240,9 @@ def by_scipy(best: Fit, sigma: Any, absolute: bool) -> tuple[Any, Any]:
 @pytest.mark.parametrize(("given", "u_mass"), [(False, 0.0), (True, 0.0), (True, 1e-4)])
 def test_values_and_uncertainties_are_those_of_scipy(kind: Kind, given: bool, u_mass: float) -> None:
     runs = made(kind, Random(7), {"a": 0.002, "time": 0.06}[kind], given, u_mass)
-    best = fitted(runs, known_of(NOTHING, runs), ["rim_mass", "axle"])
+    best = fitted(runs, conditions_of(NOTHING, runs), ["rim_mass", "axle"])
     values, covariance = by_scipy(best, np.sqrt(best.estimate.linear.variance), absolute=given)
-    for i, name in enumerate(best.estimate.found):
+    for i, name in enumerate(best.estimate.names):
         assert best.values[name] == pytest.approx(values[i], rel=1e-6)
         assert best.uncertainty(name) == pytest.approx(sqrt(covariance[i, i]), rel=1e-4)
     assert best.correlation is not None
@@ -395,8 +394,8 @@ def test_a_free_axle_is_an_assumption_that_says_what_it_carries(fit: Any) -> Non
     assert (result["axle"], result["dof"]) == (None, 7)
     (note,) = [note for note in result["notes"] if "taken to be 0" in note]
     assert note == (
-        "The friction of the axle is neither fitted nor given, and so taken to be 0:"
-        " 10 mN would take 21 g off the rim mass."
+        "Axle friction is neither fitted nor given, and so taken to be 0:"
+        " 10 mN would take 21 g off the pulley's inertia."
     )
     more = found(fit(SIMMONS, "--g", "9.81", "--axle", "1mN", "--find", "rim_mass", "--json"))
     assert result["rim_mass"] - more["rim_mass"] == pytest.approx(0.0021, rel=0.05)
@@ -480,7 +479,7 @@ def test_what_is_known_is_not_fitted(fit: Any) -> None:
         "8 runs, 8 accelerations. Axle friction agrees with 0: at most 0.00074 N (95 %)."
     )
     both = found(fit(SIMMONS, "--M", "26g", "--axle", "1mN", "--json"))
-    assert "Nothing is left to find: the pulley and its axle are known." in both["notes"][0]
+    assert "Nothing is left to fit: the pulley and its axle are given." in both["notes"][0]
     assert both["dof"] == 8
     by_moment = found(fit(SIMMONS, "--I", "13 g m2", "--R", "1m", "--g", "9.81", "--json"))
     assert by_moment["dof"] == result["dof"]
@@ -495,7 +494,7 @@ def test_gravity_is_found_if_asked_for(fit: Any) -> None:
     assert (result["rim_mass"], result["axle"]) == (None, None)
     alone = found(fit(SIMMONS, "--find", "gravity", "--json"))
     assert (
-        "The rim mass is neither fitted nor given, and so taken to be 0: 1 g would add 61 mm/s² to gravity."
+        "The pulley's inertia is neither fitted nor given, and so taken to be 0: 1 g would add 61 mm/s² to gravity."
         in (alone["notes"])
     )
     page = fit(SIMMONS, "--find", "gravity").out
@@ -512,7 +511,7 @@ def test_what_slopes_do_not_tell_is_refused(fit: Any, find: str) -> None:
         table += f"{(total - difference) / 2:.6f},{(total + difference) / 2:.6f},{a:.4f}\n"
     ran = fit(table, "--find", find)
     assert (ran.status, ran.out) == (1, "")
-    assert re.fullmatch("atwood: the runs do not tell .*: vary m2 - m1 more, and m1 \\+ m2\n", ran.err)
+    assert re.fullmatch("atwood: the runs do not separate .*: vary m2 - m1 more, and m1 \\+ m2\n", ran.err)
 
 
 def test_no_page_warns_of_numpy(fit: Any) -> None:
@@ -523,7 +522,7 @@ def test_no_page_warns_of_numpy(fit: Any) -> None:
             ran = fit(f"m1,m2,{name}\n1,3,1\n1,2,2\n1,4,9\n1,5,5\n", "--find", "axle,gravity", *drop)
             assert (
                 ran.err
-                == "atwood: the runs do not tell axle friction from gravity: vary m2 - m1 more, and m1 + m2\n"
+                == "atwood: the runs do not separate axle friction from gravity: vary m2 - m1 more, and m1 + m2\n"
             )
 
 
@@ -585,7 +584,7 @@ STRAY = "m1,m2,time 1,time 2,time 3,time 4,time 5\n" + "".join(
             SIMMONS.replace("0.780", "2.1"),
             ("--R", "25mm"),
             "Without row 8: moment of inertia = (6.7 ± 2.2)e-6 kg m², rim mass = 0.0107 ± 0.0035 kg,"
-            " axle = 0.0007 ± 0.0014 N. The fit includes it; --without 8 leaves it out.",
+            " axle = 0.0007 ± 0.0014 N. The fit includes it.",
         ),
         (
             PLAIN.replace("6.16", "2.1"),
@@ -624,7 +623,7 @@ STRAY = "m1,m2,time 1,time 2,time 3,time 4,time 5\n" + "".join(
         (
             "m1,m2,time\n1.00(1),2.00(1),1.0\n1.00(1),3.00(1),.8\n1.50(1),2.00(1),1.7\n2.0(1),3.0(1),1.21\n",
             ("--drop", "1"),
-            "The uncertainty of a single time is neither given nor told by repeats: u is the scatter that",
+            "The uncertainty of a single time is neither given nor shown by repeats: u is the scatter that",
         ),
     ],
 )
@@ -658,6 +657,8 @@ def test_of_a_pair_that_disagrees_both_are_named(fit: Any) -> None:
 def test_what_is_odd_is_said_above_the_tables_and_marked(fit: Any) -> None:
     out = fit(STRAY.replace("2.69", "3.79"), "--drop", "98cm").out
     assert out.index("is far from its siblings") < out.index("Quantity") < out.index("│ 3 ! │")
+    odd = fit(SIMMONS.replace("0.303", "0.503")).out
+    assert "The fit includes it.\n--without 5 leaves it out.\n" in odd
     left = fit(SIMMONS.replace("0.303", "0.503"), "--without", "5", "--json")
     assert "Row 5 was left out, as asked." in found(left)["notes"]
     assert found(left)["runs"][4]["expected"] is None
@@ -718,13 +719,13 @@ def test_a_table_that_is_none(fit: Any, table: str, more: tuple[str, ...], error
             "m1,m2,a\n1,2,1\n",
             (),
             1,
-            "1 run is too few for what is to be fitted and its scatter: give more runs, or repeats, or uncertainties (as 2.05+/-0.02), or what is known (--M, --axle), or name one thing to --find",
+            "1 run is too few for what is to be fitted and its scatter: give more runs, or repeats, or uncertainties (as 2.05+/-0.02), or what is known (M, axle), or fit one quantity alone (find)",
         ),
         (
             "m1,m2,a\n" + 3 * "1,2,1(1)\n",
             ("--find", "c,f"),
             1,
-            "1 run is too few for what is to be fitted and its scatter: give more runs, or repeats, or uncertainties (as 2.05+/-0.02), or what is known (--M, --axle), or name one thing to --find",
+            "1 run is too few for what is to be fitted and its scatter: give more runs, or repeats, or uncertainties (as 2.05+/-0.02), or what is known (M, axle), or fit one quantity alone (find)",
         ),
         (SIMMONS, ("--without", "9"), 2, "--without '9' is no row; there are 1 to 8"),
         (SIMMONS, ("--without", "a"), 2, "--without 'a' must be a whole number from 1 to 1000000000"),
@@ -732,7 +733,7 @@ def test_a_table_that_is_none(fit: Any, table: str, more: tuple[str, ...], error
             "m1,m2,a\n1,3,1\n1.5,2.5,.5\n1.9,2.1,.1\n",
             ("--find", "c,g"),
             1,
-            "the runs do not tell the pulley's inertia from gravity: vary m1 + m2 as well",
+            "the runs do not separate the pulley's inertia from gravity: vary m1 + m2 as well",
         ),
         (SIMMONS, ("--find", "mass"), 2, "--find 'mass' is nothing to fit; did you mean rim_mass?"),
         (
@@ -757,7 +758,7 @@ def test_a_table_that_is_none(fit: Any, table: str, more: tuple[str, ...], error
             SIMMONS,
             ("--only", "gravity"),
             1,
-            "gravity: has no value: it is given, was not to be fitted, or the runs do not tell it.",
+            "gravity: has no value: it is given, was not to be fitted, or the runs do not determine it.",
         ),
         (
             SIMMONS,
@@ -773,7 +774,7 @@ def test_a_table_that_is_none(fit: Any, table: str, more: tuple[str, ...], error
             SIMMONS,
             ("--only", "axle", "--plot"),
             2,
-            "--only 'axle' has no say beside --plot; leave one of them out",
+            "--only 'axle' has no effect with --plot; leave one of them out",
         ),
         (SIMMONS, ("--figure", "a.gif"), 2, "--figure 'a.gif' must end in one of .svg, .png, .pdf"),
     ],
@@ -788,7 +789,7 @@ def test_errors(fit: Any, table: str, more: tuple[str, ...], status: int, error:
 )
 def test_a_result_that_is_not_there_is_a_status_in_every_form(fit: Any, form: str, out: str) -> None:
     ran = fit(SIMMONS, "--only", "gravity", form)
-    why = "gravity: has no value: it is given, was not to be fitted, or the runs do not tell it."
+    why = "gravity: has no value: it is given, was not to be fitted, or the runs do not determine it."
     assert (ran.status, ran.out, ran.err) == (1, out, f"atwood: {why}\n")
 
 
@@ -895,7 +896,7 @@ def test_in_python_it_is_what_json_has(atwood: Atwood) -> None:
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' is known by g; leave one of them out"),
         (EQUAL, {"find": "c", "I": 1}, SceneError, "find 'rim_mass' is known by I; leave one of them out"),
         (EQUAL, {"without": [9]}, SceneError, "without '9' is no row; there are 1 to 2"),
-        (EQUAL, {}, ArithmeticError, "the runs do not tell the pulley's inertia: vary m2 - m1 more, and m1 + m2"),
+        (EQUAL, {}, ArithmeticError, "the runs do not determine the pulley's inertia: vary m2 - m1 more, and m1 + m2"),
     ],
 )  # fmt: skip
 def test_in_python_errors_say_what_is_wrong(
@@ -1148,4 +1149,6 @@ def test_an_inertia_that_runs_away_is_not_told(atwood: Atwood, tmp_path: Path) -
     )
     ran = atwood("fit", str(path), "--R", "0.3", "--g", "0.5")
     assert (ran.status, ran.out) == (1, "")
-    assert ran.err == "atwood: the runs do not tell the pulley's inertia: vary m2 - m1 more, and m1 + m2\n"
+    assert (
+        ran.err == "atwood: the runs do not determine the pulley's inertia: vary m2 - m1 more, and m1 + m2\n"
+    )

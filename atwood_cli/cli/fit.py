@@ -1,4 +1,4 @@
-"""`atwood fit`: runs of a laboratory, and what of the pulley and its axle they require."""
+"""`atwood fit`: the pulley's inertia and its axle's friction, from runs of a laboratory."""
 
 from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..arithmetic.rounding import as_typed, to_digits
+from ..arithmetic.rounding import as_typed, text, to_digits
+from ..laboratory.quantities import FITTED, QUANTITIES
 from ..model.scene import INPUTS, Input, SceneError, parameter_of, read_digits, read_input, read_whole, stated
+from ..model.units import counted
 from ..output.text import Forms, cell, say, show
 from .options import (
     COULD_NOT,
@@ -45,17 +47,12 @@ Table = Annotated[
         show_default=False,
     ),
 ]
-WHAT = {
-    "rim_mass": "the pulley's inertia as a mass at its rim, c = I/R²: of a disk half its mass",
-    "axle": "the friction of its axle, as a force at the rim",
-    "gravity": "gravity",
-}
 Find = Annotated[
     list[str] | None,
     option(
         "Measured",
         metavar="NAME",
-        words=lambda: WHAT,
+        words=lambda: {name: QUANTITIES[name].words for name in FITTED},
         help="Fit just this: rim_mass, axle or gravity; repeatable.",
     ),
 ]
@@ -64,13 +61,11 @@ Without = Annotated[
     option("Measured", metavar="ROW", help="Leave this row out; repeatable, or 5,7."),
 ]
 RESULTS = {
-    **WHAT,
-    "pulley_mass": "with its shape, the pulley's mass",
-    "moment_of_inertia": "with R, the moment of inertia",
-    "correlation": "the correlation of what was found",
+    **{name: one.words for name, one in QUANTITIES.items()},
+    "correlation": "the correlation of two results",
     "chi2": "χ² of the runs by the uncertainties given, or the scatter of repeats",
     "dof": "degrees of freedom: the runs less what is fitted",
-    "between_runs": "the standard deviation between runs beside that, as a mass",
+    "between_runs": "the standard deviation between runs beyond that, as a mass",
 }
 Only = Annotated[
     list[str] | None,
@@ -100,7 +95,7 @@ RULES = (
         Rule("explain", name, f"has no part in --{name}; leave one of them out")
         for name in ("json", "csv", "only", "plot")
     ),
-    Rule("only", "plot", "has no say beside --plot; leave one of them out"),
+    Rule("only", "plot", "has no effect with --plot; leave one of them out"),
 )
 
 HELP = """Fit runs of a laboratory: the pulley's inertia, its axle's friction.
@@ -162,20 +157,19 @@ def fit(
     height = read_input("drop", drop) if drop is not None else None
     check_extras(plot, figure, force)
     from ..laboratory import fit_of
-    from ..laboratory.fitting import to_find
 
-    found = fit_of(table, inputs, height, to_find(divided(find or []), inputs), label or [], out)
+    best = fit_of(table, inputs, height, divided(find or []), label or [], out)
     if explain:
         from ..laboratory.explained import explained
         from ..output.page import print_explanation
 
-        print_explanation(_given(found, inputs), explained(found, inputs), markdown)
+        print_explanation(_conditions(best), explained(best), markdown)
         return DONE
     if figure is not None:
         from ..output.fit_figure import save
 
-        save(found, None if bare else _head(found, inputs), figure, force)
-    forms = _Forms(found, inputs, names, precision, plot)
+        save(best, None if bare else ", ".join(_conditions(best)), figure, force)
+    forms = _Forms(best, names, precision, plot)
     say(*show(forms.forms(), json, csv, bare=bool(names)))
     return COULD_NOT if "" in [cell(forms.values[name]) for name in names] else DONE
 
@@ -183,23 +177,25 @@ def fit(
 class _Forms:
     """A fit in the forms in which it may be asked for."""
 
-    def __init__(
-        self, fit: "Fit", inputs: Mapping[str, Input], only: Sequence[str], digits: int | None, plot: bool
-    ) -> None:
-        from ..laboratory.results import found, results
-        from ..laboratory.sentences import accusations, notes, verdict
+    def __init__(self, fit: "Fit", only: Sequence[str], digits: int | None, plot: bool) -> None:
+        from ..laboratory.results import results_of
+        from ..laboratory.sentences import head, notes, odd_cells
 
-        self.fit, self.inputs, self.only, self.digits, self.plot = fit, inputs, only, digits, plot
-        self.head = [verdict(fit), *accusations(fit, inputs)]
-        self.notes = notes(fit)
-        self.found = found(fit, inputs)
-        self.record = results(fit, inputs, [*self.head, *self.notes])._asdict()
+        self.fit, self.only, self.digits, self.plot = fit, only, digits, plot
+        self.head, self.notes = head(fit), notes(fit)
+        odd = odd_cells(fit)
+        if odd and not any("," in cell for cell in odd):  # whole rows
+            rows = ",".join(cell.removeprefix("row ") for cell in odd)
+            self.head.append(f"--without {rows} leaves {'them' if odd[1:] else 'it'} out.")
+        self.record = results_of(fit)._asdict()
         self.values = {name: self._rounded(self.record[name]) for name in RESULTS}
 
     def _rounded(self, value: Any) -> Any:
-        """Numbers to the digits asked for, wherever they are, but for those that were read."""
+        """Results rounded to the digits asked for, in lists and mappings too; inputs stay as they are."""
+        from ..laboratory.headings import TAKEN
+
         if isinstance(value, dict):
-            return {name: one if name in READ else self._rounded(one) for name, one in value.items()}
+            return {name: one if name in TAKEN else self._rounded(one) for name, one in value.items()}
         if isinstance(value, list):
             return [self._rounded(one) for one in value]
         if isinstance(value, float) and self.digits is not None:
@@ -217,10 +213,11 @@ class _Forms:
         return [self._json()] if self.only else self._rounded(self.record["runs"])
 
     def _beside(self) -> Sequence[str]:
-        """What CSV and bare values have no place for: the verdict, what was found, and all else."""
-        from ..laboratory.numbers import UNITS, shown
+        """The sentences that CSV and bare values have no place for."""
+        from ..laboratory.numbers import shown
 
-        values = {name: f"{name} = {shown(*one[:2])} {UNITS[name]}" for name, one in self.found.items()}
+        results = self.fit.results.items()
+        values = {x: f"{x} = {shown(*one[:2])} {QUANTITIES[x].unit}" for x, one in results}
         if self.only:
             absent = (f"{x}: {WITHOUT.get(x, NOT_FITTED)}." for x in self.only if self.values[x] is None)
             return [*(values[name] for name in self.only if name in values), *absent, *self.head[1:]]
@@ -239,33 +236,33 @@ class _Forms:
         if self.plot:
             from ..output.plot import print_fit_plot
 
-            print_fit_plot(page, [_head(self.fit, self.inputs), *self.head], self.fit)
+            print_fit_plot(page, [", ".join(_conditions(self.fit)), *self.head], self.fit)
         else:
             self._tables(page)
         for note in self.notes:
             page.say(note)
-        if command := prediction(self.fit, self.inputs):
+        if command := prediction(self.fit):
             page.say("To predict:")
             for line in command_lines(command, page.width):
                 page.line(line)
 
     def _tables(self, page: "Page") -> None:
-        from ..laboratory.results import COLUMNS, rows_of
+        from ..laboratory.numbers import COLUMNS, rows_of
 
-        page.say(_head(self.fit, self.inputs))
+        page.say(", ".join(_conditions(self.fit)))
         for words in self.head:
             page.say(words, "bold")
-        if self.found:
-            columns = zip(*rows_of(self.found, self.digits), strict=True)
+        if results := self.fit.results:
+            columns = zip(*rows_of(results, self.digits), strict=True)
             _print_table(page, dict(zip(COLUMNS, columns, strict=True)), ("Quantity", "Unit", "Symbol"))
         self._runs(page)
         page.say(self._quality())
 
     def _quality(self) -> str:
-        """How well it fits, in a sentence."""
+        """How well the line fits, in a sentence."""
         from ..laboratory.numbers import few
 
-        fit, freedom = self.fit, f"{self.fit.dof} degree{'s' * (self.fit.dof != 1)} of freedom"
+        fit, freedom = self.fit, f"{counted(self.fit.dof, 'degree')} of freedom"
         by = "scatter of repeats" if isfinite(fit.data.within) else "uncertainties given"
         said = freedom if fit.chi2 is None else f"χ² = {few(fit.chi2, 3)} by the {by}, {freedom}"
         if (pair := fit.correlation) is not None:
@@ -273,29 +270,26 @@ class _Forms:
         return f"Residuals are in standard uncertainties, u; {said}."
 
     def _runs(self, page: "Page") -> None:
-        """Run by run: what was measured, what is expected, and what is left."""
+        """Run by run: the measurement, what is expected, and the residual."""
         from ..laboratory.numbers import cut, shown
 
-        kind, lines = self.fit.runs.kind, self.fit.lines
-        odd = {self.fit.used[i].rows for i in self.fit.odd.runs}
+        kind, labels, lines = self.fit.runs.kind, self.fit.runs.labels, self.record["runs"]
+        odd = {" ".join(map(str, self.fit.used[i].rows)) for i in self.fit.odd.runs}
         if more := max(len(lines) - MOST_ROWS, 0):  # those that are odd, and then the first
-            lines = sorted(lines, key=lambda line: line.run.rows not in odd)[:MOST_ROWS]
+            lines = sorted(lines, key=lambda line: line["rows"] not in odd)[:MOST_ROWS]
         unit = parameter_of(kind).unit
-        labels = self.fit.runs.labels
-        finest = min((line.uncertainty for line in lines if line.uncertainty), default=None)
+        finest = min((line["u"] for line in lines if line["u"]), default=None)
         columns = {
-            "row": [",".join(map(str, line.run.rows)) + " !" * (line.run.rows in odd) for line in lines],
-            **{name: [line.run.labels[name] for line in lines] for name in labels},
-            "m1 (kg)": [as_typed(line.run.m1.value) for line in lines],
-            "m2 (kg)": [as_typed(line.run.m2.value) for line in lines],
+            "row": [line["rows"].replace(" ", ",") + " !" * (line["rows"] in odd) for line in lines],
+            **{name: [line[name] for line in lines] for name in labels},
+            **{f"{name} (kg)": [text(line[name]) for line in lines] for name in ("m1", "m2")},
             f"{kind} ({unit})": [
-                shown(line.measured, u) if (u := line.uncertainty) else cut(line.measured, finest)
-                for line in lines
+                shown(line[kind], line["u"]) if line["u"] else cut(line[kind], finest) for line in lines
             ],
             f"expected ({unit})": [
-                "" if line.expected is None else cut(line.expected, finest) for line in lines
+                "" if line["expected"] is None else cut(line["expected"], finest) for line in lines
             ],
-            "residual/u": ["" if line.residual is None else f"{line.residual:.2f}" for line in lines],
+            "residual/u": ["" if line["residual"] is None else f"{line['residual']:.2f}" for line in lines],
         }
         _print_table(page, columns, labels)
         if more:
@@ -312,8 +306,7 @@ def _print_table(page: "Page", columns: Mapping[str, Sequence[str]], words: Coll
 
 MOST_ROWS = 100
 """Runs in a table that somebody reads."""
-READ = ("m1", "m2", "drop", "a", "time")
-NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not tell it"
+NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
 WITHOUT = {
     "chi2": "needs uncertainties, or repeats",
     "between_runs": "needs uncertainties, or repeats, and more runs than results",
@@ -323,19 +316,13 @@ WITHOUT = {
 }
 
 
-def _head(fit: "Fit", inputs: Mapping[str, Input]) -> str:
-    """What is the same in all runs, in a line."""
-    return ", ".join(_given(fit, inputs))
-
-
-def _given(fit: "Fit", inputs: Mapping[str, Input]) -> list[str]:
+def _conditions(fit: "Fit") -> list[str]:
     """What is the same in all runs."""
     g = "g" if "gravity" not in fit.values else None
-    shared = {name: one for name, one in inputs.items() if one.given is not None or name == g}
-    parts = [_stated(name, one) for name, one in shared.items()]
+    shared = {x: one for x, one in fit.given.inputs.items() if one.given is not None or x == g}
     if fit.runs.one_drop and (drop := fit.used[0].drop) is not None:
-        parts.append(_stated("drop", drop))
-    return parts
+        shared["drop"] = drop
+    return [_stated(name, one) for name, one in shared.items()]
 
 
 def _stated(name: str, one: Input) -> str:

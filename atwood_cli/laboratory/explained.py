@@ -8,20 +8,20 @@ from ..derivation.equations import Law, Part
 from ..derivation.steps import Explanation, Step
 from ..solver.answers import SHOWN_DIGITS
 from .fitting import Fit
-from .numbers import few
-from .results import Inputs, found, points, rows_of
-from .sentences import accusations, notes, verdict
+from .numbers import few, rows_of
+from .results import points
+from .sentences import head, notes
 
 
-def explained(fit: Fit, inputs: Inputs) -> Explanation:
-    """The derivation of the line, what became of it, and what was assumed."""
+def explained(fit: Fit) -> Explanation:
+    """The derivation of the line, its results, and what was assumed."""
     return Explanation(
-        [verdict(fit), *accusations(fit, inputs)],
+        head(fit),
         f"Numbers are rounded to {SHOWN_DIGITS} significant digits.",
         [
-            Step("The equations of a run", list(_equations())),
+            Step("The equations of a run", EQUATIONS),
             Step("The runs as points", list(_points(fit))),
-            Step("The line", list(_line(fit, inputs))),
+            Step("The line", list(_line(fit))),
             Step("What was assumed, and what else to know", [ASSUMED, *notes(fit)]),
         ],
         "Runs of Atwood's machine",
@@ -32,40 +32,34 @@ ASSUMED = (
     "The string is taken to have no mass, not to stretch and not to slip, the friction of the axle to be the"
     " same in all runs, and what is given without an uncertainty to be exact."
 )
-
-
-def _equations() -> Iterator[Part]:
-    yield "`l` is the lighter mass and `h` the heavier, which descends with the acceleration `a`:"
-    yield Law("(1)", "T_l - l g = l a")
-    yield Law("(1)", "h g - T_h = h a")
-    yield (
-        "The difference of the tensions turns the pulley, whose inertia counts as a mass `c = I/R^2` at its"
-        " rim, against the friction of the axle, a force `f` there:"
-    )
-    yield Law("(3)", "T_h - T_l = c a + f")
-    yield "The sum of both (1) gives that difference by what is measured:"
-    yield Law("", "y = T_h - T_l = (h - l) g - a (h + l)")
-    yield (
-        "So `y` against `a` is a straight line, for whatever masses. Its slope is `c`, and where it meets the"
-        " axis, at `a` = 0, it is `f`: what the weights must differ by before anything moves."
-    )
+EQUATIONS: list[Part] = [
+    "`l` is the lighter mass and `h` the heavier, which descends with the acceleration `a`:",
+    Law("(1)", "T_l - l g = l a"),
+    Law("(1)", "h g - T_h = h a"),
+    "The difference of the tensions turns the pulley, whose inertia counts as a mass `c = I/R^2` at its"
+    " rim, against the friction of the axle, a force `f` there:",
+    Law("(3)", "T_h - T_l = c a + f"),
+    "The sum of both (1) gives that difference by what is measured:",
+    Law("", "y = T_h - T_l = (h - l) g - a (h + l)"),
+    "So `y` against `a` is a straight line, for whatever masses. Its slope is `c`, and where it meets the"
+    " axis, at `a` = 0, it is `f`: what the weights must differ by before anything moves.",
+]
 
 
 def _points(fit: Fit) -> Iterator[Part]:
-    if fit.runs.kind == "time":
-        yield "A height `s` fallen from rest in the time `t` tells the acceleration:"
+    timed = fit.runs.kind == "time"
+    if timed:
+        yield "A height `s` fallen from rest in the time `t` gives the acceleration:"
         yield Law("", "a = 2 s/t^2")
-    g = fit.estimate.values["gravity"]
-    yield f"With `g` = {text(g)} m/s² the runs are"
-    at = points(fit)
-    data, time = fit.data, fit.runs.kind == "time"
+    yield f"With `g` = {text(fit.estimate.values['gravity'])} m/s² the runs are"
+    at, data = points(fit), fit.data
     for run, l, h, t, x, y in zip(fit.used, data.l, data.h, data.measured, at.x, at.y, strict=True):
-        fall = f", `t = {_number(t)}` s" * time
+        fall = f", `t = {_number(t)}` s" * timed
         masses = f"`l = {text(float(l))}` kg, `h = {text(float(h))}` kg"
         yield f"- {run.name}: {masses}{fall}: `a = {_number(x)}` m/s², `y = {_number(y)}` N"
 
 
-def _line(fit: Fit, inputs: Inputs) -> Iterator[Part]:
+def _line(fit: Fit) -> Iterator[Part]:
     yield Law("", "y = c a + f")
     what = {"a": "accelerations", "time": "times"}[fit.runs.kind]
     yield (
@@ -73,7 +67,7 @@ def _line(fit: Fit, inputs: Inputs) -> Iterator[Part]:
         f" squares of what is left, each in its standard uncertainty, is the least. It is not that of `y`, as"
         f" {what} were measured and not `y`, which has their errors multiplied."
     )
-    rows = rows_of(found(fit, inputs))
+    rows = rows_of(fit.results)
     for name, value, unit, symbol, ends in rows:
         words = "axle friction" if name == "axle" else name.replace("_", " ")
         within = f", 95 % interval `{ends}` {unit}" * bool(ends)

@@ -1,12 +1,13 @@
-"""What runs require: the pulley's inertia and the friction of its axle, and which runs are odd.
+"""What runs say of the pulley's inertia and the friction of its axle, and which runs are odd.
 
-Both are always fitted where the runs can tell them apart: one that is left out falsifies the other. Nothing
-is left out of the runs silently.
+Both are always fitted where the runs can separate them: leaving one out falsifies the other. No run is left
+out silently.
 """
 
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
-from math import inf, sqrt
+from itertools import combinations
+from math import hypot, inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
@@ -21,53 +22,40 @@ from ..model.case import Case
 from ..model.motion import moved
 from ..model.scene import UNMEASURED, Input, Scene, SceneError
 from ..model.units import nearest
-from .least_squares import Data, Estimate, estimate
+from .least_squares import Data, Estimate, estimate, expected
+from .numbers import Result
 from .probability import SURE, student_within
+from .quantities import FITTED, QUANTITIES, USUAL
 from .runs import BEYOND, Run, Runs, in_range
 from .statistics import Alike, stray_repeats, stray_rows, sum_of_squares
 
-FOUND = ("rim_mass", "axle", "gravity")
-"""What may be fitted."""
-SYMBOLS = {"g": "gravity", "c": "rim_mass", "f": "axle"}
-GIVEN = {"rim_mass": ("M", "I"), "axle": ("axle",), "gravity": ("g",)}
-"""The inputs by which they are known."""
-WORDS = {"rim_mass": "the pulley's inertia", "axle": "axle friction", "gravity": "gravity"}
 SAME = 0.01
-"""The spread of m1 + m2, as a share of it, below which it is as good as constant."""
-SMALL = {"rim_mass": 0.3, "gravity": 0.1}
-"""The standard uncertainty as a share, of the load m1 + m2 + c and of g, up to which slopes tell it."""
+"""The spread of m1 + m2, as a share of it, below which it counts as constant."""
+MOST_UNCERTAIN = {"rim_mass": 0.3, "gravity": 0.1}
+"""The standard uncertainty, as a share of the load m1 + m2 + c and of g, up to which slopes give it."""
 CHANCE = 0.03
 """The share of sound sets of which a repeat is said to be odd, and half of it where a run is."""
 TOO_FEW = (
     "{} too few for what is to be fitted and its scatter: give more runs, or repeats, or uncertainties (as"
-    " 2.05+/-0.02), or what is known (--M, --axle), or name one thing to --find"
+    " 2.05+/-0.02), or what is known (M, axle), or fit one quantity alone (find)"
 )
 
 
 class TooFew(ArithmeticError):
-    """The runs are fewer than what is to be fitted."""
+    """The runs are fewer than the quantities to be fitted."""
 
 
-class Known(NamedTuple):
-    """What is known of all runs: values by name, and what each uncertain input changes in them."""
+class Conditions(NamedTuple):
+    """What is the same in all runs: inputs, values, and by how much each uncertain input changes these."""
 
+    inputs: Mapping[str, Input]
     scene: Scene
     values: Mapping[str, float]
     changes: Sequence[Mapping[str, float]]
 
 
-class Line(NamedTuple):
-    """A run beside what is expected of it; the residual in standard uncertainties, if those are known."""
-
-    run: Run
-    measured: float
-    expected: float | None
-    uncertainty: float | None
-    residual: float | None
-
-
 class Odd(NamedTuple):
-    """What is odd about the runs used, by their indices, and the fit without it, if it can be had.
+    """What is odd about the runs used, by their indices, and the fit without it, where there is one.
 
     ``repeats`` are single measurements far from their siblings, ``rows`` runs far from what the others say,
     both with the distance in standard uncertainties; ``cannot`` are runs that physics forbids, and why.
@@ -85,25 +73,25 @@ class Odd(NamedTuple):
 
 
 class Fit(NamedTuple):
-    """What was found, and how well.
+    """The best values, and how well the runs determine them.
 
-    ``asked`` says that it was said what to find, and ``assumed``, if it was not, why the axle is taken to
-    be free.
+    ``find`` are the quantities that the user asked for, none if the choice is left to the fit; then
+    ``assumed`` says why the axle is taken to be free, if it is.
     """
 
     runs: Runs
     used: Sequence[Run]
-    known: Known
+    given: Conditions
+    find: Sequence[str]
     data: Data
     estimate: Estimate
-    asked: bool
     assumed: str = ""
     odd: Odd = Odd()
 
     @property
     def dof(self) -> int:
-        """Degrees of freedom: the runs less what is fitted."""
-        return len(self.used) - len(self.estimate.found)
+        """Degrees of freedom: the runs less the fitted quantities."""
+        return len(self.used) - len(self.estimate.names)
 
     @property
     def times(self) -> float:
@@ -112,7 +100,8 @@ class Fit(NamedTuple):
 
     @property
     def values(self) -> dict[str, float]:
-        return {name: self.estimate.values[name] for name in self.estimate.found}
+        """The fitted quantities."""
+        return {name: self.estimate.values[name] for name in self.estimate.names}
 
     @property
     def sigma(self) -> Column:
@@ -121,45 +110,68 @@ class Fit(NamedTuple):
         return scaled
 
     def uncertainty(self, name: str) -> float:
-        """The standard uncertainty of what was found, with that of what is known."""
-        by_known, i = self.estimate.by_known, self.estimate.found.index(name)
+        """The standard uncertainty of a fitted quantity, with that of the conditions."""
+        by_given, i = self.estimate.by_given, self.estimate.names.index(name)
         variance = self.estimate.uncertainty(name) ** 2
-        for change in self.known.changes:
-            variance += sum(by_known[x][i] * by for x, by in change.items() if x in by_known) ** 2
+        for change in self.given.changes:
+            variance += sum(by_given[x][i] * by for x, by in change.items() if x in by_given) ** 2
         return sqrt(variance)
 
     def significant(self, name: str) -> int:
-        """The sign of what was found if its interval has no other; else 0."""
+        """The sign of a fitted quantity if its whole interval has it; else 0."""
         value, half = self.values[name], self.times * self.uncertainty(name)
         return (value > half) - (value < -half)
 
     @property
     def vague(self) -> bool:
-        """Whether slopes do not tell the uncertainties, as these are not small: then there is no result."""
+        """Whether uncertainties are too large for slopes to give them: then there is no result."""
         least, values = float((self.data.l + self.data.h).min()), self.estimate.values
         sizes = {"rim_mass": least + values["rim_mass"], "gravity": abs(values["gravity"])}
-        found = [x for x in sizes if x in self.estimate.found]
-        return any(self.estimate.uncertainty(x) > SMALL[x] * sizes[x] for x in found)
+        return any(
+            self.estimate.uncertainty(x) > MOST_UNCERTAIN[x] * size
+            for x, size in sizes.items()
+            if x in self.estimate.names
+        )
 
     @property
     def impossible(self) -> list[str]:
-        """What is negative beyond its interval, as no pulley, no axle and no gravity is."""
-        return [name for name in self.estimate.found if self.significant(name) < 0]
+        """The quantities whose whole interval is negative, as no pulley, no axle and no gravity is."""
+        return [name for name in self.estimate.names if self.significant(name) < 0]
 
     @property
     def void(self) -> bool:
-        """Whether there is no result: friction is none beside a pulley, or a gravity, that cannot be."""
+        """Whether there is no result: beside an impossible pulley or gravity the friction means nothing."""
         return self.vague or self.impossible not in ([], ["axle"])
 
     @property
+    def results(self) -> dict[str, Result]:
+        """The fitted quantities that are possible.
+
+        The moment of inertia follows if R is given, the pulley's mass if its shape is.
+        """
+
+        def result(value: float, u: float) -> Result:
+            return Result(value, u, (value - self.times * u, value + self.times * u))
+
+        names = [] if self.void else [x for x in FITTED if x in self.values and x not in self.impossible]
+        results = {name: result(self.values[name], self.uncertainty(name)) for name in names}
+        if c := results.get("rim_mass"):
+            R, beta = self.given.inputs["R"], self.given.inputs["inertia"]
+            if R.value is not None:
+                r, u = float(R.value), float(R.uncertainty)
+                spread = hypot(c.uncertainty * r * r, 2 * c.value * r * u)
+                results = {
+                    "moment_of_inertia": result(physics.moment_of_inertia(c.value, r), spread)
+                } | results
+            if beta.value is not None:
+                mass, share = c.value / float(beta.value), float(beta.uncertainty / beta.value)
+                results["pulley_mass"] = result(mass, hypot(c.uncertainty / float(beta.value), mass * share))
+        return results
+
+    @property
     def correlation(self) -> tuple[str, str, float] | None:
-        """The most correlated pair of what was found."""
-        found = self.estimate.found
-        pairs = [
-            (one, other, self.estimate.correlation(one, other))
-            for i, one in enumerate(found)
-            for other in found[i + 1 :]
-        ]
+        """The most correlated pair of fitted quantities."""
+        pairs = [(*pair, self.estimate.correlation(*pair)) for pair in combinations(self.estimate.names, 2)]
         return max(pairs, key=lambda pair: abs(pair[2]), default=None)
 
     @property
@@ -169,7 +181,7 @@ class Fit(NamedTuple):
 
     @property
     def between_runs(self) -> float | None:
-        """The standard deviation between runs beside that, as a mass (kg); None where nothing tells it."""
+        """The standard deviation between runs beyond that, as a mass (kg); None where nothing shows it."""
         between = self.estimate.linear.between
         if between is None or not self.data.spread.any() or not self.dof:
             return None
@@ -177,44 +189,25 @@ class Fit(NamedTuple):
 
     def too_fast(self, i: int) -> bool:
         """Whether a run is faster than a massless pulley without friction allows, be it by chance."""
-        data, g, none = self.data, np.float64(self.estimate.values["gravity"]), np.float64(0)
-        l, h, a = data.l[i], data.h[i], data.measured[i]
-        limit = physics.acceleration(physics.drive(l, h, none), physics.load(l, h, none), g)
-        if data.kind == "time" and data.drop is not None:
-            a = physics.acceleration_of_fall(data.drop[i], a)
-        return bool(a > limit)
-
-    @property
-    def lines(self) -> list[Line]:
-        """Run by run, those that could not be used without what is expected."""
-        columns = (self.data.measured, self.estimate.expected, self.sigma)
-        here = {run.rows: one for run, *one in zip(self.used, *(c.tolist() for c in columns), strict=True)}
-        lines = []
-        for run in self.runs.runs:
-            if run.rows not in here:
-                lines.append(Line(run, run.mean, None, None, None))
-                continue
-            measured, ideal, u = here[run.rows]
-            sign = -1 if run.sign < 0 else 1
-            residual = sign * (measured - ideal) / u if u else None
-            lines.append(Line(run, sign * measured, sign * ideal, u, residual))
-        return lines
+        data, g = self.data, self.estimate.values["gravity"]
+        scene = {"l": data.l[i], "h": data.h[i], "rim_mass": 0.0, "axle": 0.0, "gravity": g}
+        limit, _ = expected(data.kind, scene | {"drop": None if data.drop is None else data.drop[i]}, [])
+        return bool(data.measured[i] > limit if data.kind == "a" else data.measured[i] < limit)
 
 
-def known_of(inputs: Mapping[str, Input], runs: Runs) -> Known:
-    """What options say of all runs; the masses are none of it. Raises SceneError."""
+def conditions_of(inputs: Mapping[str, Input], runs: Runs) -> Conditions:
+    """What is the same in all runs. Raises SceneError."""
     for x, one in inputs.items():
         if one.given is not None and one.value != inf and not in_range(one):
             raise SceneError(x, one.given, BEYOND)
-    masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # no matter which
+    masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
     scene = Scene.of({**inputs, **masses})
     case = Case(scene)
     values = {"gravity": float(scene.g)}
     if scene.M is not None or scene.I is not None:
         if case.rim_mass is None:
-            raise SceneError(
-                "M", inputs["M"].given, "lets nothing move; give the mass of a pulley that turns"
-            )
+            why = "lets nothing move; give the mass of a pulley that turns"
+            raise SceneError("M", inputs["M"].given, why)
         values["rim_mass"] = float(case.rim_mass)
     if scene.axle is not None:
         values["axle"] = float(case.axle_friction or 0)
@@ -228,71 +221,78 @@ def known_of(inputs: Mapping[str, Input], runs: Runs) -> Known:
             of = {"gravity": beside.scene.g, "rim_mass": beside.rim_mass, "axle": beside.axle_friction}
             slopes = {name: getattr(value, "slope", None) for name, value in of.items() if name in values}
             changes.append({name: float(slope * one.uncertainty) for name, slope in slopes.items() if slope})
-    return Known(scene, values, changes)
+    return Conditions(inputs, scene, values, changes)
 
 
-def to_find(words: Sequence[str], inputs: Mapping[str, Input]) -> list[str]:
-    """What is to be found, by names or symbols, of which each must be unknown. Raises SceneError."""
-    names = list(dict.fromkeys(SYMBOLS.get(word, word) for word in words))
+def read_find(words: Sequence[str], inputs: Mapping[str, Input]) -> list[str]:
+    """The quantities to fit, by names or letters; none of them may be given. Raises SceneError."""
+    letters = {QUANTITIES[name].letter: name for name in FITTED}
+    names = list(dict.fromkeys(letters.get(word, word) for word in words))
     for name in names:
-        if name not in FOUND:
-            rule = nearest(str(name), FOUND) or f"; there are {', '.join(FOUND)}"
+        if name not in FITTED:
+            rule = nearest(str(name), FITTED) or f"; there are {', '.join(FITTED)}"
             raise SceneError("find", name, f"is nothing to fit{rule}")
-        for given in GIVEN[name]:
+        for given in QUANTITIES[name].given_by:
             if inputs[given].given is not None:
                 raise SceneError("find", name, f"is known by {given}; leave one of them out")
     return names
 
 
-def fitted(runs: Runs, known: Known, find: Sequence[str]) -> Fit:
-    """The fit of both, or of just what is to be found, and what is odd; Unreadable, TooFew, Alike."""
-    used = [run for run in runs.runs if not unusable(runs, run, known, find)]
+def fitted(runs: Runs, given: Conditions, find: Sequence[str]) -> Fit:
+    """The fit of the inertia and the friction, or of just ``find``. Raises Unreadable, TooFew, Alike."""
+    used = [run for run in runs.runs if not unusable(runs, run, given, find)]
     if not used:
-        why = unusable(runs, runs.runs[0], known, find)
+        why = unusable(runs, runs.runs[0], given, find)
         raise Unreadable(f"no run can be used: in {runs.runs[0].name}, {why}")
-    return _required(runs, used, known, find)
+    return _best(runs, used, given, find)
 
 
-def _required(runs: Runs, used: Sequence[Run], known: Known, find: Sequence[str], judged: bool = True) -> Fit:
-    """The fit of what is to be found, or of both, or of the inertia alone where the runs tell no more."""
-    both = [x for x in FOUND[:2] if x not in known.values]
+def _best(
+    runs: Runs, used: Sequence[Run], given: Conditions, find: Sequence[str], judged: bool = True
+) -> Fit:
+    """The fit of ``find``, or of both, or of the inertia alone where the runs determine no more.
+
+    If ``judged`` it says what is odd about the runs.
+    """
+    both = [x for x in USUAL if x not in given.values]
     choices = [find] if find else [both, both[:1]] if both[1:] else [both]
     assumed = ""
-    for found in choices:
+    for names in choices:
         try:
-            fit = _fit(runs, used, known, found, bool(find))._replace(assumed=assumed)
+            fit = _fit(runs, used, given, find, names)._replace(assumed=assumed)
             fit = fit._replace(odd=_odd(fit)) if judged else fit
             if not fit.vague or fit.odd.without is not None:
                 return fit
-            raise Alike(not_told(used, found))
+            raise Alike(undetermined(used, names))
         except (Alike, TooFew) as why:
-            if found == choices[-1]:
+            if names == choices[-1]:
                 raise
             assumed = str(why)
     raise AssertionError
 
 
-def _fit(runs: Runs, used: Sequence[Run], known: Known, found: Sequence[str], asked: bool) -> Fit:
+def _fit(
+    runs: Runs, used: Sequence[Run], given: Conditions, find: Sequence[str], names: Sequence[str]
+) -> Fit:
     data = as_data(runs, used)
-    dof = len(used) - len(found)
+    dof = len(used) - len(names)
     if dof < 0 or not (dof or data.spread.any() or data.uncertain):
-        count = f"{len(used)} run{'s' * (len(used) != 1)}"
-        raise TooFew(TOO_FEW.format(f"{count} {'are' if used[1:] else 'is'}"))
-    values: dict[str, float] = {"axle": 0.0, "rim_mass": 0.0, **known.values}
-    given = {x: value for x, value in values.items() if x not in found}
+        raise TooFew(TOO_FEW.format(f"{len(used)} runs are" if used[1:] else "1 run is"))
+    values: dict[str, float] = {"axle": 0.0, "rim_mass": 0.0, **given.values}
+    others = {x: value for x, value in values.items() if x not in names}
     try:
-        return Fit(runs, used, known, data, estimate(data, given, found), asked)
+        return Fit(runs, used, given, find, data, estimate(data, others, names))
     except Alike:
-        raise Alike(not_told(used, found)) from None
+        raise Alike(undetermined(used, names)) from None
 
 
 def _odd(fit: Fit) -> Odd:
     """The repeats that are far from their siblings, then the runs that are far from the others."""
     values, u, index = _measured(fit.used)
     repeated = len(index) > len(fit.used)
-    found = stray_repeats(values, np.where(u > 0, u, 1), index, CHANCE) if repeated else {}
+    strays = stray_repeats(values, np.where(u > 0, u, 1), index, CHANCE) if repeated else {}
     first = np.searchsorted(index, index)
-    repeats = {(int(index[i]), int(i - first[i])): away for i, away in found.items()}
+    repeats = {(int(index[i]), int(i - first[i])): away for i, away in strays.items()}
     for (i, k), away in list(repeats.items()):
         if len(fit.used[i].measured) == 2:  # which of them it is, nobody knows
             repeats[i, 1 - k] = -away
@@ -317,17 +317,16 @@ def _odd(fit: Fit) -> Odd:
 
 
 def _without(fit: Fit, left: Sequence[Run]) -> Fit | None:
-    """The same fit of other runs; None where they do not tell it."""
-    find = fit.estimate.found if fit.asked else ()
+    """The same fit of other runs; None where they do not determine it."""
     try:
-        return _required(fit.runs, left, fit.known, find, judged=False) if left else None
+        return _best(fit.runs, left, fit.given, fit.find, judged=False) if left else None
     except (Alike, TooFew):
         return None
 
 
 def _cannot(fit: Fit, run: Run) -> str:
-    """Why a run cannot have been as it is said, by the string's friction; empty if it can."""
-    scene, values, mu = fit.known.scene, fit.estimate.values, fit.known.scene.mu
+    """Why the string's friction forbids a run; empty if it does not."""
+    scene, values, mu = fit.given.scene, fit.estimate.values, fit.given.scene.mu
     if mu is None or not run.m1.value or not run.m2.value or values["gravity"] <= 0:
         return ""
     c, f = (Fraction(max(values[x], 0.0)) for x in ("rim_mass", "axle"))
@@ -337,13 +336,14 @@ def _cannot(fit: Fit, run: Run) -> str:
     return f"the string would slip, as its mu = {text(float(mu))} is too small for these masses"
 
 
-def not_told(used: Sequence[Run], found: Sequence[str]) -> str:
-    """That the runs do not tell these, and what to vary."""
-    return f"the runs do not tell {' from '.join(WORDS[x] for x in found)}: {to_vary(used)}"
+def undetermined(used: Sequence[Run], names: Sequence[str]) -> str:
+    """That the runs do not determine these, and what to vary."""
+    verb, words = "separate" if names[1:] else "determine", (QUANTITIES[x].words for x in names)
+    return f"the runs do not {verb} {' from '.join(words)}: {to_vary(used)}"
 
 
 def to_vary(used: Sequence[Run]) -> str:
-    """What other runs should vary, so that they tell more."""
+    """What other runs should vary, so that they determine more."""
     sums, differences = ([float(abs(run.m2.value + sign * run.m1.value)) for run in used] for sign in (1, -1))
     same_sum, same_difference = (max(some) - min(some) < SAME * max(some) for some in (sums, differences))
     if same_sum and same_difference:
@@ -354,29 +354,24 @@ def to_vary(used: Sequence[Run]) -> str:
 def _measured(used: Sequence[Run]) -> tuple[Column, Column, NDArray[np.intp]]:
     """All measurements, positive where the heavier side falls, their uncertainties, and the run of each."""
     index = np.repeat(np.arange(len(used)), [len(run.measured) for run in used])
-    values = np.array([float(one.value) for run in used for one in run.measured])
-    u = _floats([one.uncertainty for run in used for one in run.measured])
+    values, u = _columns([one for run in used for one in run.measured])
     return values * np.where(np.bincount(index, values) < 0, -1.0, 1.0)[index], u, index
 
 
-def _floats(some: Sequence[Fraction]) -> Column:
-    return np.array([float(one) if one else 0.0 for one in some])
+def _columns(inputs: Sequence[Input]) -> tuple[Column, Column]:
+    """The values of inputs, and their uncertainties."""
+    values = np.array([float(one.value) for one in inputs])
+    return values, np.array([float(one.uncertainty) for one in inputs])
 
 
 def as_data(runs: Runs, used: Sequence[Run]) -> Data:
     """The runs as columns. Raises Unreadable where only some measurements have an uncertainty."""
-    m1, m2 = (
-        np.array([float(one.value) for one in some])
-        for some in zip(*((r.m1, r.m2) for r in used), strict=True)
-    )
-    u1, u2 = (
-        _floats([one.uncertainty for one in some]) for some in zip(*((r.m1, r.m2) for r in used), strict=True)
-    )
+    (m1, u1), (m2, u2) = _columns([run.m1 for run in used]), _columns([run.m2 for run in used])
     uncertain = {"l": np.where(m1 > m2, u2, u1), "h": np.where(m1 > m2, u1, u2)}
-    drop, drops = None, [run.drop for run in used if run.drop is not None]
+    drop = None
     if runs.kind == "time":
-        drop = np.array([float(one.value) for one in drops])
-        uncertain |= {} if runs.one_drop else {"drop": _floats([one.uncertainty for one in drops])}
+        drop, u_drop = _columns([run.drop for run in used if run.drop is not None])
+        uncertain |= {} if runs.one_drop else {"drop": u_drop}
     values, u, index = _measured(used)
     times, within = np.bincount(index).astype(float), inf
     if u.any():
@@ -396,7 +391,7 @@ def as_data(runs: Runs, used: Sequence[Run]) -> Data:
     return Data(runs.kind, light, heavy, drop, measured, times, spread, within, uncertain)
 
 
-def unusable(runs: Runs, run: Run, known: Known, find: Sequence[str]) -> str:
+def unusable(runs: Runs, run: Run, given: Conditions, find: Sequence[str]) -> str:
     """Why nothing can be expected of a run; empty if something can."""
     if run.left_out:
         return "it was left out"
@@ -406,8 +401,8 @@ def unusable(runs: Runs, run: Run, known: Known, find: Sequence[str]) -> str:
         return "nothing moved"
     if runs.signed and (run.sign > 0) != (run.m2.value > run.m1.value):
         return "the lighter side falls"
-    if (f := known.values.get("axle")) is None or "gravity" in find:
+    if (f := given.values.get("axle")) is None or "gravity" in find:
         return ""
-    if abs(float(run.m2.value - run.m1.value)) * known.values["gravity"] <= f:
+    if abs(float(run.m2.value - run.m1.value)) * given.values["gravity"] <= f:
         return "an axle with the friction given holds its masses"
     return ""

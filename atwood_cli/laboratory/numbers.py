@@ -1,14 +1,33 @@
 """Numbers as they are published: cut where their uncertainty begins, with one power of ten in a row."""
 
+from collections.abc import Mapping
 from fractions import Fraction
 from math import isfinite
+from typing import NamedTuple
 
 from ..arithmetic.rounding import text, to_digits, to_place, with_one_power
+from .quantities import QUANTITIES
 
-UNITS = {"rim_mass": "kg", "axle": "N", "gravity": "m/s²", "moment_of_inertia": "kg m²", "pulley_mass": "kg"}
-SYMBOLS = {"rim_mass": "c=I/R²", "axle": "f", "gravity": "g", "moment_of_inertia": "I", "pulley_mass": "M"}
 MOST_DIGITS = 11
 """Digits that doubles leave right."""
+COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "95 % interval")
+
+
+class Result(NamedTuple):
+    """A value, its standard uncertainty, and its interval of 95 %."""
+
+    value: float
+    uncertainty: float
+    interval: tuple[float, float]
+
+
+def rows_of(results: Mapping[str, Result], digits: int | None = None) -> list[tuple[str, ...]]:
+    """A table of results, with `COLUMNS`, a row a quantity."""
+    written = {name: published(*one, digits) for name, one in results.items()}
+    return [
+        (name, value, QUANTITIES[name].unit, QUANTITIES[name].symbol, ends)
+        for name, (value, ends) in written.items()
+    ]
 
 
 def published(

@@ -1,4 +1,4 @@
-"""A fit in words: what the runs require, what is odd about them, and what to vary."""
+"""A fit in words: what the runs determine, what is odd about them, and what to vary."""
 
 from collections.abc import Iterator, Sequence
 from math import floor, inf, isfinite, log10
@@ -8,24 +8,17 @@ import numpy as np
 from ..arithmetic.rounding import text
 from ..model import physics
 from ..model.scene import parameter_of
-from .fitting import FOUND, SAME, WORDS, Fit, not_told, to_vary, unusable
-from .numbers import UNITS, cut, far, few, shown
+from ..model.units import counted
+from .fitting import SAME, Fit, to_vary, undetermined, unusable
+from .numbers import cut, far, few, shown
 from .probability import fisher_beyond
-from .results import Inputs, found
+from .quantities import QUANTITIES, SMALL, USUAL
 from .runs import Run
 
-SMALL_UNITS = {
-    "rim_mass": ("g", "the rim mass"),
-    "axle": ("mN", "the friction of the axle"),
-    "gravity": ("mm/s²", "gravity"),
-}
-"""Units for small changes, and what changes."""
 MUCH = 0.95
 """A correlation beyond which two results can hardly be distinguished."""
 MOST_NAMED = 5
 """Runs of which each has a sentence; of more, the numbers."""
-
-
 NO_RESULT = {
     "rim_mass": "The runs would need a pulley of {} kg at its rim, and there is none: masses, heights or"
     " gravity are not what they are said to be, or something drives the masses.",
@@ -35,42 +28,48 @@ NO_RESULT = {
 }
 
 
+def head(fit: Fit) -> list[str]:
+    """The result in words, and what is odd about the runs: above all tables."""
+    return [verdict(fit), *_oddities(fit)]
+
+
 def verdict(fit: Fit) -> str:
-    """How many runs there are, and which of what they require is significant."""
-    said = [f"{_counted(len(fit.used), 'run')}, {_counted(int(fit.data.times.sum()), _quantity(fit))}."]
+    """How many runs there are, and which quantities are significant."""
+    said = [f"{counted(len(fit.used), 'run')}, {counted(int(fit.data.times.sum()), _measured(fit))}."]
     if fit.vague:
-        said.append(f"No result: {not_told(fit.used, fit.estimate.found)}.")
+        said.append(f"No result: {undetermined(fit.used, fit.estimate.names)}.")
     elif not fit.values:
-        said.append("Nothing is left to find: the pulley and its axle are known.")
+        said.append("Nothing is left to fit: the pulley and its axle are given.")
     else:
-        numbers = {name: shown(fit.values[name], fit.uncertainty(name)) for name in fit.impossible}
-        said += [NO_RESULT[name].format(number) for name, number in numbers.items()]
-    for name in () if fit.void else [name for name in FOUND[:2] if name in fit.values]:
-        value, u, word = fit.values[name], fit.uncertainty(name), _capital(WORDS[name])
+        said += [NO_RESULT[x].format(shown(fit.values[x], fit.uncertainty(x))) for x in fit.impossible]
+    for name in () if fit.void else [name for name in USUAL if name in fit.values]:
+        value, u, words = fit.values[name], fit.uncertainty(name), _capital(QUANTITIES[name].words)
         if fit.significant(name) > 0:
             away = f"{far(value / u if u else inf)} standard uncertainties from 0"
-            said.append(f"{word} is significant ({away}).")
+            said.append(f"{words} is significant ({away}).")
         elif not fit.significant(name):
             most = cut(value + fit.times * u, u)
-            said.append(f"{word} agrees with 0: at most {most} {UNITS[name]} (95 %).")
+            said.append(f"{words} agrees with 0: at most {most} {QUANTITIES[name].unit} (95 %).")
     return " ".join(said)
 
 
 def coefficients(fit: Fit) -> Iterator[str]:
     """The slope and the intercept of the line, if they are a result, with symbols as in LaTeX."""
-    for name, label in (("rim_mass", "slope $c$"), ("axle", "intercept $f$")):
+    for name, label in zip(USUAL, ("slope $c$", "intercept $f$"), strict=True):
         if not fit.void and name not in fit.impossible:
             spread = fit.uncertainty(name) if name in fit.values else None
-            why = "" if name in fit.values else ", given" if name in fit.known.values else ", assumed"
-            yield f"{label} = {shown(fit.estimate.values[name], spread)} {UNITS[name]}{why}"
+            why = "" if name in fit.values else ", given" if name in fit.given.values else ", assumed"
+            yield f"{label} = {shown(fit.estimate.values[name], spread)} {QUANTITIES[name].unit}{why}"
 
 
-def _counted(count: int, thing: str) -> str:
-    return f"{count} {thing}{'s' * (count != 1)}"
+def odd_cells(fit: Fit) -> list[str]:
+    """The cells and rows that are odd: row 3, or row 3, time 2 where a row has several measurements."""
+    rows = sorted({row for i in {*fit.odd.rows, *fit.odd.cannot} for row in fit.used[i].rows})
+    return [*(fit.used[i].cells[k] for i, k in fit.odd.repeats), *(f"row {row}" for row in rows)]
 
 
-def accusations(fit: Fit, inputs: Inputs) -> list[str]:
-    """What is odd about the runs, and the result without it; empty of sound runs."""
+def _oddities(fit: Fit) -> list[str]:
+    """What is odd about the runs, and the result without it; none if the runs are sound."""
     odd = fit.odd
     if not odd.runs:
         return []
@@ -88,53 +87,53 @@ def accusations(fit: Fit, inputs: Inputs) -> list[str]:
     for i, why in list(odd.cannot.items())[:MOST_NAMED]:
         said.append(f"{_capital(fit.used[i].name)} cannot be: {why}.")
     said += _more([fit.used[i] for i in odd.cannot], "cannot be either")
-    rows = sorted({row for i in {*odd.rows, *odd.cannot} for row in fit.used[i].rows})
-    names = [*(fit.used[i].cells[k] for i, k in odd.repeats), *(f"row {row}" for row in rows)]
-    what = _joined(names) if len(names) <= MOST_NAMED else "all that is odd"
+    cells = odd_cells(fit)
+    what = f"{', '.join(cells[:-1])}{' and ' * (len(cells) > 1)}{cells[-1]}"
+    what = "all that is odd" if len(cells) > MOST_NAMED else what
     if odd.without is None:
         return [*said, f"Without {what} too few runs are left to fit."]
-    left = found(odd.without, inputs)
-    values = (f"{x.replace('_', ' ')} = {shown(*one[:2])} {UNITS[x]}" for x, one in left.items())
-    it, end = "them" if names[1:] else "it", "; to leave a measurement out, empty its cell"
-    if not any("," in name for name in names):
-        end = f"; --without {','.join(name.removeprefix('row ') for name in names)} leaves {it} out"
-    end = f"The fit includes {it}{end}."
+    values = (
+        f"{x.replace('_', ' ')} = {shown(*one[:2])} {QUANTITIES[x].unit}"
+        for x, one in odd.without.results.items()
+    )
+    empty = "; to leave a measurement out, empty its cell" * any("," in cell for cell in cells)
+    end = f"The fit includes {'them' if cells[1:] else 'it'}{empty}."
     return [*said, f"Without {what}: {', '.join(values) or 'no result'}. {end}"]
 
 
 def notes(fit: Fit) -> list[str]:
     """What else there is to say, first how the table was read."""
     said = [*map(_capital, fit.runs.remarks), *_unused(fit)]
-    return said if fit.vague else [*said, *_assumptions(fit), *_spread(fit), *_told_apart(fit)]
+    return said if fit.vague else [*said, *_assumptions(fit), *_spread(fit), *_indistinct(fit)]
 
 
 def _unused(fit: Fit) -> Iterator[str]:
     yield from (f"{_capital(run.name)} was left out, as asked." for run in fit.runs.runs if run.left_out)
     used = {run.rows for run in fit.used}
-    others = [run for run in fit.runs.runs if run.rows not in used and not run.left_out]
-    unused = [(run, unusable(fit.runs, run, fit.known, fit.estimate.found)) for run in others]
-    yield from (f"{_capital(run.name)} could not be used: {why}." for run, why in unused[:MOST_NAMED])
-    yield from _more([run for run, _ in unused], "could not be used")
+    unused = [run for run in fit.runs.runs if run.rows not in used and not run.left_out]
+    for run in unused[:MOST_NAMED]:
+        why = unusable(fit.runs, run, fit.given, fit.estimate.names)
+        yield f"{_capital(run.name)} could not be used: {why}."
+    yield from _more(unused, "could not be used")
 
 
 def _assumptions(fit: Fit) -> Iterator[str]:
-    """What is taken to be 0, and what that carries."""
+    """What is taken to be 0, and by how much that may change the results."""
     if fit.assumed:
         yield f"Axle friction is assumed to be 0: {fit.assumed}."
-    for name, (unit, thing) in list(SMALL_UNITS.items())[:2]:
-        if name in fit.values or name in fit.known.values:
+    for name in USUAL:
+        if name in fit.values or name in fit.given.values:
             continue
-        drive = float((fit.data.h - fit.data.l).min())
+        quantity, drive = QUANTITIES[name], float((fit.data.h - fit.data.l).min())
         size = 10.0 ** floor(log10(drive * (fit.estimate.values["gravity"] if name == "axle" else 1)))
         changes = []
-        for i, other in enumerate(fit.estimate.found):
-            change = float(fit.estimate.by_known[name][i]) * size
-            verb = f"take {few(1000 * -change)}" if change < 0 else f"add {few(1000 * change)}"
-            to, what = SMALL_UNITS[other]
-            changes.append(f"{verb} {to} {'off' if change < 0 else 'to'} {what}")
+        for i, other in enumerate(fit.estimate.names):
+            change, of = float(fit.estimate.by_given[name][i]) * size / SMALL, QUANTITIES[other]
+            verb, to = ("take", "off") if change < 0 else ("add", "to")
+            changes.append(f"{verb} {few(abs(change))} {of.small_unit} {to} {of.words}")
         yield (
-            f"{_capital(thing)} is neither fitted nor given, and so taken to be 0:"
-            f" {few(1000 * size, 1)} {unit} would {' and '.join(changes)}."
+            f"{_capital(quantity.words)} is neither fitted nor given, and so taken to be 0:"
+            f" {few(size / SMALL, 1)} {quantity.small_unit} would {' and '.join(changes)}."
         )
 
 
@@ -144,12 +143,13 @@ def one_sided(fit: Fit) -> bool:
 
 
 def _spread(fit: Fit) -> Iterator[str]:
+    """How the scatter of the runs is known."""
     data, between = fit.data, fit.between_runs
     by = "their repeats explain" if isfinite(data.within) else "their uncertainties say"
-    what = _quantity(fit)
+    what = _measured(fit)
     if not data.spread.any() and data.uncertain:
         yield (
-            f"The uncertainty of a single {what} is neither given nor told by repeats: u is the scatter that"
+            f"The uncertainty of a single {what} is neither given nor shown by repeats: u is the scatter that"
             " the runs have beside the uncertainties given."
         )
     elif not data.spread.any():
@@ -163,29 +163,31 @@ def _spread(fit: Fit) -> Iterator[str]:
         percent = 100 * fisher_beyond(fit.chi2 / fit.dof, fit.dof, data.within)
         chance = few(percent) if percent >= 0.1 else "less than 0.1"
         yield (
-            f"The runs differ by {few(1000 * between)} g of mass more than {by}, as masses may; chance alone"
+            f"The runs differ by {few(between / SMALL)} g of mass more than {by}, as masses may; chance alone"
             f" does as much in {chance} % of all sets."
         )
 
 
-def _told_apart(fit: Fit) -> Iterator[str]:
+def _indistinct(fit: Fit) -> Iterator[str]:
+    """What the results can hardly be distinguished from, and what to vary."""
     if "axle" in fit.values and fit.significant("axle") > 0 and one_sided(fit):
         mass = physics.axle_mass(fit.values["axle"], fit.estimate.values["gravity"])
         yield (
-            f"The friction of the axle may as well be {few(1000 * mass)} g of mass unaccounted for on"
+            f"The friction of the axle may as well be {few(mass / SMALL)} g of mass unaccounted for on"
             " the lighter side, as the same side is the heavier in all runs: swap the sides to tell."
         )
     sums, pair = fit.data.l + fit.data.h, fit.correlation
     if pair and abs(pair[2]) > MUCH:
+        one, other = (QUANTITIES[x].words for x in pair[:2])
         yield (
-            f"The runs hardly tell {WORDS[pair[0]]} from {WORDS[pair[1]]} (their correlation is"
-            f" {few(pair[2], 3)}): {to_vary(fit.used)}."
+            f"The runs hardly separate {one} from {other} (their correlation is {few(pair[2], 3)}):"
+            f" {to_vary(fit.used)}."
         )
     elif np.ptp(sums) < SAME * sums.max() and "rim_mass" in fit.values and "gravity" not in fit.values:
         more = 0.001 * (sums.mean() + fit.values["rim_mass"])
         yield (
             "m1 + m2 is the same in all runs, so that an error of 0.1 % in g, or in all masses, is one"
-            f" of {few(1000 * more)} g in the rim mass: vary m1 + m2 as well."
+            f" of {few(more / SMALL)} g in the rim mass: vary m1 + m2 as well."
         )
 
 
@@ -200,9 +202,5 @@ def _capital(words: str) -> str:
     return f"{words[0].upper()}{words[1:]}"
 
 
-def _joined(names: Sequence[str]) -> str:
-    return names[0] if not names[1:] else f"{', '.join(names[:-1])} and {names[-1]}"
-
-
-def _quantity(fit: Fit) -> str:
+def _measured(fit: Fit) -> str:
     return {"a": "acceleration", "time": "time"}[fit.runs.kind]

@@ -126,6 +126,11 @@ def in_quotes(value: object) -> str:
     return shortened(repr(str(value) if isinstance(value, str) else value))  # not np.str_("hoop")
 
 
+def counted(count: int, thing: str) -> str:
+    """A count with its noun: 1 row, 2 rows."""
+    return f"{count} {thing}{'s' * (count != 1)}"
+
+
 def without_blanks(text: str) -> str:
     """The text without blanks around it, and with plain single ones within: a no-break space is a blank."""
     return " ".join(text.split())
