@@ -577,8 +577,7 @@ STRAY = "m1,m2,time 1,time 2,time 3,time 4,time 5\n" + "".join(
         (
             SIMMONS.replace("0.780", "2.1"),
             (),
-            "Row 8 stands out: 48 standard uncertainties from what the others say, and faster than a massless"
-            " pulley without friction allows.",
+            "Row 8 stands out: 48 standard uncertainties from what the others say.",
         ),
         (
             SIMMONS.replace("0.780", "2.1"),
@@ -1083,7 +1082,7 @@ def test_of_many_odd_runs_five_have_a_sentence(fit: Any) -> None:
         fit(SIMMONS + 8 * "0.1,0.1,0\n" + "".join(f"0.1,0.10{i},0\n" for i in range(1, 9)), "--json")
     )["notes"]
     assert sum("could not be used" in note for note in notes) == 6
-    assert "4 more could not be used: rows 21, 22, 23, 24." in notes
+    assert "4 more could not be used." in notes
 
 
 @pytest.mark.parametrize(("rows", "repeats"), [(4000, 1), (10, 1000)])

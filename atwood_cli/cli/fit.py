@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..arithmetic.rounding import as_typed, text, to_digits
+from ..arithmetic.rounding import text, to_digits
 from ..laboratory.quantities import FITTED, QUANTITIES
-from ..model.scene import INPUTS, Input, SceneError, parameter_of, read_digits, read_input, read_whole, stated
+from ..model.scene import INPUTS, UNMEASURED, SceneError, parameter_of, read_digits, read_input, read_whole
 from ..model.units import counted
-from ..output.text import Forms, cell, say, show
+from ..output.text import Forms, cell, inputs_in_words, say, show
 from .options import (
     COULD_NOT,
     DONE,
@@ -318,15 +318,11 @@ WITHOUT = {
 
 def _conditions(fit: "Fit") -> list[str]:
     """What is the same in all runs."""
-    g = "g" if "gravity" not in fit.values else None
-    shared = {x: one for x, one in fit.given.inputs.items() if one.given is not None or x == g}
+    inputs = dict(fit.given.inputs)
     if fit.runs.one_drop and (drop := fit.used[0].drop) is not None:
-        shared["drop"] = drop
-    return [_stated(name, one) for name, one in shared.items()]
-
-
-def _stated(name: str, one: Input) -> str:
-    if isinstance(one.value, Fraction):
-        spread = f" ± {as_typed(one.uncertainty)}" if one.uncertainty else ""
-        return stated(name, f"{as_typed(one.value)}{spread}")
-    return f"{name} = {one.given}"
+        inputs["drop"] = drop
+    motion = UNMEASURED._replace(drop=inputs["drop"].value) if "drop" in inputs else UNMEASURED
+    uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
+    words = inputs_in_words(fit.given.scene, motion, uncertain)
+    g = "" if "gravity" in fit.values else "g"
+    return [words[x] for x, one in inputs.items() if one.given is not None or x in (g, "drop")]

@@ -22,7 +22,7 @@ from ..model.case import Case
 from ..model.motion import moved
 from ..model.scene import UNMEASURED, Input, Scene, SceneError
 from ..model.units import nearest
-from .least_squares import Data, Estimate, estimate, expected
+from .least_squares import Data, Estimate, estimate
 from .numbers import Result
 from .probability import SURE, student_within
 from .quantities import FITTED, QUANTITIES, USUAL
@@ -186,13 +186,6 @@ class Fit(NamedTuple):
         if between is None or not self.data.spread.any() or not self.dof:
             return None
         return sqrt(between) / abs(self.estimate.values["gravity"])
-
-    def too_fast(self, i: int) -> bool:
-        """Whether a run is faster than a massless pulley without friction allows, be it by chance."""
-        data, g = self.data, self.estimate.values["gravity"]
-        scene = {"l": data.l[i], "h": data.h[i], "rim_mass": 0.0, "axle": 0.0, "gravity": g}
-        limit, _ = expected(data.kind, scene | {"drop": None if data.drop is None else data.drop[i]}, [])
-        return bool(data.measured[i] > limit if data.kind == "a" else data.measured[i] < limit)
 
 
 def conditions_of(inputs: Mapping[str, Input], runs: Runs) -> Conditions:

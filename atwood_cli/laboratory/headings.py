@@ -162,7 +162,7 @@ def read_header(columns: Sequence[str], labels: Collection[str]) -> Header:
                 _check_label(column)
             others[column] = at
     for at, named in uncertain:
-        quantities |= _with_uncertainty(quantities, at, columns[at], named)
+        _add_uncertainty(quantities, at, columns[at], named)
     taken = list(quantities.values())
     kind = _kind_of({name for name, _ in quantities}, [x for x in others if x not in labels], columns)
     if kind == "a":  # a height says nothing then
@@ -171,29 +171,22 @@ def read_header(columns: Sequence[str], labels: Collection[str]) -> Header:
     return Header(kind, taken, others)
 
 
-def _with_uncertainty(
-    quantities: Mapping[tuple[str, str], Quantity], at: int, column: str, named: Named
-) -> dict[tuple[str, str], Quantity]:
-    """The quantities whose uncertainties are in that column. Raises Unreadable."""
-    if named.name:
-        of = {
-            key: one
-            for key, one in quantities.items()
-            if one.name == named.name and named.number in ("", one.number)
-        }
-        why = f"no column is {named.name}"
-    else:
-        of = {key: one for key, one in quantities.items() if one.at == at - 1}
-        why = "the column before is no part of a run"
+def _add_uncertainty(quantities: dict[tuple[str, str], Quantity], at: int, column: str, named: Named) -> None:
+    """Give quantities their column of uncertainties. Raises Unreadable."""
+    of = [
+        key
+        for key, one in quantities.items()
+        if (one.name == named.name and named.number in ("", one.number) if named.name else one.at == at - 1)
+    ]
     if not of:
-        raise refused(column, f"could be an uncertainty, but {why}")
-    for key, one in of.items():
+        raise refused(column, "could be an uncertainty, but no column is what it would be of")
+    for key in of:
+        one = quantities[key]
         if one.u:
             raise refused(column, f"is a second uncertainty of {one.name}")
         own_unit = named.unit not in ("", PERCENT)
         factor = unit_factor(one.name, named.unit, column) if own_unit else one.heading.factor
-        of[key] = one._replace(u=(at, Heading(column, named.unit, factor)))
-    return of
+        quantities[key] = one._replace(u=(at, Heading(column, named.unit, factor)))
 
 
 def _check_label(column: str) -> None:

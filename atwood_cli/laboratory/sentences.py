@@ -1,6 +1,6 @@
 """A fit in words: what the runs determine, what is odd about them, and what to vary."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from math import floor, inf, isfinite, log10
 
 import numpy as np
@@ -13,12 +13,11 @@ from .fitting import SAME, Fit, to_vary, undetermined, unusable
 from .numbers import cut, far, few, shown
 from .probability import fisher_beyond
 from .quantities import QUANTITIES, SMALL, USUAL
-from .runs import Run
 
 MUCH = 0.95
 """A correlation beyond which two results can hardly be distinguished."""
 MOST_NAMED = 5
-"""Runs of which each has a sentence; of more, the numbers."""
+"""Runs of which each has a sentence; more are counted."""
 NO_RESULT = {
     "rim_mass": "The runs would need a pulley of {} kg at its rim, and there is none: masses, heights or"
     " gravity are not what they are said to be, or something drives the masses.",
@@ -73,20 +72,15 @@ def _oddities(fit: Fit) -> list[str]:
     odd = fit.odd
     if not odd.runs:
         return []
-    said, unit = [], parameter_of(fit.runs.kind).unit
-    for (i, k), size in list(odd.repeats.items())[:MOST_NAMED]:
-        run = fit.used[i]
-        cell = f"{_capital(run.cells[k])} ({text(float(run.measured[k].value))} {unit})"
-        said.append(f"{cell} is far from its siblings: {far(size)} standard deviations.")
-    said += [f"{len(odd.repeats) - MOST_NAMED} more are, too."] * (len(odd.repeats) > MOST_NAMED)
-    for i, size in list(odd.rows.items())[:MOST_NAMED]:
-        why = f"{far(size)} standard uncertainties from what the others say"
-        fast = ", and faster than a massless pulley without friction allows" * fit.too_fast(i)
-        said.append(f"{_capital(fit.used[i].name)} stands out: {why}{fast}.")
-    said += _more([fit.used[i] for i in odd.rows], "stand out, too")
-    for i, why in list(odd.cannot.items())[:MOST_NAMED]:
-        said.append(f"{_capital(fit.used[i].name)} cannot be: {why}.")
-    said += _more([fit.used[i] for i in odd.cannot], "cannot be either")
+    unit, names = parameter_of(fit.runs.kind).unit, [_capital(run.name) for run in fit.used]
+    repeats = []
+    for (i, k), size in odd.repeats.items():
+        cell = f"{_capital(fit.used[i].cells[k])} ({text(float(fit.used[i].measured[k].value))} {unit})"
+        repeats.append(f"{cell} is far from its siblings: {far(size)} standard deviations.")
+    away = "standard uncertainties from what the others say"
+    rows = (f"{names[i]} stands out: {far(size)} {away}." for i, size in odd.rows.items())
+    cannot = (f"{names[i]} cannot be: {why}." for i, why in odd.cannot.items())
+    said = [*_some(repeats, "are, too"), *_some(rows, "stand out, too"), *_some(cannot, "cannot be either")]
     cells = odd_cells(fit)
     what = f"{', '.join(cells[:-1])}{' and ' * (len(cells) > 1)}{cells[-1]}"
     what = "all that is odd" if len(cells) > MOST_NAMED else what
@@ -108,13 +102,14 @@ def notes(fit: Fit) -> list[str]:
 
 
 def _unused(fit: Fit) -> Iterator[str]:
-    yield from (f"{_capital(run.name)} was left out, as asked." for run in fit.runs.runs if run.left_out)
-    used = {run.rows for run in fit.used}
-    unused = [run for run in fit.runs.runs if run.rows not in used and not run.left_out]
-    for run in unused[:MOST_NAMED]:
-        why = unusable(fit.runs, run, fit.given, fit.estimate.names)
-        yield f"{_capital(run.name)} could not be used: {why}."
-    yield from _more(unused, "could not be used")
+    used, others = {run.rows for run in fit.used}, []
+    for run in fit.runs.runs:
+        if run.left_out:
+            yield f"{_capital(run.name)} was left out, as asked."
+        elif run.rows not in used:
+            why = unusable(fit.runs, run, fit.given, fit.estimate.names)
+            others.append(f"{_capital(run.name)} could not be used: {why}.")
+    yield from _some(others, "could not be used")
 
 
 def _assumptions(fit: Fit) -> Iterator[str]:
@@ -191,11 +186,11 @@ def _indistinct(fit: Fit) -> Iterator[str]:
         )
 
 
-def _more(runs: Sequence[Run], what: str) -> Iterator[str]:
-    """The sentence on those that have none of their own."""
-    if more := runs[MOST_NAMED:]:
-        numbers = ", ".join(str(run.rows[0]) for run in more[: 4 * MOST_NAMED])
-        yield f"{len(more)} more {what}: rows {numbers}{', ...' * (len(more) > 4 * MOST_NAMED)}."
+def _some(sentences: Iterable[str], more: str) -> list[str]:
+    """The first of the sentences, and how many more there are."""
+    all_ = list(sentences)
+    hidden = len(all_) - MOST_NAMED
+    return [*all_[:MOST_NAMED], *[f"{hidden} more {more}."] * (hidden > 0)]
 
 
 def _capital(words: str) -> str:
