@@ -8,9 +8,10 @@ import shlex
 import subprocess
 import sys
 import warnings
+from collections.abc import Callable
 from decimal import Decimal, localcontext
 from fractions import Fraction
-from itertools import cycle, pairwise
+from itertools import pairwise
 from math import log2, pi
 from pathlib import Path
 from random import Random
@@ -25,17 +26,16 @@ from scipy.optimize import linprog, minimize_scalar
 from scipy.sparse import diags_array, vstack
 
 from atwood_cli import Scene, SceneError, solve
-from atwood_cli.arithmetic.rounding import text, tidy
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.contact import Contact, contact
 from atwood_cli.solver.elements import Comparison, elements, march, march_ratio
 
 from . import oracle
 from .conftest import examples
-from .running import PIP, Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
+from .running import PIP, Atwood, labels, misplaced, pages_seen, process
 
 PAPER = ["contact", "--m1", "1", "--m2", "3", "--mu", "0.3"]
-TOP = Path(__file__).parent.parent
+KEPT = Path(__file__).parent.parent / "examples" / "contact.svg"
 
 
 def arc(kind: str | None = None, points: int = 13, digits: int | None = None, **given: Any) -> Contact:
@@ -125,16 +125,6 @@ def test_creep_is_where_the_string_leaves_the_pulley() -> None:
 # The bounds of the friction force
 
 
-@pytest.mark.parametrize(
-    ("M", "mu", "least", "greatest"),
-    [(10, "0.3", "5.4057", "8.9493"), (40, "0.3", "10.617", "10.801"), (10, "1", "1.7757", "10.711")],
-)
-def test_bounds_of_the_design_page(M: int, mu: str, least: str, greatest: str) -> None:
-    s = solve(m1=1, m2=3, M=M, mu=mu, digits=5)
-    assert (s.friction_force_min, s.friction_force_max) == (Decimal(least), Decimal(greatest))
-    assert s.friction_force is None
-
-
 def gripping_scenes(count: int, seed: int) -> list[dict[str, Any]]:
     rng = Random(seed)
     drawn: list[dict[str, Any]] = []
@@ -151,7 +141,7 @@ def gripping_scenes(count: int, seed: int) -> list[dict[str, Any]]:
     return drawn
 
 
-@pytest.mark.parametrize("scene", gripping_scenes(50, seed=33), ids=str)
+@pytest.mark.parametrize("scene", gripping_scenes(8, seed=33), ids=str)
 def test_bounds_against_a_linear_programme(scene: dict[str, Any]) -> None:
     """All profiles on elements with T_j <= T_{j+1} <= e^{μΔ} T_j, friction at each one's middle.
 
@@ -203,9 +193,8 @@ def test_bounds_against_a_linear_programme(scene: dict[str, Any]) -> None:
 HARDLY_LOADED = {"m1": 1, "m2": 3, "M": "1e-30", "mu": 1, "wrap": 180}
 
 
-@pytest.mark.parametrize("scene", [HARDLY_LOADED, *gripping_scenes(12, seed=5)], ids=str)
-@pytest.mark.parametrize("digits", [None, 40])
-def test_bounds_to_the_last_digit(scene: dict[str, Any], digits: int | None) -> None:
+@pytest.mark.parametrize("scene", [HARDLY_LOADED, *gripping_scenes(4, seed=5)], ids=str)
+def test_bounds_to_the_last_digit(scene: dict[str, Any]) -> None:
     """Both bounds from their definitions, the least one by minimising it, at 300 digits."""
     scene = {name: str(value) for name, value in scene.items()}
     with mpmath.workdps(300):
@@ -232,11 +221,12 @@ def test_bounds_to_the_last_digit(scene: dict[str, Any], digits: int | None) -> 
             low_lead, high_lead = (lead, high_lead) if falls(lead) else (low_lead, lead)
         least = share * mpmath.sqrt(squared(lead))
         greatest = share * abs(high * mpmath.expj(alpha) - low)
-        t = solve(**scene, digits=digits)
-        for got, want in ((t.friction_force_min, least), (t.friction_force_max, greatest)):
-            # (mpmath's own nstr would round a near tie the wrong way, at M = 1e-30.)
-            mantissa, exponent = want.man_exp
-            assert got == oracle.round_exact(Fraction(mantissa) * Fraction(2) ** exponent, digits)
+        for digits in (None, 40):
+            t = solve(**scene, digits=digits)
+            for got, want in ((t.friction_force_min, least), (t.friction_force_max, greatest)):
+                # (mpmath's own nstr would round a near tie the wrong way, at M = 1e-30.)
+                mantissa, exponent = want.man_exp
+                assert got == oracle.round_exact(Fraction(mantissa) * Fraction(2) ** exponent, digits)
 
 
 def test_bounds_meet_32_as_mu_falls_to_the_verge() -> None:
@@ -379,11 +369,10 @@ def test_elements_lose_no_digits_where_tensions_are_nearly_equal(
         )
 
 
-def test_ten_million_elements_lose_digits_to_rounding() -> None:
+def test_a_million_elements_lose_digits_to_rounding() -> None:
     answers = Answers(Scene.read({"m1": 1, "m2": 3, "mu": "0.3"}))
-    (best, *_), (worn, *_) = rows_of(answers, 100_000), rows_of(answers, 10_000_000)
-    assert abs(best.error) < 1e-9
-    assert abs(best.error) < abs(worn.error) < 1e-7
+    (best, *_), (worn, *_) = rows_of(answers, 100_000), rows_of(answers, 1_000_000)
+    assert abs(best.error) < 1e-10 < abs(worn.error) < 1e-8
 
 
 def test_elements_mirror() -> None:
@@ -423,16 +412,6 @@ def test_contact_prints_points_balance_and_note(atwood: Atwood) -> None:
     assert re.search(r"│ resultant +│ +0 +│ -37\.6985 +│", ran.out)
     assert re.search(r"│ friction along the arc +│ 1\.65572 │", ran.out)
     assert "Friction is at its limit all along the arc." in ran.out
-
-
-@pytest.mark.parametrize("columns", [60, 80])
-def test_on_a_narrow_terminal_columns_go_into_a_table_below(columns: int) -> None:
-    seen = plain(on_terminal(*PAPER, "--points", "3", "--R", "0.1", columns=columns))
-    assert seen.count("angle (°)") > 1
-    assert all(len(line) <= columns for line in seen.splitlines())
-    for point in arc(points=3, m1="1", m2="3", mu="0.3", R="0.1", digits=6).points:
-        for name, value in point.items():
-            assert text(tidy(Decimal(value)) if name == "angle" else value) in seen
 
 
 def test_contact_json(atwood: Atwood) -> None:
@@ -511,17 +490,20 @@ def test_elements_in_every_output(atwood: Atwood) -> None:
     ("arguments", "message"),
     [
         ("--m1 1 --m2 3 --mu 2", "--M is missing: give M, the pulley's mass, which decides here"),
-        (
-            "--m1 0 --m2 3",
-            "--m1 0 leaves no arc: not defined for a free end: the string is fixed to the pulley and no friction holds it",
+        *(
+            (
+                f"--m1 0 --m2 3 {more}",
+                "--m1 0 leaves no arc: not defined for a free end: the string is fixed to the pulley and no"
+                " friction holds it",
+            )
+            for more in ("", "--elements 2")
         ),
-        (
-            "--m1 0 --m2 3 --elements 2",
-            "--m1 0 leaves no arc: not defined for a free end: the string is fixed to the pulley and no friction holds it",
-        ),
-        (
-            "--m1 1 --m2 3 --M 10 --wrap 1e500 --figure x.svg",
-            "--figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only",
+        *(
+            (
+                f"--m1 1 --m2 3 --M 1 --wrap {wrap} --figure x.svg",
+                "--figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only",
+            )
+            for wrap in ("1e500", "1e300turn", "1e300rad", "1e-400")
         ),
         ("--m1 1 --m2 3 --points 1", "--points '1' must be a whole number from 2 to 100000"),
         ("--m1 1 --m2 3 --profile exponential", "--profile 'exponential' must be creep or least"),
@@ -581,9 +563,13 @@ def test_elements_in_every_output(atwood: Atwood) -> None:
         ("--m1 1 --m2 3 --m1-side left", "--m1-side 'left' needs --figure"),
         ("--m1 1 --m2 3 --figure x.svg --m1-side up", "--m1-side 'up' must be left or right"),
         ("--m1 1 --m2 3 --figure x.gif", "--figure 'x.gif' must end in one of .svg, .png, .pdf"),
-        (
-            "--m1 1e200 --m2 3e200 --figure x.svg",
-            "--figure 'x.svg' draws forces between 1e-100 and 1e+100 N only",
+        *(
+            (f"{scene} --figure x.svg", "--figure 'x.svg' draws forces between 1e-100 and 1e+100 N only")
+            for scene in (
+                "--m1 1e200 --m2 3e200",
+                "--m1 1 --m2 7e463 --mu 0",
+                "--m1 62.7 --m2 7e463 --mu 0 --wrap 3e460 --R 1e5",
+            )
         ),
     ],
 )
@@ -605,347 +591,6 @@ def test_solving_needs_no_numpy_for_the_arc() -> None:
     assert done.returncode == 0
 
 
-# The figure
-
-
-def test_figure_is_the_one_in_the_readme_and_the_same_to_the_byte(tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
-    files = [tmp_path / "a.svg", tmp_path / "b.svg"]
-    for file in files:
-        assert process("contact", *FIGURE, "--figure", str(file)).status == 0
-    first, second = (file.read_bytes() for file in files)
-    assert first == second
-    kept = (TOP / "examples" / "contact.svg").read_text(encoding="utf-8")
-    assert labels(first.decode()) == labels(kept)
-    assert {"$T_1$ = 11.9859 N", "$W_2$ = 29.4200 N", "$nR$", "$fR$", "$m_1$"} <= set(labels(kept))
-
-
-FIGURE = ["--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3"]
-FIGURES = " ".join(FIGURE)
-MIRRORED = "--m1 3 --m2 1 --M 10 --mu 0.9"
-
-
-@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
-@pytest.mark.parametrize(
-    "words", [FIGURE, [*FIGURE, "--profile", "least", "--wrap", "100"], ["--m1", "2", "--m2", "2"]]
-)
-def test_figures_of_every_kind(atwood: Atwood, tmp_path: Path, suffix: str, words: list[str]) -> None:
-    pytest.importorskip("matplotlib")
-    file = tmp_path / f"arc.{suffix}"
-    assert atwood("contact", *words, "--figure", str(file)).status == 0
-    starts = {"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}
-    assert file.read_bytes().startswith(starts[suffix])
-
-
-@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
-def test_a_figure_has_no_date(atwood: Atwood, tmp_path: Path, suffix: str) -> None:
-    """matplotlib dates a PDF, and takes what SOURCE_DATE_EPOCH says for a number."""
-    pytest.importorskip("matplotlib")
-    files = [tmp_path / f"{date}.{suffix}" for date in ("abc", "0")]
-    for file in files:
-        ran = process("contact", *FIGURE, "--figure", str(file), SOURCE_DATE_EPOCH=file.stem)
-        assert (ran.status, ran.err) == (0, "")
-    assert files[0].read_bytes() == files[1].read_bytes()
-    assert b"CreationDate" not in files[0].read_bytes()
-
-
-def drawn(atwood: Atwood, monkeypatch: pytest.MonkeyPatch, file: Path, words: str) -> Any:
-    """The picture of a scene, as matplotlib has it."""
-    with pages_seen(monkeypatch) as pages:
-        ran = atwood("contact", *words.split(), "--figure", str(file), "--force")
-    assert ran.status == 0, ran.err
-    (page,) = pages
-    return page
-
-
-def texts(page: Any) -> list[str]:
-    """All that is written on a page, but for the numbers on its axes."""
-    from matplotlib.text import Text
-
-    ticks = [
-        label for axes in page.axes for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels()
-    ]
-    words = [text.get_text() for text in page.findobj(Text) if text.get_visible() and text not in ticks]
-    return [word for word in words if word]
-
-
-WRAPS = "1 60 74 76 90 120 179 180 181 240 270 280 300 330 336 360 400 540 900 1440 2000".split()
-LEGIBLE = [
-    *(
-        f"--m1 1 --m2 3 --M 10 --mu 0.3 --wrap {wrap} --m1-side {side}"
-        for wrap, side in zip(WRAPS, cycle(("left", "right")))
-    ),
-    *(f"{FIGURES} --profile least --wrap {wrap}" for wrap in (60, 100, 150, 180)),
-    *(f"{MIRRORED} --profile {kind} --wrap {wrap}" for kind in ("creep", "least") for wrap in (60, 120, 180)),
-    "--m1 3 --m2 1 --M 10 --mu 0.9 --wrap 270 --m1-side left",
-    "--m1 2 --m2 2",
-    "--m1 2 --m2 2 --M 3 --mu 0.1 --wrap 300",
-    "--m1 1 --m2 3",
-    "--m1 1 --m2 3 --mu 0",
-    "--m1 1 --m2 3 --M inf",
-    "--m1 1 --m2 3 --M 10 --mu 50",
-    "--m1 1 --m2 3 --M inf --mu 5 --wrap 1e9",
-    "--m1 1 --m2 3 --M 1 --wrap 1e-99rad",
-    "--m1 3 --m2 1 --M 1 --wrap 0.001",
-    "--m1 1e-90 --m2 3e90 --M 1 --mu 0.1 --wrap 1e6",
-    "--m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --digits 12",
-    "--m1 1 --m2 1000 --M 5",
-    "--m1 1000 --m2 1 --M 5 --wrap 1440",
-    "--m1 3e40 --m2 1e-40 --M 10 --mu 0.3 --wrap 200 --m1-side left",
-    "--m1 1e-60 --m2 3e-60 --M 1e-60 --wrap 300",
-    "--m1 1.00000000000000000000001 --m2 1 --M 0.3 --mu 0.3",
-    f"--m1 {'1.' + '123456789' * 60} --m2 {'2.' + '123456789' * 60} --M {'3.' + '1' * 500} --mu {'0.' + '3' * 500}",
-]
-
-
-@pytest.mark.parametrize("words", LEGIBLE)
-def test_all_of_a_figure_can_be_read(
-    atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, words: str
-) -> None:
-    page = drawn(atwood, monkeypatch, tmp_path / "arc.svg", words)
-    assert misplaced(page) == []
-    forces = re.findall(r"= (\S+) N", " ".join(texts(page)))
-    assert len(set(forces)) == len(forces) >= 1  # each number once
-
-
-def test_numbers_of_a_figure_are_rounded_from_the_exact_ones(
-    atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    """2.5 g at 0.5 m/s² weigh 1.2500005 mN, of which no double is: it is rounded to even, once."""
-
-    def said(words: str) -> str:
-        return " ".join(texts(drawn(atwood, monkeypatch, tmp_path / "arc.svg", words)))
-
-    words = said("--m1 1 --m2 3 --g 1.2500005 --M 10 --mu 0.3")
-    assert "$W_1$ = 1.25000 N" in words
-    assert "$W_2$ = 3.75000 N" in words
-    words = said("--m1 1 --m2 3 --g 1.2500015 --M 10 --digits 3")
-    assert "$W_1$ = 1.25 N" in words
-    words = said("--m1 1 --m2 3 --g 1.2500015 --M 10 --digits 30")
-    assert "$W_1$ = 1.25000 N" in words
-    words = said("--m1 2 --m2 2 --M 3")
-    assert re.findall(r"\$[TW]_[12]\$ [=≈] \S+", words) == [
-        "$T_1$ = 19.6133", "$W_1$ = $T_1$", "$T_2$ = $T_1$", "$W_2$ = $T_1$"
-    ]  # fmt: skip
-    words = said("--m1 1 --m2 1.00000000001 --M 3")
-    assert "$T_2$ ≈ $T_1$" in words
-
-
-@pytest.mark.parametrize(
-    ("words", "steps"),
-    [
-        ("--m1 1 --m2 3 --M 10 --mu 0.3", [(56.503316, 0, 3.595773)]),
-        ("--m1 3 --m2 1 --M 10 --mu 0.3", [(123.496684, -3.595773, 0)]),
-        ("--m1 1 --m2 3 --M 10 --mu 0.3 --profile least", [(70.667, 5.205784, 0), (127.170, 0, 5.205784)]),
-        ("--m1 1 --m2 3 --mu 0.3", []),
-    ],
-)
-def test_friction_jumps_where_the_string_begins_to_be_stuck(
-    atwood: Atwood,
-    monkeypatch: pytest.MonkeyPatch,
-    tmp_path: Path,
-    words: str,
-    steps: Any,
-) -> None:
-    """It was a slanted line between two points of the curve."""
-    page = drawn(atwood, monkeypatch, tmp_path / "arc.svg", words)
-    (friction,) = [line for line in page.axes[1].lines if line.get_linestyle() == "--"]
-    xs, ys = np.asarray(friction.get_xdata()), np.asarray(friction.get_ydata())
-    gaps = np.flatnonzero(np.isnan(ys))
-    found = [(xs[i], ys[i - 1], ys[i + 1]) for i in gaps]
-    assert len(found) == len(steps)
-    assert not found or np.allclose(found, steps, rtol=1e-4)
-    assert all(xs[i - 1] == xs[i] == xs[i + 1] for i in gaps)
-    assert np.nanmax(np.abs(np.diff(ys))) < 0.2  # smooth elsewhere
-
-
-def test_m1_is_on_the_side_asked_for(atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    """All is mirrored but the words; the angle counts from m1 on either side."""
-    seen = {}
-    for side in ("", "right", "left"):
-        option = f"--m1-side {side}" if side else ""
-        page = drawn(atwood, monkeypatch, tmp_path / "a.svg", f"{FIGURES} --wrap 120 {option}")
-        page.draw_without_rendering()
-        machine, curves = page.axes
-        at = {text.get_text(): machine.transData.transform(text.get_position())[0] for text in machine.texts}
-        assert (at["$m_1$"] < at["$m_2$"]) == (side == "left")
-        tension = next(text for text in at if text.startswith("$T_1$ ="))
-        assert (at[tension] < at["$m_1$"]) == (side == "left")
-        (arc,) = [
-            line.get_ydata()
-            for line in curves.lines
-            if line.get_linestyle() == "-" and len(line.get_xdata()) > 9
-        ]
-        seen[side] = list(arc)
-        where = f"from $m_1$'s end on the {side or 'right'} (°)"
-        assert where in curves.get_xlabel()
-    assert seen[""] == seen["right"] == seen["left"]
-
-
-@pytest.mark.parametrize(
-    ("words", "sheaves"),
-    [
-        ("60", 2),
-        ("90", 1),
-        ("120", 1),
-        ("180", 0),
-        ("270", 1),
-        ("300", 1),
-        ("360", 1),
-        ("540", 0),
-        ("420", 2),
-    ],
-)
-def test_masses_hang_straight_down_from_sheaves_beside_the_pulley(
-    atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, words: str, sheaves: int
-) -> None:
-    machine = drawn(atwood, monkeypatch, tmp_path / "a.svg", f"{FIGURES} --wrap {words}").axes[0]
-    circles = [patch for patch in machine.patches if len(patch.get_xy()) > 9]
-    assert len(circles) == 1 + sheaves
-    strings = [line for line in machine.lines if line.get_linewidth() == 2.2]
-    feet = [line.get_xydata()[i] for line, i in zip(strings, (0, -1), strict=True)]
-    boxes = [patch.get_xy() for patch in machine.patches if len(patch.get_xy()) == 5]
-    for line, foot, box in zip(strings, feet, boxes, strict=True):
-        (x, y), points = foot, line.get_xydata()
-        above = points[1] if foot[0] == points[0][0] else points[-2]
-        assert abs(above[0] - x) < 1e-6 < above[1] - y or sheaves == 0
-        assert abs(np.mean(box[:4], axis=0)[0] - x) < 1e-9
-    assert abs(feet[0][0] - feet[1][0]) > 0.3  # beside each other
-    far = np.concatenate([line.get_xydata()[1 if i else 0 :] for i, line in enumerate(strings)])
-    assert np.hypot(*far.T).min() > 0.999  # no string crosses the pulley
-    centres = [np.mean(patch.get_xy()[:-1], axis=0) for patch in circles[1:]]
-    assert all(np.hypot(*centre) > 1.19 for centre in centres)  # nor does a sheave
-
-
-@pytest.mark.parametrize(
-    ("wrap", "said"),
-    [("49", []), ("1440", []), ("1441", ["4.00278 turns"]), ("1e9", [r"$2.77778\times10^{6}$ turns"])],
-)
-def test_of_many_turns_a_few_are_drawn_and_it_is_said(
-    atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, wrap: str, said: list[str]
-) -> None:
-    page = drawn(atwood, monkeypatch, tmp_path / "a.svg", f"{FIGURES} --wrap {wrap}")
-    words = " ".join(texts(page)).replace("\n", " ")
-    assert re.findall(r"Of the string's (\S+ turns) a few are drawn\.", words) == said
-    far = max(np.hypot(*line.get_xydata().T).max() for line in page.axes[0].lines)
-    assert far < 3  # of any number, no more than there is room for
-
-
-@pytest.mark.parametrize(
-    ("words", "dashed"),
-    [("--m1 1 --m2 3 --M 10", 0), ("--m1 1 --m2 1000", 1), ("--m1 1 --m2 3 --M 10 --mu 50", 1)],
-)
-def test_an_arrow_that_would_be_too_long_is_dashed_and_one_too_short_left_out(
-    atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, words: str, dashed: int
-) -> None:
-    page = drawn(atwood, monkeypatch, tmp_path / "a.svg", words)
-    arrows = [
-        line for line in page.axes[0].lines if line.get_linewidth() == 1.5 and len(line.get_xdata()) > 2
-    ]
-    assert sum(line.get_linestyle() == "--" for line in arrows) == dashed
-    assert ("A dashed arrow is longer than drawn." in " ".join(texts(page)).replace("\n", " ")) == bool(
-        dashed
-    )
-    for line in arrows:
-        steps = np.hypot(*np.diff(line.get_xydata(), axis=0).T)
-        assert 0.02 < np.nanmin(steps) <= np.nanmax(steps) < 0.85
-
-
-@pytest.mark.filterwarnings("error", "ignore::DeprecationWarning")  # of a matplotlib older than its parser
-@pytest.mark.parametrize(
-    ("words", "error"),
-    [
-        ("--m1 62.7 --m2 7e463 --mu 0 --wrap 3e460 --R 1e5", "draws forces between 1e-100 and 1e+100 N"),
-        ("--m1 1 --m2 7e463 --mu 0", "draws forces between 1e-100 and 1e+100 N"),
-        ("--m1 1 --m2 2 --mu 0 --wrap 3e460", "draws wraps between 1e-100 and 1e+09 degrees"),
-        ("--m1 1 --m2 2 --M 1 --wrap 1e300turn", "draws wraps between 1e-100 and 1e+09 degrees"),
-        ("--m1 1 --m2 2 --M 1 --wrap 1e300rad", "draws wraps between 1e-100 and 1e+09 degrees"),
-        ("--m1 1 --m2 2 --M 1 --wrap 1e-400", "draws wraps between 1e-100 and 1e+09 degrees"),
-        ("--m1 1 --m2 2 --M 1 --wrap 1e9", ""),
-        ("--m1 1 --m2 2 --M 1 --wrap 1e-99rad", ""),
-    ],
-)
-def test_a_figure_of_the_extremes_is_drawn_or_refused(
-    atwood: Atwood, tmp_path: Path, words: str, error: str
-) -> None:
-    """Cosines of infinite angles were tracebacks."""
-    pytest.importorskip("matplotlib")
-    file = tmp_path / "arc.svg"
-    ran = atwood("contact", *words.split(), "--figure", str(file))
-    assert ran.status == (2 if error else 0)
-    assert ran.err.endswith(f" {error} only\n" if error else "")
-    assert file.exists() == (not error)
-
-
-def test_figure_that_cannot_be_written(atwood: Atwood, tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
-    ran = atwood("contact", *FIGURE, "--figure", str(tmp_path / "nowhere" / "arc.svg"))
-    assert (ran.status, ran.out) == (1, "")
-    assert ran.err == f"atwood: cannot write {tmp_path / 'nowhere' / 'arc.svg'}: No such file or directory\n"
-
-
-def test_figures_know_no_settings_but_ours(tmp_path: Path) -> None:
-    """Neither those of the folder, which may be anybody's and run latex, nor of the environment, nor broken ones."""
-    pytest.importorskip("matplotlib")
-    words = " ".join(["contact", *FIGURE, "--figure"])
-    assert process(shell=f'cd "{tmp_path}"; atwood {words} plain.svg').status == 0
-    for content in (b"text.usetex: True\nlines.linewidth: 9\n", b"nonsense: 1\nbackend: bad\n", b"\xff"):
-        (tmp_path / "matplotlibrc").write_bytes(content)
-        ran = process(shell=f'cd "{tmp_path}"; atwood {words} a.svg --force', MPLBACKEND="nonsense")
-        assert (ran.status, ran.err) == (0, "")
-        assert (tmp_path / "a.svg").read_bytes() == (tmp_path / "plain.svg").read_bytes()
-
-
-@pytest.mark.filterwarnings("error")
-def test_what_matplotlib_warns_of_reaches_nobody(
-    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    figure = pytest.importorskip("atwood_cli.output.arc_figure")
-
-    def warn(*_: object) -> list[object]:
-        warnings.warn("a source line", UserWarning, stacklevel=1)
-        return []
-
-    monkeypatch.setattr(figure, "_draw_curves", warn)
-    ran = atwood("contact", *FIGURE, "--figure", str(tmp_path / "a.svg"))
-    assert (ran.status, ran.err) == (0, "")
-
-
-SMALL_DISK = """
-import resource, signal, sys
-signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
-from atwood_cli.__main__ import main
-sys.exit(main())
-"""
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="needs limits of resources")
-@pytest.mark.parametrize("suffix", ["svg", "png", "pdf"])
-def test_a_figure_for_which_the_disk_is_too_small(tmp_path: Path, suffix: str) -> None:
-    pytest.importorskip("matplotlib")
-    file = tmp_path / f"a.{suffix}"
-    words = [sys.executable, "-c", SMALL_DISK, "contact", *FIGURE, "--figure", str(file)]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout) == (1, "")
-    assert done.stderr == f"atwood: cannot write {file}: File too large\n"
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_figure_without_its_extra_names_the_pip_command() -> None:
-    code = "import sys; sys.modules['matplotlib'] = None; from atwood_cli.cli import run; sys.exit(run(sys.argv[1:]))"
-    done = subprocess.run(
-        [sys.executable, "-c", code, "contact", *FIGURE, "--figure", "x.svg"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert (done.returncode, done.stdout) == (1, "")
-    assert (
-        done.stderr == f"atwood: this needs matplotlib; install it with: {PIP} install 'atwood-cli[figure]'\n"
-    )
-
-
 @pytest.mark.parametrize(
     "given",
     [{"wrap": "4e-6"}, {"wrap": "1e-4"}, {"wrap": "120"}, {"wrap": "1e-9", "mu_k": "0.2"}, {"wrap": "1rad"}],
@@ -964,6 +609,246 @@ def test_errors_of_elements_are_right_to_their_last_digit(given: dict[str, str],
         with localcontext(prec=3):
             off = (Fraction(row.value) - exact) / exact
             assert row.error == Decimal(off.numerator) / Decimal(off.denominator), row.name
+
+
+# The figure
+
+FIGURE = "--m1 1 --m2 3 --M 10 --mu 0.3"
+MIRRORED = "--m1 3 --m2 1 --M 10 --mu 0.3"
+
+
+@pytest.fixture
+def drawn(atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[str], Any]:
+    """The picture of a scene, as matplotlib has it."""
+
+    def draw(words: str) -> Any:
+        with pages_seen(monkeypatch) as pages:
+            ran = atwood("contact", *words.split(), "--figure", str(tmp_path / "a.svg"), "--force")
+        assert ran.status == 0, ran.err
+        return pages[0]
+
+    return draw
+
+
+def words_on(page: Any) -> str:
+    """All that is written on a page, in one line."""
+    from matplotlib.text import Text
+
+    return " ".join(" ".join(text.get_text() for text in page.findobj(Text)).split())
+
+
+def test_the_figure_of_the_tour_is_todays(atwood: Atwood, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    assert atwood("contact", *FIGURE.split(), "--figure", str(tmp_path / "a.svg")).status == 0
+    fresh, kept = (path.read_text(encoding="utf-8") for path in (tmp_path / "a.svg", KEPT))
+    assert labels(fresh) == labels(kept)
+    assert {"T₁ = 11.99 N", "W₂ = 29.42 N", "nR", "fR", "m₁"} <= set(labels(kept))
+
+
+@pytest.mark.parametrize(
+    ("suffix", "start", "settings"),
+    [
+        ("svg", b"<?xml", b"text.usetex: True\nlines.linewidth: 9\n"),
+        ("png", b"\x89PNG", b"nonsense: 1\nbackend: bad\n"),
+        ("pdf", b"%PDF", b"\xff"),
+    ],
+)
+def test_a_figure_is_the_same_to_the_byte_whenever_and_wherever_it_is_drawn(
+    atwood: Atwood, tmp_path: Path, suffix: str, start: bytes, settings: bytes
+) -> None:
+    """It has no date, nor settings of matplotlib: neither those of the folder nor of the environment."""
+    pytest.importorskip("matplotlib")
+    file = tmp_path / f"a.{suffix}"
+    assert atwood("contact", *FIGURE.split(), "--figure", str(file)).status == 0
+    first = file.read_bytes()
+    (tmp_path / "matplotlibrc").write_bytes(settings)
+    command = f'cd "{tmp_path}"; atwood contact {FIGURE} --figure a.{suffix} --force'
+    ran = process(shell=command, MPLBACKEND="nonsense", SOURCE_DATE_EPOCH="abc")
+    assert (ran.status, ran.err) == (0, "")
+    assert file.read_bytes() == first
+    assert first.startswith(start)
+    assert b"Date" not in first
+
+
+LEGIBLE = [
+    *((f"{FIGURE} --wrap {w}", n) for w, n in ((1, 2), (60, 2), (76, 1), (120, 1), (180, 0), (181, 1))),
+    *(
+        (f"{FIGURE} --wrap {w} --m1-side left", n)
+        for w, n in ((74, 2), (90, 1), (179, 1), (270, 1), (300, 1))
+    ),
+    *((f"{FIGURE} --wrap {w}", n) for w, n in ((240, 1), (336, 1), (360, 1), (400, 2), (540, 0), (900, 0))),
+    *((f"{FIGURE} --wrap {w} --m1-side left", n) for w, n in ((280, 1), (330, 1), (1440, 1), (2000, 1))),
+    (f"{FIGURE} --profile least --wrap 100", 1),
+    *((f"{MIRRORED} --profile {kind} --wrap 120", 1) for kind in ("creep", "least")),
+    ("--m1 3 --m2 1 --M 10 --mu 0.9 --wrap 270 --m1-side left", 1),
+    ("--m1 2 --m2 2", 0),
+    ("--m1 2 --m2 2 --M 3 --mu 0.1 --wrap 300", 1),
+    ("--m1 1 --m2 3 --mu 0", 0),
+    ("--m1 1 --m2 3 --M 10 --mu 50", 0),
+    ("--m1 1 --m2 3 --M inf --mu 5 --wrap 1e9", 1),
+    ("--m1 1 --m2 3 --M 1 --wrap 1e-99rad", 2),
+    ("--m1 1e-90 --m2 3e90 --M 1 --mu 0.1 --wrap 1e6", 1),
+    ("--m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --digits 12", 0),
+    ("--m1 1000 --m2 1 --M 5 --wrap 1440", 1),
+    ("--m1 1.00000000000000000000001 --m2 1 --M 0.3 --mu 0.3", 0),
+    (f"--m1 1.{'123456789' * 60} --m2 2.{'123456789' * 60} --M 3.{'1' * 500} --mu 0.{'3' * 500}", 0),
+]
+
+
+@pytest.mark.parametrize(("words", "sheaves"), LEGIBLE)
+def test_all_of_a_figure_can_be_read(drawn: Callable[[str], Any], words: str, sheaves: int) -> None:
+    """No words lie over others, masses hang straight down beside each other, and no string crosses the pulley."""
+    page = drawn(words)
+    assert misplaced(page) == []
+    machine = page.axes[0]
+    circles = [patch for patch in machine.patches if len(patch.get_xy()) > 9]
+    assert len(circles) == 1 + sheaves
+    assert all(np.hypot(*np.mean(circle.get_xy()[:-1], axis=0)) > 1.19 for circle in circles[1:])
+    boxes = [patch.get_xy() for patch in machine.patches if len(patch.get_xy()) == 5]
+    first, second = (line.get_xydata() for line in machine.lines if line.get_linewidth() == 2.2)
+    for foot, above, box in ((first[0], first[1], boxes[0]), (second[-1], second[-2], boxes[1])):
+        assert abs(above[0] - foot[0]) < 1e-6 < above[1] - foot[1]
+        assert abs(np.mean(box[:4], axis=0)[0] - foot[0]) < 1e-9
+    assert abs(first[0][0] - second[-1][0]) > 0.3
+    far = np.hypot(*np.concatenate([first[1:], second]).T)
+    assert 0.999 < far.min() < far.max() < 3.2
+    for line in machine.lines:
+        if line.get_linewidth() == 1.5 and len(line.get_xdata()) > 2:  # arrows
+            steps = np.hypot(*np.diff(line.get_xydata(), axis=0).T)
+            assert np.nanmin(steps) > 0.02
+            assert np.nanmax(steps) < 0.85
+
+
+STUCK = "over the grey part the string is stuck."
+
+
+@pytest.mark.parametrize(
+    ("scene", "there", "absent"),
+    [
+        (
+            FIGURE,
+            "m₁ = 1 kg, m₂ = 3 kg, M = 10 kg, μ = 0.3, g = 9.80665 m/s², β = 0.5, φ = 180°|T₂ = 22.88 N"
+            "|Holds: μ = 0.3, and 0.206 is enough.|All friction together is a force of 8.949 N."
+            f"|It acts over the last 123.5° of the arc; {STUCK}",
+            "is drawn|to scale|turns",
+        ),
+        (MIRRORED, f"It acts over the first 123.5° of the arc; {STUCK}", "is drawn|to scale"),
+        (
+            f"{FIGURE} --profile least",
+            f"over the first 70.67° and the last 52.83° of the arc; {STUCK}",
+            "scale",
+        ),
+        ("--m1 1 --m2 1.01 --M 0.1 --mu 0.3", "It acts over the last 0.04613° of the arc; ", "180.0"),
+        ("--m1 200g --m2 250g --M 500g", "Friction is drawn 20 times larger.", STUCK),
+        ("--m1 1 --m2 3 --M 10 --mu 50", "Friction is drawn 50 times smaller.", "to scale"),
+        ("--m1 1 --m2 3 --M 0", "T₁ = 14.71 N|T₂ = 14.71 N|there is no friction.", "to scale|together"),
+        ("--m1 1 --m2 1000", "Arrows with open heads are not to scale.", "is drawn"),
+        (
+            "--m1 1 --m2 20 --M inf --wrap 2.5turn",
+            "T₁ = 9.807 N|Arrows with open heads are not to scale.",
+            "turns",
+        ),
+        (f"{FIGURE} --wrap 1440", "nR", "turns"),
+        (f"{FIGURE} --wrap 1441", "Of the string's 4.003 turns a few are drawn.", "to scale"),
+        (f"{FIGURE} --wrap 1e9", "Of the string's 2.778e6 turns a few are drawn.", "to scale"),
+        # Both weights are ties, which no double is: they are rounded to even, once.
+        ("--m1 1 --m2 3 --g 1.2345 --M 10", "W₁ = 1.234 N|W₂ = 3.704 N", "1.235 N"),
+        ("--m1 1 --m2 3 --g 1.2345 --M 10 --digits 3", "W₁ = 1.23 N|W₂ = 3.70 N", "1.234 N"),
+        ("--m1 1 --m2 3 --g 1.2345 --M 10 --digits 30", "W₁ = 1.234 N|W₂ = 3.704 N", "3.7035"),
+    ],
+)
+def test_what_a_figure_says(drawn: Callable[[str], Any], scene: str, there: str, absent: str) -> None:
+    words = words_on(drawn(scene))
+    assert [part for part in there.split("|") if part not in words] == []
+    assert [part for part in absent.split("|") if part in words] == []
+
+
+@pytest.mark.parametrize(
+    ("words", "pieces"),
+    [
+        (FIGURE, [(0, 0), (3.595773, 6.864655)]),
+        (MIRRORED, [(-6.864655, -3.595773), (0, 0)]),
+        (f"{FIGURE} --profile least", [(3.595773, 5.205784), (0, 0), (5.205784, 6.864655)]),
+        ("--m1 1 --m2 3 --mu 0.3", [(3.171200, 8.138364)]),
+    ],
+)
+def test_curves_are_those_of_the_table_with_steps_where_the_string_is_stuck(
+    drawn: Callable[[str], Any], words: str, pieces: list[tuple[float, float]]
+) -> None:
+    curves = drawn(words).axes[1]
+    frictions = [line.get_xydata() for line in curves.lines if line.get_linestyle() == "--"]
+    found = [(line[0][1], line[-1][1]) for line in frictions]
+    assert np.allclose(found, pieces, rtol=1e-6)
+    assert all(one[-1][0] == other[0][0] for one, other in pairwise(frictions))
+    tensions = [
+        line.get_xydata()
+        for line in curves.lines
+        if line.get_linewidth() == 2 and line.get_linestyle() == "-"
+    ]
+    drawn_at = np.concatenate(tensions).T
+    options = dict(zip(*[iter(words.replace("--", "").split())] * 2, strict=True))
+    for point in arc(options.pop("profile", None), **options).points:
+        assert np.interp(float(point["angle"]), *drawn_at) == pytest.approx(float(point["tension"]), rel=1e-5)
+
+
+def test_m1_is_on_the_side_asked_for(drawn: Callable[[str], Any]) -> None:
+    """All is mirrored but the words; the angle counts from m1 on either side."""
+    for side in ("right", "left"):
+        page = drawn(f"{FIGURE} --wrap 120 --m1-side {side}")
+        page.draw_without_rendering()
+        machine, curves = page.axes
+        at = {text.get_text(): machine.transData.transform(text.get_position())[0] for text in machine.texts}
+        tension = next(x for words, x in at.items() if words.startswith("T₁ = "))
+        assert (at["m₁"] < at["m₂"]) == (tension < at["m₁"]) == (side == "left")
+        assert f"from m₁'s end on the {side} (°)" in curves.get_xlabel()
+    assert "on the right" in drawn(FIGURE).axes[1].get_xlabel()
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_matplotlib_warns_of_reaches_nobody(
+    drawn: Callable[[str], Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    figure = pytest.importorskip("matplotlib.figure")
+    monkeypatch.setattr(figure.Figure, "suptitle", lambda *_, **__: warnings.warn("a line", stacklevel=1))
+    drawn(FIGURE)
+
+
+SMALL_DISK = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
+from atwood_cli.__main__ import main
+sys.exit(main())
+"""
+NO_MATPLOTLIB = """
+import sys
+sys.modules["matplotlib"] = None
+from atwood_cli.__main__ import main
+sys.exit(main())
+"""
+
+
+@pytest.mark.parametrize(
+    ("program", "error"),
+    [
+        pytest.param(
+            SMALL_DISK,
+            "cannot write {file}: File too large",
+            marks=pytest.mark.skipif(sys.platform == "win32", reason="needs limits of resources"),
+        ),
+        (NO_MATPLOTLIB, f"this needs matplotlib; install it with: {PIP} install 'atwood-cli[figure]'"),
+    ],
+)
+def test_a_figure_that_cannot_be_made_is_a_sentence_and_no_file(
+    tmp_path: Path, program: str, error: str
+) -> None:
+    pytest.importorskip("matplotlib")
+    file = tmp_path / "a.svg"
+    words = [sys.executable, "-c", program, "contact", *FIGURE.split(), "--figure", str(file)]
+    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout) == (1, "")
+    assert done.stderr == f"atwood: {error.format(file=file)}\n"
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_figure_is_not_drawn_where_standard_output_goes(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ No pyplot, no display; the same scene gives the same SVG to the byte.
 """
 
 import os
+import re
 import sys
 import warnings
 from collections.abc import Iterator
@@ -16,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..files import check_free, is_stdout, written_beside
 from ..model.scene import SceneError
+from .curves import AXES
+from .text import wrapped
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,6 +27,9 @@ FORMATS = (".svg", ".png", ".pdf")
 BLUE, RED, GREEN, PURPLE, ORANGE = "#0072b2", "#d55e00", "#009e73", "#b05d91", "#b07800"
 """Told apart without seeing red or green, and on paper: after M. Okabe and K. Ito, Color universal design."""
 INK, GREY, FAINT = "#222222", "#777777", "#999999"
+WIDE = 130  # characters: more do not fit the page
+NAMES = re.compile(r"\b(m1|m2|mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
+LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 STYLE: Any = {
     "svg.hashsalt": "atwood",  # else the SVG's ids are random
     "font.family": "DejaVu Sans",
@@ -74,3 +80,19 @@ def page(path: str, force: bool) -> Iterator["Figure"]:
             yield figure
             figure.savefig(drawn, format=kind, dpi=200, metadata={dated: None} if dated else None)
         beside.write_bytes(drawn.getbuffer())
+
+
+def say_above(figure: "Figure", *sentences: str) -> None:
+    """Write sentences above a picture."""
+    figure.suptitle("\n".join(map(_lines, sentences)), fontsize=10)
+
+
+def say_below(figure: "Figure", words: str) -> None:
+    """Write words below a picture."""
+    figure.supxlabel(_lines(words), fontsize=10)
+
+
+def _lines(words: str) -> str:
+    """Words in lines that fit, parameters by their symbols; numbers that nobody reads to the end are cut."""
+    words = NAMES.sub(lambda name: AXES[name[0]][1], LONG_DIGITS.sub(r"\1…", words))
+    return "\n".join(wrapped(words, WIDE))

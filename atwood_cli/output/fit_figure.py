@@ -53,4 +53,4 @@ def save(fit: "Fit", head: str | None, path: str, force: bool) -> None:
         named = [*zip(fit.used, at.x, at.y, strict=True)] * (len(fit.used) <= NAMED)
         named += zip(out, x_out, y_out, strict=True)
         rows = [(run.name + ", left out" * run.left_out, float(x), float(y)) for run, x, y in named]
-        write_labels(line, [Label(*row, GREY) for row in rows])
+        write_labels(figure, {line: [Label(*row, GREY) for row in rows]})

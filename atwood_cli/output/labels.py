@@ -1,14 +1,21 @@
-"""Words beside the points of a picture, where they cover nothing and cannot be taken for those of another."""
+"""Words beside the points of a picture, where they cover nothing and cannot be taken for another point's.
 
-from collections.abc import Iterator, Sequence
+A label tries the places around its point, the nearest first, and takes the one of least cost. The cost counts
+what the words would cover, what a line from them to their point would cross, and how far away they are.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
-from math import inf
+from math import hypot, inf
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
 
 from .figure import INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from matplotlib.transforms import Bbox
 
 
@@ -21,179 +28,137 @@ class Label(NamedTuple):
     colour: str = INK
 
 
-class Place(NamedTuple):
-    """Where words may stand: how far from their point, and to which side of it."""
-
-    far: float
-    x: int
-    y: int
-    wide: int
-
-
 DISTANCES, WIDTHS = (6, 15, 27, 42, 60, 80, 110, 150), (1, 2, 3)  # points, and times as far to the side
-FAR = 20  # points: from there on a thin line leads to the point
+PLACES = sorted(
+    {
+        (x * far * wide, y * far)
+        for far, wide, x, y in product(DISTANCES, WIDTHS, (-1, 0, 1), (-1, 0, 1))
+        if x or y
+    },
+    key=lambda place: (hypot(*place), -place[0], -place[1]),
+)
+"""Where words may stand, in points from their point: the nearest first, and then to the right and above."""
+FAR = 25  # points: words further away have a thin line to their point
 SPARE = 2  # pixels around words
-CLEAR = 8  # pixels from a point: what is beside its own marker is not crossed
-UNREADABLE, CROSSED, AMBIGUOUS = 1000, 40, 20  # covered dots that weigh as much; and points of distance
-AWAY = 30
-HORIZONTAL, VERTICAL = {1: "left", -1: "right", 0: "center"}, {1: "bottom", -1: "top", 0: "center"}
-PLACES = [
-    Place(far, x, y, wide)
-    for far, x, y, wide in product(DISTANCES, HORIZONTAL, VERTICAL, WIDTHS)
-    if (x or y) and (x or wide == 1)
-]
-"""Around a point, those beside it first."""
+CLEAR = 8  # pixels: a line ends so far before its point, beside the marker
+UNREADABLE, CROSSED, AMBIGUOUS = 1000, 40, 20
+"""Costs in covered dots: of words over words, of a line across words, of words as near to another point."""
+AWAY = 30  # points of distance that cost as much as a covered dot
 
 
-def write_labels(axes: "Axes", labels: Sequence[Label], size: float = 9, *, laid_out: bool = False) -> None:
-    """Write words beside their points, where they cover no line, no point and no other words.
-
-    To be called when all else is drawn: it goes by where that stands on the page. The page is laid out
-    first, which takes a while, unless only other labels were written since it was ``laid_out``.
-    """
-    if not laid_out:
-        figure: Any = axes.figure
-        figure.draw_without_rendering()  # which decides where the axes lie
-    page = _Page(axes, labels)
-    for label in labels:
-        extent, best, place = page.extent(label, size), inf, Place(0, 0, 0, 0)
-        for other in PLACES:
-            if best <= other.far / AWAY:  # as no place so far away is better
-                break
-            cost = page.cost(label, other, extent, best)
-            if cost < best:
-                best, place = cost, other
-        page.take(label, place, extent)
-        _write(axes, label, place, size)
+def write_labels(figure: "Figure", labels: Mapping["Axes", Sequence[Label]], size: float = 9) -> None:
+    """Write labels on axes. To be called last: it lays out the page and goes by where all else then lies."""
+    figure.draw_without_rendering()
+    for axes, some in labels.items():
+        panel = _Panel(axes, some)
+        for label in some:
+            panel.write(label, size)
 
 
-def _write(axes: "Axes", label: Label, place: Place, size: float) -> None:
-    leads = {"arrowstyle": "-", "lw": 0.6, "color": label.colour, "shrinkB": 3} if place.far > FAR else None
-    axes.annotate(
-        label.words,
-        (label.x, label.y),
-        xytext=(place.x * place.far * place.wide, place.y * place.far),
-        textcoords="offset points",
-        ha=HORIZONTAL[place.x],
-        va=VERTICAL[place.y],
-        color=label.colour,
-        size=size,
-        arrowprops=leads,
-        in_layout=False,
-    )
-
-
-class _Page:
-    """What stands where on the page, in pixels: words, points, and the dots that all else is made of."""
+class _Panel:
+    """What lies where in axes, in pixels: words, points, and lines as the dots that they are made of."""
 
     def __init__(self, axes: "Axes", labels: Sequence[Label]) -> None:
-        import numpy as np
-        from matplotlib.text import Text
-
-        self.axes = axes
         figure: Any = axes.figure
-        self.renderer, self.pixel = figure.canvas.get_renderer(), figure.dpi / 72
-        texts = [text for text in (*axes.texts, axes.title) if text.get_text()]
-        self.taken = [Text.get_window_extent(text, self.renderer) for text in texts]
-        if (legend := axes.get_legend()) is not None:
-            self.taken.append(legend.get_window_extent(self.renderer))
+        self.axes, self.pixels = axes, figure.dpi / 72
+        self.words = [text.get_window_extent() for text in (*axes.texts, axes.title) if text.get_text()]
         self.dots = np.concatenate([np.empty((0, 2)), *_drawn(axes)])
-        self.points = np.array([self._point(label) for label in labels])
+        self.points = [self.point(label) for label in labels]
+
+    def point(self, label: Label) -> Any:
+        return self.axes.transData.transform((label.x, label.y))
+
+    def write(self, label: Label, size: float) -> None:
+        """Write a label at the place of least cost, which is then taken."""
+        point, extent = self.point(label), self.extent(label, size)
+        least, best = inf, PLACES[0]
+        for place in PLACES:
+            if least <= hypot(*place) / AWAY:
+                break  # no place so far away costs less
+            cost = self.cost(point, place, self.box(point, place, extent))
+            if cost < least:
+                least, best = cost, place
+        box, lead = self.box(point, best, extent), hypot(*best) > FAR
+        self.words.append(box)
+        if lead:
+            self.dots = np.concatenate([self.dots, _line(box, point)])
+        self.axes.annotate(
+            label.words,
+            (label.x, label.y),
+            xytext=best,
+            textcoords="offset points",
+            ha="center" if not best[0] else "left" if best[0] > 0 else "right",
+            va="center" if not best[1] else "bottom" if best[1] > 0 else "top",
+            color=label.colour,
+            size=size,
+            arrowprops={"arrowstyle": "-", "lw": 0.6, "color": label.colour, "shrinkB": 3} if lead else None,
+            in_layout=False,
+        )
 
     def extent(self, label: Label, size: float) -> Any:
-        """The width and height of its words."""
+        """The width and height of the words."""
         text = self.axes.text(label.x, label.y, label.words, size=size)
-        box = text.get_window_extent(self.renderer)
+        box = text.get_window_extent()
         text.remove()
         return box.size
 
-    def cost(self, label: Label, place: Place, extent: Any, least: float) -> float:
-        """What is wrong with a place, in covered dots; what is more than the least is not told exactly."""
-        box, inside = self._box(label, place, extent), self.axes.bbox
-        unreadable = sum(map(box.overlaps, self.taken))
-        unreadable += not (inside.contains(*box.min) and inside.contains(*box.max))
-        cost = UNREADABLE * unreadable + _inside(self.dots, box).sum() + place.far * place.wide / AWAY
-        if cost >= least:
-            return float(cost)
-        beside = self._crossed if place.far > FAR else self._ambiguous
-        return float(cost + beside(box, self._point(label)))
-
-    def take(self, label: Label, place: Place, extent: Any) -> None:
-        """Let nothing else stand where these words do, nor on the line to their point."""
-        import numpy as np
-
-        box = self._box(label, place, extent)
-        self.taken.append(box)
-        if place.far > FAR:
-            self.dots = np.concatenate([self.dots, _way(box, self._point(label))])
-
-    def _point(self, label: Label) -> Any:
-        return self.axes.transData.transform((label.x, label.y))
-
-    def _box(self, label: Label, place: Place, extent: Any) -> "Bbox":
-        """The room that words take there: without the line to their point, but with some around them."""
+    def box(self, point: Any, place: tuple[float, float], extent: Any) -> "Bbox":
+        """The room that words take at a place, with some to spare."""
         from matplotlib.transforms import Bbox
 
-        (x, y), (width, height) = self._point(label), extent
-        x += place.x * place.far * place.wide * self.pixel + (place.x - 1) * width / 2
-        y += place.y * place.far * self.pixel + (place.y - 1) * height / 2
-        return Bbox.from_bounds(x, y, width, height).padded(SPARE)
+        corner = point + np.multiply(place, self.pixels) + (np.sign(place) - 1) * extent / 2
+        return Bbox.from_bounds(*corner, *extent).padded(SPARE)
 
-    def _crossed(self, box: "Bbox", point: Any) -> float:
-        """What the line from the words to their point crosses."""
-        import numpy as np
-
-        way = _way(box, point)
-        words = sum(_inside(way, one).any() for one in self.taken)
-        lines = (np.hypot(*(self.dots[:, None] - way).T) < SPARE).any(axis=0).sum() if len(self.dots) else 0
-        return float(CROSSED * words + lines)
-
-    def _ambiguous(self, box: "Bbox", point: Any) -> float:
-        """What it costs to stand as near to the point of other words."""
-        import numpy as np
-
-        off = np.hypot(*(self.points - self.points.clip(box.min, box.max)).T)
-        own = np.hypot(*(point - point.clip(box.min, box.max)))
-        return float(AMBIGUOUS * (np.count_nonzero(off <= own + SPARE) > 1))
+    def cost(self, point: Any, place: tuple[float, float], box: "Bbox") -> float:
+        """What is wrong with a place."""
+        inside = self.axes.bbox
+        unreadable = sum(map(box.overlaps, self.words))
+        unreadable += not (inside.contains(*box.min) and inside.contains(*box.max))
+        cost = UNREADABLE * unreadable + _within(self.dots, box).sum() + hypot(*place) / AWAY
+        if hypot(*place) > FAR:
+            line = _line(box, point)
+            cost += CROSSED * sum(_within(line, words).any() for words in self.words)
+            if len(self.dots):
+                cost += (np.hypot(*(self.dots[:, None] - line).T) < SPARE).any(axis=0).sum()
+        else:
+            own, *all_ = (hypot(*(one - one.clip(box.min, box.max))) for one in (point, *self.points))
+            cost += AMBIGUOUS * (sum(off <= own + SPARE for off in all_) > 1)
+        return float(cost)
 
 
-def _inside(dots: Any, box: "Bbox") -> Any:
+def _within(dots: Any, box: "Bbox") -> Any:
     """Which of some dots lie in a box."""
     return ((box.min < dots) & (dots < box.max)).all(axis=1)
 
 
-def _way(box: "Bbox", point: Any) -> Any:
+def _line(box: "Bbox", point: Any) -> Any:
     """The dots of the line from a box to just before a point."""
-    import numpy as np
-
     start = point.clip(box.min, box.max)
     return np.linspace(start, point + CLEAR * (start - point) / max(np.hypot(*(start - point)), CLEAR), 40)
 
 
 def _drawn(axes: "Axes") -> Iterator[Any]:
-    """The dots of the lines, bars and markers that are drawn."""
-    import numpy as np
-
+    """The dots of the lines, error bars and markers that are drawn."""
     for bars in axes.collections:
         for corners in getattr(bars, "get_segments", list)():
             yield _along(bars.get_transform().transform(corners))
     for line in axes.lines:
         corners = line.get_transform().transform(np.column_stack([line.get_xdata(), line.get_ydata()]))
-        if line.get_marker() not in ABSENT:
-            radius = line.get_markersize() / 2 * axes.figure.dpi / 72
-            edges = np.array([[1, 0], [-1, 0], [0, 1], [0, -1], [0, 0]]) * radius
+        if line.get_marker() not in NONE:
+            figure: Any = axes.figure
+            edges = np.array([[1, 0], [-1, 0], [0, 1], [0, -1], [0, 0]])
+            edges = edges * line.get_markersize() / 2 * figure.dpi / 72
             yield (corners[np.isfinite(corners).all(axis=1), None] + edges).reshape(-1, 2)
-        if line.get_linestyle() not in ABSENT:
+        if line.get_linestyle() not in NONE:
             yield _along(corners)
 
 
-ABSENT = ("", " ", "None", None)
+NONE = ("", " ", "None", None)
+"""What matplotlib calls a line or a marker that is not drawn."""
 
 
 def _along(corners: Any) -> Any:
-    """A dot every few pixels along a line, but not over its gaps."""
-    import numpy as np
-
+    """A dot every 3 pixels along a line, but not over its gaps."""
     there = np.isfinite(corners).all(axis=1)
     if there.sum() < 2:
         return corners[there]

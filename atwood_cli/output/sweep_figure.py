@@ -3,16 +3,14 @@
 from math import isnan, nan
 from typing import TYPE_CHECKING
 
-from .figure import BLUE, GREEN, INK, ORANGE, PURPLE, RED, check_file, page
+from .figure import BLUE, GREEN, INK, ORANGE, PURPLE, RED, check_file, page, say_above
 from .labels import Label, write_labels
-from .text import wrapped
 
 if TYPE_CHECKING:
     from .curves import Picture
 
 COLOURS = (BLUE, RED, GREEN, PURPLE, ORANGE, INK)
 LINES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
-CAPTION_WIDTH = 135  # characters: more do not fit the page
 
 
 def save(picture: "Picture", caption: str, path: str, force: bool) -> None:
@@ -50,5 +48,5 @@ def save(picture: "Picture", caption: str, path: str, force: bool) -> None:
         xs = picture.curves[0].xs
         if min(xs) < max(xs):
             axes.set_xlim(min(xs), max(xs))  # where the curve has gaps, too
-        figure.suptitle("\n".join(wrapped(caption, CAPTION_WIDTH)), fontsize=10)
-        write_labels(axes, labels, size=10)
+        say_above(figure, caption)
+        write_labels(figure, {axes: labels}, 10)
