@@ -66,6 +66,9 @@ class Solution(Generic[T]):
     tension_1: T | None
     tension_2: T | None
     mu_verge: T | None
+    safety_factor: T | None
+    tension_ratio: T | None
+    capstan_ratio: T | None
     friction_force: T | None
     friction_force_min: T | None
     friction_force_max: T | None
@@ -77,6 +80,7 @@ class Solution(Generic[T]):
     angular_acceleration: T | None
     critical_pulley_mass: T | None
     critical_heavier_mass: T | None
+    critical_lighter_mass: T | None
     least_heavier_mass: T | None
     least_pulley_mass: T | None
     least_wrap: T | None

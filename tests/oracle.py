@@ -219,7 +219,31 @@ def expected(scene: Scene) -> dict[str, Any]:
         out["mu_verge"] = Fraction(0)
     elif grip is not None:
         out["mu_verge"] = lambda: ball(grip).log() / phi()
+    if l and equal:
+        out["tension_ratio"] = Fraction(1)
+    elif regime != "no-slip":
+        out["tension_ratio"] = combine(lambda t, u: u / t, state[1], state[2])  # type: ignore[index]
+    elif l and grip is not None:
+        out["tension_ratio"] = grip
     if mu is not None:
+        out["capstan_ratio"] = Fraction(1) if mu == 0 else lambda: k(mu)
+        if regime == "verge":
+            out["safety_factor"] = Fraction(1) if mu else None
+        elif not equal and grip is not None:
+            out["safety_factor"] = Fraction(0) if mu == 0 else lambda: ball(mu) * phi() / ball(grip).log()
+        if locked or (f and (h * g <= f or beats(h * g / (h * g - f)))):
+            out["critical_lighter_mass"] = h if mu == 0 else lambda: ball(h) / k(mu)
+        elif c is not None and f == 0:
+            out["critical_lighter_mass"] = (
+                (h if c else Fraction(0))
+                if mu == 0 or c == 0
+                else lambda: ball(h) * ball(c) / (k(mu) * ball(c) + 2 * ball(h) * (k(mu) - 1))
+            )
+        elif c is not None:
+            # (3) with f at T_h = k T_l and (1): h (c + b) = l (c - b + (k - 1) (2h + c - b)).
+            out["critical_lighter_mass"] = lambda: (
+                ball(h) * (ball(c) + ball(f / g)) / (ball(c - f / g) + (k(mu) - 1) * ball(2 * h + c - f / g))
+            )
         if l and equal:
             out["least_wrap"] = Fraction(0)
         elif regime == "verge":
@@ -281,7 +305,9 @@ def c_as(like: Any, q: Fraction) -> Any:
 
 
 NAMES = """
-    regime acceleration tension_1 tension_2 mu_verge friction_force friction_force_min friction_force_max
-    friction_force_x friction_force_y axle_force torque rim_acceleration angular_acceleration
-    critical_pulley_mass critical_heavier_mass least_heavier_mass least_pulley_mass least_wrap
+    regime acceleration tension_1 tension_2 mu_verge safety_factor tension_ratio capstan_ratio
+    friction_force friction_force_min friction_force_max friction_force_x friction_force_y
+    axle_force torque rim_acceleration angular_acceleration
+    critical_pulley_mass critical_heavier_mass critical_lighter_mass
+    least_heavier_mass least_pulley_mass least_wrap
 """.split()

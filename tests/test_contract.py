@@ -10,7 +10,7 @@ from contextlib import suppress
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from functools import partial
-from math import inf
+from math import inf, log, pi
 from typing import Any
 
 import pytest
@@ -420,3 +420,21 @@ def test_solve_takes_no_other_inputs() -> None:
     unknown: Any = {"m1": 1, "m2": 3, "m3": 2}
     with pytest.raises(TypeError, match="unexpected keyword argument 'm3'"):
         solve(**unknown)
+
+
+def test_how_safe_a_hoist_is_and_how_light_its_counterweight_may_be() -> None:
+    s = solve(m1=1, m2=3, M=10, mu="0.3")
+    assert s.critical_lighter_mass == 0.674774263967827
+    assert s.tension_ratio == 21 / 11
+    assert s.safety_factor == pytest.approx(0.3 * pi / log(21 / 11), rel=1e-15)
+    assert (s.tension_ratio or 0) < (s.capstan_ratio or 0)
+    below, above = (solve(m1=mass, m2=3, M=10, mu="0.3").regime for mass in ("0.6747742", "0.6747743"))
+    assert (below, above) == ("slip", "no-slip")
+
+
+@pytest.mark.parametrize(("digits", "value"), [(None, 0.0), (5, None)])
+def test_what_is_too_small_to_be_written_is_not_said_to_be_0(digits: int | None, value: float | None) -> None:
+    s: Any = solve(m1=1, m2=3, M=10, mu="1e9", digits=digits)
+    assert s.critical_lighter_mass == value
+    why = "critical_lighter_mass: not 0 but too small to be written out: about 10^-100000000 or less."
+    assert why in s.notes

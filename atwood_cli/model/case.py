@@ -15,7 +15,13 @@ if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, N, Quantity
 
 Excess = Literal[
-    "excess_ratio", "locked_excess", "heaviest_excess", "slide_excess", "massless_excess", "held_excess"
+    "excess_ratio",
+    "locked_excess",
+    "heaviest_excess",
+    "slide_excess",
+    "massless_excess",
+    "held_excess",
+    "lightest_held_excess",
 ]
 
 
@@ -188,6 +194,14 @@ class Case:
         """Whether the string slips under the least mass that the axle does not hold, on any pulley."""
         return self.axle_friction is not None and self.beats_friction("held_excess")
 
+    @property
+    def stands_until_it_slips(self) -> bool:
+        """Whether the pulley stands under the lightest mass that the string holds against the heavier."""
+        b = self.axle_mass
+        if self.locked or b is None or not self.heavy > b:
+            return self.locked or b is not None
+        return self.beats_friction("lightest_held_excess")
+
     @lazy
     def can_be_made_slip(self) -> bool:
         """Whether the string slips under some heavier mass: second condition of (36)."""
@@ -240,6 +254,11 @@ class Case:
         """T_h/T_l - 1 under the greatest difference that the axle holds."""
         assert self.axle_mass is not None
         return physics.held_excess(ar.number(self.light), ar.number(self.axle_mass))
+
+    def lightest_held_excess(self, ar: Arithmetic[N]) -> N:
+        """T_h/T_l - 1 with the lightest mass on the other side that the axle holds."""
+        assert self.axle_mass is not None
+        return physics.held_excess(ar.number(self.heavy - self.axle_mass), ar.number(self.axle_mass))
 
     def locked_excess(self, ar: Arithmetic[N]) -> N:
         """T_h/T_l - 1 on a locked pulley."""

@@ -35,6 +35,7 @@ NO_CRITICAL_HEAVIER_MASS = "does not exist, as the string holds under any heavie
 AXLE_HOLDS = "does not exist, as the axle holds the difference on any pulley"
 ALWAYS_SLIPS = "does not exist, as for the friction of the axle the string slips on any pulley, however light"
 AXLE_ENOUGH = "no condition here, as the friction of the axle is enough to make the string slip on any pulley"
+NO_NEED = "does not exist, as no friction is needed"
 NO_WRAP = "does not exist, as without friction no wrap holds"
 NOT_APPLICABLE = "conditions (36) do not apply without friction"
 LOCKED_AXLE = "not defined for a locked pulley: `M` = `inf` is not its weight"
@@ -240,9 +241,9 @@ class Machine(Generic[N]):
         return self.mu_verge if self.scene.mu is None else self.ar.number(self.scene.mu)
 
     @property
-    def capstan_ratio(self) -> N:
+    def reference_ratio(self) -> N:
         """e^{μφ} at that coefficient; the tension ratio itself where that is what holds."""
-        return self.heavy_tension / self.light_tension if self.scene.mu is None else self.k1 + 1
+        return self.tension_ratio if self.scene.mu is None else self.capstan_ratio
 
     def _end(self, angle: N) -> arc.Knot[N]:
         return arc.Knot(angle, *self._direction, self.heavy_tension)
@@ -337,6 +338,32 @@ class Machine(Generic[N]):
         return physics.verge_coefficient(self.log_ratio, self.phi)
 
     @lazy
+    def safety_factor(self) -> N:
+        """The coefficient of friction over the one that a string which grips needs."""
+        mu = self._given(self.scene.mu, self._needs_mu)
+        if self.case.tensions_equal or (self.case.regime == "verge" and is_zero(self.scene.mu)):
+            raise Undetermined(NO_NEED)
+        return physics.safety_factor(mu, self.mu_verge)
+
+    @lazy
+    def tension_ratio(self) -> N:
+        """The greater tension over the lesser (33)."""
+        if self.case.regime != "no-slip":
+            return self.limiting_k1 + 1
+        if is_zero(self.case.light):
+            raise Undetermined(FREE_END)
+        if self.case.tensions_equal:
+            return self.ar.number(1)
+        if not self.case.pulley_known:
+            raise Undetermined(NEEDS_M)
+        return self.excess + 1
+
+    @lazy
+    def capstan_ratio(self) -> N:
+        """e^{μφ}, the greatest ratio of tensions that static friction holds (26)."""
+        return self.k1 + 1
+
+    @lazy
     def massless_verge(self) -> N:
         """Friction coefficient at which a string that turns an axle without a pulley is on the verge."""
         return physics.verge_coefficient(self.ar.log1p(self.case.massless_excess(self.ar)), self.phi)
@@ -424,6 +451,17 @@ class Machine(Generic[N]):
         if not self.case.can_be_made_slip:
             raise Undetermined(NO_CRITICAL_HEAVIER_MASS)
         return physics.critical_heavier_mass(self.l, c, transfer, self.b)
+
+    @lazy
+    def critical_lighter_mass(self) -> N:
+        """Lighter mass below which the string slips (kg); 0 where it holds under any."""
+        k1, h = self.k1, self.h
+        if self.case.stands_until_it_slips:
+            return physics.lightest_held(h, k1)
+        c = self._given(self.case.rim_mass, NEEDS_M)
+        if is_zero(self.case.rim_mass) and self.b is None:
+            return self.ar.number(0)
+        return physics.critical_lighter_mass(h, c, k1, self.b)
 
     @lazy
     def holding_heavier_mass(self) -> N:

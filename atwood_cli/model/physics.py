@@ -305,6 +305,26 @@ def critical_heavier_mass(l: N, c: N, transfer: N, b: N | None = None, side: int
     return (c - b) * side / ((c + b - 2 * transfer) * side) * least
 
 
+def critical_lighter_mass(h: N, c: N, k1: N, b: N | None = None) -> N:
+    """Lighter mass (kg) below which the string slips, the counterpart of (35): (33) solved for it.
+
+    >>> critical_lighter_mass(3, 6, 1), critical_lighter_mass(3, 6, 1, 3)
+    (1.0, 2.25)
+    """
+    if b is None:
+        return h * (c / (c + k1 * (2 * h + c)))
+    return h * ((c + b) / (c - b + k1 * (2 * h + c - b)))
+
+
+def lightest_held(h: N, k1: N) -> N:
+    """Lighter mass (kg) below which the string slips where the pulley stands: h/k, from (26).
+
+    >>> lightest_held(3, 1)
+    1.5
+    """
+    return h / (k1 + 1)
+
+
 def least_heavier_mass(l: N, transfer: N) -> N:
     """What the heavier mass (kg) must exceed for any pulley to slip, l k: first condition of (36).
 
@@ -330,6 +350,15 @@ def half_turn_resultant(t1: N, t2: N) -> N:
     32
     """
     return t1 + t2
+
+
+def safety_factor(mu: N, mu_verge: N) -> N:
+    """How many times the friction is there that a string which grips needs.
+
+    >>> safety_factor(0.3, 0.15)
+    2.0
+    """
+    return mu / mu_verge
 
 
 def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N], hypot: Hypot[N]) -> N:

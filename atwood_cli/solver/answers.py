@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .uncertainty import OnMachine, Uncertainties
 
 TOO_LARGE = f"beyond 10^{LARGEST_EXPONENT}, the largest number written out"
+TOO_SMALL = f"not 0 but too small to be written out: about 10^-{LARGEST_EXPONENT} or less"
 ABOVE_DOUBLES = "beyond the range of doubles; ask for digits (--digits 17) to see it"
 BELOW_DOUBLES = "not 0 but below the range of doubles; ask for digits (--digits 17) to see it"
 
@@ -99,6 +100,7 @@ class Answers:
             "angular_acceleration": scene.R is not None,
             "critical_pulley_mass": has_mu,
             "critical_heavier_mass": has_mu and case.pulley_known,
+            "safety_factor": has_mu and case.pulley_known and not case.tensions_equal,
             "least_wrap": has_mu and not scene.wrap.is_half_turn,
         }
         return tuple(name for name in self.names[1:] if also.get(name, name in MAIN or name not in NAMES))
@@ -118,6 +120,9 @@ class Answers:
             except Undetermined as undetermined:
                 self._values[name] = None
                 self.reasons[name] = str(undetermined)
+            except OverflowError:  # of a denominator
+                self._values[name] = 0.0 if self.digits is None else None
+                self.reasons[name] = TOO_SMALL
         return self._values[name]
 
     def _out_of_range(self, value: float | Decimal, quantity: Quantity) -> str:
@@ -130,7 +135,7 @@ class Answers:
     def uncertainty(self, name: str, round_: Rounding[Any] | None = None) -> Any:
         """The standard uncertainty of a quantity; None where there is none, or no value either."""
         value, known, quantity = self[name], self.uncertainties, attrgetter(name)
-        if known is None or value is None:
+        if known is None or value is None or self.reasons.get(name) == TOO_SMALL:
             return None
         if is_infinite(value) and is_infinite(self.settle(quantity, to_digits(1))):
             return None

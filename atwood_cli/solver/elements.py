@@ -170,7 +170,7 @@ def _error(rough: Answers, exact: OnMachine, shown: Fraction) -> Decimal:
 
 
 EXACT: dict[str, OnMachine] = {
-    "capstan_ratio": lambda machine: machine.capstan_ratio,
+    "capstan_ratio": lambda machine: machine.reference_ratio,
     "tension_ratio": lambda machine: machine.tension_2 / machine.tension_1,
     "critical_pulley_mass": lambda machine: machine.critical_pulley_mass,
     "friction_force": lambda machine: machine.friction_force,

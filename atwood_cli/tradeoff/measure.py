@@ -288,7 +288,7 @@ def marches(scene: Scene, most: int = USUAL_ELEMENTS) -> Iterator[March]:
     """
     answers = Answers(scene, EXACT_DIGITS)
     mu = float(answers.settle(attrgetter("reference_mu")))
-    ratio = Decimal(answers.settle(attrgetter("capstan_ratio")))
+    ratio = Decimal(answers.settle(attrgetter("reference_ratio")))
     phi = float(answers.settle(lambda machine: machine.phi))
     if to_double(ratio) == inf:  # before a fraction of a hundred million digits is made of it
         raise SceneError("elements", None, TOO_LARGE)
