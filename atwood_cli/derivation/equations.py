@@ -60,26 +60,18 @@ HELD = "\x1f"
 Part = str | Law | Equation
 
 
-LABELS = {
-    "k1": "(26)",
-    "limiting_k1": "(26)",
-    "transfer": "(26)",
-    "limiting_transfer": "(26)",
-    "drive": "(33)",
-    "limiting_drive": "(33)",
-    "excess": "(33)",
-    "massless_verge": "(27)",
+INTERMEDIATE = {
+    "k1": ("(26)", ""),
+    "limiting_k1": ("(26)", ""),
+    "transfer": ("(26)", "kg"),
+    "limiting_transfer": ("(26)", "kg"),
+    "drive": ("(33)", "kg"),
+    "limiting_drive": ("(33)", "kg"),
+    "excess": ("(33)", ""),
+    "massless_verge": ("(27)", ""),
+    "alpha": ("", "rad"),
 }
-UNITS = {
-    "transfer": "kg",
-    "drive": "kg",
-    "limiting_transfer": "kg",
-    "limiting_drive": "kg",
-    "alpha": "rad",
-    "difference": "N",
-}
-ALSO = {"magnitude": "acceleration", "light_tension": "tension_1", "heavy_tension": "tension_1"}
-"""The quantity whose unit and symbol something else shares."""
+"""The paper's number and the unit of what is no quantity of the registry."""
 
 
 class Derivation:
@@ -131,11 +123,7 @@ class Derivation:
             "critical_pulley_mass": "M*",
         }
         if case.regime == "slip" and scene.mu_k is not None:
-            names |= {
-                "limiting_k1": "k_kin - 1",
-                "limiting_transfer": "z_kin",
-                "limiting_drive": "d_kin",
-            }
+            names |= {"limiting_k1": "k_kin - 1", "limiting_transfer": "z_kin", "limiting_drive": "d_kin"}
         if case.regime == "verge":
             del names["mu_verge"]  # it is the coefficient given
         self.names = names
@@ -157,24 +145,22 @@ class Derivation:
 
     def equation(self, name: str) -> Equation:
         """The equation of anything that the scene determines."""
-        about = QUANTITIES.get(ALSO.get(name, name))
-        unit = about.unit if about else UNITS.get(name, "")
-        symbol = self.names.get(name) or plain(about.symbol if about else name)
-        return self.worked_out(self.label(name), symbol, self.formula(name), Symbol(symbol, name), unit)
-
-    def label(self, name: str) -> str:
-        """The paper's number for an equation, or none."""
-        gives_tensions = {"no-slip": "(1)"}.get(self.case.regime, "(1), (26)")
-        match name:
-            case "magnitude" if self.case.regime == "no-slip":
-                return "(4)"
-            case "magnitude" | "light_tension":
-                return gives_tensions
-            case "difference" if self.case.regime != "no-slip":
-                return "(26)"
-            case "difference":
-                return "(1)" if self.case.stands else "(3)"
-        return LABELS.get(name, QUANTITIES[name].equation if name in QUANTITIES else "")
+        grips = self.case.regime == "no-slip"
+        gives_tensions = "(1)" if grips else "(1), (26)"
+        of_the_motion = {
+            "magnitude": ("(4)" if grips else gives_tensions, "m/s²"),
+            "light_tension": (gives_tensions, "N"),
+            "heavy_tension": ("", "N"),
+            "difference": (("(1)" if self.case.stands else "(3)") if grips else "(26)", "N"),
+        }
+        symbol = self.names.get(name)
+        if name in QUANTITIES:
+            about = QUANTITIES[name]
+            symbol, label, unit = symbol or plain(about.symbol), about.equation, about.unit
+        else:
+            label, unit = (of_the_motion | INTERMEDIATE)[name]
+        assert symbol is not None
+        return self.worked_out(label, symbol, self.formula(name), Symbol(symbol, name), unit)
 
     def worked_out(self, label: str, left: str, formula: Formula, result: Symbol, unit: str) -> Equation:
         """The equation with numbers put in, each with as many digits as give the result shown.
@@ -261,8 +247,9 @@ class Derivation:
         mass: Any = physics.axle_mass(*symbols)
         yield self.worked_out("", "b", mass, given["b"], "kg")
 
-    def direction(self) -> Iterator[Part]:
-        """The sign of the acceleration, where it is not the magnitude."""
+    def motion(self, *names: str) -> Iterator[Part]:
+        """The equations that end with the acceleration's magnitude, and its sign where it is negative."""
+        yield from self.lines(*names)
         if self.case.sign < 0:
             yield f"`a` is positive when `m2` descends, so here it is negative, {self.say('acceleration')}."
 
