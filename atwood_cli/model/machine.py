@@ -70,10 +70,6 @@ class Machine(Generic[N]):
         for name, value in (known or {}).items():
             setattr(self, name, value)
 
-    def known(self, name: str) -> N | None:
-        """A quantity that is known by now, given or computed; computes nothing."""
-        return vars(self).get(name)
-
     @lazy
     def l(self) -> N:
         """Lighter mass (kg)."""
@@ -111,23 +107,19 @@ class Machine(Generic[N]):
             raise Undetermined(otherwise)
         return self.ar.number(value)
 
-    def _capstan_excess(self, mu: Fraction) -> N:
-        """e^{μφ} - 1; without friction no exponential is asked for."""
-        if is_zero(mu):
-            return self.ar.number(0)
-        return self.ar.expm1(self.ar.number(mu) * self.phi)
-
     @property
-    def _needs_mu(self) -> str:
-        """What is said where mu is not given: a free end takes none."""
-        return FREE_END if is_zero(self.case.light) else NEEDS_MU
+    def mu(self) -> N:
+        """Coefficient of static friction, which a free end does not take."""
+        return self._given(self.scene.mu, FREE_END if is_zero(self.case.light) else NEEDS_MU)
+
+    def _capstan_excess(self, given: Fraction | None, mu: N) -> N:
+        """e^{μφ} - 1; without friction no exponential is asked for."""
+        return self.ar.number(0) if is_zero(given) else self.ar.expm1(mu * self.phi)
 
     @lazy
     def k1(self) -> N:
         """Excess k - 1 of the capstan ratio of static friction."""
-        if self.scene.mu is None:
-            raise Undetermined(self._needs_mu)
-        return self._capstan_excess(self.scene.mu)
+        return self._capstan_excess(self.scene.mu, self.mu)
 
     @lazy
     def excess(self) -> N:
@@ -154,7 +146,10 @@ class Machine(Generic[N]):
         """The excess of the tension ratio in a regime where friction is at its limit."""
         if self.case.slide_measured:
             return self.case.slide_excess(self.ar)
-        return self.k1 if self.case.at_static_limit else self._capstan_excess(self.case.limiting_mu)
+        if self.case.at_static_limit:
+            return self.k1
+        kinetic = self.case.limiting_mu
+        return self._capstan_excess(kinetic, self.ar.number(kinetic))
 
     @lazy
     def limiting_transfer(self) -> N:
@@ -206,9 +201,8 @@ class Machine(Generic[N]):
     @lazy
     def alpha(self) -> N:
         """The arc (rad) that friction at its limit needs, where the string grips with some to spare."""
-        if self.scene.mu is None:
-            raise Undetermined(self._needs_mu)
-        return physics.limiting_arc(self.log_ratio, self.ar.number(self.scene.mu))
+        mu = self.mu
+        return physics.limiting_arc(self.log_ratio, mu)
 
     def arcs(self, kind: arc.Kind) -> list[arc.Arc[N]]:
         """The arc of contact from the light end, in pieces: limiting, stuck or both (see `arc`)."""
@@ -233,12 +227,12 @@ class Machine(Generic[N]):
 
     def arc_mu(self, kind: arc.Kind) -> N:
         """The coefficient that the friction of a profile is at, where it is at its limit."""
-        return self.friction_mu if kind == "exponential" else self._given(self.scene.mu, self._needs_mu)
+        return self.friction_mu if kind == "exponential" else self.mu
 
     @property
     def reference_mu(self) -> N:
         """Static friction, or where it is not given the least that holds."""
-        return self.mu_verge if self.scene.mu is None else self.ar.number(self.scene.mu)
+        return self.mu_verge if self.scene.mu is None else self.mu
 
     @property
     def reference_ratio(self) -> N:
@@ -287,11 +281,10 @@ class Machine(Generic[N]):
         """Whether the friction force is bounded by more than 0; raises where it has no bounds."""
         if self.case.regime != "no-slip":
             raise Undetermined(DEFINITE)
-        _ = self.mu_verge
+        _ = self.mu_verge  # raises where there is none
         if self.case.tensions_equal:
             return False
-        if self.scene.mu is None:
-            raise Undetermined(self._needs_mu)
+        _ = self.mu  # raises if it is not given
         if self.case.long_wrap:
             raise Undetermined(LONG_WRAP)
         return True
@@ -431,8 +424,7 @@ class Machine(Generic[N]):
     @lazy
     def critical_pulley_mass(self) -> N:
         """Pulley mass above which the string slips (kg) (34)."""
-        if self.scene.mu is None:
-            raise Undetermined(self._needs_mu)
+        _ = self.mu  # raises if it is not given
         if not self.case.can_slip:
             raise Undetermined(AXLE_HOLDS if self.case.axle_holds else NO_CRITICAL_MASS)
         if self.case.always_slips:
@@ -493,8 +485,7 @@ class Machine(Generic[N]):
     @lazy
     def least_wrap(self) -> N:
         """Angle of wrap below which the string slips (°): (27), solved for the angle."""
-        if self.scene.mu is None:
-            raise Undetermined(self._needs_mu)
+        _ = self.mu  # raises if it is not given
         if self.case.tensions_equal:
             return self.ar.number(0)
         if not self.case.pulley_known:

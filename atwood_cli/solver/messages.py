@@ -42,12 +42,12 @@ def reasons(answers: Answers) -> list[str]:
 def reasons_at(
     counted: Mapping[tuple[str, str], int], points: int, where: str = "at {} of {} points"
 ) -> list[str]:
-    """Why values are missing, in how many places: a sentence for each reason, without backticks."""
+    """Why values are missing, and in how many places: a sentence for each reason, without backticks."""
     return [unmarked(one) for one in missing(counted, points, where)]
 
 
 def missing(counted: Mapping[tuple[str, str], int], points: int = 1, where: str = "") -> list[str]:
-    """Why values are missing, in how many places: a sentence for each reason, with the names."""
+    """The same with backticks."""
     names: dict[tuple[str, int], list[str]] = {}
     for (name, reason), times in counted.items():
         names.setdefault((reason, times), []).append(f"`{name}`")
@@ -61,11 +61,22 @@ def verdict(answers: Answers) -> str:
     """What the string does, and why, in a sentence."""
     answers = answers.shown
     case, scene = answers.case, answers.case.scene
-    heavy = as_typed(case.heavy)
+    mu = "" if scene.mu is None else f"`mu` = {as_typed(scene.mu)}"
+
+    def enough(name: str = "mu_verge") -> str:
+        return _threshold(answers, name, up=True, given=scene.mu)
+
     if case.sign == 0:
         return "At rest: the masses are equal, so no friction is needed."
     if case.axle_holds and case.regime == "no-slip":
-        return f"At rest: the axle holds up to {_held(case)} of difference.{_string_at_rest(answers)}"
+        at_rest = f"At rest: the axle holds up to {_held(case)} of difference."
+        if not case.light:
+            return at_rest
+        if mu:
+            return f"{at_rest} The string holds: {mu}, and {enough()} is enough."
+        return (
+            f"{at_rest} The string is assumed to hold, without `mu`: it does if `mu` is at least {enough()}."
+        )
     if case.regime == "verge" and not scene.mu:
         return "Slips on any pulley that has mass, for want of friction; the values are for one without."
     if case.regime == "verge":
@@ -75,35 +86,31 @@ def verdict(answers: Answers) -> str:
             f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on one"
             f" without mass the acceleration is {_say(massless, 'acceleration')} m/s²."
         )
-    if case.slide_measured and scene.mu is None:
-        return f"Slides over the locked pulley, with `mu_k` = {_say(answers, 'mu_k')}."
-    if case.regime == "slip" and scene.mu is not None:
+    if case.regime == "slip":
         mu_k = _say(answers, "mu_k") if case.slide_measured else scene.mu_k and as_typed(scene.mu_k)
+        if not mu:
+            return f"Slides over the locked pulley, with `mu_k` = {mu_k}."
         kinetic = "" if mu_k is None else f", and slides with `mu_k` = {mu_k}"
         if not case.pulley_known:
-            verge = _threshold(answers, "massless_verge", up=True)
             return (
-                f"Slips on any pulley, for the friction of its axle: `mu` = {as_typed(scene.mu)} is below the"
-                f" {verge} that would hold it on one without mass{kinetic}."
+                f"Slips on any pulley, for the friction of its axle: {mu} is below the"
+                f" {enough('massless_verge')} that would hold it on one without mass{kinetic}."
             )
-        verge = _threshold(answers, "mu_verge", up=True)
         where = " over a pulley that its axle holds" * (case.rim_stands and not case.locked)
-        return f"Slips{where}: `mu` = {as_typed(scene.mu)} is below the {verge} that would hold it{kinetic}."
+        return f"Slips{where}: {mu} is below the {enough()} that would hold it{kinetic}."
     if case.tensions_equal:
         return "Holds: a pulley without mass needs no friction to turn, so both tensions are equal."
     if not case.light:
         return "Holds: the string's end is fixed to the pulley."
-    if scene.mu is None:
+    if not mu:
         where = " on a pulley without mass" * (scene.M is None and scene.I is None)
-        verge = _threshold(answers, "mu_verge", up=True)
-        return f"Assumed to hold, without `mu`: it does{where} if `mu` is at least {verge}."
+        return f"Assumed to hold, without `mu`: it does{where} if `mu` is at least {enough()}."
     if case.pulley_known:
-        verge = _threshold(answers, "mu_verge", up=True, given=scene.mu)
-        at_rest = " from rest" * (_sliding(answers) is not None)
-        return f"Holds{at_rest}: `mu` = {as_typed(scene.mu)}, and {verge} is enough."
+        return f"Holds{' from rest' * (_sliding(answers) is not None)}: {mu}, and {enough()} is enough."
     least = answers.rounded("least_heavier_mass", to_threshold(up=False, given=case.heavy))
     if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
         return "Holds on any pulley, under any mass that can be given in place of the heavier one."
+    heavy = as_typed(case.heavy)
     return (
         f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {text(least)} kg to slip."
     )
@@ -114,18 +121,6 @@ def _held(case: Case) -> str:
     b, difference = case.axle_mass or Fraction(0), case.heavy - case.light
     times, unit = (1000, "g") if b < 1 else (1, "kg")
     return f"{text(to_threshold(up=False, given=times * difference)(times * b))} {unit}"
-
-
-def _string_at_rest(answers: Answers) -> str:
-    """The sentence on the string of masses that an axle holds; empty if its end is fixed."""
-    mu = answers.case.scene.mu
-    if not answers.case.light:
-        return ""
-    if mu is None:
-        least = _threshold(answers, "mu_verge", up=True)
-        return f" The string is assumed to hold, without `mu`: it does if `mu` is at least {least}."
-    verge = _threshold(answers, "mu_verge", up=True, given=mu)
-    return f" The string holds: `mu` = {as_typed(mu)}, and {verge} is enough."
 
 
 def remarks(answers: Answers) -> list[str]:
@@ -207,18 +202,17 @@ def conditions(answers: Answers) -> list[str]:
     met = {True: "met", False: "not met"}
     least = _least(answers, "least_heavier_mass", case.heavy)
     parts = [f"the heavier mass, {as_typed(case.heavy)} kg, must exceed {least} ({met[case.can_slip]})"]
-    if answers["least_pulley_mass"] is None:
-        pass  # the pulley's shape is not known
-    elif mass is None:
-        answer = "met by the critical one" if case.can_slip else "open without `M`"
-        parts.append(f"the pulley's mass must exceed {_least(answers, 'least_pulley_mass')} ({answer})")
-    elif isinstance(mass, Fraction):
-        least = _least(answers, "least_pulley_mass", mass)
-        parts.append(
-            f"the pulley's mass, {as_typed(mass)} kg, must exceed {least} ({met[case.can_be_made_slip]})"
-        )
-    else:
-        parts.append(f"the pulley's mass, infinite, must exceed {_least(answers, 'least_pulley_mass')} (met)")
+    if answers["least_pulley_mass"] is not None:  # the pulley's shape is known
+        given, of_given = None, ""
+        if mass is None:
+            answer = "met by the critical one" if case.can_slip else "open without `M`"
+        elif isinstance(mass, Fraction):
+            given, of_given = mass, f", {as_typed(mass)} kg,"
+            answer = met[case.can_be_made_slip]
+        else:
+            of_given, answer = ", infinite,", "met"
+        least = _least(answers, "least_pulley_mass", given)
+        parts.append(f"the pulley's mass{of_given} must exceed {least} ({answer})")
     return [f"Conditions (36) for the verge: {'; '.join(parts)}."]
 
 
