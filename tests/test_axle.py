@@ -64,15 +64,8 @@ def with_axle(rng: Random, given: Given) -> Given:
     if scene.mu and scene.mu < 1 and h > l and rng.random() < 0.3:
         # The verge of a massless pulley: where b (h + l) = (k - 1) l (2 h - b).
         k1 = Fraction(Answers(Scene.read({**given, "M": "1", "I": None}), 30).settle(lambda m: m.k1))
-        f = (
-            g
-            * 2
-            * h
-            * l
-            * k1
-            / (h + l + l * k1)
-            * (1 + Fraction(rng.choice([-1, 1]) * 10 ** rng.uniform(-15, -3)))
-        )
+        near = 1 + Fraction(rng.choice([-1, 1]) * 10 ** rng.uniform(-15, -3))
+        f = g * 2 * h * l * k1 / (h + l + l * k1) * near
     context = Context(prec=rng.choice([3, 17, 40]), Emin=-5000, Emax=5000)
     shown = context.divide(Decimal(f.numerator), Decimal(f.denominator))
     text = str(max(min(shown, Decimal("1e450")), Decimal("1e-450")))  # as far as a number may be typed

@@ -30,35 +30,24 @@ def nulls(solution: Solution[Any]) -> set[str]:
     return {name for name in oracle.NAMES if getattr(solution, name) is None}
 
 
-@pytest.mark.parametrize(
-    ("given", "regime", "values"),
-    [
-        (
-            {"mu": "0.3"},
-            "verge",
-            "0.764026672247106942 10.5706766722471069 27.1278699832586792 0.3 10.8325976703838104 43.3419248632108670",
-        ),
-        (
-            {"M": "10"},
-            "no-slip",
-            "2.17925555555555556 11.9859055555555556 22.8821833333333333 0.205827819270640686 7.02946524440111226 -",
-        ),
-        (
-            {"M": "100", "mu": "0.3", "mu_k": "0.25"},
-            "slip",
-            "1.52335712943225151 11.3300071294322515 24.8498786117032455 0.326109852384497038 8.77491120196940880"
-            " 43.3419248632108670",
-        ),
-        ({"M": "inf"}, "no-slip", "0 9.80665 29.41995 0.349699152566059778 12.9485994725957480 -"),
-    ],
-)
-def test_reference_values(given: dict[str, Any], regime: str, values: str) -> None:
-    solution = solve(m1="1", m2="3", digits=18, **given)
+REFERENCE = """
+mu=0.3 | verge | 0.764026672247106942 10.5706766722471069 27.1278699832586792 0.3 10.8325976703838104
+    43.3419248632108670
+M=10 | no-slip | 2.17925555555555556 11.9859055555555556 22.8821833333333333 0.205827819270640686
+    7.02946524440111226 None
+M=100 mu=0.3 mu_k=0.25 | slip | 1.52335712943225151 11.3300071294322515 24.8498786117032455
+    0.326109852384497038 8.77491120196940880 43.3419248632108670
+M=inf | no-slip | 0 9.80665 29.41995 0.349699152566059778 12.9485994725957480 None
+"""
+
+
+@pytest.mark.parametrize(("given", "regime", "values"), table(REFERENCE))
+def test_reference_values(given: str, regime: str, values: str) -> None:
+    solution = solve(**inputs(given), digits=18)
     names = "acceleration tension_1 tension_2 mu_verge friction_force critical_pulley_mass".split()
     assert solution.regime == regime
     for name, value in zip(names, values.split(), strict=True):
-        expected = None if value == "-" else Decimal(value)
-        assert getattr(solution, name) == expected, name
+        assert getattr(solution, name) == (None if value == "None" else Decimal(value)), name
 
 
 # The table of what is given, and its corners: scene | results | what a note says
@@ -134,18 +123,18 @@ def test_moment_of_inertia_fixes_the_factor_or_stands_for_the_mass() -> None:
         assert [getattr(one, name) for name in names] == [getattr(other, name) for name in names]
 
 
-@pytest.mark.parametrize(
-    ("mu", "M", "met"),
-    [
-        ("0.3", None, "2.56633 kg (met); the pulley's mass must exceed 6.26533 kg (met by the critical one)"),
-        ("0.5", None, "4.81048 kg (not met); the pulley's mass must exceed 15.2419 kg (open without M)"),
-        ("0.3", "5", "2.56633 kg (met); the pulley's mass, 5 kg, must exceed 6.26533 kg (not met)"),
-        ("0.3", "inf", "2.56633 kg (met); the pulley's mass, infinite, must exceed 6.26533 kg (met)"),
-        ("0.4", "100", "3.51359 kg (not met); the pulley's mass, 100 kg, must exceed 10.0543 kg (met)"),
-    ],
-)
-def test_both_necessary_conditions_are_reported(mu: str, M: str | None, met: str) -> None:
-    notes = solve(m1=1, m2=3, mu=mu, M=M, digits=6).notes
+CONDITIONS = """
+mu=0.3 | 2.56633 kg (met); the pulley's mass must exceed 6.26533 kg (met by the critical one)
+mu=0.5 | 4.81048 kg (not met); the pulley's mass must exceed 15.2419 kg (open without M)
+mu=0.3 M=5 | 2.56633 kg (met); the pulley's mass, 5 kg, must exceed 6.26533 kg (not met)
+mu=0.3 M=inf | 2.56633 kg (met); the pulley's mass, infinite, must exceed 6.26533 kg (met)
+mu=0.4 M=100 | 3.51359 kg (not met); the pulley's mass, 100 kg, must exceed 10.0543 kg (met)
+"""
+
+
+@pytest.mark.parametrize(("given", "met"), table(CONDITIONS))
+def test_both_necessary_conditions_are_reported(given: str, met: str) -> None:
+    notes = solve(**inputs(given), digits=6).notes
     assert f"Conditions (36) for the verge: the heavier mass, 3 kg, must exceed {met}." in notes
 
 

@@ -39,11 +39,10 @@ def measured(**given: Any) -> MeasuredSolution[Any]:
 
 def test_they_undo_the_acceleration_and_the_load() -> None:
     d, s, g, l, h, c, H, a = sp.symbols("d s g l h c H a", positive=True)
-    forwards = physics.acceleration(d, s, g)
-    assert sp.simplify(physics.load_under(d, forwards, g) - s) == 0
     weights = physics.acceleration(physics.drive(l, h), s, g)
     assert sp.simplify(physics.gravity_under(l, h, s, weights) - g) == 0
-    assert sp.simplify(physics.added_load(l, h, physics.load(l, h, c)) - c) == 0
+    forwards = physics.acceleration(d, physics.load(l, h, c), g)
+    assert sp.simplify(physics.added_load(l, h, d, forwards, g) - c) == 0
     # Constant acceleration: H = a t²/2 and v = a t.
     t, v = physics.fall_time(H, a, sp.sqrt), physics.final_speed(H, a, sp.sqrt)
     assert sp.simplify(a * t**2 / 2 - H) == 0

@@ -24,11 +24,11 @@ if TYPE_CHECKING:
     from ..arithmetic.protocol import Arithmetic, N
 
 DOUBT = 3
-"""Significant digits of how much something matters (%)."""
+"""Significant digits of a relative error (%)."""
 TYPED = 17
 """Digits up to which an input is put in as it was typed."""
 LONGEST = 1000
-"""Digits more than those of the result that a number put in may take, where much of it cancels."""
+"""Most digits that a number put in may have beyond those of the result; a difference may take many."""
 
 
 class Law(NamedTuple):
@@ -55,7 +55,7 @@ class Equation(NamedTuple):
 
 
 HELD = "\x1f"
-"""A blank at which no line breaks; ASCII, so that any stream takes it until it is one."""
+"""Stands for a blank at which no line breaks: an ASCII character, which every stream takes."""
 
 Part = str | Law | Equation
 
@@ -184,7 +184,7 @@ class Derivation:
         return Equation(label, left, formula, numbers, signs, text(value), unit)
 
     def _gives(self, formula: Formula, numbers: Mapping[Symbol, Decimal], result: Decimal) -> bool:
-        """Whether the numbers, worked out, are the result but for half a unit of its last digit."""
+        """Whether the formula of these numbers gives the printed result, to half a unit of its last digit."""
         longest = max((len(number.as_tuple().digits) for number in numbers.values()), default=0)
         precision = 2 * (longest + self.digits) + 20
         try:

@@ -17,7 +17,7 @@ from .steps import Explanation
 
 Spell = Callable[[str], str]
 Written = tuple[str, int]
-"""A formula as text and how tightly it holds together: it is put in parentheses where it is too loose."""
+"""A formula as text and its precedence, which decides where it needs parentheses."""
 SUM, PRODUCT, POWER, ATOM = range(4)
 GREEK = {
     "μ": r"\mu",
@@ -133,7 +133,7 @@ def in_math(words: str) -> str:
 def as_text(
     given: Iterable[str], explanation: Explanation, width: int, spell: Spell = str
 ) -> Iterator[tuple[str, str]]:
-    """Lines of at most that width, but for what has no blank to break at, and a style for each.
+    """Lines of at most that width, each with its style; a longer word has a line of its own.
 
     ``given`` says what each input is, as "m1 = 1 kg". ``spell`` rewrites symbols that the stream cannot take.
     """

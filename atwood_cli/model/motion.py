@@ -19,7 +19,8 @@ from .machine import Undetermined
 from .scene import MASSES, MEASURED, Input, Motion, Scene, SceneError
 
 AGREES = 3
-"""Beyond how many standard uncertainties (99.7 % of a normal distribution) what cannot be is refused."""
+"""An acceleration that is too large by more standard uncertainties is refused (99.7 % of a normal
+distribution are within)."""
 
 NO_PULLEY = "unknown, as inputs a little different fit no pulley"
 NO_MASS = "unknown, as inputs a little different fit no mass"
@@ -55,7 +56,7 @@ def read(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
 
 
 SOME_MASS = Input(Fraction(1), Fraction(0), None)
-"""In place of the mass that is to be found."""
+"""Stands for the mass that is to be found."""
 
 
 def _what_follows(scene: Scene) -> str:
@@ -66,7 +67,7 @@ def _what_follows(scene: Scene) -> str:
 
 
 def _contradiction(scene: Scene, motion: Motion, g_given: bool) -> str:
-    """Why an acceleration has no place beside what else is given; empty if it has."""
+    """Why an acceleration contradicts the other inputs; empty if it does not."""
     finds, pulley = motion.finds, "M" if scene.M is not None else "I"
     if scene.mu is not None and finds != "mu_k":
         return "has no place beside mu, as a string that slips moves alike on any pulley; leave mu out"
@@ -102,7 +103,7 @@ def _known_mass(scene: Scene, unknown: str) -> Fraction:
 
 
 def impossible(case: Case, name: str) -> str:
-    """Why nothing that is to be found gives the acceleration; empty if something does."""
+    """Why no value of the unknown parameter gives the acceleration; empty if one does."""
     motion = case.motion
     if motion.finds in MASSES:
         return _impossible_for_a_mass(case, motion.finds)
@@ -124,11 +125,11 @@ ENDS: Mapping[str | None, tuple[str, str]] = {
     "M": ("a locked pulley: M = inf", "a massless one"),
     "mu_k": ("a string that holds", "no friction"),
 }
-"""By what is found, the scenes between which an acceleration is possible."""
+"""The scenes of the least and the greatest possible acceleration, by the parameter that is found."""
 
 
 def _impossible_for_a_mass(case: Case, unknown: str) -> str:
-    """Why no mass in place of the unknown one gives the acceleration; empty if one does."""
+    """Why no value of the unknown mass gives the acceleration; empty if one does."""
     scene, known = case.scene, _known_mass(case.scene, unknown)
     found = _mass(case, unknown)
     if found is not None and (found > 0 or (found == 0 and known)):
@@ -165,7 +166,7 @@ def _most(case: Case) -> Fraction:
 
 
 def _beyond(scene: Scene, motion: Motion, uncertain: Mapping[str, Fraction]) -> str:
-    """How far a measured acceleration is beyond what it can be, if that is little enough; else empty."""
+    """Why there is no pulley mass, if the acceleration is too large by its uncertainty only; else empty."""
     case = Case(scene, motion)
     over, variance = case.measured_acceleration - _most(case), Fraction(0)
     if motion.finds != "M" or over <= 0:
@@ -191,12 +192,12 @@ def number_of(scene: Scene, motion: Motion, x: str) -> Any:
 
 
 def moved(scene: Scene, motion: Motion, x: str, side: int) -> tuple[Scene, Motion]:
-    """The scene, and what was measured, with an input that is infinitesimally more, or less."""
+    """The scene, and what was measured, with one input changed infinitesimally, up or down."""
     return with_number(scene, motion, x, Dual(number_of(scene, motion, x), Fraction(side)))
 
 
 def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scene, Motion]:
-    """The scene, and what was measured, with another number for an input, in the unit that it has there."""
+    """The scene, and what was measured, with another number for an input, in the same unit."""
     of_scene = x in Scene._fields
     value = getattr(scene if of_scene else motion, x)
     if isinstance(value, Angle | Axle):
@@ -224,7 +225,7 @@ def completed(scene: Scene, motion: Motion) -> Scene:
         load = physics.load(l, h, case.rim_mass)
         return scene._replace(g=physics.gravity_under(l, h, load, a, case.axle_friction))
     drive = physics.drive(l, h, case.axle_mass)
-    c = physics.added_load(l, h, physics.load_under(drive, a, scene.g))
+    c = physics.added_load(l, h, drive, a, scene.g)
     if c < 0:
         raise Undetermined(NO_PULLEY)
     assert scene.inertia is not None

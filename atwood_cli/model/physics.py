@@ -82,15 +82,6 @@ def acceleration(drive: N, load: N, g: N) -> N:
     return g * (drive / load)
 
 
-def load_under(drive: N, a: N, g: N) -> N:
-    """Load s (kg) that the drive sets moving with a measured acceleration; inverse of `acceleration`.
-
-    >>> load_under(2, 2, 9)
-    9.0
-    """
-    return g * (drive / a)
-
-
 def gravity_under(l: N, h: N, load: N, a: N, f: N | None = None) -> N:
     """Gravity (m/s²) under which the load has a measured acceleration a, beside an axle with f (N).
 
@@ -119,13 +110,13 @@ def slide_excess(l: N, h: N, a: N, g: N) -> N:
     return difference_of_moving_masses(l, h, a, g) / light_tension(l, a, g)
 
 
-def added_load(l: N, h: N, load: N) -> N:
-    """What is added to the masses in a load (kg), c where the string grips; inverse of `load`.
+def added_load(l: N, h: N, drive: N, a: N, g: N) -> N:
+    """What is added to the masses (kg) that move with a measured acceleration: c; inverse of (4).
 
-    >>> added_load(1, 3, 9)
-    5
+    >>> added_load(1, 3, 2, 2, 9)
+    5.0
     """
-    return load - l - h
+    return g * (drive / a) - l - h
 
 
 def moment_of_inertia(c: N, R: N) -> N:
@@ -436,7 +427,7 @@ def limiting_arc(log_ratio: N, mu: N) -> N:
 
 
 def least_friction_slope(mu: N, chord: N, growth: N, cos: N, sin: N, dx: N, dy: N) -> N:
-    """What vanishes where moving friction from one end of the arc to the other no longer pays.
+    """Slope of the net friction force with the lead s, up to a positive factor; 0 where the force is least.
 
     A string that grips with friction at its limit on arcs s and α - s at the ends, and stuck over
     δ = φ - α between, has the net friction μ/√(1 + μ²) |T_l e^{(μ+i)s} (1 - e^{iδ}) + dx + i dy|.

@@ -28,7 +28,7 @@ def notes(answers: Answers) -> list[str]:
 
 
 def reasons(answers: Answers) -> list[str]:
-    """What there is to say of the values asked for so far: why some are missing, what is in doubt."""
+    """Sentences on the values asked for so far: why some are missing, what is in doubt."""
     said = reasons_at(Counter(answers.reasons.items()), 1)
     uncertainties = answers.uncertainties
     if uncertainties is None:
@@ -124,7 +124,7 @@ def _held(case: Case) -> str:
 
 
 def remarks(answers: Answers) -> list[str]:
-    """What else there is to say of the scene."""
+    """Further sentences on the scene, as far as they apply."""
     return [*odd_inertia(answers), *kinetic(answers), *holding_again(answers), *open_range(answers)]
 
 
@@ -141,7 +141,7 @@ def odd_inertia(answers: Answers) -> list[str]:
 
 
 def holding_again(answers: Answers) -> list[str]:
-    """That a string which slips under the critical mass holds under much heavier ones, if it does."""
+    """The sentence on a string that slips above the critical mass and holds again above a greater one."""
     if answers.case.scene.mu is None or not answers.case.holds_again:
         return []
     least = _threshold(answers, "holding_heavier_mass", up=True, given=answers.case.heavy)
@@ -152,7 +152,7 @@ def holding_again(answers: Answers) -> list[str]:
 
 
 def open_range(answers: Answers) -> list[str]:
-    """Between what the motion lies where it depends on the pulley's mass and that is not given."""
+    """The range of the motion, where it depends on a pulley mass that is not given."""
     case = answers.case
     if case.scene.mu is None or case.regime != "no-slip" or answers["acceleration"] is not None:
         return []
@@ -223,7 +223,7 @@ def _least(answers: Answers, name: str, given: Fraction | None = None) -> str:
 
 
 def _threshold(answers: Answers, name: str, up: bool, given: Fraction | None = None) -> str:
-    """A number that may be typed back, rounded to the side on which the sentence is true of it."""
+    """A threshold, rounded to the side on which the sentence is true, so that it can be typed back."""
     return text(answers.rounded(name, to_threshold(up, given)))
 
 
