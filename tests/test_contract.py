@@ -70,7 +70,7 @@ mu=0.3 M=0           | regime=no-slip critical=43.34192486321087 friction=0
 mu=0                 | regime=verge critical=0 mu_verge=0 friction_force=0 conditions=None | (36) do not apply
 mu=0 M=10            | regime=slip friction_force=0 rim_acceleration=0 acceleration=4.903325
 mu=0 M=inf           | regime=slip friction_force=0 rim_acceleration=0 acceleration=4.903325
-M=inf mu=0.34969915256605978 | regime=no-slip acceleration=0 rim_acceleration=0 axle_force=None
+M=inf mu=0.34969915256605978 | regime=no-slip acceleration=0 rim_acceleration=0 critical_heavier_mass=3 axle_force=None
 M=inf mu=0.34969915256605977 | regime=slip rim_acceleration=0 axle_force=None
 m1=3                 | regime=no-slip acceleration=0 rim_acceleration=0 friction=0 critical=None | At rest
 m1=3 mu=0.2          | regime=no-slip acceleration=0 rim_acceleration=0 friction=0 critical=None | At rest
