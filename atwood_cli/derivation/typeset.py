@@ -286,6 +286,7 @@ PRINTED = {
     "inertia": "inertia factor `β`",
     "wrap": "angle of wrap `φ`",
     "axle": "axle friction",
+    "drop": "height of fall",
     "inf": "`∞`",
     "give": "not known without",
 }
