@@ -146,24 +146,6 @@ def test_the_rim_turns_or_is_held_in_slip() -> None:
     assert measured.rim_acceleration == 0
 
 
-MISSING = """
-m2=1.2 mu=0.3 M=1 | critical_pulley_mass | the axle holds the difference on any
-m2=3 mu=0.05 | critical_pulley_mass | slips on any pulley, however light
-m2=1.2 mu=0.05 M=1 | critical_pulley_mass | slips on any pulley, however light
-m2=1.2 mu=0 | least_pulley_mass | no condition here, as the friction of the axle
-m2=3 mu=0.05 | least_pulley_mass | no condition here, as the friction of the axle
-m2=3 mu=0.05 | mu_verge | give M
-m2=3 mu=0.3 M=1 | critical_heavier_mass | holds under any heavier mass
-"""
-
-
-@pytest.mark.parametrize(("given_", "missing", "why"), table(MISSING))
-def test_what_does_not_exist_beside_an_axle(given_: str, missing: str, why: str) -> None:
-    s = solve(axle="5N", **inputs(given_))
-    assert getattr(s, missing) is None
-    assert any(missing in note and why in note for note in s.notes), s.notes
-
-
 def test_the_least_heavier_mass_exists_without_friction_of_the_string() -> None:
     """It was said that (36) does not apply, which is so of the verge on a pulley that turns freely."""
     for m2, mass in (("1", 1), ("1.2", 1), ("2", 1), ("0.9", 0.9)):
