@@ -151,6 +151,33 @@ def of_all_kinds(count: int, seed: int = 2026) -> Iterator[Given]:
         yield scene
 
 
+def with_friction(rng: Random, size: float = 1) -> Given:
+    """A scene of masses of about that size in which friction decides, mostly, in all ways there are."""
+    m1 = size * _log_uniform(rng, -2, 2)
+    m2 = m1 * rng.choice(
+        [1, 1 + _log_uniform(rng, -6, -1), _log_uniform(rng, 0, 3), _log_uniform(rng, -2, 0)]
+    )
+    words = {"m1": f"{m1:.4g}", "m2": f"{m2:.4g}"}
+    if rng.random() < 0.5:
+        words["g"] = f"{rng.uniform(1, 20):.3g}"
+    if rng.random() < 0.4:
+        words["wrap"] = rng.choice(["90", "540", f"{rng.uniform(10, 800):.3g}"])
+    if rng.random() < 0.4:
+        words["R"] = f"{_log_uniform(rng, -2, 1):.3g}"
+    if rng.random() < 0.65:
+        unit = "Nm" if "R" in words and rng.random() < 0.3 else ""
+        words["axle"] = f"{10 * abs(m2 - m1) * _log_uniform(rng, -2, 0.3) + size * 1e-3:.3g}{unit}"
+    if rng.random() < 0.65:
+        words["M"] = rng.choice(["0", "inf", *[f"{m1 * _log_uniform(rng, -3, 3):.3g}"] * 5])
+    if "R" in words and words.get("M") not in ("0", "inf") and rng.random() < 0.3:
+        words["I"] = f"{m1 * _log_uniform(rng, -3, 1):.3g}"
+    elif rng.random() < 0.2:
+        words["inertia"] = rng.choice(["hoop", "1.5", "1.00000001"])
+    if rng.random() < 0.75:
+        words["mu"] = rng.choice(["0", *[f"{_log_uniform(rng, -3, 0.2):.3g}"] * 5, "1e9"])
+    return words
+
+
 def exact_scene(row: Mapping[str, float]) -> Scene:
     """The scene that a row of doubles is, exactly; NaN is not given."""
     return Scene.read({name: value for name, value in row.items() if not isnan(value)})

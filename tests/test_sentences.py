@@ -18,6 +18,7 @@ from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.messages import notes, unmarked
 
 from . import oracle
+from .scenes import with_friction
 
 NUMBER = r"([-+\d.e]+)"
 
@@ -290,39 +291,15 @@ REASONS: dict[str, Callable[[Claims], bool]] = {
 
 
 def drawn(rng: Random) -> dict[str, str]:
-    """A scene of any kind, some of them near a threshold."""
-    size = rng.choice([1, 1, 1, 1e-200, 1e150])
-    m1 = size * 10 ** rng.uniform(-2, 2)
-    m2 = m1 * rng.choice(
-        [1, 1 + 10 ** rng.uniform(-6, -1), 10 ** rng.uniform(0, 3), 10 ** rng.uniform(-2, 0)]
-    )
-    words = {"m1": f"{m1:.4g}", "m2": f"{m2:.4g}"}
-    if rng.random() < 0.5:
-        words["g"] = f"{rng.uniform(1, 20):.3g}"
+    """A scene of any kind, some of them near a threshold, some with a free end."""
+    words = with_friction(rng, size=rng.choice([1, 1, 1, 1e-200, 1e150]))
+    if "mu" not in words:
+        return words | {"m1": "0"} if rng.random() < 0.1 else words
+    verge = Answers(Scene.read({**words, "mu": None}), 20)["mu_verge"]
+    if verge and rng.random() < 0.4:
+        words["mu"] = str(verge * (1 + Decimal(10) ** -rng.randint(1, 9) * rng.choice([-1, 1])))
     if rng.random() < 0.4:
-        words["wrap"] = rng.choice(["90", "540", f"{rng.uniform(10, 800):.3g}"])
-    if rng.random() < 0.4:
-        words["R"] = f"{10 ** rng.uniform(-2, 1):.3g}"
-    if rng.random() < 0.65:
-        unit = "Nm" if "R" in words and rng.random() < 0.3 else ""
-        words["axle"] = f"{10 * abs(m2 - m1) * 10 ** rng.uniform(-2, 0.3) + size * 1e-3:.3g}{unit}"
-    if rng.random() < 0.65:
-        words["M"] = rng.choice(["0", "inf", *[f"{m1 * 10 ** rng.uniform(-3, 3):.3g}"] * 5])
-    if "R" in words and words.get("M") not in ("0", "inf") and rng.random() < 0.3:
-        words["I"] = f"{m1 * 10 ** rng.uniform(-3, 1):.3g}"
-    elif rng.random() < 0.2:
-        words["inertia"] = rng.choice(["hoop", "1.5", "1.00000001"])
-    if rng.random() < 0.75:
-        words["mu"] = rng.choice(["0", *[f"{10 ** rng.uniform(-3, 0.2):.3g}"] * 5, "1e9"])
-        verge = Answers(Scene.read({**words, "mu": None}), 20)["mu_verge"]
-        if verge and rng.random() < 0.4:
-            words["mu"] = str(verge * (1 + Decimal(10) ** -rng.randint(1, 9) * rng.choice([-1, 1])))
-        if rng.random() < 0.4:
-            words["mu_k"] = str(
-                Decimal(words["mu"]) * Decimal(rng.choice(["0", "0.3", "0.9", "0.9999", "1"]))
-            )
-    elif rng.random() < 0.1:
-        words["m1"] = "0"
+        words["mu_k"] = str(Decimal(words["mu"]) * Decimal(rng.choice(["0", "0.3", "0.9", "0.9999", "1"])))
     return words
 
 
