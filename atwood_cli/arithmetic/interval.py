@@ -223,12 +223,8 @@ class Enclosures:
         raise Unsettled(wanted)
 
     def exp(self, x: Enclosure) -> Enclosure:
-        """e^x for x >= 0, without the extra digits that e^x - 1 needs for a tiny x."""
-        x = self._from_zero(x)
-        at_lo, width = self._expm1(x.lo, ONE) + 1, self._width(x)
-        if width.hi > 1 or at_lo.lo == INFINITY:
-            return Enclosure(self, at_lo.lo, (self._expm1(x.hi, ONE) + 1).hi)
-        return Enclosure(self, at_lo.lo, (at_lo + 2 * width * at_lo).hi)
+        """e^x for x >= 0."""
+        return self.expm1(x) + 1
 
     def expm1(self, x: Enclosure) -> Enclosure:
         """e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
@@ -239,8 +235,8 @@ class Enclosures:
         return Enclosure(self, at_lo.lo, (at_lo + 2 * width * (at_lo + 1)).hi)
 
     @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
-    def _expm1(self, x: Decimal, scale: Decimal | None = None) -> Enclosure:
-        """e^x - 1 for a number x, to the relative precision of the result, or of numbers of that scale.
+    def _expm1(self, x: Decimal) -> Enclosure:
+        """e^x - 1 for a number x >= 0, to the relative precision of the result.
 
         All is computed in integers, in units of 2^-w. x - n ln 10 is in [0, 2.4), off by at most 2n + 2
         units. It is divided by 2^s, which gives r, and e^r - 1 = r + r²/2 + ... is summed. Then s doublings
@@ -255,7 +251,7 @@ class Enclosures:
         if x > LARGEST_ARGUMENT:
             return Enclosure(self, INFINITY, INFINITY)
         tens = int(self.down.multiply(x, LOG10_E)) if x > 2 else 0
-        bits = _bits(self.digits + max(0, -(scale or x).adjusted()))
+        bits = _bits(self.digits + max(0, -x.adjusted()))
         halvings = isqrt(bits)
         w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
         n, d = x.as_integer_ratio()
@@ -265,8 +261,7 @@ class Enclosures:
         if not tens:
             return small
         k = small + 1
-        scaled = Enclosure(self, self.down.scaleb(k.lo, tens), self.up.scaleb(k.hi, tens))
-        return scaled - 1
+        return Enclosure(self, self.down.scaleb(k.lo, tens), self.up.scaleb(k.hi, tens)) - 1
 
     def log1p(self, x: Enclosure) -> Enclosure:
         """ln(1 + x) for x >= 0."""

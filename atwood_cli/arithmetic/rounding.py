@@ -45,6 +45,8 @@ GUARD = 8
 """Digits beyond the wanted ones in the first computation of a quantity."""
 WIDE = 5000  # digits, more than any two numbers shown side by side differ in size
 
+WHOLE = decimal_context(WIDE, ROUND_HALF_EVEN)
+"""Keeps all digits of numbers that are shown."""
 NEAR = decimal_context(CLOSEST - 10, ROUND_HALF_EVEN)
 """Rounds a value that agrees with a tie in `CLOSEST` digits to the tie, as no tie has so many digits."""
 
@@ -105,12 +107,12 @@ def to_side_of(given: Fraction | None, digits: int, rounding: str = ROUND_HALF_E
 
 def to_place(place: int) -> Rounding[Decimal]:
     """Rounding to a multiple of 10^place, half to even, never -0."""
-    context, unit = decimal_context(WIDE, ROUND_HALF_EVEN), Decimal((0, (1,), place))
+    unit = Decimal((0, (1,), place))
 
     def round_(x: Fraction | Decimal) -> Decimal:
         if isinstance(x, Fraction):  # round to an integer number of units first, which is exact
-            x = context.multiply(Decimal(round(x / Fraction(10) ** place)), unit)
-        value = context.quantize(x, unit) if x.is_finite() else x
+            x = WHOLE.multiply(Decimal(round(x / Fraction(10) ** place)), unit)
+        value = WHOLE.quantize(x, unit) if x.is_finite() else x
         return value if value else value.copy_abs()
 
     return round_
@@ -194,17 +196,15 @@ def with_one_power(form: str, numbers: Sequence[Decimal], power: int) -> str:
     """Numbers in a form, with one power of ten behind them where they are unreadable without."""
     if -4 <= power < 16:
         return form.format(*numbers)
-    context = decimal_context(WIDE, ROUND_HALF_EVEN)
-    return f"({form.format(*(context.scaleb(x, -power) for x in numbers))})e{power}"
+    return f"({form.format(*(WHOLE.scaleb(x, -power) for x in numbers))})e{power}"
 
 
 def tidy(value: Decimal) -> Decimal:
     """The same number without trailing zeros, and without an exponent where it is readable without."""
-    context = decimal_context(WIDE, ROUND_HALF_EVEN)
-    short = context.normalize(value)
-    if len(short.as_tuple().digits) <= short.adjusted() < 16:
-        return context.quantize(short, Decimal(1))
-    return short
+    short = WHOLE.normalize(value)
+    return (
+        WHOLE.quantize(short, Decimal(1)) if len(short.as_tuple().digits) <= short.adjusted() < 16 else short
+    )
 
 
 def text(value: float | Decimal) -> str:

@@ -6,7 +6,7 @@ operations. It can be written out, with symbols or with numbers, and evaluated t
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from operator import add, mul, sub, truediv
@@ -90,20 +90,14 @@ def formula(part: Term | Fraction) -> Formula:
     return Formula("number", float(part) if isinstance(part, Fraction) else part)
 
 
+def _recorded(function: str) -> Callable[[Any, Formula], Formula]:
+    return lambda _, x: Formula(function, x)
+
+
 class Formulas:
     """The arithmetic of formulas: each function is recorded under its name."""
 
-    def exp(self, x: Formula) -> Formula:
-        return Formula("exp", x)
-
-    def expm1(self, x: Formula) -> Formula:
-        return Formula("expm1", x)
-
-    def log1p(self, x: Formula) -> Formula:
-        return Formula("log1p", x)
-
-    def sqrt(self, x: Formula) -> Formula:
-        return Formula("sqrt", x)
+    exp, expm1, log1p, sqrt = map(_recorded, ("exp", "expm1", "log1p", "sqrt"))
 
     def hypot(self, x: Formula, y: Formula | int) -> Formula:
         return Formula("hypot", x, formula(y))

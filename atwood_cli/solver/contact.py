@@ -143,7 +143,7 @@ def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Number]]:
     friction = vector(lambda m: m.seen_from_m1(arc.friction(m.arcs(kind))))
     normal = vector(lambda m: m.seen_from_m1(arc.normal(m.arcs(kind))))
     ends = vector(lambda m: m.resultant_vector)
-    together = {axis: _difference(answers, friction[axis], normal[axis], plus=True) for axis in "xy"}
+    together = {axis: _sum(answers, friction[axis], normal[axis]) for axis in "xy"}
     by_contact = answers.settle(
         lambda m: arc.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.case.sign
     )
@@ -153,11 +153,11 @@ def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Number]]:
         "normal": normal,
         "sum": together,
         "resultant": ends,
-        "residual": {axis: _difference(answers, together[axis], ends[axis]) for axis in "xy"},
+        "residual": {axis: _sum(answers, together[axis], ends[axis], -1) for axis in "xy"},
         "torque": {
             "contact": by_contact,
             "ends": by_ends,
-            "residual": _difference(answers, by_contact, by_ends),
+            "residual": _sum(answers, by_contact, by_ends, -1),
         },
     }
 
@@ -166,14 +166,11 @@ def _radius(machine: Machine[Any]) -> Any:
     return machine.ar.number(machine.scene.R or Fraction(1))
 
 
-def _difference(answers: Answers, a: Number, b: Number, plus: bool = False) -> Number:
-    """The difference (or sum) of two printed numbers, exact but for its own rounding.
-
-    Infinite, so not shown, where one of them is.
-    """
+def _sum(answers: Answers, a: Number, b: Number, sign: int = 1) -> Number:
+    """a + sign·b of two printed numbers, exact but for its own rounding; infinite where one of them is."""
     if is_infinite(a) or is_infinite(b):
         return inf
-    value: Number = answers.round(Fraction(a) + (Fraction(b) if plus else -Fraction(b)))
+    value: Number = answers.round(Fraction(a) + sign * Fraction(b))
     return value
 
 
