@@ -80,7 +80,7 @@ class Answers:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The quantities that every scene has, and those that come with what is given of the motion."""
+        """The quantities that every scene has, then those that follow from what was measured."""
         motion = self.case.motion
         drop = "drop" if motion.drop is not None else None
         return (*NAMES, *FROM_MOTION.get(motion.finds, ()), *FROM_MOTION.get(drop, ()))
@@ -126,7 +126,7 @@ class Answers:
         return self._values[name]
 
     def _out_of_range(self, value: float | Decimal, quantity: Quantity) -> str:
-        """Why what a quantity was rounded to does not show it; empty if it does."""
+        """Why the rounded value of a quantity cannot be shown, as it is infinite or 0; empty if it can."""
         if is_infinite(value):
             return ABOVE_DOUBLES if self.digits is None else TOO_LARGE
         below = value == 0 and self.digits is None and settle(quantity, to_digits(1), DOUBLE_DIGITS)
@@ -151,21 +151,18 @@ class Answers:
         return u
 
     def standard_uncertainties(self, names: Iterable[str]) -> dict[str, Any]:
-        """Those of the quantities named that are numbers; empty where all inputs are exact."""
+        """The standard uncertainties of the quantities named; empty where all inputs are exact."""
         if self.uncertainties is None:
             return {}
         return {name: self.uncertainty(name) for name in names if name != "regime"}
 
     def budget(self, name: str, round_: Rounding[Any] | None = None) -> dict[str, Any]:
-        """By uncertain input, its share in the variance of a quantity, in percent; empty if that is 0."""
-        known, quantity, digits = self.uncertainties, attrgetter(name), self.digits or DOUBLE_DIGITS
+        """The percentage of each uncertain input in the variance of a quantity; empty if that is 0."""
+        known, digits = self.uncertainties, self.digits or DOUBLE_DIGITS
         if known is None or not self.uncertainty(name, to_digits(1)):
             return {}
-        shares = {x: known.share(quantity, x) for x in known.given}
-        return {
-            x: settle(lambda ar, of=share: 100 * of(ar), round_ or self.round, digits)
-            for x, share in shares.items()
-        }
+        percents = {x: known.percent(attrgetter(name), x) for x in known.given}
+        return {x: settle(percent, round_ or self.round, digits) for x, percent in percents.items()}
 
     def rounded(self, name: str, round_: Rounding[Decimal]) -> Decimal:
         """The value of a quantity that exists, rounded in another way."""
@@ -186,7 +183,7 @@ class Answers:
         return value
 
     def is_positive(self, quantity: OnMachine) -> bool:
-        """The sign of anything that a machine has and that is known to be irrational."""
+        """Whether anything that a machine has, and that is known to be irrational, is positive."""
         return is_positive(self._on_machines(quantity))
 
     def _on_machines(self, quantity: OnMachine) -> Quantity:

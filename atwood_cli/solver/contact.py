@@ -77,11 +77,9 @@ def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -
     if shown == "least" and case.long_wrap:
         raise SceneError("profile", kind, "is known for up to half a turn of wrap (180 degrees)")
     last = read_whole("points", points, 2, MAX_POINTS) - 1
-    fractions = [Fraction(j, last) for j in range(last + 1)]
+    rows = [_point(answers, shown, Fraction(j, last)) for j in range(last + 1)]
     balance = _balance(answers, shown)
-    return Contact(
-        shown, [_point(answers, shown, q) for q in fractions], balance, _notes(answers, shown, balance)
-    )
+    return Contact(shown, rows, balance, _notes(answers, shown, balance))
 
 
 def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
@@ -135,7 +133,7 @@ def _piece(answers: Answers, kind: Kind, from_light: Fraction) -> int:
 
 
 def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Number]]:
-    """Forces on the pulley (N), (x, y), and torques (N m, or N per unit radius), both ways."""
+    """The forces on the pulley (N) and torques (N m, or N per unit radius), along the arc and by the ends."""
 
     def vector(of: Callable[[Any], tuple[Any, Any]]) -> dict[str, Number]:
         return {"x": answers.settle(lambda m: of(m)[0]), "y": answers.settle(lambda m: of(m)[1])}
@@ -176,13 +174,8 @@ def _sum(answers: Answers, a: Number, b: Number, sign: int = 1) -> Number:
 
 def _notes(answers: Answers, kind: Kind, balance: dict[str, dict[str, Number]]) -> list[str]:
     case = answers.case
-    if case.frictionless:
-        about = WITHOUT_FRICTION
-    elif case.regime == "no-slip" and case.scene.mu is None:
-        about = WITHOUT_MU
-    else:
-        about = ABOUT_KIND[kind]
-    notes = [about]
+    without_mu = case.regime == "no-slip" and case.scene.mu is None
+    notes = [WITHOUT_FRICTION if case.frictionless else WITHOUT_MU if without_mu else ABOUT_KIND[kind]]
     for name in ("tension_1", "tension_2"):
         if answers[name] is not None and name in answers.reasons:
             notes.append(f"{name}: {answers.reasons[name]}.")

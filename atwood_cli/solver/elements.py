@@ -39,7 +39,7 @@ class Comparison(NamedTuple):
 
 
 class Elements(NamedTuple):
-    """What the elements give, and why something is missing."""
+    """The quantities that the elements give, and notes on those they do not."""
 
     rows: list[Comparison]
     notes: list[str]
@@ -109,7 +109,10 @@ def balanced(mu: float, phi: float, count: int) -> bool:
 
 
 def _check_count(machine: _Doubles, count: int, times: int) -> None:
-    """Raise SceneError, with the least number that will do, where a part of the elements is too few."""
+    """Refuse elements that are too few for a balance, and name the least number that will do.
+
+    ``times`` is 2 where half of them must balance, too. Raises SceneError.
+    """
     mu, phi = machine.mu, machine.phi
     if balanced(mu, phi, count // times):
         return

@@ -97,16 +97,16 @@ class Uncertainties:
         """The standard uncertainty of a quantity that has a value. It raises Undetermined."""
         return lambda ar: _length(ar, self._parts(quantity, ar).values())
 
-    def share(self, quantity: OnMachine, x: str) -> Quantity:
-        """The share of an input in the variance of a quantity, which must not be 0."""
+    def percent(self, quantity: OnMachine, x: str) -> Quantity:
+        """The share of an input in the variance of a quantity, which must not be 0, in percent."""
 
-        def share(ar: Arithmetic[N]) -> N:
+        def percent(ar: Arithmetic[N]) -> N:
             parts = self._parts(quantity, ar)
             if x not in parts or len(parts) == 1:
-                return ar.number(int(x in parts))
-            return _sum_of_squares(ar, [parts[x]]) / _sum_of_squares(ar, parts.values())
+                return ar.number(100 * (x in parts))
+            return 100 * _sum_of_squares(ar, [parts[x]]) / _sum_of_squares(ar, parts.values())
 
-        return share
+        return percent
 
     def _parts(
         self, quantity: OnMachine, ar: Arithmetic[N], choose: Callable[[list[N]], N] | None = None
