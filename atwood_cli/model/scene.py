@@ -1,7 +1,7 @@
 """What is given: words and numbers in, an exact and valid `Scene` out. Nothing is computed."""
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
@@ -24,6 +24,7 @@ from .units import (
     dimension_of,
     in_quotes,
     is_uncertain,
+    limited,
     nearest,
     read_number,
     shortened,
@@ -142,8 +143,8 @@ def stated(name: str, value: str) -> str:
 class Input(NamedTuple):
     """An input as it was read: its exact value in SI units, its standard uncertainty, and what was given.
 
-    ``value`` is None if nothing was given and there is no default, inf for a locked pulley, an `Angle`
-    for the wrap, an `Axle`. The uncertainty is in the unit of the value, and 0 if that is exact.
+    ``value`` is a Fraction; or inf for a locked pulley, an `Angle` for the wrap, an `Axle`, and None where
+    nothing was given and there is no default. The uncertainty is in the unit of the value.
     """
 
     value: Any
@@ -186,32 +187,28 @@ class Scene(NamedTuple):
         elif values["inertia"] is not None and values["I"] is not None:
             raise SceneError("I", inputs["I"].given, "and inertia both describe the pulley; give one of them")
         scene = cls(**values)
-        scene._check_together(inputs)
+        if scene.m1 == scene.m2 == 0:
+            raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
+        for name, rule in scene._contradictions(inputs["M"].given):
+            raise SceneError(name, inputs[name].given, rule)
         return scene
 
-    def _check_together(self, inputs: Mapping[str, Input]) -> None:
-        given = {name: one.given for name, one in inputs.items()}
-        if self.m1 == self.m2 == 0:
-            raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
-        free = "m1" if self.m1 == 0 else "m2"
+    def _contradictions(self, M: Given | None) -> Iterator[tuple[str, str]]:
+        """Inputs that do not go with others, and why; ``M`` is the pulley's mass as it was given."""
         if self.mu is not None and 0 in (self.m1, self.m2):
-            raise SceneError(free, given[free], "is a free end, which friction cannot hold; leave mu out")
+            free = "m1" if self.m1 == 0 else "m2"
+            yield free, "is a free end, which friction cannot hold; leave mu out"
         if self.mu_k is not None and self.mu is None:
-            raise SceneError("mu_k", given["mu_k"], "needs mu, the coefficient that decides whether it slips")
+            yield "mu_k", "needs mu, the coefficient that decides whether it slips"
         if self.mu_k is not None and self.mu is not None and self.mu_k > self.mu:
-            raise SceneError(
-                "mu_k",
-                given["mu_k"],
-                "must not be above mu; exactly,"
-                f" {shortened(as_typed(self.mu_k))} > {shortened(as_typed(self.mu))}",
-            )
+            sizes = " > ".join(shortened(as_typed(mu)) for mu in (self.mu_k, self.mu))
+            yield "mu_k", f"must not be above mu; exactly, {sizes}"
         if self.I is not None and self.R is None:
-            raise SceneError("I", given["I"], "needs the radius R as well")
+            yield "I", "needs the radius R as well"
         if self.axle is not None and self.axle.unit == "N m" and self.R is None:
-            raise SceneError("axle", given["axle"], "is a torque, which needs the radius R as well")
+            yield "axle", "is a torque, which needs the radius R as well"
         if self.I is not None and self.M is not None and not 0 < self.M < inf:
-            pulley = f"M = {shortened(str(given['M']))}"
-            raise SceneError("I", given["I"], f"contradicts {pulley}; leave one of them out")
+            yield "I", f"contradicts M = {shortened(str(M))}; leave one of them out"
 
 
 class Motion(NamedTuple):
@@ -253,7 +250,7 @@ def read_exactly(name: str, given: Given | None) -> Input:
 
 
 def read_value(name: str, given: Given | None) -> Any:
-    """The exact value of one parameter: None, a Fraction, inf or an `Angle`. Raises SceneError."""
+    """The exact value of one parameter, as `Input` has it. Raises SceneError."""
     return read_exactly(name, given).value
 
 
@@ -280,7 +277,7 @@ def read_digits(given: int | str | None) -> int | None:
 
 
 def _checked(name: str, given: Given, number: Number) -> Any:
-    """The number as the parameter's value, an angle if it is one. Raises SceneError outside its domain."""
+    """The number as the parameter's value: an angle or an axle, if it is one. Raises SceneError."""
     parameter, (value, unit, _) = parameter_of(name), number
     if (
         (value < 0 and not parameter.signed)
@@ -342,30 +339,28 @@ def _read_number(name: str, given: object) -> Fraction | float:
     is_duration = getattr(getattr(given, "dtype", None), "kind", "") == "m"  # NumPy's pass for integers
     if isinstance(given, bool) or is_duration or not isinstance(given, Real | Decimal):
         raise SceneError(name, given, "must be text or a number (str, int, float, Decimal, Fraction)")
-    # What is too long is refused before it becomes a huge integer.
-    if not (isinstance(given, Decimal) and given.is_finite() and given and _longest(given) > MAX_MAGNITUDE):
-        try:
-            value = Fraction(*map(int, _ratio(given)))
-        except ValueError:  # not a number
-            raise SceneError(name, given, parameter_of(name).domain) from None
-        except OverflowError:
-            return float(given)
-        if max(abs(value.numerator), value.denominator) < 10**MAX_MAGNITUDE:
-            return value
-    raise SceneError(name, given, TOO_LONG)
+    # A Decimal that is too long is refused before it becomes a huge integer.
+    if isinstance(given, Decimal) and given.is_finite() and given and _longest(given) > MAX_MAGNITUDE:
+        raise SceneError(name, given, TOO_LONG)
+    try:
+        return limited(Fraction(*map(int, _ratio(given))))
+    except Malformed as error:
+        raise SceneError(name, given, str(error)) from None
+    except ValueError:  # not a number
+        raise SceneError(name, given, parameter_of(name).domain) from None
+    except OverflowError:
+        return float(given)
 
 
 def _ratio(given: Any) -> tuple[SupportsInt, SupportsInt]:
-    """A number's numerator and denominator, exact, whatever a kind of float makes of == and others.
+    """A number's numerator and denominator, exact. It is never compared, which some floats refuse.
 
     NumPy's integers have parts that are no ints; its long doubles are beyond doubles. Raises ValueError
     where it is not a number, OverflowError where it is infinite.
     """
     if isinstance(given, Rational):
         return given.numerator, given.denominator
-    if isinstance(given, float):
-        return float.as_integer_ratio(given)
-    ratio: tuple[int, int] = (
-        given if hasattr(given, "as_integer_ratio") else float(given)
-    ).as_integer_ratio()
+    if isinstance(given, float) or not hasattr(given, "as_integer_ratio"):
+        return float.as_integer_ratio(float(given))
+    ratio: tuple[int, int] = given.as_integer_ratio()
     return ratio

@@ -22,7 +22,7 @@ LENGTH = {
 }
 # fmt: on
 ANGLE = {"deg": "1", "°": "1", "turn": "360", "rad": "1"}
-"""In degrees, but for radians, which stay what they are."""
+"""In degrees; radians stay radians."""
 TIME = {"s": "1", "ms": "1e-3", "min": "60", "h": "3600"}
 FORCE = {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": "4.4482216152605", "kgf": STANDARD_GRAVITY}
 TORQUE = {"Nm": "1", "mNm": "1e-3"}
@@ -32,7 +32,7 @@ COMPOUND = {
 }
 SIMPLE = {"mass": MASS, "length": LENGTH, "angle": ANGLE, "time": TIME, "force": FORCE, "torque": TORQUE}
 DIMENSIONS: Mapping[str, Iterable[str]] = {**SIMPLE, **COMPOUND}
-"""The dimensions that units are of, and what units a sentence names; others are made of those, as km/h2."""
+"""The dimensions, and the units of each that a message names. Others are made of those, as km/h2."""
 POWERS = {
     **{"mass": [1, 0, 0, 0], "length": [0, 1, 0, 0], "time": [0, 0, 1, 0], "angle": [0, 0, 0, 1]},
     **{"force": [1, 1, -2, 0], "torque": [1, 2, -2, 0]},
@@ -183,7 +183,7 @@ def _read_exactly(text: str, dimension: str | None) -> tuple[Fraction, str]:
     if pattern and (multiple := re.fullmatch(pattern, text, re.ASCII)):
         times, parts = multiple.groups(default="1")
         one = "1" * (not times.strip("+-"))
-        return _limited(_quotient(times + one) * worth * _quotient(f"1/{parts}")), constant
+        return limited(_quotient(times + one) * worth * _quotient(f"1/{parts}")), constant
     match = NUMBER.fullmatch(text)
     if not match:
         raise NotANumber(NOT_A_NUMBER)
@@ -196,7 +196,7 @@ def _read_exactly(text: str, dimension: str | None) -> tuple[Fraction, str]:
     factor = read_unit(unit, dimension)
     value *= factor
     if "/" in number:
-        _limited(value)
+        limited(value)
     else:
         digits = re.sub("[^0-9]", "", as_typed(value).partition("e")[0]).lstrip("0")
         exponent = _power(number) + to_digits(1, ROUND_FLOOR)(factor).adjusted()
@@ -211,7 +211,7 @@ def _quotient(text: str) -> Fraction:
         return _decimal(text)
     if not (divisor := _decimal(under.strip())):
         raise Malformed("divides by 0")
-    return _limited(_decimal(over.strip()) / divisor)
+    return limited(_decimal(over.strip()) / divisor)
 
 
 def _decimal(text: str) -> Fraction:
@@ -235,21 +235,21 @@ def _check_size(digits: int, exponent: int, how: str = "") -> None:
         raise Malformed(f"has an exponent beyond {MAX_EXPONENT} in magnitude{how}")
 
 
-def _limited(value: Fraction) -> Fraction:
-    """A fraction that does not take long. Raises Malformed."""
+def limited(value: Fraction) -> Fraction:
+    """The same number, refused where it would take long. Raises Malformed."""
     if max(abs(value.numerator), value.denominator) >= 10**MAX_MAGNITUDE:
         raise Malformed(TOO_LONG)
     return value
 
 
 def read_unit(unit: str, wanted: str) -> Fraction:
-    """What a unit is in the SI, or in degrees. Raises Malformed if it is unknown or of another dimension."""
+    """The factor from a unit to the SI, or to degrees. Raises Malformed if it is of another dimension."""
     if len(unit) > MAX_UNIT:
         raise Malformed(f"has a unit of {len(unit)} characters; at most {MAX_UNIT} are taken")
     if not re.fullmatch(_UNIT, unit):
         raise Malformed(f"has the unknown unit {unit!r}; there are {_names(wanted)}")
     factor, powers = _measure(unit, wanted)
-    # Radians are no multiple of degrees, so that an angle has one unit, of itself.
+    # Radians are no rational multiple of degrees, so an angle takes a single unit.
     several = wanted == "angle" and not symbol_of(unit)
     if powers in [POWERS[one] for one in wanted.split(" or ")] and not several:
         return factor
@@ -272,7 +272,7 @@ def _names(wanted: str) -> str:
 
 
 def _measure(unit: str, wanted: str) -> tuple[Fraction, list[int]]:
-    """What a unit is in the SI, or in degrees, and its powers. Raises Malformed."""
+    """The factor from a unit to the SI, or to degrees, and its powers. Raises Malformed if it is unknown."""
     factor, powers = Fraction(1), [0, 0, 0, 0]
     for operator, word, power in _FACTOR.findall(unit.translate(_PLAIN)):
         symbol = symbol_of(word)
@@ -308,7 +308,7 @@ def _near_units(word: str, wanted: str) -> str:
 
 
 def near(word: str, words: Iterable[str]) -> str:
-    """The one of the words that may have been meant, empty if none is near."""
+    """The word that was probably meant, empty if none is near."""
     from difflib import get_close_matches
 
     words = list(words) if word else []
@@ -317,6 +317,6 @@ def near(word: str, words: Iterable[str]) -> str:
 
 
 def nearest(word: str, words: Iterable[str]) -> str:
-    """The hint that a near word may have been meant, empty if none is near."""
+    """A hint at the word that was probably meant, empty if none is near."""
     meant = near(word, words)
     return f"; did you mean {meant}?" if meant else ""
