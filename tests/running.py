@@ -5,17 +5,20 @@ import re
 import shlex
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from functools import partial
 from itertools import combinations
+from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 
 import pytest
 
-PIP = f"{shlex.quote(sys.executable)} -m pip"
-HANGS = 600  # seconds: nothing takes so long on any machine
-PAPER = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.3"]
+from . import forks
+from .forks import HANGS as HANGS
 
+PIP = f"{shlex.quote(sys.executable)} -m pip"
+PAPER = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 
 QUICK = """
 import sys
@@ -38,17 +41,43 @@ class Ran(NamedTuple):
 Atwood = Callable[..., Ran]
 
 
+def around(asked: Mapping[str, str]) -> dict[str, str]:
+    """The environment of a run, in which nothing tells how to print but what is asked for."""
+    told = {"COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR"}
+    ours = {name: value for name, value in os.environ.items() if name not in told}
+    return {**ours, "PYTHON": sys.executable, **asked}
+
+
+def started(words: Sequence[str], streams: Sequence[int], asked: Mapping[str, str]) -> Callable[[], int]:
+    """Run the program as a process on three streams, and give what waits for its exit status.
+
+    It is a fork, unless Python or a module looks at what is asked for as it starts.
+    """
+    at_start = [name for name in asked if name.startswith(("PYTHON", "LC_", "_"))]
+    if hasattr(os, "fork") and at_start in ([], ["PYTHONIOENCODING"]):
+        forks.start(words, streams, around(asked))
+        return forks.status
+    program = ["-c", QUICK] if os.isatty(streams[2]) else ["-m", "atwood_cli"]
+    stdin, stdout, stderr = streams
+    child = subprocess.Popen(
+        [sys.executable, *program, *words], stdin=stdin, stdout=stdout, stderr=stderr, env=around(asked)
+    )
+    return partial(child.wait, HANGS)
+
+
 def process(*arguments: str, shell: str = "", stdin: Any = None, **environment: str) -> Ran:
     """Run it as a process; with ``shell``, a bash line in which `atwood` is the command."""
-    env = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "FORCE_COLOR", "NO_COLOR")}
-    env |= {"PYTHON": sys.executable, **environment}
-    words = [sys.executable, "-m", "atwood_cli", *arguments]
     if shell:
         words = ["bash", "-c", f'atwood() {{ "$PYTHON" -m atwood_cli "$@"; }}; {shell}']
-    done = subprocess.run(words, stdin=stdin, capture_output=True, env=env, check=False, timeout=HANGS)
-    return Ran(
-        done.returncode, done.stdout.decode("utf-8", "replace"), done.stderr.decode("utf-8", "replace")
-    )
+        done = subprocess.run(words, capture_output=True, env=around(environment), check=False, timeout=HANGS)
+        return Ran(done.returncode, *(said.decode("utf-8", "replace") for said in (done.stdout, done.stderr)))
+    with TemporaryFile() as out, TemporaryFile() as err:
+        status = started(
+            arguments, [stdin.fileno() if stdin else 0, out.fileno(), err.fileno()], environment
+        )()
+        for file in (out, err):
+            file.seek(0)
+        return Ran(status, *(file.read().decode("utf-8", "replace") for file in (out, err)))
 
 
 def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: str) -> str:
@@ -59,10 +88,7 @@ def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: st
 
     leader, follower = pty.openpty()
     fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
-    env = {k: v for k, v in os.environ.items() if k not in ("COLUMNS", "LINES", "NO_COLOR")}
-    env |= {"TERM": "xterm-256color", **environment}
-    command = [sys.executable, "-c", QUICK, *arguments]
-    child = subprocess.Popen(command, stdin=follower, stdout=follower, stderr=follower, env=env)
+    status = started(arguments, [follower] * 3, {"TERM": "xterm-256color", **environment})
     os.close(follower)
     seen = b""
     while True:
@@ -73,7 +99,7 @@ def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: st
         if not piece:
             break
         seen += piece
-    child.wait(HANGS)
+    status()
     os.close(leader)
     return seen.decode("utf-8").replace("\r\n", "\n")
 
