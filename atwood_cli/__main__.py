@@ -3,42 +3,33 @@
 import gc
 import signal
 import sys
-import time
-from _thread import get_ident, start_new_thread
 
 INTERRUPTED = 130
-STATUSES = {"SIGINT": INTERRUPTED, "SIGTERM": 143, "SIGHUP": 129}
+STATUSES = {"SIGINT": INTERRUPTED, "SIGTERM": 143, "SIGHUP": 129, "SIGALRM": 142}
 """Signals that end a run, where the system has them, with the exit status of each."""
 
 
 def main() -> int:
     """Run the command line and return its exit status. What comes after is the end of the process."""
-    ended_by, heeded = 0, True  # the signal that ended it, and whether one is heard
-    main_thread = get_ident()
+    ended_by, heeded = 0, True  # the signal that ended the run, and whether the next one is heeded
     statuses = {getattr(signal, name): status for name, status in STATUSES.items() if hasattr(signal, name)}
 
     def end(number: int, _: object) -> None:
         """Stop as on Ctrl-C, which cleans up: nothing half-written stays beside a file."""
         nonlocal ended_by, heeded
         if heeded:  # a second signal would stop the cleaning up
-            ended_by, heeded = number, False
+            ended_by, heeded = ended_by or number, False
             raise KeyboardInterrupt
 
     def end_soon(unraised: "sys.UnraisableHookArgs") -> None:
-        """Once more, a moment later, where Python could not raise it, as while it drops an object."""
+        """Try again in a moment where Python cannot raise, as while it drops an object."""
         nonlocal heeded
         if heeded or not isinstance(unraised.exc_value, KeyboardInterrupt):
             sys.__unraisablehook__(unraised)
             return
         heeded = True
-        start_new_thread(again, ())
-
-    def again() -> None:
-        time.sleep(0.01)
-        if hasattr(signal, "pthread_kill"):  # to the thread that may be waiting for something
-            signal.pthread_kill(main_thread, ended_by)
-        else:
-            signal.raise_signal(ended_by)
+        if hasattr(signal, "setitimer"):  # elsewhere, the next Ctrl-C ends it
+            signal.setitimer(signal.ITIMER_REAL, 0.01)
 
     try:
         for number in statuses:
@@ -47,7 +38,7 @@ def main() -> int:
         sys.unraisablehook = end_soon
         # The environment may allow fewer than we do.
         sys.set_int_max_str_digits(sys.int_info.default_max_str_digits)
-        gc.disable()  # what is imported stays: looking through it for garbage is a seventh of a short run
+        gc.disable()  # imported code stays: searching it for garbage takes a seventh of a short run
         # Imported here, so that Ctrl-C during start-up shows no traceback either.
         from .cli import run
 
@@ -56,17 +47,17 @@ def main() -> int:
         status = run()
     except KeyboardInterrupt:
         status = statuses.get(ended_by, INTERRUPTED)
-    except Exception:  # modules in the middle of their import make others of it
+    except Exception:  # a module in the middle of its import may turn the interrupt into another error
         if not ended_by:
             raise
         status = statuses[ended_by]
     finally:
-        heeded = False  # all is done, and Python would show a traceback of what interrupts its end
+        heeded = False  # all is done; Python would show a traceback of an interrupt at its end
         sys.unraisablehook = sys.__unraisablehook__
         for number in statuses:
             signal.signal(number, signal.SIG_IGN)
         gc.enable()
-        gc.freeze()  # so that it is not looked through at the end either
+        gc.freeze()  # so that it is not searched at the end either
     return status
 
 

@@ -97,7 +97,7 @@ def test_what_an_input_asks_for_and_is_missing_is_said(atwood: Atwood) -> None:
 def test_all_is_of_the_table(atwood: Atwood, option: str) -> None:
     ran = atwood(*PAPER, "--all", *option.split())
     name = option.split()[0]
-    why = f"--all is of the table, and has no say beside {name}; leave one of them out"
+    why = f"--all has no effect with {name}; leave one of them out"
     assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {why}\n")
 
 
@@ -351,7 +351,7 @@ def test_a_table_without_rows_is_no_table(atwood: Atwood) -> None:
         ("solve --m1 1 --m1 1 --m2 2", "--m1 is given 2 times; give it once"),
         ("solve --m1 1 --m2 2 --M 1 --pulley-mass 2", "--M is given 2 times; give it once"),
         ("contact --m1 1 --m2 2 --force", "--force needs --figure"),
-        ("solve --m1 1 --m2 2 --json --csv", "--json and --csv exclude each other; give one of them"),
+        ("solve --m1 1 --m2 2 --json --csv", "--json has no effect with --csv; leave one of them out"),
         (
             "solve --m1 1 --m2 2 --only tention_1",
             "--only 'tention_1' is no quantity; did you mean tension_1?",

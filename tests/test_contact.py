@@ -555,11 +555,11 @@ def test_elements_in_every_output(atwood: Atwood) -> None:
         *(
             (
                 f"--m1 1 --m2 3 --mu 0.3 --elements 10 {option} {value}",
-                f"{option} {value!r} has no say beside --elements; leave one of them out",
+                f"{option} {value!r} has no effect with --elements; leave one of them out",
             )
             for option, value in (("--figure", "e.svg"), ("--points", "5"), ("--profile", "creep"))
         ),
-        ("--m1 1 --m2 3 --json --csv", "--json and --csv exclude each other; give one of them"),
+        ("--m1 1 --m2 3 --json --csv", "--json has no effect with --csv; leave one of them out"),
         ("--m1 1 --m2 3 --m1-side left", "--m1-side 'left' needs --figure"),
         ("--m1 1 --m2 3 --figure x.svg --m1-side up", "--m1-side 'up' must be left or right"),
         ("--m1 1 --m2 3 --figure x.gif", "--figure 'x.gif' must end in one of .svg, .png, .pdf"),

@@ -631,10 +631,10 @@ def test_the_handout_is_todays(atwood: Atwood) -> None:
 
 ERRORS = """
 --markdown | --markdown needs --explain
---explain --json | --explain has no part in --json; leave one of them out
---explain --csv | --explain has no part in --csv; leave one of them out
---explain --only torque | --explain has no part in --only; leave one of them out
---explain --a 1 | --explain has no part in --a; leave one of them out
+--explain --json | --explain has no effect with --json; leave one of them out
+--explain --csv | --explain has no effect with --csv; leave one of them out
+--explain --only torque | --explain has no effect with --only; leave one of them out
+--explain --a 1 | --explain has no effect with --a; leave one of them out
 --explain --M 2(1) | --explain shows exact numbers; leave their uncertainties out
 --explain --m1 x | --m1 is given 2 times; give it once
 """

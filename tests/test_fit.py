@@ -767,8 +767,8 @@ def test_a_table_that_is_none(fit: Any, table: str, more: tuple[str, ...], error
         ),
         (SIMMONS, ("--markdown",), 2, "--markdown needs --explain"),
         (SIMMONS, ("--bare",), 2, "--bare needs --figure"),
-        (SIMMONS, ("--explain", "--json"), 2, "--explain has no part in --json; leave one of them out"),
-        (SIMMONS, ("--plot", "--csv"), 2, "--plot draws text, not CSV; leave one of them out"),
+        (SIMMONS, ("--explain", "--json"), 2, "--explain has no effect with --json; leave one of them out"),
+        (SIMMONS, ("--plot", "--csv"), 2, "--plot has no effect with --csv; leave one of them out"),
         (
             SIMMONS,
             ("--only", "axle", "--plot"),

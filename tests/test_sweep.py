@@ -897,17 +897,17 @@ FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
         ),
         (
             "--M 1:2:3 --plot acceleration --csv",
-            "--plot 'acceleration' draws text, not CSV; leave one of them out",
+            "--plot 'acceleration' has no effect with --csv; leave one of them out",
         ),
         (
             "--M 1:2:3 --plot acceleration -o a.json",
-            "--plot 'acceleration' draws text, not JSON; leave one of them out",
+            "--plot 'acceleration' has no effect with --json; leave one of them out",
         ),
         (
             "--M 1:2:3 --plot acceleration --only regime",
-            "--only 'regime' has no say beside --plot; leave one of them out",
+            "--only 'regime' has no effect with --plot; leave one of them out",
         ),
-        ("--M 1:2:3 --json --csv", "--json and --csv exclude each other; give one of them"),
+        ("--M 1:2:3 --json --csv", "--json has no effect with --csv; leave one of them out"),
         ("--M 1:2:3 --digits 0", "--digits '0' must be a whole number from 1 to 1000"),
         ("--M 1:2:3 --force", "--force needs --output or --figure"),
         (

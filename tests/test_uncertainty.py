@@ -660,7 +660,7 @@ def test_the_budget_in_a_table_and_in_json(atwood: Atwood) -> None:
 
 BUDGETS = {
     "solve --m1 1 --m2 3 --budget": "needs an input with its uncertainty, like --m1 '1.000(2)'",
-    f"{' '.join(UNCERTAIN)} --budget --csv": "has no place in CSV; take --json",
+    f"{' '.join(UNCERTAIN)} --budget --csv": "has no effect with --csv; leave one of them out",
     f"{' '.join(UNCERTAIN)} --budget --only acceleration": "has no place in bare values; take --json",
 }
 

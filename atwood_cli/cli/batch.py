@@ -1,14 +1,14 @@
 """`atwood batch`: a file of scenes, the same file with their results."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 from ..files import FORMATS
 from ..model.quantities import ACCURACIES, STANDARD
-from ..model.scene import COLUMNS, SceneError
+from ..model.scene import COLUMNS
 from ..output.text import say
-from .options import COULD_NOT, DONE, Columns, Force, Labels, near_or_all, option, read_names
+from .options import COULD_NOT, DONE, Columns, Force, Labels, option, read_name, read_names
 
 Table = Annotated[
     str,
@@ -80,10 +80,9 @@ def batch(
     from ..output.page import watched
 
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
-    if accuracy not in ACCURACIES:
-        raise SceneError("accuracy", accuracy, f"is no accuracy{near_or_all(accuracy, ACCURACIES)}")
+    known: Any = read_name("accuracy", accuracy, ACCURACIES, "accuracy")
     formats = read_format("from", from_, table), read_format("to", to, output)
-    job = Job(table, formats[0], output, formats[1], names, accuracy, force, label or ())
+    job = Job(table, formats[0], output, formats[1], names, known, force, label or ())
     tally = run_batch(job, watched)
     say(*tally.lines())
     failed = tally.errors and not allow_errors

@@ -15,14 +15,11 @@ from ..solver.elements import elements as march_elements
 from ..solver.messages import unmarked, verdict
 from .options import (
     DONE,
-    FIGURE_TO_REPLACE,
-    ONE_FORM,
     AsCsv,
     AsJson,
     Digits,
     FigureFile,
     Force,
-    Rule,
     check,
     option,
     takes_scene,
@@ -67,11 +64,6 @@ M1Side = Annotated[
     ),
 ]
 
-FOR_FIGURE = Rule("m1_side", "figure", "needs --figure", without=True)
-RULES = (
-    Rule("points profile figure", "elements", "has no say beside --elements; leave one of them out"),
-    Rule("extrapolate", "elements", "needs --elements", without=True),
-)
 COLUMN_UNITS = {
     "angle": "°",
     "tension": "N",
@@ -107,12 +99,10 @@ def contact(
     json: AsJson = False,
     csv: AsCsv = False,
 ) -> int:
-    options = dict(locals())
-    check([ONE_FORM, FIGURE_TO_REPLACE, FOR_FIGURE], options)
+    check(locals())
     answers = Answers(Scene.read(given), read_digits(digits))
     if not (json or csv):
         answers = answers.shown
-    check(RULES, options)
     if elements is not None:
         forms = _forms_of_elements(answers, march_elements(answers, elements, extrapolate))
     else:

@@ -9,28 +9,23 @@ import typer
 
 from ..arithmetic.rounding import text, to_digits
 from ..laboratory.quantities import FITTED, QUANTITIES
-from ..model.scene import INPUTS, UNMEASURED, SceneError, parameter_of, read_digits, read_input, read_whole
+from ..model.scene import INPUTS, UNMEASURED, parameter_of, read_digits, read_input, read_whole
 from ..model.units import counted
 from ..output.text import Forms, cell, inputs_in_words, say, show
 from .options import (
     COULD_NOT,
     DONE,
-    FIGURE_TO_REPLACE,
-    MARKDOWN_IS_EXPLAINED,
-    ONE_FORM,
-    PLOT_IS_TEXT,
     AsCsv,
     AsJson,
     FigureFile,
     Force,
     Labels,
     Markdown,
-    Rule,
     check,
     check_extras,
     divided,
-    near_or_all,
     option,
+    read_names,
     scene_option,
 )
 
@@ -87,16 +82,6 @@ Explain = Annotated[
 ]
 Plot = Annotated[bool, option("Output", "--plot", help="Draw the line in place of the tables (extra: plot).")]
 Bare = Annotated[bool, option("Files", "--bare", help="With --figure: leave out the sentences above it.")]
-RULES = (
-    MARKDOWN_IS_EXPLAINED,
-    Rule("bare", "figure", "needs --figure", without=True),
-    *PLOT_IS_TEXT,
-    *(
-        Rule("explain", name, f"has no part in --{name}; leave one of them out")
-        for name in ("json", "csv", "only", "plot")
-    ),
-    Rule("only", "plot", "has no effect with --plot; leave one of them out"),
-)
 
 HELP = """Fit runs of a laboratory: the pulley's inertia, its axle's friction.
 
@@ -145,12 +130,8 @@ def fit(
     force: Force = False,
 ) -> int:
     options = dict(locals())
-    check([ONE_FORM, FIGURE_TO_REPLACE], options)
-    names = divided(only or [])
-    for word in names:
-        if word not in RESULTS:
-            raise SceneError("only", word, f"is no result{near_or_all(word, RESULTS)}")
-    check(RULES, options)
+    check(options)
+    names = read_names("only", only or [], RESULTS, "result")
     out = [read_whole("without", word, 1, 10**9) for word in divided(without or [])]
     precision = read_digits(digits)
     inputs = {name: read_input(name, options.get(name)) for name in INPUTS}
@@ -170,8 +151,9 @@ def fit(
 
         save(best, None if bare else ", ".join(_conditions(best)), figure, force)
     forms = _Forms(best, names, precision, plot)
-    say(*show(forms.forms(), json, csv, bare=bool(names)))
-    return COULD_NOT if "" in [cell(forms.values[name]) for name in names] else DONE
+    values = [cell(forms.values[name]) for name in names]
+    say(*show(Forms(forms.json, forms.records, forms.page, forms.notes, values), json, csv))
+    return COULD_NOT if "" in values else DONE
 
 
 class _Forms:
@@ -182,7 +164,7 @@ class _Forms:
         from ..laboratory.sentences import head, notes, odd_cells
 
         self.fit, self.only, self.digits, self.plot = fit, only, digits, plot
-        self.head, self.notes = head(fit), notes(fit)
+        self.head, self.said = head(fit), notes(fit)
         odd = odd_cells(fit)
         if odd and not any("," in cell for cell in odd):  # whole rows
             rows = ",".join(cell.removeprefix("row ") for cell in odd)
@@ -202,17 +184,14 @@ class _Forms:
             return to_digits(self.digits)(Fraction(value))
         return value
 
-    def forms(self) -> Forms:
-        return Forms(json=self._json, records=self._records, page=self._page, notes=self._beside)
-
-    def _json(self) -> Any:
+    def json(self) -> Any:
         only = {name: self.values[name] for name in self.only}
         return only or self._rounded(self.record)
 
-    def _records(self) -> Any:
-        return [self._json()] if self.only else self._rounded(self.record["runs"])
+    def records(self) -> Any:
+        return [self.json()] if self.only else self._rounded(self.record["runs"])
 
-    def _beside(self) -> Sequence[str]:
+    def notes(self) -> Sequence[str]:
         """The sentences that CSV and bare values have no place for."""
         from ..laboratory.numbers import shown
 
@@ -221,13 +200,9 @@ class _Forms:
         if self.only:
             absent = (f"{x}: {WITHOUT.get(x, NOT_FITTED)}." for x in self.only if self.values[x] is None)
             return [*(values[name] for name in self.only if name in values), *absent, *self.head[1:]]
-        return [*self.head, *values.values(), *self.notes]
+        return [*self.head, *values.values(), *self.said]
 
-    def _page(self) -> None:
-        if self.only:
-            if any(values := [cell(self.values[name]) for name in self.only]):
-                print(*values, sep="\n")
-            return
+    def page(self) -> None:
         from ..laboratory.results import prediction
         from ..output.page import Page
         from .help import command_lines
@@ -239,7 +214,7 @@ class _Forms:
             print_fit_plot(page, [", ".join(_conditions(self.fit)), *self.head], self.fit)
         else:
             self._tables(page)
-        for note in self.notes:
+        for note in self.said:
             page.say(note)
         if command := prediction(self.fit):
             page.say("To predict:")

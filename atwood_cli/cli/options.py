@@ -1,11 +1,10 @@
-"""What options are made of: those of a scene, those that several commands share, what excludes what."""
+"""Options: those of a scene, those that several commands share, and which exclude or need which."""
 
 import inspect
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import partial
+from collections.abc import Callable, Collection, Iterable, Mapping
 from importlib import import_module
-from typing import Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
 import typer
 
@@ -15,7 +14,7 @@ from ..model.units import nearest, read_number, shortened
 from ..output.text import ASCII, say
 
 COMPLETING = "_ATWOOD_COMPLETE"
-"""Set where a shell asks what a word could be."""
+"""The environment variable by which a shell asks how a word could go on."""
 WORDS = "words typed"
 """Where the context of a command keeps them, for completion."""
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
@@ -48,18 +47,13 @@ Words = Callable[[], Mapping[str, str]]
 
 
 def option(group: str, *flags: str, metavar: str = "", words: Words | None = None, **more: Any) -> Any:
-    """An option: the group in which help shows it, and the words it takes.
-
-    Where the metavar lists alternatives (a|b), they are the words.
-    """
-    if "|" in metavar:
-        words = partial(_alternatives, metavar)
+    """An option: the group in which help shows it, and the words it takes, if not those of a metavar a|b."""
 
     def complete(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
         # FILE NAME: the first is no word, and a shell without words completes files.
         if " " in metavar and ctx.meta[WORDS][-1:] in [[one] for one in flags]:
             return []
-        return list(words().items()) if words else []
+        return list((words() if words else dict.fromkeys(metavar.split("|"), "")).items())
 
     return typer.Option(
         *flags,
@@ -67,13 +61,9 @@ def option(group: str, *flags: str, metavar: str = "", words: Words | None = Non
         rich_help_panel=group,
         show_default=False,
         # typer takes its time over every such function, so at other times there is none.
-        autocompletion=complete if words and COMPLETING in os.environ else None,
+        autocompletion=complete if (words or "|" in metavar) and COMPLETING in os.environ else None,
         **more,
     )
-
-
-def _alternatives(metavar: str) -> Mapping[str, str]:
-    return dict.fromkeys(metavar.split("|"), "")
 
 
 def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> Any:
@@ -176,43 +166,46 @@ Labels = Annotated[
 ]
 
 
-# What excludes what
+# Which options exclude or need which
+
+NO_EFFECT = {
+    "json": "csv",
+    "plot": "json csv",
+    "only": "plot",
+    "explain": "json csv only plot budget",
+    "all": "json csv only explain",
+    "budget": "csv",
+    "points": "elements",
+    "profile": "elements",
+    "figure": "elements",
+    **dict.fromkeys(("family", "scenes", "seed"), "m1 m2"),
+}
+"""Of all commands: an option, and those with which it has no effect."""
+NEEDS = {
+    "markdown": "explain",
+    "extrapolate": "elements",
+    "m1_side": "figure",
+    "bare": "figure",
+    "force": "output figure",
+}
+"""Of all commands: an option, and those of which it needs one."""
 
 
-class Rule(NamedTuple):
-    """Options that are refused beside any of the ``others``, or ``without`` all of them, and why.
+def check(options: Mapping[str, Any], explain: str = "") -> None:
+    """Raises SceneError where an option that is given excludes another, or lacks one that it needs.
 
-    Both are names with blanks between; others may be facts that a command knows of its scene.
+    ``explain``: more options with which --explain has no effect.
     """
-
-    options: str
-    others: str
-    why: str
-    without: bool = False
-
-
-ONE_FORM = Rule("json", "csv", "and --csv exclude each other; give one of them")
-PLOT_IS_TEXT = (
-    Rule("plot", "json", "draws text, not JSON; leave one of them out"),
-    Rule("plot", "csv", "draws text, not CSV; leave one of them out"),
-)
-MARKDOWN_IS_EXPLAINED = Rule("markdown", "explain", "needs --explain", without=True)
-FIGURE_TO_REPLACE = Rule("force", "figure", "needs --figure", without=True)
-
-
-def check(rules: Iterable[Rule], given: Mapping[str, object]) -> None:
-    """Raises SceneError by the first rule that what is given breaks."""
-    for rule in rules:
-        beside = any(_is_given(given[name]) for name in rule.others.split())
-        for name in rule.options.split():
-            if beside != rule.without and _is_given(given[name]):
-                value = given[name]
-                shown = value[0] if isinstance(value, list | tuple) else None if value is True else value
-                raise SceneError(name, shown, rule.why)
-
-
-def _is_given(value: object) -> bool:
-    return value not in (None, False, [], ())
+    no_effect = NO_EFFECT | {"explain": f"{NO_EFFECT['explain']} {explain}"}
+    given = {name: value for name, value in options.items() if value not in (None, False, [], ())}
+    for name, value in given.items():
+        shown = value[0] if isinstance(value, list | tuple) else None if value is True else value
+        for other in no_effect.get(name, "").split():
+            if other in given:
+                raise SceneError(name, shown, f"has no effect with {flag(other)}; leave one of them out")
+        needed = [other for other in NEEDS.get(name, "").split() if other in options]
+        if needed and not given.keys() & set(needed):
+            raise SceneError(name, shown, f"needs {' or '.join(map(flag, needed))}")
 
 
 def check_extras(plot: str | bool | None, figure: str | None, force: bool) -> None:
@@ -225,32 +218,25 @@ def check_extras(plot: str | bool | None, figure: str | None, force: bool) -> No
         check_file(figure, force)
 
 
-def read_names(option: str, typed: Iterable[str], known: Sequence[str] = NAMES) -> list[str]:
-    """The quantities named, several in a word with commas between, by name or symbol. Raises SceneError."""
-    return [read_name(option, word, known) for word in divided(typed)]
+def read_names(
+    option: str, typed: Iterable[str], known: Collection[str] = NAMES, kind: str = "quantity"
+) -> list[str]:
+    """The names typed; a word may hold several with commas between. Raises SceneError."""
+    return [read_name(option, word, known, kind) for word in divided(typed)]
 
 
-def read_name(option: str, word: str, known: Sequence[str] = NAMES) -> str:
-    """The quantity of that name or symbol. Raises SceneError."""
+def read_name(option: str, word: str, known: Collection[str] = NAMES, kind: str = "quantity") -> str:
+    """The name typed; a quantity may be named by its symbol, as tables show it. Raises SceneError."""
     if word in known:
         return word
     for name in known:
-        if name in QUANTITIES and word in _symbols(name):
+        symbol = QUANTITIES[name].symbol if name in QUANTITIES else ""
+        if symbol and word in (symbol, symbol.translate(ASCII)):
             return name
-    raise SceneError(option, word, f"is no quantity{near_or_all(word, known)}")
-
-
-def _symbols(name: str) -> tuple[str, str]:
-    """A quantity's symbol as tables show it, and where those are not Unicode."""
-    symbol = QUANTITIES[name].symbol
-    return symbol, symbol.translate(ASCII)
+    hint = nearest(word, known) or f"; there are {', '.join(known)}"
+    raise SceneError(option, word, f"is no {kind}{hint}")
 
 
 def divided(typed: Iterable[str]) -> list[str]:
     """The words of a repeatable option, of which one may hold several with commas between."""
     return [word.strip() for words in typed for word in words.split(",")]
-
-
-def near_or_all(word: str, known: Iterable[str]) -> str:
-    """The hint at the word that may have been meant, or else at all there are."""
-    return nearest(word, known) or f"; there are {', '.join(known)}"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
-from ..model.scene import read_digits
+from ..model.scene import SceneError, read_digits
 from ..output.text import Forms, cell, for_stream, inputs_in_words, say, scene_record, show
 from ..solver.answers import Answers
 from ..solver.messages import conditions, notes, reasons, remarks, unmarked
@@ -15,15 +15,11 @@ from ..solver.reading import read_answers
 from .options import (
     COULD_NOT,
     DONE,
-    MARKDOWN_IS_EXPLAINED,
-    ONE_FORM,
     AsCsv,
     AsJson,
     Digits,
     Markdown,
-    Rule,
     check,
-    flag,
     option,
     quantities,
     read_names,
@@ -74,25 +70,6 @@ Explain = Annotated[
     ),
 ]
 
-RULES = (
-    *(
-        Rule("all", name, f"is of the table, and has no say beside {flag(name)}; leave one of them out")
-        for name in ("json", "csv", "only", "explain")
-    ),
-    MARKDOWN_IS_EXPLAINED,
-    *(
-        Rule("explain", name, f"has no part in {flag(name)}; leave one of them out")
-        for name in ("json", "csv", "only", "budget", "a", "drop", "time")
-    ),
-)
-RULES_OF_THE_SCENE = (
-    Rule("explain", "uncertain", "shows exact numbers; leave their uncertainties out"),
-    Rule("budget", "uncertain", "needs an input with its uncertainty, like --m1 '1.000(2)'", without=True),
-    Rule("budget", "csv", "has no place in CSV; take --json"),
-    Rule("budget", "bare", "has no place in bare values; take --json"),
-)
-
-
 HELP = """Solve one scene: acceleration, tensions, friction, critical masses.
 
 Examples:
@@ -137,31 +114,30 @@ def solve(
     explain: Explain = False,
     markdown: Markdown = False,
 ) -> int:
-    options = dict(locals())
-    check([ONE_FORM], options)
+    check(locals(), explain="a drop time")
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
-    check(RULES, options)
     answers = read_answers({**given, "a": a, "drop": drop, "time": time}, read_digits(digits))
-    bare = bool(names) and not (json or csv)
-    check(RULES_OF_THE_SCENE, {**options, "bare": bare, "uncertain": answers.uncertainties})
+    if budget and not answers.uncertainties:
+        raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
+    if budget and names and not json:
+        raise SceneError("budget", None, "has no place in bare values; take --json")
     if explain:
+        if answers.uncertainties:
+            raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
         from ..derivation.steps import explain as explained
         from ..output.page import print_explanation
 
         print_explanation([*inputs_in_words(answers.case.scene).values()], explained(answers), markdown)
         return DONE
-    say(*show(_forms(answers, names, bare, budget, all), json, csv, bare=bool(names)))
-    return COULD_NOT if "" in [cell(answers[name]) for name in names] else DONE
-
-
-def _forms(answers: Answers, only: Sequence[str], bare: bool, budget: bool, whole: bool) -> Forms:
-    names = only or answers.names
-    return Forms(
-        json=lambda: _record(answers, only, budget),
-        records=lambda: [_line(answers, names)],
-        page=lambda: print_only(answers, only) if only else print_table(answers, whole, budget),
-        notes=lambda: [*(_beside_bare(answers, only) if bare else ()), *reasons(answers)],
+    forms = Forms(
+        json=lambda: _record(answers, names, budget),
+        records=lambda: [_line(answers, names or answers.names)],
+        page=lambda: print_table(answers, all, budget),
+        notes=lambda: [*([] if json or csv else _beside_bare(answers, names)), *reasons(answers)],
+        bare=[cell(answers[name]) for name in names],
     )
+    say(*show(forms, json, csv))
+    return COULD_NOT if "" in forms.bare else DONE
 
 
 def _record(answers: Answers, only: Sequence[str], budget: bool) -> dict[str, object]:
@@ -182,12 +158,6 @@ def _line(answers: Answers, names: Sequence[str]) -> dict[str, object]:
     """For CSV: values, then uncertainties; what does not exist is empty."""
     values = {name: answers[name] for name in names}
     return values | {f"u_{name}": u for name, u in answers.standard_uncertainties(names).items()}
-
-
-def print_only(answers: Answers, only: Sequence[str]) -> None:
-    """Bare values, one a line, an empty one for what does not exist; nothing if none does."""
-    if any(values := [cell(answers[name]) for name in only]):
-        print(*values, sep="\n")
 
 
 def _beside_bare(answers: Answers, only: Sequence[str]) -> list[str]:

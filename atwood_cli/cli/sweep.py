@@ -6,8 +6,7 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby, pairwise
-from operator import itemgetter
-from typing import Annotated, Any
+from typing import Annotated
 
 from ..arithmetic.rounding import text, to_digits, to_double
 from ..files import STREAM, stdout_into
@@ -23,14 +22,11 @@ from ..solver.sweep import Row, Sweep, read_sweep, solve_rows, stated_point
 from .options import (
     COULD_NOT,
     DONE,
-    ONE_FORM,
-    PLOT_IS_TEXT,
     AsCsv,
     AsJson,
     Columns,
     Digits,
     Force,
-    Rule,
     check,
     check_extras,
     numbers,
@@ -71,12 +67,6 @@ OutputFile = Annotated[
 ]
 SUFFIXES = ("", ".txt", ".csv", ".json")
 
-FILE_TO_REPLACE = Rule("force", "output figure", "needs --output or --figure", without=True)
-RULES = (
-    *PLOT_IS_TEXT,
-    Rule("only", "plot", "has no say beside --plot; leave one of them out"),
-)
-
 
 HELP = """Solve a range of scenes: one or two options carry start:stop:count or start:stop:count:log.
 
@@ -102,9 +92,8 @@ def sweep(
     csv: AsCsv = False,
     only: Columns = None,
 ) -> int:
-    options = dict(locals())
-    check([ONE_FORM, FILE_TO_REPLACE], options)
     json, csv = _form_for(output, json, csv)
+    check(locals())
     names = list(dict.fromkeys(read_names("only", only or [])))
     precision = read_digits(digits)
     swept = read_sweep(given, precision)
@@ -112,7 +101,6 @@ def sweep(
     drawn = {where: read_name(where, word) for where, word in asked.items() if word is not None}
     for where, name in drawn.items():
         check_drawable(swept, where, name)
-    check(RULES, {**options, "json": json, "csv": csv})
     check_extras(plot, figure and figure[0], force)
     if figure and output and os.path.realpath(figure[0]) == os.path.realpath(output):
         raise SceneError("figure", figure[0], "is the file of --output; name another")
@@ -122,19 +110,15 @@ def sweep(
 
             curves = picture(swept, "figure", drawn["figure"], precision)
             save(curves, _caption(swept, drawn["figure"]), figure[0], force)
-        forms = _Forms(swept, names, precision, drawn.get("plot"), plain=_is_file(output))
-        aside = show(forms.forms(), json, csv)
+        forms = _Forms(swept, names, precision, drawn.get("plot"), plain=output not in (None, STREAM))
+        aside = show(Forms(forms.json, forms.records, forms.page, lambda: [*forms.notes()]), json, csv)
     say(*aside or [f"{name} has no value in any row" for name in names if name in forms.missing])
     return COULD_NOT if forms.missing else DONE
 
 
-def _is_file(output: str | None) -> bool:
-    return output not in (None, STREAM)
-
-
 def _form_for(output: str | None, json: bool, csv: bool) -> tuple[bool, bool]:
     """Whether to print JSON or CSV, by the options or else by the suffix of the file to write."""
-    if output is None or not _is_file(output) or json or csv:
+    if output in (None, STREAM) or json or csv:
         return json, csv
     suffix = os.path.splitext(output)[1].lower()
     if suffix not in SUFFIXES:
@@ -146,23 +130,18 @@ def _form_for(output: str | None, json: bool, csv: bool) -> tuple[bool, bool]:
 class _Forms:
     """A sweep in the forms in which it may be asked for; rows of JSON and CSV are written as they come.
 
-    ``plain``: what is printed goes to a file, though stdout may be a terminal.
+    ``plain``: what is printed goes to a file, without colours.
     """
 
     def __init__(
         self, sweep: Sweep, names: Sequence[str], digits: int | None, plot: str | None, plain: bool
     ) -> None:
         self.sweep, self.digits, self.plot, self.plain = sweep, digits, plot, plain
-        self.missing = set(names)  # of those asked for, what no row has
+        self.missing = set(names)  # the quantities asked for that no row has
         self.names = names or STANDARD
         # Where a sentence tells the regimes, a column of them must be asked for.
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
         self.reasons: Counter[tuple[str, str]] = Counter()
-
-    def forms(self) -> Forms:
-        return Forms(
-            json=self._json, records=self._records, page=self._page, notes=lambda: list(self._notes())
-        )
 
     def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
         """The rows, while it is counted why values are missing."""
@@ -172,25 +151,25 @@ class _Forms:
             self.missing = {name for name in self.missing if not cell(row.values[name])}
             yield row
 
-    def _notes(self) -> Iterator[str]:
+    def notes(self) -> Iterator[str]:
         """Why values are missing, and at how many points; to be asked when all rows are out."""
         yield from reasons_at(self.reasons, self.sweep.total)
 
-    def _json(self) -> Mapping[str, object]:
+    def json(self) -> Mapping[str, object]:
         ranges = {range_.name: range_.typed for range_ in self.sweep.ranges}
         rounding = to_double if self.digits is None else to_digits(self.digits)
         return {
             "scene": scene_record(self.sweep.scene, round_=rounding) | ranges,
-            "rows": self._records(),
-            "notes": self._notes(),
+            "rows": self.records(),
+            "notes": self.notes(),
         }
 
-    def _records(self) -> Iterator[dict[str, object]]:
+    def records(self) -> Iterator[dict[str, object]]:
         # Where rows would run into the bar, there is none.
-        rows = self._rows(self.names, self.digits, watch=self.plain or not sys.stdout.isatty())
+        rows = self._rows(self.names, self.digits, watch=not sys.stdout.isatty())
         return ({**row.at, **{name: row.values[name] for name in self.names}} for row in rows)
 
-    def _page(self) -> None:
+    def page(self) -> None:
         page, head = Page(plain=self.plain), ", ".join(_inputs(self.sweep).values())
         if self.plot is not None:
             from ..output.plot import print_plot
@@ -205,47 +184,40 @@ class _Forms:
         Columns without a value are left out.
         """
         sweep, names = self.sweep, list(self.columns)
-        may_be_on_verge = sweep.scene.M is None and sweep.scene.mu is not None
-        if may_be_on_verge and PULLEY not in names:
+        if sweep.scene.M is None and sweep.scene.mu is not None and PULLEY not in names:
             names.append(PULLEY)
         rows = list(self._rows(names, self.digits or SHOWN_DIGITS))
-        on_verge = any(row.regime == "verge" for row in rows)
         cells = {name: [cell(row.values[name]) for row in rows] for name in names}
         shown = {name: column for name, column in cells.items() if any(column)}
         same = {name: column[0] for name, column in shown.items() if len(set(column)) == 1}
         above = [head, *_regimes(sweep, rows, self.digits)]
-        if on_verge and PULLEY not in same:
+        if PULLEY not in same and any(row.regime == "verge" for row in rows):
             above.append(PULLEYS)
         if once := [_stated(name, value) for name, value in same.items() if name != "regime"]:
             above.append(f"In all rows: {', '.join(once)}.")
-        notes = list(self._notes())
+        notes = list(self.notes())
         for sentence in above:
             page.say(sentence)
         if len(same) < len(shown) or not shown:
-            varying = {name: column for name, column in shown.items() if name not in same}
-            self._print_rows(page, rows, varying, FRAME + sum(map(page.lines, [*above, *notes])))
+            columns = {
+                f"{range_.name}\n{_in_brackets(range_.unit)}": aligned(
+                    text(range_.bare(row.at[range_.name])) for row in rows
+                )
+                for range_ in sweep.ranges
+            }
+            for name in [name for name in shown if name not in same]:
+                unit = _in_brackets(QUANTITIES[name].unit) if name in QUANTITIES else ""
+                columns[f"{name}\n{unit}"] = shown[name] if name == "regime" else aligned(shown[name])
+            lines = zip(*columns.values(), strict=True)
+            slow = sweep.ranges[0].name  # groups are of its points, or of regimes
+            groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
+            table = [[next(lines) for _ in group] for _, group in groups]
+            # Beside the table: the sentences, the units in its head, what is left out, the prompt.
+            beside = 3 + sum(map(page.lines, [*above, *notes]))
+            if left_out := page.table(list(columns), table, len(sweep.ranges), beside):
+                page.say(f"{left_out} rows in the middle are left out; a pipe or -o FILE has them all.")
         for note in notes:
             page.say(note)
-
-    def _print_rows(
-        self, page: Page, rows: Sequence[Row], cells: Mapping[str, list[str]], beside: int
-    ) -> None:
-        """The table, of which a person sees what there is room for ``beside`` so many other lines."""
-        sweep = self.sweep
-        columns = [
-            aligned(text(range_.bare(row.at[range_.name])) for row in rows) for range_ in sweep.ranges
-        ] + [column if name == "regime" else aligned(column) for name, column in cells.items()]
-        lines = zip(*columns, strict=True)
-        groups = [[next(lines) for _ in group] for group in _groups(sweep, rows)]
-        heads, keys = _heads(sweep, list(cells)), len(sweep.ranges)
-        left_out = 0
-        if page.room and sys.stdout.isatty():
-            tables = len(list(page.parts(heads, groups, keys)))
-            room = page.console.height - beside - (tables - 1) * FRAME_OF_A_TABLE
-            groups, left_out = _trimmed(groups, room // tables)
-        page.table(heads, groups, keys)
-        if left_out:
-            page.say(f"{left_out} rows in the middle are left out; a pipe or -o FILE has them all.")
 
 
 PULLEY = "critical_pulley_mass"
@@ -272,8 +244,12 @@ def _stated(name: str, value: str) -> str:
     return f"{name} = {value} {QUANTITIES[name].unit}".rstrip()
 
 
+def _in_brackets(unit: str) -> str:
+    return f"({unit})" if unit else ""
+
+
 def _inputs(sweep: Sweep) -> dict[str, str]:
-    """What is said of each input, ranges in words."""
+    """Each input in words, and the ranges."""
     return inputs_in_words(sweep.scene) | {range_.name: range_.words for range_ in sweep.ranges}
 
 
@@ -282,38 +258,3 @@ def _caption(sweep: Sweep, name: str) -> str:
     (title, _), along = axis_words(name), longest(sweep).name
     others = (f"{axis_words(x)[1]}{words[len(x) :]}" for x, words in _inputs(sweep).items() if x != along)
     return f"How the {title} depends on the {axis_words(along)[0]}: {', '.join(others)}."
-
-
-FRAME_OF_A_TABLE = 5  # lines: with its head
-FRAME = FRAME_OF_A_TABLE + 2  # and the sentence on what is left out, and the prompt
-
-
-def _groups(sweep: Sweep, rows: Sequence[Row]) -> list[list[Row]]:
-    """The rows in the parts that a table shows: by the slow range, or else by the regime."""
-    slow = sweep.ranges[0].name
-    return [
-        list(group)
-        for _, group in groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
-    ]
-
-
-def _heads(sweep: Sweep, names: Sequence[str]) -> list[str]:
-    """The names of parameters and quantities, their units below them."""
-    units = {range_.name: range_.unit for range_ in sweep.ranges}
-    units |= {name: QUANTITIES[name].unit if name in QUANTITIES else "" for name in names}
-    return [f"{name}\n{f'({unit})' * bool(unit)}" for name, unit in units.items()]
-
-
-def _trimmed(groups: list[list[Any]], room: int) -> tuple[list[list[Any]], int]:
-    """The first and the last rows, as many as fit with the lines between groups, and how many do not."""
-    rows = [(i, row) for i, group in enumerate(groups) for row in group]
-    if len(rows) + len(groups) - 1 <= room:
-        return groups, 0
-    # At least one row is kept at each end, and a row of dots takes three lines.
-    for kept in range(max(2, min(room, len(rows) - 1)), 1, -1):
-        halves = rows[: (kept + 1) // 2], rows[-(kept // 2) :]
-        ends = [[[row for _, row in g] for _, g in groupby(half, itemgetter(0))] for half in halves]
-        if kept == 2 or kept + len(ends[0]) + len(ends[1]) + 1 <= room:
-            break
-    dots = ["..."] * len(rows[0][1])
-    return [*ends[0], [dots], *ends[1]], len(rows) - kept

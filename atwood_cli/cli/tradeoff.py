@@ -10,18 +10,14 @@ from ..model.scene import Scene, SceneError, read_whole
 from ..output.text import Forms, describe, for_stream, say, scene_record, show
 from .options import (
     DONE,
-    FIGURE_TO_REPLACE,
-    ONE_FORM,
     AsCsv,
     AsJson,
     FigureFile,
     Force,
-    Rule,
     check,
     check_extras,
-    divided,
-    near_or_all,
     option,
+    read_names,
     takes_scene,
 )
 
@@ -72,12 +68,6 @@ Everything = Annotated[
     bool, option("Output", "--all", help="Show every setting on each family, and all numbers of elements.")
 ]
 
-RULES = (
-    Rule("all", "json csv", "has no say beside --json and --csv, which hold all of it; leave it out"),
-    Rule("family scenes seed", "scene", "has no say where a scene is given; leave one of them out"),
-    Rule("axle", "scene", "is not measured, as arrays have no such column; leave it out"),
-)
-
 
 HELP = """Measure what accuracy costs on this machine: time beside error, for families of scenes or for one.
 
@@ -106,22 +96,19 @@ def tradeoff(
     json: AsJson = False,
     csv: AsCsv = False,
 ) -> int:
-    options = dict(locals())
+    check({**locals(), **given})
+    if given["axle"] is not None:
+        why = "is not measured, as arrays have no such column; leave it out"
+        raise SceneError("axle", given["axle"], why)
     from ..output.page import watched
     from ..solver.elements import MAX_ELEMENTS
     from ..tradeoff.measure import COUNTS, MOST_SCENES, USUAL_ELEMENTS
     from ..tradeoff.outcome import tradeoff as measure
     from ..tradeoff.scenes import FAMILIES
 
-    check([ONE_FORM, FIGURE_TO_REPLACE], options)
     scene = Scene.read(given) if any(value is not None for value in given.values()) else None
-    check(RULES, {**options, "scene": scene, "axle": given["axle"]})
-    chosen = divided(family or FAMILIES)
-    for name in chosen:
-        if name not in FAMILIES:
-            raise SceneError("family", name, f"is no family of scenes{near_or_all(name, FAMILIES)}")
+    families = list(dict.fromkeys(read_names("family", family or FAMILIES, FAMILIES, "family of scenes")))
     check_extras(None, figure, force)
-    families = list(dict.fromkeys(chosen))
     count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
     start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
     most = read_whole("elements", elements or USUAL_ELEMENTS, COUNTS[0], MAX_ELEMENTS)

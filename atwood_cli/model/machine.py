@@ -333,7 +333,7 @@ class Machine(Generic[N]):
     @lazy
     def safety_factor(self) -> N:
         """The coefficient of friction over the one that a string which grips needs."""
-        mu = self._given(self.scene.mu, self._needs_mu)
+        mu = self.mu
         if self.case.tensions_equal or (self.case.regime == "verge" and is_zero(self.scene.mu)):
             raise Undetermined(NO_NEED)
         return physics.safety_factor(mu, self.mu_verge)

@@ -1,8 +1,8 @@
-"""Where tables and sentences go: pages, written by rich, which is imported where one is made."""
+"""Tables and sentences on the terminal or in a pipe, by rich, which is imported where they are needed."""
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from itertools import chain, zip_longest
+from itertools import chain, groupby, zip_longest
 from shutil import get_terminal_size
 from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
@@ -12,20 +12,18 @@ from ..solver.messages import unmarked, verdict
 from .text import describe, for_stream, spelled, wrapped
 
 if TYPE_CHECKING:
-    from ..derivation.steps import Explanation
-
-if TYPE_CHECKING:
     from rich.console import Console
+
+    from ..derivation.steps import Explanation
 
 T = TypeVar("T")
 Groups = Sequence[Sequence[Sequence[str]]]
-"""Of a table, its rows of cells, in groups."""
+"""The rows of a table, each a row of cells, in groups."""
 
-PIPED = 100
-"""Columns of text where there is no terminal."""
-READABLE = 80
-"""Columns of text beyond which lines are hard to follow."""
-NARROWEST = 40
+PIPED, READABLE, NARROWEST = 100, 80, 40
+"""Columns of text: where there is no terminal, and the most and the least of a derivation."""
+FRAME = 5
+"""Lines of a table with one line of heads, beside its rows."""
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 
 
@@ -53,7 +51,7 @@ class Page:
         return len(wrapped(for_stream(words, sys.stdout), self.width))
 
     def line(self, words: str, style: str = "") -> None:
-        """A line as it is."""
+        """A line as it is, however long."""
         from rich.text import Text
 
         self.console.print(Text(for_stream(words, sys.stdout), style), soft_wrap=True)
@@ -64,16 +62,21 @@ class Page:
         self.say(describe(scene, motion, known.given if known else {}))
         self.say(unmarked(verdict(answers)), f"bold {REGIME_STYLES[answers.case.regime]}")
 
-    def table(self, columns: Sequence[str], groups: Groups, keys: int = 1) -> None:
+    def table(self, columns: Sequence[str], groups: Groups, keys: int = 1, beside: int | None = None) -> int:
         """A table, with a line between groups of rows, and as wide as its numbers ask.
 
-        Columns for which there is no room go into a table below, beside the first ``keys`` again.
+        Columns for which there is no room go into a table below, beside the first ``keys`` again. Where
+        ``beside`` says how many other lines a terminal is to show, rows in the middle are left out until
+        all fits. Returns how many.
         """
         from rich import box
         from rich.table import Table
         from rich.text import Text
 
-        for heads, rows in self.parts(columns, groups, keys):
+        tables, left_out = list(self._parts(columns, groups, keys)), 0
+        for heads, rows in tables:
+            if beside is not None and self.room and sys.stdout.isatty():
+                rows, left_out = _shortened(rows, (self.console.height - beside) // len(tables) - FRAME)
             table = Table(box=box.ROUNDED, show_lines=True)
             for head in heads:
                 table.add_column(Text(head))  # not as markup, which a file's heading may look like
@@ -84,11 +87,12 @@ class Page:
             self.console.width = max(width, table_width(heads, rows))
             self.console.print(table)
             self.console.width = width
+        return left_out
 
-    def parts(
+    def _parts(
         self, columns: Sequence[str], groups: Groups, keys: int
     ) -> Iterator[tuple[Sequence[str], Groups]]:
-        """The table in parts that are no wider than there is room for, if a column beside the keys is not."""
+        """The table, divided so that each part fits the width, if one column beside the keys does."""
         columns = [for_stream(head, sys.stdout) for head in columns]
         groups = [
             [[for_stream(word, sys.stdout).replace("\n", r"\n") for word in row] for row in group]
@@ -102,7 +106,7 @@ class Page:
             return
         for part in (slice(keys, fit), slice(fit, None)):
             rows = [[[*row[:keys], *row[part]] for row in group] for group in groups]
-            yield from self.parts([*columns[:keys], *columns[part]], rows, keys)
+            yield from self._parts([*columns[:keys], *columns[part]], rows, keys)
 
 
 def print_explanation(given: Sequence[str], explanation: "Explanation", markdown: bool) -> None:
@@ -120,7 +124,7 @@ def print_explanation(given: Sequence[str], explanation: "Explanation", markdown
 
 
 def table_width(columns: Sequence[str], groups: Groups) -> int:
-    """The width of the table with those columns, computed ten times as fast as by rich."""
+    """The width of a table, computed ten times as fast as by rich."""
     rows = [
         *zip_longest(*(column.split("\n") for column in columns), fillvalue=""),
         *chain.from_iterable(groups),
@@ -139,6 +143,17 @@ def _integer_part(value: str) -> int:
     return len(value.partition(" ")[0].partition(".")[0].partition("e")[0])
 
 
+def _shortened(groups: Groups, room: int) -> tuple[Groups, int]:
+    """The first and the last rows, as many as so many lines hold, and how many rows are left out."""
+    lines = [line for group in groups for line in (*group, None)][:-1]  # None is the line between groups
+    if len(lines) <= room:
+        return groups, 0
+    half = max((room - 3) // 2, 1)
+    kept = [*lines[:half], None, ["..."] * len(groups[0][0]), None, *lines[-half:]]
+    shown = [[line for line in part if line] for is_row, part in groupby(kept, bool) if is_row]
+    return shown, sum(map(len, groups)) + 1 - sum(map(len, shown))
+
+
 def watched(parts: Iterator[T], total: int | None, size: Callable[[T], int] = lambda _: 1) -> Iterator[T]:
     """The parts, with a bar on a terminal's stderr once they take longer than a second."""
     start, done = monotonic(), 0
@@ -146,10 +161,9 @@ def watched(parts: Iterator[T], total: int | None, size: Callable[[T], int] = la
         yield part
         done += size(part)
         if monotonic() - start > 1 and sys.stderr.isatty():
-            yield from _with_bar(parts, done, total, size)
-
-
-def _with_bar(parts: Iterator[T], done: int, total: int | None, size: Callable[[T], int]) -> Iterator[T]:
+            break
+    else:
+        return
     from rich.console import Console
     from rich.progress import Progress
 

@@ -1,4 +1,4 @@
-"""Results as text, for which rich is not needed: cells, JSON, CSV, sentences on stderr."""
+"""Results as text, without rich: cells, JSON, CSV, sentences on stderr."""
 
 import json
 import os
@@ -21,7 +21,7 @@ ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", S
 
 
 def for_stream(words: str, stream: TextIO | None) -> str:
-    """The words as the stream can take them, a terminal too: what is read or typed does not steer it."""
+    """The words as the stream can take them, without anything that would steer a terminal."""
     return spelled(printable(words), stream)
 
 
@@ -49,24 +49,23 @@ def say(*messages: str) -> None:
 
 
 UNITS = r"kg|g|m/s²|rad/s²|m/s\^2|m|[mnµ]?s|m?Nm?|ulp"
-BESIDE = rf"(?<=[\d)]) (?=(?:{UNITS})\b)|(?<=\bN) (?=m\b)|(?<=\bkg) (?=m[²^])"
-"""The blank between a number and its unit, and within units."""
-HELD, LOOSE = "\xa0", "\u2007"  # blanks at which no line breaks, or only where it must
+HELD = rf" (?=[±=])|(?<=[±=]) |(?<=[\d)]) (?=(?:{UNITS})\b)|(?<=\bN) (?=m\b)|(?<=\bkg) (?=m[²^])"
+"""The blanks at which no line breaks: within a name, its value, uncertainty and unit."""
 
 
 def wrapped(words: str, width: int) -> list[str]:
-    """The words in lines, none longer than that if words are not: no number is parted from its unit."""
+    """The words in lines of that width, but for a number that is longer with its unit."""
     import re
     from textwrap import wrap
 
-    held = re.sub(" ?[=±] ?", lambda sign: sign[0].replace(" ", LOOSE), re.sub(BESIDE, HELD, words))
-    held = " ".join(w.replace(LOOSE, " ") if len(w) > width else w for w in held.split(" "))
-    lines = wrap(held, max(width, 1), break_long_words=False, break_on_hyphens=False)
-    return [line.replace(HELD, " ").replace(LOOSE, " ") for line in lines]
+    held = re.sub(HELD, "\xa0", words).split(" ")
+    held = [part if len(part) <= width else part.replace("=\xa0", "= ") for part in held]
+    lines = wrap(" ".join(held), max(width, 1), break_long_words=False, break_on_hyphens=False)
+    return [line.replace("\xa0", " ") for line in lines]
 
 
 def finish() -> None:
-    """Flush what is left; what cannot be would change the exit status as Python closes the streams."""
+    """Flush both streams now: an error as Python closes them would change the exit status."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()
@@ -75,8 +74,8 @@ def finish() -> None:
 
 
 def drop(stream: TextIO) -> None:
-    """Send what is still buffered, and whatever comes, nowhere."""
-    with suppress(OSError):  # no file is behind it
+    """Discard what is buffered, and all that follows."""
+    with suppress(OSError):  # the stream may have no file
         number = stream.fileno()
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, number)
@@ -84,38 +83,42 @@ def drop(stream: TextIO) -> None:
 
 
 class Forms(NamedTuple):
-    """A result in the forms in which it may be asked for: each is made only if it is.
+    """A result in the forms in which it may be asked for, each of which is made only if it is.
 
-    ``json`` and ``records`` (of which CSV has a line each) give what is to be printed; ``page`` prints.
+    ``json`` and ``records``, the lines of CSV, return what is to be printed; ``page`` prints. ``bare``
+    are the values that --only names.
     """
 
     json: Callable[[], Mapping[str, object]]
     records: Callable[[], Iterable[Mapping[str, object]]]
     page: Callable[[], None]
     notes: Callable[[], Sequence[str]]
+    bare: Sequence[str] = ()
 
 
-def show(forms: Forms, json: bool, csv: bool, bare: bool = False) -> Sequence[str]:
-    """Print a result as JSON, as CSV or as a page; what comes back is left to say on stderr.
+def show(forms: Forms, json: bool, csv: bool) -> Sequence[str]:
+    """Print a result as JSON, as CSV, as bare values or as a page. Raises OSError.
 
-    That is the notes, for which CSV has no place, nor has any form in which a result is ``bare``. The
-    result is out by then, so that they follow it where both go into one pipe. Raises OSError.
+    Returns the notes if the form has no place for them: CSV and bare values. They are to be said on
+    stderr, after the result, which is flushed by then.
     """
     if json:
         sys.stdout.writelines(as_json(forms.json()))
         print()
     elif csv:
         print_csv(forms.records())
-    else:
+    elif not forms.bare:
         forms.page()
+    elif any(forms.bare):  # an empty line for each value that does not exist
+        print(*forms.bare, sep="\n")
     sys.stdout.flush()
-    return forms.notes() if csv or bare else ()
+    return forms.notes() if csv or forms.bare else ()
 
 
 def as_json(value: object, indent: str = "\n") -> Iterator[str]:
-    """A value as JSON, piece by piece: of an iterator, each item as it comes.
+    """A value as JSON, piece by piece, so that the items of an iterator are written as they come.
 
-    Numbers are as they are printed everywhere; those that no double can hold are null.
+    Numbers are printed as everywhere; those that no double can hold are null.
     """
     inner = indent + "  "
     match value:
@@ -126,15 +129,14 @@ def as_json(value: object, indent: str = "\n") -> Iterator[str]:
                 yield from as_json(item, inner)
             yield f"{indent}}}"
         case list() | Iterator():
-            yield "["
-            empty = True
+            start = "["
             for item in value:
-                yield inner if empty else f",{inner}"
+                yield f"{start}{inner}"
                 yield from as_json(item, inner)
-                empty = False
-            yield "]" if empty else f"{indent}]"
+                start = ","
+            yield "[]" if start == "[" else f"{indent}]"
         case float() | Decimal():
-            yield "null" if is_infinite(value) else text(value)
+            yield cell(value) or "null"
         case _:
             yield json.dumps(value)
 
@@ -163,9 +165,9 @@ def cell(value: object) -> str:
 def scene_record(
     scene: Scene, motion: Motion = UNMEASURED, round_: Rounding[Any] = to_double
 ) -> dict[str, object]:
-    """The inputs as JSON has them: numbers in SI units and degrees, or text where JSON has no number.
+    """The inputs for JSON, in SI units and degrees: numbers, or text where JSON has no number.
 
-    A number is exact where it is a decimal, or else rounded as results are.
+    A decimal is exact; other numbers are rounded as results are.
     """
 
     def written(value: object, unit: str) -> object:
@@ -186,7 +188,7 @@ def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
     if scene.M == inf:
         given["M"] = "inf"
     if scene.axle is None:
-        del given["axle"]  # nothing of it shows
+        del given["axle"]
     units = {"rad": "rad", "N m": " Nm"}
     return {
         name: (value.number, units.get(value.unit, "")) if isinstance(value, Angle | Axle) else (value, "")
@@ -202,7 +204,7 @@ def describe(scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, 
 def inputs_in_words(
     scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}
 ) -> dict[str, str]:
-    """What is said of each input: m1 = 1 kg."""
+    """Each input in words, as m1 = 1 kg."""
     parts = {}
     for name, (value, unit) in _given(scene, motion).items():
         u = as_typed(uncertain[name]) if name in uncertain else ""
