@@ -1,4 +1,4 @@
-"""The command line: its commands, each in a module of its name, and what becomes of their errors."""
+"""The command line: its commands, each in a module of its name, and how errors are reported."""
 
 import io
 import os
@@ -31,7 +31,7 @@ Examples:
   atwood batch scenes.csv -o results.csv
 """
 
-# The parent of all of typer's complaints about usage; typer exports only this child of it.
+# The parent of all of typer's usage errors, of which typer exports only this child.
 UsageError: Any = typer.BadParameter.__mro__[1]
 
 
@@ -40,7 +40,7 @@ ON_CTRL_C = 130
 
 
 class Command(TyperCommand):
-    """A command with our help, that sees how the words typed were divided among its options."""
+    """A command with our help, which refuses words that were hardly meant as typer takes them."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         ctx.meta[WORDS] = list(args)
@@ -76,7 +76,7 @@ def _check_dashes(ctx: Any, words: Iterable[str], options: Mapping[str, Any]) ->
 
 
 def _no_option(typed: str, meant: str, ctx: Any) -> Exception:
-    """The error of an option that there is not, with a hint at another, if one is meant."""
+    """The error for an unknown option, with a hint at the one that is meant, if any."""
     hint = f". Did you mean --{meant}?" if meant else ""
     error: Exception = UsageError(f"No such option: {typed}{hint}", ctx)
     return error
@@ -123,15 +123,13 @@ Version = Annotated[
 
 
 def root(context: typer.Context, version: Version = False) -> None:
-    """What runs before any command, and where none is named."""
+    """Print the help where no command is named."""
     if context.invoked_subcommand is None:
-        from .help import brief
-
-        print(brief(context.command, context))
+        print(context.get_help())
 
 
 def program(names: Iterable[str] = COMMANDS) -> Any:
-    """The program with the commands named: each takes a while to import and to make its options."""
+    """The program with the commands named: importing one and making its options takes a while."""
     app = typer.Typer(
         name="atwood",
         cls=Group,
@@ -155,7 +153,7 @@ def _needed(arguments: list[str]) -> tuple[str, ...]:
 
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line; every error is a sentence on stderr and an exit status."""
-    # A stream that the caller closed is None. Lost results are an error; lost messages cannot be told of.
+    # A stream that the caller closed is None. Lost results are an error; lost messages cannot be reported.
     sys.stdout, sys.stderr = sys.stdout or cast(Any, ClosedStdout()), sys.stderr or io.StringIO()
     try:
         arguments = sys.argv[1:] if arguments is None else arguments
@@ -167,7 +165,7 @@ def run(arguments: list[str] | None = None) -> int:
             raise KeyboardInterrupt
         sys.stdout.flush()
         return status
-    except (BrokenPipeError, SystemExit) as error:  # typer and rich exit where the reader of stdout has left
+    except (BrokenPipeError, SystemExit) as error:  # typer and rich exit if the reader of stdout has left
         if isinstance(error, SystemExit) and COMPLETING in os.environ:  # fish goes by the status
             return int(error.code or DONE)
         drop(sys.stdout)

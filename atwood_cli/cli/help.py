@@ -1,9 +1,8 @@
-"""Help as plain text: examples first, options by group, nothing cut off at any width.
+"""Help as plain text, without rich: examples first, options by group, nothing cut off at any width.
 
-HELP in the module of a command is its text: paragraphs, and after a line that ends in a colon lines that
-stay as they are. It is no docstring, as ``python -OO`` has none. LISTED, if it has that, is a head and lines
-of a name, a tab and what it means, which come last. An option says itself to which group it
-belongs (``rich_help_panel``). rich is not imported.
+HELP in the module of a command is its text: paragraphs, and commands, a line each, after a line that ends
+in a colon. It is no docstring, as ``python -OO`` has none. LISTED, if a module has it, is a heading and
+lines of a name, a tab and its meaning, which come last.
 """
 
 import os
@@ -18,44 +17,32 @@ from ..output.text import for_stream
 
 NARROWEST, WIDEST = 24, 100
 LEAST_BESIDE = 40
-"""Columns: where less is left beside the options' names, what they mean stands below them."""
+"""Columns: if fewer are left beside the names of options, their meaning stands below them."""
 LONGEST_NAME, BELOW = 28, 6
 LAST = ("Output", "Files", "String elements", "Help")
 """Groups of options that stand behind a command's own."""
-BRIEF_EXAMPLES = 3
 
 
 def page(command: Any, context: Any) -> str:
-    """All there is to say on a command, for stdout as it is."""
+    """The help of a command, for stdout as it is."""
     commands = getattr(command, "commands", {})
     arguments = [param.metavar for param in command.params if not param.opts[0].startswith("-")]
     usage = " ".join([context.command_path, *["COMMAND"] * bool(commands), *arguments, "[OPTIONS]"])
     parts = [[f"Usage: {usage}"], *_paragraphs(command)]
     if commands:
-        parts.append(["Commands:", *_commands(commands)])
+        rows = [(name, " ".join(one.help.split("\n\n")[0].split())) for name, one in commands.items()]
+        parts.append(["Commands:", *_pairs(rows)])
     groups: dict[str, list[tuple[str, str]]] = {}
     for param in command.get_params(context):
         panel = getattr(param, "rich_help_panel", None) or ("Help" if context.parent else "Options")
         groups.setdefault(panel, []).append((_names(param), param.help or ""))
-    column = _column([name for rows in groups.values() for name, _ in rows])
+    column = _column([row for rows in groups.values() for row in rows])
     panels = sorted(groups, key=lambda panel: LAST.index(panel) if panel in LAST else -1)
     parts += [[f"{panel}:", *_pairs(groups[panel], column)] for panel in panels]
     if command.epilog:
         head, *rows = command.epilog.splitlines()
         pairs = [(name, meaning) for name, _, meaning in (row.partition("\t") for row in rows)]
-        parts.append([head, *_pairs(pairs, _column([name for name, _ in pairs]))])
-    return _joined(parts)
-
-
-def brief(command: Any, context: Any) -> str:
-    """What the program does, a few examples, its commands, and how to get more."""
-    title, examples, *_ = _paragraphs(command, BRIEF_EXAMPLES)
-    name = context.command_path
-    more = f"{name} -h says more; {name} solve -h, as with every command, shows its options."
-    return _joined([title, examples, ["Commands:", *_commands(command.commands)], _filled(more)])
-
-
-def _joined(parts: list[list[str]]) -> str:
+        parts.append([head, *_pairs(pairs)])
     return "\n\n".join("\n".join(_heading(for_stream(line, sys.stdout)) for line in part) for part in parts)
 
 
@@ -71,13 +58,12 @@ def _width() -> int:
     return max(NARROWEST, min(shutil.get_terminal_size().columns - 1, WIDEST))
 
 
-def _paragraphs(command: Any, most: int | None = None) -> list[list[str]]:
-    """The text, of lists at most so many lines."""
+def _paragraphs(command: Any) -> list[list[str]]:
     lines = []
     for paragraph in (command.help or "").split("\n\n"):
         head, *rest = paragraph.replace("\b\n", "").splitlines()
         if head.endswith(":"):
-            lines.append([head, *(part for line in rest[:most] for part in command_lines(line, _width()))])
+            lines.append([head, *(part for line in rest for part in command_lines(line, _width()))])
         else:
             lines.append(_filled(" ".join([head, *rest])))
     return lines
@@ -103,26 +89,21 @@ def command_lines(line: str, width: int) -> Iterator[str]:
     return (f"{'    ' if number else '  '}{part}".replace("\xa0", " ") for number, part in enumerate(lines))
 
 
-def _commands(commands: Any) -> Iterator[str]:
-    """The first paragraph of each command."""
-    rows = [(name, " ".join(one.help.split("\n\n")[0].split())) for name, one in commands.items()]
-    return _pairs(rows, _column(list(commands)))
-
-
 def _names(param: Any) -> str:
     flags = sorted(param.opts, key=lambda flag: flag.startswith("--"))  # -o before --output
     is_option = flags[-1].startswith("-")
     return " ".join(filter(None, [", ".join(flags) if is_option else "", param.metavar]))
 
 
-def _column(names: list[str]) -> int:
-    """Where the meanings of names begin."""
-    column = 4 + max(len(name) for name in names if len(name) <= LONGEST_NAME)
+def _column(rows: list[tuple[str, str]]) -> int:
+    """Where the meanings begin."""
+    column = 4 + max(len(name) for name, _ in rows if len(name) <= LONGEST_NAME)
     return column if _width() - column >= LEAST_BESIDE else BELOW
 
 
-def _pairs(rows: list[tuple[str, str]], column: int) -> Iterator[str]:
-    """Names with what they mean, beside them or below."""
+def _pairs(rows: list[tuple[str, str]], column: int | None = None) -> Iterator[str]:
+    """Names with their meanings, beside them or below."""
+    column = column or _column(rows)
     for name, meaning in rows:
         lines = _filled(meaning, " " * column)
         start = f"  {name}"

@@ -26,13 +26,12 @@ AROUND = 9  # lines above and below the curves, with the prompt
 COLOURS = ("cyan", "magenta", "green", "blue", "red", "bright_cyan")
 MARK = "yellow"
 LETTERS = "abcdefgh"
-DOTS = range(0x2800, 0x2900)
-UPPER, LOWER = 0x1B, 0xE4  # the bits of the dots in the upper and the lower half of a braille character
-FRAME = str.maketrans("┤│└┬─", "||++-")
+EMPTY, *DOTS = map(chr, range(0x2800, 0x2900))  # characters of braille, of which a plot is made
+NOT_UNICODE = str.maketrans(dict(zip("┤│└┬─", "||++-", strict=True)) | dict.fromkeys(DOTS, "*"))
 
 
 class Axis:
-    """Where numbers lie between the first and the last of ``dots``, and the ticks among them."""
+    """Where numbers lie on an axis of so many ``dots``, and its ticks."""
 
     def __init__(self, values: list[float], dots: int, ticks: int, log: bool = False) -> None:
         self.dots, self.log = dots, log
@@ -69,17 +68,27 @@ def print_plot(page: Page, head: str, drawn: Picture) -> None:
     """The curves below their head, with dotted lines where regimes change; then the regimes and the notes."""
     page.say(head)
     height = min(HEIGHT, max(page.console.height - AROUND, LEAST_HEIGHT)) if page.room else HEIGHT
-    _show(page, _lines(drawn, page.room or PIPE_WIDTH, height))
-    for note in [*_legend(drawn), *drawn.notes]:
+    several = len(drawn.curves) > 1
+
+    def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
+        for curve in drawn.curves:
+            for x, y, _ in curve.marks:
+                top = y_axis.dot(y) if several and y is not None else y_axis.dots
+                for dot in range(0, top, 3):
+                    canvas.point(x_axis.dot(x), dot, color=MARK)
+        for number, curve in enumerate(drawn.curves):
+            _draw_curve(canvas, curve, x_axis, y_axis, number, several)
+
+    ys = [y for curve in drawn.curves for line in curve.lines for y in line if y is not None]
+    _print_axes(page, (drawn.x, drawn.y), (drawn.curves[0].xs, ys), height, draw, drawn.log)
+    regimes = [", ".join(curve.regimes) for curve in drawn.curves]
+    if several:
+        for letter, curve, words in zip(LETTERS, drawn.curves, regimes, strict=False):
+            page.say(f"{letter}: {curve.label}: {words}")
+    else:
+        page.say(f"Regimes: {regimes[0]}.")
+    for note in drawn.notes:
         page.say(note)
-
-
-def _show(page: Page, lines: list[str]) -> None:
-    from rich.text import Text
-
-    for line in lines:
-        shown = line.translate(PLAIN) if takes_unicode(sys.stdout) else for_stream(_ascii(line), sys.stdout)
-        page.console.print(Text.from_ansi(shown.rstrip()), soft_wrap=True)
 
 
 def print_fit_plot(page: Page, head: Sequence[str], fit: "Fit") -> None:
@@ -103,50 +112,27 @@ def print_fit_plot(page: Page, head: Sequence[str], fit: "Fit") -> None:
     for words in head[1:]:
         page.say(words, "bold")
     titles = ("a (m/s²)", "T_h - T_l (N)")
-    _show(page, _framed(titles, (xs, [0.0, *ys]), page.room or PIPE_WIDTH, HEIGHT, draw))
+    _print_axes(page, titles, (xs, [0.0, *ys]), HEIGHT, draw)
     for words in coefficients(fit):
         page.say(f"{words.replace('$', '')}.")
     page.say("Points are the last digits of their rows.")
 
 
-PLAIN = {DOTS[0]: " "}
-
-
-def _ascii(line: str) -> str:
-    halves = {(False, False): " ", (True, False): "'", (False, True): ".", (True, True): ":"}
-    dots = {c: halves[bool(c & UPPER), bool(c & LOWER)] for c in DOTS}
-    return line.translate(FRAME).translate(dots)
-
-
-def _lines(drawn: Picture, room: int, height: int) -> list[str]:
-    several = len(drawn.curves) > 1
-
-    def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
-        for curve in drawn.curves:
-            for x, y, _ in curve.marks:
-                top = y_axis.dot(y) if several and y is not None else y_axis.dots
-                for dot in range(0, top, 3):
-                    canvas.point(x_axis.dot(x), dot, color=MARK)
-        for number, curve in enumerate(drawn.curves):
-            _draw_curve(canvas, curve, x_axis, y_axis, number, several)
-
-    ys = [y for curve in drawn.curves for line in curve.lines for y in line if y is not None]
-    return _framed((drawn.x, drawn.y), (drawn.curves[0].xs, ys), room, height, draw, drawn.log)
-
-
-def _framed(
+def _print_axes(
+    page: Page,
     titles: tuple[str, str],
     values: tuple[list[float], list[float]],
-    room: int,
     height: int,
     draw: Callable[[Any, Axis, Axis], None],
     log: bool = False,
-) -> list[str]:
-    """Axes over the values in x and y, and what is drawn on them; ``log`` makes the x axis logarithmic."""
+) -> None:
+    """Print axes over the values in x and y, and what is drawn on them; ``log`` is of the x axis."""
+    from rich.text import Text
+
     y_axis = Axis(values[1], 4 * height, max(height // 4, LEAST_TICKS))
     labels = {y_axis.dot(float(tick)) // 4: _label(tick) for tick in y_axis.ticks}
     margin = max(map(len, labels.values()), default=0)
-    width = max(room - margin - 3, LEAST_WIDTH)
+    width = max((page.room or PIPE_WIDTH) - margin - 3, LEAST_WIDTH)
     x_axis = Axis(values[0], 2 * width, max(width // 12, LEAST_TICKS), log)
     canvas = Canvas(width, height, 0, 0, 2 * width, 4 * height)
     draw(canvas, x_axis, y_axis)
@@ -154,13 +140,17 @@ def _framed(
     left = [f" {labels.get(i, ''):>{margin}} {'┤' if i in labels else '│'}" for i in range(height)]
     ticks = {x_axis.dot(float(tick)) // 2: _label(tick) for tick in x_axis.ticks}
     bottom = "".join("┬" if i in ticks else "─" for i in range(width))
-    return [
+    for line in (
         f" {titles[1]}",
         *(start + row for start, row in zip(reversed(left), rows, strict=True)),
         f" {'':>{margin}} └{bottom}",
         f" {'':>{margin}}  {_under(ticks, width)}",
         f" {'':>{margin}}  {titles[0]:>{width}}",
-    ]
+    ):
+        shown = line.replace(EMPTY, " ").rstrip()
+        if not takes_unicode(sys.stdout):
+            shown = for_stream(shown.translate(NOT_UNICODE), sys.stdout)
+        page.console.print(Text.from_ansi(shown), soft_wrap=True)
 
 
 def _draw_curve(canvas: Any, curve: Curve, x_axis: Axis, y_axis: Axis, number: int, several: bool) -> None:
@@ -195,12 +185,3 @@ def _under(ticks: dict[int, str], width: int) -> str:
         if not line or start > len(line):
             line = line.ljust(start) + label
     return line
-
-
-def _legend(drawn: Picture) -> list[str]:
-    """The regimes along each curve, after its letter if there are several."""
-    regimes = [", ".join(curve.regimes) for curve in drawn.curves]
-    if len(regimes) == 1:
-        return [f"Regimes: {regimes[0]}."]
-    curves = zip(LETTERS, drawn.curves, regimes, strict=False)
-    return [f"{letter}: {curve.label}: {words}" for letter, curve, words in curves]
