@@ -833,91 +833,53 @@ def test_without_its_extra_it_names_the_pip_command(missing: str, options: str, 
 FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        ("", f"--M or another option of the scene must carry a range: {FORM}"),
-        ("--M 1", f"--M or another option of the scene must carry a range: {FORM}"),
-        ("--M 1:2:3 --mu 1:2:3 --g 1:2:3", "--g '1:2:3' is a third range, after M and mu; give two"),
-        ("--M 1:2", f"--M '1:2' is no range; write {FORM}"),
-        ("--M 1:2:3:ln", f"--M '1:2:3:ln' is no range; write {FORM}"),
-        ("--M 1:2:3:log:5", f"--M '1:2:3:log:5' is no range; write {FORM}"),
-        ("--M 1:2:1", "--M '1:2:1' has the count '1', which must be a whole number from 2 to 1000000"),
-        (
-            "--M 1:2:1000001",
-            "--M '1:2:1000001' has the count '1000001', which must be a whole number from 2 to 1000000",
-        ),
-        ("--M 1:2:log", "--M '1:2:log' has the count 'log', which must be a whole number from 2 to 1000000"),
-        ("--M 0:inf:3", "--M '0:inf:3' has the end 'inf'; a range runs between finite numbers"),
-        (
-            "--inertia disk:hoop:3",
-            "--inertia 'disk:hoop:3' has the end 'disk'; a range runs between finite numbers",
-        ),
-        ("--M 2:2000g:3", "--M '2:2000g:3' has a unit at one end only; write it at both"),
-        ("--M 2kg:2000g:3", "--M '2kg:2000g:3' has equal ends; a range runs from one value to another"),
-        (
-            "--wrap 90deg:3rad:3",
-            "--wrap '90deg:3rad:3' has ends in units of two kinds; write both in the same unit",
-        ),
-        ("--M 0:2:3:log", "--M '0:2:3:log' has no equal ratios from or to 0; both ends must be above 0"),
-        ("--M 1:2x:3", "--M '2x' has the unknown unit 'x'; there are kg, g, mg, ug, t, lb, lbs, oz, st"),
-        ("--M :2:3", f"--M ':2:3' is no range; write {FORM}"),
-        ("--M -1:2:4", "--M '-1' must be 0 or more (inf locks the pulley)"),
-        (
-            "--M 1:2:2000 --mu 1:2:2000",
-            "--mu '1:2:2000' makes 4000000 points with M; at most 1000000 are taken",
-        ),
-        ("--mu 0.3 --mu-k 0.2:0.4:3", "--mu-k '0.4' must not be above mu; exactly, 0.4 > 0.3"),
-        ("--mu 0.2:0.4:3 --mu-k 0.3", "--mu-k '0.3' must not be above mu; exactly, 0.3 > 0.2 (at mu = 0.2)"),
-        ("--I 1 --R 1 --M 0:1:3", "--I '1' contradicts M = 0; leave one of them out (at M = 0 kg)"),
-        (
-            "--M 1:2:3 --g x",
-            "--g 'x' is not a number; write it like 2, 0.5 or 1.5e-3, or one of mercury, venus, earth, moon, mars, pluto",
-        ),
-        ("--M 1:2:3 --only accel", "--only 'accel' is no quantity; did you mean acceleration?"),
-        ("--M 1:2:3 --plot accel", "--plot 'accel' is no quantity; did you mean acceleration?"),
-        (
-            "--M 1:2:3 --csv -o ./a.svg --figure a.svg acceleration",
-            "--figure 'a.svg' is the file of --output; name another",
-        ),
-        ("--M 1:2:3 --figure a.svg accel", "--figure 'accel' is no quantity; did you mean acceleration?"),
-        ("--M 1:2:3 --plot regime", "--plot 'regime' is not a number to draw; name another quantity"),
-        (
-            "--M 1:2:7 --g 1:2:7 --plot acceleration",
-            "--plot 'acceleration' would be more than 6 curves; give one of the ranges at most 6 points",
-        ),
-        ("--M 1:2:3 --figure a.gif acceleration", "--figure 'a.gif' must end in one of .svg, .png, .pdf"),
-        (
-            "--M 1e200:2e200:3 --plot least_heavier_mass --mu 1",
-            "--plot 'least_heavier_mass' draws numbers between 1e-100 and 1e+100 in magnitude only",
-        ),
-        (
-            "--M 1e-200:2:3:log --figure a.svg acceleration",
-            "--figure 'acceleration' draws numbers between 1e-100 and 1e+100 in magnitude only",
-        ),
-        (
-            "--M 1:2:3 --plot acceleration --csv",
-            "--plot 'acceleration' has no effect with --csv; leave one of them out",
-        ),
-        (
-            "--M 1:2:3 --plot acceleration -o a.json",
-            "--plot 'acceleration' has no effect with --json; leave one of them out",
-        ),
-        (
-            "--M 1:2:3 --plot acceleration --only regime",
-            "--only 'regime' has no effect with --plot; leave one of them out",
-        ),
-        ("--M 1:2:3 --json --csv", "--json has no effect with --csv; leave one of them out"),
-        ("--M 1:2:3 --digits 0", "--digits '0' must be a whole number from 1 to 1000"),
-        ("--M 1:2:3 --force", "--force needs --output or --figure"),
-        (
-            "--M 1:2:3 -o a.tsv",
-            "--output 'a.tsv' must end in one of .txt, .csv, .json, or name --json or --csv",
-        ),
-        ("--M 1:2:3 -o a --output b", "--output is given 2 times; give it once"),
-    ],
-)
-def test_errors(atwood: Atwood, words: str, message: str) -> None:
+WRONG_USAGE = """
+ => --M or another option of the scene must carry a range: {FORM}
+--M 1 => --M or another option of the scene must carry a range: {FORM}
+--M 1:2:3 --mu 1:2:3 --g 1:2:3 => --g '1:2:3' is a third range, after M and mu; give two
+--M 1:2 => --M '1:2' is no range; write {FORM}
+--M 1:2:3:ln => --M '1:2:3:ln' is no range; write {FORM}
+--M 1:2:3:log:5 => --M '1:2:3:log:5' is no range; write {FORM}
+--M 1:2:1 => --M '1:2:1' has the count '1', which must be a whole number from 2 to 1000000
+--M 1:2:1000001 => --M '1:2:1000001' has the count '1000001', which must be a whole number from 2 to 1000000
+--M 1:2:log => --M '1:2:log' has the count 'log', which must be a whole number from 2 to 1000000
+--M 0:inf:3 => --M '0:inf:3' has the end 'inf'; a range runs between finite numbers
+--inertia disk:hoop:3 => --inertia 'disk:hoop:3' has the end 'disk'; a range runs between finite numbers
+--M 2:2000g:3 => --M '2:2000g:3' has a unit at one end only; write it at both
+--M 2kg:2000g:3 => --M '2kg:2000g:3' has equal ends; a range runs from one value to another
+--wrap 90deg:3rad:3 => --wrap '90deg:3rad:3' has ends in units of two kinds; write both in the same unit
+--M 0:2:3:log => --M '0:2:3:log' has no equal ratios from or to 0; both ends must be above 0
+--M 1:2x:3 => --M '2x' has the unknown unit 'x'; there are kg, g, mg, ug, t, lb, lbs, oz, st
+--M :2:3 => --M ':2:3' is no range; write {FORM}
+--M -1:2:4 => --M '-1' must be 0 or more (inf locks the pulley)
+--M 1:2:2000 --mu 1:2:2000 => --mu '1:2:2000' makes 4000000 points with M; at most 1000000 are taken
+--mu 0.3 --mu-k 0.2:0.4:3 => --mu-k '0.4' must not be above mu; exactly, 0.4 > 0.3
+--mu 0.2:0.4:3 --mu-k 0.3 => --mu-k '0.3' must not be above mu; exactly, 0.3 > 0.2 (at mu = 0.2)
+--I 1 --R 1 --M 0:1:3 => --I '1' contradicts M = 0; leave one of them out (at M = 0 kg)
+--M 1:2:3 --g x => --g 'x' is not a number; write it like 2, 0.5 or 1.5e-3, or one of mercury, venus, earth, moon, mars, pluto
+--M 1:2:3 --only accel => --only 'accel' is no quantity; did you mean acceleration?
+--M 1:2:3 --plot accel => --plot 'accel' is no quantity; did you mean acceleration?
+--M 1:2:3 --csv -o ./a.svg --figure a.svg acceleration => --figure 'a.svg' is the file of --output; name another
+--M 1:2:3 --figure a.svg accel => --figure 'accel' is no quantity; did you mean acceleration?
+--M 1:2:3 --plot regime => --plot 'regime' is not a number to draw; name another quantity
+--M 1:2:7 --g 1:2:7 --plot acceleration => --plot 'acceleration' would be more than 6 curves; give one of the ranges at most 6 points
+--M 1:2:3 --figure a.gif acceleration => --figure 'a.gif' must end in one of .svg, .png, .pdf
+--M 1e200:2e200:3 --plot least_heavier_mass --mu 1 => --plot 'least_heavier_mass' draws numbers between 1e-100 and 1e+100 in magnitude only
+--M 1e-200:2:3:log --figure a.svg acceleration => --figure 'acceleration' draws numbers between 1e-100 and 1e+100 in magnitude only
+--M 1:2:3 --plot acceleration --csv => --plot 'acceleration' has no effect with --csv; leave one of them out
+--M 1:2:3 --plot acceleration -o a.json => --plot 'acceleration' has no effect with --json; leave one of them out
+--M 1:2:3 --plot acceleration --only regime => --only 'regime' has no effect with --plot; leave one of them out
+--M 1:2:3 --json --csv => --json has no effect with --csv; leave one of them out
+--M 1:2:3 --digits 0 => --digits '0' must be a whole number from 1 to 1000
+--M 1:2:3 --force => --force needs --output or --figure
+--M 1:2:3 -o a.tsv => --output 'a.tsv' must end in one of .txt, .csv, .json, or name --json or --csv
+--M 1:2:3 -o a --output b => --output is given 2 times; give it once
+"""
+
+
+@pytest.mark.parametrize("line", WRONG_USAGE.strip().splitlines())
+def test_wrong_usage(atwood: Atwood, line: str) -> None:
+    words, message = line.format(FORM=FORM).split(" => ")
     ran = atwood(*HELD, *words.split())
     assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
 
