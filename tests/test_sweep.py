@@ -23,15 +23,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve
-from atwood_cli.arithmetic.interval import LARGEST_EXPONENT
-from atwood_cli.cli.sweep import HELP
-from atwood_cli.model.quantities import NAMES, STANDARD
+from atwood_cli.model.quantities import STANDARD
 from atwood_cli.model.scene import PARAMETERS, SceneError
 from atwood_cli.output.curves import picture
 from atwood_cli.output.page import watched
 from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows
 
-from .running import HANGS, PIP, Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
+from .running import HANGS, PIP, Atwood, labels, misplaced, on_terminal, pages_seen, piped, plain
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]
@@ -98,12 +96,6 @@ def test_ends_are_hit_and_points_advance(start: Decimal, stop: Decimal, count: i
     assert all((a < b) == (start < stop) and a != b for a, b in pairwise(values))
 
 
-@given(st.integers(-30, 30), st.integers(1, 20), st.integers(1, 9))
-def test_powers_are_whole_on_a_log_range(first: int, steps: int, factor: int) -> None:
-    texts = points(f"{factor}e{first}:{factor}e{first + steps}:{steps + 1}:log")
-    assert list(map(Fraction, texts)) == [factor * Fraction(10) ** (first + i) for i in range(steps + 1)]
-
-
 @given(st.integers(1, 10**6), st.integers(1, 10**6), st.integers(3, 200))
 def test_points_at_equal_ratios_are_the_decimals_next_to_them(start: int, stop: int, count: int) -> None:
     if start == stop:
@@ -135,17 +127,6 @@ def test_points_a_person_can_read_lie_where_they_should(
             assert abs(mpmath.mpf(point) - exact) <= abs(after - exact) / 199
         if digits or kind:
             assert max(len(point.strip("0.").replace(".", "")) for point in texts[1:-1]) <= 13
-
-
-def test_points_that_no_double_tells_apart_differ() -> None:
-    for kind in ("", ":log"):
-        texts = points(f"1:1.{'0' * 60}1:7{kind}")
-        assert len(set(texts)) == 7
-
-
-def test_the_first_range_varies_slowest(atwood: Atwood) -> None:
-    ran = atwood("sweep", "--M", "1:2:2", "--m2", "3", "--m1", "1:2:2", "--only", "regime", "--csv")
-    assert ran.out.splitlines() == ["m1,M,regime", *(f"{m1},{M},no-slip" for m1 in (1, 2) for M in (1, 2))]
 
 
 # Rows
@@ -180,30 +161,12 @@ def test_every_row_is_what_solve_prints_for_its_values(
         assert next(csv.DictReader(io.StringIO(one.out))) == {name: row[name] for name in STANDARD}
 
 
-def test_only_names_the_columns_in_the_order_asked_for(atwood: Atwood) -> None:
-    ran = atwood(
-        *HELD, "--M", "1:2:2", "--csv", "--only", "tension_2", "--only", "regime", "--only", "tension_2"
-    )
-    assert ran.out.splitlines()[0] == "M,tension_2,regime"
-
-
 def test_only_what_is_asked_for_is_computed() -> None:
     (row, _) = solve_rows(read_sweep({"m1": "1", "m2": "3", "M": "1:2:2"}), ["tension_1"], None)
     assert list(row.values) == ["tension_1"]
 
 
-def test_the_standard_seven_are_quantities() -> None:
-    assert set(STANDARD) <= set(NAMES)
-    assert len(set(STANDARD)) == 7
-
-
 # Output
-
-
-def test_digits_round_the_swept_column_too(atwood: Atwood) -> None:
-    out = atwood(*SWEEP, "--M", "0:50:7", "--digits", "4", "--only", "tension_1", "--csv").out
-    assert out.splitlines()[1:3] == ["0,14.71", "8.333,12.21"]
-    assert points("0:1:4")[1] == "0.333333"
 
 
 def test_the_table(atwood: Atwood) -> None:
@@ -227,66 +190,79 @@ def test_the_table(atwood: Atwood) -> None:
     ]
 
 
-def test_what_is_the_same_in_all_rows_is_said_once(atwood: Atwood) -> None:
-    lines = atwood(*SWEEP, "--M", "0:50:6").out.splitlines()
-    assert lines[2] == "In all rows: critical_pulley_mass = 43.3419 kg."
-    assert "critical_pulley_mass" not in "".join(lines[3:])
-    only = atwood(*SWEEP, "--M", "0:50:6", "--only", "critical_pulley_mass").out
-    assert "│" not in only
-    assert only.endswith("\nIn all rows: critical_pulley_mass = 43.3419 kg.\n")
-    assert atwood(*SWEEP, "--M", "0:1:6", "--only", "regime").out.endswith("\nRegimes: no-slip.\n")
-    pulley = atwood("sweep", "--m1", "1", "--m2", "3", "--mu", "0.3", "--g", "1:2:2").out
-    assert "In all rows: mu_verge = 0.300000, critical_pulley_mass = 43.3419 kg." in pulley
+FIRST = ["--m1 1 --m2 3 --mu 0.3 --M 0:50:6", "--m1 1 --m2 3 --mu 0.1:0.4:4 --only acceleration"]
+TORQUE = "--m1 1:2:2 --m2 3 --M 1 --only torque --only tension_1"
+RADIANS = "--m1 1 --m2 3 --mu 0.3 --M 10 --wrap 1rad:4rad:4 --only regime"
+EVERY_PULLEY = "As M is not given, each row that is on the verge has a pulley of its own: the critical one."
 
 
-def test_without_a_pulley_each_row_on_the_verge_shows_its_own(atwood: Atwood) -> None:
-    """In a sweep over mu without M the pulley, too, changed from row to row, and nothing said so."""
-    words = [*HELD, "--mu", "0.1:0.4:4", "--only", "acceleration"]
-    out = atwood(*words).out
-    assert (
-        "As M is not given, each row that is on the verge has a pulley of its own: the critical one." in out
-    )
-    assert "│ 0.3 │ 0.764027     │ 43.3419              │" in out
-    assert "Regimes: verge up to mu = 0.349699, no-slip beyond." in out
-    assert atwood(*words, "--csv").out.startswith("mu,acceleration\n")
-    assert "critical" not in atwood(*HELD, "--M", "5", "--mu", "0.1:0.4:4", "--only", "acceleration").out
-
-
-def test_two_ranges_make_a_group_for_each_value_of_the_slow_one(atwood: Atwood) -> None:
-    out = atwood(*HELD, "--M", "1:100:3:log", "--mu", "0.2:0.3:2", "--only", "regime").out
-    assert out.count("├") == 3
-    assert "│ 10   │" not in out
-    assert "│  10  │ 0.2 │ slip    │\n│  10  │ 0.3 │ no-slip │" in out
-    assert "\nM = 10 kg: slip up to mu = 0.205827, no-slip beyond.\n" in out
-    many = atwood(*HELD, "--M", "1:100:7", "--mu", "0.2:0.3:2", "--only", "regime").out
-    assert " up to " not in many
-
-
-def test_where_the_regime_changes_is_told_exactly(atwood: Atwood) -> None:
-    """It was told by the two points beside it."""
-
-    def said(*words: str) -> str:
-        return atwood("sweep", "--m2", "3", "--mu", "0.3", *words, "--only", "regime").out.splitlines()[1]
-
-    assert said("--m1", "1", "--M", "0:20:3") == "Regimes: no-slip."
-    assert said("--m1", "1", "--M", "50:0:3") == "Regimes: slip up to M = 43.3420 kg, no-slip beyond."
-    assert said("--m1", "1:17:9", "--M", "100") == (
-        "Regimes: slip up to m1 = 1.08920 kg, no-slip up to 9.48105 kg, slip beyond."
-    )
-
-
-def test_a_column_without_values_is_left_out_of_the_table_only(atwood: Atwood) -> None:
-    words = ["sweep", "--m1", "1:2:2", "--m2", "3", "--M", "1", "--only", "torque", "--only", "tension_1"]
-    table = atwood(*words)
-    assert "torque\n" not in table.out
-    assert table.out.endswith("torque: give R, the pulley's radius.\n")
-    ran = atwood(*words, "--csv")
-    assert ran.out.splitlines()[0] == "m1,torque,tension_1"
-    assert ran.out.splitlines()[1].startswith("1,,")
-    assert ran.err == "atwood: torque: give R, the pulley's radius.\n"
-    result = json.loads(atwood(*words, "--json").out)
-    assert [row["torque"] for row in result["rows"]] == [None, None]
-    assert result["notes"] == ["torque: give R, the pulley's radius."]
+@pytest.mark.parametrize(
+    ("words", "shown", "absent"),
+    [
+        # What is the same in all rows is said once.
+        (FIRST[0], "beyond.\nIn all rows: critical_pulley_mass = 43.3419 kg.\n", "│ regime"),
+        (f"{FIRST[0]} --only critical_pulley_mass", "\nIn all rows: critical_pulley_mass = 43.3419 kg.", "│"),
+        ("--m1 1 --m2 3 --mu 0.3 --M 0:1:6 --only regime", "\nRegimes: no-slip.", "│"),
+        ("--m1 1 --m2 3 --mu 0.3 --g 1:2:2", "mu_verge = 0.300000, critical_pulley_mass = 43.3419 kg.", ""),
+        # Without M each row on the verge shows its own pulley.
+        (FIRST[1], EVERY_PULLEY, ""),
+        (FIRST[1], "│ 0.3 │ 0.764027     │ 43.3419              │", ""),
+        (FIRST[1], "Regimes: verge up to mu = 0.349699, no-slip beyond.", ""),
+        (f"{FIRST[1]} --csv", "mu,acceleration\n", "critical"),
+        (f"{FIRST[1]} --M 5", "acceleration", "critical"),
+        # A group for each value of the slow range.
+        (
+            "--m1 1 --m2 3 --M 1:100:3:log --mu 0.2:0.3:2 --only regime",
+            "│  10  │ 0.2 │ slip    │\n│  10  │ 0.3 │ no-slip │",
+            "│ 10   │",
+        ),
+        (
+            "--m1 1 --m2 3 --M 1:100:3:log --mu 0.2:0.3:2 --only regime",
+            "\nM = 10 kg: slip up to mu = 0.205827, no-slip beyond.\n",
+            "",
+        ),
+        ("--m1 1 --m2 3 --M 1:100:7 --mu 0.2:0.3:2 --only regime", "│ slip", " up to "),
+        ("--m1 1 --m2 3 --M 0:50:6 --mu 0.1:0.3:9", "│ regime ", ""),
+        # Where the regime changes is told exactly.
+        ("--m1 1 --m2 3 --mu 0.3 --M 0:20:3", "Regimes: no-slip.", ""),
+        ("--m1 1 --m2 3 --mu 0.3 --M 50:0:3", "Regimes: slip up to M = 43.3420 kg, no-slip beyond.", ""),
+        (
+            "--m1 1:17:9 --m2 3 --mu 0.3 --M 100",
+            "Regimes: slip up to m1 = 1.08920 kg, no-slip up to 9.48105 kg, slip beyond.",
+            "",
+        ),
+        # A column without values is left out of the table only.
+        (TORQUE, "torque: give R, the pulley's radius.\n", "torque\n"),
+        (f"{TORQUE} --csv", "m1,torque,tension_1\n1,,", ""),
+        (f"{TORQUE} --json", '"torque": null', ""),
+        (f"{TORQUE} --json", '"torque: give R, the pulley\'s radius."', ""),
+        # An angle in radians is headed so.
+        (RADIANS, "│ wrap  │ regime  │\n│ (rad) │         │", ""),
+        (RADIANS, "│ 3     │ no-slip │", ""),
+        (RADIANS, "Regimes: slip up to wrap = 2.15542rad, no-slip beyond.", ""),
+        (f"{RADIANS} --csv", "3rad,no-slip\n", ""),
+        # Digits, order, columns
+        ("--m1 1 --m2 3 --M 1:2:2 --mu 0.3 --only tension_1 --digits 4 --json", '"tension_1": 14.17', ""),
+        ("--m1 1 --m2 3 --M 0:50:7 --mu 0.3 --only tension_1 --digits 4 --csv", "0,14.71\n8.333,12.21\n", ""),
+        ("--m1 1 --m2 3 --M 1:2:2 --csv --only tension_2,regime,tension_2", "M,tension_2,regime\n", ""),
+        (f"{FIRST[0]} --csv", "M,regime,acceleration,", ""),
+        (
+            "--M 1:2:2 --m2 3 --m1 1:2:2 --only regime --csv",  # the first range varies slowest
+            "m1,M,regime\n1,1,no-slip\n1,2,no-slip\n2,1,no-slip\n2,2,no-slip\n",
+            "",
+        ),
+        ("--m1 1e400 --m2 3e400 --M 1:2:2 --only tension_1 --csv", "M,tension_1\n1,\n2,\n", ""),
+        (
+            "--m1 1e400 --m2 3e400 --M 1:2:2 --only tension_1 --csv --digits 3",
+            "\n1,1.47e401\n2,1.47e401\n",
+            "",
+        ),
+    ],
+)
+def test_what_is_shown(atwood: Atwood, words: str, shown: str, absent: str) -> None:
+    out = atwood("sweep", *words.split()).out
+    assert shown in out
+    assert not absent or absent not in out
 
 
 def test_a_note_says_at_how_many_points(atwood: Atwood) -> None:
@@ -312,21 +288,6 @@ def test_json(atwood: Atwood) -> None:
     assert ran.err == ""
 
 
-def test_json_and_csv_have_the_digits_asked_for(atwood: Atwood) -> None:
-    words = [*SWEEP, "--M", "1:2:2", "--only", "tension_1", "--digits", "4"]
-    assert '"tension_1": 14.17' in atwood(*words, "--json").out
-    assert "1,14.17\n" in atwood(*words, "--csv").out
-
-
-def test_an_angle_in_radians_is_headed_so(atwood: Atwood) -> None:
-    words = [*SWEEP, "--M", "10", "--wrap", "1rad:4rad:4", "--only", "regime"]
-    out = atwood(*words).out
-    assert "│ wrap  │ regime  │\n│ (rad) │         │" in out
-    assert "│ 3     │ no-slip │" in out
-    assert "Regimes: slip up to wrap = 2.15542rad, no-slip beyond." in out
-    assert "3rad,no-slip\n" in atwood(*words, "--csv").out
-
-
 def test_a_long_table_is_trimmed_in_the_middle_on_a_terminal() -> None:
     words = [*SWEEP, "--M", "0:100:101", "--digits", "5"]
     seen = plain(on_terminal(*words, columns=150, rows=24))
@@ -348,29 +309,22 @@ def test_tables_below_each_other_share_the_screen() -> None:
     )
 
 
-def test_the_regimes_are_a_column_where_no_sentence_tells_them(atwood: Atwood) -> None:
-    assert "│ regime " not in atwood(*SWEEP, "--M", "0:50:6").out
-    assert "│ regime " in atwood(*HELD, "--M", "0:50:6", "--mu", "0.1:0.3:9").out
-    assert atwood(*SWEEP, "--M", "0:50:6", "--csv").out.startswith("M,regime,acceleration,")
-
-
-def test_a_table_that_fits_is_whole() -> None:
-    seen = plain(on_terminal(*SWEEP, "--M", "0:10:11", "--only", "tension_1", columns=100, rows=24))
-    assert "..." not in seen
-    assert len(re.findall(r"^│ +\d+ ", seen, re.MULTILINE)) == 11
-
-
-def test_many_groups_are_trimmed_too() -> None:
-    words = [*HELD, "--M", "1:20:20", "--mu", "0.1:0.2:2", "--only", "regime"]
-    seen = plain(on_terminal(*words, columns=100, rows=24))
-    assert seen.count("\n") <= 23
-    assert "│  1   │ 0.1 │" in seen
-    assert "│ 20   │ 0.2 │" in seen
-
-
-def test_the_smallest_terminal_shows_both_ends() -> None:
-    seen = plain(on_terminal(*SWEEP, "--M", "0:100:101", "--only", "regime", columns=100, rows=2))
-    assert re.findall(r"^│ +(\d+) ", seen, re.MULTILINE) == ["0", "100"]
+@pytest.mark.parametrize(
+    ("words", "columns", "rows", "first", "last", "left_out"),
+    [
+        ("--mu 0.3 --M 0:10:11 --only tension_1", 100, 24, "0", "10", False),
+        ("--M 1:20:20 --mu 0.1:0.2:2 --only regime", 100, 24, "1", "20", True),
+        ("--mu 0.3 --M 0:100:101 --only regime", 100, 2, "0", "100", True),
+    ],
+)
+def test_a_terminal_shows_both_ends(
+    words: str, columns: int, rows: int, first: str, last: str, left_out: bool
+) -> None:
+    seen = plain(on_terminal(*HELD, *words.split(), columns=columns, rows=rows))
+    assert rows < 9 or seen.count("\n") < rows
+    shown = re.findall(r"^│ +(\d+) ", seen, re.MULTILINE)
+    assert (shown[0], shown[-1], "..." in seen) == (first, last, left_out)
+    assert "\x1b" not in seen
 
 
 def test_a_narrow_terminal_repeats_every_swept_column() -> None:
@@ -382,28 +336,19 @@ def test_a_narrow_terminal_repeats_every_swept_column() -> None:
 
 @pytest.mark.parametrize("environment", [{}, {"FORCE_COLOR": "1"}, {"COLUMNS": "40", "LINES": "5"}])
 def test_a_pipe_gets_every_row(environment: dict[str, str]) -> None:
-    ran = process(*SWEEP, "--M", "0:100:101", "--only", "regime", **environment)
+    ran = piped(*SWEEP, "--M", "0:100:101", "--only", "regime", **environment)
     assert len(re.findall(r"^│ +\d+ ", ran.out, re.MULTILINE)) == 101
     assert "..." not in ran.out
 
 
-def test_where_stdout_is_not_unicode() -> None:
-    ran = process(*SWEEP, "--M", "0:50:6", "--only", "acceleration", PYTHONIOENCODING="ascii")
-    assert (ran.status, ran.err) == (0, "")
-    assert "(m/s^2)" in ran.out
-    assert "?" not in ran.out
-
-
-@pytest.mark.parametrize("output", ["", "--json", "--csv", "--plot acceleration"])
-def test_a_reader_that_leaves_early_ends_it_quietly(output: str) -> None:
-    if "--plot" in output:
+@pytest.mark.parametrize("words", ["", "--plot acceleration"])
+def test_where_stdout_is_not_unicode(words: str) -> None:
+    if words:
         pytest.importorskip("plotille")
-    ran = process(
-        shell=f"set -o pipefail; atwood {' '.join(HELD)} --M 1:500:500 --mu 0.3 {output} --digits 5 | head -1"
-    )
-    assert ran.status == 0
-    assert len(ran.out.splitlines()) == 1
-    assert "Traceback" not in ran.err
+    for encoding in ("ascii", "cp1252"):
+        ran = piped(*SWEEP, "--M", "0:100:101", *words.split(), PYTHONIOENCODING=encoding)
+        assert (ran.status, ran.err, ran.out.isascii(), "?" in ran.out) == (0, "", True, False)
+        assert ("(m/s^2)" in ran.out, " 4 |" in ran.out, "***" in ran.out) == (True, bool(words), bool(words))
 
 
 def test_only_what_is_needed_is_imported() -> None:
@@ -413,21 +358,6 @@ def test_only_what_is_needed_is_imported() -> None:
     words = [*HELD, "--M", "1:2:2", "--only", "tension_1", "--csv"]
     done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)
     assert not {"rich", "numpy", "plotille", "matplotlib"} & set(done.stderr.split())
-
-
-def test_help_shows_ranges_as_they_are_typed(atwood: Atwood) -> None:
-    """rich would take some words between colons for emoji."""
-    out = atwood("sweep", "-h").out
-    examples = re.findall(r"atwood sweep .*", HELP)
-    assert len(examples) >= 5
-    assert all(f" {example}\n" in out for example in examples)
-
-
-@pytest.mark.parametrize("encoding", ["ascii", "cp1252"])
-def test_help_where_stdout_is_not_unicode(encoding: str) -> None:
-    ran = process("sweep", "-h", PYTHONIOENCODING=encoding)
-    assert (ran.status, ran.err) == (0, "")
-    assert "--figure" in ran.out
 
 
 # Waiting
@@ -486,6 +416,7 @@ def test_an_interrupt_leaves_no_file(tmp_path: Path) -> None:
         ("a.json", "", "--json"),
         ("a.txt", "--json", "--json"),
         ("a.json", "--csv", "--csv"),
+        ("a.dat", "--csv", "--csv"),
     ],
 )
 def test_a_file_gets_what_stdout_would(
@@ -493,6 +424,7 @@ def test_a_file_gets_what_stdout_would(
 ) -> None:
     words = [*HELD, "--M", "1:2:3", "--only", "tension_1", "--only", "torque"]
     expected = atwood(*words, *printed_by.split())
+    assert atwood(*words, *printed_by.split(), "-o", "-") == expected
     ran = atwood(*words, *options.split(), "-o", str(tmp_path / name))
     assert (ran.status, ran.out, ran.err) == (1, "", expected.err)  # as there is no torque
     assert (tmp_path / name).read_bytes().decode() == expected.out
@@ -527,18 +459,6 @@ def test_the_table_in_a_file_is_whole_and_uncoloured(tmp_path: Path) -> None:
     assert "│ friction_force │" in text
 
 
-def test_an_existing_file_is_replaced_only_by_force(atwood: Atwood, tmp_path: Path) -> None:
-    file = tmp_path / "a.csv"
-    file.write_text("kept")
-    words = [*HELD, "--M", "1:2:3", "--only", "regime", "-o", str(file)]
-    ran = atwood(*words)
-    assert (ran.status, ran.out) == (1, "")
-    assert ran.err == f"atwood: cannot write {file}: it exists already; --force replaces it\n"
-    assert file.read_text() == "kept"
-    assert atwood(*words, "--force").status == 0
-    assert file.read_text().startswith("M,regime\n")
-
-
 def test_a_file_that_cannot_be_written(atwood: Atwood, tmp_path: Path) -> None:
     for file, reason in (
         (tmp_path / "no" / "a.csv", "No such file or directory"),
@@ -555,37 +475,22 @@ def test_a_device_is_written_to_as_it_is(atwood: Atwood) -> None:
     assert not Path("/dev/full").is_file()
 
 
-@pytest.mark.parametrize("output", ["", "--csv", "--json"])
-def test_a_dash_is_stdout(
-    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, output: str
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    words = [*HELD, "--M", "1:2:3", "--only", "tension_1", *output.split()]
-    assert atwood(*words, "-o", "-") == atwood(*words)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_flag_names_the_format_of_any_file(atwood: Atwood, tmp_path: Path) -> None:
-    file = tmp_path / "a.dat"
-    assert atwood(*HELD, "--M", "1:2:3", "--only", "regime", "--csv", "-o", str(file)).status == 0
-    assert file.read_text().startswith("M,regime\n")
-
-
 @pytest.mark.parametrize(
     "words",
     [
+        "sweep --M 1:2:3 --output FILE",
         "sweep --M 1:2:3 --figure FILE acceleration",
         "contact --M 1 --figure FILE",
         "tradeoff --M 1 --figure FILE",
     ],
 )
-def test_a_figure_is_replaced_only_by_force(
+def test_a_file_is_replaced_only_by_force(
     atwood: Atwood, tmp_path: Path, words: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("matplotlib")
     monkeypatch.setattr("atwood_cli.tradeoff.measure.REPEATS", 1)
     monkeypatch.setattr("atwood_cli.tradeoff.measure.COUNTS", (4, 10))
-    file = tmp_path / "a.svg"
+    file = tmp_path / ("a.svg" if "figure" in words else "a.csv")
     file.write_text("kept")
     command, *rest = words.replace("FILE", str(file)).split()
     ran = atwood(command, "--m1", "1", "--m2", "3", *rest)
@@ -593,7 +498,7 @@ def test_a_figure_is_replaced_only_by_force(
     assert ran.err == f"atwood: cannot write {file}: it exists already; --force replaces it\n"
     assert file.read_text() == "kept"
     assert atwood(command, "--m1", "1", "--m2", "3", *rest, "--force").status == 0
-    assert "<svg" in file.read_text(encoding="utf-8")
+    assert file.read_text(encoding="utf-8").startswith(("<?xml", "M,"))
     assert list(tmp_path.iterdir()) == [file]
 
 
@@ -673,16 +578,6 @@ def test_plots_of_next_to_nothing(atwood: Atwood, words: str) -> None:
     assert len(ran.out.splitlines()) - ran.out.count("\ninertia") - ran.out.count("\nwrap") == 26
 
 
-def test_plot_where_stdout_is_not_unicode() -> None:
-    pytest.importorskip("plotille")
-    ran = process(*SWEEP, "--M", "0:100:101", "--plot", "acceleration", PYTHONIOENCODING="cp1252")
-    assert (ran.status, ran.err) == (0, "")
-    assert ran.out.isascii()
-    assert "?" not in ran.out
-    assert " 4 |" in ran.out
-    assert "'" in ran.out
-
-
 def test_plot_on_a_terminal() -> None:
     pytest.importorskip("plotille")
     words = [*SWEEP, "--M", "0:100:101", "--plot", "acceleration"]
@@ -703,14 +598,6 @@ def test_a_plot_fits_a_low_terminal() -> None:
     assert seen.count("\n") < 20
     assert " 2 ┤" in seen
     assert plain(on_terminal(*words, columns=100, rows=5)).count("│") >= 3
-
-
-def test_plot_into_a_file(atwood: Atwood, tmp_path: Path) -> None:
-    pytest.importorskip("plotille")
-    words = [*SWEEP, "--M", "0:100:11", "--plot", "acceleration"]
-    expected = atwood(*words).out
-    assert atwood(*words, "-o", str(tmp_path / "a.txt")).out == ""
-    assert (tmp_path / "a.txt").read_text(encoding="utf-8") == expected
 
 
 def test_a_figure(atwood: Atwood, tmp_path: Path) -> None:
@@ -777,7 +664,7 @@ def test_curves_turn_exactly_where_the_regime_changes() -> None:
         assert mark.x == pytest.approx(exact.critical_pulley_mass, rel=1e-6)
         assert mark.y == pytest.approx(exact.acceleration, rel=1e-6)
         assert len(curve.xs) > 200
-        for x, y in zip(curve.xs, curve.ys, strict=True):
+        for x, y in [*zip(curve.xs, curve.ys, strict=True)][::8]:
             assert y == pytest.approx(solve(m1=1, m2=3, M=x, mu=mu).acceleration, rel=1e-6)
 
 
@@ -806,7 +693,7 @@ def test_a_figure_of_friction_has_a_band_where_it_is_not_one_number() -> None:
 def test_a_figure_of_every_kind(atwood: Atwood, tmp_path: Path, suffix: str) -> None:
     pytest.importorskip("matplotlib")
     file = tmp_path / f"a.{suffix}"
-    assert atwood(*SWEEP, "--M", "1:1000:90:log", "--figure", str(file), "acceleration").status == 0
+    assert atwood(*SWEEP, "--M", "1:1000:9:log", "--figure", str(file), "acceleration").status == 0
     assert file.read_bytes().startswith({"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}[suffix])
 
 
@@ -877,16 +764,11 @@ WRONG_USAGE = """
 """
 
 
-@pytest.mark.parametrize("line", WRONG_USAGE.strip().splitlines())
+@pytest.mark.parametrize("line", WRONG_USAGE.strip("\n").splitlines())
 def test_wrong_usage(atwood: Atwood, line: str) -> None:
     words, message = line.format(FORM=FORM).split(" => ")
     ran = atwood(*HELD, *words.split())
     assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
-
-
-def test_masses_are_missing_here_too(atwood: Atwood) -> None:
-    ran = atwood("sweep", "--m1", "1:2:3")
-    assert (ran.status, ran.err) == (2, "atwood: --m2 is missing; give both masses, m1 and m2\n")
 
 
 @pytest.mark.parametrize("option", ["--plot torque", "--figure a.svg torque"])
@@ -907,34 +789,6 @@ def test_an_invalid_corner_is_found_wherever_it_is() -> None:
             read_sweep({"m1": "1", "m2": "3", "M": "1", **words})
     with pytest.raises(SceneError, match="both 0"):
         read_sweep({"m1": "1:0:3", "m2": "3:0:3"})
-
-
-def test_wrong_usage_of_figure(atwood: Atwood) -> None:
-    ran = atwood(*HELD, "--M", "1:2:3", "--figure", "a.svg")
-    assert (ran.status, ran.out) == (2, "")
-    assert "requires 2 arguments" in ran.err
-
-
-def test_huge_numbers_are_drawn_nowhere_but_printed(atwood: Atwood) -> None:
-    ran = atwood("sweep", "--m1", "1e400", "--m2", "3e400", "--M", "1:2:2", "--only", "tension_1", "--csv")
-    assert ran.out == "M,tension_1\n1,\n2,\n"
-    assert "ask for digits" in ran.err
-    assert LARGEST_EXPONENT > 400
-    exact = atwood(
-        "sweep",
-        "--m1",
-        "1e400",
-        "--m2",
-        "3e400",
-        "--M",
-        "1:2:2",
-        "--only",
-        "tension_1",
-        "--csv",
-        "--digits",
-        "3",
-    )
-    assert exact.out == "M,tension_1\n1,1.47e401\n2,1.47e401\n"
 
 
 @pytest.mark.parametrize("count", ["1000000:log", "999998"])

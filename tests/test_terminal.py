@@ -74,8 +74,8 @@ def test_no_width_loses_a_digit(command: str, table: str) -> None:
         assert numbers(usual.out + usual.err) <= numbers(seen), columns
         assert "…" not in seen
         assert seen.strip()
-    for columns in ("0", "40", "80"):
-        ran = piped(*typed, COLUMNS=columns)
+    for width in ("0", "40", "80"):
+        ran = piped(*typed, COLUMNS=width)
         assert (ran.status, numbers(ran.out)) == (usual.status, numbers(usual.out))
 
 
