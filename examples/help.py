@@ -1,24 +1,23 @@
 """The help of every command, as `help.txt` keeps it: python -m examples.help > examples/help.txt"""
 
 import os
-import subprocess
 import sys
+from contextlib import redirect_stdout
+from io import BytesIO, TextIOWrapper
+from unittest.mock import patch
 
-COMMANDS = ("", "solve", "fit", "sweep", "contact", "batch", "tradeoff")
+from atwood_cli.cli import COMMANDS, run
 
 
 def pages() -> str:
     """What `atwood -h` and `atwood COMMAND -h` print at 80 columns."""
-    env = {**os.environ, "COLUMNS": "80", "PYTHONIOENCODING": "utf-8"}
-    shown = []
-    for command in COMMANDS:
-        words = [*command.split(), "-h"]
-        done = subprocess.run(
-            [sys.executable, "-m", "atwood_cli", *words], capture_output=True, env=env, check=True
-        )
-        text = done.stdout.decode().replace("\r\n", "\n")
-        shown.append(f"$ atwood {' '.join(words)}\n{text}")
-    return "\n".join(shown)
+    kept = BytesIO()
+    stream = TextIOWrapper(kept, encoding="utf-8", newline="\n", write_through=True)
+    with patch.dict(os.environ, COLUMNS="80"), redirect_stdout(stream):
+        for words in (["-h"], *([command, "-h"] for command in COMMANDS)):
+            print(f"{chr(10) * bool(kept.tell())}$ atwood {' '.join(words)}")
+            run(words)
+    return kept.getvalue().decode()
 
 
 if __name__ == "__main__":

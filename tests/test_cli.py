@@ -436,17 +436,8 @@ def test_no_message_repeats_all_that_was_typed(atwood: Atwood, long: str) -> Non
 def test_version_and_help(atwood: Atwood) -> None:
     assert re.fullmatch(r"atwood \d+\.\d+\.\d+\n", atwood("--version").out)
     assert atwood("-V") == atwood("--version")
-    assert atwood("help") == atwood("-h")
-    assert atwood("help", "sweep") == atwood("sweep", "-h")
+    assert atwood("help", "sweep") == atwood("sweep", "-h") == atwood("sweep", "--help")
     assert atwood("help", "slove").status == 2
-    for arguments in (["-h"], ["--help"], []):
-        assert "solve" in atwood(*arguments).out
-    for flag in ("-h", "--help"):
-        ran = atwood("solve", flag)
-        assert ran.status == 0
-        assert "atwood solve --m1 1 --m2 3 --mu 0.3" in ran.out
-        for option in ("--m1", "--M,--pulley-mass", "--mu-k", "--R,--radius", "--only", "(kg m²)"):
-            assert option in ran.out.replace("--M, ", "--M,").replace("--R, ", "--R,")
 
 
 @pytest.mark.parametrize("output", ["--json", "--csv", "--only acceleration", ""])

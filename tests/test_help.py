@@ -16,23 +16,23 @@ from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import ACCURACIES, NAMES
 from atwood_cli.model.scene import BODIES, INERTIA_FACTORS
 from atwood_cli.tradeoff.scenes import FAMILIES
-from examples.help import COMMANDS, pages
+from examples.help import pages
 
-from .running import Atwood, on_terminal, process
+from .running import on_terminal, piped, process
 
 TOP = Path(__file__).parent.parent
 GROUP: Any = cli.program()
-PAGES = ["", *(f"{command} -h".strip() for command in COMMANDS)]
+PAGES = ["-h", *(f"{command} -h" for command in cli.COMMANDS)]
 ATWOOD = Path(sys.executable).with_name("atwood")
 
 
 def test_the_help_kept_is_todays() -> None:
-    kept = (TOP / "examples" / "help.txt").read_text(encoding="utf-8")
-    assert pages() == kept, "python -m examples.help > examples/help.txt"
-
-
-def test_help_is_kept_of_every_command() -> None:
-    assert list(COMMANDS) == ["", *GROUP.commands]
+    """With `python -OO`, too, which has no docstrings: help was a traceback."""
+    kept = (TOP / "examples" / "help.txt").read_bytes()
+    assert pages().encode() == kept, "python -m examples.help > examples/help.txt"
+    optimized = [sys.executable, "-OO", "-m", "examples.help"]
+    assert subprocess.run(optimized, stdout=subprocess.PIPE, cwd=TOP, check=True).stdout == kept
+    assert piped() == piped("-h") == piped("help")
 
 
 @pytest.mark.parametrize("command", GROUP.commands)
@@ -54,64 +54,43 @@ def test_every_option_says_what_it_means_and_in_which_group(command: str) -> Non
 
 @pytest.mark.parametrize("columns", [10, 24, 40, 80, 200])
 @pytest.mark.parametrize("words", PAGES)
-def test_no_width_loses_a_word_of_help(atwood: Atwood, words: str, columns: int) -> None:
-    def stream(text: str) -> list[str]:
-        return text.replace("\\\n", "\n").split()
-
-    os.environ["COLUMNS"] = str(columns)
-    try:
-        out = atwood(*words.split()).out
-        os.environ["COLUMNS"] = "100"
-        whole = atwood(*words.split()).out
-    finally:
-        del os.environ["COLUMNS"]
-    assert sorted(stream(out)) == sorted(stream(whole))
+def test_no_width_loses_a_word_of_help(words: str, columns: int) -> None:
+    out, whole = (piped(*words.split(), COLUMNS=str(width)).out for width in (columns, 100))
+    assert sorted(out.replace("\\\n", "\n").split()) == sorted(whole.split())
     assert columns < 40 or max(map(len, out.splitlines())) <= min(columns - 1, 100)
 
 
 @pytest.mark.parametrize("words", PAGES)
 def test_help_is_bold_on_a_terminal_and_says_the_same(words: str) -> None:
-    seen = on_terminal(*words.split(), columns=70, COLUMNS="70")
-    piped = process(*words.split(), COLUMNS="70").out
+    seen, plain = on_terminal(*words.split(), columns=70), piped(*words.split(), COLUMNS="70").out
     assert "\x1b[1mExamples:\x1b[0m" in seen
-    assert re.sub(r"\x1b\[[01]m", "", seen) == piped
-    assert on_terminal(*words.split(), columns=70, TERM="dumb") == piped
+    assert re.sub(r"\x1b\[[01]m", "", seen) == plain
+    assert on_terminal(*words.split(), columns=70, TERM="dumb") == plain
 
 
-def test_a_terminal_tells_its_width() -> None:
-    wide, narrow = (on_terminal("solve", "-h", columns=n) for n in (90, 45))
-    assert 80 < max(map(len, wide.splitlines())) < 90
-    assert max(map(len, narrow.splitlines())) < 45
-
-
-def test_a_long_example_is_continued_as_a_shell_takes_it(
-    atwood: Atwood, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COLUMNS", "40")
-    out = atwood("solve", "-h").out
+def test_a_long_example_is_continued_as_a_shell_takes_it() -> None:
+    out = piped("solve", "-h", COLUMNS="40").out
     assert "  atwood solve --m1 1 --m2 3 --mu 0.3\n" in out
     assert "  atwood solve --m1 250g --m2 300g \\\n    --M 100g --R 5cm --all\n" in out
 
 
-def test_alone_it_is_brief(atwood: Atwood) -> None:
-    ran, full = atwood(), atwood("-h")
-    assert (ran.status, ran.err) == (0, "")
-    assert len(ran.out.splitlines()) <= 20 < len(full.out.splitlines())
-    assert ran.out.count("  atwood ") == 3
-    assert all(f"\n  {command} " in ran.out for command in GROUP.commands)
-    assert "atwood -h says more" in ran.out
-
-
-def test_help_needs_neither_rich_nor_numpy() -> None:
-    code = "import sys; from atwood_cli.cli import run; run(['batch', '-h']); print(*sys.modules, file=sys.stderr)"
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+@pytest.mark.parametrize("words", ["batch -h", "solve --only te", "sweep --plot a"])
+def test_help_and_completion_import_little(words: str) -> None:
+    code = (
+        "import sys, atexit; from atwood_cli.cli import run;"
+        " atexit.register(lambda: print(*sys.modules, file=sys.stderr)); run()"
+    )
+    asked = {"COMP_WORDS": f"atwood {words}", "COMP_CWORD": "3", "_ATWOOD_COMPLETE": "complete_bash"}
+    done = subprocess.run(
+        [sys.executable, "-c", code, *words.split()],
+        capture_output=True,
+        text=True,
+        check=True,
+        env=os.environ | (asked if "-h" not in words else {}),
+    )
+    assert done.stdout
+    assert "atwood_cli.cli" in done.stderr
     assert not {"rich", "numpy", "polars"} & set(done.stderr.split())
-
-
-@pytest.mark.parametrize("words", PAGES)
-def test_help_is_there_where_docstrings_are_not(words: str) -> None:
-    """`python -OO` has none: help was a traceback."""
-    assert process(*words.split(), PYTHONOPTIMIZE="2") == process(*words.split())
 
 
 # Completion
@@ -178,21 +157,6 @@ def test_every_shell_gets_names_with_what_they_mean() -> None:
 def test_fish_is_told_where_files_are_to_be_completed(words: str, status: int) -> None:
     asked = {"_TYPER_COMPLETE_ARGS": f"atwood {words}", "_TYPER_COMPLETE_FISH_ACTION": "is-args"}
     assert process(**asked, _ATWOOD_COMPLETE="complete_fish") == (status, "", "")
-
-
-@pytest.mark.parametrize("words", ["solve --only te", "sweep --plot a"])
-def test_completion_imports_little(words: str) -> None:
-    code = (
-        "import sys, atexit; from atwood_cli.cli import run;"
-        " atexit.register(lambda: print(*sys.modules, file=sys.stderr)); run()"
-    )
-    asked = {"COMP_WORDS": f"atwood {words}", "COMP_CWORD": "3", "_ATWOOD_COMPLETE": "complete_bash"}
-    done = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True, env=os.environ | asked
-    )
-    assert done.stdout
-    assert "atwood_cli.cli" in done.stderr
-    assert not {"rich", "numpy", "polars"} & set(done.stderr.split())
 
 
 @pytest.mark.parametrize(
