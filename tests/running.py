@@ -65,11 +65,14 @@ def started(words: Sequence[str], streams: Sequence[int], asked: Mapping[str, st
     return partial(child.wait, HANGS)
 
 
-def process(*arguments: str, shell: str = "", stdin: Any = None, **environment: str) -> Ran:
-    """Run it as a process; with ``shell``, a bash line in which `atwood` is the command."""
-    if shell:
-        words = ["bash", "-c", f'atwood() {{ "$PYTHON" -m atwood_cli "$@"; }}; {shell}']
-        done = subprocess.run(words, capture_output=True, env=around(environment), check=False, timeout=HANGS)
+def process(*arguments: str, shell: str = "", code: str = "", stdin: Any = None, **environment: str) -> Ran:
+    """Run it, or other code, as a process; with ``shell``, a bash line in which `atwood` is the command."""
+    if shell or code:
+        bash = ["bash", "-c", f'atwood() {{ "$PYTHON" -m atwood_cli "$@"; }}; {shell}']
+        words = [sys.executable, "-c", code, *arguments] if code else bash
+        done = subprocess.run(
+            words, stdin=stdin, capture_output=True, env=around(environment), check=False, timeout=HANGS
+        )
         return Ran(done.returncode, *(said.decode("utf-8", "replace") for said in (done.stdout, done.stderr)))
     with TemporaryFile() as out, TemporaryFile() as err:
         status = started(

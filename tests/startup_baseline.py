@@ -6,13 +6,12 @@ It imports decimal and json, and for the table rich's console and one table, as 
 import decimal  # noqa: F401
 import json
 import sys
-from inspect import Parameter, Signature
 from typing import Annotated
 
 import typer
 
-OPTIONS = ("m1", "m2", "M", "mu", "mu_k", "g", "inertia", "I", "R", "wrap", "json")
-
+Text = Annotated[str | None, typer.Option(help="Help.", rich_help_panel="Scene")]
+Json = Annotated[bool, typer.Option("--json", help="Help.", rich_help_panel="Scene")]
 app = typer.Typer(name="atwood")
 
 
@@ -20,8 +19,22 @@ app = typer.Typer(name="atwood")
 def root() -> None: ...
 
 
-def solve(**given: str | bool | None) -> None:
-    if given["json"]:
+@app.command()
+def solve(
+    *,
+    m1: Text = None,
+    m2: Text = None,
+    M: Text = None,
+    mu: Text = None,
+    mu_k: Text = None,
+    g: Text = None,
+    inertia: Text = None,
+    I: Text = None,
+    R: Text = None,
+    wrap: Text = None,
+    as_json: Json = False,
+) -> None:
+    if as_json:
         print(json.dumps({"acceleration": 0.764026672247107}))
         return
     from rich.console import Console
@@ -31,18 +44,6 @@ def solve(**given: str | bool | None) -> None:
     table.add_row("acceleration", "0.764026672247107")
     Console().print(table)
 
-
-def option(name: str) -> Parameter:
-    flag, kind = f"--{name.replace('_', '-')}", bool if name == "json" else str | None
-    about = typer.Option(flag, help="Help.", rich_help_panel="Scene")
-    default = False if name == "json" else None
-    return Parameter(name, Parameter.KEYWORD_ONLY, default=default, annotation=Annotated[kind, about])
-
-
-parameters = [option(name) for name in OPTIONS]
-solve.__dict__["__signature__"] = Signature(parameters)
-solve.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}
-app.command()(solve)
 
 if __name__ == "__main__":
     sys.exit(app())

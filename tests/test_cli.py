@@ -17,8 +17,13 @@ from atwood_cli.cli.options import read_names
 from atwood_cli.model.quantities import MEASURED_NAMES, QUANTITIES
 from atwood_cli.output.text import ASCII
 
+<<<<<<< HEAD
 from . import oracle, startup_baseline
 from .running import PAPER, Atwood, on_terminal, plain, process
+=======
+from . import oracle
+from .running import PAPER, Atwood, on_pty, on_terminal, plain, process
+>>>>>>> 53eae41 (Tests: what runs other code is one call; the baseline of start-up is a plain command)
 
 LOADED = "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
 
@@ -442,10 +447,7 @@ def test_version_and_help(atwood: Atwood) -> None:
 
 @pytest.mark.parametrize("output", ["--json", "--csv", "--only acceleration", ""])
 def test_only_what_is_needed_is_imported(output: str) -> None:
-    done = subprocess.run(
-        [sys.executable, "-c", LOADED, *PAPER, *output.split()], capture_output=True, text=True, check=True
-    )
-    loaded = set(done.stderr.split())
+    loaded = set(process(*PAPER, *output.split(), code=LOADED).err.split())
     ours = {name for name in loaded if name.startswith(("atwood_cli.cli.", "atwood_cli.output."))}
     assert ours - {"atwood_cli.output.page"} == {
         f"atwood_cli.{name}" for name in ("cli.options", "cli.solve", "output.text")
@@ -479,10 +481,7 @@ def test_what_only_names_and_one_row_has_is_there(atwood: Atwood) -> None:
 
 def test_the_door_opens_before_anything_is_loaded() -> None:
     """So that Ctrl-C while the rest loads finds the handler in place."""
-    code = "import sys, atwood_cli.__main__; print(*sys.modules)"
-    loaded = subprocess.run(
-        [sys.executable, "-c", code], capture_output=True, text=True, check=True
-    ).stdout.split()
+    loaded = process(code="import sys, atwood_cli.__main__; print(*sys.modules)").out.split()
     assert "atwood_cli.__main__" in loaded
     assert not {"atwood_cli.cli", "atwood_cli.solver", "atwood_cli.model", "typer"} & set(loaded)
 
@@ -491,20 +490,6 @@ def test_numbers_may_be_as_long_in_any_environment() -> None:
     words = ["solve", "--m1", f"1.{'3' * 900}", "--m2", "3", "--digits", "1000", "--csv"]
     ran = process(*words, PYTHONINTMAXSTRDIGITS="640")
     assert (ran.status, ran.err) == (0, process(*words).err)
-
-
-@pytest.mark.parametrize("where", ["atwood_cli.solver.reading.Answers", "atwood_cli.cli.run"])
-def test_an_interrupt_ends_it_with_130(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], where: str
-) -> None:
-    def interrupt(*_: object) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(where, interrupt)
-    monkeypatch.setattr("signal.signal", lambda *_: None)  # this process goes on
-    monkeypatch.setattr(sys, "argv", ["atwood", *PAPER])
-    assert main() == 130
-    assert capsys.readouterr() == ("", "")
 
 
 def test_an_error_that_is_no_interrupt_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -531,9 +516,7 @@ def test_python_dash_m_and_the_command_are_one() -> None:
 @pytest.mark.parametrize("output", ["--json", ""])
 def test_the_baseline_of_start_up_takes_the_same_words(output: str) -> None:
     words = [sys.executable, "-m", "tests.startup_baseline", *PAPER, *output.split()]
-    done = subprocess.run(words, capture_output=True, text=True, check=True)
-    assert "0.764026672247107" in done.stdout
-    assert len(startup_baseline.OPTIONS) == 11
+    assert "0.764026672247107" in subprocess.run(words, capture_output=True, text=True, check=True).stdout
 
 
 # As a program
@@ -553,9 +536,8 @@ sys.exit(status)
 @pytest.mark.parametrize(("words", "status", "out"), [("--only regime", 0, "verge\n"), ("--zzz", 2, "")])
 def test_what_is_left_to_do_at_exit_is_done(words: str, status: int, out: str) -> None:
     """main freezes what the garbage collector would look through; handlers run and streams are flushed."""
-    typed = [sys.executable, "-c", ENDING, *PAPER, *words.split()]
-    done = subprocess.run(typed, capture_output=True, text=True, check=False)
-    assert (done.returncode, done.stdout) == (status, f"before {out}after at exit\n")
+    ran = process(*PAPER, *words.split(), code=ENDING)
+    assert (ran.status, ran.out) == (status, f"before {out}after at exit\n")
 
 
 def test_the_program_collects_garbage_and_a_library_is_left_alone() -> None:
@@ -563,7 +545,4 @@ def test_the_program_collects_garbage_and_a_library_is_left_alone() -> None:
     solved = "from atwood_cli import cli, solve; solve(m1=1, m2=3); cli.run(['--version'])"
     program = "from atwood_cli.__main__ import main; sys.argv[1:] = ['--version']; main()"
     for what, seen in ((solved, "True False\n"), (program, "True True\n")):
-        done = subprocess.run(
-            [sys.executable, "-c", code.format(what)], capture_output=True, text=True, check=True
-        )
-        assert done.stderr == seen
+        assert process(code=code.format(what)).err == seen

@@ -81,16 +81,10 @@ def test_help_and_completion_import_little(words: str) -> None:
         " atexit.register(lambda: print(*sys.modules, file=sys.stderr)); run()"
     )
     asked = {"COMP_WORDS": f"atwood {words}", "COMP_CWORD": "3", "_ATWOOD_COMPLETE": "complete_bash"}
-    done = subprocess.run(
-        [sys.executable, "-c", code, *words.split()],
-        capture_output=True,
-        text=True,
-        check=True,
-        env=os.environ | (asked if "-h" not in words else {}),
-    )
-    assert done.stdout
-    assert "atwood_cli.cli" in done.stderr
-    assert not {"rich", "numpy", "polars"} & set(done.stderr.split())
+    ran = process(*words.split(), code=code, **({} if "-h" in words else asked))
+    assert ran.out
+    assert "atwood_cli.cli" in ran.err
+    assert not {"rich", "numpy", "polars"} & set(ran.err.split())
 
 
 # Completion

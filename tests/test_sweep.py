@@ -29,7 +29,7 @@ from atwood_cli.output.curves import picture
 from atwood_cli.output.page import watched
 from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows
 
-from .running import HANGS, PIP, Atwood, labels, misplaced, on_terminal, pages_seen, piped, plain
+from .running import HANGS, PIP, Atwood, labels, misplaced, on_terminal, pages_seen, piped, plain, process
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]
@@ -356,8 +356,7 @@ def test_only_what_is_needed_is_imported() -> None:
         "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
     )
     words = [*HELD, "--M", "1:2:2", "--only", "tension_1", "--csv"]
-    done = subprocess.run([sys.executable, "-c", code, *words], capture_output=True, text=True, check=True)
-    assert not {"rich", "numpy", "plotille", "matplotlib"} & set(done.stderr.split())
+    assert not {"rich", "numpy", "plotille", "matplotlib"} & set(process(*words, code=code).err.split())
 
 
 # Waiting
@@ -705,13 +704,8 @@ def test_without_its_extra_it_names_the_pip_command(missing: str, options: str, 
     code = f"import sys; sys.modules['{missing}'] = None; from atwood_cli.cli import run; sys.exit(run(sys.argv[1:]))"
     # So many points that it must be told before they are solved.
     words = [*SWEEP, "--M", "1:2:100000", *options.split()]
-    done = subprocess.run(
-        [sys.executable, "-c", code, *words], capture_output=True, text=True, check=False, timeout=HANGS
-    )
-    assert (done.returncode, done.stdout) == (1, "")
-    assert (
-        done.stderr == f"atwood: this needs {missing}; install it with: {PIP} install 'atwood-cli[{extra}]'\n"
-    )
+    how = f"install it with: {PIP} install 'atwood-cli[{extra}]'"
+    assert process(*words, code=code) == (1, "", f"atwood: this needs {missing}; {how}\n")
 
 
 # Errors
