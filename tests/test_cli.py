@@ -17,13 +17,8 @@ from atwood_cli.cli.options import read_names
 from atwood_cli.model.quantities import MEASURED_NAMES, QUANTITIES
 from atwood_cli.output.text import ASCII
 
-<<<<<<< HEAD
-from . import oracle, startup_baseline
-from .running import PAPER, Atwood, on_terminal, plain, process
-=======
 from . import oracle
-from .running import PAPER, Atwood, on_pty, on_terminal, plain, process
->>>>>>> 53eae41 (Tests: what runs other code is one call; the baseline of start-up is a plain command)
+from .running import PAPER, Atwood, on_terminal, plain, process
 
 LOADED = "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
 
@@ -199,12 +194,6 @@ def test_json_holds_every_name_the_scene_and_the_notes(atwood: Atwood) -> None:
     assert ran.out.isascii()
 
 
-def test_json_with_only_has_only_those(atwood: Atwood) -> None:
-    ran = atwood(*PAPER, "--json", "--only", "mu_verge", "--only", "torque")
-    assert json.loads(ran.out) == {"mu_verge": 0.3, "torque": None}
-    assert (ran.status, ran.err) == (1, "atwood: torque: give R, the pulley's radius.\n")
-
-
 @pytest.mark.parametrize(("digits", "g"), [((), 8.333333333333334), (("--digits", "4"), 8.333)])
 @pytest.mark.parametrize("command", [["solve"], ["contact", "--M", "1"], ["sweep", "--M", "1:2:2"]])
 def test_json_has_numbers_that_are_no_decimals_as_results(
@@ -248,39 +237,27 @@ def test_csv_is_a_line_of_names_and_a_line_of_values(atwood: Atwood) -> None:
     assert "atwood: torque, angular_acceleration: give R, the pulley's radius.\n" in ran.err
 
 
-def test_csv_with_only_keeps_the_order_asked_for(atwood: Atwood) -> None:
-    ran = atwood(*PAPER, "--csv", "--only", "tension_2", "--only", "regime")
-    assert (ran.status, ran.out, ran.err) == (0, "tension_2,regime\n27.12786998325868,verge\n", "")
-
-
 # --only
 
 
-def test_only_prints_bare_values_one_a_line(atwood: Atwood) -> None:
-    ran = atwood(*PAPER, "--only", "regime", "--only", "tension_1", "--digits", "5")
-    assert (ran.status, ran.out, ran.err) == (0, "verge\n10.571\n", "")
-
-
-def test_only_of_a_value_that_does_not_exist_fails(atwood: Atwood) -> None:
-    ran = atwood(*PAPER, "--only", "torque", "--only", "mu_verge")
-    assert (ran.status, ran.out) == (1, "\n0.3\n")  # so that each value is on the line of its name
-    assert ran.err == "atwood: torque: give R, the pulley's radius.\n"
-    assert atwood(*PAPER, "--only", "torque").out == ""
+NO_RADIUS = "atwood: torque: give R, the pulley's radius.\n"
 
 
 @pytest.mark.parametrize(
-    "words",
+    ("words", "out", "err", "status"),
     [
-        ["--only", "acceleration,tension_1, mu_verge"],
-        ["--only", "a,T₁", "--only", "μ*"],
-        ["--only", "a,T1,mu*"],
+        ("--only regime --only tension_1 --digits 5", "verge\n10.571\n", "", 0),
+        ("--only torque --only mu_verge", "\n0.3\n", NO_RADIUS, 1),  # each on the line of its name
+        ("--only torque", "", NO_RADIUS, 1),
+        ("--csv --only tension_2,regime", "tension_2,regime\n27.12786998325868,verge\n", "", 0),
+        ("--json --only mu_verge,torque", '{\n  "mu_verge": 0.3,\n  "torque": null\n}\n', NO_RADIUS, 1),
+        ("--only acceleration,tension_1,mu_verge --digits 3", "0.764\n10.6\n0.300\n", "", 0),
+        ("--only a,T₁ --only μ* --digits 3", "0.764\n10.6\n0.300\n", "", 0),
+        ("--only a,T1,mu* --digits 3", "0.764\n10.6\n0.300\n", "", 0),
     ],
 )
-def test_only_takes_several_and_the_symbols_that_tables_show(atwood: Atwood, words: list[str]) -> None:
-    ran = atwood(*PAPER, "--digits", "3", *words)
-    assert (ran.status, ran.out, ran.err) == (0, "0.764\n10.6\n0.300\n", "")
-    swept = atwood("sweep", "--m1", "1", "--m2", "3", "--M", "0:1:2", "--mu", "0.3", "--csv", *words)
-    assert swept.out.startswith("M,acceleration,tension_1,mu_verge\n")
+def test_only(atwood: Atwood, words: str, out: str, err: str, status: int) -> None:
+    assert atwood(*PAPER, *words.split()) == (status, out, err)
 
 
 @pytest.mark.parametrize("ascii_", [False, True])

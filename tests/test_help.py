@@ -18,7 +18,7 @@ from atwood_cli.model.scene import BODIES, INERTIA_FACTORS
 from atwood_cli.tradeoff.scenes import FAMILIES
 from examples.help import pages
 
-from .running import on_terminal, piped, process
+from .running import on_terminal, process
 
 TOP = Path(__file__).parent.parent
 GROUP: Any = cli.program()
@@ -32,7 +32,7 @@ def test_the_help_kept_is_todays() -> None:
     assert pages().encode() == kept, "python -m examples.help > examples/help.txt"
     optimized = [sys.executable, "-OO", "-m", "examples.help"]
     assert subprocess.run(optimized, stdout=subprocess.PIPE, cwd=TOP, check=True).stdout == kept
-    assert piped() == piped("-h") == piped("help")
+    assert process() == process("-h") == process("help")
 
 
 @pytest.mark.parametrize("command", GROUP.commands)
@@ -55,21 +55,21 @@ def test_every_option_says_what_it_means_and_in_which_group(command: str) -> Non
 @pytest.mark.parametrize("columns", [10, 24, 40, 80, 200])
 @pytest.mark.parametrize("words", PAGES)
 def test_no_width_loses_a_word_of_help(words: str, columns: int) -> None:
-    out, whole = (piped(*words.split(), COLUMNS=str(width)).out for width in (columns, 100))
+    out, whole = (process(*words.split(), COLUMNS=str(width)).out for width in (columns, 100))
     assert sorted(out.replace("\\\n", "\n").split()) == sorted(whole.split())
     assert columns < 40 or max(map(len, out.splitlines())) <= min(columns - 1, 100)
 
 
 @pytest.mark.parametrize("words", PAGES)
 def test_help_is_bold_on_a_terminal_and_says_the_same(words: str) -> None:
-    seen, plain = on_terminal(*words.split(), columns=70), piped(*words.split(), COLUMNS="70").out
+    seen, plain = on_terminal(*words.split(), columns=70), process(*words.split(), COLUMNS="70").out
     assert "\x1b[1mExamples:\x1b[0m" in seen
     assert re.sub(r"\x1b\[[01]m", "", seen) == plain
     assert on_terminal(*words.split(), columns=70, TERM="dumb") == plain
 
 
 def test_a_long_example_is_continued_as_a_shell_takes_it() -> None:
-    out = piped("solve", "-h", COLUMNS="40").out
+    out = process("solve", "-h", COLUMNS="40").out
     assert "  atwood solve --m1 1 --m2 3 --mu 0.3\n" in out
     assert "  atwood solve --m1 250g --m2 300g \\\n    --M 100g --R 5cm --all\n" in out
 

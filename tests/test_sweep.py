@@ -3,12 +3,7 @@
 import csv
 import io
 import json
-import os
 import re
-import signal
-import subprocess
-import sys
-import time
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
@@ -26,10 +21,9 @@ from atwood_cli import solve
 from atwood_cli.model.quantities import STANDARD
 from atwood_cli.model.scene import PARAMETERS, SceneError
 from atwood_cli.output.curves import picture
-from atwood_cli.output.page import watched
 from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows
 
-from .running import HANGS, PIP, Atwood, labels, misplaced, on_terminal, pages_seen, piped, plain, process
+from .running import PIP, Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]
@@ -336,7 +330,7 @@ def test_a_narrow_terminal_repeats_every_swept_column() -> None:
 
 @pytest.mark.parametrize("environment", [{}, {"FORCE_COLOR": "1"}, {"COLUMNS": "40", "LINES": "5"}])
 def test_a_pipe_gets_every_row(environment: dict[str, str]) -> None:
-    ran = piped(*SWEEP, "--M", "0:100:101", "--only", "regime", **environment)
+    ran = process(*SWEEP, "--M", "0:100:101", "--only", "regime", **environment)
     assert len(re.findall(r"^│ +\d+ ", ran.out, re.MULTILINE)) == 101
     assert "..." not in ran.out
 
@@ -346,7 +340,7 @@ def test_where_stdout_is_not_unicode(words: str) -> None:
     if words:
         pytest.importorskip("plotille")
     for encoding in ("ascii", "cp1252"):
-        ran = piped(*SWEEP, "--M", "0:100:101", *words.split(), PYTHONIOENCODING=encoding)
+        ran = process(*SWEEP, "--M", "0:100:101", *words.split(), PYTHONIOENCODING=encoding)
         assert (ran.status, ran.err, ran.out.isascii(), "?" in ran.out) == (0, "", True, False)
         assert ("(m/s^2)" in ran.out, " 4 |" in ran.out, "***" in ran.out) == (True, bool(words), bool(words))
 
@@ -357,49 +351,6 @@ def test_only_what_is_needed_is_imported() -> None:
     )
     words = [*HELD, "--M", "1:2:2", "--only", "tension_1", "--csv"]
     assert not {"rich", "numpy", "plotille", "matplotlib"} & set(process(*words, code=code).err.split())
-
-
-# Waiting
-
-
-def test_a_long_run_shows_a_bar_on_a_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = [Row({"M": "1"}, "slip", {}, {}) for _ in range(5)]
-    clock = iter([0.0, 0.5, 2.0])
-    shown: list[tuple[float, float]] = []
-
-    class Bar:
-        def __init__(self, **_: Any) -> None: ...
-        def __enter__(self) -> "Bar":
-            return self
-
-        def __exit__(self, *_: object) -> None: ...
-        def add_task(self, _: str, total: float, completed: float) -> int:
-            shown.append((completed, total))
-            return 0
-
-        def advance(self, _: int, by: int) -> None:
-            shown.append((shown[-1][0] + by, 5))
-
-    monkeypatch.setattr("rich.progress.Progress", Bar)
-    monkeypatch.setattr("atwood_cli.output.page.monotonic", lambda: next(clock))
-    monkeypatch.setattr(sys.stderr, "isatty", lambda: True, raising=False)
-    assert list(watched(iter(rows), 5)) == rows
-    assert shown == [(2, 5), (3, 5), (4, 5), (5, 5)]
-
-
-@pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
-def test_an_interrupt_leaves_no_file(tmp_path: Path) -> None:
-    file = tmp_path / "out.csv"
-    words = [*SWEEP, "--M", "1:2:100000", "-o", str(file)]
-    child = subprocess.Popen([sys.executable, "-m", "atwood_cli", *words], stderr=subprocess.PIPE)
-    while not list(tmp_path.iterdir()):
-        assert child.poll() is None
-        time.sleep(0.01)
-    assert not file.exists()
-    child.send_signal(signal.SIGINT)
-    _, err = child.communicate(timeout=HANGS)
-    assert (child.returncode, err) == (130, b"")
-    assert list(tmp_path.iterdir()) == []
 
 
 # Files

@@ -168,8 +168,7 @@ def _print_arc(answers: Answers, arc: Contact) -> None:
     torques = aligned(map(cell, arc.balance["torque"].values()))
     kinds = ("friction along the arc", "R (T2 - T1)", "residual")
     page.table([f"Torque on the pulley ({unit})", ""], [list(zip(kinds, torques, strict=True))])
-    for note in arc.notes:
-        page.say(note)
+    page.say(*arc.notes)
 
 
 def _print_elements(answers: Answers, solved: Solved) -> None:
@@ -184,5 +183,4 @@ def _print_elements(answers: Answers, solved: Solved) -> None:
         ["Quantity", "Elements", "Exact", "Relative error"],
         [list(zip(names, values, exact, errors, strict=True))],
     )
-    for note in solved.notes:
-        page.say(note)
+    page.say(*solved.notes)

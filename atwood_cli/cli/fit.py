@@ -214,8 +214,7 @@ class _Forms:
             print_fit_plot(page, [", ".join(_conditions(self.fit)), *self.head], self.fit)
         else:
             self._tables(page)
-        for note in self.said:
-            page.say(note)
+        page.say(*self.said)
         if command := prediction(self.fit):
             page.say("To predict:")
             for line in command_lines(command, page.width):
@@ -225,8 +224,7 @@ class _Forms:
         from ..laboratory.numbers import COLUMNS, rows_of
 
         page.say(", ".join(_conditions(self.fit)))
-        for words in self.head:
-            page.say(words, "bold")
+        page.say(*self.head, style="bold")
         if results := self.fit.results:
             columns = zip(*rows_of(results, self.digits), strict=True)
             _print_table(page, dict(zip(COLUMNS, columns, strict=True)), ("Quantity", "Unit", "Symbol"))

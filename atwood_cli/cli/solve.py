@@ -1,4 +1,4 @@
-"""`atwood solve`: one scene, as a table, JSON, CSV, bare values, or with how it follows."""
+"""`atwood solve`: one scene, as a table, JSON, CSV, bare values, or with its derivation."""
 
 import sys
 from collections.abc import Mapping, Sequence
@@ -141,7 +141,7 @@ def solve(
 
 
 def _record(answers: Answers, only: Sequence[str], budget: bool) -> dict[str, object]:
-    """For JSON: all quantities with scene and notes, or only those named, and their uncertainties."""
+    """The record for JSON: all quantities with scene and notes, or only those named."""
     names = only or answers.names
     results: dict[str, object] = {name: answers[name] for name in names}
     if answers.uncertainties:
@@ -155,13 +155,13 @@ def _record(answers: Answers, only: Sequence[str], budget: bool) -> dict[str, ob
 
 
 def _line(answers: Answers, names: Sequence[str]) -> dict[str, object]:
-    """For CSV: values, then uncertainties; what does not exist is empty."""
+    """The record for CSV: values, then uncertainties."""
     values = {name: answers[name] for name in names}
     return values | {f"u_{name}": u for name, u in answers.standard_uncertainties(names).items()}
 
 
 def _beside_bare(answers: Answers, only: Sequence[str]) -> list[str]:
-    """What bare values leave out: those that are uncertain, with their uncertainties."""
+    """The uncertain values with their uncertainties, which bare values leave out."""
     uncertain = [name for name in only if answers.standard_uncertainties([name]).get(name)]
     return [
         f"{name} = {_with_uncertainty(answers, name)} {QUANTITIES[name].unit}".rstrip() for name in uncertain
@@ -174,7 +174,7 @@ COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 def print_table(
     answers: Answers, whole: bool = False, budget: bool = False, console: "Console | None" = None
 ) -> None:
-    """The scene, the verdict, the quantities that it is about, or all that exist, notes, and the budget."""
+    """Print the scene, the verdict, its main quantities or the ``whole`` of them, notes, and the budget."""
     from ..output.page import Page, table_width
 
     answers, page, columns = answers.shown, Page(console), list(COLUMNS)
@@ -189,24 +189,22 @@ def print_table(
     else:  # no number without its unit: a plain line a quantity
         for name, value, unit, *_ in chain.from_iterable(_rows(answers, names)):
             page.say(f"{name} = {value.lstrip()} {unit}".rstrip())
-    for note in [*remarks(answers), *(conditions(answers) if whole else ()), *reasons(answers)]:
-        page.say(unmarked(note))
+    said = [*remarks(answers), *(conditions(answers) if whole else ()), *reasons(answers)]
+    page.say(*map(unmarked, said))
     if budget:
         _print_budget(page, answers, names)
 
 
 def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
-    """The cells of the table, a row for each of the quantities that exists, by group."""
+    """The cells of the table: a row for each quantity that exists, by group."""
     from ..output.page import aligned
 
     values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
         about = QUANTITIES[name]
-        equation = about.equation
-        if answers.case.regime == "slip" and about.equation_in_slip is not None:
-            equation = about.equation_in_slip
-        row = [name, value, about.unit, about.symbol, equation]
+        in_slip = about.equation_in_slip if answers.case.regime == "slip" else None
+        row = [name, value, about.unit, about.symbol, about.equation if in_slip is None else in_slip]
         groups.setdefault(about.group, []).append([for_stream(word, sys.stdout) for word in row])
     return list(groups.values())
 
@@ -219,7 +217,7 @@ def _with_uncertainty(answers: Answers, name: str) -> str:
 
 
 def _print_budget(page: "Page", answers: Answers, names: Sequence[str]) -> None:
-    """By quantity, each uncertain input's share of the variance."""
+    """Each uncertain input's share of the variance of each quantity."""
     from ..output.page import aligned
 
     page.say("Each input's share of the variance, in percent:")

@@ -196,8 +196,7 @@ class _Forms:
         if once := [_stated(name, value) for name, value in same.items() if name != "regime"]:
             above.append(f"In all rows: {', '.join(once)}.")
         notes = list(self.notes())
-        for sentence in above:
-            page.say(sentence)
+        page.say(*above)
         if len(same) < len(shown) or not shown:
             columns = {
                 f"{range_.name}\n{_in_brackets(range_.unit)}": aligned(
@@ -213,11 +212,10 @@ class _Forms:
             groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
             table = [[next(lines) for _ in group] for _, group in groups]
             # Beside the table: the sentences, the units in its head, what is left out, the prompt.
-            beside = 3 + sum(map(page.lines, [*above, *notes]))
+            beside = 3 + len(page.lines(*above, *notes))
             if left_out := page.table(list(columns), table, len(sweep.ranges), beside):
                 page.say(f"{left_out} rows in the middle are left out; a pipe or -o FILE has them all.")
-        for note in notes:
-            page.say(note)
+        page.say(*notes)
 
 
 PULLEY = "critical_pulley_mass"

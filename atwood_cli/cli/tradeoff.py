@@ -180,10 +180,9 @@ def print_front(outcome: "Tradeoff", page: "Page") -> None:
     if not any(one.slowest for one in settings):
         del columns["Slowest family"]
     _print_columns(page, list(columns), list(columns.values()))
-    page.say(outcome.advice, "bold")
+    page.say(outcome.advice, style="bold")
     page.say(front_legend(len(outcome.families)))
-    for note in outcome.notes or [elements_in_words(outcome.marches)]:
-        page.say(note)
+    page.say(*outcome.notes or [elements_in_words(outcome.marches)])
 
 
 def _measured_on(outcome: "Tradeoff") -> str:
@@ -203,16 +202,15 @@ def _print_all(outcome: "Tradeoff") -> None:
     page = Page()
     for family, settings in groupby(outcome.measured, attrgetter("family")):
         meaning = FAMILIES[family].meaning if family in FAMILIES else describe(outcome.scene)
-        page.say(f"{family}: {meaning}", "bold")
+        page.say(f"{family}: {meaning}", style="bold")
         _print_measured(page, list(settings))
     page.say(LEGEND)
     if outcome.marches:
-        page.say(f"String elements: e^(μφ) of {describe(outcome.scene)}", "bold")
+        page.say(f"String elements: e^(μφ) of {describe(outcome.scene)}", style="bold")
         _print_marches(page, outcome.marches)
         page.say(ELEMENTS_LEGEND)
-    for note in outcome.notes:
-        page.say(note)
-    page.say(outcome.advice, "bold")
+    page.say(*outcome.notes)
+    page.say(outcome.advice, style="bold")
 
 
 def _print_measured(page: "Page", settings: "Sequence[Measured]") -> None:

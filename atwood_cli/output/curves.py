@@ -1,4 +1,4 @@
-"""The curves of a sweep, for a terminal or a file: what is drawn, and the regimes along it."""
+"""The curves of a sweep, for a terminal or a file, and the regimes along them."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
@@ -15,7 +15,7 @@ from ..solver.sweep import Range, Sweep, point_in_units, stated_point
 MAX_CURVES = 6
 LARGEST_DRAWN = 1e100
 STEPS = 240
-"""Of a curve, so that it is smooth whatever the count of the table."""
+"""Of a curve, so that it is smooth however few points the sweep has."""
 MARK_DIGITS, DRAWN_DIGITS = 3, 12
 AXES = {
     "m1": ("mass", "m₁"),
@@ -31,12 +31,12 @@ AXES = {
     "axle": ("friction of the axle", "f"),
     "mu_verge": ("verge coefficient", "μ*"),
 }
-"""What axes call parameters, and quantities whose name says less, with their symbols."""
+"""Names and symbols on axes, of parameters and of quantities whose own name says less."""
 BEGINS = {"slip": "slips", "no-slip": "holds", "verge": "on the verge"}
 
 
 class Mark(NamedTuple):
-    """A place on a curve at which the regime changes, and what begins there."""
+    """A point of a curve at which the regime changes, and what begins there."""
 
     x: float
     y: float | None
@@ -44,9 +44,9 @@ class Mark(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """A quantity along a range, None where it does not exist; there it may have bounds, from and to.
+    """A quantity along a range: ``ys`` is None where it has no value; ``band`` are its bounds, if it has any.
 
-    ``label`` says which of several it is, and ``symbols`` says it shortly.
+    ``label`` says which of several curves it is, ``symbols`` says it in symbols.
     """
 
     label: str
@@ -59,7 +59,7 @@ class Curve(NamedTuple):
 
     @property
     def lines(self) -> list[list[float | None]]:
-        """The heights of all that is drawn."""
+        """The curve and both edges of its band."""
         return [self.ys, [low for low, _ in self.band], [high for _, high in self.band]]
 
 
@@ -133,12 +133,12 @@ def _curve(
 
 
 def _state(case: Case) -> tuple[str, int, bool]:
-    """Where this changes, a curve may have a corner."""
+    """A curve may have a corner where this changes."""
     return case.regime, case.sign, case.axle_holds
 
 
 def _bounds(answers: Answers, name: str) -> tuple[float | None, float | None]:
-    """Between what the friction force lies: where it is one number, both are that."""
+    """The bounds of the friction force; both are its value where it is one number."""
     if name != "friction_force":
         return None, None
     if answers[name] is not None:
@@ -152,7 +152,7 @@ def _height(
     ys: Sequence[float | None],
     band: Sequence[tuple[float | None, float | None]],
 ) -> float | None:
-    """Where on its curve a change is, as far as there is a curve on one side of it."""
+    """The height of a curve at a change, None where neither side of it has one."""
     beside = [i for i, x in enumerate(xs) if x in (float(change.first), float(change.last))]
     heights = [y for i in beside for y in (ys[i], band[i][1]) if y is not None]
     return heights[-1] if heights else None
@@ -177,12 +177,12 @@ def regimes(along: Range, found: Sequence[Change], scene: Scene) -> list[str]:
 
 
 def _drawn(value: Any) -> float | None:
-    """A value as a coordinate, None where there is none; doubles overflow to none, too."""
+    """A value as a coordinate, None if there is none or no double holds it."""
     return None if value is None or is_infinite(value) else float(value)
 
 
 def axis_words(name: str) -> tuple[str, str]:
-    """What a parameter or a quantity is called, and its symbol."""
+    """The name and the symbol of a parameter or a quantity."""
     if name in AXES:
         return AXES[name]
     return name.rstrip("_12").replace("_", " "), QUANTITIES[name].symbol

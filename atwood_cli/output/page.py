@@ -41,14 +41,14 @@ class Page:
         self.room = self.console.width if self.console.is_terminal else None
         self.width = self.room or PIPED
 
-    def say(self, words: str, style: str = "") -> None:
-        """A sentence, in lines no longer than the terminal; piped, than a page."""
-        for line in wrapped(for_stream(words, sys.stdout), self.width):
+    def say(self, *sentences: str, style: str = "") -> None:
+        """Sentences, in lines no longer than the terminal is wide, or than a page in a pipe."""
+        for line in self.lines(*sentences):
             self.line(line, style)
 
-    def lines(self, words: str) -> int:
-        """How many lines a sentence takes."""
-        return len(wrapped(for_stream(words, sys.stdout), self.width))
+    def lines(self, *sentences: str) -> list[str]:
+        """The lines of sentences."""
+        return [line for words in sentences for line in wrapped(for_stream(words, sys.stdout), self.width)]
 
     def line(self, words: str, style: str = "") -> None:
         """A line as it is, however long."""
@@ -60,7 +60,7 @@ class Page:
         """The scene and the verdict."""
         scene, motion, known = answers.case.scene, answers.case.motion, answers.uncertainties
         self.say(describe(scene, motion, known.given if known else {}))
-        self.say(unmarked(verdict(answers)), f"bold {REGIME_STYLES[answers.case.regime]}")
+        self.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Groups, keys: int = 1, beside: int | None = None) -> int:
         """A table, with a line between groups of rows, and as wide as its numbers ask.

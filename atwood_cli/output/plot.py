@@ -1,4 +1,4 @@
-"""Curves in the terminal: needs plotille (extra ``plot``), which sets the dots; the axes are drawn here."""
+"""Curves in the terminal: plotille (extra ``plot``) sets the dots, the axes are drawn here."""
 
 import sys
 from collections.abc import Callable, Sequence
@@ -49,7 +49,7 @@ class Axis:
 
 
 def _steps(low: Decimal, high: Decimal, most: int) -> list[Decimal]:
-    """About as many round numbers between two as wanted."""
+    """Round numbers between two, about as many as ``most``."""
     span = high - low
     power = Decimal(1).scaleb((span / most).adjusted())
     step = next(power * m for m in (1, 2, 5, 10) if span <= power * m * most)
@@ -57,7 +57,7 @@ def _steps(low: Decimal, high: Decimal, most: int) -> list[Decimal]:
 
 
 def _decades(low: float, high: float, most: int) -> list[Decimal]:
-    """Powers of ten between two numbers, or else the two."""
+    """Powers of ten between two numbers; the two where there are fewer."""
     powers = range(ceil(log10(low)), floor(log10(high)) + 1)
     if len(powers) < 2:
         return [Decimal(repr(low)), Decimal(repr(high))]
@@ -87,8 +87,7 @@ def print_plot(page: Page, head: str, drawn: Picture) -> None:
             page.say(f"{letter}: {curve.label}: {words}")
     else:
         page.say(f"Regimes: {regimes[0]}.")
-    for note in drawn.notes:
-        page.say(note)
+    page.say(*drawn.notes)
 
 
 def print_fit_plot(page: Page, head: Sequence[str], fit: "Fit") -> None:
@@ -109,12 +108,10 @@ def print_fit_plot(page: Page, head: Sequence[str], fit: "Fit") -> None:
     values = [x for x, _ in ends], [y for _, y in ends]
     xs, ys = (list(map(float, [*one, *other])) for one, other in zip(values, (at.x, at.y), strict=True))
     page.say(head[0])
-    for words in head[1:]:
-        page.say(words, "bold")
+    page.say(*head[1:], style="bold")
     titles = ("a (m/s²)", "T_h - T_l (N)")
     _print_axes(page, titles, (xs, [0.0, *ys]), HEIGHT, draw)
-    for words in coefficients(fit):
-        page.say(f"{words.replace('$', '')}.")
+    page.say(*(f"{words.replace('$', '')}." for words in coefficients(fit)))
     page.say("Points are the last digits of their rows.")
 
 
@@ -178,7 +175,7 @@ def _label(tick: Decimal) -> str:
 
 
 def _under(ticks: dict[int, str], width: int) -> str:
-    """The labels below their ticks, without those that would touch the one before."""
+    """The labels below their ticks; one that would touch the label before it is left out."""
     line = ""
     for column, label in sorted(ticks.items()):
         start = max(0, min(column - len(label) // 2, width - len(label)))
