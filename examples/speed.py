@@ -16,8 +16,8 @@ from rich.console import Console
 from atwood_cli.cli.tradeoff import print_front
 from atwood_cli.output.page import Page, watched
 from atwood_cli.output.tradeoff_figure import save
-from atwood_cli.tradeoff.measure import USUAL_ELEMENTS, front
-from atwood_cli.tradeoff.outcome import Tradeoff, in_seconds, percent, scientific, short, tradeoff
+from atwood_cli.tradeoff.measure import USUAL_ELEMENTS
+from atwood_cli.tradeoff.outcome import Tradeoff, in_seconds, percent, scientific, short, tradeoff, with_best
 from atwood_cli.tradeoff.scenes import FAMILIES
 
 HERE = Path(__file__).parent
@@ -32,13 +32,11 @@ def typical(runs: Sequence[Tradeoff]) -> Tradeoff:
     """Runs as one, each time the median of theirs; the errors are the same in all."""
     together = zip(*(run.measured for run in runs), strict=True)
     measured = [ones[0]._replace(seconds=median(one.seconds for one in ones)) for ones in together]
-    best = [one for family in FAMILIES for one in front([each for each in measured if each.family == family])]
     marches = [
         ones[0]._replace(seconds=median(one.seconds for one in ones))
         for ones in zip(*(run.marches for run in runs), strict=True)
     ]
-    measured = [one._replace(best=one in best) for one in measured]
-    return runs[0]._replace(measured=measured, marches=marches)
+    return runs[0]._replace(measured=with_best(measured), marches=marches)
 
 
 def screen(outcome: Tradeoff) -> str:

@@ -11,7 +11,7 @@ import pytest
 
 from atwood_cli.model.scene import Scene
 from atwood_cli.tradeoff.measure import SETTINGS, March, Measured, counts
-from atwood_cli.tradeoff.outcome import PAPERS_SCENE, Tradeoff, front_legend
+from atwood_cli.tradeoff.outcome import PAPERS_SCENE, Tradeoff, legend
 from atwood_cli.tradeoff.scenes import FAMILIES
 
 from .regenerate import ENGINES, KEPT, SCRIPTS, TOP, Kept, essence, printed
@@ -143,7 +143,7 @@ def test_what_was_measured_is_of_todays_settings() -> None:
     screen = measured.split("```text\n$ atwood tradeoff\n")[1].split("```")[0]
     assert max(map(len, screen.splitlines())) <= 100
     words = " ".join(screen.split())
-    assert front_legend(len(FAMILIES)) in words
+    assert legend(len(FAMILIES)) in words
     assert "Settings that no other beats (--all shows the rest): 500 scenes each of ordinary, " in words
     (advice,) = re.findall(r"Take certified for results within 4 ulp .*?\.(?= Time)", words)
     assert advice in " ".join(" ".join(picture).split())  # the picture's caption

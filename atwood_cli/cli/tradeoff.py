@@ -1,13 +1,12 @@
 """`atwood tradeoff`: time beside error on this machine, on one screen or in full, or drawn."""
 
-import sys
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated
 
 from ..model.scene import Scene, SceneError, read_whole
-from ..output.text import Forms, describe, for_stream, say, scene_record, show
+from ..output.text import Forms, describe, say, scene_record, show
 from .options import (
     DONE,
     AsCsv,
@@ -23,8 +22,8 @@ from .options import (
 
 if TYPE_CHECKING:
     from ..output.page import Page
-    from ..tradeoff.measure import March, Measured
-    from ..tradeoff.outcome import Tradeoff
+    from ..tradeoff.measure import March
+    from ..tradeoff.outcome import Overall, Tradeoff
 
 
 def _families() -> Mapping[str, str]:
@@ -97,9 +96,10 @@ def tradeoff(
     csv: AsCsv = False,
 ) -> int:
     check({**locals(), **given})
-    if given["axle"] is not None:
-        why = "is not measured, as arrays have no such column; leave it out"
-        raise SceneError("axle", given["axle"], why)
+    for name, instead in {"axle": "leave it out", "I": "give --inertia"}.items():
+        if given[name] is not None:
+            why = f"is not measured, as arrays have no such column; {instead}"
+            raise SceneError(name, given[name], why)
     from ..output.page import watched
     from ..solver.elements import MAX_ELEMENTS
     from ..tradeoff.measure import COUNTS, MOST_SCENES, USUAL_ELEMENTS
@@ -122,18 +122,12 @@ def tradeoff(
 
 
 def _forms(outcome: "Tradeoff", everything: bool) -> Forms:
-    def page() -> None:
-        if everything:
-            _print_all(outcome)
-        else:
-            from ..output.page import Page
-
-            print_front(outcome, Page())
+    from ..output.page import Page
 
     return Forms(
         json=lambda: _record(outcome),
         records=lambda: _records(outcome),
-        page=page,
+        page=lambda: _print_all(outcome, Page()) if everything else print_front(outcome, Page()),
         notes=lambda: [*outcome.notes, outcome.advice],
     )
 
@@ -143,11 +137,9 @@ def _record(outcome: "Tradeoff") -> dict[str, object]:
     about: dict[str, object] = {"scene": scene_record(outcome.scene)}
     if outcome.seed is not None:
         about = {"seed": outcome.seed, "scenes": outcome.scenes}
-    arithmetic = [one._asdict() for one in outcome.measured]
-    elements = [one._asdict() for one in outcome.marches]
     return about | {
-        "arithmetic": arithmetic,
-        "elements": elements,
+        "arithmetic": [one._asdict() for one in outcome.measured],
+        "elements": [one._asdict() for one in outcome.marches],
         "notes": outcome.notes,
         "advice": outcome.advice,
     }
@@ -164,47 +156,29 @@ def _records(outcome: "Tradeoff") -> list[dict[str, object]]:
 
 def print_front(outcome: "Tradeoff", page: "Page") -> None:
     """One screen: the settings that none beats, which to take, and what string elements come to."""
-    from ..tradeoff.outcome import elements_in_words, front_legend, in_seconds, percent, short
+    from ..tradeoff.outcome import elements_in_words, front, legend, overall
 
-    settings = outcome.front
-    page.say(f"Settings that no other beats (--all shows the rest): {_measured_on(outcome)}")
-    columns = {
-        "Setting": [one.setting for one in settings],
-        "Time": [in_seconds(one.seconds) for one in settings],
-        "Slowest family": [
-            f"{in_seconds(one.longest)} {one.slowest}" if one.slowest else "" for one in settings
-        ],
-        "Error (ulp)": [short(one.worst_ulp) for one in settings],
-        "Wrong": [percent(one.share_wrong_regime) for one in settings],
-    }
-    if not any(one.slowest for one in settings):
-        del columns["Slowest family"]
-    _print_columns(page, list(columns), list(columns.values()))
+    families = outcome.families
+    of = f"{outcome.scenes} {'scenes each of' if families[1:] else 'scenes,'} {', '.join(families)}"
+    about = f"scene: {describe(outcome.scene)}" if outcome.seed is None else f"{of} (seed {outcome.seed})"
+    page.say(f"Settings that no other beats (--all shows the rest): {about}")
+    _print_settings(page, front(overall(outcome.measured)))
     page.say(outcome.advice, style="bold")
-    page.say(front_legend(len(outcome.families)))
+    page.say(legend(len(families)))
     page.say(*outcome.notes or [elements_in_words(outcome.marches)])
 
 
-def _measured_on(outcome: "Tradeoff") -> str:
-    """The scene, or the families and how many scenes there are of each."""
-    if outcome.seed is None:
-        return f"scene: {describe(outcome.scene)}"
-    each = "scenes each of" if len(outcome.families) > 1 else "scenes,"
-    return f"{outcome.scenes} {each} {', '.join(outcome.families)} (seed {outcome.seed})"
-
-
-def _print_all(outcome: "Tradeoff") -> None:
+def _print_all(outcome: "Tradeoff", page: "Page") -> None:
     """A table of the settings for each family of scenes, one of string elements, and what follows."""
-    from ..output.page import Page
-    from ..tradeoff.outcome import ELEMENTS_LEGEND, LEGEND
+    from ..tradeoff.outcome import ELEMENTS_LEGEND, STARS, front, legend, overall
     from ..tradeoff.scenes import FAMILIES
 
-    page = Page()
-    for family, settings in groupby(outcome.measured, attrgetter("family")):
+    for family, group in groupby(outcome.measured, attrgetter("family")):
         meaning = FAMILIES[family].meaning if family in FAMILIES else describe(outcome.scene)
         page.say(f"{family}: {meaning}", style="bold")
-        _print_measured(page, list(settings))
-    page.say(LEGEND)
+        settings = overall(list(group))
+        _print_settings(page, settings, front(settings))
+    page.say(f"{STARS} {legend()}")
     if outcome.marches:
         page.say(f"String elements: e^(μφ) of {describe(outcome.scene)}", style="bold")
         _print_marches(page, outcome.marches)
@@ -213,45 +187,43 @@ def _print_all(outcome: "Tradeoff") -> None:
     page.say(outcome.advice, style="bold")
 
 
-def _print_measured(page: "Page", settings: "Sequence[Measured]") -> None:
+def _print_settings(page: "Page", settings: "Sequence[Overall]", starred: "Sequence[Overall]" = ()) -> None:
     from ..tradeoff.outcome import in_seconds, percent, short
 
-    columns = {
-        "  Setting": [f"{'*' if one.best else ' '} {one.setting}" for one in settings],
-        "Time": [in_seconds(one.seconds) for one in settings],
-        "±": [percent(one.spread) for one in settings],
-        "Worst": [short(one.worst_ulp) for one in settings],
-        "99 %": [short(one.percentile_99_ulp) for one in settings],
-        "Over 4": [percent(one.share_over_4_ulp) for one in settings],
-        "Regime": [percent(one.share_wrong_regime) for one in settings],
-    }
-    _print_columns(page, list(columns), list(columns.values()))
+    mark = {True: "* ", False: "  " * bool(starred)}
+    columns = [
+        ["Setting", *(f"{mark[one in starred]}{one.setting}" for one in settings)],
+        ["Time", *(in_seconds(one.seconds) for one in settings)],
+        ["Error (ulp)", *(short(one.worst_ulp) for one in settings)],
+        ["Wrong", *(percent(one.share_wrong_regime) for one in settings)],
+    ]
+    if any(one.slowest for one in settings):
+        slowest = (f"{in_seconds(one.longest)} {one.slowest}" * bool(one.slowest) for one in settings)
+        columns.insert(2, ["Slowest family", *slowest])
+    _print_columns(page, columns)
 
 
 def _print_marches(page: "Page", marches: "Sequence[March]") -> None:
     from ..tradeoff.outcome import in_seconds, scientific
 
-    by_count: dict[int | None, dict[bool, March]] = {}
-    for one in marches:
-        by_count.setdefault(one.elements, {})[one.extrapolated] = one
-    columns = [[str(count or "closed form") for count in by_count]]
-    for extrapolated in (False, True):
-        ones = [both.get(extrapolated) for both in by_count.values()]
-        columns += [
-            [f"{'*' if one.best else ' '} {scientific(one.relative_error)}" if one else "" for one in ones],
-            [f"{one.order:.2f}" if one and one.order is not None else "" for one in ones],
-            [in_seconds(one.seconds) if one else "" for one in ones],
-        ]
-    heads = ["Elements", "Error", "Order", "Time", "Extrapolated", "Order", "Time"]
-    _print_columns(page, heads, columns)
+    def cells(one: "March | None") -> tuple[str, str, str]:
+        if one is None:
+            return "", "", ""
+        error = f"{'*' if one.best else ' '} {scientific(one.relative_error)}"
+        return error, "" if one.order is None else f"{one.order:.2f}", in_seconds(one.seconds)
+
+    counts = list(dict.fromkeys(one.elements for one in marches))
+    columns = [["Elements", *(str(count or "closed form") for count in counts)]]
+    for extrapolated, head in ((False, "Error"), (True, "Extrapolated")):
+        by_count = {one.elements: one for one in marches if one.extrapolated == extrapolated}
+        rows = [(head, "Order", "Time"), *(cells(by_count.get(count)) for count in counts)]
+        columns += map(list, zip(*rows, strict=True))
+    _print_columns(page, columns)
 
 
-def _print_columns(page: "Page", heads: Sequence[str], columns: Sequence[Sequence[str]]) -> None:
-    """A table whose columns but the first are flush right."""
-    words = [
-        [for_stream(word, sys.stdout) for word in column]
-        for column in ([head, *rows] for head, rows in zip(heads, columns, strict=True))
-    ]
-    flush = [words[0], *([word.rjust(max(map(len, column))) for word in column] for column in words[1:])]
-    lines = list(zip(*flush, strict=True))
-    page.table(lines[0], [lines[1:]])
+def _print_columns(page: "Page", columns: Sequence[Sequence[str]]) -> None:
+    """A table of columns with their heads, all but the first flush right."""
+    first, *rest = columns
+    flush = [first, *([word.rjust(max(map(len, column))) for word in column] for column in rest)]
+    heads, *lines = zip(*flush, strict=True)
+    page.table(heads, [lines])

@@ -1,8 +1,8 @@
 """What accuracy costs on this machine: time a scene beside the error against the exact values.
 
 Scenes come from a seed, so that the errors can be had again; times are this machine's. Errors are in
-units in the last place (ulp) of the exact value's double, those of a scene the worst of its
-quantities', and counted where the regime is right. The exact values are decimals of `EXACT_DIGITS`
+units in the last place (ulp) of the exact value's double. The error of a scene is the worst of its
+quantities', and counts where the regime is right. The exact values are decimals of `EXACT_DIGITS`
 digits; the tests hold what is measured to an independent library.
 """
 
@@ -14,7 +14,8 @@ from math import ceil, exp, inf, isfinite, log, pi, ulp
 from operator import attrgetter
 from statistics import median
 from time import perf_counter
-from typing import Any, NamedTuple, Protocol, TypeVar
+from timeit import Timer
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -37,11 +38,10 @@ MOST_SCENES = 100_000
 EXACT_DIGITS = 240
 DECIMALS = (17, 50, 200)
 MARGIN = 4  # ulp: what certified promises
-PRECISE_SCENES = 100  # whose errors count with digits, of which all are about half a unit in the last
+PRECISE_SCENES = 100  # that are solved with digits, whose errors are all about half a unit in the last
 REPEATS, RUN_SECONDS = 5, 0.01
-FEWEST, MOST_ROWS = 20, 1_000_000
-TABLE = 10_000  # scenes at least that are solved at once in arrays: of few, what is rare counts too much
-SAMPLE, LONG_SECONDS = 40, 0.1  # of a table: where so many, or a few more, take so long, it has no more
+SAMPLE, TABLE = 40, 10_000  # scenes that are timed in arrays, at least and at most
+LONG_SECONDS = 0.25  # where a run takes so long, no more scenes are added to it
 PRECISE = decimal_context(EXACT_DIGITS + 20, ROUND_HALF_EVEN)
 
 
@@ -49,14 +49,13 @@ PRECISE = decimal_context(EXACT_DIGITS + 20, ROUND_HALF_EVEN)
 
 
 class Setting(NamedTuple):
-    """A way to solve scenes: how to prepare its input, the run that is timed, how to read solutions off."""
+    """A way to solve scenes: how to prepare so many, the run that is timed, how to read solutions off."""
 
     name: str
     prepare: Callable[[Sequence[Inputs], int], Any]
     run: Callable[[Any], Any]
     read: Callable[[Sequence[Inputs], Any], list[Values]]
-    at_once: bool = True
-    """Whether it solves a table of scenes at once."""
+    in_arrays: bool = True
 
 
 def _columns(rows: Sequence[Inputs], size: int, dtype: Any = np.float64) -> dict[str, Any]:
@@ -109,14 +108,13 @@ def _in_arrays(accuracy: Any) -> Setting:
 
 def _in_decimals(digits: int) -> Setting:
     def prepare(rows: Sequence[Inputs], size: int) -> list[Scene]:
-        scenes = [Scene.read({"g": float(STANDARD_GRAVITY), **row}) for row in rows[:size]]
-        return [scenes[i % len(scenes)] for i in range(size)]
+        return [Scene.read({"g": float(STANDARD_GRAVITY), **row}) for row in rows[:size]]
 
     def run(scenes: Sequence[Scene]) -> list[Values]:
         every = (Answers(scene, digits) for scene in scenes)
         return [{name: answers[name] for name in STANDARD} for answers in every]
 
-    return Setting(f"{digits} digits", prepare, run, lambda _, solutions: solutions, at_once=False)
+    return Setting(f"{digits} digits", prepare, run, lambda _, solutions: solutions, False)
 
 
 SETTINGS = (
@@ -171,88 +169,53 @@ def measure(family: str, rows: Sequence[Inputs]) -> list[Measured]:
     """Every setting on these scenes, which have the same parameters; ``family`` names them."""
     reference = _in_decimals(EXACT_DIGITS)
     exact = reference.run(reference.prepare(rows, len(rows)))
-    counted = [rows if setting.at_once else rows[:PRECISE_SCENES] for setting in SETTINGS]
-    off = [
-        errors(s.read(some, s.run(s.prepare(some, len(some)))), exact[: len(some)])
-        for s, some in zip(SETTINGS, counted, strict=True)
+    sizes = [_timed_rows(setting, rows) for setting in SETTINGS]
+    times = timed([partial(s.run, s.prepare(rows, size)) for s, size in zip(SETTINGS, sizes, strict=True)])
+    return [
+        Measured(family, setting.name, seconds / size, spread, *_inaccuracy(setting, rows, exact))
+        for setting, size, (seconds, spread) in zip(SETTINGS, sizes, times, strict=True)
     ]
-    sizes = [_size(setting, rows) for setting in SETTINGS]
-    given = [setting.prepare(rows, size) for setting, size in zip(SETTINGS, sizes, strict=True)]
-    # In turn, so that what slows the machine for a while slows all of them.
-    repeats = [[_seconds(s.run, g) for s, g in zip(SETTINGS, given, strict=True)] for _ in range(REPEATS)]
-    measured = []
-    for setting, size, some, errors_, *taken in zip(SETTINGS, sizes, counted, off, *repeats, strict=True):
-        center = _center([seconds / size for seconds in taken])
-        wrong = (len(some) - len(errors_)) / len(some)
-        measured.append(Measured(family, setting.name, *center, *_summary(errors_), wrong))
-    best = front(measured)
-    return [one._replace(best=one in best) for one in measured]
 
 
-def _size(setting: Setting, rows: Sequence[Inputs]) -> int:
-    """So many scenes that a run takes long enough to be timed, and not much longer."""
-    size, least = (min(SAMPLE, TABLE), TABLE) if setting.at_once else (min(len(rows), FEWEST), 0)
-    while size < MOST_ROWS:
-        enough = RUN_SECONDS / 2 if size >= least else LONG_SECONDS
-        given = setting.prepare(rows, size)
-        taken = _seconds(setting.run, given)
-        if taken > enough:  # or was it interrupted?
-            taken = min(taken, _seconds(setting.run, given))
-        if taken > enough:
-            return size
-        size = min(max(size * min(ceil(RUN_SECONDS / taken), 16), min(2 * size, least)), MOST_ROWS)
+def _inaccuracy(
+    setting: Setting, rows: Sequence[Inputs], exact: Sequence[Values]
+) -> tuple[float | None, float | None, float | None, float]:
+    """The worst error, the 99th percentile, the share over the margin, and the share of wrong regimes."""
+    rows = rows if setting.in_arrays else rows[:PRECISE_SCENES]
+    solved = setting.read(rows, setting.run(setting.prepare(rows, len(rows))))
+    off = sorted(errors(solved, exact[: len(rows)]))
+    wrong = (len(rows) - len(off)) / len(rows)
+    if not off:
+        return None, None, None, wrong
+    return off[-1], off[ceil(0.99 * len(off)) - 1], sum(one > MARGIN for one in off) / len(off), wrong
+
+
+def _timed_rows(setting: Setting, rows: Sequence[Inputs]) -> int:
+    """How many scenes are timed."""
+    if not setting.in_arrays:
+        return min(len(rows), PRECISE_SCENES)
+    size = SAMPLE
+    while size < TABLE and _quickest(partial(setting.run, setting.prepare(rows, size))) < LONG_SECONDS:
+        size = min(16 * size, TABLE)
     return size
 
 
-def _seconds(run: Callable[[Any], object], given: Any) -> float:
-    start = perf_counter()
-    kept = run(given)
-    taken = perf_counter() - start
-    del kept
-    return taken
+def _quickest(run: Callable[[], object]) -> float:
+    """The lesser time (s) of two calls, which no interruption has lengthened."""
+    return min(Timer(run, timer=perf_counter).repeat(2, 1))
 
 
-def _center(times: Sequence[float]) -> tuple[float, float]:
-    """The median of the repeats, and half of their range as a share of it."""
-    middle = median(times)
-    return middle, (max(times) - min(times)) / 2 / middle
+def timed(runs: Sequence[Callable[[], object]]) -> list[tuple[float, float]]:
+    """Of each run, the median time of a call (s), and half the range of the repeats as a share of it.
 
-
-def _summary(off: Sequence[float]) -> tuple[float | None, float | None, float | None]:
-    """The worst error, the 99th percentile, and the share over the margin."""
-    if not off:
-        return None, None, None
-    off = sorted(off)
-    return off[-1], off[ceil(0.99 * len(off)) - 1], sum(one > MARGIN for one in off) / len(off)
-
-
-class Cost(Protocol):
-    """What a setting takes, and how far off it is."""
-
-    @property
-    def seconds(self) -> float: ...
-    @property
-    def worst_ulp(self) -> float | None: ...
-    @property
-    def share_wrong_regime(self) -> float: ...
-
-
-C = TypeVar("C", bound=Cost)
-
-
-def front(settings: Sequence[C]) -> list[C]:
-    """Those of which no other is both faster and more accurate."""
-    return [one for one in settings if not any(_beats(other, one) for other in settings)]
-
-
-def _beats(one: Cost, other: Cost) -> bool:
-    mine, others = (one.seconds, _inaccuracy(one)), (other.seconds, _inaccuracy(other))
-    return mine != others and mine[0] <= others[0] and mine[1] <= others[1]
-
-
-def _inaccuracy(one: Cost) -> tuple[float, float]:
-    """Regimes count first: what takes fewer of them wrongly is the more accurate."""
-    return one.share_wrong_regime, inf if one.worst_ulp is None else one.worst_ulp
+    They take turns, so that what slows the machine for a while slows all of them.
+    """
+    timers = [Timer(run, timer=perf_counter) for run in runs]
+    calls = [ceil(RUN_SECONDS / max(_quickest(run), 1e-7)) for run in runs]
+    repeats = [[one.timeit(n) / n for one, n in zip(timers, calls, strict=True)] for _ in range(REPEATS)]
+    return [
+        (median(times), (max(times) - min(times)) / 2 / median(times)) for times in zip(*repeats, strict=True)
+    ]
 
 
 # String elements
@@ -294,38 +257,35 @@ def marches(scene: Scene, most: int = USUAL_ELEMENTS) -> Iterator[March]:
         raise SceneError("elements", None, TOO_LARGE)
     exact = Fraction(ratio)
 
-    def k(count: int) -> float:
-        return march_ratio(mu, phi, count)
+    def march(count: int | None, halved: bool, ratio: Callable[[], float]) -> March:
+        ((seconds, spread),) = timed([ratio])
+        return March(count, halved, seconds, spread, abs(float((Fraction(ratio()) - exact) / exact)))
 
     def from_halves(count: int) -> float:
-        return extrapolated(k(count), k(count // 2))
-
-    def timed(count: int | None, halved: bool, ratio: Callable[[], float], times: int) -> March:
-        taken, reached = [], ratio()  # the first call of all takes longer
-        for _ in range(REPEATS):
-            start = perf_counter()
-            for _ in range(times):
-                reached = ratio()
-            taken.append((perf_counter() - start) / times)
-        return March(count, halved, *_center(taken), abs(float((Fraction(reached) - exact) / exact)))
+        return extrapolated(march_ratio(mu, phi, count), march_ratio(mu, phi, count // 2))
 
     for count in counts(most):
         if balanced(mu, phi, count):
-            yield timed(count, False, partial(k, count), 1)
+            yield march(count, False, partial(march_ratio, mu, phi, count))
         if balanced(mu, phi, count // 2):
-            yield timed(count, True, partial(from_halves, count), 1)
-    yield timed(None, False, lambda: exp(mu * phi), 1000)
+            yield march(count, True, partial(from_halves, count))
+    yield march(None, False, lambda: exp(mu * phi))
 
 
 def with_orders(run: Sequence[March]) -> list[March]:
     """Marches with their order of convergence since the number of elements before, and the best marked."""
-    marked = []
-    for one in run:
-        alike = [other for other in run if other.extrapolated == one.extrapolated and other.elements]
-        before = max((o for o in alike if (o.elements or 0) < (one.elements or 0)), default=None)
-        order = None
-        if one.elements and before and before.elements and one.relative_error and before.relative_error:
-            order = log(before.relative_error / one.relative_error) / log(one.elements / before.elements)
-        least = min((other.relative_error for other in alike), default=None)
-        marked.append(one._replace(order=order, best=one.elements is None or one.relative_error == least))
-    return marked
+    marked = [one._replace(best=True) for one in run if one.elements is None]
+    for halved in (False, True):
+        ones = [one for one in run if one.elements and one.extrapolated == halved]
+        least = min((one.relative_error for one in ones), default=None)
+        for before, one in zip([None, *ones], ones, strict=False):
+            order = before and _order(before, one)
+            marked.append(one._replace(order=order, best=one.relative_error == least))
+    return sorted(marked, key=lambda one: (one.elements or inf, one.extrapolated))
+
+
+def _order(before: March, one: March) -> float | None:
+    """The power of N by which the error fell."""
+    if not (before.elements and one.elements and before.relative_error and one.relative_error):
+        return None
+    return log(before.relative_error / one.relative_error) / log(one.elements / before.elements)

@@ -3,25 +3,16 @@
 from collections.abc import Callable, Iterator, Sequence
 from decimal import Decimal
 from fractions import Fraction
+from itertools import groupby
 from math import degrees, inf, isinf
-from typing import Any, NamedTuple
+from operator import attrgetter
+from typing import Any, NamedTuple, TypeVar
 
 from ..arithmetic.rounding import as_typed, text, to_double
 from ..model.machine import Undetermined
 from ..model.scene import COLUMNS, Scene, SceneError
 from ..solver.messages import unmarked
-from .measure import (
-    MARGIN,
-    PRECISE_SCENES,
-    TABLE,
-    March,
-    Measured,
-    counts,
-    front,
-    marches,
-    measure,
-    with_orders,
-)
+from .measure import MARGIN, March, Measured, counts, marches, measure, with_orders
 from .scenes import Inputs, draw_scenes
 
 Watch = Callable[[Iterator[Any], int], Iterator[Any]]
@@ -59,11 +50,6 @@ class Tradeoff(NamedTuple):
         return list(dict.fromkeys(one.family for one in self.measured))
 
     @property
-    def front(self) -> list[Overall]:
-        """The settings that no other beats, over all families, the fastest first."""
-        return sorted(front(overall(self.measured)), key=lambda one: one.seconds)
-
-    @property
     def advice(self) -> str:
         return advice(self.measured)
 
@@ -78,7 +64,7 @@ def tradeoff(
     """
     sets: Iterator[tuple[str, list[Inputs]]] = ((name, draw_scenes(name, scenes, seed)) for name in families)
     if scene is not None:
-        sets, families = iter([("scene", [inputs_of(scene)])]), ["scene"]
+        sets, families, scenes = iter([("scene", [inputs_of(scene)])]), ["scene"], 1
     measured = [one for part in watch((measure(*each) for each in sets), len(families)) for one in part]
     marched = scene or Scene.read(PAPERS_SCENE)
     run, notes = [], []
@@ -88,9 +74,7 @@ def tradeoff(
         notes.append(f"String elements {error.rule}.")
     except Undetermined as reason:
         notes.append(unmarked(f"String elements: {reason}."))
-    if scene is not None:
-        return Tradeoff(marched, 1, None, measured, run, notes)
-    return Tradeoff(marched, scenes, seed, measured, run, notes)
+    return Tradeoff(marched, scenes, seed if scene is None else None, with_best(measured), run, notes)
 
 
 def inputs_of(scene: Scene) -> Inputs:
@@ -102,8 +86,6 @@ def inputs_of(scene: Scene) -> Inputs:
             inputs[name] = double = to_double(value)
             if isinstance(value, Fraction) and (double == inf or (double == 0 and value)):
                 raise SceneError(name, as_typed(value), "is beyond the doubles, which are measured here")
-    if scene.I is not None:
-        raise SceneError("I", None, "is not measured, as arrays have no such column; give --inertia")
     if scene.wrap.unit == "rad":
         inputs["wrap"] = degrees(inputs["wrap"])
     inputs["m1"], inputs["m2"] = sorted((inputs["m1"], inputs["m2"]))
@@ -116,6 +98,30 @@ def inputs_of(scene: Scene) -> Inputs:
 MUCH = 5
 """How many times as long a family must take as the first to be named."""
 NEEDS = {"results within 4 ulp": MARGIN, "the nearest double": 0.5, "more digits": 1e-9}
+
+Cost = TypeVar("Cost", Measured, Overall)
+
+
+def front(settings: Sequence[Cost]) -> list[Cost]:
+    """The settings that no other beats: none is both faster and more accurate. The fastest come first."""
+    unbeaten = [one for one in settings if not any(_beats(other, one) for other in settings)]
+    return sorted(unbeaten, key=lambda one: one.seconds)
+
+
+def _beats(other: Cost, one: Cost) -> bool:
+    mine, others = ((each.seconds, _inaccuracy(each)) for each in (one, other))
+    return others != mine and others[0] <= mine[0] and others[1] <= mine[1]
+
+
+def _inaccuracy(one: Cost) -> tuple[float, float]:
+    """Regimes count first: what mistakes fewer of them is the more accurate."""
+    return one.share_wrong_regime, inf if one.worst_ulp is None else one.worst_ulp
+
+
+def with_best(measured: Sequence[Measured]) -> list[Measured]:
+    """The settings, those marked that no other beats on their family."""
+    best = [one for _, group in groupby(measured, attrgetter("family")) for one in front(list(group))]
+    return [one._replace(best=one in best) for one in measured]
 
 
 def overall(measured: Sequence[Measured]) -> list[Overall]:
@@ -158,23 +164,13 @@ def advice(measured: Sequence[Measured]) -> str:
     parts = [f"{name} for {' and '.join(needs)} ({cost(name)})" for name, needs in wanted.items()]
     fast = settings["fast"]
     wrong = fast.share_wrong_regime
-    regimes = f" and took up to {percent(wrong)} of the regimes wrongly" if wrong else ""
+    regimes = f" and mistook up to {percent(wrong)} of the regimes" if wrong else ""
     lost = f"; fast ({cost('fast')}) was up to {short(fast.worst_ulp or 0)} ulp off{regimes}"
     return f"Take {', '.join(parts)}{'' if right.get('fast', inf) <= MARGIN else lost}."
 
 
-LEGEND = (
-    "* No other setting is both faster and more accurate. Time is for one scene on this machine, of a table"
-    f" of at least {TABLE:,} (fewer where they take long) but for digits, ± half the range of its repeats."
-    " Errors are in units in the last place (ulp) of a double, a scene's the worst of its quantities', over"
-    f" the scenes whose regime is right (with digits, of the first {PRECISE_SCENES}); Over 4 is the share of"
-    " them over 4 ulp, Regime the share of scenes whose regime is wrong. paper: the paper's formulas typed"
-    " into NumPy."
-)
-
-
-def front_legend(families: int) -> str:
-    """What the columns of the front mean, and its settings."""
+def legend(families: int = 1) -> str:
+    """What the columns of a table of settings mean, and its settings."""
     of = " of the first family" if families > 1 else ""
     return (
         f"Time: of one scene{of}. Error: of the worst result, in units in the last place of a double (ulp),"
@@ -186,6 +182,7 @@ def front_legend(families: int) -> str:
 # String elements
 
 
+STARS = "* No other setting is both faster and more accurate."
 ELEMENTS_LEGEND = (
     "* The least error: with more elements rounding takes over. Order is the power of N by which the error"
     " fell."
@@ -194,43 +191,20 @@ ELEMENTS_LEGEND = (
 
 def elements_in_words(marched: Sequence[March]) -> str:
     """How far the elements come at best, plain and extrapolated, beside the closed form."""
-    least: dict[tuple[bool, bool], March] = {}
-    for one in marched:
-        kind = (one.elements is None, one.extrapolated)
-        if kind not in least or one.relative_error < least[kind].relative_error:
-            least[kind] = one
+    best = {(one.elements is None, one.extrapolated): one for one in reversed(marched) if one.best}
 
     def to(one: March) -> str:
         off = f"to {scientific(one.relative_error)}" if one.relative_error else "exactly"
         return f"{off} ({in_seconds(one.seconds)})"
 
     parts = []
-    if plain := least.get((False, False)):
+    if plain := best.get((False, False)):
         parts.append(f"At best, {plain.elements:,} string elements give e^(μφ) {to(plain)}")
-        if halved := least.get((False, True)):
+        if halved := best.get((False, True)):
             parts[0] += f", {halved.elements:,} extrapolated {to(halved)}"
-    closed = to(least[True, False])
+    closed = to(best[True, False])
     parts.append(f"the closed form {closed}." if parts else f"The closed form gives e^(μφ) {closed}.")
     return "; ".join(parts)
-
-
-# Pictures
-
-
-LEAST_DRAWN, GREATEST_DRAWN = 1e-3, 1e16
-
-
-def drawable(worst_ulp: float | None) -> float:
-    """The error as far as a picture shows it."""
-    return GREATEST_DRAWN if worst_ulp is None else min(max(worst_ulp, LEAST_DRAWN), GREATEST_DRAWN)
-
-
-def drawable_marches(marched: Sequence[March]) -> list[list[March]]:
-    """Those of elements, then of extrapolated ones, that have an error: of none, there is no logarithm."""
-    return [
-        [one for one in marched if one.extrapolated == way and one.elements and one.relative_error]
-        for way in (False, True)
-    ]
 
 
 # In words
@@ -238,15 +212,9 @@ def drawable_marches(marched: Sequence[March]) -> list[list[March]]:
 
 def in_seconds(seconds: float) -> str:
     """A time to three digits, in the unit that fits."""
-    shown = (
-        f"{short(seconds / factor, 3)} {unit}" for unit, factor in SECONDS.items() if _below(seconds, factor)
-    )
-    return next(shown, f"{short(seconds, 3)} s")
-
-
-def _below(seconds: float, factor: float) -> bool:
-    """Whether less than a thousand of the unit are shown."""
-    return float(f"{seconds / factor:.3g}") < 1000
+    shown = {unit: float(f"{seconds / factor:.3g}") for unit, factor in SECONDS.items()}
+    unit = next((unit for unit, number in shown.items() if number < 1000), "s")
+    return f"{short(shown[unit], 3)} {unit}"
 
 
 SECONDS = {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
@@ -265,6 +233,6 @@ def scientific(value: float) -> str:
     return f"{mantissa}e{int(exponent)}"
 
 
-def percent(share: float | None) -> str:
-    """A share in percent, to three digits; a dash where there is none."""
-    return "-" if share is None else f"{short(100 * share, 3)} %"
+def percent(share: float) -> str:
+    """A share in percent, to three digits."""
+    return f"{short(100 * share, 3)} %"
