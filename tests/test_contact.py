@@ -266,11 +266,9 @@ def test_least_friction_of_a_hardly_loaded_string_is_found() -> None:
 # Wrap
 
 
-@pytest.mark.parametrize(
-    ("wrap", "same"), [("1.5turn", "540"), ("90deg", "90"), ("90°", "90"), ("0.5turn", "180")]
-)
-def test_wrap_has_units(wrap: str, same: str) -> None:
-    assert solve(m1=1, m2=3, M=1, wrap=wrap) == solve(m1=1, m2=3, M=1, wrap=same)
+def test_wrap_has_units() -> None:
+    for wrap, same in (("1.5turn", 540), ("90deg", 90), ("90°", 90), ("0.5turn", 180)):
+        assert solve(m1=1, m2=3, M=1, wrap=wrap) == solve(m1=1, m2=3, M=1, wrap=same)
 
 
 def test_wrap_in_radians_is_exact() -> None:
@@ -486,94 +484,47 @@ def test_elements_in_every_output(atwood: Atwood) -> None:
     assert (names, len(rows)) == (["name", "value", "exact", "error"], 4)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ("--m1 1 --m2 3 --mu 2", "--M is missing: give M, the pulley's mass, which decides here"),
-        *(
-            (
-                f"--m1 0 --m2 3 {more}",
-                "--m1 0 leaves no arc: not defined for a free end: the string is fixed to the pulley and no"
-                " friction holds it",
-            )
-            for more in ("", "--elements 2")
-        ),
-        *(
-            (
-                f"--m1 1 --m2 3 --M 1 --wrap {wrap} --figure x.svg",
-                "--figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only",
-            )
-            for wrap in ("1e500", "1e300turn", "1e300rad", "1e-400")
-        ),
-        ("--m1 1 --m2 3 --points 1", "--points '1' must be a whole number from 2 to 100000"),
-        ("--m1 1 --m2 3 --profile exponential", "--profile 'exponential' must be creep or least"),
-        (
-            "--m1 1 --m2 3 --M 1 --mu 1 --wrap 270 --profile least",
-            "--profile 'least' is known for up to half a turn of wrap (180 degrees)",
-        ),
-        ("--m1 1 --m2 3 --mu 0.3 --elements 0", "--elements '0' must be a whole number from 1 to 10000000"),
-        (
-            "--m1 1 --m2 3 --mu 0.3 --elements 5 --extrapolate",
-            "--elements 5 must be even, to extrapolate from half as many",
-        ),
-        ("--m1 1 --m2 3 --mu 0.3 --extrapolate", "--extrapolate needs --elements"),
-        (
-            "--m1 1 --m2 1.2 --elements 1",
-            "--elements 1 are too few, as each must be below 180 degrees; take at least 2",
-        ),
-        (
-            "--m1 1 --m2 1e6 --M inf --elements 2",
-            "--elements 2 are too few for this mu_verge and wrap, which take at least 8",
-        ),
-        (
-            "--m1 1 --m2 3 --mu 50 --elements 10",
-            "--elements 10 are too few for this mu and wrap, which take at least 79",
-        ),
-        (
-            "--m1 1e400 --m2 3e400 --mu 0.3 --elements 10",
-            "--elements 10 run in doubles, which this scene is too large for",
-        ),
-        (
-            "--m1 1 --m2 3 --mu 5 --M inf --elements 10 --extrapolate",
-            "--elements 10 are too few for this mu and wrap, which take at least 16",
-        ),
-        *(
-            (
-                f"--m1 1 --m2 3 --M 10 {huge} --elements 10",
-                "--elements 10 are too few for this mu and wrap, and so are 10000000, the most",
-            )
-            for huge in ("--mu 1e12", "--mu 1e30", "--mu 1e300", "--mu 0.3 --wrap 1e30")
-        ),
-        (
-            "--m1 1 --m2 3 --M 10 --mu 250 --elements 10000",
-            "--elements 10000 run in doubles, which this scene is too large for",
-        ),
-        (
-            "--m1 1e-323 --m2 3e-323 --g 0.001 --mu 0.3 --elements 100",
-            "--elements 100 run in doubles, which this scene is too small for",
-        ),
-        *(
-            (
-                f"--m1 1 --m2 3 --mu 0.3 --elements 10 {option} {value}",
-                f"{option} {value!r} has no effect with --elements; leave one of them out",
-            )
-            for option, value in (("--figure", "e.svg"), ("--points", "5"), ("--profile", "creep"))
-        ),
-        ("--m1 1 --m2 3 --json --csv", "--json has no effect with --csv; leave one of them out"),
-        ("--m1 1 --m2 3 --m1-side left", "--m1-side 'left' needs --figure"),
-        ("--m1 1 --m2 3 --figure x.svg --m1-side up", "--m1-side 'up' must be left or right"),
-        ("--m1 1 --m2 3 --figure x.gif", "--figure 'x.gif' must end in one of .svg, .png, .pdf"),
-        *(
-            (f"{scene} --figure x.svg", "--figure 'x.svg' draws forces between 1e-100 and 1e+100 N only")
-            for scene in (
-                "--m1 1e200 --m2 3e200",
-                "--m1 1 --m2 7e463 --mu 0",
-                "--m1 62.7 --m2 7e463 --mu 0 --wrap 3e460 --R 1e5",
-            )
-        ),
-    ],
-)
-def test_contact_errors(atwood: Atwood, arguments: str, message: str) -> None:
+ERRORS = """
+--m1 1 --m2 3 --mu 2 -> --M is missing: give M, the pulley's mass, which decides here
+--m1 0 --m2 3 -> --m1 0 leaves no arc: not defined for a free end: the string is fixed to the pulley and no friction holds it
+--m1 0 --m2 3 --elements 2 -> --m1 0 leaves no arc: not defined for a free end: the string is fixed to the pulley and no friction holds it
+--m1 1 --m2 3 --M 1 --wrap 1e500 --figure x.svg -> --figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only
+--m1 1 --m2 3 --M 1 --wrap 1e300turn --figure x.svg -> --figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only
+--m1 1 --m2 3 --M 1 --wrap 1e300rad --figure x.svg -> --figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only
+--m1 1 --m2 3 --M 1 --wrap 1e-400 --figure x.svg -> --figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only
+--m1 1 --m2 3 --points 1 -> --points '1' must be a whole number from 2 to 100000
+--m1 1 --m2 3 --profile exponential -> --profile 'exponential' must be creep or least
+--m1 1 --m2 3 --M 1 --mu 1 --wrap 270 --profile least -> --profile 'least' is known for up to half a turn of wrap (180 degrees)
+--m1 1 --m2 3 --mu 0.3 --elements 0 -> --elements '0' must be a whole number from 1 to 10000000
+--m1 1 --m2 3 --mu 0.3 --elements 5 --extrapolate -> --elements 5 must be even, to extrapolate from half as many
+--m1 1 --m2 3 --mu 0.3 --extrapolate -> --extrapolate needs --elements
+--m1 1 --m2 1.2 --elements 1 -> --elements 1 are too few, as each must be below 180 degrees; take at least 2
+--m1 1 --m2 1e6 --M inf --elements 2 -> --elements 2 are too few for this mu_verge and wrap, which take at least 8
+--m1 1 --m2 3 --mu 50 --elements 10 -> --elements 10 are too few for this mu and wrap, which take at least 79
+--m1 1e400 --m2 3e400 --mu 0.3 --elements 10 -> --elements 10 run in doubles, which this scene is too large for
+--m1 1 --m2 3 --mu 5 --M inf --elements 10 --extrapolate -> --elements 10 are too few for this mu and wrap, which take at least 16
+--m1 1 --m2 3 --M 10 --mu 1e12 --elements 10 -> --elements 10 are too few for this mu and wrap, and so are 10000000, the most
+--m1 1 --m2 3 --M 10 --mu 1e30 --elements 10 -> --elements 10 are too few for this mu and wrap, and so are 10000000, the most
+--m1 1 --m2 3 --M 10 --mu 1e300 --elements 10 -> --elements 10 are too few for this mu and wrap, and so are 10000000, the most
+--m1 1 --m2 3 --M 10 --mu 0.3 --wrap 1e30 --elements 10 -> --elements 10 are too few for this mu and wrap, and so are 10000000, the most
+--m1 1 --m2 3 --M 10 --mu 250 --elements 10000 -> --elements 10000 run in doubles, which this scene is too large for
+--m1 1e-323 --m2 3e-323 --g 0.001 --mu 0.3 --elements 100 -> --elements 100 run in doubles, which this scene is too small for
+--m1 1 --m2 3 --mu 0.3 --elements 10 --figure e.svg -> --figure 'e.svg' has no effect with --elements; leave one of them out
+--m1 1 --m2 3 --mu 0.3 --elements 10 --points 5 -> --points '5' has no effect with --elements; leave one of them out
+--m1 1 --m2 3 --mu 0.3 --elements 10 --profile creep -> --profile 'creep' has no effect with --elements; leave one of them out
+--m1 1 --m2 3 --json --csv -> --json has no effect with --csv; leave one of them out
+--m1 1 --m2 3 --m1-side left -> --m1-side 'left' needs --figure
+--m1 1 --m2 3 --figure x.svg --m1-side up -> --m1-side 'up' must be left or right
+--m1 1 --m2 3 --figure x.gif -> --figure 'x.gif' must end in one of .svg, .png, .pdf
+--m1 1e200 --m2 3e200 --figure x.svg -> --figure 'x.svg' draws forces between 1e-100 and 1e+100 N only
+--m1 1 --m2 7e463 --mu 0 --figure x.svg -> --figure 'x.svg' draws forces between 1e-100 and 1e+100 N only
+--m1 62.7 --m2 7e463 --mu 0 --wrap 3e460 --R 1e5 --figure x.svg -> --figure 'x.svg' draws forces between 1e-100 and 1e+100 N only
+"""
+
+
+@pytest.mark.parametrize("line", ERRORS.strip().splitlines())
+def test_contact_errors(atwood: Atwood, line: str) -> None:
+    arguments, message = line.split(" -> ")
     ran = atwood("contact", *arguments.split())
     assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
 

@@ -1,8 +1,8 @@
 """`atwood contact`: what acts along the arc, as a table, JSON, CSV or a figure, or by string elements."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from decimal import Decimal
-from typing import Annotated
+from typing import Annotated, Any
 
 from ..arithmetic.rounding import tidy
 from ..model.scene import Scene, read_digits
@@ -104,10 +104,14 @@ def contact(
     if not (json or csv):
         answers = answers.shown
     if elements is not None:
-        forms = _forms_of_elements(answers, march_elements(answers, elements, extrapolate))
+        solved = march_elements(answers, elements, extrapolate)
+        rows = [row._asdict() for row in solved.rows]
+        found: dict[str, Any] = {"elements": {row.pop("name"): row for row in map(dict, rows)}}
+        forms = _forms(answers, solved.notes, found, rows, lambda: _print_elements(answers, solved))
     else:
         arc = solve_contact(answers, points or DEFAULT_POINTS, profile)
-        forms = _forms(answers, arc)
+        found = {"profile": arc.kind, "points": arc.points, "balance": arc.balance}
+        forms = _forms(answers, arc.notes, found, arc.points, lambda: _print_arc(answers, arc))
         if figure is not None:
             from ..output.arc_figure import save
 
@@ -116,35 +120,23 @@ def contact(
     return DONE
 
 
-def _forms(answers: Answers, arc: Contact) -> Forms:
+def _forms(
+    answers: Answers,
+    notes: list[str],
+    found: Mapping[str, object],
+    records: Sequence[Mapping[str, object]],
+    page: Callable[[], None],
+) -> Forms:
     return Forms(
         json=lambda: {
             "scene": scene_record(answers.case.scene, round_=answers.round),
             "regime": answers.case.regime,
-            "profile": arc.kind,
-            "points": arc.points,
-            "balance": arc.balance,
-            "notes": [unmarked(verdict(answers)), *arc.notes],
+            **found,
+            "notes": [unmarked(verdict(answers)), *notes],
         },
-        records=lambda: arc.points,
-        page=lambda: _print_arc(answers, arc),
-        notes=lambda: arc.notes,
-    )
-
-
-def _forms_of_elements(answers: Answers, solved: Solved) -> Forms:
-    return Forms(
-        json=lambda: {
-            "scene": scene_record(answers.case.scene, round_=answers.round),
-            "regime": answers.case.regime,
-            "elements": {
-                row.name: {"value": row.value, "exact": row.exact, "error": row.error} for row in solved.rows
-            },
-            "notes": [unmarked(verdict(answers)), *solved.notes],
-        },
-        records=lambda: [row._asdict() for row in solved.rows],
-        page=lambda: _print_elements(answers, solved),
-        notes=lambda: solved.notes,
+        records=lambda: records,
+        page=page,
+        notes=lambda: notes,
     )
 
 
