@@ -523,7 +523,7 @@ def wrong_with(run: int) -> str:
 def faults(runs: Sequence[int], wrong_with: Callable[[int], str] = wrong_with) -> Iterator[str]:
     """What is wrong with runs, each in a folder of its own; measurements are cut short."""
     short = patch.multiple(
-        measure, RUN_SECONDS=1e-5, REPEATS=1, COUNTS=(4, 10), MOST_SCENES=20, FEWEST=2, TABLE=2
+        measure, RUN_SECONDS=1e-5, REPEATS=1, COUNTS=(4, 10), MOST_SCENES=20, PRECISE_SCENES=2, TABLE=2
     )
     for run in runs:
         with TemporaryDirectory() as folder, chdir(folder), short, warnings.catch_warnings():

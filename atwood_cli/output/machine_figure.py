@@ -5,13 +5,14 @@ where the arc begins; with m1 on the left, the axis runs the other way.
 """
 
 from collections.abc import Callable, Sequence
+from decimal import Decimal
 from itertools import pairwise
 from math import cos, floor, log10, nan, pi, radians, sin, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.rounding import text, to_double
+from ..arithmetic.rounding import text, tidy, to_double
 from ..model import arc
 from ..model.machine import Machine
 from ..solver.answers import Answers
@@ -103,24 +104,10 @@ def draw(
     fitting = LONGEST_WEIGHT / max(weights)
     if scale / 2 <= fitting < scale:
         scale = fitting
-    shares = _arrows_along(phi)
-    out = np.exp(1j * phi * shares)
-    normal = scale * profile.tension(shares)
-    _draw_arrows(axes, INSIDE * out, -normal * out, BLUE)
-    names = _name("nR", out, normal, min(radians(60), phi / 3), outermost, BLUE)
+    names, notes = _draw_contact(axes, phi, outermost, profile, scale)
 
-    friction = scale * profile.friction(shares)
-    factor = _factor(abs(friction).max())
-    friction *= factor
-    some = slice(None, None, -2 if abs(friction).max() > CROWDED and len(out) > 3 else -1)
-    along = friction * 1j * out
-    _draw_arrows(axes, (RIM * out - along / 2)[some], along[some], RED)
-    names += _name("fR", out[some], friction[some], radians(120), outermost, RED)
-    times = f"{text(factor)} times larger" if factor > 1 else f"{text(1 / factor)} times smaller"
-    notes = [f"Friction is drawn {times}."] if factor != 1 else []
-
-    m1_is_right = foot.real > 1  # of m2
-    places = ((1 + 1j * foot.imag, -1 if m1_is_right else 1), (foot, 1 if m1_is_right else -1))
+    m2_is_right = foot.real > 1
+    places = ((1 + 1j * foot.imag, -1 if m2_is_right else 1), (foot, 1 if m2_is_right else -1))
     to_scale = True
     for i, weight, (top, side) in zip("12", weights, places, strict=True):
         tension = float(answers[f"tension_{i}"])
@@ -137,12 +124,34 @@ def draw(
 SUBSCRIPT = {"1": "₁", "2": "₂"}
 
 
+def _draw_contact(
+    axes: "Axes", phi: float, outermost: float, profile: Profile, scale: float
+) -> tuple[list[Label], list[str]]:
+    """The arrows of normal force and friction along the arc; their names, and a note if scales differ."""
+    shares = _arrows_along(phi)
+    out = np.exp(1j * phi * shares)
+    normal = scale * profile.tension(shares)
+    _draw_arrows(axes, INSIDE * out, -normal * out, BLUE)
+    names = _name("nR", out, normal, min(radians(60), phi / 3), outermost, BLUE)
+
+    friction = scale * profile.friction(shares)
+    factor = _factor(abs(friction).max())
+    friction *= factor
+    some = slice(None, None, -2 if abs(friction).max() > CROWDED and len(out) > 3 else -1)
+    along = friction * 1j * out
+    _draw_arrows(axes, (RIM * out - along / 2)[some], along[some], RED)
+    names += _name("fR", out[some], friction[some], radians(120), outermost, RED)
+    times = text(tidy(Decimal(f"{max(factor, 1 / factor):.1g}")))
+    notes = [f"Friction is drawn {times} times {'larger' if factor > 1 else 'smaller'}."]
+    return names, notes if factor != 1 else []
+
+
 def _factor(longest: float) -> float:
     """How many times larger than other arrows those of friction are drawn: 1, 2 or 5 times a power of ten."""
     if SMALL <= longest <= LONGEST or not longest:
         return 1.0
     power = 10.0 ** floor(log10(LONGEST / longest))
-    return max(n * power for n in (1, 2, 5) if n * power * longest <= LONGEST)
+    return max((n * power for n in (2, 5) if n * power * longest <= LONGEST), default=power)
 
 
 def _draw_string(axes: "Axes", phi: float, growth: float, outermost: float) -> complex:
