@@ -14,7 +14,6 @@ from fractions import Fraction
 from itertools import pairwise
 from math import log2, pi
 from pathlib import Path
-from random import Random
 from typing import Any
 
 import mpmath
@@ -125,23 +124,22 @@ def test_creep_is_where_the_string_leaves_the_pulley() -> None:
 # The bounds of the friction force
 
 
-def gripping_scenes(count: int, seed: int) -> list[dict[str, Any]]:
-    rng = Random(seed)
-    drawn: list[dict[str, Any]] = []
-    while len(drawn) < count:
-        scene: dict[str, Any] = {
-            "m1": round(rng.uniform(0.1, 5), 3),
-            "m2": round(rng.uniform(0.1, 5), 3),
-            "M": round(10 ** rng.uniform(-1, 2), 3),
-            "mu": round(10 ** rng.uniform(-1, 0.5), 3),
-            "wrap": rng.choice([180, 180, 90, 60, 150, 30]),
-        }
-        if solve(**scene).regime == "no-slip":
-            drawn.append(scene)
-    return drawn
+GRIPPING = [
+    dict(zip(("m1", "m2", "M", "mu", "wrap"), row, strict=True))
+    for row in (
+        (3.152, 3.735, 24.299, 2.592, 30),
+        (3.295, 2.697, 33.193, 1.459, 180),
+        (3.28, 4.514, 0.219, 0.505, 180),
+        (1.966, 0.6, 0.56, 1.25, 60),
+        (0.78, 3.126, 0.24, 0.101, 180),
+        (1.126, 1.156, 88.565, 2.035, 90),
+        (1, 3, 10, 0.4, 150),
+    )
+]
+"""Scenes whose friction is to spare."""
 
 
-@pytest.mark.parametrize("scene", gripping_scenes(8, seed=33), ids=str)
+@pytest.mark.parametrize("scene", GRIPPING, ids=str)
 def test_bounds_against_a_linear_programme(scene: dict[str, Any]) -> None:
     """All profiles on elements with T_j <= T_{j+1} <= e^{μΔ} T_j, friction at each one's middle.
 
@@ -193,7 +191,7 @@ def test_bounds_against_a_linear_programme(scene: dict[str, Any]) -> None:
 HARDLY_LOADED = {"m1": 1, "m2": 3, "M": "1e-30", "mu": 1, "wrap": 180}
 
 
-@pytest.mark.parametrize("scene", [HARDLY_LOADED, *gripping_scenes(4, seed=5)], ids=str)
+@pytest.mark.parametrize("scene", [HARDLY_LOADED, *GRIPPING[:4]], ids=str)
 def test_bounds_to_the_last_digit(scene: dict[str, Any]) -> None:
     """Both bounds from their definitions, the least one by minimising it, at 300 digits."""
     scene = {name: str(value) for name, value in scene.items()}
