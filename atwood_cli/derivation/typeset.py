@@ -252,20 +252,17 @@ def in_markdown(words: str) -> str:
 
     All that is not ASCII is mathematics, but for signs of units, so that any LaTeX can set it.
     """
-    pieces = words.split("`")
-    pieces[1::2] = (PRINTED.get(piece, f"`{piece}`") for piece in pieces[1::2])
+    named = re.sub("`([^`]*)`", lambda name: PRINTED.get(name[1], name[0]), words)
     if words.startswith("`"):
-        pieces[1] = f"{pieces[1][0].upper()}{pieces[1][1:]}"
-    pieces = "".join(pieces).split("`")
-    pieces[::2] = (NOT_ASCII.sub(r"`\g<0>`", piece) for piece in pieces[::2])
-    pieces = "`".join(pieces).split("`")  # there are more of them now
+        named = f"{named[0].upper()}{named[1:]}"
+    pieces = MATHEMATICS.split(named)
     pieces[::2] = (re.sub(r"([][*_|<>$\\^~@#]|-(?=-))", r"\\\1", piece) for piece in pieces[::2])
-    pieces[1::2] = (f"${in_math(piece)}$" for piece in pieces[1::2])
+    pieces[1::2] = (f"${in_math(piece.strip('`'))}$" for piece in pieces[1::2])
     return "".join(pieces).replace(HELD, " ")
 
 
-NOT_ASCII = re.compile(r"\(-?[\d.]+ ± [\d.]+\)e-?\d+|-?[\d.]+ ± [\d.]+|[μπφθαβτ≈≤≥√±]")
-"""Signs in a sentence, and numbers with their uncertainties."""
+MATHEMATICS = re.compile(r"(`[^`]*`|\(-?[\d.]+ ± [\d.]+\)e-?\d+|-?[\d.]+ ± [\d.]+|[μπφθαβτ≈≤≥√±])")
+"""In a sentence: what stands between backticks, numbers with uncertainties, signs that are not ASCII."""
 IN_WORDS = {
     "tension_1": "tension",
     "tension_2": "tension",
