@@ -10,7 +10,7 @@ strategy). This ends, because the width tends to zero, unless the true value is 
 0. Most values not computed in fractions are transcendental and so no ties: e^q and ln q are for rational q
 other than 0 and 1, and e^{πq} is (A. O. Gelfond). But sin 30° and cos 60° are rational, and e^{μφ} can
 cancel. So a value that agrees with a tie in `CLOSEST` digits is taken for the tie, and a difference that is 0
-in so many digits of its terms for 0. Inputs have at most 1000 digits, too few for another value so close.
+in so many digits of its terms for 0. Inputs have too few digits (1500) for another value so close.
 
 A comparison, such as μφ against ln(T_h/T_l), is decided once the enclosure of the difference excludes zero.
 """
