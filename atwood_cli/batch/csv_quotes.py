@@ -1,12 +1,12 @@
-"""CSV before it is parsed: where its rows end, and whether every quotation mark is in its place.
+"""Quotation marks in CSV: where rows end, and whether each mark is in its place. Parsing comes after.
 
-A cell that begins with a quotation mark ends with one, and those within are doubled; no other cell has
-one. What parsers make of anything else loses rows.
+A cell that begins with a quotation mark ends with one, and marks within it are doubled. No other cell has
+a quotation mark. From any other text parsers lose rows.
 
-So quotation marks come in pairs, of which the first stands where a cell begins or right behind the pair
-before, and the second where a cell ends or right before the next pair. Patterns here match a pair, not
-cells: what is repeated is a character, so that no text makes them slow, or hungry for memory. Nor are
-they possessive: over groups those went wrong until Python 3.11.5 (gh-106052).
+So quotation marks come in pairs. The first of a pair stands where a cell begins or directly after another
+pair, and the second where a cell ends or directly before another pair. The patterns match a pair and not a
+cell: they repeat a single character, so that no text makes them slow or large. They are not possessive,
+because possessive groups fail before Python 3.11.5 (gh-106052).
 """
 
 import re
@@ -17,7 +17,7 @@ from ..files import Unreadable
 
 
 def last_end(text: bytes) -> int:
-    """Behind the last line end that is not within quotation marks."""
+    """The index after the last line end outside quotation marks; 0 if there is none."""
     end = text.rfind(b"\n") + 1
     marks = text.count(b'"', 0, end)
     while marks % 2:
@@ -28,7 +28,7 @@ def last_end(text: bytes) -> int:
 
 
 def _ends(text: bytes) -> Iterator[int]:
-    """Behind each line end that is not within quotation marks."""
+    """The index after each line end outside quotation marks."""
     start = marks = 0
     while end := text.find(b"\n", start) + 1:
         marks += text.count(b'"', start, end)
@@ -38,14 +38,14 @@ def _ends(text: bytes) -> Iterator[int]:
 
 
 def first_end(text: bytes) -> int:
-    """Behind the first line end that is not within quotation marks, or behind all if there is none."""
+    """The index after the first line end outside quotation marks, or the length if there is none."""
     return next(_ends(text), len(text))
 
 
 def checked(rows: bytes, separator: str, line: int) -> bytes:
-    """The rows, the first of which is in that line of the file, as a parser takes them.
+    """The rows as polars can parse them. The first begins in that line of the file. Raises Unreadable.
 
-    Cells with a carriage return are quoted: polars drops one at the end of a cell. Raises Unreadable.
+    Cells with a carriage return become quoted, because polars drops one at the end of a bare cell.
     """
     mark = separator.encode()
     if b'"' in rows:
@@ -72,7 +72,7 @@ def checked(rows: bytes, separator: str, line: int) -> bytes:
 
 
 def portions(rows: bytes, lines: int) -> list[bytes]:
-    """The rows in parts of so many lines at most, or more where they are in one cell."""
+    """The rows in parts of at most so many lines; a part may have more if a cell has line ends."""
     cuts = [0, *islice(_ends(rows), lines - 1, None, lines), len(rows)]
     return [rows[start:end] for start, end in pairwise(cuts) if start < end]
 
@@ -84,7 +84,7 @@ def split(line: str, separator: str) -> list[str]:
 
 
 def widths(rows: bytes, separator: str) -> list[int]:
-    """How many cells each line has that ends a row; none in a blank one."""
+    """The number of cells of each row, 0 for a blank line."""
     mark = separator.encode()
     lines = re.sub(b'"[^"]*"', b'""', rows).split(b"\n")
     return [line.count(mark) + 1 if line.strip() or mark in line else 0 for line in lines]

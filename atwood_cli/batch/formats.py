@@ -31,9 +31,9 @@ PARTED_BY = {",": "commas", "\t": "tabs", ";": "semicolons"}
 PIECE_BYTES = 1 << 21
 """The bytes of text that are read at a time; a piece takes several times as much memory."""
 MOST_COLUMNS = 1024
-"""Each column of a piece takes a kilobyte and some microseconds, whatever is in it."""
+"""Each column of a piece takes a kilobyte and some microseconds, however few its rows."""
 LONGEST_RECORD = 1 << 20
-"""Bytes: a quotation mark that is never closed must not make one record of the whole file."""
+"""Bytes. A quotation mark that is never closed must not make the whole file one record."""
 FOREIGN = {
     rb"\x1f\x8b|BZh|\xfd7zXZ|\x28\xb5\x2f\xfd": "compressed; unpack it first",
     rb"PK\x03\x04|\xd0\xcf\x11\xe0": "a workbook (.xlsx, .xls), or an archive; save the sheet as CSV",
@@ -96,7 +96,7 @@ def opened(source: str, stack: ExitStack) -> IO[bytes]:
 
 
 def cannot_read(source: str, why: Unreadable) -> OSError:
-    """The error of a file, or of stdin, that is no table."""
+    """The error for a file, or stdin, that is no table."""
     return OSError(f"cannot read {'stdin' if source == STREAM else shortened(source, LONGEST_NAME)}: {why}")
 
 
@@ -295,7 +295,7 @@ def _read_ndjson(file: IO[bytes], inputs: Inputs | None) -> Iterator[Piece]:
         new = {name: None for row in rows for name in row if name not in columns}
         if new and done and inputs is None:
             how = "for which there is no column by now; give --to ndjson"
-            raise Unreadable(f"a row behind row {done} has {in_quotes(next(iter(new)))}, {how}")
+            raise Unreadable(f"a row after row {done} has {in_quotes(next(iter(new)))}, {how}")
         columns |= new
         _check_count(list(columns))
         wanted = list(columns) if inputs is None else inputs(list(columns))
@@ -372,7 +372,7 @@ def _text(value: object, line: str, name: str) -> str | None:
 
 
 def _value(line: str, at: int) -> tuple[object, int]:
-    """The JSON value there, behind blanks, and where it ends."""
+    """The JSON value there, after blanks, and where it ends."""
     while line[at] in " \t\r":
         at += 1
     return _DECODER.raw_decode(line, at)
@@ -418,6 +418,6 @@ def _encoded(kind: str, piece: Piece, results: "pl.DataFrame", first: bool) -> b
 
 
 def _spliced(line: str, end: str) -> str:
-    """A JSON object as it came, with the members of a second one behind its own."""
+    """A JSON object as it came, followed by the members of a second one."""
     comma = "," if line[1:-1].strip() else ""
     return f"{line[:-1].rstrip()}{comma}{end[1:]}\n"

@@ -1,6 +1,6 @@
-"""How a table is to be read: what its columns and their units are, and whether commas are decimal.
+"""The meaning of a table: its columns, their units, and whether its commas are decimal.
 
-`m1`, `M [kg]` and `m1 (g)` are inputs; `pulley_mass` could be meant for one, and is refused with a hint.
+`m1`, `M [kg]` and `m1 (g)` are inputs. `pulley_mass` could be meant for one, and is refused with a hint.
 """
 
 import re
@@ -32,22 +32,20 @@ OTHER_NAMES = {
     **{"r": "R", "radius": "R", "pulley_radius": "R", "wrap_angle": "wrap", "angle": "wrap", "phi": "wrap"},
 }
 # fmt: on
-"""In small ASCII letters, what else people call the inputs."""
+"""Other names of the inputs, in small ASCII letters."""
 TAKEN_ELSEWHERE = {
     "I": "is not taken here; give inertia, I/(M R^2)",
     "axle": "is not taken here; solve and sweep take --axle",
     **dict.fromkeys(MEASURED, "tells of a motion, which only solve takes"),
 }
-"""What only other commands take, and what to do about a column of it."""
+"""What only other commands take, and what to do with such a column."""
 GREEK = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
-
-
 LARGEST_POWER = 22
-"""Of ten, that a double holds."""
+"""The largest power of ten that is a double."""
 
 
 class Heading(NamedTuple):
-    """The column of an input, and the unit of its cells, which is a factor in the SI (or in degrees)."""
+    """The column of an input and the unit of its cells, with its factor to the SI (or to degrees)."""
 
     column: str
     unit: str = ""
@@ -55,7 +53,7 @@ class Heading(NamedTuple):
 
 
 class Layout(NamedTuple):
-    """How a table is to be read: by input its column and unit, and whether its commas are decimal ones."""
+    """The heading of each input, the separator of cells, and whether a comma is a decimal point."""
 
     headings: Mapping[str, Heading]
     separator: str = ""
@@ -134,7 +132,7 @@ def read_as(
     comma: bool,
     others: Iterable[str] = (),
 ) -> list[str]:
-    """What was understood of a table, in a line; none if it is as usual."""
+    """A line that says how a table was read; none if it was as usual."""
     parts = [f"cells parted by {PARTED_BY[separator]}"] if separator != usual else []
     parts += ["decimal commas"] if comma else []
     for name, (column, unit, _) in headings:
@@ -158,7 +156,7 @@ def decimal_commas_in(rows: Iterable[Sequence[str]], places: Collection[int], se
 
 
 def inputs_among(columns: Sequence[str], labels: Collection[str] = ()) -> list[str]:
-    """The columns that are named as an input is, whatever their unit, and not to pass as labels."""
+    """The columns with the name of an input, with any unit, that are not labels."""
     return [column for column in columns if column not in labels and divided(column)[0] in COLUMNS]
 
 
@@ -175,7 +173,7 @@ def _headings(columns: Sequence[str], labels: Collection[str]) -> dict[str, Head
 
 
 def divided(column: str) -> tuple[str, str]:
-    """The name in a heading and the unit in brackets behind it, empty if there is none."""
+    """The name in a heading, and the unit in brackets after it, empty if there is none."""
     word = without_blanks(column)
     for opening, closing in ("()", "[]"):
         name, bracket, unit = word.removesuffix(closing).partition(opening)
@@ -185,7 +183,7 @@ def divided(column: str) -> tuple[str, str]:
 
 
 def unit_factor(name: str, unit: str, column: str) -> Fraction:
-    """What the unit of a column is in the SI, or in degrees. Raises Unreadable."""
+    """The factor from the unit of a column to the SI, or to degrees. Raises Unreadable."""
     if not unit:
         return Fraction(1)
     dimension = parameter_of(name).dimension
@@ -200,7 +198,7 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
 
 
 def meant(column: str) -> str | None:
-    """The input that a heading could be meant for: in other letters, by another name, with a unit behind."""
+    """The input that a heading could be meant for: with other letters, another name, or a unit after it."""
     name = divided(column)[0]
     if name == "I":  # i may count rows
         return name

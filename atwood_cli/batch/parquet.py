@@ -1,4 +1,4 @@
-"""Parquet, by polars: read and written a row group at a time, so memory is what the largest group takes."""
+"""Parquet by polars, read and written one row group at a time: the largest group must fit into memory."""
 
 import os
 from collections.abc import Iterator
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import polars as pl
 
 PIECE_ROWS, PIECE_CELLS = 1 << 16, 1 << 20
-"""Rows and cells of any piece that is read, and of a row group that is written: rows may be wide or short."""
+"""The most rows and cells of a piece of any format, and of a row group that is written."""
 
 
 @contextmanager
@@ -39,7 +39,7 @@ def _decoding() -> Iterator[None]:
 
 
 def count_rows(file: IO[bytes]) -> int:
-    """How many rows the footer of a file counts. Raises Unreadable."""
+    """The number of rows by the footer of a file. Raises Unreadable."""
     import polars as pl
 
     with _decoding():

@@ -1,4 +1,4 @@
-"""Many scenes: a table in, the same table with its results out. A row that is no scene gets an error."""
+"""Solves a table of scenes: it comes out with its results, and a row that is no scene with an error."""
 
 import os
 import signal
@@ -8,12 +8,11 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
-from functools import cache
+from functools import cache, partial
 from inspect import signature
+from io import BytesIO
 from math import inf, nan
 from pathlib import Path
-from shutil import copyfileobj
-from tempfile import NamedTemporaryFile
 from typing import IO, TYPE_CHECKING, Any
 
 from ..arrays import solve_and_count, solve_arrays
@@ -39,14 +38,14 @@ if TYPE_CHECKING:
     import polars as pl
 
 Watch = Callable[[Iterator[Piece], int | None, Callable[[Piece], int]], Iterator[Piece]]
-"""Hands on the pieces, of a table of that size if it is known, and may show how far they have come."""
+"""Passes pieces on, and may show progress: its arguments are the pieces, the size of all, and of one."""
 
 ERROR = "error"
 
 
 @dataclass
 class Tally:
-    """What became of the rows, which results no row has, and remarks on columns."""
+    """The counts of a run. ``missing`` are the results that no row has; ``remarks`` are on the columns."""
 
     missing: set[str]
     rows: int = 0
@@ -58,7 +57,7 @@ class Tally:
     remarks: list[str] = field(default_factory=list)
 
     def lines(self) -> list[str]:
-        """What to say of it: remarks, the summary, why valid rows lack results, the first error."""
+        """The messages: remarks, the summary, why valid rows lack results, the first error."""
         parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
         counts = [", ".join(parts)] if parts else []
         counts.append(_counted(self.errors, "error") if self.errors else "no errors")
@@ -78,7 +77,7 @@ def _counted(count: int, thing: str) -> str:
 
 @dataclass(frozen=True)
 class Job:
-    """What is to be done: files with their formats, and the results wanted with their accuracy."""
+    """The files with their formats, and the results wanted with their accuracy."""
 
     source: str
     source_format: str
@@ -91,7 +90,7 @@ class Job:
 
 
 def run_batch(job: Job, watch: Watch) -> Tally:
-    """Solve a table of scenes, under ``watch`` unless results go to a terminal. Raises OSError."""
+    """Solve a table of scenes; ``watch`` shows progress unless results go to a terminal. Raises OSError."""
     _check_apart(job)
     with ExitStack() as stack:
         import polars as pl
@@ -104,11 +103,9 @@ def run_batch(job: Job, watch: Watch) -> Tally:
             target = _target(job, stack)
             solved = _solved(job, source, tally, watch)
             if job.target_format == "parquet" and is_stream(job.target):
-                # polars ends the file rightly even where it fails, so a stream gets it only when it is whole.
-                with NamedTemporaryFile() as whole:
-                    write(job.target_format, whole.file, solved)
-                    whole.seek(0)
-                    copyfileobj(whole, target)
+                # polars completes the file even where it fails, so a stream gets it only when it is whole.
+                write(job.target_format, whole := BytesIO(), solved)
+                target.write(whole.getbuffer())
             else:
                 write(job.target_format, target, solved)
         except Unreadable as error:
@@ -132,25 +129,15 @@ def _check_apart(job: Job) -> None:
 
 
 def _open(job: Job, stack: ExitStack) -> IO[bytes]:
-    """The input; a stream of Parquet, which is not read from front to back, by way of a temporary file.
-
-    Raises Unreadable.
-    """
+    """The input; all of a stream of Parquet, which is not read from front to back. Raises Unreadable."""
     stream = opened(job.source, stack)
-    if job.source_format != "parquet" or not is_stream(job.source):
-        return stream
-    spool = stack.enter_context(NamedTemporaryFile())  # noqa: SIM115
-    try:
-        while block := block_of(stream):
-            spool.write(block)
-        spool.seek(0)
-    except OSError as error:
-        raise OSError(error.errno, error.strerror, spool.name) from None
-    return spool.file
+    if job.source_format == "parquet" and is_stream(job.source):
+        return BytesIO(b"".join(iter(partial(block_of, stream), b"")))
+    return stream
 
 
 def _target(job: Job, stack: ExitStack) -> IO[bytes] | Stdout:
-    """The output."""
+    """The output, under its name once it is whole."""
     if job.target == STREAM:
         return Stdout()
     return stack.enter_context(open(stack.enter_context(written_beside(Path(job.target), job.force)), "wb"))
@@ -159,6 +146,8 @@ def _target(job: Job, stack: ExitStack) -> IO[bytes] | Stdout:
 def _solved(
     job: Job, source: IO[bytes], tally: Tally, watch: Watch
 ) -> "Iterator[tuple[Piece, pl.DataFrame]]":
+    """Each piece with its results."""
+
     def inputs(columns: Sequence[str]) -> Sequence[str]:
         return inputs_among(columns, job.labels)
 
@@ -168,7 +157,9 @@ def _solved(
     known: Sequence[str] = ()
     for piece in pieces:
         if piece.columns != known:
-            _check_columns(piece.columns, [*job.names, ERROR])
+            if clash := [name for name in piece.columns if name in (*job.names, ERROR)]:
+                how = "which is the name of a result; rename it, or name other results by --only"
+                raise Unreadable(f"it has a column {in_quotes(clash[0])}, {how}")
             layout = read_layout(piece, job.labels)
             usual = SEPARATORS.get(job.source_format, "")
             tally.remarks = read_as(layout.headings.items(), layout.separator, usual, layout.comma)
@@ -177,23 +168,15 @@ def _solved(
 
 
 def _size(job: Job, source: IO[bytes]) -> int | None:
-    """How much there is to read, in the unit of `Piece.size`; None if it is not known. Raises Unreadable."""
+    """The size of the input in the unit of `Piece.size`, None if it is not known. Raises Unreadable."""
     if job.source_format == "parquet":
         return count_rows(source)
     about = os.fstat(source.fileno())
     return about.st_size if stat.S_ISREG(about.st_mode) else None
 
 
-def _check_columns(columns: Sequence[str], results: Sequence[str]) -> None:
-    """Refuse a table with a column that is named as a result is."""
-    for name in columns:
-        if name in results:
-            how = "rename it" if name == ERROR else "rename it, or name other results by --only"
-            raise Unreadable(f"column {in_quotes(name)} would be there twice, as a result is named so; {how}")
-
-
 def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "pl.DataFrame":
-    """The columns to append: the results, empty in rows that failed, and the error of those."""
+    """The columns to append: the results, which are empty in rows that failed, and the errors."""
     import polars as pl
 
     frame = piece.frame
@@ -233,9 +216,9 @@ def _regimes(codes: Any, tally: Tally) -> "pl.Series":
     import numpy as np
     import polars as pl
 
-    counts = np.bincount(codes[codes >= 0], minlength=len(REGIMES)).tolist()
+    _, *counts = np.bincount(codes + 1, minlength=len(REGIMES) + 1).tolist()  # -1 is the code of an error
     tally.regimes.update(dict(zip(REGIMES, counts, strict=True)))
-    return pl.Series([*REGIMES, None]).gather(codes)  # -1 is the last
+    return pl.Series([*REGIMES, None]).gather(codes)
 
 
 def _finite(values: Any, tally: Tally) -> "pl.Series":
@@ -243,22 +226,20 @@ def _finite(values: Any, tally: Tally) -> "pl.Series":
     import numpy as np
     import polars as pl
 
-    exists = np.isfinite(values)
-    if exists.all():
-        return pl.Series(values)
-    tally.beyond += int(np.isinf(values).sum())
-    return pl.Series(np.where(exists, values, nan), nan_to_null=True)
+    beyond = np.isinf(values)
+    tally.beyond += int(beyond.sum())
+    return pl.Series(np.where(beyond, nan, values), nan_to_null=True)
 
 
 def _inputs(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
-    """The columns of inputs, by the names of these."""
+    """The columns of inputs, renamed to the inputs."""
     import polars as pl
 
     return frame.select(pl.col(heading.column).alias(name) for name, heading in layout.headings.items())
 
 
 def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict[int, str]]:
-    """The inputs as doubles by name, and by row the error of the first cell that is no double."""
+    """The inputs as doubles, by name, and the errors of cells that are none, by row (the first in each)."""
     import polars as pl
 
     cells = _inputs(frame, layout)
@@ -286,13 +267,13 @@ DEFAULTS = {
     for name, parameter in signature(solve_arrays).parameters.items()
     if isinstance(parameter.default, float)
 }
-"""Of inputs that an empty cell, or no column, leaves at what is usual."""
+"""Inputs that an empty cell, or no column, leaves at a usual value."""
 LONG = 100
 """Characters: a shorter text that is a nonzero double is within the limits of digits and exponents."""
 
 
 def _odd_cells(cells: "pl.Series", values: Any) -> dict[int, Any]:
-    """The cells, by row, that may be other than the doubles that polars made of them."""
+    """The cells, by row, that may not be equal to the doubles that polars read."""
     import numpy as np
     import polars as pl
 
@@ -310,7 +291,7 @@ def _odd_cells(cells: "pl.Series", values: Any) -> dict[int, Any]:
 
 
 def _why(row: Mapping[str, Any], layout: Layout) -> str:
-    """What is wrong with a row, in the words of `solve`; cells as typed where they are numbers."""
+    """The error of a row, in the words of `solve`; cells that are numbers are quoted as typed."""
     cells: dict[str, Given | None] = {}
     for name, cell in row.items():
         unit = layout.headings[name].unit
