@@ -514,7 +514,7 @@ LEFT_OPEN = "it ends within quotation marks, in the row that begins in line {}: 
 LABEL = "; or let it pass by --label "
 OF_MASS = "it takes one of mass (kg, g, mg, ug, t, lb, lbs, oz, st)"
 COMMA = "is there a decimal comma (write a point), or one at its end?"
-RENAME = "which is the name of a result; rename it, or name other results by --only"
+RENAME = "would be there twice, as a result is named so; rename it, or name other results by --only"
 WIDE_HEADER = ",".join(["m1,m2", *(f"x{i}" for i in range(1023))])
 
 
@@ -530,8 +530,8 @@ WIDE_HEADER = ",".join(["m1,m2", *(f"x{i}" for i in range(1023))])
         ("m1,m2,m1\n1,2,3\n", "column 'm1' is there 2 times"),
         ("m1,m2,x,x\n1,2,3,4\n", "column 'x' is there 2 times"),
         ("m1,m2,,\n1,2,,\n", "2 columns have no heading; name them, or delete them"),
-        ("m1,m2,regime\n1,2,3\n", f"it has a column 'regime', {RENAME}"),
-        ("m1,m2,error\n1,2,3\n", f"it has a column 'error', {RENAME}"),
+        ("m1,m2,regime\n1,2,3\n", f"column 'regime' {RENAME}"),
+        ("m1,m2,error\n1,2,3\n", f"column 'error' {RENAME}"),
         (WIDE_HEADER, "it has more than 1024 columns, the most taken"),
         ("m1,m2\n1,2\n1,5,2\n", f"row 2 has 3 cells, and the header 2; {COMMA}"),
         ("m1;m2\n1;2\n1;5;2\n", "row 2 has 3 cells, and the header 2"),
@@ -550,6 +550,8 @@ WIDE_HEADER = ",".join(["m1,m2", *(f"x{i}" for i in range(1023))])
         ('m1,m2,n\n1,3,a"\n1,3,"b\n', OUT_OF_PLACE.format(2)),
         ('m1;m2;n\n1;3;"a","b"\n', OUT_OF_PLACE.format(2)),
         ('\n"m1"x,m2\n1,3\n', OUT_OF_PLACE.format(2)),
+        ('m1,m2\n"x\n"",\n"b', OUT_OF_PLACE.format(2)),
+        ('m1,m2\n"p\nq",r"\n', OUT_OF_PLACE.format(2)),
         (f'm1,m2,n\n1,3,{LONG}\n1,3,"x"y\n', OUT_OF_PLACE.format(3)),
         ('m1,m2,n\n1,3,"x\ny', LEFT_OPEN.format(2)),
         ('m1,m2,n\n1,3,"x"\n1,3,"x""\n1,3,y\n', LEFT_OPEN.format(3)),
@@ -580,7 +582,7 @@ NOT_NDJSON = "is not a line of NDJSON:"
         ('{"m1":1,"m2":2,"m1":3}\n', f"row 1 {NOT_NDJSON} column 'm1' is there 2 times"),
         ("[" * 100_000, f"row 1 {NOT_NDJSON} it is nested too deeply"),
         (b'{"m1":1,"m2":2}\n\n{"m1":1,"m2":"\xff"}\n', "line 3 is not UTF-8: byte 0xff; save it as UTF-8"),
-        ('{"m1":1,"m2":2}\n{"m1":1,"m2":2,"error":0}\n', f"it has a column 'error', {RENAME}"),
+        ('{"m1":1,"m2":2}\n{"m1":1,"m2":2,"error":0}\n', f"column 'error' {RENAME}"),
         ("".join(f'{{"k{i}":1}}\n' for i in range(1025)), "it has more than 1024 columns, the most taken"),
     ],
     ids=count(),

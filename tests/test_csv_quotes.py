@@ -53,22 +53,6 @@ def test_marks_out_of_place_are_found(text: str) -> None:
             checked(text.encode(), ",", 1)
 
 
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [
-        ('a\n"x\n"",\n"b', 2),
-        ('a,"b"\nc,"d""e', 2),
-        ('"a"\n"b"c', 2),
-        ('a\nb"c,"d"\n', 2),
-        ('"a"",\n""b', 1),
-        ('a\n"p\nq",r"\n', 2),
-    ],
-)
-def test_the_line_named_is_where_the_row_begins(text: str, line: int) -> None:
-    with pytest.raises(Unreadable, match=f"line {line}"):
-        checked(text.encode(), ",", 1)
-
-
 @given(texts.filter(is_well_formed), st.integers(1, 3))
 @example('a\n"x\ny"', 1)  # a last row without a line end was cut within its marks
 def test_portions_are_whole_rows(text: str, lines: int) -> None:

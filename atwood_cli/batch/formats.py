@@ -322,7 +322,7 @@ def _read_ndjson(file: IO[bytes], inputs: Inputs | None) -> Iterator[Piece]:
 
 
 def _lines(file: IO[bytes]) -> Iterator[tuple[list[str], int]]:
-    """Lines that are not blank, a number that may be objects at once, and their bytes."""
+    """Lines that are not blank, few enough to be objects at once, and the bytes read for them."""
     for text, first, _ in records(file, quoted=False):
         lines = [line for line in map(str.strip, decoded(text, first).split("\n")) if line]
         for start in range(0, len(lines), PIECE_ROWS):

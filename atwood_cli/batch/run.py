@@ -158,8 +158,8 @@ def _solved(
     for piece in pieces:
         if piece.columns != known:
             if clash := [name for name in piece.columns if name in (*job.names, ERROR)]:
-                how = "which is the name of a result; rename it, or name other results by --only"
-                raise Unreadable(f"it has a column {in_quotes(clash[0])}, {how}")
+                how = "as a result is named so; rename it, or name other results by --only"
+                raise Unreadable(f"column {in_quotes(clash[0])} would be there twice, {how}")
             layout = read_layout(piece, job.labels)
             usual = SEPARATORS.get(job.source_format, "")
             tally.remarks = read_as(layout.headings.items(), layout.separator, usual, layout.comma)
