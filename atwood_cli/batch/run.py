@@ -147,10 +147,7 @@ def _solved(
     job: Job, source: IO[bytes], tally: Tally, watch: Watch
 ) -> "Iterator[tuple[Piece, pl.DataFrame]]":
     """Each piece with its results."""
-
-    def inputs(columns: Sequence[str]) -> Sequence[str]:
-        return inputs_among(columns, job.labels)
-
+    inputs = partial(inputs_among, labels=job.labels)
     pieces = read(job.source_format, source, inputs, as_lines=job.target_format == "ndjson")
     if job.target != STREAM or not sys.stdout.isatty():
         pieces = watch(pieces, _size(job, source), lambda piece: piece.size)
