@@ -1007,13 +1007,14 @@ main()
 
 
 def test_a_bar_on_a_terminal_after_a_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    # A setting of Python is for a process of its own, in which the clock is ours.
     (tmp_path / "in.csv").write_text(TEXT + "1,3\n" * 99)
     words = ["batch", f"{tmp_path}/in.csv", "--force", "-o", f"{tmp_path}/out.csv"]
     said = f"atwood: 100 rows: 100 no-slip; no errors.\n{NEEDS_MU}"
     monkeypatch.setattr("tests.running.QUICK", BAR.replace("CLOCK", "count()"))
-    seen = plain(on_terminal(*words, columns=80))
+    seen = plain(on_terminal(*words, columns=80, PYTHONUTF8="1"))
     assert "━" in seen
     assert "%" in seen
     assert seen.endswith(said)
     monkeypatch.setattr("tests.running.QUICK", BAR.replace("CLOCK", "repeat(0)"))
-    assert on_terminal(*words, columns=80) == said
+    assert on_terminal(*words, columns=80, PYTHONUTF8="1") == said
