@@ -55,6 +55,7 @@ SIMMONS = """m1,m2,a
 """
 ODD = SIMMONS.replace("0.303", "0.103")
 POLAND = "m1,m2,a\n0.06,0.066,0.3269176828\n0.06,0.07,0.5183372802\n0.06,0.076,0.8821971763\n"
+APART = ((0.1, 0.01), (0.2, 0.012), (0.15, 0.03), (0.3, 0.02), (0.25, 0.04))
 EQUAL = {"m1": [1, 2], "m2": [2, 3], "a": [1, 2]}
 NOTHING = {name: read_input(name, None) for name in INPUTS}
 
@@ -223,18 +224,11 @@ def by_scipy(best: Fit, sigma: Any, absolute: bool) -> tuple[Any, Any]:
         a = (best.estimate.values["gravity"] * (data.h - data.l) - f) / (data.h + data.l + c)
         return a if data.kind == "a" else np.sqrt(2 * DROP / a)
 
-    return optimize.curve_fit(  # type: ignore[no-any-return]
-        ideal,
-        data.l,
-        data.measured,
-        [0.03, 0.01],
-        sigma,
-        absolute,
-        xtol=1e-14,
-        ftol=1e-14,
-        gtol=1e-14,
-        maxfev=10_000,
+    tight = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-14)
+    fitted = optimize.curve_fit(
+        ideal, data.l, data.measured, [0.03, 0.01], sigma, absolute, maxfev=10_000, **tight
     )
+    return fitted[0], fitted[1]
 
 
 @pytest.mark.parametrize("kind", ["a", "time"])
@@ -302,12 +296,10 @@ def test_what_no_pulley_has_is_no_result(fit: Any) -> None:
     """It printed rim_mass = -4.13 ± 0.57 kg as needed, beyond the pole, and a traceback with --figure."""
     ran = fit("m1,m2,a\n1,3,3\n1,2,2\n1,4,9\n1,5,5\n", "--json")
     assert "rim_mass" not in found(ran)["uncertainty"]
-    heavier = SIMMONS.replace("0.0", "1.0").replace("0.65,", "1.65,")
-    result = found(fit(heavier, "--json"))
+    result = found(fit(DRIVEN, "--json"))
     assert (result["rim_mass"], result["axle"], result["uncertainty"]) == (None, None, {})
     driven = "m1,m2,a\n" + "".join(
-        f"{m},{m + d},{(9.80665 * d + 0.05) / (2 * m + d + 0.04):.5f}\n"
-        for m, d in ((0.1, 0.01), (0.2, 0.012), (0.15, 0.03), (0.3, 0.02), (0.25, 0.04))
+        f"{m},{m + d},{(9.80665 * d + 0.05) / (2 * m + d + 0.04):.5f}\n" for m, d in APART
     )
     result = found(fit(driven, "--json"))
     assert result["rim_mass"] == pytest.approx(0.04, abs=1e-3)
@@ -355,16 +347,6 @@ def test_times_of_rit(atwood: Atwood) -> None:
     assert (result["gravity"], result["dof"]) == (None, 3)
     assert [run["rows"] for run in result["runs"]] == ["1", "2", "3", "4", "5"]
     assert result["runs"][0]["time"] == 3.99
-    assert result["notes"][0] == (
-        "5 runs, 15 times. The pulley's inertia agrees with 0: at most 0.108 kg (95 %). Axle friction is"
-        " significant (8.7 standard uncertainties from 0)."
-    )
-    about = " ".join(result["notes"])
-    assert "may as well be 1.6 g of mass unaccounted for on the lighter side" in about
-    assert "swap the sides to tell" in about
-    assert "The runs differ by 0.15 g of mass more than their repeats explain, as masses may;" in about
-    assert "chance alone does as much in 2.2 % of all sets" in about
-    assert "m1 + m2 is the same in all runs" in about
 
 
 def test_accelerations_of_simmons(fit: Any) -> None:
@@ -377,8 +359,6 @@ def test_accelerations_of_simmons(fit: Any) -> None:
     assert result["moment_of_inertia"] == pytest.approx(result["rim_mass"] * 0.025**2)
     assert result["pulley_mass"] == pytest.approx(2 * result["rim_mass"])
     assert result["uncertainty"]["pulley_mass"] == pytest.approx(2 * result["uncertainty"]["rim_mass"])
-    assert "Axle friction agrees with 0: at most 0.0026 N (95 %)." in result["notes"][0]
-    assert "Without repeats nothing separates the scatter of the accelerations from" in result["notes"][1]
 
 
 def test_three_runs_of_poland_tell_little(fit: Any) -> None:
@@ -390,14 +370,9 @@ def test_three_runs_of_poland_tell_little(fit: Any) -> None:
         assert high - low == pytest.approx(2 * 12.706 * result["uncertainty"][name], rel=1e-4)
 
 
-def test_a_free_axle_is_an_assumption_that_says_what_it_carries(fit: Any) -> None:
+def test_a_free_axle_carries_what_is_said(fit: Any) -> None:
     result = found(fit(SIMMONS, "--g", "9.81", "--find", "rim_mass", "--json"))
     assert (result["axle"], result["dof"]) == (None, 7)
-    (note,) = [note for note in result["notes"] if "taken to be 0" in note]
-    assert note == (
-        "Axle friction is neither fitted nor given, and so taken to be 0:"
-        " 10 mN would take 21 g off the pulley's inertia."
-    )
     more = found(fit(SIMMONS, "--g", "9.81", "--axle", "1mN", "--find", "rim_mass", "--json"))
     assert result["rim_mass"] - more["rim_mass"] == pytest.approx(0.0021, rel=0.05)
 
@@ -406,9 +381,6 @@ def test_runs_too_few_for_both_say_what_is_assumed(fit: Any) -> None:
     result = found(fit("m1,m2,a\n1,2,2.4\n1,3,3.9\n", "--json"))
     assert (result["axle"], result["dof"]) == (None, 1)
     assert result["rim_mass"] is not None
-    assert any(
-        note.startswith("Axle friction is assumed to be 0: 2 runs are too few") for note in result["notes"]
-    )
     alike = found(fit("m1,m2,a\n" + "1,2,2.4\n1,2,2.41\n1,2,2.39\n", "--json"))
     assert alike["axle"] is None
 
@@ -438,19 +410,13 @@ def test_either_side_may_be_the_heavier(fit: Any) -> None:
         got = found(fit(table, "--json"))
         assert got["rim_mass"] == pytest.approx(want["rim_mass"], rel=1e-12)
         assert not any("swap the sides" in note for note in got["notes"])
-    assert "accelerations have no sign here" in " ".join(found(fit(swapped, "--json"))["notes"]).lower()
     line = found(fit(signed, "--json"))["runs"][3]
     assert (line["a"], line["expected"] < 0) == (-0.31, True)
 
 
 def test_stdin() -> None:
-    ran = process(
-        "fit",
-        "-",
-        "--only",
-        "dof",
-        shell="printf 'm1,m2,a\\n1,2,1\\n1,3,2\\n2,3,1\\n' | atwood fit - --only dof",
-    )
+    command = "printf 'm1,m2,a\\n1,2,1\\n1,3,2\\n2,3,1\\n' | atwood fit - --only dof"
+    ran = process("fit", "-", "--only", "dof", shell=command)
     assert (ran.status, ran.out) == (0, "1\n")
 
 
@@ -459,13 +425,8 @@ def test_no_extra_package_is_needed_for_csv() -> None:
         "import sys; from atwood_cli.cli import run; status = run(['fit', *sys.argv[1:]]);"
         "sys.exit(status or bool({'polars', 'scipy', 'matplotlib', 'plotille'} & set(sys.modules)))"
     )
-
-    assert (
-        subprocess.run(
-            [sys.executable, "-c", code, *RIT[1:], "--json"], stdout=subprocess.DEVNULL, check=False
-        ).returncode
-        == 0
-    )
+    done = subprocess.run([sys.executable, "-c", code, *RIT[1:], "--json"], capture_output=True, check=False)
+    assert done.returncode == 0
 
 
 # What is given, and what is fitted
@@ -706,17 +667,7 @@ def test_a_result_that_is_not_there_is_a_status_in_every_form(fit: Any, form: st
 # How it is printed
 
 
-def test_the_page(atwood: Atwood) -> None:
-    ran = atwood(*RIT)
-    assert (ran.status, ran.err) == (0, "")
-    lines = ran.out.splitlines()
-    assert lines[0] == "g = 9.804 m/s², drop = 0.98 m"
-    assert lines[6] == "│ rim_mass │ 0.032 ± 0.024   │ kg   │ c=I/R² │ -0.044 to 0.108   │"
-    assert "│ 1   │ 0.2     │ 0.207   │ 3.990 ± 0.073 │ 4.040        │ -0.69      │" in lines
-    assert lines[-2:] == [
-        "To predict:",
-        "  atwood solve --m1 0.2 --m2 0.207 --g 9.804 --M 0.032 --inertia hoop --axle 0.0159",
-    ]
+def test_the_page_has_the_digits_and_the_width_asked_for(atwood: Atwood) -> None:
     with_all = plain(on_terminal(*RIT, "--R", "25mm", "--inertia", "disk", columns=80)).splitlines()
     assert sum("moment_of_inertia" in line for line in with_all) == 1  # one table
     narrow = plain(on_terminal(*RIT, columns=60)).splitlines()
@@ -834,11 +785,9 @@ def test_csv_has_a_row_a_run(atwood: Atwood, fit: Any) -> None:
     assert list(rows[0]) == ["rows", "m1", "m2", "drop", "time", "u", "expected", "residual"]
     assert len(rows) == 5
     assert "atwood: rim_mass = 0.032 ± 0.024 kg" in ran.err.splitlines()
-    unusable = fit(
-        "Team," + SIMMONS.replace("\n", "\nA,").rstrip("A,") + "B,1,1,0\n", "--csv"
-    ).out.splitlines()
-    assert unusable[0] == "rows,Team,m1,m2,a,u,expected,residual"
-    assert unusable[-1] == "9,B,1,1,0,,,"
+    lines = fit("Team,m1,m2,a\nA,1,2,2.4\nA,1,3,3.9\nB,1,1,0\n", "--csv").out.splitlines()
+    assert lines[0] == "rows,Team,m1,m2,a,u,expected,residual"
+    assert lines[-1] == "3,B,1,1,0,,,"
 
 
 def test_bare_values(atwood: Atwood) -> None:
@@ -853,20 +802,14 @@ def test_bare_values(atwood: Atwood) -> None:
 
 def test_the_line_is_explained(atwood: Atwood, fit: Any) -> None:
     out = atwood(*RIT, "--explain").out
-    assert "  (3) T_h - T_l = c a + f\n" in out
-    assert "      y = T_h - T_l = (h - l) g - a (h + l)\n" in out
     words = " ".join(out.split())
-    assert "- row 1: l = 0.2 kg, h = 0.207 kg, t = 3.99 s: a = 0.123115 m/s², y = 0.0185203 N " in words
     assert "- rim mass: c = 0.032 ± 0.024 kg, 95 % interval -0.044 to 0.108 kg" in words
     assert "4. What was assumed, and what else to know\n" in out
-    assert "Row 5 stands out" in fit(SIMMONS.replace("0.303", "0.103"), "--explain").out
+    assert "Row 5 stands out" in fit(ODD, "--explain").out
     assert max(map(len, out.splitlines())) <= 80
 
 
-LIGHT = "m1,m2,a\n" + "".join(
-    f"{m},{m + d:.3f},{9.80665 * d / (2 * m + d - 0.08):.5f}\n"
-    for m, d in ((0.1, 0.01), (0.2, 0.012), (0.15, 0.03), (0.3, 0.02), (0.25, 0.04))
-)
+LIGHT = "m1,m2,a\n" + "".join(f"{m},{m + d:.3f},{9.80665 * d / (2 * m + d - 0.08):.5f}\n" for m, d in APART)
 """Runs that would need a pulley of -80 g."""
 
 
@@ -926,26 +869,31 @@ def test_what_is_no_result_is_not_drawn_as_one(fit: Any, tmp_path: Path) -> None
     assert "slope" not in " ".join(labels(file.read_text(encoding="utf-8")))
 
 
-def test_nothing_is_cut_from_the_picture(fit: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+MANY = "m1,m2,a\n" + "".join(f"1,{1.1 + i / 40},{0.45 + i / 90}\n" for i in range(20))
+
+
+@pytest.mark.parametrize(
+    ("table", "more"),
+    [(ODD, ()), (ODD, ("--bare",)), (ODD, ("--without", "5", "--bare")), (SIMMONS, ()), (MANY, ())],
+)
+def test_nothing_is_cut_from_the_picture(
+    fit: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, table: str, more: tuple[str, ...]
+) -> None:
     """A bar of an outlier ran off; a run that is left out was not there; --bare has no sentences."""
-    file = str(tmp_path / "line.png")
-    for more in ((), ("--bare",), ("--without", "5", "--bare")):
-        with pages_seen(monkeypatch) as pages:
-            assert fit(ODD, *more, "--figure", file, "--force").status == 0
-        page: Any = pages[0]
-        line = page.axes[0]
-        (left, right), (low, high) = line.get_xlim(), line.get_ylim()
-        for bars in line.collections:
-            for (x, y), (to_x, to_y) in bars.get_segments():
-                assert left <= x <= to_x <= right
-                assert low <= y <= to_y <= high
-        hollow = [
-            one for one in line.lines if one.get_markerfacecolor() == "none" and one.get_markersize() < 9
-        ]
-        assert [len(one.get_xdata()) for one in hollow] == [int("--without" in more)]
-        assert (page.get_suptitle() == "") == bool(more)
-        assert "$T_h - T_l$" in line.get_ylabel()
-        assert misplaced(page) == []
+    with pages_seen(monkeypatch) as pages:
+        assert fit(table, *more, "--figure", str(tmp_path / "line.png")).status == 0
+    (page,) = pages
+    line = page.axes[0]
+    (left, right), (low, high) = line.get_xlim(), line.get_ylim()
+    for bars in line.collections:
+        for (x, y), (to_x, to_y) in bars.get_segments():
+            assert left <= x <= to_x <= right
+            assert low <= y <= to_y <= high
+    hollow = [one for one in line.lines if one.get_markerfacecolor() == "none" and one.get_markersize() < 9]
+    assert [len(one.get_xdata()) for one in hollow] == [int("--without" in more)]
+    assert (page.get_suptitle() == "") == bool(more)
+    assert "$T_h - T_l$" in line.get_ylabel()
+    assert misplaced(page) == []
 
 
 def test_the_line_is_drawn(atwood: Atwood, tmp_path: Path) -> None:
@@ -954,24 +902,13 @@ def test_the_line_is_drawn(atwood: Atwood, tmp_path: Path) -> None:
     assert atwood(*RIT, "--figure", str(file), "--only", "dof").status == 0
     svg = file.read_text(encoding="utf-8")
     texts = " ".join(labels(svg))
-    assert "slope" in texts
-    assert "= 0.032 ± 0.024 kg" in texts
-    assert "= 0.0159 ± 0.0018 N" in texts
-    assert "residual (N)" in texts
+    assert all(
+        words in texts for words in ("slope", "= 0.032 ± 0.024 kg", "= 0.0159 ± 0.0018 N", "residual (N)")
+    )
     again = tmp_path / "again.svg"
     atwood(*RIT, "--figure", str(again), "--only", "dof")
     assert again.read_text(encoding="utf-8") == svg
     assert atwood(*RIT, "--figure", str(file)).status == 1
-
-
-def test_no_words_of_the_line_overlap_or_run_off(
-    fit: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    many = "m1,m2,a\n" + "".join(f"1,{1.1 + i / 40},{0.45 + i / 90}\n" for i in range(20))
-    for i, table in enumerate((SIMMONS, many)):
-        with pages_seen(monkeypatch) as pages:
-            assert fit(table, "--figure", str(tmp_path / f"{i}.png")).status == 0
-        assert [misplaced(page) for page in pages] == [[]]
 
 
 def test_the_line_is_plotted(atwood: Atwood) -> None:
@@ -1006,12 +943,8 @@ def test_time_grows_as_the_rows_do(rows: int, repeats: int, tmp_path: Path, atwo
 
 
 def test_a_label_may_look_like_an_input(fit: Any) -> None:
-    table = (
-        SIMMONS.replace("m1,m2,a", "m1,m2,a,M").replace("\n0", ",heavy\n0").replace("M,heavy", "M").rstrip()
-        + ",light\n"
-    )
-    result = found(fit(table, "--label", "M", "--json"))
-    assert [run["M"] for run in result["runs"]] == ["heavy"] * 7 + ["light"]
+    result = found(fit("m1,m2,a,M\n1,2,2.4,heavy\n1,3,3.9,light\n", "--label", "M", "--json"))
+    assert [run["M"] for run in result["runs"]] == ["heavy", "light"]
 
 
 def test_runs_without_any_scatter_require_what_they_show(fit: Any) -> None:
