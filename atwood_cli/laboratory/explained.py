@@ -8,6 +8,7 @@ from ..derivation.equations import Law, Part
 from ..derivation.steps import Explanation, Step
 from ..solver.answers import SHOWN_DIGITS
 from .fitting import Fit
+from .headings import MEASURED
 from .numbers import few, rows_of
 from .results import points
 from .sentences import head, notes
@@ -61,7 +62,7 @@ def _points(fit: Fit) -> Iterator[Part]:
 
 def _line(fit: Fit) -> Iterator[Part]:
     yield Law("", "y = c a + f")
-    what = {"a": "accelerations", "time": "times"}[fit.runs.kind]
+    what = f"{MEASURED[fit.runs.kind]}s"
     yield (
         f"This line is the one by which the {what} are as close as can be to those measured: the sum of the"
         f" squares of what is left, each in its standard uncertainty, is the least. It is not that of `y`, as"

@@ -1,4 +1,4 @@
-"""What runs say of the pulley's inertia and the friction of its axle, and which runs are odd.
+"""The fit of the pulley's inertia and its axle's friction to runs, and which runs are odd.
 
 Both are always fitted where the runs can separate them: leaving one out falsifies the other. No run is left
 out silently.
@@ -247,12 +247,13 @@ def _best(
 
     If ``judged`` it says what is odd about the runs.
     """
+    data = as_data(runs, used)
     both = [x for x in USUAL if x not in given.values]
     choices = [find] if find else [both, both[:1]] if both[1:] else [both]
     assumed = ""
     for names in choices:
         try:
-            fit = _fit(runs, used, given, find, names)._replace(assumed=assumed)
+            fit = Fit(runs, used, given, find, data, _estimate(data, used, given, names), assumed)
             fit = fit._replace(odd=_odd(fit)) if judged else fit
             if not fit.vague or fit.odd.without is not None:
                 return fit
@@ -264,17 +265,13 @@ def _best(
     raise AssertionError
 
 
-def _fit(
-    runs: Runs, used: Sequence[Run], given: Conditions, find: Sequence[str], names: Sequence[str]
-) -> Fit:
-    data = as_data(runs, used)
+def _estimate(data: Data, used: Sequence[Run], given: Conditions, names: Sequence[str]) -> Estimate:
     dof = len(used) - len(names)
     if dof < 0 or not (dof or data.spread.any() or data.uncertain):
         raise TooFew(TOO_FEW.format(f"{len(used)} runs are" if used[1:] else "1 run is"))
     values: dict[str, float] = {"axle": 0.0, "rim_mass": 0.0, **given.values}
-    others = {x: value for x, value in values.items() if x not in names}
     try:
-        return Fit(runs, used, given, find, data, estimate(data, others, names))
+        return estimate(data, {x: value for x, value in values.items() if x not in names}, names)
     except Alike:
         raise Alike(undetermined(used, names)) from None
 

@@ -17,8 +17,8 @@ Kind = Literal["a", "time"]
 
 TAKEN = ("m1", "m2", "drop", "a", "time")
 """The quantities of a run; what else a scene has is the same in all runs."""
-MEASURED = ("a", "time")
-"""The quantities that may be repeated, in numbered columns."""
+MEASURED = {"a": "acceleration", "time": "time"}
+"""The quantities that are measured, which may be repeated in numbered columns."""
 RESULTS = ("rows", "u", "expected", "residual")
 """The other columns of results, which no label may be called."""
 SPELLINGS = {

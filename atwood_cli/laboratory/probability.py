@@ -1,4 +1,4 @@
-"""Shares of probability: Student's t, Fisher's F and χ², as far as a fit needs them."""
+"""Probabilities that a fit needs: of Student's t, Fisher's F and χ²."""
 
 from functools import cache
 from math import erfc, exp, inf, lgamma, log, log1p, sqrt
@@ -7,11 +7,11 @@ TINY = 1e-300
 """In place of 0 in a continued fraction (W. J. Lentz)."""
 MOST_TERMS = 10_000
 SURE = 0.95
-"""The share of truths that an interval holds."""
+"""The probability that an interval holds the true value."""
 
 
 def beta_share(a: float, b: float, x: float) -> float:
-    """I_x(a, b), the share of the beta distribution below x."""
+    """I_x(a, b), the probability of the beta distribution below x."""
     if x <= 0 or x >= 1:
         return float(x >= 1)
     if x > (a + 1) / (a + b + 2):  # where its continued fraction is slow
@@ -35,7 +35,7 @@ def beta_share(a: float, b: float, x: float) -> float:
 
 
 def student_beyond(t: float, dof: float) -> float:
-    """How probable a t beyond this one is, to either side; a normal distribution for dof = inf."""
+    """The probability that t is beyond this one, to either side; the normal one for dof = inf."""
     if dof == inf:
         return erfc(abs(t) / sqrt(2))
     return beta_share(dof / 2, 0.5, dof / (dof + t * t))
@@ -43,7 +43,7 @@ def student_beyond(t: float, dof: float) -> float:
 
 @cache
 def student_within(share: float, dof: float) -> float:
-    """The t between whose two signs that share lies."""
+    """The t for which that share of the distribution lies between -t and t."""
     low, high = 0.0, 1.0
     while student_beyond(high, dof) > 1 - share:
         low, high = high, 2 * high
@@ -54,7 +54,7 @@ def student_within(share: float, dof: float) -> float:
 
 
 def chi2_beyond(chi2: float, dof: int) -> float:
-    """How probable a χ² beyond this one is: a sum of dof/2 terms, each by its logarithm."""
+    """The probability that χ² is beyond this one: a sum of dof/2 terms, each by its logarithm."""
     half, first = chi2 / 2, dof % 2 / 2
     if not half:
         return 1.0
@@ -63,7 +63,7 @@ def chi2_beyond(chi2: float, dof: int) -> float:
 
 
 def fisher_beyond(ratio: float, dof: int, dof_below: float) -> float:
-    """How probable a ratio of variances beyond this one is; dof_below is inf where the lower is known."""
+    """The probability that a ratio of variances is beyond this one; dof_below is inf if the lower is known."""
     if dof_below == inf:
         return chi2_beyond(ratio * dof, dof)
     return beta_share(dof_below / 2, dof / 2, dof_below / (dof_below + dof * ratio))

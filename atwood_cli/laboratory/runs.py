@@ -4,7 +4,6 @@ import re
 from collections.abc import Collection, Mapping, Sequence
 from contextlib import ExitStack
 from fractions import Fraction
-from math import fsum
 from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -20,7 +19,7 @@ from .headings import Header, Kind, Quantity, not_recognised, read_header, recog
 OWN_UNIT = re.compile(r"(?![eE][+-]?\d)[^\W\d_]|°")
 """In a cell: a letter that is not an exponent's."""
 EMPTY = ("nan", "None", "<NA>", "NaT", "--")
-"""How Python writes a missing value."""
+"""How Python and pandas write a missing value."""
 
 MEASURABLE = 1e-30, 1e30
 BEYOND = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
@@ -30,10 +29,7 @@ def in_range(one: Input) -> bool:
     """Whether a number, and its uncertainty, are 0 or of a size whose squares are doubles."""
     low, high = MEASURABLE
     sizes = (getattr(one.value, "number", one.value), one.uncertainty)
-    try:
-        return all(low <= abs(float(size)) <= high for size in sizes if size)
-    except OverflowError:
-        return False
+    return all(low <= abs(size) <= high for size in sizes if size)
 
 
 class Run(NamedTuple):
@@ -60,8 +56,7 @@ class Run(NamedTuple):
     @property
     def sign(self) -> int:
         """The sign of the mean."""
-        total = fsum([float(one.value) for one in self.measured])
-        return (total > 0) - (total < 0)
+        return (self.mean > 0) - (self.mean < 0)
 
     def without(self, places: Collection[int]) -> "Run":
         """The run without some of its measurements."""

@@ -10,6 +10,7 @@ from ..model import physics
 from ..model.scene import parameter_of
 from ..model.units import counted
 from .fitting import SAME, Fit, to_vary, undetermined, unusable
+from .headings import MEASURED
 from .numbers import cut, far, few, shown
 from .probability import fisher_beyond
 from .quantities import QUANTITIES, SMALL, USUAL
@@ -34,7 +35,9 @@ def head(fit: Fit) -> list[str]:
 
 def verdict(fit: Fit) -> str:
     """How many runs there are, and which quantities are significant."""
-    said = [f"{counted(len(fit.used), 'run')}, {counted(int(fit.data.times.sum()), _measured(fit))}."]
+    said = [
+        f"{counted(len(fit.used), 'run')}, {counted(int(fit.data.times.sum()), MEASURED[fit.runs.kind])}."
+    ]
     if fit.vague:
         said.append(f"No result: {undetermined(fit.used, fit.estimate.names)}.")
     elif not fit.values:
@@ -132,16 +135,11 @@ def _assumptions(fit: Fit) -> Iterator[str]:
         )
 
 
-def one_sided(fit: Fit) -> bool:
-    """Whether the same side is the heavier in all runs."""
-    return len({run.m2.value > run.m1.value for run in fit.used}) == 1
-
-
 def _spread(fit: Fit) -> Iterator[str]:
     """How the scatter of the runs is known."""
     data, between = fit.data, fit.between_runs
     by = "their repeats explain" if isfinite(data.within) else "their uncertainties say"
-    what = _measured(fit)
+    what = MEASURED[fit.runs.kind]
     if not data.spread.any() and data.uncertain:
         yield (
             f"The uncertainty of a single {what} is neither given nor shown by repeats: u is the scatter that"
@@ -165,7 +163,8 @@ def _spread(fit: Fit) -> Iterator[str]:
 
 def _indistinct(fit: Fit) -> Iterator[str]:
     """What the results can hardly be distinguished from, and what to vary."""
-    if "axle" in fit.values and fit.significant("axle") > 0 and one_sided(fit):
+    one_sided = len({run.m2.value > run.m1.value for run in fit.used}) == 1
+    if "axle" in fit.values and fit.significant("axle") > 0 and one_sided:
         mass = physics.axle_mass(fit.values["axle"], fit.estimate.values["gravity"])
         yield (
             f"The friction of the axle may as well be {few(mass / SMALL)} g of mass unaccounted for on"
@@ -195,7 +194,3 @@ def _some(sentences: Iterable[str], more: str) -> list[str]:
 
 def _capital(words: str) -> str:
     return f"{words[0].upper()}{words[1:]}"
-
-
-def _measured(fit: Fit) -> str:
-    return {"a": "acceleration", "time": "time"}[fit.runs.kind]

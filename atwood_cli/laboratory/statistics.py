@@ -1,10 +1,10 @@
-"""The statistics of a fit: a line by weighted least squares, a variance between runs, and what strays.
+"""The statistics of a fit: a line by weighted least squares, a variance between runs, and outliers.
 
 R. C. Paule and J. Mandel, "Consensus values and weighting factors", J. Res. NBS 87 (1982) 377, find the
 variance between runs; G. Knapp and J. Hartung, "Improved tests for a random effects meta-regression with a
 single covariate", Stat. Med. 22 (2003) 2693, the scale of the covariance and Student's t with n - p degrees
 of freedom; B. Rosner, "Percentage points for a generalized ESD many-outlier procedure", Technometrics 25
-(1983) 165, how many values stray, though they hide each other.
+(1983) 165, the number of outliers, though they hide each other.
 """
 
 from collections.abc import Callable, Mapping
@@ -19,21 +19,21 @@ from .probability import student_beyond
 
 MOST_STEPS = 100
 ALIKE = 1e-7
-"""Below this ratio of singular values the runs do not tell what is fitted apart."""
+"""Below this ratio of singular values the runs cannot separate the fitted quantities."""
 TINY = 1e-300
 MOST_STRAYS = 20
-"""Values that may be found to stray, but no more than one for eight degrees of freedom."""
+"""Outliers that are looked for; there is at most one for eight degrees of freedom."""
 
 
 class Alike(ArithmeticError):
-    """The runs do not tell apart what is to be fitted."""
+    """The runs cannot separate the quantities to be fitted."""
 
 
 class LinearFit(NamedTuple):
     """A linear fit of n values: p coefficients, their covariance, and the variance of each value.
 
-    Both are still to be multiplied by the square of ``scale``. ``chi2`` is by the known variances alone, and
-    ``between`` the variance that was found beside them; both are None where none is known.
+    Covariance and variances are still to be multiplied by the square of ``scale``. ``chi2`` is by the known
+    variances alone, and ``between`` the variance estimated beside them; both are None if none is known.
     """
 
     step: Column
@@ -94,11 +94,11 @@ def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
 def stray_rows(
     J: Any, y: Column, known: Column, shape: Column, within: float, level: float
 ) -> Mapping[int, float]:
-    """The values far from what the others say, and how many standard uncertainties.
+    """The values far from what the others say, and the distances in standard uncertainties.
 
     Residuals and leverages show the furthest, without a fit for each; the line of the others judges it.
-    The known variance has ``within`` degrees of freedom, 0 if the scatter of repeats is no part of it. What
-    was found beside it has those of the others. Their sum has those of B. L. Welch and F. E. Satterthwaite.
+    The known variance has ``within`` degrees of freedom, 0 if the scatter of repeats is no part of it. The
+    estimated one has those of the other values, their sum those of B. L. Welch and F. E. Satterthwaite.
     """
 
     def furthest(kept: NDArray[np.bool_]) -> tuple[int, float, float]:
@@ -121,7 +121,7 @@ def stray_rows(
 
 
 def stray_repeats(values: Column, u: Column, run: NDArray[np.intp], level: float) -> Mapping[int, float]:
-    """The values far from their siblings, those of the same run, and how many standard deviations.
+    """The values far from their siblings, those of the same run, and the distances in standard deviations.
 
     The scatter is the same in all runs, times ``u``, and that of the others judges a value: so it is robust.
     A value without siblings is not judged.
@@ -151,7 +151,7 @@ def stray_repeats(values: Column, u: Column, run: NDArray[np.intp], level: float
 def _strays(
     count: int, taken: int, chance: float, furthest: Callable[[NDArray[np.bool_]], tuple[int, float, float]]
 ) -> Mapping[int, float]:
-    """The values that stray: all up to the last that chance does not explain (Rosner's generalized ESD).
+    """The outliers: all up to the last that chance does not explain (Rosner's generalized ESD).
 
     ``taken`` is the number of values that their fit takes up. ``furthest(kept)`` returns the index of the
     value furthest from the others kept, its distance in standard deviations, and their degrees of freedom.
