@@ -63,7 +63,7 @@ def chi2_beyond(chi2: float, dof: int) -> float:
 
 
 def fisher_beyond(ratio: float, dof: int, dof_below: float) -> float:
-    """The probability that a ratio of variances is beyond this one; dof_below is inf if the lower is known."""
+    """The probability that a ratio of variances is beyond this one; dof_below may be inf."""
     if dof_below == inf:
         return chi2_beyond(ratio * dof, dof)
     return beta_share(dof_below / 2, dof / 2, dof_below / (dof_below + dof * ratio))
