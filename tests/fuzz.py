@@ -46,6 +46,8 @@ from atwood_cli.model.quantities import NAMES
 from atwood_cli.model.scene import COLUMNS, INPUTS, MEASURED
 from atwood_cli.tradeoff import measure
 
+from .running import hearing
+
 LIMIT = 120  # seconds, for a run that waits
 BUSY = 15  # seconds of processor time, for any run
 MOST_SAID = 2000  # characters of a sentence
@@ -420,14 +422,6 @@ def wrong_with_arguments(random: Dice) -> str:
 
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(cli.__file__).parents[2])}
-STARTED = """
-import gc, signal, sys
-from atwood_cli.__main__ import main
-# The first that main calls once it hears signals, which were blocked until then: what Python does before is its own.
-gc.disable = lambda: signal.pthread_sigmask(signal.SIG_SETMASK, [])
-sys.exit(main())
-"""
-HEARD = ("SIGINT", "SIGTERM", "SIGHUP")
 KILLED_BY = {"SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129, "SIGKILL": -9}
 KILLED = [
     "batch in.csv -o out.csv",
@@ -446,12 +440,7 @@ def start(line: str) -> "subprocess.Popen[bytes]":
     scenes = pl.DataFrame({"m1": [1.0] * 50_000, "m2": [3.0] * 50_000, "n": range(50_000)})
     scenes.write_csv("in.csv")
     scenes.write_parquet("in.parquet")
-    words = [sys.executable, "-c", STARTED, *line.split(), "--force"]
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.Signals[name] for name in HEARD])
-    try:
-        return subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=ENVIRONMENT)
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    return hearing(*line.split(), "--force", env=ENVIRONMENT)
 
 
 @cache

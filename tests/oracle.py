@@ -15,7 +15,7 @@ import flint
 from atwood_cli.model.scene import Scene
 
 LARGEST_EXPONENT = 10**8
-"""Beyond this power of ten the package says infinite."""
+"""Beyond this power of ten the package says infinite, and below its inverse that it is too small to be written."""
 WIDE = Context(prec=1000, Emin=-(10**9), Emax=10**9)
 
 Value = Fraction | Callable[[], flint.arb]
@@ -53,10 +53,12 @@ def correctly_rounded(value: Value, digits: int | None) -> float | Decimal:
             flint.ctx.prec *= 2
             continue
         tens = 0
-        if abs(enclosure) > flint.arb(10) ** 5000:  # too large for a fraction
-            log = abs(enclosure).log() / flint.arb(10).log()
-            if digits is None or log > LARGEST_EXPONENT:
-                return inf if digits is None else Decimal(inf)
+        log = abs(enclosure).log() / flint.arb(10).log()
+        if abs(log) > 5000:  # too large or too small for a fraction
+            if digits is None:
+                return inf if log > 0 else 0.0
+            if abs(log) > LARGEST_EXPONENT:
+                return Decimal(inf) if log > 0 else Decimal(0)
             tens = int(log.mid().floor().fmpz())
             enclosure = (enclosure.log() - flint.arb(tens) * flint.arb(10).log()).exp()
         lo, hi = (round_exact(q, digits) for q in endpoints(enclosure))

@@ -3,6 +3,7 @@
 import os
 import re
 import shlex
+import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -63,6 +64,26 @@ def started(words: Sequence[str], streams: Sequence[int], asked: Mapping[str, st
         [sys.executable, *program, *words], stdin=stdin, stdout=stdout, stderr=stderr, env=around(asked)
     )
     return partial(child.wait, HANGS)
+
+
+STARTED = """
+import gc, signal, sys
+from atwood_cli.__main__ import main
+# The first that main calls once it hears signals, which were blocked until then: what Python does before is its own.
+gc.disable = lambda: signal.pthread_sigmask(signal.SIG_SETMASK, [])
+sys.exit(main())
+"""
+HEARD = ("SIGINT", "SIGTERM", "SIGHUP")
+
+
+def hearing(*words: str, **how: Any) -> "subprocess.Popen[bytes]":
+    """A run of the program that hears no signal before its own handlers are there."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.Signals[name] for name in HEARD])
+    try:
+        program = [sys.executable, "-c", STARTED, *words]
+        return subprocess.Popen(program, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **how)
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def process(*arguments: str, shell: str = "", code: str = "", stdin: Any = None, **environment: str) -> Ran:

@@ -35,7 +35,7 @@ from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import COLUMNS
 
 from .conftest import examples
-from .running import HANGS, PIP, Atwood, Ran, on_terminal, plain, process
+from .running import HANGS, PIP, Atwood, Ran, hearing, on_terminal, plain, process
 
 NEEDS_MU = "atwood: critical_pulley_mass: give mu, the friction coefficient.\n"
 SEPARATORS = {"csv": ",", "tsv": "\t"}
@@ -895,11 +895,6 @@ STATUS = {"SIGKILL": -9, "SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129}
 needs_signals = pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
 
 
-def started(*words: str, **how: Any) -> "subprocess.Popen[bytes]":
-    command = [sys.executable, "-m", "atwood_cli", "batch", *words]
-    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **how)
-
-
 TURNED = """
 import os, signal, sys, time
 from atwood_cli import cli
@@ -930,7 +925,7 @@ def test_a_run_stopped_in_an_import_shows_no_traceback(blow: str) -> None:
 @pytest.mark.parametrize("blows", ["SIGKILL", "SIGINT", "SIGTERM", "SIGHUP", "SIGINT SIGINT"])
 def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str) -> None:
     out = tmp_path / "out.csv"
-    child = started("-", "-o", str(out), stdin=subprocess.PIPE)
+    child = hearing("batch", "-", "-o", str(out), stdin=subprocess.PIPE)
     assert child.stdin is not None
     child.stdin.write(b"m1,m2,M\n" + b"1,3,10\n" * 1_000_000)  # some pieces are done, more are awaited
     child.stdin.flush()
@@ -950,7 +945,7 @@ def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str) -> None:
 def test_what_is_to_outlive_its_terminal_does(tmp_path: Path) -> None:
     """Under nohup, which has SIGHUP ignored."""
     ignore = partial(signal.signal, signal.SIGHUP, signal.SIG_IGN)
-    child = started("-", "-o", str(tmp_path / "out.csv"), stdin=subprocess.PIPE, preexec_fn=ignore)
+    child = hearing("batch", "-", "-o", str(tmp_path / "out.csv"), stdin=subprocess.PIPE, preexec_fn=ignore)
     while not list(tmp_path.iterdir()):
         time.sleep(0.01)
     child.send_signal(signal.SIGHUP)
@@ -963,7 +958,7 @@ def test_what_is_to_outlive_its_terminal_does(tmp_path: Path) -> None:
 def test_a_pipe_that_brings_nothing_is_waited_for_until_it_is_stopped(tmp_path: Path, kind: str) -> None:
     os.mkfifo(tmp_path / "in")
     for blow, is_open in (("SIGTERM", False), ("SIGINT", False), ("SIGINT", True)):
-        child = started(str(tmp_path / "in"), "--from", kind)
+        child = hearing("batch", str(tmp_path / "in"), "--from", kind)
         writer = os.open(tmp_path / "in", os.O_RDWR) if is_open else None
         time.sleep(1)
         child.send_signal(signal.Signals[blow])

@@ -478,6 +478,8 @@ def test_elements_in_every_output(atwood: Atwood) -> None:
     assert set(result["capstan_ratio"]) == {"value", "exact", "error"}
     names, *rows = csv.reader(io.StringIO(atwood(*words, "--csv").out))
     assert (names, len(rows)) == (["name", "value", "exact", "error"], 4)
+    most = atwood(*PAPER, "--elements", "10", "--digits", "30", "--csv").out
+    assert "capstan_ratio,2.5883556335228177,2.56633239520813532093526000910," in most
 
 
 ERRORS = """

@@ -19,7 +19,7 @@ from ..arrays import solve_and_count, solve_arrays
 from ..files import LONGEST_NAME, STREAM, Stdout, Unreadable, written_beside
 from ..model.quantities import NAMES, REGIMES, Accuracy
 from ..model.scene import Given, Scene, SceneError
-from ..model.units import in_quotes, shortened
+from ..model.units import counted, in_quotes, shortened
 from ..solver.messages import reasons_at
 from .formats import (
     SEPARATORS,
@@ -60,19 +60,15 @@ class Tally:
         """The messages: remarks, the summary, why valid rows lack results, the first error."""
         parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
         counts = [", ".join(parts)] if parts else []
-        counts.append(_counted(self.errors, "error") if self.errors else "no errors")
+        counts.append(counted(self.errors, "error") if self.errors else "no errors")
         if self.beyond:
-            counts.append(f"{_counted(self.beyond, 'value')} beyond the range of doubles left empty")
-        summary = f"{_counted(self.rows, 'row')}: {'; '.join(counts)}."
+            counts.append(f"{counted(self.beyond, 'value')} beyond the range of doubles left empty")
+        summary = f"{counted(self.rows, 'row')}: {'; '.join(counts)}."
         first = [f"first error, in {self.first_error}"] if self.errors else []
         # Threads count in any order: the most frequent reason first.
         reasons = sorted(self.reasons.items(), key=lambda one: (-one[1], NAMES.index(one[0][0]), one[0][1]))
         missing = reasons_at(dict(reasons), self.rows, "in {} of {} rows")
         return [*self.remarks, summary, *missing, *first]
-
-
-def _counted(count: int, thing: str) -> str:
-    return f"{count} {thing}{'s' * (count != 1)}"
 
 
 @dataclass(frozen=True)
@@ -180,7 +176,7 @@ def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "pl.DataFram
     scenes, errors = _scenes(frame, layout)
     width = len(piece.columns)
     for row, cells in piece.short.items():
-        errors[row] = f"the row has {_counted(cells, 'cell')}, and the header {width}"
+        errors[row] = f"the row has {counted(cells, 'cell')}, and the header {width}"
     scenes["m1"][list(errors)] = nan  # such a row has no results
     wanted = list(dict.fromkeys(["regime", *job.names]))
     results, reasons = solve_and_count(scenes, job.accuracy, wanted)

@@ -14,7 +14,7 @@ from fractions import Fraction
 from math import atan2, cos, floor, hypot, inf, isfinite, tan
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.rounding import to_digits
+from ..arithmetic.rounding import DOUBLE_DIGITS, to_digits
 from ..model import physics
 from ..model.machine import Machine
 from ..model.scene import SceneError, read_whole
@@ -144,6 +144,8 @@ def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> E
     if extrapolate:
         coarse = machine.solve(count // 2)
         values = {name: extrapolated(value, coarse[name]) for name, value in values.items()}
+    # A double has no more digits.
+    round_ = answers.round if answers.digits is None else to_digits(min(answers.digits, DOUBLE_DIGITS))
     rows, notes = [], []
     for name, value in values.items():
         if not isfinite(value):
@@ -152,9 +154,7 @@ def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> E
         shown, exact = Fraction(value), EXACT[name]
         if not shown and rough.settle(exact):
             raise SceneError("elements", count, TOO_SMALL)
-        rows.append(
-            Comparison(name, answers.round(shown), answers.settle(exact), _error(rough, exact, shown))
-        )
+        rows.append(Comparison(name, round_(shown), answers.settle(exact), _error(rough, exact, shown)))
     if "friction_force" not in values:
         notes.append(NOT_LIMITING)
     return Elements(rows, notes)
