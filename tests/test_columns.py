@@ -16,8 +16,8 @@ from hypothesis import strategies as st
 
 from atwood_cli.arithmetic.rational import Irrational
 from atwood_cli.arithmetic.symbolic import Formula, Term
-from atwood_cli.arrays.double import DOUBLES, Uncertified, joined
-from atwood_cli.arrays.double_double import QUICK, ROUNDED, Pair, Quick
+from atwood_cli.arrays.double import DOUBLES, Uncertified
+from atwood_cli.arrays.double_double import QUICK
 from atwood_cli.arrays.error_free import UNIT, head_of, two_product
 from atwood_cli.arrays.expansion import PAIRS, TRIPLES, Expansion
 from atwood_cli.arrays.gap import gap, ratio
@@ -30,7 +30,6 @@ from . import oracle
 from .conftest import examples
 
 LEVELS: dict[str, Any] = {
-    "rounded": ROUNDED,
     "quick": QUICK,
     "pairs": PAIRS,
     "triples": TRIPLES,
@@ -67,32 +66,20 @@ def symbols(ar: Any, count: int) -> list[Any]:
     return [ar.number(Formula("symbol", f"x{i}")) for i in range(count)]
 
 
-def values(number: Pair | Expansion, *columns: Any) -> tuple[list[Fraction], list[float]]:
-    """The exact values of a number's rows, and their bounds; infinite where a condition fails."""
-    if isinstance(number, Pair):
-        parts: list[Any] = [number.high] if number.low is None else [number.high, number.low]
-        exponent: Term = 0.0
-        bound = joined(number.loss, number.doubt)
-    else:
-        parts, exponent, bound = list(number.parts), number.exponent, number.bound
-    sure = number.sure if isinstance(number, Pair) else ()
-    for one in sure:
-        bound = Formula("where", one, Formula("+", *map(_formula, (bound, 0.0))), Formula("number", np.inf))
-    *columns_, powers_, bounds = worked_out(
-        [*parts, exponent, bound], **{f"x{i}": column for i, column in enumerate(columns)}
+def values(number: Expansion, *columns: Any) -> tuple[list[Fraction], list[float]]:
+    """The exact values of a number's rows, and their bounds, which are NaN where the value is."""
+    *parts, powers_, bounds = worked_out(
+        [*number.parts, number.exponent, number.bound + 0.0 * number.parts[0]],
+        **{f"x{i}": column for i, column in enumerate(columns)},
     )
     exact = []
-    for *row, power in zip(*columns_, powers_, strict=True):
+    for *row, power in zip(*parts, powers_, strict=True):
         total = sum((Fraction(float(part)) for part in row), Fraction(0)) if all(map(isfinite, row)) else 0
         exact.append(total * Fraction(2) ** int(max(power, -5000)))
     return exact, bounds.tolist()
 
 
-def _formula(part: Term) -> Formula:
-    return part if isinstance(part, Formula) else Formula("number", part)
-
-
-def off(number: Pair | Expansion, exact: Callable[..., flint.arb], *columns: Any, sure: float = 1.0) -> None:
+def off(number: Expansion, exact: Callable[..., flint.arb], *columns: Any, sure: float = 1.0) -> None:
     """Assert that each row is within its bound, and that at least a share ``sure`` of the rows has one."""
     flint.ctx.prec = 1400
     exactly, bounds = values(number, *columns)
@@ -128,8 +115,6 @@ OPERATIONS_: dict[str, tuple[Callable[[Any, Any, Any], Any], Callable[..., flint
     "many": (lambda ar, x, y: _many(x, y), lambda x, y: _many(x, y)),
     "pi": (lambda ar, x, y: ar.pi * x + y, lambda x, y: flint.arb.pi() * x + y),
 }
-UNSURE = {("rounded", "difference"), ("rounded", "of both signs"), ("quick", "of both signs")}
-"""What cancels once more than these tell."""
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -137,8 +122,7 @@ UNSURE = {("rounded", "difference"), ("rounded", "of both signs"), ("quick", "of
 def test_bounds_hold(level: str, operation: str) -> None:
     ar = LEVELS[level]
     ours, exact = OPERATIONS_[operation]
-    least = 0.0 if (level, operation) in UNSURE else 0.5 if operation == "cancelling" else 0.95
-    off(ours(ar, *symbols(ar, 2)), exact, X, Y, sure=least)
+    off(ours(ar, *symbols(ar, 2)), exact, X, Y, sure=0.5 if operation == "cancelling" else 0.95)
 
 
 @pytest.mark.parametrize("operation", OPERATIONS_)
@@ -148,52 +132,26 @@ def test_triples_have_no_range(operation: str) -> None:
 
 
 @pytest.mark.parametrize("level", LEVELS)
-def test_bounds_of_ordered_terms_hold(level: str) -> None:
-    """Where roundings weigh most: products just above 1, beside terms that are larger in all rows."""
-    ar = LEVELS[level]
-    x, y = rng.uniform(1, 1.01, 400), rng.uniform(1, 1.01, 400)
-    z = x * y * (1 + 1e-9)
-    a, b, c = symbols(ar, 3)
-    product = a * b
-    c.covers = product
-    off(c + product, lambda x, y, z: z + x * y, x, y, z)
-    off(ar.number(Fraction(3)) - a * b, lambda x, y: 3 - x * y, x, y, sure=float(ar is not ROUNDED))
-    near = Fraction(21, 10)  # off its double by 0.38 units
-    off(a / ar.number(near), lambda x: x / arb(near), 2.1 * x)
-    if isinstance(ar, Quick):
-        assert (c + product).loss <= product.loss / 2 + ar.sum_loss
-
-
-@pytest.mark.parametrize("level", LEVELS)
 def test_bounds_of_exponentials_hold(level: str) -> None:
     ar = LEVELS[level]
     most = {"pairs": 220, "triples": 1500}.get(level, 11)  # π times which is below 700, 5000, or 36
     (x,) = symbols(ar, 1)
-    for column in (SMALL, USUAL, rng.uniform(0, most, 400)):
+    for column in (SMALL, USUAL, rng.uniform(0, 1e-3, 400), rng.uniform(0, most, 400)):
         off(ar.expm1(x * ar.pi), lambda x: (x * flint.arb.pi()).expm1(), column)
         off(ar.exp(x), lambda x: x.exp(), column, sure=0.9)
     off(ar.log1p(x), lambda x: x.log1p(), SMALL)
 
 
-@pytest.mark.parametrize("level", ["rounded", "quick"])
-def test_bounds_of_what_is_made_of_doubtful_numbers_hold(level: str) -> None:
-    """A number with the largest error that its column of doubts allows."""
-    ar, (x, y) = LEVELS[level], symbols(LEVELS[level], 2)
-    off_by = Fraction(1, 2**56)
-    doubtful = Pair(ar, x.high, None, 2.0**-100, x.high * 0.0 + float(off_by))
-    off(doubtful + y, lambda x, y: x * arb(1 + off_by) + y, X, Y)
-    off(doubtful * y, lambda x, y: x * arb(1 + off_by) * y, X, Y)
-    off(ar.expm1(doubtful), lambda x: (x * arb(1 + off_by)).expm1(), rng.uniform(1, 30, 400))
-
-
-@pytest.mark.parametrize("level", EXPANSIONS)
+@pytest.mark.parametrize("level", LEVELS)
 def test_bounds_of_functions_of_doubtful_numbers_hold(level: str) -> None:
-    ar, (x, y) = EXPANSIONS[level], symbols(EXPANSIONS[level], 2)
+    """Of numbers with the largest error that their column of doubts allows."""
+    ar, (x, y) = LEVELS[level], symbols(LEVELS[level], 2)
     by = Fraction(1, 2**56)  # and a little more, as bounds are kept in first order
     doubtful = Expansion(ar, x.parts, 0.0, x.parts[0] * 0.0 + float(by) * (1 + 2.0**-20), True, x.exponent)
     angles = rng.uniform(0, 4, 400)
-    off(ar.cos_sin(doubtful)[0], lambda x: (x * arb(1 + by)).cos(), angles)
-    off(ar.cos_sin(doubtful)[1], lambda x: (x * arb(1 + by)).sin(), angles)
+    if ar is not QUICK:
+        off(ar.cos_sin(doubtful)[0], lambda x: (x * arb(1 + by)).cos(), angles)
+        off(ar.cos_sin(doubtful)[1], lambda x: (x * arb(1 + by)).sin(), angles)
     off(ar.expm1(doubtful), lambda x: (x * arb(1 + by)).expm1(), rng.uniform(1, 30, 400))
     off(ar.log1p(doubtful), lambda x: (x * arb(1 + by)).log1p(), X)
     off(ar.sqrt(doubtful), lambda x: (x * arb(1 + by)).sqrt(), X)
@@ -286,7 +244,7 @@ doubles = st.floats(2.0**-120, 2.0**120)
 
 
 @examples(100)
-@given(doubles, doubles, st.sampled_from([ROUNDED, QUICK, PAIRS]))
+@given(doubles, doubles, st.sampled_from([QUICK, PAIRS]))
 def test_sums_and_products_of_doubles_are_exact(x: float, y: float, ar: Any) -> None:
     a, b = symbols(ar, 2)
     numbers = [(a + b, Fraction(x) + Fraction(y)), (a - b, Fraction(x) - Fraction(y))]
@@ -341,19 +299,22 @@ def test_doubles_have_the_same_names() -> None:
     assert np.finfo(float).eps / 2 == UNIT
 
 
-def test_what_may_be_off_by_more_than_promised_is_not_certified() -> None:
+@pytest.mark.parametrize(
+    ("loss", "doubt", "certified"), [(3.4, None, True), (2.0, 1.4, True), (2.0, 1.6, False)]
+)
+def test_what_may_be_off_by_more_than_promised_is_not_certified(
+    loss: float, doubt: float | None, certified: bool
+) -> None:
     """Half an ulp is left for rounding."""
     (x,) = symbols(QUICK, 1)
-    for loss, doubt, sure in ((3.4, None, True), (3.6, None, None), (2.0, 1.4, True), (2.0, 1.6, False)):
-        column = None if doubt is None else x.high * (doubt * UNIT)
-        machine: Any = SimpleNamespace(value=Pair(QUICK, x.high, None, loss * UNIT, column))
-        if sure is None:
-            with pytest.raises(Uncertified):
-                _value(machine, "value", "certified")
-        else:
-            _, conditions = _value(machine, "value", "certified")
-            assert [bool(one[0]) for one in worked_out(conditions, x0=np.ones(1))] == [sure] * len(conditions)
-            assert len(conditions) == (doubt is not None)
+    column = None if doubt is None else x.parts[0] * (doubt * UNIT)
+    machine: Any = SimpleNamespace(value=Expansion(QUICK, x.parts, loss * UNIT, column))
+    _, condition = _value(machine, "value", "certified")
+    assert condition is not None
+    assert [bool(one[0]) for one in worked_out([condition], x0=np.ones(1))] == [certified]
+    machine.value.loss = 3.6 * UNIT
+    with pytest.raises(Uncertified):
+        _value(machine, "value", "certified")
 
 
 @pytest.mark.parametrize("level", EXPANSIONS)
@@ -381,8 +342,9 @@ def test_exact_takes_a_double_just_where_both_ends_of_the_bound_round_to_it(leve
     columns = [*parts, exponent, bound]
     *symbols_, power, doubt = (Formula("symbol", f"x{i}") for i in range(len(columns)))
     value = Expansion(ar, symbols_, 0.0, doubt, False, power if ar.wide else 0.0)
-    double, conditions = _value(SimpleNamespace(value=value), "value", "exact")  # type: ignore[arg-type]
-    doubles, sure = worked_out([double, conditions[0]], **{f"x{i}": x for i, x in enumerate(columns)})
+    double, condition = _value(SimpleNamespace(value=value), "value", "exact")  # type: ignore[arg-type]
+    assert condition is not None
+    doubles, sure = worked_out([double, condition], **{f"x{i}": x for i, x in enumerate(columns)})
     taken = Counter[str]()
     for got, accepted, *row in zip(doubles.tolist(), sure.tolist(), *columns, strict=True):
         *row_parts, power_of_row, bound_of_row = map(float, row)

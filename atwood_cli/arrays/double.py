@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
-from functools import reduce
 from math import pi
 from typing import Any
 
@@ -33,14 +32,6 @@ def absolute(x: Term) -> Any:
     return Formula("abs", x) if isinstance(x, Formula) else abs(x)
 
 
-Conditions = tuple[Formula, ...]
-
-
-def with_all(*many: Conditions) -> Conditions:
-    """All of the conditions, each once."""
-    return tuple({id(one): one for some in many for one in some}.values())
-
-
 def at_most(x: Term, y: Term) -> Formula:
     """Whether x <= y; false where either is NaN."""
     return Formula("<=", formula(x), formula(y))
@@ -61,9 +52,9 @@ def both(x: Formula, y: Formula) -> Formula:
     return Formula("and", x, y)
 
 
-def either(*conditions: Formula) -> Formula:
+def either(x: Formula, y: Formula) -> Formula:
     """Whether one of the conditions holds."""
-    return reduce(lambda x, y: Formula("or", x, y), conditions)
+    return Formula("or", x, y)
 
 
 def is_finite(x: Term) -> Formula:

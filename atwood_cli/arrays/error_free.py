@@ -58,6 +58,6 @@ def split(x: Term) -> tuple[Any, Any]:
 def head_of(x: Term) -> Any:
     """Each double cut off after its first 26 bits."""
     if isinstance(x, Formula):
-        return Formula("head", x)
+        return x if x.op == "head" else Formula("head", x)
     mantissa, exponent = frexp(x)
     return ldexp(int(ldexp(mantissa, 26)), exponent - 26)

@@ -7,7 +7,7 @@ results can leave the range of doubles.
 
 Let u = 2^-53, and n the number of parts. An operation loses at most `LOSS`, 2^5 u² or 2^8 u³, of its result,
 or of both terms in a difference. Terms of about u^i of the result are of order i, and each order is summed on
-its own (`_collected`). All orders but the last are summed exactly, as their rounding errors join the next
+its own (`collected`). All orders but the last are summed exactly, as their rounding errors join the next
 order. So two things are lost: the rounding errors of the last order, and terms of higher orders. In units of
 u^n of the result (or of both terms):
 
@@ -52,6 +52,7 @@ LOSS = {2: 2.0**5 * UNIT**2, 3: 2.0**8 * UNIT**3}
 LARGEST = {2: 700.0, 3: 5000.0}  # argument of an exponential; beyond 5000 all results are infinite
 TINY = -200  # below this power of two, e^x - 1, ln(1 + x) and sin x are x
 NOTHING = -1.0e6  # the power of two beside a 0
+
 
 Parts = tuple[Any, ...]
 
@@ -101,23 +102,31 @@ class Expansion:
         return self._plus(other, -1.0)
 
     def _plus(self, other: Expansion | int, sign: float) -> Expansion:
-        """The sum, or the difference for sign -1. Each term's bound is scaled by term/result."""
+        """The sum, or the difference for sign -1.
+
+        Where neither term is ever negative, the sum is no less accurate than the less accurate term: the
+        larger loss counts, and each doubt as much as its term is of the sum. Otherwise terms may cancel: the
+        absolute errors of both are added and compared with what is left, row by row.
+        """
         ar, one, two = self.arithmetic, self, self.arithmetic.number(other) * sign
         if ar.is_zero(two):
             return one
         if ar.is_zero(one):
             return two
         x, y, exponent = ar.aligned(one, two)
-        parts = ar.sum(x, y)
         positive = one.positive and two.positive
+        parts = ar.sum(x, y, positive)
         if one.exact and two.exact and not ar.wide:
             return Expansion(ar, parts, positive=positive)
         if positive:
-            weighed = [_times(first / parts[0], of.doubt) for first, of in ((x[0], one), (y[0], two))]
-            return ar.made(parts, max(one.loss, two.loss) + ar.loss, joined(*weighed), True, exponent)
-        off = absolute(x[0]) * (one.bound + ar.loss) + absolute(y[0]) * (two.bound + ar.loss)
+            doubts = [
+                None if of.doubt is None else absolute(first / parts[0]) * of.doubt
+                for first, of in ((x[0], one), (y[0], two))
+            ]
+            return ar.made(parts, max(one.loss, two.loss) + ar.loss, joined(*doubts), True, exponent)
+        error = absolute(x[0]) * (one.bound + ar.loss) + absolute(y[0]) * (two.bound + ar.loss)
         # Without errors the result is exact, even if it is 0.
-        doubt = where(equal(off, 0.0), 0.0, off / absolute(parts[0]))
+        doubt = where(equal(error, 0.0), 0.0, error / absolute(parts[0]))
         return ar.made(parts, 0.0, doubt, False, exponent)
 
     def __mul__(self, other: Expansion | Fraction | float) -> Expansion:
@@ -161,12 +170,13 @@ class Expansions:
 
     # Parts, without bounds
 
-    def sum(self, x: Parts, y: Parts) -> Parts:
-        orders: list[list[Any]] = [[] for _ in range(self.n)]
-        for parts in (x, y):
-            for order, part in zip(orders, parts, strict=False):
-                order.append(part)
-        return _collected(orders)
+    def added(self, x: Parts, y: Parts) -> Parts:
+        """x + y, before it is normalized."""
+        return collected([[parts[i] for parts in (x, y) if i < len(parts)] for i in range(self.n)])
+
+    def sum(self, x: Parts, y: Parts, positive: bool = False) -> Parts:
+        """x + y; ``positive`` says that nothing cancels, as no row of either is negative."""
+        return normal(self.added(x, y))
 
     def multiply(self, x: Parts, y: Parts) -> Parts:
         return self._plus_product((), x, y)
@@ -182,7 +192,7 @@ class Expansions:
                     product, error = two_product(a, b)
                     orders[i + j].append(product)
                     orders[i + j + 1].append(error)
-        return _collected(orders)
+        return normal(collected(orders))
 
     def divide(self, x: Parts, y: Parts) -> Parts:
         """x/y, part by part: each divides the remainder that the ones before leave."""
@@ -190,7 +200,16 @@ class Expansions:
         for _ in range(self.n - 1):
             x = self._plus_product(x, (-1.0 * quotients[-1],), y)
             quotients.append(x[0] / y[0])
-        return _normal(quotients)
+        return normal(quotients)
+
+    def root_of(self, x: Parts) -> Parts:
+        """√x, part by part."""
+        first = Formula("sqrt", formula(x[0]))
+        root: list[Any] = [first]
+        for _ in range(self.n - 1):
+            left = self._plus_product(x, tuple(-1.0 * part for part in root), tuple(root))
+            root.append(left[0] / (2.0 * first))
+        return normal(root)
 
     def _constant(self, q: Fraction) -> Parts:
         """The parts of a number."""
@@ -243,27 +262,26 @@ class Expansions:
 
     def product(self, x: Expansion, y: Expansion) -> Expansion:
         loss = 0.0 if x.exact and y.exact else self.loss
-        return self._of_factors(x, y, self.multiply(x.parts, y.parts), x.exponent + y.exponent, loss)
+        return self.of_factors(x, y, self.multiply(x.parts, y.parts), loss, x.exponent + y.exponent)
 
     def quotient(self, x: Expansion, y: Expansion) -> Expansion:
-        return self._of_factors(x, y, self.divide(x.parts, y.parts), x.exponent - y.exponent, self.loss)
+        return self.of_factors(x, y, self.divide(x.parts, y.parts), self.loss, x.exponent - y.exponent)
 
-    def _of_factors(self, x: Expansion, y: Expansion, parts: Parts, exponent: Term, loss: float) -> Expansion:
+    def of_factors(
+        self, x: Expansion, y: Expansion, parts: Parts, loss: float, exponent: Term = 0.0
+    ) -> Expansion:
+        """A product or quotient, from its parts and what the operation itself loses; bounds add up."""
         doubt, positive = joined(x.doubt, y.doubt), x.positive and y.positive
         return self.made(parts, x.loss + y.loss + loss, doubt, positive, exponent)
 
     def sqrt(self, x: Expansion) -> Expansion:
-        """√x for x >= 0, part by part."""
-        rest, exponent = x.parts, x.exponent
+        """√x for x >= 0."""
+        parts, exponent = x.parts, x.exponent
         if self.wide:
             half = Formula("floor", exponent * 0.5)
-            rest, exponent = tuple(part * (1.0 + (exponent - 2.0 * half)) for part in rest), half
-        first = Formula("sqrt", formula(rest[0]))
-        root: list[Any] = [first]
-        for _ in range(self.n - 1):
-            left = self._plus_product(rest, tuple(-1.0 * part for part in root), tuple(root))
-            root.append(left[0] / (2.0 * first))
-        return self.made(_normal(root), x.loss / 2 + self.loss, _times(0.5, x.doubt), True, exponent)
+            parts, exponent = tuple(part * (1.0 + (exponent - 2.0 * half)) for part in parts), half
+        doubt = None if x.doubt is None else 0.5 * x.doubt
+        return self.made(self.root_of(parts), x.loss / 2 + self.loss, doubt, True, exponent)
 
     def hypot(self, x: Expansion, y: Expansion | int) -> Expansion:
         return self.sqrt(x * x + y * y)
@@ -333,7 +351,7 @@ class Expansions:
         orders: list[list[Any]] = [terms, [count * -parts[-1]]] + [[] for _ in range(self.n - 2)]
         for order, part in zip(orders[1:], others, strict=False):
             order.append(part)
-        return _collected(orders)
+        return normal(collected(orders))
 
     def _small_expm1(self, r: Parts) -> Parts:
         """e^r - 1 for a small r, by its Taylor series, to 2^-110 or 2^-164 of it."""
@@ -504,7 +522,7 @@ ASIDE, NEAR_BY = 2.0**-85, 2.0**-40
 PAIRS, TRIPLES = Expansions(2, wide=False), Expansions(3, wide=True)
 
 
-def _collected(orders: list[list[Any]]) -> Parts:
+def collected(orders: list[list[Any]]) -> Parts:
     """The sum of terms, order by order; the rounding errors of each order join the next one."""
     parts = []
     for i, terms in enumerate(orders):
@@ -518,10 +536,10 @@ def _collected(orders: list[list[Any]]) -> Parts:
                 total, error = two_sum(total, term)
                 orders[i + 1].append(error)
         parts.append(total)
-    return _normal(parts)
+    return tuple(parts)
 
 
-def _normal(parts: Sequence[Any]) -> Parts:
+def normal(parts: Sequence[Any]) -> Parts:
     """The same sum, made of parts that are each at most about u times the one before.
 
     Each pass adds from the last part to the first. One pass a part is enough, even if leading parts cancel.
@@ -542,11 +560,6 @@ def times_power_of_two(x: Term, exponent: Term) -> Any:
     """x 2^exponent, rounded once if it is a subnormal double; 0 or infinite beyond the range."""
     half = Formula("floor", formula(exponent * 0.5))
     return x * power_of_two(half) * power_of_two(exponent - half)
-
-
-def _times(factor: Term, doubt: Term | None) -> Any:
-    """A factor times the column of a bound, if there is one."""
-    return None if doubt is None else factor * doubt
 
 
 def _shifted(number: Formula, steps: int) -> Formula:

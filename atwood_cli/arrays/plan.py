@@ -6,28 +6,28 @@ Take the row m1 = 1, m2 = 3, M = 100, mu = 0.3, and its acceleration, certified.
 2. The model of one scene (`Machine`) runs on formulas of columns. It asks: does the string slip? That is, is
    T_h/T_l - 1 = 1.786 of a string that grips above e^{μφ} - 1 = 1.566? Doubles suffice to say yes here. The
    rows that say yes go on as a group, of which the model asks nothing more.
-3. The formulas become a `Program` of some hundred NumPy operations. It computes with pairs of doubles, which
-   have an error bound. For this row it gives 0.764026672247107, off by at most 2.51 u of that, on condition
-   that m2 - e^{μφ} m1 = 0.43 is large enough beside the rounding errors of its terms. It is. The bound is
+3. The formulas become a `Program` of some hundred NumPy operations. It computes with double-doubles, which
+   have an error bound. For this row it gives 0.764026672247107, off by at most 0.03 u of that. The bound is
    below 3.49 u, so the value is certified. (The exact one is 0.76402667224710707.)
 4. Beside it, the row M = 1e6, mu = 0.34969 hardly slips: m2 - e^{μφ} m1 = 8.6e-5 has lost too many digits,
-   and the condition does not hold. Only this row, and only this quantity, goes to the next level of
-   precision. There an expansion of two doubles is off by at most 1.7e-25 of the value.
+   and the bound is 146 u. Only this row, and only this quantity, goes to the next level of precision. There
+   an expansion of two doubles is off by at most 1.7e-25 of the value.
 
 What each accuracy promises, and why it holds:
 
 - ``fast``: plain doubles, without bounds. They also decide whether a string slips. An e^{μφ} beyond the
   doubles makes results infinite, even where a tiny mass would bring them back.
 - ``certified``: every regime is right, and every value within 4 units in the last place (ulp) of the exact
-  one for the given doubles. The levels are pairs (rounded or quick, the first that suffices in all rows),
-  then expansions of two and of three doubles, and in the end the exact arithmetic of a single scene. A value
-  is certified where its bound is at most 3.49 u of it: that is at most 3.49 ulp, and to round to a double
-  costs half an ulp more. (Just below a power of two, half an ulp of the double may be a whole one of the
-  exact value: there it is 4.49 ulp.) A question is answered by doubles where its sides differ by a 2^-40 of
-  them, far more than their few roundings; else by the sign of the difference, if its bound is below 1/2.
-- ``exact``: the double nearest to the exact value. A value is certified where both ends of its bound round to
-  the same double (Ziv's test), or where it is exact. A tie, half-way between two doubles, never passes. A
-  rational value that is nearer to a tie than it could be without being one (see `gap`) is that tie.
+  one for the given doubles. The levels are double-doubles (`QUICK`), expansions of two and of three doubles
+  (`PAIRS`, `TRIPLES`), and in the end the exact arithmetic of a single scene. A value is certified where its
+  bound is at most 3.49 u of it: that is at most 3.49 ulp, and to round to a double costs half an ulp more.
+  (Just below a power of two, half an ulp of the double may be a whole one of the exact value: there it is
+  4.49 ulp.) A question is answered by doubles where its sides differ by a 2^-40 of them, far more than their
+  few roundings; else by the sign of the difference, if its bound is below 1/2.
+- ``exact``: the double nearest to the exact value, by the same levels. A value is certified where both ends
+  of its bound round to the same double (Ziv's test), or where it is exact. A tie, half-way between two
+  doubles, never passes. A rational value that is nearer to a tie than it could be without being one (see
+  `gap`) is that tie.
 
 Rows with an input beyond `double_double.WINDOW` (or `FAST_WINDOW`), other than 0, start with expansions of
 three doubles, whose range is wider than that of doubles.
@@ -35,9 +35,8 @@ three doubles, whose range is wider than that of doubles.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from fractions import Fraction
-from functools import lru_cache, reduce
+from functools import lru_cache
 from math import inf
 from typing import Any, NamedTuple
 
@@ -50,7 +49,6 @@ from ..model.quantities import REGIMES, Accuracy
 from ..model.scene import COLUMNS, Scene
 from .double import (
     DOUBLES,
-    Conditions,
     Uncertified,
     absolute,
     at_most,
@@ -60,29 +58,23 @@ from .double import (
     is_finite,
     less,
 )
-from .double_double import QUICK, ROUNDED, Pair
-from .error_free import UNIT, two_sum
-from .expansion import PAIRS, TRIPLES, Expansion, times_power_of_two
+from .double_double import QUICK
+from .error_free import UNIT
+from .expansion import PAIRS, TRIPLES, Expansion, normal, times_power_of_two
 from .program import Program
 
-CERTIFIED = 3.49 * UNIT
-LEVELS: dict[str, tuple[tuple[Any, ...], ...]] = {
-    "fast": ((DOUBLES,), (TRIPLES,)),
-    "certified": ((ROUNDED, QUICK), (PAIRS,), (TRIPLES,)),
-    "exact": ((PAIRS,), (TRIPLES,)),
+LEVELS: dict[str, tuple[Any, ...]] = {
+    "fast": (DOUBLES, TRIPLES),
+    "certified": (QUICK, PAIRS, TRIPLES),
+    "exact": (QUICK, PAIRS, TRIPLES),
 }
+"""The arithmetics of each accuracy's levels of precision."""
+LIMITS = {"fast": inf, "certified": 3.49 * UNIT, "exact": UNIT / 16}
+"""The largest bound to be certified. With a larger one few rows would pass for exact."""
 CLEAR = 2.0**-40
 """The relative difference of two sides at which doubles answer a question."""
-SIGNED = (
-    "acceleration",
-    "friction_force_x",
-    "friction_force_y",
-    "torque",
-    "rim_acceleration",
-    "angular_acceleration",
-)
-
-LEAST = 5e-324  # the smallest positive double
+FINE = 2.0**-104
+"""Of a value, more than the rounding errors of the ends of its bound, and than all parts after the second."""
 NORMAL = -1021.0  # below this power of two a double has fewer bits
 
 KEPT = 256  # plans: enough for ten patterns; the longest, of all quantities in triples, takes 3 MB
@@ -128,8 +120,6 @@ class _GroupCase(Case):
         inputs["wrap"] = Angle(inputs["wrap"])
         super().__init__(Scene(**inputs, I=None))
         self.sign, self._decisions = pattern.sign, dict(decisions)
-        if isinstance(self.light, Pair) and isinstance(self.heavy, Pair):
-            self.heavy.covers = self.light
 
     @lazy
     def rim_mass(self) -> Any:
@@ -155,56 +145,24 @@ class _GroupCase(Case):
         return self._decided(which)
 
 
+def _never_negative(name: str) -> Any:
+    """An attribute of `Machine`, with the statement that no row is negative."""
+
+    def stated(machine: _ColumnsMachine) -> Any:
+        number = getattr(super(_ColumnsMachine, machine), name)
+        if isinstance(number, Expansion):
+            number.positive = True
+        return number
+
+    return lazy(stated)
+
+
 class _ColumnsMachine(Machine[Any]):
-    """The model of columns. It states which numbers are never negative or never the larger, to save work."""
+    """The model of columns. Sums of what is never negative need less work, and differences do not show it."""
 
-    @lazy
-    def drive(self) -> Any:
-        """Above 0, as it is asked for only where the string can slip."""
-        return _known_positive(super().drive)
-
-    @lazy
-    def limiting_drive(self) -> Any:
-        return _known_positive(super().limiting_drive)
-
-    @lazy
-    def magnitude(self) -> Any:
-        """The acceleration without its sign, which is never above g."""
-        magnitude = super().magnitude
-        if isinstance(magnitude, Pair):
-            self.g.covers = magnitude
-        return magnitude
-
-
-def _known_positive(drive: Any) -> Any:
-    if isinstance(drive, Pair | Expansion):
-        drive.positive = True
-    return drive
-
-
-def _from_finer(name: str) -> Any:
-    """An attribute that is computed by the finer machine and then rounded."""
-    return lazy(lambda machine: ROUNDED.number(getattr(machine.finer, name)))
-
-
-class _RoundedMachine(_ColumnsMachine):
-    """A machine with rounded products. What enters a difference that cancels comes from a finer machine."""
-
-    def __init__(self, finer: Machine[Any]) -> None:
-        super().__init__(finer.case, ROUNDED)
-        self.finer = finer
-
-    phi, k1, excess, transfer, drive = map(_from_finer, ("phi", "k1", "excess", "transfer", "drive"))
-
-
-def _machines(task: Task, accuracy: Accuracy) -> Iterator[Machine[Any]]:
-    """The model in each arithmetic of the task's level, the cheapest first."""
-    arithmetics = LEVELS[accuracy][task.level]
-    finest = arithmetics[-1]
-    machine = _ColumnsMachine(_GroupCase(task.pattern, task.decisions, finest), finest)
-    if ROUNDED in arithmetics:
-        yield _RoundedMachine(machine)
-    yield machine
+    drive, limiting_drive, magnitude, excess = map(
+        _never_negative, ("drive", "limiting_drive", "magnitude", "excess")
+    )
 
 
 class Plan(NamedTuple):
@@ -227,84 +185,71 @@ class Plan(NamedTuple):
 
 @lru_cache(KEPT)
 def plan(task: Task, accuracy: Accuracy) -> Plan:
-    """The plan for a task, in the first arithmetic of its level that can do all, or else in the last one."""
-    for machine in _machines(task, accuracy):
-        values: dict[str, Term] = {}
-        certified: dict[str, Formula] = {}
-        constants: list[tuple[str, float]] = []
-        missing: list[tuple[str, str]] = []
-        later, asking, question = [], [], ""
-        for name in task.names:
-            try:
-                if name == "regime":
-                    constants.append((name, REGIMES.index(machine.case.regime)))
-                    continue
-                values[name], conditions = _value(machine, name, accuracy)
-            except Asked as asked:
-                question = question or str(asked)
-                asking.append(name)
-            except Undetermined as undetermined:
-                missing.append((name, str(undetermined)))
-            except Uncertified:
-                later.append(name)
-            else:
-                if conditions:
-                    certified[name] = reduce(both, conditions)
-        if not later:
-            break
+    """The plan for a task."""
+    arithmetic = LEVELS[accuracy][task.level]
+    machine = _ColumnsMachine(_GroupCase(task.pattern, task.decisions, arithmetic), arithmetic)
+    values: dict[str, Term] = {}
+    certified: dict[str, Formula] = {}
+    constants: list[tuple[str, float]] = []
+    missing: list[tuple[str, str]] = []
+    later, asking, question = [], [], ""
+    for name in task.names:
+        try:
+            if name == "regime":
+                constants.append((name, REGIMES.index(machine.case.regime)))
+                continue
+            value, condition = _value(machine, name, accuracy)
+        except Asked as asked:
+            question = question or str(asked)
+            asking.append(name)
+        except Undetermined as undetermined:
+            missing.append((name, str(undetermined)))
+        except Uncertified:
+            later.append(name)
+        else:
+            values[name] = value
+            if condition is not None:
+                certified[name] = condition
     program = Program([*values.values(), *certified.values()]) if values else None
     fixed = tuple(constants), tuple(missing)
     return Plan(program, tuple(values), tuple(certified), *fixed, tuple(later), question, tuple(asking))
 
 
-def _value(machine: Machine[Any], name: str, accuracy: Accuracy) -> tuple[Term, Conditions]:
-    """A quantity as a double, and the conditions under which a row's double is certified.
+def _value(machine: Machine[Any], name: str, accuracy: Accuracy) -> tuple[Term, Formula | None]:
+    """A quantity as a double, and the condition under which a row's double is certified; None for none.
 
-    The model gives the quantity as a number with an error bound, which `_double` rounds. What must hold then
-    depends on the accuracy: nothing (fast), that the bound is small enough (certified), or that the whole
-    interval of the bound rounds to the same double (exact). Raises Uncertified where the bound is too large
-    in all rows, Undetermined for a quantity without a value, Asked for an open question.
+    The model gives the quantity as a number with an error bound. What must hold depends on the accuracy:
+    nothing (fast), that the bound is within its limit (certified), or that the whole interval of the bound
+    rounds to the same double (exact). Raises Uncertified where the bound is too large in all rows,
+    Undetermined for a quantity without a value, Asked for an open question.
     """
     value = getattr(machine, name)
     if isinstance(value, Formula):  # a double already, and without a bound
-        return value + 0.0 if name in SIGNED else value, ()  # 0.0 makes 0 of -0
-    if value.loss > CERTIFIED:
+        return value + 0.0, None  # 0.0 makes 0 of -0
+    limit = LIMITS[accuracy]
+    if value.loss > limit:
         raise Uncertified
-    double = _double(value)
+    wide = value.arithmetic.wide
+    value.parts = normal(value.parts)
+    first = value.parts[0]
+    double: Any = times_power_of_two(first, value.exponent) if wide else first
+    double = double if value.positive else double + 0.0
     if accuracy == "fast":
-        return double, ()
+        return double, None
     if accuracy == "exact":
-        return double, (_is_nearest(value, double),)
-    conditions: Conditions = value.sure if isinstance(value, Pair) else ()
-    if value.doubt is not None:
-        conditions = (*conditions, at_most(value.doubt, CERTIFIED - value.loss))
-    if value.arithmetic is PAIRS:  # e^{μφ} may leave the doubles
-        conditions = (*conditions, is_finite(double))
-    return double, conditions
-
-
-def _double(value: Pair | Expansion) -> Term:
-    """The double that a pair or an expansion rounds to."""
-    double: Any
-    if isinstance(value, Pair):
-        double = value.rounded()
-    else:
-        double = value.parts[0]
-        if value.arithmetic.wide:
-            double = times_power_of_two(double, value.exponent)
-    result: Term = double if value.positive else double + 0.0
-    return result
+        return double, _is_nearest(value, double)
+    small = None if value.doubt is None else at_most(value.doubt, limit - value.loss)
+    if wide:
+        return double, small
+    finite = is_finite(double)  # e^{μφ} may leave the doubles
+    return double, finite if small is None else both(small, finite)
 
 
 def _is_nearest(value: Expansion, double: Term) -> Formula:
     """Whether a double is the nearest to the exact value: both ends of the error bound round to it."""
     first, second, third = (*value.parts, 0.0, 0.0)[:3]
-    error = absolute(first) * value.bound
-    ends = []
-    for side in (-1.0, 1.0):  # each end of the bound is between a double and the next one
-        end, rest = two_sum(second, third + side * error)
-        ends += [end, Formula("nextafter", formula(end), formula((rest + side * LEAST) * inf))]
-    same = reduce(both, (equal(first + end, first) for end in ends))
+    error = absolute(first) * (value.bound + FINE)
+    same = both(equal(first + (second - error), first), equal(first + (second + error), first))
     exact = both(equal(value.bound, 0.0), equal(third, 0.0))
     sure = either(same, exact)
     if not value.arithmetic.wide:
@@ -312,7 +257,8 @@ def _is_nearest(value: Expansion, double: Term) -> Formula:
     # Below the normal doubles the result is rounded a second time. That is right unless it is then a tie.
     left = absolute(first - times_power_of_two(double, -1.0 * value.exponent))
     half_a_step = times_power_of_two(0.5, -1074.0 - value.exponent)
-    return both(sure, either(less(NORMAL, value.exponent), less(left, half_a_step), less(half_a_step, left)))
+    no_tie = either(less(left, half_a_step), less(half_a_step, left))
+    return both(sure, either(less(NORMAL, value.exponent), no_tie))
 
 
 @lru_cache(KEPT)

@@ -98,7 +98,6 @@ OPERATIONS: dict[str, Operation] = {
     "mantissa": _mantissa,
     "exponent": _exponent,
     "power": _power,
-    "nextafter": np.nextafter,
 }
 KINDS: dict[str, type[Any]] = dict.fromkeys(
     ("<", "<=", "==", "and", "or", "finite"), np.bool_

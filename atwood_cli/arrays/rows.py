@@ -52,43 +52,37 @@ class Rows:
         self.reasons: Counter[tuple[str, str]] = Counter()
         """In how many rows a quantity has no value, by its name and the reason."""
 
-    def solve(self, index: Index, task: Task, run_on: Index | None = None) -> None:
+    def solve(self, index: Index, task: Task) -> None:
         """Write the results of a task for rows of its pattern and decisions.
 
         The `Plan` divides the task's quantities. Some are computed by its program; rows that are not
         certified go to the next level, for that quantity only. Some cannot be computed at this level and go
         to the next one in all rows. Some need an answer first: the rows of either answer become a new task.
-
-        The program runs on the rows ``run_on`` where that is cheaper than to select those of ``index`` among
-        them. The results of the other rows are overwritten afterwards.
         """
         levels = LEVELS[self.accuracy]
-        if task.level == len(levels) or (levels[task.level] == (TRIPLES,) and size_of(index) <= FEW):
+        if task.level == len(levels) or (levels[task.level] is TRIPLES and size_of(index) <= FEW):
             self._solve_one_by_one(index, task)
             return
         how = plan(task, self.accuracy)
-        rows = index if run_on is None else run_on
         for name, constant in how.constants:
-            self.results[name][rows] = constant
+            self.results[name][index] = constant
         for name, reason in how.missing:
-            self.results[name][rows] = nan
+            self.results[name][index] = nan
             self.reasons[name, reason] += size_of(index)
-        for name, failed in self._run_certified(how, rows).items():
-            if rows is not index and not isinstance(index, slice):
-                failed = np.intersect1d(failed, index, assume_unique=True)
+        for name, failed in self._run_certified(how, index).items():
             self._to_next_level(failed, task._replace(names=(name,)))
         if how.later:
             self.solve(index, task._replace(names=how.later, level=task.level + 1))
         if how.asking:
             yes = self._ask(index, task, how.question)
             most = bool(2 * np.count_nonzero(yes) > yes.size)
-            for answer in (most, not most):  # the minority comes last and overwrites
+            for answer in (most, not most):  # the larger group first: the other one takes over its columns
                 members = np.flatnonzero(yes == answer)
                 part = task._replace(decisions=task.decisions | {(how.question, answer)}, names=how.asking)
                 if members.size == yes.size:
                     self.solve(index, part)
                 elif members.size:
-                    self.solve(_select(index, members), part, index if answer == most else None)
+                    self.solve(_select(index, members), part)
 
     def _run_certified(self, how: Plan, rows: Index) -> dict[str, NDArray[np.intp]]:
         """Run a plan's program; returns the rows in which a quantity is not certified, by its name."""
@@ -102,7 +96,7 @@ class Rows:
 
     def _to_next_level(self, index: NDArray[np.intp], task: Task) -> None:
         """Solve one quantity at the next level of precision, now or with the rows of other blocks."""
-        if self.accuracy == "exact" and task.level == 0 and index.size > FEW:
+        if self.accuracy == "exact" and task.level == 1 and index.size > FEW:
             index = self._settle_ties(index, task)
         if not index.size:
             return
@@ -145,7 +139,7 @@ class Rows:
         """Each row's answer to a question, at the first level of precision that decides it."""
         size = size_of(index)
         yes = np.empty(size, np.bool_)
-        far = LEVELS[self.accuracy][task.level] == (TRIPLES,)
+        far = LEVELS[self.accuracy][task.level] is TRIPLES
         open_: Any = slice(0, size)
         for ar in (DOUBLES, PAIRS, TRIPLES)[2 * far :]:
             if ar is not DOUBLES and size_of(open_) <= FEW:
