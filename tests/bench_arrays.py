@@ -8,7 +8,8 @@ import statistics
 import sys
 import time
 import tracemalloc
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -56,122 +57,104 @@ def at_the_threshold(rows: int, least: float = -15.0, most: float = -3.0) -> Col
     return m1, m1 * np.exp(mu * np.pi) * off, 10 ** rng.uniform(-2, 3, rows), mu
 
 
-class Family(NamedTuple):
-    """A kind of rows that is hard: how they are drawn, what is asked for, how accurately."""
-
-    draw: Callable[[int], dict[str, Any]]
-    accuracy: Any = "exact"
-    quantities: tuple[str, ...] | None = None
-    of: int = 50  # this part of all rows
-
-
-def _named(columns: Columns) -> dict[str, Any]:
+def named(columns: Columns) -> dict[str, Any]:
     return dict(zip(("m1", "m2", "M", "mu"), columns, strict=True))
 
 
-def _with(**more: Callable[[Any, int], Any]) -> Callable[[int], dict[str, Any]]:
-    """Ordinary rows with other columns beside, or without some."""
-
-    def draw(rows: int) -> dict[str, Any]:
-        rng = np.random.default_rng(3)
-        given = _named(ordinary(rows)) | {name: of(rng, rows) for name, of in more.items()}
-        return {name: column for name, column in given.items() if column is not None}
-
-    return draw
+Column = Callable[[Any, int], Any]
 
 
-def _anything(rng: Any, rows: int) -> Any:
-    return 10.0 ** rng.uniform(-300, 300, rows)
+def powers(least: float, most: float) -> Column:
+    """Powers of ten."""
+    return lambda rng, rows: 10.0 ** rng.uniform(least, most, rows)
 
 
-def _tiny(rng: Any, rows: int) -> Any:
-    return 10.0 ** rng.uniform(-300, -50, rows)
+def uniform(least: float, most: float) -> Column:
+    return lambda rng, rows: rng.uniform(least, most, rows)
 
 
-def _whole(least: int, most: int) -> Callable[[Any, int], Any]:
+def whole(least: int, most: int) -> Column:
     return lambda rng, rows: rng.integers(least, most, rows).astype(float)
 
 
-def _nearly_equal(rows: int) -> dict[str, Any]:
-    rng = np.random.default_rng(4)
-    m1 = 10 ** rng.uniform(-2, 2, rows)
-    m2 = m1 * (1 + 10 ** rng.uniform(-15, -2, rows))
-    return {"m1": m1, "m2": m2, "M": 10 ** rng.uniform(-2, 3, rows), "wrap": 360.0}
+def same(value: Any) -> Column:
+    return lambda rng, rows: value
 
 
-def _strong(rows: int) -> dict[str, Any]:
-    """μφ above 700."""
-    rng = np.random.default_rng(6)
-    m1, m2, M, _ = ordinary(rows)
-    return {"m1": m1, "m2": m2, "M": M, "mu": rng.uniform(225, 400, rows)}
-
-
-def _light(rows: int) -> dict[str, Any]:
-    m1, m2, M, mu = ordinary(rows)
-    return {"m1": m1 * 1e-305, "m2": m2 * 1e-305, "M": M * 1e-305, "mu": mu}
-
-
-def _ties(rows: int) -> dict[str, Any]:
+def ties(rows: int) -> dict[str, Any]:
     """A load of six and a drive of three of the lighter mass: a tension is 3 g/2, of 54 bits."""
     m1 = 2.0 ** np.random.default_rng(7).integers(-20, 20, rows)
     return {"m1": m1, "m2": 4 * m1, "M": 2 * m1}
 
 
-VECTOR = ("friction_force_x", "friction_force_y")
+class Family(NamedTuple):
+    """A kind of rows that is hard: how accurate, what is asked for, and columns that ordinary rows have not."""
+
+    accuracy: Any = "exact"
+    quantities: str | None = None
+    others: Mapping[str, Column] = MappingProxyType({})
+    draw: Callable[[int], Any] = lambda rows: named(ordinary(rows))
+    of: int = 50  # this part of all rows
+
+    def rows(self, count: int) -> dict[str, Any]:
+        rng = np.random.default_rng(3)
+        given = self.draw(count) | {name: draw(rng, count) for name, draw in self.others.items()}
+        return {name: column for name, column in given.items() if column is not None}
+
+    @property
+    def names(self) -> list[str] | None:
+        return self.quantities.split() if self.quantities else None
+
+
+VECTOR = "friction_force_x friction_force_y"
+ANY = powers(-300, 300)
+FAR = {"m1": ANY, "m2": ANY, "M": ANY}
+SMALL = {"m1": whole(1, 20), "m2": whole(1, 20), "M": whole(0, 20), "mu": same(None)}
 FAMILIES = {
-    "near-critical": Family(lambda rows: _named(near_critical(rows)), "certified"),
-    "m2 within 1e-15 to 1e-3 of m1 e^{μπ}": Family(lambda rows: _named(at_the_threshold(rows)), "certified"),
-    "m2 within 1e-17 to 1e-12 of m1 e^{μπ}": Family(
-        lambda rows: _named(at_the_threshold(rows, -17, -12)), "certified"
+    "near-critical": Family("certified", draw=lambda rows: named(near_critical(rows))),
+    "m2 within 1e-15 to 1e-3 of m1 e^{μπ}": Family(
+        "certified", draw=lambda rows: named(at_the_threshold(rows))
     ),
-    "masses and M over 1e±300": Family(_with(m1=_anything, m2=_anything, M=_anything), "certified"),
-    "the same, exact": Family(_with(m1=_anything, m2=_anything, M=_anything)),
-    "μφ above 700": Family(_strong, "certified"),
-    "ordinary, exact": Family(_with()),
-    "exact, wrap a column": Family(_with(wrap=lambda rng, rows: rng.uniform(1, 720, rows))),
-    "the same, all quantities": Family(
-        _with(
-            wrap=lambda rng, rows: rng.uniform(1, 720, rows), R=lambda rng, rows: rng.uniform(0.01, 1, rows)
-        ),
-        quantities=(
-            "acceleration",
-            *VECTOR,
-            "axle_force",
-            "torque",
-            "rim_acceleration",
-            "angular_acceleration",
-            "critical_heavier_mass",
-            "least_heavier_mass",
-            "least_pulley_mass",
-        ),
+    "m2 within 1e-17 to 1e-12 of m1 e^{μπ}": Family(
+        "certified", draw=lambda rows: named(at_the_threshold(rows, -17, -12))
+    ),
+    "masses and M over 1e±300": Family("certified", None, FAR),
+    "the same, exact": Family("exact", None, FAR),
+    "μφ above 700": Family("certified", None, {"mu": uniform(225, 400)}),
+    "ordinary, exact": Family(),
+    "exact, wrap a column": Family("exact", None, {"wrap": uniform(1, 720)}),
+    "the same, many quantities": Family(
+        "exact",
+        f"acceleration {VECTOR} axle_force torque rim_acceleration angular_acceleration critical_heavier_mass"
+        " least_heavier_mass least_pulley_mass",
+        {"wrap": uniform(1, 720), "R": uniform(0.01, 1)},
     ),
     "exact, wrap a column of 180, friction_force_x, y, no mu": Family(
-        _with(mu=lambda rng, rows: None, wrap=lambda rng, rows: np.full(rows, 180.0)), quantities=VECTOR
+        "exact", VECTOR, {"mu": same(None), "wrap": uniform(180, 180)}
     ),
-    "nearly equal masses, wrap 360, friction_force_x, y": Family(_nearly_equal, quantities=VECTOR),
-    "exact, friction_force_max": Family(_with(), quantities=("friction_force_max",)),
-    "exact, friction_force_min": Family(_with(), quantities=("friction_force_min",)),
-    "certified, friction_force_min and max": Family(
-        _with(), "certified", ("friction_force_min", "friction_force_max")
+    "nearly equal masses, wrap 360, friction_force_x, y": Family(
+        "exact",
+        VECTOR,
+        {"m1": same(1.0), "m2": lambda *a: 1 + powers(-15, -2)(*a), "mu": same(None), "wrap": same(360.0)},
     ),
-    "exact rows of small integers": Family(
-        _with(m1=_whole(1, 20), m2=_whole(1, 20), M=_whole(0, 20), mu=lambda rng, rows: None)
-    ),
-    "the same, g = 10": Family(
-        _with(
-            m1=_whole(1, 20),
-            m2=_whole(1, 20),
-            M=_whole(0, 20),
-            mu=lambda rng, rows: None,
-            g=lambda rng, rows: 10.0,
-        )
-    ),
-    "exact, every row a tie": Family(_ties),
+    "exact, friction_force_max": Family("exact", "friction_force_max"),
+    "exact, friction_force_min": Family("exact", "friction_force_min"),
+    "certified, friction_force_min and max": Family("certified", "friction_force_min friction_force_max"),
+    "exact rows of small integers": Family("exact", None, SMALL),
+    "the same, g = 10": Family("exact", None, SMALL | {"g": same(10.0)}),
+    "exact, every row a tie": Family("exact", draw=ties),
     "whole turns, weak friction, friction_force_x, y": Family(
-        _with(wrap=lambda rng, rows: 360.0, mu=_tiny), quantities=VECTOR, of=20_000
+        "exact", VECTOR, {"wrap": same(360.0), "mu": powers(-300, -50)}, of=20_000
     ),
-    "wraps of 1e-300 to 1e-50, friction_force_x, y": Family(_with(wrap=_tiny), quantities=VECTOR, of=20_000),
-    "masses of 1e-305, friction_force_min": Family(_light, quantities=("friction_force_min",), of=20_000),
+    "wraps of 1e-300 to 1e-50, friction_force_x, y": Family(
+        "exact", VECTOR, {"wrap": powers(-300, -50)}, of=20_000
+    ),
+    "masses of 1e-305, friction_force_min": Family(
+        "exact",
+        "friction_force_min",
+        draw=lambda rows: named(tuple(1e-305 * x for x in ordinary(rows)[:3]) + ordinary(rows)[3:]),
+        of=20_000,
+    ),
 }
 
 
@@ -231,9 +214,9 @@ def main(rows: int) -> None:
     print("Rows a second, in families that are hard:")
     for name, family in FAMILIES.items():
         count = rows // family.of
-        taken = warm(family.draw(count), family.accuracy, family.quantities, 3)
+        taken = warm(family.rows(count), family.accuracy, family.names, 3)
         print(f"  {name:56} {count / taken:12,.0f}")
-    few = _named(ordinary(100))
+    few = named(ordinary(100))
     for accuracy in ("fast", "certified", "exact"):
         print(f"100 rows, {accuracy}: {warm(few, accuracy, None, 99) * 1e3:.2f} ms")
     for what, names in (("the seven standard quantities", None), ("all quantities", NAMES[1:])):

@@ -98,21 +98,27 @@ def test_certified_and_exact_values(family: str, part: int, pytestconfig: pytest
     assert min(regimes["slip"], regimes["no-slip"]) > 50 / every
 
 
+def assert_is_solve(results: Any, i: int, row: Row, accuracy: str) -> None:
+    """A row's results are those of `solve`: to the bit if exact, within 4 ulp if certified."""
+    one = solve_any(**{"g": 9.80665} | {name: value for name, value in row.items() if not isnan(value)})
+    for name, column in results.items():
+        got, value = column[i].item(), getattr(one, name, 0)
+        want = nan if value is None else value
+        if name in ("regime", "status"):
+            assert (REGIMES[got] == want) if name == "regime" else got == 0, row
+        elif accuracy == "exact" or not isfinite(want):
+            assert repr(got) == repr(want), (row, name)
+        else:
+            assert abs(got - want) <= 4 * ulp(want), (row, name, got)
+
+
+@pytest.mark.parametrize("accuracy", ACCURACIES[1:])
 @pytest.mark.parametrize("family", FAMILIES)
-def test_exact_is_solve_to_the_bit(family: str, pytestconfig: pytest.Config) -> None:
+def test_rows_are_as_one_scene(family: str, accuracy: Accuracy, pytestconfig: pytest.Config) -> None:
     given = rows(family, 150 if pytestconfig.getoption("every_digit") else 50)
-    results = solve_arrays(**columns(given), accuracy="exact", quantities=NAMES)
-    certified = solve_arrays(**columns(given), quantities=NAMES)
+    results = solve_arrays(**columns(given), accuracy=accuracy, quantities=NAMES)
     for i, row in enumerate(given):
-        one = solve_any(**{name: value for name, value in row.items() if not isnan(value)})
-        assert REGIMES[results["regime"][i]] == one.regime
-        for name in NAMES[1:]:
-            want = getattr(one, name)
-            assert repr(float(results[name][i])) == repr(nan if want is None else want), (row, name)
-            if want is not None and isfinite(want):
-                assert abs(certified[name][i] - want) <= 4 * ulp(want), (row, name)
-            else:
-                assert repr(float(certified[name][i])) == repr(nan if want is None else want), (row, name)
+        assert_is_solve(results, i, row, accuracy)
 
 
 Columns = dict[str, Any]
@@ -218,22 +224,18 @@ def test_what_cancels_is_solve_to_the_bit(
 ) -> None:
     """From 2^-40 to beyond 2^-1000: all quantities, and what FLINT has of them."""
     given = family(np.random.default_rng(24))
-    exact = solve_arrays(**given, accuracy="exact", quantities=NAMES)
-    certified = solve_arrays(**given, quantities=NAMES)
+    results = {a: solve_arrays(**given, accuracy=a, quantities=NAMES) for a in ACCURACIES[1:]}
     for i, columns_ in enumerate(zip(*np.broadcast_arrays(*given.values()), strict=True)):
         row = DEFAULTS | dict(zip(given, map(float, columns_), strict=True))
-        one = solve_any(**row)
-        wanted = {name: getattr(one, name) for name in NAMES[1:]}
+        for accuracy, found in results.items():
+            assert_is_solve(found, i, row, accuracy)
         if i % 4 == 0 or pytestconfig.getoption("every_digit"):
             for name, independent in oracle.expected(exact_scene(row)).items():
-                if name in wanted and independent is not None:
-                    assert wanted[name] == oracle.correctly_rounded(independent, None), (row, name)
-        assert REGIMES[exact["regime"][i]] == REGIMES[certified["regime"][i]] == one.regime
-        for name, value in wanted.items():
-            want = nan if value is None else value
-            assert repr(float(exact[name][i])) == repr(want), (row, name)
-            got = float(certified[name][i])
-            assert repr(got) == repr(want) or abs(got - want) <= 4 * ulp(want), (row, name, got)
+                if name in NAMES[1:] and independent is not None:
+                    assert results["exact"][name][i] == oracle.correctly_rounded(independent, None), (
+                        row,
+                        name,
+                    )
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -290,26 +292,22 @@ def test_any_rows_side_by_side(some: list[dict[str, float]], names: list[str]) -
     for accuracy in ACCURACIES[1:]:
         results = solve_arrays(**columns(full), accuracy=accuracy, quantities=names)
         for i, row in enumerate(full):
-            one, error = _solved(row)
-            if one is None:
-                assert error is not None
-                assert _fault(error) == STATUSES[results["status"][i]], (row, error)
+            fault = _fault(row)
+            if fault is None:
+                assert_is_solve(results, i, row, accuracy)
+            else:
+                assert fault == STATUSES[results["status"][i]], row
                 assert results["regime"][i] == -1
                 assert all(isnan(results[name][i]) for name in NAMES[1:])
-                continue
-            assert results["status"][i] == 0, row
-            assert REGIMES[results["regime"][i]] == one.regime
-            for name in NAMES[1:]:
-                value, got = getattr(one, name), float(results[name][i])
-                if accuracy == "exact" or value is None or isinf(value):
-                    assert repr(got) == repr(nan if value is None else value), (row, name)
-                else:
-                    assert abs(got - value) <= 4 * ulp(value), (row, name)
 
 
-def _fault(error: SceneError) -> str:
-    above = error.rule.startswith("must not be above")
-    return "mu_k above mu" if above else FAULTS.get(error.rule, error.parameter)
+def _fault(row: Row) -> str | None:
+    try:
+        Scene.read({name: x for name, x in row.items() if not (isnan(x) and name in MAY_BE_ABSENT)})
+    except SceneError as error:
+        above = error.rule.startswith("must not be above")
+        return "mu_k above mu" if above else FAULTS.get(error.rule, error.parameter)
+    return None
 
 
 FAULTS = {
@@ -317,14 +315,6 @@ FAULTS = {
     "is a free end, which friction cannot hold; leave mu out": "friction at a free end",
     "needs mu, the coefficient that decides whether it slips": "mu_k without mu",
 }
-
-
-def _solved(row: Row) -> tuple[Any, SceneError | None]:
-    given_ = {n: value for n, value in row.items() if not (isnan(value) and n in ("M", "mu", "mu_k", "R"))}
-    try:
-        return solve_any(**given_), None
-    except SceneError as error:
-        return None, error
 
 
 numbers = st.floats(1e-3, 1e3)
@@ -470,10 +460,8 @@ def test_ties_are_settled_in_columns(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.undo()
     with_others = solve_arrays(**given, accuracy="exact", quantities=names)
     for i in range(100):
-        one = solve_any(**{name: float(column[i]) for name, column in given.items()})
-        for name in names:
-            assert with_others[name][i] == getattr(one, name), (i, name)
-            assert name not in results or results[name][i] == getattr(one, name)
+        for found in (results, with_others):
+            assert_is_solve(found, i, {name: float(column[i]) for name, column in given.items()}, "exact")
     exact = [Fraction(float(g)) * Fraction(3, 2) * Fraction(float(m)) for g, m in zip(odd, m1, strict=True)]
     assert sum(Fraction(float(t)) != e for t, e in zip(results["tension_1"], exact, strict=True)) > 20
 
@@ -486,9 +474,7 @@ def test_what_is_beside_a_tie_is_rounded_to_its_own_side() -> None:
         given: dict[str, Any] = {"m1": 1.0, "m2": 3.0, "M": M, "g": g}
         results = solve_arrays(**given, accuracy="exact")
         for i in range(100):
-            one = solve_any(**given | {"g": float(g[i])})
-            for name in STANDARD[1:4]:
-                assert results[name][i] == getattr(one, name), (i, name)
+            assert_is_solve(results, i, given | {"g": float(g[i])}, "exact")
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -498,9 +484,7 @@ def test_far_rows_are_solved_for_one_quantity_too(name: str) -> None:
     given = {x: 10.0 ** rng.uniform(-300, 300, 40) for x in ("m1", "m2", "M")} | {"mu": rng.uniform(0, 2, 40)}
     results = solve_arrays(**given, accuracy="exact", quantities=[name])
     for i in range(0, 40, 7):
-        one = solve_any(**{x: float(column[i]) for x, column in given.items()}, g=9.80665)
-        want = REGIMES.index(one.regime) if name == "regime" else getattr(one, name)
-        np.testing.assert_equal(results[name][i], nan if want is None else want)
+        assert_is_solve(results, i, {x: float(column[i]) for x, column in given.items()}, "exact")
 
 
 def test_threads_do_not_wait_for_each_others_attributes() -> None:

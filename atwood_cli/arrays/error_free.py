@@ -22,23 +22,10 @@ def two_sum(x: Term, y: Term) -> tuple[Any, Any]:
     return total, (x - (total - added)) + (y - added)
 
 
-def two_difference(x: Term, y: Term) -> tuple[Any, Any]:
-    """x - y, rounded, and its exact error."""
-    total = x - y
-    added = total - x
-    return total, (x - (total - added)) - (y + added)
-
-
 def fast_two_sum(x: Term, y: Term) -> tuple[Any, Any]:
     """x + y, rounded, and its exact error, where |y| <= |x| in every row (T. J. Dekker)."""
     total = x + y
     return total, (x - total) + y
-
-
-def fast_two_difference(x: Term, y: Term) -> tuple[Any, Any]:
-    """x - y, rounded, and its exact error, where |y| <= |x| in every row."""
-    total = x - y
-    return total, (x - total) - y
 
 
 def two_product(x: Term, y: Term) -> tuple[Any, Any]:

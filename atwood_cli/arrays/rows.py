@@ -53,83 +53,86 @@ class Rows:
         """In how many rows a quantity has no value, by its name and the reason."""
 
     def solve(self, index: Index, task: Task) -> None:
-        """Write the results of a task for rows of its pattern and decisions.
+        """Write the results of a task for rows of its pattern and decisions."""
+        waiting: list[tuple[Index, Task]] = [(index, task)]
+        while waiting:
+            waiting += self._solved_but_for(*waiting.pop())
 
-        The `Plan` divides the task's quantities. Some are computed by its program; rows that are not
-        certified go to the next level, for that quantity only. Some cannot be computed at this level and go
-        to the next one in all rows. Some need an answer first: the rows of either answer become a new task.
+    def _solved_but_for(self, index: Index, task: Task) -> list[tuple[Index, Task]]:
+        """Solve what a task's level of precision can; returns what is left to do, and for which rows.
+
+        The `Plan` divides the task's quantities. Some are computed by its program: where one is not
+        certified, it is left to the next level. Some cannot be computed at this level and are left to the
+        next one in all rows. Some need an answer first: the rows of either answer become a new task.
         """
         levels = LEVELS[self.accuracy]
         if task.level == len(levels) or (levels[task.level] is TRIPLES and size_of(index) <= FEW):
             self._solve_one_by_one(index, task)
-            return
+            return []
         how = plan(task, self.accuracy)
         for name, constant in how.constants:
             self.results[name][index] = constant
         for name, reason in how.missing:
             self.results[name][index] = nan
             self.reasons[name, reason] += size_of(index)
-        for name, failed in self._run_certified(how, index).items():
-            self._to_next_level(failed, task._replace(names=(name,)))
-        if how.later:
-            self.solve(index, task._replace(names=how.later, level=task.level + 1))
+        above = task._replace(level=task.level + 1)
+        left: list[tuple[Index, Task]] = [(index, above._replace(names=how.later))] if how.later else []
+        for name, failed in self._run_plan(how, index).items():
+            one = above._replace(names=(name,))
+            if self.accuracy == "exact" and levels[task.level] is PAIRS and failed.size > FEW:
+                failed = self._settle_ties(failed, one)
+            if self.left is not None and failed.size <= LEAVE:
+                self.left.setdefault(one, []).append(failed)
+            elif failed.size:
+                left.append((failed, one))
         if how.asking:
             yes = self._ask(index, task, how.question)
             most = bool(2 * np.count_nonzero(yes) > yes.size)
-            for answer in (most, not most):  # the larger group first: the other one takes over its columns
+            for answer in (not most, most):  # the larger group is solved first, and its columns used again
                 members = np.flatnonzero(yes == answer)
-                part = task._replace(decisions=task.decisions | {(how.question, answer)}, names=how.asking)
-                if members.size == yes.size:
-                    self.solve(index, part)
-                elif members.size:
-                    self.solve(_select(index, members), part)
+                if members.size:
+                    rows = index if members.size == yes.size else _select(index, members)
+                    decisions = task.decisions | {(how.question, answer)}
+                    left.append((rows, task._replace(decisions=decisions, names=how.asking)))
+        return left
 
-    def _run_certified(self, how: Plan, rows: Index) -> dict[str, NDArray[np.intp]]:
+    def _run_plan(self, how: Plan, index: Index) -> dict[str, NDArray[np.intp]]:
         """Run a plan's program; returns the rows in which a quantity is not certified, by its name."""
         failed: dict[str, list[NDArray[np.intp]]] = {name: [] for name in how.conditional}
         if how.program:
-            for start, *certified in self._run(how.program, rows, how.quantities, len(how.conditional)):
+            for start, *certified in self._run(how.program, index, how.quantities, len(how.conditional)):
                 for name, sure in zip(how.conditional, certified, strict=True):
                     if np.count_nonzero(sure) < sure.size:
                         failed[name].append(np.flatnonzero(~sure) + start)
-        return {name: _select(rows, np.concatenate(some)) for name, some in failed.items() if some}
-
-    def _to_next_level(self, index: NDArray[np.intp], task: Task) -> None:
-        """Solve one quantity at the next level of precision, now or with the rows of other blocks."""
-        if self.accuracy == "exact" and task.level == 1 and index.size > FEW:
-            index = self._settle_ties(index, task)
-        if not index.size:
-            return
-        task = task._replace(level=task.level + 1)
-        if self.left is not None and index.size <= LEAVE:
-            self.left.setdefault(task, []).append(index)
-        else:
-            self.solve(index, task)
+        return {name: _select(index, np.concatenate(some)) for name, some in failed.items() if some}
 
     def _run(
         self, program: Program, index: Index, names: Sequence[str], more: int
     ) -> Iterator[tuple[Any, ...]]:
-        """Run a program tile by tile; yields the start of each tile and its ``more`` columns of booleans."""
-        size, columns_ = size_of(index), len(program.between) + len(program.inputs) + len(names)
-        most = min(max(SMALLEST, ROOM // (8 * columns_)), LARGEST)
-        for start in range(0, size, most):
-            tile = _select(index, slice(start, min(start + most, size)))
-            rows = size_of(tile)
-            inputs = [self.inputs[name] for name in program.inputs]
+        """Run a program tile by tile; yields the start of each tile and its ``more`` columns of booleans.
+
+        In rows that follow each other, results are written where they belong. Others are gathered first.
+        """
+        columns = len(program.between) + len(program.inputs) + len(names)
+        most = min(max(SMALLEST, ROOM // (8 * columns)), LARGEST)
+        for start in range(0, size_of(index), most):
+            tile = _select(index, slice(start, min(start + most, size_of(index))))
             direct = isinstance(tile, slice)
-            kinds: list[Any] = [] if direct else [np.float64] * (len(inputs) + len(names))
-            columns = self.room.columns([*kinds, *[np.bool_] * more, *program.between], rows)
+            inputs = [self.inputs[name] for name in program.inputs]
+            floats = 0 if direct else len(inputs) + len(names)
+            kinds: list[Any] = [*[np.bool_] * more, *[np.float64] * floats, *program.between]
+            room = iter(self.room.columns(kinds, size_of(tile)))
+            answers = [next(room) for _ in range(more)]
             if direct:
-                at = [column if column.size == 1 else column[tile] for column in inputs]
+                inputs = [column if column.size == 1 else column[tile] for column in inputs]
                 results = [self.results[name][tile] for name in names]
             else:
-                at = [
+                inputs = [
                     column if column.size == 1 else column.take(tile, out=here, mode="clip")
-                    for column, here in zip(inputs, columns, strict=False)
+                    for column, here in zip(inputs, room, strict=False)
                 ]
-                results = columns[len(inputs) : len(kinds)]
-            answers = columns[len(kinds) : len(kinds) + more]
-            program.run(at, [*results, *answers], columns[len(kinds) + more :])
+                results = [next(room) for _ in names]
+            program.run(inputs, [*results, *answers], list(room))
             if not direct:
                 for name, column in zip(names, results, strict=True):
                     self.results[name][tile] = column
@@ -137,24 +140,19 @@ class Rows:
 
     def _ask(self, index: Index, task: Task, question: str) -> NDArray[np.bool_]:
         """Each row's answer to a question, at the first level of precision that decides it."""
-        size = size_of(index)
-        yes = np.empty(size, np.bool_)
+        yes = np.empty(size_of(index), np.bool_)
+        open_: Any = slice(0, yes.size)
         far = LEVELS[self.accuracy][task.level] is TRIPLES
-        open_: Any = slice(0, size)
-        for ar in (DOUBLES, PAIRS, TRIPLES)[2 * far :]:
+        for ar in (TRIPLES,) if far else (DOUBLES, PAIRS, TRIPLES):
             if ar is not DOUBLES and size_of(open_) <= FEW:
                 break
             program = questioning(task.pattern, task.decisions, question, self.accuracy, ar)
-            rows, unsure = _select(index, open_), []
-            for start, says, sure in self._run(program, rows, (), 2):
+            unsure = [np.empty(0, np.intp)]
+            for start, says, sure in self._run(program, _select(index, open_), (), 2):
                 yes[_select(open_, slice(start, start + says.size))] = says
-                if np.count_nonzero(sure) < sure.size:
-                    unsure.append(np.flatnonzero(~sure) + start)
-            open_ = _select(open_, np.concatenate(unsure)) if unsure else np.empty(0, np.intp)
-            if not open_.size:
-                return yes
-        every: Any = np.arange(size) if isinstance(open_, slice) else open_
-        for row in every.tolist():
+                unsure.append(np.flatnonzero(~sure) + start)
+            open_ = _select(open_, np.concatenate(unsure))
+        for row in np.arange(yes.size)[open_].tolist():
             which: Any = question
             yes[row] = Case(self._scene(index, row, task.pattern)).beats_friction(which)
         return yes
@@ -189,7 +187,7 @@ class Rows:
         """Solve each row as a scene of its own, exactly."""
         for row in range(size_of(index)):
             answers = Answers(self._scene(index, row, task.pattern))
-            place = row + index.start if isinstance(index, slice) else index[row]
+            place = _select(index, row)
             for name in task.names:
                 if name == "regime":
                     self.results[name][place] = REGIMES.index(answers.case.regime)
@@ -201,7 +199,7 @@ class Rows:
 
     def _scene(self, index: Index, row: int, pattern: Pattern) -> Scene:
         """One row as a scene of its own."""
-        place = row + index.start if isinstance(index, slice) else int(index[row])
+        place = _select(index, row)
         fields: dict[str, Any] = {}
         for name, value in zip(COLUMNS, pattern.inputs, strict=True):
             fields[name] = value
@@ -218,7 +216,7 @@ def size_of(index: Index) -> int:
 
 
 def _select(index: Any, some: Any) -> Any:
-    """The rows at some places of a selection: two selections made one."""
+    """The rows at some places of a selection, or the row at one place: two selections made one."""
     if not isinstance(index, slice):
         return index[some]
     if isinstance(some, slice):
