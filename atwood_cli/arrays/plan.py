@@ -60,7 +60,7 @@ from .double import (
 )
 from .double_double import QUICK
 from .error_free import UNIT
-from .expansion import PAIRS, TRIPLES, Expansion, normal, times_power_of_two
+from .expansion import PAIRS, TRIPLES, Expansion, Parts, normal, times_power_of_two
 from .program import Program
 
 LEVELS: dict[str, tuple[Any, ...]] = {
@@ -230,14 +230,13 @@ def _value(machine: Machine[Any], name: str, accuracy: Accuracy) -> tuple[Term, 
     if value.loss > limit:
         raise Uncertified
     wide = value.arithmetic.wide
-    value.parts = normal(value.parts)
-    first = value.parts[0]
-    double: Any = times_power_of_two(first, value.exponent) if wide else first
+    parts = normal(value.parts)
+    double: Any = times_power_of_two(parts[0], value.exponent) if wide else parts[0]
     double = double if value.positive else double + 0.0
     if accuracy == "fast":
         return double, None
     if accuracy == "exact":
-        return double, _is_nearest(value, double)
+        return double, _is_nearest(double, parts, value)
     small = None if value.doubt is None else at_most(value.doubt, limit - value.loss)
     if wide:
         return double, small
@@ -245,9 +244,12 @@ def _value(machine: Machine[Any], name: str, accuracy: Accuracy) -> tuple[Term, 
     return double, finite if small is None else both(small, finite)
 
 
-def _is_nearest(value: Expansion, double: Term) -> Formula:
-    """Whether a double is the nearest to the exact value: both ends of the error bound round to it."""
-    first, second, third = (*value.parts, 0.0, 0.0)[:3]
+def _is_nearest(double: Term, parts: Parts, value: Expansion) -> Formula:
+    """Whether a double is the nearest to the exact value: both ends of the error bound round to it.
+
+    ``parts`` are the value's, normalized: the first one is the double, but for a power of two.
+    """
+    first, second, third = (*parts, 0.0, 0.0)[:3]
     error = absolute(first) * (value.bound + FINE)
     same = both(equal(first + (second - error), first), equal(first + (second + error), first))
     exact = both(equal(value.bound, 0.0), equal(third, 0.0))
