@@ -467,7 +467,7 @@ def plainly(one: Any, columns: dict[str, Any]) -> Any:
         return np.full(5, one.parts[0])
     parts = [plainly(part, columns) for part in one.parts]
     out: Any = np.empty(5, np.bool_ if one.op == "<" else np.float64)
-    OPERATIONS[one.op](*parts, out=out)
+    OPERATIONS[one.op](*parts, out)
     return out
 
 

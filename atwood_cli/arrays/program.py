@@ -40,6 +40,14 @@ def _where(condition: NDArray[np.bool_], x: Column, y: Column, out: Column) -> N
     np.copyto(out, x, where=condition)
 
 
+def _maximum(x: Column, y: Column, out: Column) -> None:
+    np.maximum(x, y, out=out)  # NumPy deprecates giving it in third place
+
+
+def _minimum(x: Column, y: Column, out: Column) -> None:
+    np.minimum(x, y, out=out)
+
+
 def _mantissa(x: Column, out: Column) -> None:
     out[:] = np.frexp(x)[0]
 
@@ -81,8 +89,8 @@ OPERATIONS: dict[str, Operation] = {
     "finite": np.isfinite,
     "bits": np.bitwise_and,
     ">>": np.right_shift,
-    "maximum": np.maximum,
-    "minimum": np.minimum,
+    "maximum": _maximum,
+    "minimum": _minimum,
     "where": _where,
     "take": _take,
     "int": _integer,
@@ -171,8 +179,8 @@ class Program:
         at = [*inputs, *self.constants, *results, *between]
         # Look up operands first: Python code between two operations would keep other threads waiting.
         bound = [(operation, [at[slot] for slot in slots]) for operation, slots in self.operations]
-        for operation, (*operands, out) in bound:
-            operation(*operands, out=out)
+        for operation, columns in bound:
+            operation(*columns)
 
 
 class _Values:
