@@ -26,12 +26,13 @@ bounds are compared with leave room for them.
 from __future__ import annotations
 
 from math import log
+from operator import add, sub
 from typing import Any
 
 from ..arithmetic.symbolic import Formula, Term, formula
-from .double import Uncertified, looked_up, minimum
-from .error_free import UNIT, fast_two_sum, head_of
-from .expansion import Expansion, Expansions, Parts, normal
+from .double import Uncertified, absolute, looked_up, maximum, minimum
+from .error_free import UNIT, fast_two_sum, head_of, two_sum
+from .expansion import Expansion, Expansions, Parts
 from .tables import STEPS, heads_and_tails, in_parts, ln2, whole_powers
 
 WINDOW = 2.0**-120, 2.0**120
@@ -47,9 +48,34 @@ class Quick(Expansions):
         super().__init__(2, wide=False)
         self.loss = LOSS
 
-    def sum(self, x: Parts, y: Parts, positive: bool = False) -> Parts:
-        parts = self.added(x, y)
-        return parts if positive or len(parts) == 1 else fast_two_sum(*parts)
+    def sum(
+        self, x: Parts, y: Parts, sign: float = 1.0, positive: bool = False, ordered: bool = False
+    ) -> Parts:
+        (a, *low), (b, *more) = x, y
+        plus = add if sign > 0 else sub
+        if ordered:
+            high = plus(a, b)
+            error = plus(a - high, b)
+        elif positive:
+            high, error = fast_two_sum(maximum(a, b), minimum(a, b))
+        else:
+            high, error = two_sum(a, b * sign)
+        for part in low:
+            error = error + part
+        for part in more:
+            error = plus(error, part)
+        return fast_two_sum(high, error) if (low or more) and not positive else (high, error)
+
+    def normal(self, x: Parts) -> Parts:
+        """The same number, with a low part of at most half a unit in the last place."""
+        return fast_two_sum(*x) if len(x) == 2 else x
+
+    def weighed(self, doubt: Term | None, *_: Term) -> Any:
+        """The whole doubt, which costs less."""
+        return doubt
+
+    def relative(self, error: Term, first: Term) -> Any:
+        return error / absolute(first)
 
     def product(self, x: Expansion, y: Expansion) -> Expansion:
         """High is the product of the heads, and low is head · tail + tail · whole.
@@ -100,12 +126,14 @@ class Quick(Expansions):
         tail = looked_up(tails, step) * power
         high, error = fast_two_sum(head, y)
         parts = fast_two_sum(high, (head + tail) * (y + terms) + terms + tail + error)
-        doubt = None if x.doubt is None else x.doubt * (1 + LARGEST)
+        doubt = parts[0] * 0.0  # or NaN
+        if x.doubt is not None:
+            doubt = doubt + x.doubt * (1 + LARGEST)
         return Expansion(self, parts, 2.0**-64 + (x.loss + LOSS) * (1 + LARGEST), doubt)
 
     def log1p(self, x: Expansion) -> Expansion:
         """ln(1 + x) for x >= 0 by NumPy, with no more digits than a double."""
-        high, *low = normal(x.parts)
+        high, *low = self.normal(x.parts)
         parts = (Formula("log1p", formula(high)), *(part / (high + 1.0) for part in low))
         return Expansion(self, parts, LIBRARY + x.loss + LOSS, x.doubt)
 
@@ -116,7 +144,43 @@ class Quick(Expansions):
         raise Uncertified
 
 
-QUICK = Quick()
+class Rounded(Quick):
+    """Products and quotients are rounded to a double, which costs less than heads, and loses u each.
+
+    Low parts are a few u: they start with at most half a unit in the last place (`normal`), and each
+    operation adds at most u. So in 60 operations the products of two low parts, and the roundings of low
+    parts, come to less than 2^14 u², far below `LOSS`.
+    """
+
+    def number(self, q: Any) -> Expansion:
+        x = super().number(q)
+        if x.arithmetic is self:
+            return x
+        own = Expansion(self, self.normal(x.parts), x.loss, x.doubt, x.positive)
+        own.covers = x.covers
+        return own
+
+    def product(self, x: Expansion, y: Expansion) -> Expansion:
+        (a, *low), (b, *more) = x.parts, y.parts
+        terms = [part * b for part in low] + [part * a for part in more]
+        return self.of_factors(x, y, (a * b, *_total(terms)), UNIT + LOSS)
+
+    def quotient(self, x: Expansion, y: Expansion) -> Expansion:
+        (a, *low), (b, *more) = x.parts, y.parts
+        high = a / b
+        terms = low + [part * high * -1.0 for part in more]
+        return self.of_factors(x, y, (high, *(part / b for part in _total(terms))), UNIT + LOSS)
+
+    def root_of(self, x: Parts) -> Parts:
+        return self.normal(super().root_of(x))
+
+
+QUICK, ROUNDED = Quick(), Rounded()
+
+
+def _total(terms: list[Any]) -> list[Any]:
+    """The sum of one or two terms, if there are any."""
+    return [terms[0] + terms[1]] if len(terms) == 2 else terms
 
 
 def _whole(x: Parts) -> Any:

@@ -7,7 +7,7 @@ results can leave the range of doubles.
 
 Let u = 2^-53, and n the number of parts. An operation loses at most `LOSS`, 2^5 u² or 2^8 u³, of its result,
 or of both terms in a difference. Terms of about u^i of the result are of order i, and each order is summed on
-its own (`collected`). All orders but the last are summed exactly, as their rounding errors join the next
+its own (`_collected`). All orders but the last are summed exactly, as their rounding errors join the next
 order. So two things are lost: the rounding errors of the last order, and terms of higher orders. In units of
 u^n of the result (or of both terms):
 
@@ -60,9 +60,12 @@ Parts = tuple[Any, ...]
 class Expansion:
     """The sum of ``parts`` times 2^``exponent``, whose relative error is at most ``loss`` + ``doubt``.
 
-    ``positive`` says that no row is negative. ``loss`` is the same in all rows. ``doubt`` is a column, or
-    None; it is NaN or infinite in rows without a bound.
+    ``positive`` says that no row is negative; ``covers`` is the first part of a number that is larger than
+    this one in no row. ``loss`` is the same in all rows. ``doubt`` is a column, or None; it is NaN or
+    infinite in rows without a bound.
     """
+
+    covers: Term | None = None
 
     def __init__(
         self,
@@ -108,26 +111,28 @@ class Expansion:
         larger loss counts, and each doubt as much as its term is of the sum. Otherwise terms may cancel: the
         absolute errors of both are added and compared with what is left, row by row.
         """
-        ar, one, two = self.arithmetic, self, self.arithmetic.number(other) * sign
+        ar, one, two = self.arithmetic, self, self.arithmetic.number(other)
         if ar.is_zero(two):
             return one
         if ar.is_zero(one):
-            return two
+            return two * sign
+        if sign > 0 and two.covers is one.parts[0]:
+            one, two = two, one
+        ordered = one.covers is two.parts[0]
         x, y, exponent = ar.aligned(one, two)
-        positive = one.positive and two.positive
-        parts = ar.sum(x, y, positive)
+        positive = one.positive and two.positive and sign > 0
+        parts = ar.sum(x, y, sign, positive, ordered)
         if one.exact and two.exact and not ar.wide:
-            return Expansion(ar, parts, positive=positive)
+            return Expansion(ar, parts, positive=positive or ordered)
         if positive:
-            doubts = [
-                None if of.doubt is None else absolute(first / parts[0]) * of.doubt
-                for first, of in ((x[0], one), (y[0], two))
-            ]
+            doubts = [ar.weighed(of.doubt, first, parts[0]) for first, of in ((x[0], one), (y[0], two))]
             return ar.made(parts, max(one.loss, two.loss) + ar.loss, joined(*doubts), True, exponent)
-        error = absolute(x[0]) * (one.bound + ar.loss) + absolute(y[0]) * (two.bound + ar.loss)
-        # Without errors the result is exact, even if it is 0.
-        doubt = where(equal(error, 0.0), 0.0, error / absolute(parts[0]))
-        return ar.made(parts, 0.0, doubt, False, exponent)
+        errors = [
+            (first if of.positive else absolute(first)) * (of.bound + ar.loss)
+            for first, of in ((x[0], one), (y[0], two))
+        ]
+        error = errors[0] + errors[1]
+        return ar.made(parts, 0.0, ar.relative(error, parts[0]), ordered, exponent)
 
     def __mul__(self, other: Expansion | Fraction | float) -> Expansion:
         one, two = self, self.arithmetic.number(other)
@@ -170,13 +175,23 @@ class Expansions:
 
     # Parts, without bounds
 
-    def added(self, x: Parts, y: Parts) -> Parts:
-        """x + y, before it is normalized."""
-        return collected([[parts[i] for parts in (x, y) if i < len(parts)] for i in range(self.n)])
+    def sum(
+        self, x: Parts, y: Parts, sign: float = 1.0, positive: bool = False, ordered: bool = False
+    ) -> Parts:
+        """x + sign y.
 
-    def sum(self, x: Parts, y: Parts, positive: bool = False) -> Parts:
-        """x + y; ``positive`` says that nothing cancels, as no row of either is negative."""
-        return normal(self.added(x, y))
+        ``positive`` says that nothing cancels, as no row of either is negative; ``ordered`` that 0 <= y <= x.
+        """
+        y = tuple(part * sign for part in y)
+        return normal(_collected([[parts[i] for parts in (x, y) if i < len(parts)] for i in range(self.n)]))
+
+    def weighed(self, doubt: Term | None, first: Term, total: Term) -> Any:
+        """A term's doubt, as much as the term is of a sum."""
+        return None if doubt is None else absolute(first / total) * doubt
+
+    def relative(self, error: Term, first: Term) -> Any:
+        """An error relative to what is left. Without errors the result is exact, even if it is 0."""
+        return where(equal(error, 0.0), 0.0, error / absolute(first))
 
     def multiply(self, x: Parts, y: Parts) -> Parts:
         return self._plus_product((), x, y)
@@ -192,7 +207,7 @@ class Expansions:
                     product, error = two_product(a, b)
                     orders[i + j].append(product)
                     orders[i + j + 1].append(error)
-        return normal(collected(orders))
+        return normal(_collected(orders))
 
     def divide(self, x: Parts, y: Parts) -> Parts:
         """x/y, part by part: each divides the remainder that the ones before leave."""
@@ -351,7 +366,7 @@ class Expansions:
         orders: list[list[Any]] = [terms, [count * -parts[-1]]] + [[] for _ in range(self.n - 2)]
         for order, part in zip(orders[1:], others, strict=False):
             order.append(part)
-        return normal(collected(orders))
+        return normal(_collected(orders))
 
     def _small_expm1(self, r: Parts) -> Parts:
         """e^r - 1 for a small r, by its Taylor series, to 2^-110 or 2^-164 of it."""
@@ -522,7 +537,7 @@ ASIDE, NEAR_BY = 2.0**-85, 2.0**-40
 PAIRS, TRIPLES = Expansions(2, wide=False), Expansions(3, wide=True)
 
 
-def collected(orders: list[list[Any]]) -> Parts:
+def _collected(orders: list[list[Any]]) -> Parts:
     """The sum of terms, order by order; the rounding errors of each order join the next one."""
     parts = []
     for i, terms in enumerate(orders):

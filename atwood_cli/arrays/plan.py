@@ -58,7 +58,7 @@ from .double import (
     is_finite,
     less,
 )
-from .double_double import QUICK
+from .double_double import QUICK, ROUNDED
 from .error_free import UNIT
 from .expansion import PAIRS, TRIPLES, Expansion, Parts, normal, times_power_of_two
 from .program import Program
@@ -76,6 +76,15 @@ CLEAR = 2.0**-40
 FINE = 2.0**-104
 """Of a value, more than the rounding errors of the ends of its bound, and than all parts after the second."""
 NORMAL = -1021.0  # below this power of two a double has fewer bits
+
+SIGNED = (
+    "acceleration",
+    "friction_force_x",
+    "friction_force_y",
+    "torque",
+    "rim_acceleration",
+    "angular_acceleration",
+)
 
 KEPT = 256  # plans: enough for ten patterns; the longest, of all quantities in triples, takes 3 MB
 
@@ -120,6 +129,7 @@ class _GroupCase(Case):
         inputs["wrap"] = Angle(inputs["wrap"])
         super().__init__(Scene(**inputs, I=None))
         self.sign, self._decisions = pattern.sign, dict(decisions)
+        _covers(self.heavy, self.light)
 
     @lazy
     def rim_mass(self) -> Any:
@@ -145,6 +155,12 @@ class _GroupCase(Case):
         return self._decided(which)
 
 
+def _covers(larger: Any, smaller: Any) -> None:
+    """State that a number is less than another one in no row."""
+    if isinstance(larger, Expansion) and isinstance(smaller, Expansion):
+        larger.covers = smaller.parts[0]
+
+
 def _never_negative(name: str) -> Any:
     """An attribute of `Machine`, with the statement that no row is negative."""
 
@@ -158,11 +174,31 @@ def _never_negative(name: str) -> Any:
 
 
 class _ColumnsMachine(Machine[Any]):
-    """The model of columns. Sums of what is never negative need less work, and differences do not show it."""
+    """The model of columns. It states what is never negative or never the larger, to save work."""
 
-    drive, limiting_drive, magnitude, excess = map(
-        _never_negative, ("drive", "limiting_drive", "magnitude", "excess")
-    )
+    drive, limiting_drive, excess = map(_never_negative, ("drive", "limiting_drive", "excess"))
+
+    @lazy
+    def magnitude(self) -> Any:
+        """The acceleration without its sign, which is never above g."""
+        magnitude = super().magnitude
+        _covers(self.g, magnitude)
+        return magnitude
+
+
+def _from_finer(name: str) -> Any:
+    """An attribute that is computed by the finer machine and then rounded."""
+    return lazy(lambda machine: ROUNDED.number(getattr(machine.finer, name)))
+
+
+class _RoundedMachine(_ColumnsMachine):
+    """A machine with rounded products. What enters a difference that cancels comes from a finer machine."""
+
+    def __init__(self, finer: Machine[Any]) -> None:
+        super().__init__(finer.case, ROUNDED)
+        self.finer = finer
+
+    phi, k1, excess, transfer, drive = map(_from_finer, ("phi", "k1", "excess", "transfer", "drive"))
 
 
 class Plan(NamedTuple):
@@ -188,6 +224,14 @@ def plan(task: Task, accuracy: Accuracy) -> Plan:
     """The plan for a task."""
     arithmetic = LEVELS[accuracy][task.level]
     machine = _ColumnsMachine(_GroupCase(task.pattern, task.decisions, arithmetic), arithmetic)
+    if arithmetic is QUICK and accuracy == "certified":
+        rounded = _planned(task, accuracy, _RoundedMachine(machine))
+        if not rounded.later:
+            return rounded
+    return _planned(task, accuracy, machine)
+
+
+def _planned(task: Task, accuracy: Accuracy, machine: Machine[Any]) -> Plan:
     values: dict[str, Term] = {}
     certified: dict[str, Formula] = {}
     constants: list[tuple[str, float]] = []
@@ -225,7 +269,7 @@ def _value(machine: Machine[Any], name: str, accuracy: Accuracy) -> tuple[Term, 
     """
     value = getattr(machine, name)
     if isinstance(value, Formula):  # a double already, and without a bound
-        return value + 0.0, None  # 0.0 makes 0 of -0
+        return value + 0.0 if name in SIGNED else value, None  # 0.0 makes 0 of -0
     limit = LIMITS[accuracy]
     if value.loss > limit:
         raise Uncertified
@@ -238,7 +282,7 @@ def _value(machine: Machine[Any], name: str, accuracy: Accuracy) -> tuple[Term, 
     if accuracy == "exact":
         return double, _is_nearest(double, parts, value)
     small = None if value.doubt is None else at_most(value.doubt, limit - value.loss)
-    if wide:
+    if value.arithmetic is not PAIRS:
         return double, small
     finite = is_finite(double)  # e^{μφ} may leave the doubles
     return double, finite if small is None else both(small, finite)

@@ -34,6 +34,8 @@ LEAVE = 2_000  # rows of one block that are solved sooner together with rows of 
 
 Index = slice | NDArray[np.intp]
 """A selection of rows."""
+Waiting = tuple[Index, Task, Index]
+"""Rows, their task, and the rows that its program runs on."""
 
 
 class Rows:
@@ -54,16 +56,19 @@ class Rows:
 
     def solve(self, index: Index, task: Task) -> None:
         """Write the results of a task for rows of its pattern and decisions."""
-        waiting: list[tuple[Index, Task]] = [(index, task)]
+        waiting: list[Waiting] = [(index, task, index)]
         while waiting:
             waiting += self._solved_but_for(*waiting.pop())
 
-    def _solved_but_for(self, index: Index, task: Task) -> list[tuple[Index, Task]]:
+    def _solved_but_for(self, index: Index, task: Task, rows: Index) -> list[Waiting]:
         """Solve what a task's level of precision can; returns what is left to do, and for which rows.
 
         The `Plan` divides the task's quantities. Some are computed by its program: where one is not
         certified, it is left to the next level. Some cannot be computed at this level and are left to the
         next one in all rows. Some need an answer first: the rows of either answer become a new task.
+
+        The program runs on ``rows``, which may be more than those of ``index`` where that is cheaper than to
+        select them. The results of the other rows are overwritten afterwards.
         """
         levels = LEVELS[self.accuracy]
         if task.level == len(levels) or (levels[task.level] is TRIPLES and size_of(index) <= FEW):
@@ -71,29 +76,34 @@ class Rows:
             return []
         how = plan(task, self.accuracy)
         for name, constant in how.constants:
-            self.results[name][index] = constant
+            self.results[name][rows] = constant
         for name, reason in how.missing:
-            self.results[name][index] = nan
+            self.results[name][rows] = nan
             self.reasons[name, reason] += size_of(index)
         above = task._replace(level=task.level + 1)
-        left: list[tuple[Index, Task]] = [(index, above._replace(names=how.later))] if how.later else []
-        for name, failed in self._run_plan(how, index).items():
+        left: list[Waiting] = [(index, above._replace(names=how.later), index)] if how.later else []
+        for name, failed in self._run_plan(how, rows).items():
+            if rows is not index and not isinstance(index, slice):
+                failed = np.intersect1d(failed, index, assume_unique=True)
             one = above._replace(names=(name,))
             if self.accuracy == "exact" and levels[task.level] is PAIRS and failed.size > FEW:
                 failed = self._settle_ties(failed, one)
             if self.left is not None and failed.size <= LEAVE:
                 self.left.setdefault(one, []).append(failed)
             elif failed.size:
-                left.append((failed, one))
+                left.append((failed, one, failed))
         if how.asking:
             yes = self._ask(index, task, how.question)
             most = bool(2 * np.count_nonzero(yes) > yes.size)
-            for answer in (not most, most):  # the larger group is solved first, and its columns used again
+            for answer in (not most, most):  # the larger group is solved first, the other one overwrites
                 members = np.flatnonzero(yes == answer)
                 if members.size:
-                    rows = index if members.size == yes.size else _select(index, members)
-                    decisions = task.decisions | {(how.question, answer)}
-                    left.append((rows, task._replace(decisions=decisions, names=how.asking)))
+                    own = index if members.size == yes.size else _select(index, members)
+                    part = task._replace(
+                        decisions=task.decisions | {(how.question, answer)}, names=how.asking
+                    )
+                    all_rows = isinstance(index, slice) and answer == most
+                    left.append((own, part, index if all_rows else own))
         return left
 
     def _run_plan(self, how: Plan, index: Index) -> dict[str, NDArray[np.intp]]:
