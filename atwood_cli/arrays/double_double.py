@@ -1,7 +1,7 @@
 """Double-doubles at the least cost: two doubles with about four more digits than one, and a proven bound.
 
 Most rows need no more to be certified. `Quick` computes with the same `Expansion` as `expansion` does, but
-with fewer operations, which lose more: 2^-67 of the result, not 2^-101.
+with fewer operations, which lose more: 2^-67 of the result, not 2^-101. `Rounded` loses 2^-53 in a product.
 
 A number is high + low. A factor is split into its head, the first 26 bits of high, and its tail, which is the
 rest. The product of two heads is exact, and only what is multiplied by a tail is rounded. So low parts are
@@ -30,7 +30,7 @@ from operator import add, sub
 from typing import Any
 
 from ..arithmetic.symbolic import Formula, Term, formula
-from .double import Uncertified, absolute, looked_up, maximum, minimum
+from .double import Uncertified, absolute, joined, looked_up, maximum, minimum
 from .error_free import UNIT, fast_two_sum, head_of, two_sum
 from .expansion import Expansion, Expansions, Parts
 from .tables import STEPS, heads_and_tails, in_parts, ln2, whole_powers
@@ -38,6 +38,7 @@ from .tables import STEPS, heads_and_tails, in_parts, ln2, whole_powers
 WINDOW = 2.0**-120, 2.0**120
 LIBRARY = 2 * UNIT
 LOSS = 2.0**-67  # the error of an operation
+NEARLY = 0.4 * UNIT  # a divisor this close to a double, such as π, is taken for the double
 LARGEST = 36.0  # argument of an exponential
 
 
@@ -70,9 +71,9 @@ class Quick(Expansions):
         """The same number, with a low part of at most half a unit in the last place."""
         return fast_two_sum(*x) if len(x) == 2 else x
 
-    def weighed(self, doubt: Term | None, *_: Term) -> Any:
-        """The whole doubt, which costs less."""
-        return doubt
+    def doubt_of_sum(self, one: Expansion, two: Expansion, *_: Term) -> Any:
+        """Each doubt counts in full, which costs less."""
+        return one.doubt if one.doubt is two.doubt else joined(one.doubt, two.doubt)
 
     def relative(self, error: Term, first: Term) -> Any:
         return error / absolute(first)
@@ -166,10 +167,14 @@ class Rounded(Quick):
         return self.of_factors(x, y, (a * b, *_total(terms)), UNIT + LOSS)
 
     def quotient(self, x: Expansion, y: Expansion) -> Expansion:
+        """x/y. The low part of a constant y counts as loss if it is below 0.4 u of y, as the 0.35 u of π."""
         (a, *low), (b, *more) = x.parts, y.parts
-        high = a / b
-        terms = low + [part * high * -1.0 for part in more]
-        return self.of_factors(x, y, (high, *(part / b for part in _total(terms))), UNIT + LOSS)
+        high, loss = a / b, UNIT + LOSS
+        ratio: Any = more[0] / b if more else 1.0
+        if not isinstance(ratio, Formula) and abs(ratio) < NEARLY:
+            more, loss = [], loss + abs(ratio)
+        terms = low + [-1.0 * part * high for part in more]
+        return self.of_factors(x, y, (high, *(part / b for part in _total(terms))), loss)
 
     def root_of(self, x: Parts) -> Parts:
         return self.normal(super().root_of(x))

@@ -108,8 +108,9 @@ class Expansion:
         """The sum, or the difference for sign -1.
 
         Where neither term is ever negative, the sum is no less accurate than the less accurate term: the
-        larger loss counts, and each doubt as much as its term is of the sum. Otherwise terms may cancel: the
-        absolute errors of both are added and compared with what is left, row by row.
+        larger loss counts, and the doubts. Otherwise terms may cancel: the absolute errors of both are added
+        and compared with what is left, row by row. What is known not to be negative, but came out negative,
+        has a doubt of 1 or more.
         """
         ar, one, two = self.arithmetic, self, self.arithmetic.number(other)
         if ar.is_zero(two):
@@ -125,13 +126,9 @@ class Expansion:
         if one.exact and two.exact and not ar.wide:
             return Expansion(ar, parts, positive=positive or ordered)
         if positive:
-            doubts = [ar.weighed(of.doubt, first, parts[0]) for first, of in ((x[0], one), (y[0], two))]
-            return ar.made(parts, max(one.loss, two.loss) + ar.loss, joined(*doubts), True, exponent)
-        errors = [
-            (first if of.positive else absolute(first)) * (of.bound + ar.loss)
-            for first, of in ((x[0], one), (y[0], two))
-        ]
-        error = errors[0] + errors[1]
+            doubt = ar.doubt_of_sum(one, two, x[0] / parts[0], y[0] / parts[0])
+            return ar.made(parts, max(one.loss, two.loss) + ar.loss, doubt, True, exponent)
+        error = absolute(x[0]) * (one.bound + ar.loss) + absolute(y[0]) * (two.bound + ar.loss)
         return ar.made(parts, 0.0, ar.relative(error, parts[0]), ordered, exponent)
 
     def __mul__(self, other: Expansion | Fraction | float) -> Expansion:
@@ -185,9 +182,13 @@ class Expansions:
         y = tuple(part * sign for part in y)
         return normal(_collected([[parts[i] for parts in (x, y) if i < len(parts)] for i in range(self.n)]))
 
-    def weighed(self, doubt: Term | None, first: Term, total: Term) -> Any:
-        """A term's doubt, as much as the term is of a sum."""
-        return None if doubt is None else absolute(first / total) * doubt
+    def doubt_of_sum(self, one: Expansion, two: Expansion, *shares: Term) -> Any:
+        """The doubt of a positive sum; each doubt counts as much as its term is of the sum."""
+        doubts = [
+            None if of.doubt is None else absolute(share) * of.doubt
+            for of, share in zip((one, two), shares, strict=True)
+        ]
+        return joined(*doubts)
 
     def relative(self, error: Term, first: Term) -> Any:
         """An error relative to what is left. Without errors the result is exact, even if it is 0."""

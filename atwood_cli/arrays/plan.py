@@ -18,7 +18,8 @@ What each accuracy promises, and why it holds:
 - ``fast``: plain doubles, without bounds. They also decide whether a string slips. An e^{μφ} beyond the
   doubles makes results infinite, even where a tiny mass would bring them back.
 - ``certified``: every regime is right, and every value within 4 units in the last place (ulp) of the exact
-  one for the given doubles. The levels are double-doubles (`QUICK`), expansions of two and of three doubles
+  one for the given doubles. The levels are double-doubles (`ROUNDED` if that suffices in all rows, else
+  `QUICK`), expansions of two and of three doubles
   (`PAIRS`, `TRIPLES`), and in the end the exact arithmetic of a single scene. A value is certified where its
   bound is at most 3.49 u of it: that is at most 3.49 ulp, and to round to a double costs half an ulp more.
   (Just below a power of two, half an ulp of the double may be a whole one of the exact value: there it is
@@ -221,7 +222,7 @@ class Plan(NamedTuple):
 
 @lru_cache(KEPT)
 def plan(task: Task, accuracy: Accuracy) -> Plan:
-    """The plan for a task."""
+    """The plan for a task. Certified values come with rounded products if these suffice for all of them."""
     arithmetic = LEVELS[accuracy][task.level]
     machine = _ColumnsMachine(_GroupCase(task.pattern, task.decisions, arithmetic), arithmetic)
     if arithmetic is QUICK and accuracy == "certified":
@@ -232,6 +233,7 @@ def plan(task: Task, accuracy: Accuracy) -> Plan:
 
 
 def _planned(task: Task, accuracy: Accuracy, machine: Machine[Any]) -> Plan:
+    """The plan for a task with the model in this arithmetic."""
     values: dict[str, Term] = {}
     certified: dict[str, Formula] = {}
     constants: list[tuple[str, float]] = []

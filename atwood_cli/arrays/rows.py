@@ -80,12 +80,13 @@ class Rows:
         for name, reason in how.missing:
             self.results[name][rows] = nan
             self.reasons[name, reason] += size_of(index)
-        above = task._replace(level=task.level + 1)
-        left: list[Waiting] = [(index, above._replace(names=how.later), index)] if how.later else []
+        left: list[Waiting] = []
+        if how.later:
+            left.append((index, task._replace(names=how.later, level=task.level + 1), index))
         for name, failed in self._run_plan(how, rows).items():
             if rows is not index and not isinstance(index, slice):
                 failed = np.intersect1d(failed, index, assume_unique=True)
-            one = above._replace(names=(name,))
+            one = task._replace(names=(name,), level=task.level + 1)
             if self.accuracy == "exact" and levels[task.level] is PAIRS and failed.size > FEW:
                 failed = self._settle_ties(failed, one)
             if self.left is not None and failed.size <= LEAVE:
@@ -123,10 +124,10 @@ class Rows:
 
         In rows that follow each other, results are written where they belong. Others are gathered first.
         """
-        columns = len(program.between) + len(program.inputs) + len(names)
+        size, columns = size_of(index), len(program.between) + len(program.inputs) + len(names)
         most = min(max(SMALLEST, ROOM // (8 * columns)), LARGEST)
-        for start in range(0, size_of(index), most):
-            tile = _select(index, slice(start, min(start + most, size_of(index))))
+        for start in range(0, size, most):
+            tile = _select(index, slice(start, min(start + most, size)))
             direct = isinstance(tile, slice)
             inputs = [self.inputs[name] for name in program.inputs]
             floats = 0 if direct else len(inputs) + len(names)
@@ -157,12 +158,13 @@ class Rows:
             if ar is not DOUBLES and size_of(open_) <= FEW:
                 break
             program = questioning(task.pattern, task.decisions, question, self.accuracy, ar)
-            unsure = [np.empty(0, np.intp)]
+            unsure: list[NDArray[np.intp]] = []
             for start, says, sure in self._run(program, _select(index, open_), (), 2):
                 yes[_select(open_, slice(start, start + says.size))] = says
-                unsure.append(np.flatnonzero(~sure) + start)
-            open_ = _select(open_, np.concatenate(unsure))
-        for row in np.arange(yes.size)[open_].tolist():
+                if np.count_nonzero(sure) < sure.size:
+                    unsure.append(np.flatnonzero(~sure) + start)
+            open_ = _select(open_, np.concatenate(unsure)) if unsure else np.empty(0, np.intp)
+        for row in range(yes.size) if isinstance(open_, slice) else open_.tolist():
             which: Any = question
             yes[row] = Case(self._scene(index, row, task.pattern)).beats_friction(which)
         return yes
