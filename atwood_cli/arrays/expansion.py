@@ -128,7 +128,11 @@ class Expansion:
         if positive:
             doubt = ar.doubt_of_sum(one, two, x[0] / parts[0], y[0] / parts[0])
             return ar.made(parts, max(one.loss, two.loss) + ar.loss, doubt, True, exponent)
-        error = absolute(x[0]) * (one.bound + ar.loss) + absolute(y[0]) * (two.bound + ar.loss)
+        x_size, y_size = (
+            first if of.positive and of.doubt is None else absolute(first)
+            for first, of in ((x[0], one), (y[0], two))
+        )
+        error = x_size * (one.bound + ar.loss) + y_size * (two.bound + ar.loss)
         return ar.made(parts, 0.0, ar.relative(error, parts[0]), ordered, exponent)
 
     def __mul__(self, other: Expansion | Fraction | float) -> Expansion:

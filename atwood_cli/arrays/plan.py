@@ -19,9 +19,9 @@ What each accuracy promises, and why it holds:
   doubles makes results infinite, even where a tiny mass would bring them back.
 - ``certified``: every regime is right, and every value within 4 units in the last place (ulp) of the exact
   one for the given doubles. The levels are double-doubles (`ROUNDED` if that suffices in all rows, else
-  `QUICK`), expansions of two and of three doubles
-  (`PAIRS`, `TRIPLES`), and in the end the exact arithmetic of a single scene. A value is certified where its
-  bound is at most 3.49 u of it: that is at most 3.49 ulp, and to round to a double costs half an ulp more.
+  `QUICK`), expansions of two and of three doubles (`PAIRS`, `TRIPLES`), and in the end the exact arithmetic
+  of a single scene. A value is certified where its bound is at most 3.49 u of it: that is at most 3.49 ulp,
+  and to round to a double costs half an ulp more.
   (Just below a power of two, half an ulp of the double may be a whole one of the exact value: there it is
   4.49 ulp.) A question is answered by doubles where its sides differ by a 2^-40 of them, far more than their
   few roundings; else by the sign of the difference, if its bound is below 1/2.
