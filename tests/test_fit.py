@@ -500,10 +500,14 @@ RESTING = SIMMONS + 8 * "0.1,0.1,0\n" + "".join(f"0.1,0.10{i},0\n" for i in rang
 
 # fmt: off
 SENTENCES = [
-    (FAST, "", "Row 8 stands out: 48 standard uncertainties from what the others say."),
+    (FAST, "", "Row 8 stands out: 48 standard uncertainties from what the others say, and faster than a massless"
+        " pulley without friction allows."),
     (FAST, "--R 25mm", "Without row 8: moment of inertia = (6.7 ± 2.2)e-6 kg m², rim mass = 0.0107 ± 0.0035 kg,"
         " axle = 0.0007 ± 0.0014 N. The fit includes it."),
-    (TIMED.replace("6.16", "2.1"), "--drop 98cm", "Row 4 stands out: 34 standard uncertainties from"),
+    (TIMED.replace("6.16", "2.1"), "--drop 98cm", "Row 4 stands out: 34 standard uncertainties from what the others say,"
+        " and faster than a massless pulley without friction allows."),
+    (ODD, "", "standard uncertainties from what the others say."),
+    (SIMMONS + "Mean,,\n", "", "Left out below the runs, as it has no numbers: 'Mean'."),
     (STRAYING, "--drop 98cm", "Row 3, time 3 (3.79 s) is far from its siblings: "),
     (STRAYING, "--drop 98cm", "Without row 3, time 3: rim mass = "),
     (STRAYING, "--drop 98cm", "The fit includes it; to leave a measurement out, empty its cell."),
@@ -680,6 +684,13 @@ def test_the_page_has_the_digits_and_the_width_asked_for(atwood: Atwood) -> None
         (9.80665, 1e-14, None, "9.8066500000", ""),
         (0.25, 0.0, None, "0.250000", ""),
         (0.25, 0.0, 2, "0.25", ""),
+        (
+            2e-9,
+            0.5,
+            17,
+            "0.0000000020000000 ± 0.5000000000000000",
+            "-0.9999999979999999 to 1.0000000019999999",
+        ),
     ],
 )
 def test_a_row_is_published_by_one_rule(
@@ -782,6 +793,14 @@ def test_bare_values(atwood: Atwood) -> None:
     run = json.loads(atwood(*RIT, "--digits", "2", "--json").out)["runs"][1]
     assert (run["m1"], run["time"], run["expected"], run["residual"]) == (0.2005, 4.58, 4.5, 1.1)
     assert atwood(*RIT, "--only", "dof", "--csv").out == "dof\n3\n"
+
+
+@pytest.mark.parametrize("form", ["", "--json", "--csv", "--only rim_mass,axle,chi2"])
+def test_no_result_has_more_digits_than_a_double(atwood: Atwood, form: str) -> None:
+    ran = atwood(*RIT, "--R", "25mm", "--digits", "40", *form.split())
+    assert ran.out == atwood(*RIT, "--R", "25mm", "--digits", "17", *form.split()).out
+    numbers = re.findall(r"\d+\.\d+", ran.out)
+    assert max(len(number.replace(".", "").lstrip("0")) for number in numbers) == 17
 
 
 def test_the_line_is_explained(atwood: Atwood, fit: Any) -> None:

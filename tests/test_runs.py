@@ -48,13 +48,14 @@ def exactly(*words: str) -> list[Fraction]:
 HEADINGS = {
     "time": (
         "t|t (s)|t [s]|t/s|t, s|t in s|t_s|T (s)|Time (s)|Time(s)|Fall time (s)|fall_time|Time t / s|Trial 1 (s)|"
-        "t1 [s]|t_1|t5|T1 (s)|time1|time 1|Time Trial 2 (s)|t₁ (s)"
+        "t1 [s]|t_1|t5|T1 (s)|time1|time 1|Time Trial 2 (s)|t₁ (s)|Latest: Time (s)|Data Set 1: Time (s)|"
+        "Run 1: t (s)|Run 1: t/s|Time (s) Run #1|Time (s) Run 1|t (s) 2"
     ),
     "a": (
         "a|a (m/s^2)|a (m/s²)|a [m/s2]|a/(m/s²)|a / m s^-2|a/(m·s⁻²)|a in m/s²|a_m/s2|acceleration (m/s^2)|"
-        "a_exp|A (m/s²)|measured acceleration|a1"
+        "a_exp|A (m/s²)|measured acceleration|a1|Acceleration (m/s²) Run #1|Latest: Acceleration (m/s²)"
     ),
-    "m1": "m1|m1/kg|M1|m_1|M_1 [kg]|mass1|Mass 1 (kg)|mass m1 (kg)|m₁ (kg)|m1_kg|m1 kg",
+    "m1": "m1|m1/kg|M1|m_1|M_1 [kg]|mass1|Mass 1 (kg)|mass m1 (kg)|m₁ (kg)|m1_kg|m1 kg|m1 (kg) Run #1",
     "m2": "m2|m2/kg|M2|m_2|mass2 (kg)|m2, kg",
     "drop": "drop|h (m)|h/m|h_m|H (m)|s (m)|d (m)|height (m)|Height h (m)|distance|drop height (m)|Drop_Height",
     "u(a)": (
@@ -104,8 +105,37 @@ def test_uncertainties_are_in_the_unit_of_their_column(read: Any) -> None:
         "read as: 'm1 (g)' as m1 in g, '±' as u(m1), 'm2 (g)' as m2 in g, '±' as u(m2), 't1 (s)' as time in s,"
         " 't2 (s)' as time in s, 'u(t) (ms)' as u(time) in ms."
     ]
+    behind = read("m1,m2,t1,±,t2,±\n1,2,4,0.1,5,0.2\n")
+    assert numbers(behind) == [exactly("1", "2", "4", "5", "0", "0", "0.1", "0.2")]
     percent = read("m1,m2,t1,u(t1) %,t2,± (%)\n1,2,4,1,5,2%\n")
     assert numbers(percent) == [exactly("1", "2", "4", "5", "0", "0", "0.04", "0.1")]
+
+
+# fmt: off
+WASHERS = [
+    ("total mass (g),dm (g)", "407,7"),
+    ("m1+m2 (g),Δm (g)", "407,7"),
+    ("m1 + m2,m2 − m1", "0.407,0.007"),
+    ("m_2 (g),m_tot (g)", "207,407"),
+    ("m1,m1+m2", "0.2,0.407"),
+    ("mass difference (g),m1 (g)", "7,200"),
+    ("m2,m2-m1 (g)", "0.207,7 g"),
+    ("m1,m1+m2,m2,m2-m1", "0.2,9,0.207,9"),  # the others are labels
+]
+# fmt: on
+
+
+@pytest.mark.parametrize(("header", "cells"), WASHERS)
+def test_two_columns_determine_the_masses(read: Any, header: str, cells: str) -> None:
+    runs = read(f"{header},Run 1: t (s),Run 2: t (s)\n{cells},3.99,4\n")
+    assert numbers(runs) == [exactly("0.2", "0.207", "3.99", "4", "0", "0", "0", "0")]
+
+
+def test_a_difference_has_a_sign(read: Any) -> None:
+    runs = read("m1+m2;m2-m1;a\n0,4; -0,01;-0,2\n0,4;0,01;0,2\n", drop=None)
+    assert [one[:2] for one in numbers(runs)] == [exactly("0.205", "0.195"), exactly("0.195", "0.205")]
+    assert runs.signed
+    assert runs.remarks == [f"read as: {PARTED}."]
 
 
 def test_a_heading_is_looked_at_quickly(read: Any) -> None:
@@ -148,6 +178,9 @@ NO_TABLES: list[tuple[Any, str]] = [
     ("m1,m2,a,T1" + ROW, column("T1", "could be meant for time; name it so, with a unit, like 'time (s)'")),
     ("m1,m2,a,M\n1,2,1,1\n", column("M", "holds for all runs, so it is an option: give --M")),
     ("m1,m2,Δm,a" + ROW, column("Δm", "could be an uncertainty; name what of, as in 'u(a)'")),
+    ("m1+m2,a\n1,2\n", "column m1 is missing; there are 'm1+m2', 'a'"),
+    ("m1 (kg),m1 (kg) Run #2,m2,a" + ROW,
+        "columns 'm1 (kg)' and 'm1 (kg) Run #2' are both m1; let one pass by --label 'm1 (kg) Run #2'"),
     ("m1,m2,a,error" + ROW, column("error", "could be an uncertainty; name what of, as in 'u(a)'")),
     ("m1,m2,a,Δt" + ROW, column("Δt", "could be an uncertainty, but no column is what it would be of")),
     ("m1,m2,a,Team,±\n1,2,3,A,1\n", column("±", "could be an uncertainty, but no column is what it would be of")),
@@ -164,6 +197,13 @@ NO_TABLES: list[tuple[Any, str]] = [
     ("m1,m2,a\n1,,1\n", "row 1 has no m2"),
     ("m1,m2,a\n1,x,1\n", "row 1: m2 'x' is not a number; write it like 2, 0.5 or 1.5e-3"),
     ("m1,m2,a\n1,2,3\nMean,,3\n", "row 2: m1 'Mean' is not a number; write it like 2, 0.5 or 1.5e-3"),
+    ("m1,m2,a\n1,2,3\nSeries 2,,\n1,2,3\n",
+        "row 2: m1 'Series 2' is not a number; write it like 2, 0.5 or 1.5e-3"),
+    ("m1+m2,dm,a\n1,2,3\n", "row 1: m2-m1 '2' and m1+m2 '1' make a mass negative"),
+    ("m1+m2,dm,a\n3,1(1),3\n", "row 1: m2-m1 '1(1)' has an uncertainty, which is taken of m1 and m2 alone"),
+    ("m1+m2,±,dm,a\n3,1,1,3\n", "row 1: m1+m2 '3' has an uncertainty, which is taken of m1 and m2 alone"),
+    ("m1+m2,dm,a\n3,x,3\n", "row 1: m2-m1 'x' is not a number; write it like 2, 0.5 or 1.5e-3"),
+    ("m1+m2,dm,a\n3,,3\n", "row 1 has no m2-m1"),
     ("m1,m2,a\n1e31,2,1\n", "row 1: m1 '1e31' is beyond what a fit computes with, 1e-30 to 1e+30"),
     ("m1;m2;a\n1,5;2.5;1\n", "row 1: m2 '2.5' has a point in a table of decimal commas; write all alike"),
     ("m1,m2,a,u\n1,2,3,-1\n", "row 1: u '-1' is no uncertainty; write it like 0.02 or 2%"),
@@ -222,6 +262,19 @@ AROUND: list[tuple[Any, str]] = [
 # fmt: on
 
 
+TOTALS = [
+    ("Mean,,\n", ["'Mean'"]),
+    ("Total,,\n,,\nby Anna,x,\n", ["'Total'", "'by Anna x'"]),
+]
+
+
+@pytest.mark.parametrize(("below", "names"), TOTALS)
+def test_totals_without_numbers_are_left_out(read: Any, below: str, names: list[str]) -> None:
+    runs = read(TABLE + below)
+    assert numbers(runs) == numbers(read(TABLE))
+    assert runs.remarks == [f"left out below the runs, as it has no numbers: {name}." for name in names]
+
+
 @pytest.mark.parametrize(("table", "remark"), AROUND)
 def test_what_stands_around_a_table(read: Any, table: str, remark: str) -> None:
     runs = read(table)
@@ -260,7 +313,7 @@ def test_the_command_reads_what_a_spreadsheet_saves(atwood: Atwood, tmp_path: Pa
     rows = "0,055;0,060;0,380|0,060;0,065;0,354|0,065;0,070;0,323|0,070;0,075;0,310|0,065;0,075;0,649|0,08;0,095;0,78"
     path = tmp_path / "runs.csv"
     for header in ("m1 (kg);m2 (kg);a (m/s²)", "M1/kg;M2/kg;Acceleration in m/s²"):
-        path.write_bytes("\r\n".join(["Lab;;", header, *rows.split("|"), ""]).encode("cp1252"))
+        path.write_bytes("\r\n".join(["Lab;;", header, *rows.split("|"), "Total;;", ""]).encode("cp1252"))
         ran = atwood("fit", str(path), "--g", "9.81", "--find", "c", "--json")
         assert json.loads(ran.out)["rim_mass"] == pytest.approx(0.0128, rel=0.05)
 

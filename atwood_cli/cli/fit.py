@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..arithmetic.rounding import text, to_digits
+from ..arithmetic.rounding import DOUBLE_DIGITS, text, to_digits
 from ..laboratory.quantities import FITTED, QUANTITIES
 from ..model.scene import INPUTS, UNMEASURED, parameter_of, read_digits, read_input, read_whole
 from ..model.units import counted
@@ -74,7 +74,7 @@ FitDigits = Annotated[
         "Output",
         "--digits",
         metavar="N",
-        help="Significant digits, 1 to 1000; if not given, those that uncertainties leave, else of doubles.",
+        help="Significant digits, 17 at most; if not given, those that uncertainties leave, else of doubles.",
     ),
 ]
 Explain = Annotated[
@@ -95,8 +95,9 @@ Examples:
 A row a run, with columns m1, m2, and a or time with drop, the height of fall (or --drop for all). Units
 stand in headings, as m1 (g) or t/s, or in cells, as solve takes them. Repeats are further rows, or columns
 t1, t2 and so on. Uncertainties are in cells, 2.05(2), or in columns u(t), t_err, or ± behind their own.
-How a file was read is said; columns by other names are labels. Either mass may be the heavier. What --M, --I,
---axle and --g say is given, and not fitted.
+Columns m1+m2 and m2-m1 (or dm) may stand for masses: any two of the four do. How a file was read is said;
+columns by other names are labels. Either mass may be the heavier. What --M, --I, --axle and --g say is given,
+and not fitted.
 Results: rim_mass is the pulley's inertia as a mass at its rim, c = I/R², of a disk half its mass; axle is
 the friction of its axle as a force there. Both are always fitted where runs tell them apart; --find rim_mass
 says that the axle is free. Rows are left out only by --without.
@@ -163,7 +164,8 @@ class _Forms:
         from ..laboratory.results import results_of
         from ..laboratory.sentences import head, notes, odd_cells
 
-        self.fit, self.only, self.digits, self.plot = fit, only, digits, plot
+        self.fit, self.only, self.plot = fit, only, plot
+        self.digits = digits and min(digits, DOUBLE_DIGITS)
         self.head, self.said = head(fit), notes(fit)
         odd = odd_cells(fit)
         if odd and not any("," in cell for cell in odd):  # whole rows

@@ -22,7 +22,7 @@ from ..model.case import Case
 from ..model.motion import moved
 from ..model.scene import UNMEASURED, Input, Scene, SceneError
 from ..model.units import nearest
-from .least_squares import Data, Estimate, estimate
+from .least_squares import Data, Estimate, estimate, expected_of
 from .numbers import Result
 from .probability import SURE, student_within
 from .quantities import FITTED, QUANTITIES, USUAL
@@ -137,6 +137,12 @@ class Fit(NamedTuple):
     def impossible(self) -> list[str]:
         """The quantities whose whole interval is negative, as no pulley, no axle and no gravity is."""
         return [name for name in self.estimate.names if self.significant(name) < 0]
+
+    @property
+    def too_fast(self) -> NDArray[np.bool_]:
+        """Which runs are faster than a massless pulley without friction allows, be it by chance."""
+        limit, _ = expected_of(self.data, {**self.estimate.values, "rim_mass": 0.0, "axle": 0.0}, [])
+        return self.data.measured > limit if self.data.kind == "a" else self.data.measured < limit
 
     @property
     def void(self) -> bool:

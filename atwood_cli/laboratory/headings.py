@@ -17,6 +17,8 @@ Kind = Literal["a", "time"]
 
 TAKEN = ("m1", "m2", "drop", "a", "time")
 """The quantities of a run; what else a scene has is the same in all runs."""
+MASSES = {"m1": (1, 0), "m2": (0, 1), "m1+m2": (1, 1), "m2-m1": (-1, 1)}
+"""The multiples of m1 and m2 that a column may hold. Two such columns determine both masses."""
 MEASURED = {"a": "acceleration", "time": "time"}
 """The quantities that are measured, which may be repeated in numbered columns."""
 RESULTS = ("rows", "u", "expected", "residual")
@@ -26,6 +28,8 @@ SPELLINGS = {
     for name, spellings in {
         "m1": "m1 M1 mass1 massm1 lightermass mlight",
         "m2": "m2 M2 mass2 massm2 heaviermass mheavy",
+        "m1+m2": "m1+m2 m2+m1 mtotal mtot totalmass masstotal",
+        "m2-m1": "m2-m1 dm deltam massdifference mdiff",
         "drop": "drop dropheight dropdistance height heighth fallheight heightoffall distance fall",
         "a": "a acc accel acceleration accelerationa aexp ameas ameasured measuredacceleration",
         "time": "t time timet times falltime timeoffall droptime",
@@ -43,6 +47,10 @@ DIVIDED = (
 """A name and its unit: m1 (g), m1 [g], a/(m/s²); m1_g; m1/g, "m1, g" and m1 in g."""
 LONGEST = 80
 """Characters of a heading that may be recognised: the patterns take long for long texts."""
+LOGGED = re.compile(
+    r"(?:latest|(?:run|data ?set) ?#?(\d*)) ?[:|](.+)|(.+[)\]}]) (?:(?:run|trial) ?)?#?(\d+)", re.IGNORECASE
+)
+"""Headings of data loggers: Latest: t (s), Data Set 1: t (s), Run 1: t (s), t (s) Run #1, t (s) 1."""
 NUMBERED = re.compile(r"(.*?)((?:run|trial)?#?)(\d+)")
 ALONE = ("±", "+/-", "+-", "u", "uncertainty")
 """The uncertainty of the column before."""
@@ -89,6 +97,11 @@ def _named(heading: str) -> Named | None:
     text = without_blanks(heading)
     if len(text) > LONGEST:
         return None
+    if found := LOGGED.fullmatch(text):
+        before, behind, heading, after = found.groups()
+        if named := _named(behind or heading):
+            number = before or after or named.number
+            return named._replace(number=number if named.name in MEASURED else "")
     for name, unit in _divisions(text):
         key = _key(name)
         if key in ALONE:
@@ -131,6 +144,11 @@ def _quantity(key: str, spellings: Mapping[str, str], unit: str = "") -> tuple[s
     return (name, number) if name in MEASURED else None
 
 
+def as_input(name: str) -> str:
+    """The input that has the unit and the bounds of a quantity."""
+    return "m1" if name in MASSES else name
+
+
 def recognised(columns: Sequence[str]) -> list[str]:
     return [column for column in columns if _named(column)]
 
@@ -151,7 +169,7 @@ def read_header(columns: Sequence[str], labels: Collection[str]) -> Header:
                 )
                 repeats = "number what is repeated, as in 'time 1', or " * (named.name in MEASURED)
                 raise Unreadable(f"{two}; {repeats}let one pass by --label {in_quotes(column)}")
-            heading = Heading(column, named.unit, unit_factor(named.name, named.unit, column))
+            heading = Heading(column, named.unit, unit_factor(as_input(named.name), named.unit, column))
             quantities[named[:2]] = Quantity(at, named.name, named.number, heading)
         elif column.strip():
             if column in others:
@@ -163,11 +181,14 @@ def read_header(columns: Sequence[str], labels: Collection[str]) -> Header:
             others[column] = at
     for at, named in uncertain:
         _add_uncertainty(quantities, at, columns[at], named)
-    taken = list(quantities.values())
-    kind = _kind_of({name for name, _ in quantities}, [x for x in others if x not in labels], columns)
-    if kind == "a":  # a height says nothing then
-        others |= {one.heading.column: one.at for one in taken if one.name == "drop"}
-        taken = [one for one in taken if one.name != "drop"]
+    names = {name for name, _ in quantities}
+    kind = _kind_of(names, [x for x in others if x not in labels], columns)
+    needed = [*[name for name in MASSES if name in names][:2], kind, *["drop"] * (kind == "time")]
+    taken = [one for one in quantities.values() if one.name in needed]
+    for one in quantities.values():
+        if one.name not in needed:
+            _check_uncertain(one.heading.column)
+            others[one.heading.column] = one.at
     return Header(kind, taken, others)
 
 
@@ -185,16 +206,21 @@ def _add_uncertainty(quantities: dict[tuple[str, str], Quantity], at: int, colum
         if one.u:
             raise refused(column, f"is a second uncertainty of {one.name}")
         own_unit = named.unit not in ("", PERCENT)
-        factor = unit_factor(one.name, named.unit, column) if own_unit else one.heading.factor
+        factor = unit_factor(as_input(one.name), named.unit, column) if own_unit else one.heading.factor
         quantities[key] = one._replace(u=(at, Heading(column, named.unit, factor)))
+
+
+def _check_uncertain(column: str) -> None:
+    """Refuse a heading that may be an uncertainty, but does not say of what. Raises Unreadable."""
+    if any(UNCERTAIN_OF_WHAT.fullmatch(_key(name)) for name, _ in _divisions(without_blanks(column))):
+        raise refused(column, "could be an uncertainty; name what of, as in 'u(a)'")
 
 
 def _check_label(column: str) -> None:
     """Refuse a heading that is likely to be no label. Raises Unreadable."""
     if len(column) > LONGEST:
         return
-    if any(UNCERTAIN_OF_WHAT.fullmatch(_key(name)) for name, _ in _divisions(without_blanks(column))):
-        raise refused(column, "could be an uncertainty; name what of, as in 'u(a)'")
+    _check_uncertain(column)
     letter = _quantity(_key(column), WITH_UNIT)
     name = letter[0] if letter else meant(column)
     if name in TAKEN:
@@ -209,12 +235,13 @@ def _kind_of(names: Collection[str], unknown: Sequence[str], columns: Sequence[s
     if "a" in names and "time" in names:
         raise Unreadable("there are columns a and time; keep one, or let one pass by --label")
     kind: Kind = "a" if "a" in names else "time"
-    for name, words in (("m1", "m1"), ("m2", "m2"), (kind, "a or time")):
-        if name not in names and unknown:
-            how = "a row is a run, with m1, m2, and a or time: name them so, with units, as in 'm1 (g)'"
-            raise Unreadable(f"{not_recognised(unknown)}; {how}")
-        if name not in names:
-            raise Unreadable(f"column {words} is missing; there are {listed(columns) or 'none'}")
+    missing = [name for name in MASSES if name not in names][:-2]  # two of the four determine both masses
+    missing += ["a or time"] * (kind not in names)
+    if missing and unknown:
+        how = "a row is a run, with m1, m2, and a or time: name them so, with units, as in 'm1 (g)'"
+        raise Unreadable(f"{not_recognised(unknown)}; {how}")
+    if missing:
+        raise Unreadable(f"column {missing[0]} is missing; there are {listed(columns) or 'none'}")
     return kind
 
 

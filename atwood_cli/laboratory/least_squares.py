@@ -88,7 +88,7 @@ def estimate(data: Data, given: Mapping[str, float], names: Sequence[str]) -> Es
         before = share
         values = _moved(data, values, names, J * weight[:, None], rest * weight, weight)
     shared = ("rim_mass", "axle", "gravity", "drop")[: 4 if data.kind == "time" else 3]
-    _, slopes = _expected_of(data, values, [x for x in shared if x not in names])
+    _, slopes = expected_of(data, values, [x for x in shared if x not in names])
     by_given = {x: -line.covariance @ J.T @ (slope / line.variance) for x, slope in slopes.items()}
     return Estimate(values, names, line, J, ideal, known, shape, by_given)
 
@@ -112,7 +112,7 @@ def expected(kind: Kind, given: Mapping[str, Any], to: Sequence[str]) -> tuple[C
     return value, {x: np.broadcast_to(0.0 if one is None else one, size) for x, one in slopes.items()}
 
 
-def _expected_of(
+def expected_of(
     data: Data, values: Mapping[str, float], to: Sequence[str]
 ) -> tuple[Column, Mapping[str, Column]]:
     """What is expected of the runs, not finite where no pulley is so light, and its slopes."""
@@ -125,7 +125,7 @@ def _state(
     data: Data, values: Mapping[str, float], names: Sequence[str]
 ) -> tuple[Column, Any, Column, Column]:
     """What is expected of the runs, its slopes, the known variance, and the shape of the unknown one."""
-    ideal, slopes = _expected_of(data, values, [*{*names, *data.uncertain, "axle"}])
+    ideal, slopes = expected_of(data, values, [*{*names, *data.uncertain, "axle"}])
     J = np.stack([slopes[x] for x in names], 1) if names else np.empty((len(ideal), 0))
     known = data.spread**2 / data.times
     for x, u in data.uncertain.items():
@@ -143,7 +143,7 @@ def _moved(
         damped = np.vstack([A / lengths, np.diag(zeros + sqrt(damping))])
         step = np.linalg.lstsq(damped, np.append(rest, zeros), rcond=None)[0] / lengths
         there = values | {x: values[x] + float(by) for x, by in zip(names, step, strict=True)}
-        cost = sum_of_squares((data.measured - _expected_of(data, there, [])[0]) * weight)
+        cost = sum_of_squares((data.measured - expected_of(data, there, [])[0]) * weight)
         if cost <= before * (1 + 1e-12):
             return there
         damping = max(1e-4, 5 * damping)
@@ -155,7 +155,7 @@ def _start(data: Data, given: Mapping[str, float], names: Sequence[str]) -> dict
     best, least = dict[str, float](), inf
     for guess in _guesses(data, given, names):
         there = dict(given) | guess
-        cost = sum_of_squares((data.measured - _expected_of(data, there, [])[0]) * np.sqrt(data.times))
+        cost = sum_of_squares((data.measured - expected_of(data, there, [])[0]) * np.sqrt(data.times))
         if not best or cost < least:
             best, least = guess, cost
     if names and least == inf:

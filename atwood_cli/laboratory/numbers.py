@@ -5,7 +5,7 @@ from fractions import Fraction
 from math import isfinite
 from typing import NamedTuple
 
-from ..arithmetic.rounding import text, to_digits, to_place, with_one_power
+from ..arithmetic.rounding import DOUBLE_DIGITS, text, to_digits, to_place, with_one_power
 from .quantities import QUANTITIES
 
 MOST_DIGITS = 11
@@ -36,9 +36,11 @@ def published(
     """A value ± its uncertainty, and its interval: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.
 
     All are cut at the second digit of the uncertainty, or at as many ``digits`` of the value as leave the
-    uncertainty one. A value without uncertainty has six digits, and no interval.
+    uncertainty one. A value without uncertainty has six digits, and no interval. No number has more digits
+    than a double.
     """
-    place = _place(value, uncertainty, digits)
+    largest = max(map(abs, (value, uncertainty, *interval)))
+    place = max(_place(value, uncertainty, digits), _place(largest, largest, DOUBLE_DIGITS))
     numbers = [to_place(place)(Fraction(x)) for x in (value, uncertainty, *interval)]
     if not numbers[1]:
         most = MOST_DIGITS if uncertainty else 6

@@ -14,7 +14,7 @@ from ..files import Unreadable
 from ..model.scene import Input, SceneError, read_input
 from ..model.units import PERCENT, in_quotes
 from .cells import Cells, read_cells
-from .headings import Header, Kind, Quantity, not_recognised, read_header, recognised
+from .headings import MASSES, Header, Kind, Quantity, as_input, not_recognised, read_header, recognised
 
 OWN_UNIT = re.compile(r"(?![eE][+-]?\d)[^\W\d_]|°")
 """In a cell: a letter that is not an exponent's."""
@@ -107,19 +107,25 @@ def read_runs(
     else:
         usual, cells = "", _cells_of(source)
     header = read_header(cells.columns, labels)
-    for number in without:
-        if not 1 <= number <= len(cells.rows):
-            raise SceneError("without", f"{number}", f"is no row; there are 1 to {len(cells.rows)}")
     quantities, kind = header.quantities, header.kind
     one_drop = "drop" not in [one.name for one in quantities]
     unknown = [column for column in header.others if column not in labels]
     _check_drop(drop, kind, one_drop, unknown)
     places = [at for one in quantities for at in (one.at, *(one.u or ())[:1])]
-    comma = decimal_commas_in(cells.rows, places, cells.separator)
+    end = len(cells.rows)
+    while end > 1 and not any(re.search(r"\d", cells.rows[end - 1][at]) for at in places):
+        end -= 1
+    rows, totals = cells.rows[:end], cells.rows[end:]
+    for number in without:
+        if not 1 <= number <= end:
+            raise SceneError("without", f"{number}", f"is no row; there are 1 to {end}")
+    comma = decimal_commas_in(rows, places, cells.separator)
     also = [*(f"{in_quotes(column)} as a label" for column in unknown), *cells.remarks]
     remarks = read_as(_understood(quantities), cells.separator, usual, comma, also)
+    said = (in_quotes(" ".join(filter(None, row))) for row in totals)
+    remarks += [f"left out below the runs, as it has no numbers: {words}." for words in said]
     alike: dict[object, list[Run]] = {}
-    for number, row in enumerate(cells.rows, 1):
+    for number, row in enumerate(rows, 1):
         run = _run(number, row, header, comma, drop)._replace(left_out=number in without)
         if run.measured:
             key = (run.m1[:2], run.m2[:2], run.drop and run.drop[:2], run.left_out)
@@ -178,23 +184,42 @@ def _run(number: int, row: Sequence[str], header: Header, comma: bool, drop: Inp
     quantities, kind = header.quantities, header.kind
     try:
         read = [(one, value) for one in quantities if (value := _read(one, row, comma))]
+        given = {one.name: value for one, value in read}
+        for one in quantities:
+            if one.name not in (*given, kind):
+                raise Unreadable(f"row {number} has no {one.name}")
+        m1, m2 = _masses(given)
     except SceneError as error:
         raise Unreadable(f"row {number}: {error}") from None
-    given = {one.name: value for one, value in read}
-    for one in quantities:
-        if one.name not in (*given, kind):
-            raise Unreadable(f"row {number} has no {one.name}")
     measured = [(value, one.heading.column) for one, value in read if one.name == kind]
     several = [one.name for one in quantities].count(kind) > 1
     return Run(
         (number,),
         {name: row[at] for name, at in header.others.items()},
-        given["m1"],
-        given["m2"],
+        m1,
+        m2,
         given.get("drop", drop),
         tuple(value for value, _ in measured),
         tuple(f"row {number}" + f", {column}" * several for _, column in measured),
     )
+
+
+def _masses(given: Mapping[str, Input]) -> tuple[Input, Input]:
+    """m1 and m2, by the two columns that determine them. Raises SceneError."""
+    one, other = (name for name in MASSES if name in given)
+    x, y = given[one], given[other]
+    if other == "m2":
+        return x, y
+    for name in (one, other):
+        if given[name].uncertainty:
+            why = "has an uncertainty, which is taken of m1 and m2 alone"
+            raise SceneError(name, given[name].given, why)
+    (a, b), (c, d) = MASSES[one], MASSES[other]
+    of = a * d - b * c
+    m1, m2 = (x.value * d - y.value * b) / of, (y.value * a - x.value * c) / of
+    if min(m1, m2) < 0:
+        raise SceneError(other, y.given, f"and {one} {in_quotes(x.given)} make a mass negative")
+    return Input(m1, Fraction(0), None), Input(m2, Fraction(0), None)
 
 
 def _joined(repeats: Sequence[Run]) -> Run:
@@ -211,9 +236,10 @@ def _read(one: Quantity, row: Sequence[str], comma: bool) -> Input | None:
     cell = row[one.at]
     if not cell.strip():
         return None
-    number = _pointed(one.name, cell, comma)
+    number = _pointed(one.name, cell, comma).strip()
+    sign = -1 if one.name == "m2-m1" and number.startswith("-") else 1
     try:
-        value, spread, _ = read_input(one.name, number)
+        value, spread, _ = read_input(as_input(one.name), number[sign < 0 :])
     except SceneError as error:
         raise SceneError(one.name, cell, error.rule) from None
     if one.heading.unit and not OWN_UNIT.search(cell):
@@ -222,7 +248,7 @@ def _read(one: Quantity, row: Sequence[str], comma: bool) -> Input | None:
         if spread:
             raise SceneError(one.u[1].column, u, f"is a second uncertainty, beside {in_quotes(cell)}")
         spread = _spread(one.name, one.u[1], u, value, comma)
-    given = Input(value, spread, cell)
+    given = Input(sign * value, spread, cell)
     if not in_range(given):
         raise SceneError(one.name, cell, BEYOND)
     return given
@@ -233,7 +259,7 @@ def _spread(name: str, heading: Heading, cell: str, value: Fraction, comma: bool
     number = _pointed(heading.column, cell, comma).lstrip("± ").removesuffix(PERCENT)
     relative = cell.endswith(PERCENT) or heading.unit == PERCENT
     try:
-        spread = read_input(name, f"1±{number}{PERCENT * relative}").uncertainty
+        spread = read_input(as_input(name), f"1±{number}{PERCENT * relative}").uncertainty
     except SceneError:
         raise SceneError(heading.column, cell, "is no uncertainty; write it like 0.02 or 2%") from None
     return spread * (abs(value) if relative else 1 if OWN_UNIT.search(cell) else heading.factor)

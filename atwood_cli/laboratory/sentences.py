@@ -81,7 +81,11 @@ def _oddities(fit: Fit) -> list[str]:
         cell = f"{_capital(fit.used[i].cells[k])} ({text(float(fit.used[i].measured[k].value))} {unit})"
         repeats.append(f"{cell} is far from its siblings: {far(size)} standard deviations.")
     away = "standard uncertainties from what the others say"
-    rows = (f"{names[i]} stands out: {far(size)} {away}." for i, size in odd.rows.items())
+    fast = ", and faster than a massless pulley without friction allows"
+    rows = (
+        f"{names[i]} stands out: {far(size)} {away}{fast * bool(fit.too_fast[i])}."
+        for i, size in odd.rows.items()
+    )
     cannot = (f"{names[i]} cannot be: {why}." for i, why in odd.cannot.items())
     said = [*_some(repeats, "are, too"), *_some(rows, "stand out, too"), *_some(cannot, "cannot be either")]
     cells = odd_cells(fit)
