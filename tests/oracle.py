@@ -67,6 +67,14 @@ def correctly_rounded(value: Value, digits: int | None) -> float | Decimal:
         flint.ctx.prec *= 2
 
 
+def shown(value: Value | None, digits: int | None) -> float | Decimal | None:
+    """The value as it is to be shown: None where there is none, or one too small to be written."""
+    if value is None:
+        return None
+    rounded = correctly_rounded(value, digits)
+    return None if isinstance(rounded, Decimal) and not rounded and callable(value) else rounded
+
+
 def sign(value: Callable[[], flint.arb]) -> int:
     flint.ctx.prec = 256
     while True:

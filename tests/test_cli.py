@@ -64,12 +64,13 @@ MAIN = "acceleration tension_1 tension_2 mu_verge friction_force"
         ("--m1 1 --m2 3 --M 10 --R 1", f"{MAIN} torque angular_acceleration"),
         (
             "--m1 1 --m2 3 --M 10 --mu 0.3",
-            "acceleration tension_1 tension_2 mu_verge friction_force_min friction_force_max"
+            "acceleration tension_1 tension_2 mu_verge safety_factor friction_force_min friction_force_max"
             " critical_pulley_mass critical_heavier_mass",
         ),
         (
             "--m1 1 --m2 3 --M 50 --mu 0.3 --wrap 170",
-            f"{MAIN} rim_acceleration critical_pulley_mass critical_heavier_mass least_wrap",
+            "acceleration tension_1 tension_2 mu_verge safety_factor friction_force rim_acceleration"
+            " critical_pulley_mass critical_heavier_mass least_wrap",
         ),
         ("--m1 1 --m2 3 --M 10 --axle 1N", f"{MAIN} axle_force"),
         ("--m1 1 --m2 3 --axle 1N --wrap 170", MAIN),

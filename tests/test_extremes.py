@@ -437,6 +437,7 @@ DIMENSIONS = {  # of kg, m and s
     "I": (1, 2, 0),
     "torque": (1, 2, -2),
     "angular_acceleration": (0, 0, -2),
+    "tension_ratio": (0, 0, 0),
 }
 NONE = (0, 0, 0)
 

@@ -111,7 +111,7 @@ def completed(*words: str, shell: str = "bash") -> list[str]:
         ("s", ["solve", "sweep"]),
         ("solve --mu", ["--mu", "--mu-k"]),
         ("solve --m1 1 --m1 2 --cs", ["--csv"]),
-        ("solve --only ten", ["tension_1", "tension_2"]),
+        ("solve --only ten", ["tension_1", "tension_2", "tension_ratio"]),
         ("solve --only fall", ["fall_time"]),
         ("sweep --only ", list(NAMES)),
         ("batch in.csv --only reg", ["regime"]),

@@ -213,6 +213,8 @@ def out_of_range(c: Claims, names: str, why: str, digits: int) -> None:
             assert as_decimal == inf
         elif why == answers_.ABOVE_DOUBLES:
             assert abs(as_double) == inf
+        elif why == answers_.TOO_SMALL:
+            assert as_decimal == 0
         else:
             assert as_double == 0 != as_decimal
 
@@ -224,7 +226,9 @@ def check(truth: Callable[[Claims], bool]) -> Callable[..., None]:
     return checked
 
 
-RANGES = "|".join(map(re.escape, (answers_.TOO_LARGE, answers_.ABOVE_DOUBLES, answers_.BELOW_DOUBLES)))
+RANGES = "|".join(
+    map(re.escape, (answers_.TOO_LARGE, answers_.TOO_SMALL, answers_.ABOVE_DOUBLES, answers_.BELOW_DOUBLES))
+)
 KINETIC = "(, and slides with mu_k = .*)?"
 SENTENCES: dict[str, Callable[..., None]] = {
     r"At rest: the masses are equal, so no friction is needed\.": check(lambda c: c.scene.m1 == c.scene.m2),
@@ -273,6 +277,7 @@ REASONS: dict[str, Callable[[Claims], bool]] = {
     machine.ALWAYS_SLIPS: lambda c: c.any_pulley() == {"slip"} and c.b > 0,
     machine.NO_CRITICAL_HEAVIER_MASS: lambda c: not may_slip_somewhere(c),
     machine.AXLE_ENOUGH: lambda c: c.any_pulley(h=c.l + c.b) == {"slip"},
+    machine.NO_NEED: lambda c: c.regime(mu=Fraction(0)) == "no-slip" or c.scene.mu == 0,
     machine.NO_WRAP: lambda c: c.regime(mu=Fraction(0)) == "slip",
     machine.NOT_APPLICABLE: lambda c: c.scene.mu == c.b == 0 and c.scene.M is None,
     machine.FREE_END: lambda c: c.l == 0,

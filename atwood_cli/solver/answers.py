@@ -145,6 +145,9 @@ class Answers:
         except Undetermined as undetermined:
             self.unsure[name] = str(undetermined)
             return None
+        except OverflowError:  # of a denominator
+            self.unsure[name] = TOO_SMALL
+            return None
         self.spread[name] = u
         if not round_ and (reason := self._out_of_range(u, of)):
             self.unsure[name] = reason

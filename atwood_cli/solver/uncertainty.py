@@ -231,7 +231,7 @@ class Uncertainties:
             return any(_size(FAR * off, least=True) > most for off in (here - low - part, high - here - part))
         except Unsettled:  # nearer to a pole than anything that is measured
             return False
-        except (Undetermined, ZeroDivisionError):
+        except (Undetermined, ZeroDivisionError, OverflowError):
             return True
 
     def _from_end_to_end(self, spread: Mapping[str, float | Decimal], cases: Sequence[Case]) -> str:
@@ -255,6 +255,8 @@ class Uncertainties:
             shown = settle(value, round_, SURE)
         except (Undetermined, ZeroDivisionError):
             return "no value"
+        except OverflowError:  # of a denominator
+            shown = Decimal(0)
         number = f"{shown:f}" if -4 <= shown.adjusted() < 16 else text(shown)
         return f"{number} {QUANTITIES[name].unit}".rstrip()
 
