@@ -21,6 +21,7 @@ from atwood_cli import SceneError, solve, solve_arrays
 from atwood_cli.arithmetic.rational import EXACT
 from atwood_cli.model.axle import Axle
 from atwood_cli.model.case import Case
+from atwood_cli.model.quantities import AXLE_ENTERS
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver.answers import Answers
 
@@ -378,3 +379,12 @@ def test_batch_refuses_it_by_name(atwood: Atwood, tmp_path: Path, column: str) -
         f" or let it pass by --label {column!r}\n",
     )
     assert atwood("batch", str(file), "--label", column).status == 0
+
+
+def test_the_table_marks_the_equations_that_the_axle_enters(atwood: Atwood) -> None:
+    rows = [
+        line.split("│")
+        for line in atwood(*"solve --m1 1 --m2 3 --M 10 --mu 0.3 --axle 5N --all".split()).out.splitlines()
+    ]
+    marked = {row[1].strip() for row in rows if len(row) > 5 and "+b" in row[5]}
+    assert marked == AXLE_ENTERS & set(NAMES)

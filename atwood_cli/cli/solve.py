@@ -6,7 +6,7 @@ from itertools import chain, groupby
 from typing import TYPE_CHECKING, Annotated
 
 from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
-from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
+from ..model.quantities import AXLE_ENTERS, MEASURED_NAMES, NAMES, QUANTITIES
 from ..model.scene import SceneError, read_digits
 from ..output.text import Forms, cell, for_stream, inputs_in_words, say, scene_record, show
 from ..solver.answers import Answers
@@ -202,9 +202,13 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
-        about = QUANTITIES[name]
-        in_slip = about.equation_in_slip if answers.case.regime == "slip" else None
-        row = [name, value, about.unit, about.symbol, about.equation if in_slip is None else in_slip]
+        about, case = QUANTITIES[name], answers.case
+        equation = about.equation
+        if case.regime == "slip" and about.equation_in_slip is not None:
+            equation = about.equation_in_slip
+        elif case.axle_friction is not None and name in AXLE_ENTERS:
+            equation += "+b"
+        row = [name, value, about.unit, about.symbol, equation]
         groups.setdefault(about.group, []).append([for_stream(word, sys.stdout) for word in row])
     return list(groups.values())
 

@@ -27,8 +27,8 @@ QUANTITIES = {
     "tension_2": About("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)"),
     "mu_verge": About("friction", "μ*", "", "(27)", "friction coefficient below which the string slips"),
     "safety_factor": About("friction", "μ/μ*", "", "", "times the friction that is needed; below 1 the string slips"),
-    "tension_ratio": About("friction", "Tₕ/Tₗ", "", "(33)", "ratio of the tensions, the greater over the lesser"),
-    "capstan_ratio": About("friction", "e^μφ", "", "(26)", "greatest ratio of tensions that friction holds"),
+    "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser"),
+    "capstan_ratio": About("friction", "k", "", "(26)", "greatest ratio of tensions that friction holds"),
     "friction_force": About("friction", "F", "N", "(32)", "net friction force on the pulley"),
     "friction_force_min": About("friction", "F min", "N", "", "least net friction force of a string that grips"),
     "friction_force_max": About("friction", "F max", "N", "", "greatest net friction force of a string that grips"),
@@ -40,7 +40,7 @@ QUANTITIES = {
     "angular_acceleration": About("pulley", "α", "rad/s²", "(2)", "angular acceleration of the pulley"),
     "critical_pulley_mass": About("limits", "M*", "kg", "(34)", "pulley mass above which the string slips"),
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
-    "critical_lighter_mass": About("limits", "m**", "kg", "", "lighter mass below which the string slips"),
+    "critical_lighter_mass": About("limits", "l*", "kg", "", "lighter mass below which the string slips"),
     "least_heavier_mass": About("limits", "m min", "kg", "(36)", "what the heavier mass must exceed to slip"),
     "least_pulley_mass": About("limits", "M min", "kg", "(36)", "what the pulley's mass must exceed to slip"),
     "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
@@ -55,6 +55,13 @@ QUANTITIES = {
     "final_speed": About("measured", "v", "m/s", "", "speed after that"),
 }
 # fmt: on
+
+AXLE_ENTERS = {
+    *("acceleration", "tension_1", "tension_2", "rim_acceleration"),
+    *("critical_pulley_mass", "critical_heavier_mass", "least_pulley_mass"),
+    *("pulley_mass", "gravity", "m1", "m2"),
+}
+"""The quantities into whose equation the friction of an axle comes, which the paper does not have."""
 
 FROM_MOTION: dict[str | None, tuple[str, ...]] = {
     "M": ("pulley_mass", "moment_of_inertia"),
