@@ -184,7 +184,7 @@ def test_bash_completes() -> None:
     complete -p atwood
     """
     shown = in_shell("bash", script)
-    assert shown == "tension_1 tension_2\ncomplete -o default -F _atwood_completion atwood\n"
+    assert shown == "tension_1 tension_2 tension_ratio\ncomplete -o default -F _atwood_completion atwood\n"
 
 
 def test_fish_completes(tmp_path: Path) -> None:
@@ -196,8 +196,8 @@ def test_fish_completes(tmp_path: Path) -> None:
     complete -C "atwood batch sc"
     """
     shown = in_shell("fish", script, HOME=str(tmp_path))
-    names, file = shown.splitlines()[:2], shown.splitlines()[2:]
-    assert [line.split("\t")[0] for line in names] == ["tension_1", "tension_2"]
+    names, file = shown.splitlines()[:3], shown.splitlines()[3:]
+    assert [line.split("\t")[0] for line in names] == ["tension_1", "tension_2", "tension_ratio"]
     assert file == ["scenes.csv"]
 
 
