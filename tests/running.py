@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from itertools import combinations
@@ -104,6 +105,9 @@ def process(*arguments: str, shell: str = "", code: str = "", stdin: Any = None,
         return Ran(status, *(file.read().decode("utf-8", "replace") for file in (out, err)))
 
 
+END = b"\0the end"
+
+
 def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: str) -> str:
     """What a terminal of that size gets to see."""
     pty, fcntl = pytest.importorskip("pty"), pytest.importorskip("fcntl")
@@ -112,19 +116,24 @@ def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: st
 
     leader, follower = pty.openpty()
     fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
-    status = started(arguments, [follower] * 3, {"TERM": "xterm-256color", **environment})
-    os.close(follower)
-    seen = b""
-    while True:
+    ended = started(arguments, [follower] * 3, {"TERM": "xterm-256color", **environment})
+
+    def mark_the_end() -> int:
         try:
-            piece = os.read(leader, 65536)
-        except OSError:
-            break
-        if not piece:
-            break
-        seen += piece
-    status()
+            return ended()
+        finally:
+            os.write(follower, END)
+
+    # The end is a mark, since a terminal closed by its last writer can lose what was written last.
+    seen = b""
+    with ThreadPoolExecutor(1) as waiting:
+        status = waiting.submit(mark_the_end)
+        while not seen.endswith(END):
+            seen += os.read(leader, 65536)
+    os.close(follower)
     os.close(leader)
+    assert status.result() >= 0, seen
+    seen = seen.removesuffix(END)
     return seen.decode("utf-8").replace("\r\n", "\n")
 
 

@@ -71,7 +71,7 @@ def test_no_width_loses_a_digit(command: str, table: str) -> None:
     assert usual.status == (2 if command in ("error", "usage") else 0)
     for columns in (40, 80, 200):
         seen = plain(on_terminal(*typed, columns=columns, rows=400))
-        assert numbers(usual.out + usual.err) <= numbers(seen), columns
+        assert numbers(usual.out + usual.err) <= numbers(seen), (columns, seen)
         assert "…" not in seen
         assert seen.strip()
     for width in ("0", "40", "80"):
