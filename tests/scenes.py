@@ -125,7 +125,7 @@ def _vary(rng: Random, scene: Given) -> Given:
             if rng.random() < 0.5:
                 scene.pop("M", None)
         else:
-            scene["inertia"] = rng.choice(["hoop", "0.4", repr(rng.random() + 0.01)])
+            scene["inertia"] = rng.choice(["hoop", "shell", repr(rng.random() + 0.01)])
     if rng.random() < 0.15:
         scene["wrap"] = rng.choice(["90", "360", "540", "720", "100", "270", "17.5"])
     return scene

@@ -512,7 +512,7 @@ def test_no_cell_hides_a_short_row(monkeypatch: pytest.MonkeyPatch) -> None:
 OUT_OF_PLACE = 'the row that begins in line {} has a quotation mark out of place; write it "like ""this"""'
 LEFT_OPEN = "it ends within quotation marks, in the row that begins in line {}: it is truncated, or one is left open"  # fmt: skip
 LABEL = "; or let it pass by --label "
-OF_MASS = "it takes one of mass (kg, g, mg, ug, t, lb, lbs, oz, st)"
+OF_MASS = "it takes one of mass (kg, g, mg, ug, t, lb, lbs, oz, st, slug)"
 COMMA = "is there a decimal comma (write a point), or one at its end?"
 RENAME = "would be there twice, as a result is named so; rename it, or name other results by --only"
 WIDE_HEADER = ",".join(["m1,m2", *(f"x{i}" for i in range(1023))])
@@ -799,7 +799,7 @@ def test_a_column_that_could_be_meant_for_an_input_is_an_error(
         *((name, "is not taken here; give inertia, I/(M R^2)") for name in ("I", "I (kg m2)", "moment of inertia")),
         ("axle", "is not taken here; solve and sweep take --axle"),
         ("M (cm)", f"has a unit of length; {OF_MASS}"),
-        ("M (est.)", "has the unknown unit 'est.'; there are kg, g, mg, ug, t, lb, lbs, oz, st"),
+        ("M (est.)", "has the unknown unit 'est.'; there are kg, g, mg, ug, t, lb, lbs, oz, st, slug"),
         ("mu (kg)", "must hold plain numbers, without the 'kg'"),
         ("wrap (rad)", "has angles in radians; give degrees or turns"),
         ("M (kg*st^9/lb^9*st^9/lb^9*st^9)", f"has a unit of another dimension; {OF_MASS}"),

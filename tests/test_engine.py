@@ -29,7 +29,9 @@ SETTLED = 40  # times TIME
 DISAGREEMENT = 1e-8
 
 PULLEYS = {
-    "disk": '<geom type="cylinder" size="1 0.01" mass="{M!r}"/>',  # the engine works out its moment
+    "disk": '<geom type="cylinder" size="1 0.01" mass="{M!r}"/>',  # the engine works out the moments
+    "sphere": '<geom type="sphere" size="1" mass="{M!r}"/>',
+    "shell": '<geom type="sphere" size="1" mass="{M!r}" shellinertia="true"/>',
     "hoop": '<inertial pos="0 0 0" mass="{M!r}" diaginertia="{half!r} {half!r} {M!r}"/>',
 }
 

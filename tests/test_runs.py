@@ -148,7 +148,7 @@ NOT_KNOWN = "not known; a row is a run, with m1, m2, and a or time: name them so
 ROW = "\n1,2,3,4\n"
 HEIGHT = "times need the height of fall: give drop, or a column of that name"
 POINT = "; is there a decimal comma (write a point), or one at its end?"
-MASS = "kg, g, mg, ug, t, lb, lbs, oz, st"
+MASS = "kg, g, mg, ug, t, lb, lbs, oz, st, slug"
 
 
 def column(name: str, why: str) -> str:

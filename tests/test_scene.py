@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from atwood_cli import Scene, SceneError, solve
 from atwood_cli.model.scene import BODIES
-from atwood_cli.model.units import LENGTH, MASS
+from atwood_cli.model.units import LENGTH, MASS, STANDARD_GRAVITY
 
 from .running import Atwood, process
 
@@ -29,7 +29,8 @@ def error(**given: Any) -> str:
 
 NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
 FINITE, POSITIVE = "must be 0 or more, and finite", "must be above 0, and finite"
-MASSES = "kg, g, mg, ug, t, lb, lbs, oz, st"
+MASSES = "kg, g, mg, ug, t, lb, lbs, oz, st, slug"
+SHAPES = "disk, hoop, ring, sphere, shell"
 ANGLES = "deg, °, turn, rad"
 TYPES = "must be text or a number (str, int, float, Decimal, Fraction)"
 TOO_LONG = "is too long; numerator and denominator may have 1500 digits"
@@ -65,7 +66,7 @@ RULES: list[tuple[str, list[Any], str]] = [
     ("m1", ["1ton"], "has the unknown unit 'ton'; did you mean tonne?"),
     *(
         ("m1", [f"1 {unit}"], f"has the unknown unit {unit!r}; there are {MASSES}")
-        for unit in ("slug", "Mg", "furlong")
+        for unit in ("Mg", "furlong")
     ),
     ("m1", ["1lbf"], f"has a unit of force; it takes one of mass ({MASSES})"),
     ("m1", ["1 kg/m"], f"has a unit of another dimension; it takes one of mass ({MASSES})"),
@@ -80,8 +81,8 @@ RULES: list[tuple[str, list[Any], str]] = [
     ("wrap", ["2 tuns"], "has the unknown unit 'tuns'; did you mean turn?"),
     ("wrap", ["3rad m/m"], f"has a unit of several parts; it takes one of angle ({ANGLES})"),
     ("R", ["5kg"], "has a unit of mass; it takes one of length (m, km, dm, cm, mm, um, in, ft, yd)"),
-    ("g", ["moo"], f"{NOT_A_NUMBER}, or one of mercury, venus, earth, moon, mars, pluto; did you mean moon?"),
-    ("inertia", ["disc"], f"{NOT_A_NUMBER}, or one of disk, hoop; did you mean disk?"),
+    ("g", ["moo"], f"{NOT_A_NUMBER}, or one of {', '.join(BODIES)}; did you mean moon?"),
+    ("inertia", ["disc"], f"{NOT_A_NUMBER}, or one of {SHAPES}; did you mean disk?"),
     ("mu_k", ["0.1"], "needs mu, the coefficient that decides whether it slips"),
     ("I", ["1"], "needs the radius R as well"),
 ]
@@ -176,7 +177,7 @@ OTHERS: dict[str, dict[str, Any]] = {
         "1.5 turns": 540, "90 Degrees": 90, "1/2turn": 180, "pi": 180,
         **dict.fromkeys(["3pi/2", "3π/2", "1.5 PI", "3/2*pi", "3 / 2 π", "3π / 2 rad"], 270),
     },
-    "inertia": {"Hoop": 1},
+    "inertia": {"Hoop": 1, "ring": 1, "disk": "1/2", "sphere": "2/5", "Shell": "2/3"},
 }
 # fmt: on
 
@@ -277,6 +278,8 @@ def test_units_are_consistent() -> None:
         grams["t"] == 1000 * grams["kg"] == 10**6 * grams["g"] == 10**9 * grams["mg"] == 10**12 * grams["ug"]
     )
     metres = {unit: Fraction(factor) for unit, factor in LENGTH.items()}
+    # A pound-force gives a slug 1 ft/s², and a pound standard gravity.
+    assert grams["slug"] * metres["ft"] == grams["lb"] * Fraction(STANDARD_GRAVITY)
     assert metres["yd"] == 3 * metres["ft"] == 36 * metres["in"] == Fraction("0.9144")
     assert metres["km"] == 1000 * metres["m"] == 10**4 * metres["dm"] == 10**5 * metres["cm"]
     assert metres["m"] == 1000 * metres["mm"] == 10**6 * metres["um"]
@@ -285,5 +288,24 @@ def test_units_are_consistent() -> None:
 def test_bodies_and_shapes_have_names() -> None:
     for name, value in BODIES.items():
         assert Scene.read({"m1": 1, "m2": 1, "g": name}).g == Fraction(value)
-    assert Scene.read({"m1": 1, "m2": 1, "inertia": "disk"}).inertia == Fraction(1, 2)
     assert Scene.read({"m1": 1, "m2": 1, "M": " INF "}).M == inf
+
+
+GM_AND_RADIUS = {
+    "mercury": (22_032, 2439.7),
+    "venus": (324_859, 6051.8),
+    "moon": (4902.8, 1737.4),
+    "mars": (42_828, 3389.5),
+    "jupiter": (126_686_534, 71_492),
+    "saturn": (37_931_187, 60_268),
+    "uranus": (5_793_939, 25_559),
+    "neptune": (6_836_529, 24_764),
+    "pluto": (869.6, 1188.3),
+}
+"""km³/s², and km: the mean radius, of giants the radius of the equator where the pressure is 1 bar."""
+
+
+def test_gravity_is_that_of_a_mass_at_its_radius() -> None:
+    wanted = {body: 1000 * gm / radius**2 for body, (gm, radius) in GM_AND_RADIUS.items()}
+    given = {body: float(gravity) for body, gravity in BODIES.items() if body != "earth"}
+    assert given == pytest.approx(wanted, abs=0.006)

@@ -681,14 +681,14 @@ WRONG_USAGE = """
 --M 2kg:2000g:3 => --M '2kg:2000g:3' has equal ends; a range runs from one value to another
 --wrap 90deg:3rad:3 => --wrap '90deg:3rad:3' has ends in units of two kinds; write both in the same unit
 --M 0:2:3:log => --M '0:2:3:log' has no equal ratios from or to 0; both ends must be above 0
---M 1:2x:3 => --M '2x' has the unknown unit 'x'; there are kg, g, mg, ug, t, lb, lbs, oz, st
+--M 1:2x:3 => --M '2x' has the unknown unit 'x'; there are kg, g, mg, ug, t, lb, lbs, oz, st, slug
 --M :2:3 => --M ':2:3' is no range; write {FORM}
 --M -1:2:4 => --M '-1' must be 0 or more (inf locks the pulley)
 --M 1:2:2000 --mu 1:2:2000 => --mu '1:2:2000' makes 4000000 points with M; at most 1000000 are taken
 --mu 0.3 --mu-k 0.2:0.4:3 => --mu-k '0.4' must not be above mu; exactly, 0.4 > 0.3
 --mu 0.2:0.4:3 --mu-k 0.3 => --mu-k '0.3' must not be above mu; exactly, 0.3 > 0.2 (at mu = 0.2)
 --I 1 --R 1 --M 0:1:3 => --I '1' contradicts M = 0; leave one of them out (at M = 0 kg)
---M 1:2:3 --g x => --g 'x' is not a number; write it like 2, 0.5 or 1.5e-3, or one of mercury, venus, earth, moon, mars, pluto
+--M 1:2:3 --g x => --g 'x' is not a number; write it like 2, 0.5 or 1.5e-3, or one of mercury, venus, earth, moon, mars, jupiter, saturn, uranus, neptune, pluto
 --M 1:2:3 --only accel => --only 'accel' is no quantity; did you mean acceleration?
 --M 1:2:3 --plot accel => --plot 'accel' is no quantity; did you mean acceleration?
 --M 1:2:3 --csv -o ./a.svg --figure a.svg acceleration => --figure 'a.svg' is the file of --output; name another

@@ -170,9 +170,11 @@ def exact_decimal(q: Fraction) -> Decimal | None:
     return context.normalize(value) if value.adjusted() >= 16 else value
 
 
-def as_typed(q: Fraction) -> str:
-    """The exact decimal of a rational number, or n/d where it has none."""
+def as_typed(q: Fraction, longest: float = 16) -> str:
+    """The exact decimal of a rational number; where it has none n/d, rounded if that is too long to read."""
     value = exact_decimal(q)
+    if value is None and len(str(q)) > longest:
+        value = tidy(to_digits(DOUBLE_DIGITS)(q))
     return str(q) if value is None else text(value)
 
 

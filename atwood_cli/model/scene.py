@@ -34,7 +34,7 @@ from .units import (
 Given = str | int | float | Decimal | Fraction | Angle | Axle
 """An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
 
-INERTIA_FACTORS = {"disk": "0.5", "hoop": "1"}
+INERTIA_FACTORS = {"disk": "1/2", "hoop": "1", "ring": "1", "sphere": "2/5", "shell": "2/3"}
 
 BODIES = {
     "mercury": "3.70",
@@ -42,9 +42,14 @@ BODIES = {
     "earth": STANDARD_GRAVITY,
     "moon": "1.62",
     "mars": "3.73",
+    "jupiter": "24.79",
+    "saturn": "10.44",
+    "uranus": "8.87",
+    "neptune": "11.15",
     "pluto": "0.62",
 }
-"""Mean surface gravity of bodies with a surface (m/s²): NASA planetary fact sheets; earth, standard."""
+"""Gravity (m/s²) by NASA's planetary fact sheets, without what rotation takes from it: the mean at the
+surface, and of giants that at the equator where the pressure is 1 bar; of earth, standard gravity."""
 
 MASSES = ("m1", "m2")
 DEFAULTS = {"g": STANDARD_GRAVITY, "wrap": "180"}
@@ -201,7 +206,7 @@ class Scene(NamedTuple):
         if self.mu_k is not None and self.mu is None:
             yield "mu_k", "needs mu, the coefficient that decides whether it slips"
         if self.mu_k is not None and self.mu is not None and self.mu_k > self.mu:
-            sizes = " > ".join(shortened(as_typed(mu)) for mu in (self.mu_k, self.mu))
+            sizes = " > ".join(shortened(as_typed(mu, inf)) for mu in (self.mu_k, self.mu))
             yield "mu_k", f"must not be above mu; exactly, {sizes}"
         if self.I is not None and self.R is None:
             yield "I", "needs the radius R as well"

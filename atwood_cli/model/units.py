@@ -4,27 +4,32 @@ import re
 from collections.abc import Iterable, Mapping
 from decimal import ROUND_FLOOR, Decimal
 from fractions import Fraction
+from math import inf
 from typing import NamedTuple
 
 from ..arithmetic.rounding import as_typed, to_digits
 
 STANDARD_GRAVITY = "9.80665"
 """m/s², exact by definition: 3rd General Conference on Weights and Measures, 1901."""
+FOOT, POUND_FORCE = "0.3048", "4.4482216152605"
+"""m and N, exact: the pound-force is the weight of a pound, 0.45359237 kg, in standard gravity."""
+SLUG = str(Fraction(POUND_FORCE) / Fraction(FOOT))
+"""kg: the mass that a pound-force accelerates by 1 ft/s²."""
 
 # fmt: off
 MASS = {
     "kg": "1", "g": "1e-3", "mg": "1e-6", "ug": "1e-9", "t": "1e3",
-    "lb": "0.45359237", "lbs": "0.45359237", "oz": "0.028349523125", "st": "6.35029318",
+    "lb": "0.45359237", "lbs": "0.45359237", "oz": "0.028349523125", "st": "6.35029318", "slug": SLUG,
 }
 LENGTH = {
     "m": "1", "km": "1e3", "dm": "1e-1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6",
-    "in": "0.0254", "ft": "0.3048", "yd": "0.9144",
+    "in": "0.0254", "ft": FOOT, "yd": "0.9144",
 }
 # fmt: on
 ANGLE = {"deg": "1", "°": "1", "turn": "360", "rad": "1"}
 """In degrees; radians stay radians."""
 TIME = {"s": "1", "ms": "1e-3", "min": "60", "h": "3600"}
-FORCE = {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": "4.4482216152605", "kgf": STANDARD_GRAVITY}
+FORCE = {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY}
 TORQUE = {"Nm": "1", "mNm": "1e-3"}
 COMPOUND = {
     "acceleration": ("m/s2", "cm/s2", "ft/s2", "N/kg"),
@@ -198,7 +203,7 @@ def _read_exactly(text: str, dimension: str | None) -> tuple[Fraction, str]:
     if "/" in number:
         limited(value)
     else:
-        digits = re.sub("[^0-9]", "", as_typed(value).partition("e")[0]).lstrip("0")
+        digits = re.sub("[^0-9]", "", as_typed(value, inf).partition("e")[0]).lstrip("0")
         exponent = _power(number) + to_digits(1, ROUND_FLOOR)(factor).adjusted()
         _check_size(len(digits), exponent, ", its unit included")
     return value, symbol_of(unit) or unit
