@@ -632,11 +632,18 @@ def test_temporaries_are_bounded() -> None:
     assert peak - sum(column.nbytes for column in results.values()) < 200e6
 
 
+@pytest.mark.parametrize("words", [["a", "T1", "acceleration", "F_min"], "a,T₁,F min"])
+def test_quantities_by_their_symbols_have_their_names(words: Any) -> None:
+    results = solve_arrays(1, 3, M=10, mu=0.3, quantities=words)
+    assert [*results] == ["acceleration", "tension_1", "friction_force_min", "status"]
+
+
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
         ({"accuracy": "best"}, "accuracy 'best' must be one of fast, certified, exact"),
         ({"quantities": ["tension"]}, "quantities 'tension' is no quantity; did you mean tension_2?"),
+        ({"quantities": "a,t1"}, "quantities 't1' is no quantity; did you mean tension_1?"),
         ({"quantities": [["torque"]]}, r"quantities .*torque.* is no quantity.*"),
     ],
 )

@@ -19,9 +19,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..model.quantities import ACCURACIES, NAMES, STANDARD, Accuracy
+from ..model.quantities import ACCURACIES, STANDARD, Accuracy, read_names
 from ..model.scene import COLUMNS, MASSES, MISSING_MASS, PARAMETERS, SceneError
-from ..model.units import nearest
 from .double_double import WINDOW
 from .plan import COLUMN, LEVELS, Pattern, Task
 from .program import Room
@@ -63,11 +62,12 @@ def solve_arrays(
     others may depend on NumPy's build and on the other rows.
 
     Returns arrays by name, of the inputs' common shape. There is one for each of the ``quantities``, or of
-    `quantities.STANDARD` if None: NaN where undetermined, ±inf beyond the doubles. ``regime`` is an int8
-    index into `REGIMES`, -1 in an invalid row. There is always ``status``, an int8 index into `STATUSES`, 0
-    in a valid row. An invalid row never stops the others. Raises SceneError for a missing mass, for what
-    is no real number or beyond the range of doubles, for an unknown accuracy or quantity, and for shapes
-    that do not broadcast.
+    `quantities.STANDARD` if None: NaN where undetermined, ±inf beyond the doubles. A quantity may be asked
+    for by its symbol, as "a" or "T1"; its array has its name, "acceleration". ``regime`` is an int8 index
+    into `REGIMES`, -1 in an invalid row. There is always ``status``, an int8 index into `STATUSES`, 0 in a
+    valid row. An invalid row never stops the others. Raises SceneError for a missing mass, for what is no
+    real number or beyond the range of doubles, for an unknown accuracy or quantity, and for shapes that do
+    not broadcast.
     """
     given = dict(zip(COLUMNS, (m1, m2, M, mu, mu_k, g, inertia, R, wrap), strict=True))
     return solve_and_count(given, accuracy, quantities)[0]
@@ -77,11 +77,8 @@ def solve_and_count(
     given: Mapping[str, ArrayLike | None], accuracy: Accuracy, quantities: Sequence[str] | None
 ) -> tuple[dict[str, NDArray[Any]], Counter[tuple[str, str]]]:
     """As `solve_arrays`; and the number of valid rows without a value, by quantity and reason."""
-    names = list(STANDARD if quantities is None else quantities)
-    for name in names:
-        if name not in NAMES:
-            raise SceneError("quantities", str(name), f"is no quantity{nearest(str(name), NAMES)}")
-    names = list(dict.fromkeys(names))
+    words = [quantities] if isinstance(quantities, str) else STANDARD if quantities is None else quantities
+    names = list(dict.fromkeys(read_names("quantities", map(str, words))))
     if accuracy not in ACCURACIES:
         raise SceneError("accuracy", accuracy, f"must be one of {', '.join(ACCURACIES)}")
     for name, value in given.items():

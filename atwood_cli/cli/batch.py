@@ -5,10 +5,10 @@ from typing import Annotated, Any
 import typer
 
 from ..files import FORMATS
-from ..model.quantities import ACCURACIES, STANDARD
+from ..model.quantities import ACCURACIES, STANDARD, read_name, read_names
 from ..model.scene import COLUMNS
 from ..output.text import say
-from .options import COULD_NOT, DONE, Columns, Force, Labels, option, read_name, read_names
+from .options import COULD_NOT, DONE, Columns, Force, Labels, option
 
 Table = Annotated[
     str,

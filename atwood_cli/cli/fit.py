@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..arithmetic.rounding import DOUBLE_DIGITS, text, to_digits
-from ..laboratory.quantities import FITTED, QUANTITIES
+from ..laboratory.quantities import FITTED, QUANTITIES, SYMBOLS
+from ..model.quantities import divided, read_names
 from ..model.scene import INPUTS, UNMEASURED, parameter_of, read_digits, read_input, read_whole
 from ..model.units import counted
 from ..output.text import Forms, cell, inputs_in_words, say, show
@@ -23,9 +24,7 @@ from .options import (
     Markdown,
     check,
     check_extras,
-    divided,
     option,
-    read_names,
     scene_option,
 )
 
@@ -134,7 +133,7 @@ def fit(
 ) -> int:
     options = dict(locals())
     check(options)
-    names = read_names("only", only or [], RESULTS, "result")
+    names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
     out = [read_whole("without", word, 1, 10**9) for word in divided(without or [])]
     precision = read_digits(digits)
     inputs = {name: read_input(name, options.get(name)) for name in INPUTS}
@@ -142,7 +141,7 @@ def fit(
     check_extras(plot, figure, force)
     from ..laboratory import fit_of
 
-    best = fit_of(table, inputs, height, divided(find or []), label or [], out)
+    best = fit_of(table, inputs, height, find or [], label or [], out)
     if explain:
         from ..laboratory.explained import explained
         from ..output.page import print_explanation

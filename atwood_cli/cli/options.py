@@ -2,7 +2,7 @@
 
 import inspect
 import os
-from collections.abc import Callable, Collection, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from importlib import import_module
 from typing import Annotated, Any
 
@@ -10,8 +10,8 @@ import typer
 
 from ..model.quantities import NAMES, QUANTITIES
 from ..model.scene import INPUTS, SceneError, parameter_of
-from ..model.units import nearest, read_number, shortened
-from ..output.text import ASCII, say
+from ..model.units import read_number, shortened
+from ..output.text import say
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """The environment variable by which a shell asks how a word could go on."""
@@ -216,27 +216,3 @@ def check_extras(plot: str | bool | None, figure: str | None, force: bool) -> No
         from ..output.figure import check_file
 
         check_file(figure, force)
-
-
-def read_names(
-    option: str, typed: Iterable[str], known: Collection[str] = NAMES, kind: str = "quantity"
-) -> list[str]:
-    """The names typed; a word may hold several with commas between. Raises SceneError."""
-    return [read_name(option, word, known, kind) for word in divided(typed)]
-
-
-def read_name(option: str, word: str, known: Collection[str] = NAMES, kind: str = "quantity") -> str:
-    """The name typed; a quantity may be named by its symbol, as tables show it. Raises SceneError."""
-    if word in known:
-        return word
-    for name in known:
-        symbol = QUANTITIES[name].symbol if name in QUANTITIES else ""
-        if symbol and word in (symbol, symbol.translate(ASCII)):
-            return name
-    hint = nearest(word, known) or f"; there are {', '.join(known)}"
-    raise SceneError(option, word, f"is no {kind}{hint}")
-
-
-def divided(typed: Iterable[str]) -> list[str]:
-    """The words of a repeatable option, of which one may hold several with commas between."""
-    return [word.strip() for words in typed for word in words.split(",")]

@@ -6,7 +6,7 @@ from itertools import chain, groupby
 from typing import TYPE_CHECKING, Annotated
 
 from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
-from ..model.quantities import AXLE_ENTERS, MEASURED_NAMES, NAMES, QUANTITIES
+from ..model.quantities import AXLE_ENTERS, MEASURED_NAMES, NAMES, QUANTITIES, read_names
 from ..model.scene import SceneError, read_digits
 from ..output.text import Forms, cell, for_stream, inputs_in_words, say, scene_record, show
 from ..solver.answers import Answers
@@ -22,7 +22,6 @@ from .options import (
     check,
     option,
     quantities,
-    read_names,
     scene_option,
     takes_scene,
 )

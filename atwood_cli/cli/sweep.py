@@ -10,7 +10,7 @@ from typing import Annotated
 
 from ..arithmetic.rounding import text, to_digits, to_double
 from ..files import STREAM, stdout_into
-from ..model.quantities import QUANTITIES, STANDARD
+from ..model.quantities import QUANTITIES, STANDARD, read_name, read_names
 from ..model.scene import SceneError, read_digits
 from ..output.curves import MAX_CURVES, axis_words, check_drawable, longest, picture, regimes
 from ..output.page import Page, aligned, watched
@@ -31,8 +31,6 @@ from .options import (
     check_extras,
     numbers,
     option,
-    read_name,
-    read_names,
     takes_scene,
 )
 

@@ -5,6 +5,7 @@ from itertools import groupby
 from operator import attrgetter
 from typing import TYPE_CHECKING, Annotated
 
+from ..model.quantities import read_names
 from ..model.scene import Scene, SceneError, read_whole
 from ..output.text import Forms, describe, say, scene_record, show
 from .options import (
@@ -16,7 +17,6 @@ from .options import (
     check,
     check_extras,
     option,
-    read_names,
     takes_scene,
 )
 

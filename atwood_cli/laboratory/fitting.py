@@ -20,12 +20,12 @@ from ..model import physics
 from ..model.axle import Axle
 from ..model.case import Case
 from ..model.motion import moved
+from ..model.quantities import read_names
 from ..model.scene import UNMEASURED, Input, Scene, SceneError
-from ..model.units import nearest
 from .least_squares import Data, Estimate, estimate, expected_of
 from .numbers import Result
 from .probability import SURE, student_within
-from .quantities import FITTED, QUANTITIES, USUAL
+from .quantities import FITTED, QUANTITIES, SYMBOLS, USUAL
 from .runs import BEYOND, Run, Runs, in_range
 from .statistics import Alike, stray_repeats, stray_rows, sum_of_squares
 
@@ -224,13 +224,9 @@ def conditions_of(inputs: Mapping[str, Input], runs: Runs) -> Conditions:
 
 
 def read_find(words: Sequence[str], inputs: Mapping[str, Input]) -> list[str]:
-    """The quantities to fit, by names or letters; none of them may be given. Raises SceneError."""
-    letters = {QUANTITIES[name].letter: name for name in FITTED}
-    names = list(dict.fromkeys(letters.get(word, word) for word in words))
+    """The quantities to fit, by names or symbols; none of them may be given. Raises SceneError."""
+    names = list(dict.fromkeys(read_names("find", words, FITTED, "quantity to fit", SYMBOLS)))
     for name in names:
-        if name not in FITTED:
-            rule = nearest(str(name), FITTED) or f"; there are {', '.join(FITTED)}"
-            raise SceneError("find", name, f"is nothing to fit{rule}")
         for given in QUANTITIES[name].given_by:
             if inputs[given].given is not None:
                 raise SceneError("find", name, f"is known by {given}; leave one of them out")

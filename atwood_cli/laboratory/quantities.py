@@ -24,5 +24,6 @@ QUANTITIES = {
 FITTED = [name for name, one in QUANTITIES.items() if one.letter]
 USUAL = FITTED[:2]
 """Those that are fitted unless the user asks for others."""
+SYMBOLS = {one.letter or one.symbol: name for name, one in QUANTITIES.items()}
 SMALL = 1e-3
 """A small unit in units."""

@@ -1,7 +1,11 @@
-"""The registry: every quantity's name, symbol, unit, equation and meaning, once."""
+"""The registry: every quantity's name, symbol, unit, equation and meaning, once; and names as typed."""
 
+from collections.abc import Collection, Iterable, Mapping
 from itertools import chain
 from typing import Literal, NamedTuple, get_args
+
+from .scene import SceneError
+from .units import nearest
 
 REGIMES = ("no-slip", "verge", "slip")
 Accuracy = Literal["fast", "certified", "exact"]
@@ -88,3 +92,49 @@ STANDARD = (
     "critical_pulley_mass",
 )
 """The quantities of many scenes in a table, unless others are named."""
+
+SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
+ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
+"""How symbols are written where they cannot be."""
+
+
+def _plain(symbol: str) -> str:
+    """A symbol as it may be typed: F min is Fmin, as F_min is."""
+    return symbol.translate(ASCII).replace(" ", "").replace("_", "")
+
+
+SYMBOLS = {_plain(about.symbol): name for name, about in QUANTITIES.items()}
+
+
+def read_names(
+    parameter: str,
+    typed: Iterable[str],
+    known: Collection[str] = NAMES,
+    kind: str = "quantity",
+    symbols: Mapping[str, str] = SYMBOLS,
+) -> list[str]:
+    """The names meant; a word may hold several with commas between. Raises SceneError."""
+    return [read_name(parameter, word, known, kind, symbols) for word in divided(typed)]
+
+
+def read_name(
+    parameter: str,
+    word: str,
+    known: Collection[str] = NAMES,
+    kind: str = "quantity",
+    symbols: Mapping[str, str] = SYMBOLS,
+) -> str:
+    """The name meant, of those ``known``: itself, or its symbol as tables show it. Raises SceneError."""
+    if word in known:
+        return word
+    if (name := symbols.get(_plain(word), "")) in known:
+        return name
+    small = _plain(word).lower()
+    alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
+    hint = f"did you mean {alike[0]}?" if len(alike) == 1 else f"there are {', '.join(known)}"
+    raise SceneError(parameter, word, f"is no {kind}{nearest(word, known) or f'; {hint}'}")
+
+
+def divided(typed: Iterable[str]) -> list[str]:
+    """The words of a repeatable option, of which one may hold several with commas between."""
+    return [word.strip() for words in typed for word in words.split(",")]

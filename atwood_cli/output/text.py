@@ -14,10 +14,8 @@ from ..arithmetic.rounding import Rounding, as_typed, exact_or_rounded, is_infin
 from ..files import Stdout, printable
 from ..model.angle import Angle
 from ..model.axle import Axle
+from ..model.quantities import ASCII
 from ..model.scene import MEASURED, UNMEASURED, Motion, Scene, stated
-
-SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
-ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
 
 
 def for_stream(words: str, stream: TextIO | None) -> str:
