@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import re
 from collections.abc import Sequence
 from decimal import Decimal
 from fractions import Fraction
@@ -22,7 +23,7 @@ from atwood_cli.model import physics
 from atwood_cli.model.angle import Angle
 from atwood_cli.model.quantities import MEASURED_NAMES, NAMES
 
-from .running import Atwood, process
+from .running import Atwood, on_terminal, process
 from .scenes import inputs, table
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
@@ -378,18 +379,11 @@ FROM_PULLEY_AND_FALL = ("pulley_mass", "moment_of_inertia", "fall_time", "final_
 LAB = ["solve", "--m1", "1", "--m2", "3", "--a", "1.00(1)", "--R", "10cm", "--drop", "2"]
 
 
-def test_the_table_has_them_in_a_group_of_their_own(atwood: Atwood) -> None:
+def test_the_scene_shows_what_was_measured_and_not_what_was_found(atwood: Atwood) -> None:
     ran = atwood(*LAB)
     assert (ran.status, ran.err) == (0, "")
     assert "wrap = 180°, a = 1.00 ± 0.01 m/s²,\ndrop = 2 m\n" in ran.out
     assert ", M = " not in ran.out.splitlines()[0]
-    rows = [line.split("│")[1:4] for line in ran.out.splitlines() if line.startswith("│")]
-    assert [[cell.strip() for cell in row] for row in rows][-4:] == [
-        ["pulley_mass", "31.23 ± 0.39", "kg"],
-        ["moment_of_inertia", "0.1561 ± 0.0020", "kg m²"],
-        ["fall_time", "2.000 ± 0.010", "s"],
-        ["final_speed", "2.000 ± 0.010", "m/s"],
-    ]
 
 
 def test_json_and_csv_have_them_only_with_what_they_come_from(atwood: Atwood) -> None:
@@ -412,6 +406,45 @@ def test_json_and_csv_have_them_only_with_what_they_come_from(atwood: Atwood) ->
     here = [*NAMES, *FROM_PULLEY_AND_FALL]
     assert names == [*here, *(f"u_{name}" for name in here[1:])]
     assert dict(zip(names, values, strict=True))["pulley_mass"] == "31.2266"
+
+
+# By T = m (g ± a), and M/2 = (T_h - T_l)/a.
+FOUND = """
+--m1 1 --m2 3 --M 0 --a 2                | gravity = 4.00000 m/s²
+--m1 1 --m2 3 --a 2                      | pulley_mass = 11.6133 kg
+--m1 1 --M 0.8 --a 4.903325              | m2 = 3.40000 kg
+--m2 3 --M 0 --a 4.903325                | m1 = 1.00000 kg
+--m1 1 --m2 3 --M inf --a 4.903325       | mu_k = 0
+--m1 1 --m2 3 --M 0 --g 8 --drop 2       | fall_time = 1.00000 s, final_speed = 4.00000 m/s
+--m1 1 --m2 3 --M 0 --drop 1 --time 1    | gravity = 4.00000 m/s², acceleration = 2.00000 m/s²,
+    final_speed = 2.00000 m/s
+--m1 1 --m2 3 --M 0 --a 2 --drop 1 --all | gravity = 4.00000 m/s², fall_time = 1.00000 s,
+    final_speed = 2.00000 m/s
+--m1 1 --m2 3 --a 1.00(1) --R 10cm --drop 2 | pulley_mass = 31.23 ± 0.39 kg,
+    moment_of_inertia = 0.1561 ± 0.0020 kg m², fall_time = 2.000 ± 0.010 s, final_speed = 2.000 ± 0.010 m/s
+"""
+
+
+@pytest.mark.parametrize(("words", "found"), table(FOUND))
+def test_what_was_found_is_the_first_line_below_the_scene(atwood: Atwood, words: str, found: str) -> None:
+    out = atwood("solve", *words.split()).out
+    scene, below = out.split("\nFound: ")
+    assert re.fullmatch(r"(\S+ = [^=]+)+", scene)
+    assert below.replace("\n", " ").startswith(f"{found}. ")
+    rows = re.findall(r"│ (\w+) ", out)
+    assert "mu_verge" in rows
+    assert not {*rows} & {*MEASURED_NAMES, *re.findall(r"(\w+) =", found)}
+
+
+def test_it_is_bold_on_a_terminal() -> None:
+    seen = on_terminal("solve", *"--m1 1 --m2 3 --M 0 --a 2".split(), columns=80)
+    assert "\x1b[1mFound: gravity = 4.00000 m/s².\x1b[0m" in seen
+
+
+def test_that_no_pulley_was_found_comes_first_too(atwood: Atwood) -> None:
+    out = atwood("solve", *"--m1 1 --m2 3 --a 4.91(1)".split()).out
+    assert out.splitlines()[1].startswith("pulley_mass, moment_of_inertia: none, as a = 4.91 m/s² is beyond")
+    assert out.count("none, as") == 1
 
 
 def test_a_pulley_mass_without_a_decimal_is_no_trouble_for_json(atwood: Atwood) -> None:

@@ -162,9 +162,7 @@ def _line(answers: Answers, names: Sequence[str]) -> dict[str, object]:
 def _beside_bare(answers: Answers, only: Sequence[str]) -> list[str]:
     """The uncertain values with their uncertainties, which bare values leave out."""
     uncertain = [name for name in only if answers.standard_uncertainties([name]).get(name)]
-    return [
-        f"{name} = {_with_uncertainty(answers, name)} {QUANTITIES[name].unit}".rstrip() for name in uncertain
-    ]
+    return [_stated(answers, name) for name in uncertain]
 
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
@@ -173,25 +171,33 @@ COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 def print_table(
     answers: Answers, whole: bool = False, budget: bool = False, console: "Console | None" = None
 ) -> None:
-    """Print the scene, the verdict, its main quantities or the ``whole`` of them, notes, and the budget."""
+    """Print the scene, what was found, the verdict, quantities, main or ``whole``, notes, and the budget."""
     from ..output.page import Page, table_width
 
     answers, page, columns = answers.shown, Page(console), list(COLUMNS)
     names = answers.names[1:] if whole else answers.main
-    groups = _rows(answers, names)
-    page.head(answers)
+    tabled = [name for name in names if name not in (*MEASURED_NAMES, *answers.found)]
+    groups, found = _rows(answers, tabled), _found(answers)
+    page.head(answers, found)
     while page.room and table_width(columns, groups) > page.room:
         columns.pop()
         groups = [[row[: len(columns)] for row in group] for group in groups]
     if groups and "Unit" in columns:
         page.table(columns, groups)
     else:  # no number without its unit: a plain line a quantity
-        for name, value, unit, *_ in chain.from_iterable(_rows(answers, names)):
-            page.say(f"{name} = {value.lstrip()} {unit}".rstrip())
+        page.say(*(_stated(answers, name) for name, *_ in chain.from_iterable(_rows(answers, tabled))))
     said = [*remarks(answers), *(conditions(answers) if whole else ()), *reasons(answers)]
-    page.say(*map(unmarked, said))
+    page.say(*(unmarked(one) for one in said if one not in found))
     if budget:
         _print_budget(page, answers, names)
+
+
+def _found(answers: Answers) -> list[str]:
+    """Sentences on what follows from what was measured; one may say that no pulley does."""
+    found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
+    none = answers.case.motion.beyond
+    said = [one for one in reasons(answers) if none and none in one]
+    return [*said, *[f"Found: {', '.join(found)}."] * bool(found)]
 
 
 def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
@@ -210,6 +216,11 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
         row = [name, value, about.unit, about.symbol, equation]
         groups.setdefault(about.group, []).append([for_stream(word, sys.stdout) for word in row])
     return list(groups.values())
+
+
+def _stated(answers: Answers, name: str) -> str:
+    """A quantity with its value, uncertainty and unit."""
+    return f"{name} = {_with_uncertainty(answers, name)} {QUANTITIES[name].unit}".rstrip()
 
 
 def _with_uncertainty(answers: Answers, name: str) -> str:

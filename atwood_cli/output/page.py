@@ -56,11 +56,13 @@ class Page:
 
         self.console.print(Text(for_stream(words, sys.stdout), style), soft_wrap=True)
 
-    def head(self, answers: Answers) -> None:
-        """The scene and the verdict."""
+    def head(self, answers: Answers, found: Sequence[str] = ()) -> None:
+        """The scene, sentences on what was found of it, and the verdict."""
         scene, motion, known = answers.case.scene, answers.case.motion, answers.uncertainties
         self.say(describe(scene, motion, known.given if known else {}))
-        self.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.case.regime]}")
+        self.say(*found, style="bold")
+        bold = "bold " * (not found)
+        self.say(unmarked(verdict(answers)), style=f"{bold}{REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Groups, keys: int = 1, beside: int | None = None) -> int:
         """A table, with a line between groups of rows, and as wide as its numbers ask.

@@ -86,6 +86,14 @@ class Answers:
         return (*NAMES, *FROM_MOTION.get(motion.finds, ()), *FROM_MOTION.get(drop, ()))
 
     @property
+    def found(self) -> tuple[str, ...]:
+        """The quantities that were asked for by what is given of the motion, the unknown parameter first."""
+        motion = self.case.motion
+        falls = FROM_MOTION["drop"] if motion.drop is not None else ()
+        by_time = {"fall_time": "acceleration"} if motion.time is not None else {}
+        return (*FROM_MOTION.get(motion.finds, ()), *(by_time.get(name, name) for name in falls))
+
+    @property
     def main(self) -> tuple[str, ...]:
         """The quantities that the scene is about: what a table shows unless all are asked for."""
         case, scene = self.case, self.case.scene

@@ -87,10 +87,9 @@ def verdict(answers: Answers) -> str:
             f" without mass the acceleration is {_say(massless, 'acceleration')} m/s²."
         )
     if case.regime == "slip":
-        mu_k = _say(answers, "mu_k") if case.slide_measured else scene.mu_k and as_typed(scene.mu_k)
         if not mu:
-            return f"Slides over the locked pulley, with `mu_k` = {mu_k}."
-        kinetic = "" if mu_k is None else f", and slides with `mu_k` = {mu_k}"
+            return "Slides over the locked pulley."
+        kinetic = "" if scene.mu_k is None else f", and slides with `mu_k` = {as_typed(scene.mu_k)}"
         if not case.pulley_known:
             return (
                 f"Slips on any pulley, for the friction of its axle: {mu} is below the"
