@@ -371,13 +371,14 @@ def test_a_million_elements_lose_digits_to_rounding() -> None:
     assert abs(best.error) < 1e-10 < abs(worn.error) < 1e-8
 
 
-def test_elements_mirror() -> None:
-    light, heavy = (
-        {row.name: row for row in rows_of(Answers(Scene.read({"m1": a, "m2": b, "mu": "0.3"})), 50)}
-        for a, b in ((1, 3), (3, 1))
-    )
-    assert heavy["tension_ratio"].value == pytest.approx(1 / light["tension_ratio"].value)
-    assert heavy["friction_force"] == light["friction_force"]
+@pytest.mark.parametrize("given", [{"mu": "0.3"}, {"M": 10}, {"M": 100, "mu": "0.3", "mu_k": "0.2"}])
+def test_elements_mirror(given: dict[str, Any]) -> None:
+    """The tension ratio was T2/T1 here and the greater over the lesser elsewhere."""
+    light, heavy = (Answers(Scene.read({"m1": a, "m2": b, **given})) for a, b in ((1, 3), (3, 1)))
+    assert rows_of(heavy, 50) == rows_of(light, 50)
+    exact = {row.name: row.exact for row in rows_of(heavy, 50)}
+    assert exact["tension_ratio"] == heavy["tension_ratio"]
+    assert exact["tension_ratio"] == pytest.approx(heavy["tension_1"] / heavy["tension_2"])
 
 
 def test_elements_say_only_what_friction_at_its_limit_decides() -> None:

@@ -174,7 +174,7 @@ def _error(rough: Answers, exact: OnMachine, shown: Fraction) -> Decimal:
 
 EXACT: dict[str, OnMachine] = {
     "capstan_ratio": lambda machine: machine.reference_ratio,
-    "tension_ratio": lambda machine: machine.tension_2 / machine.tension_1,
+    "tension_ratio": lambda machine: machine.tension_ratio,
     "critical_pulley_mass": lambda machine: machine.critical_pulley_mass,
     "friction_force": lambda machine: machine.friction_force,
 }
@@ -216,6 +216,6 @@ class _Doubles:
             transfer, g = physics.transfer_at_limit(l, k1), self._double(lambda machine: machine.g)
             drive, load = physics.drive(l, h, transfer), physics.load(l, h, transfer)
             light = physics.light_tension(l, physics.acceleration(drive, load, g), g)
-        values["tension_ratio"] = k if case.sign >= 0 else 1 / k
+        values["tension_ratio"] = k
         values["friction_force"] = light * hypot(x, y)
         return values
