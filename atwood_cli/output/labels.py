@@ -42,7 +42,8 @@ FAR = 25  # points: words further away have a thin line to their point
 SPARE = 2  # pixels around words
 CLEAR = 8  # pixels: a line ends so far before its point, beside the marker
 UNREADABLE, CROSSED, AMBIGUOUS = 1000, 40, 20
-"""Costs in covered dots: of words over words, of a line across words, of words as near to another point."""
+"""Costs in covered dots: of words over words, of a line across words or a line, of words as near to
+another point."""
 AWAY = 30  # points of distance that cost as much as a covered dot
 
 
@@ -50,50 +51,62 @@ def write_labels(figure: "Figure", labels: Mapping["Axes", Sequence[Label]], siz
     """Write labels on axes. To be called last: it lays out the page and goes by where all else then lies."""
     figure.draw_without_rendering()
     for axes, some in labels.items():
-        panel = _Panel(axes, some)
-        for label in some:
-            panel.write(label, size)
+        panel = _Panel(axes, some, size)
+        for label in [*some, *some]:  # twice, so that the first make way for the last
+            panel.place(label)
+        panel.write(size)
 
 
 class _Panel:
     """What lies where in axes, in pixels: words, points, and lines as the dots that they are made of."""
 
-    def __init__(self, axes: "Axes", labels: Sequence[Label]) -> None:
+    def __init__(self, axes: "Axes", labels: Sequence[Label], size: float) -> None:
         figure: Any = axes.figure
         self.axes, self.pixels = axes, figure.dpi / 72
-        self.words = [text.get_window_extent() for text in (*axes.texts, axes.title) if text.get_text()]
+        self.texts = [text.get_window_extent() for text in (*axes.texts, axes.title) if text.get_text()]
         self.dots = np.concatenate([np.empty((0, 2)), *_drawn(axes)])
         self.points = [self.point(label) for label in labels]
+        self.extents = {label: self.extent(label, size) for label in labels}
+        self.placed: dict[Label, tuple[float, float]] = {}
 
     def point(self, label: Label) -> Any:
         return self.axes.transData.transform((label.x, label.y))
 
-    def write(self, label: Label, size: float) -> None:
-        """Write a label at the place of least cost, which is then taken."""
-        point, extent = self.point(label), self.extent(label, size)
+    def place(self, label: Label) -> None:
+        """Find the place of least cost for a label, where the others are by now."""
+        self.placed.pop(label, None)
+        boxes = [self.box(other, place) for other, place in self.placed.items()]
+        self.words = [*self.texts, *boxes]
+        self.leads = [
+            _line(box, self.point(other))
+            for (other, place), box in zip(self.placed.items(), boxes, strict=True)
+            if hypot(*place) > FAR
+        ]
         least, best = inf, PLACES[0]
         for place in PLACES:
             if least <= hypot(*place) / AWAY:
                 break  # no place so far away costs less
-            cost = self.cost(point, place, self.box(point, place, extent))
+            cost = self.cost(self.point(label), place, self.box(label, place))
             if cost < least:
                 least, best = cost, place
-        box, lead = self.box(point, best, extent), hypot(*best) > FAR
-        self.words.append(box)
-        if lead:
-            self.dots = np.concatenate([self.dots, _line(box, point)])
-        self.axes.annotate(
-            label.words,
-            (label.x, label.y),
-            xytext=best,
-            textcoords="offset points",
-            ha="center" if not best[0] else "left" if best[0] > 0 else "right",
-            va="center" if not best[1] else "bottom" if best[1] > 0 else "top",
-            color=label.colour,
-            size=size,
-            arrowprops={"arrowstyle": "-", "lw": 0.6, "color": label.colour, "shrinkB": 3} if lead else None,
-            in_layout=False,
-        )
+        self.placed[label] = best
+
+    def write(self, size: float) -> None:
+        """Write the labels where they were placed."""
+        for label, place in self.placed.items():
+            lead = {"arrowstyle": "-", "lw": 0.6, "color": label.colour, "shrinkB": 3}
+            self.axes.annotate(
+                label.words,
+                (label.x, label.y),
+                xytext=place,
+                textcoords="offset points",
+                ha="center" if not place[0] else "left" if place[0] > 0 else "right",
+                va="center" if not place[1] else "bottom" if place[1] > 0 else "top",
+                color=label.colour,
+                size=size,
+                arrowprops=lead if hypot(*place) > FAR else None,
+                in_layout=False,
+            )
 
     def extent(self, label: Label, size: float) -> Any:
         """The width and height of the words."""
@@ -102,11 +115,12 @@ class _Panel:
         text.remove()
         return box.size
 
-    def box(self, point: Any, place: tuple[float, float], extent: Any) -> "Bbox":
+    def box(self, label: Label, place: tuple[float, float]) -> "Bbox":
         """The room that words take at a place, with some to spare."""
         from matplotlib.transforms import Bbox
 
-        corner = point + np.multiply(place, self.pixels) + (np.sign(place) - 1) * extent / 2
+        extent = self.extents[label]
+        corner = self.point(label) + np.multiply(place, self.pixels) + (np.sign(place) - 1) * extent / 2
         return Bbox.from_bounds(*corner, *extent).padded(SPARE)
 
     def cost(self, point: Any, place: tuple[float, float], box: "Bbox") -> float:
@@ -115,11 +129,16 @@ class _Panel:
         unreadable = sum(map(box.overlaps, self.words))
         unreadable += not (inside.contains(*box.min) and inside.contains(*box.max))
         cost = UNREADABLE * unreadable + _within(self.dots, box).sum() + hypot(*place) / AWAY
+        cost += CROSSED * sum(_within(lead, box).any() for lead in self.leads)
         if hypot(*place) > FAR:
             line = _line(box, point)
             cost += CROSSED * sum(_within(line, words).any() for words in self.words)
-            if len(self.dots):
-                cost += (np.hypot(*(self.dots[:, None] - line).T) < SPARE).any(axis=0).sum()
+            cost += CROSSED * sum(_cross(line, lead) for lead in self.leads)
+            near = ((line.min(axis=0) - SPARE < self.dots) & (self.dots < line.max(axis=0) + SPARE)).all(
+                axis=1
+            )
+            if near.any():
+                cost += (np.hypot(*(self.dots[near][:, None] - line).T) < SPARE).any(axis=0).sum()
         else:
             own, *all_ = (hypot(*(one - one.clip(box.min, box.max))) for one in (point, *self.points))
             cost += AMBIGUOUS * (sum(off <= own + SPARE for off in all_) > 1)
@@ -135,6 +154,16 @@ def _line(box: "Bbox", point: Any) -> Any:
     """The dots of the line from a box to just before a point."""
     start = point.clip(box.min, box.max)
     return np.linspace(start, point + CLEAR * (start - point) / max(np.hypot(*(start - point)), CLEAR), 40)
+
+
+def _cross(one: Any, other: Any) -> bool:
+    """Whether two straight lines of dots cross."""
+
+    def sides(line: Any, dots: Any) -> Any:
+        (x, y), (dx, dy) = (dots - line[0]).T, line[-1] - line[0]
+        return np.sign(dx * y - dy * x)
+
+    return bool(sides(one, other[[0, -1]]).prod() < 0 > sides(other, one[[0, -1]]).prod())
 
 
 def _drawn(axes: "Axes") -> Iterator[Any]:
