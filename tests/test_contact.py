@@ -568,12 +568,12 @@ MIRRORED = "--m1 3 --m2 1 --M 10 --mu 0.3"
 
 
 @pytest.fixture
-def drawn(atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[[str], Any]:
+def drawn(atwood: Atwood, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Callable[..., Any]:
     """The picture of a scene, as matplotlib has it."""
 
-    def draw(words: str) -> Any:
+    def draw(words: str, command: str = "contact") -> Any:
         with pages_seen(monkeypatch) as pages:
-            ran = atwood("contact", *words.split(), "--figure", str(tmp_path / "a.svg"), "--force")
+            ran = atwood(command, *words.split(), "--figure", str(tmp_path / "a.svg"), "--force")
         assert ran.status == 0, ran.err
         return pages[0]
 
@@ -685,7 +685,13 @@ STUCK = "over the grey part the string is stuck."
             "scale",
         ),
         ("--m1 1 --m2 1.01 --M 0.1 --mu 0.3", "It acts over the last 0.04613° of the arc; ", "180.0"),
-        ("--m1 200g --m2 250g --M 500g", "Friction is drawn 20 times larger.", STUCK),
+        ("--m1 200g --m2 250g --M 500g", "Friction is drawn 20 times larger.|a = 0.7005 m/s²", STUCK),
+        (f"{FIGURE} --axle 2", "M = 10 kg|axle friction 2 N at the rim|f = 2 N", "scale"),
+        (
+            "--m1 200g --m2 250g --M 500g --bare",
+            "T₂ = 2.277 N|Friction is drawn 20 times larger.",
+            "m₂ =|All",
+        ),
         ("--m1 1 --m2 3 --M 10 --mu 50", "Friction is drawn 50 times smaller.", "to scale"),
         ("--m1 1 --m2 3 --M 0", "T₁ = 14.71 N|T₂ = 14.71 N|there is no friction.", "to scale|together"),
         ("--m1 1 --m2 1000", "Arrows with open heads are not to scale.", "is drawn"),
@@ -707,6 +713,76 @@ def test_what_a_figure_says(drawn: Callable[[str], Any], scene: str, there: str,
     words = words_on(drawn(scene))
     assert [part for part in there.split("|") if part not in words] == []
     assert [part for part in absent.split("|") if part in words] == []
+
+
+ALONE = "θ|grey"
+
+
+@pytest.mark.parametrize(
+    ("scene", "there", "absent"),
+    [
+        (FIGURE, f"M = 10 kg|a = 2.179 m/s²|nR|fR|{STUCK.replace('grey part', 'rest')}", f"axle|{ALONE}"),
+        (
+            f"{FIGURE} --only a --m1-side left --bare",
+            "M = 10 kg|a = 2.179 m/s²",
+            f"M = 10 kg,|string|{ALONE}",
+        ),
+        ("--m1 3 --m2 1 --mu 0.3 --explain", "M = 43.34 kg|T₁ = 27.13 N|a = 0.7640 m/s²", ALONE),
+        ("--m1 1 --m2 3 --M inf --mu 0.3 --axle 2", "Slips|M = inf|a = 0.7640 m/s²", f"axle|{ALONE}"),
+        ("--m1 2 --m2 2 --M 1 --axle 3", "At rest|a = 0|M = 1 kg|T₁ = 19.61 N", f"axle|m/s² |{ALONE}"),
+        ("--m1 55g --m2 60g --a 0.380+/-0.004", "a = 0.380 ± 0.004 m/s²|M = 0.02807 kg", ALONE),
+        ("--m1 1 --m2 3 --M 10 --drop 1 --time 1.2", "W₂ = 18.75 N|a = 1.389 m/s²", ALONE),
+        ("--m1 1 --m2 3 --I 0.02 --R 0.1 --mu 0.1 --wrap 250 --axle 0.1Nm", "I = 0.02 kg m²|1 N at", ALONE),
+        ("--m1 0 --m2 3 --M 6", "T₂ = 14.71 N|a = 4.903 m/s²|fixed", f"m₁ m|T₁|nR|{ALONE}"),
+        ("--m1 3 --m2 0 --M 1 --wrap 400 --axle 3", "3 N at the rim|W₁ = 29.42 N", f"T₂|nR|{ALONE}"),
+        ("--m1 0 --m2 3", "T₂ = 0 N|a = 9.807 m/s²|M = 0 kg", f"scale|{ALONE}"),
+        (
+            "--m1 1 --m2 3 --M 10 --axle 30 --mu 0.8 --wrap 270",
+            "a = 0|axle friction 19.61 N at the rim",
+            ALONE,
+        ),
+        (
+            "--m1 1 --m2 3 --M 10 --axle 30 --mu 0.3 --mu-k 0.2",
+            "Slips over|friction 10.56 N at the rim",
+            ALONE,
+        ),
+        ("--m1 1 --m2 3 --mu 0.01 --wrap 250 --axle 5", "Slips on any pulley", f"M =|{ALONE}"),
+        ("--m1 1 --m2 1000 --mu 0.2 --axle 5 --M 3 --wrap 76", "M = 3 kg|to scale", ALONE),
+        (
+            "--m1 1 --m2 3 --M 10 --mu 0.3 --wrap 1000 --axle 5 --bare",
+            "M = 10 kg|axle friction",
+            f"φ|{ALONE}",
+        ),
+    ],
+)
+def test_the_machine_alone(drawn: Callable[..., Any], scene: str, there: str, absent: str) -> None:
+    """No words lie over others, and they are those of the scene, its forces and its motion."""
+    page = drawn(scene, "solve")
+    assert misplaced(page) == []
+    words = words_on(page)
+    assert [part for part in there.split("|") if part not in words] == []
+    assert [part for part in absent.split("|") if part in words] == []
+
+
+@pytest.mark.parametrize("command", ["contact", "solve"])
+@pytest.mark.parametrize(("masses", "sign"), [("--m1 1 --m2 3", 1), ("--m1 3 --m2 1", -1)])
+@pytest.mark.parametrize("axle", [2, 30])
+def test_the_heavier_mass_descends_and_the_axle_turns_against_it(
+    drawn: Callable[..., Any], masses: str, sign: int, axle: int, command: str
+) -> None:
+    """It does so too where it holds the pulley, and then there is no acceleration to be drawn."""
+    figure = pytest.importorskip("atwood_cli.output.figure")
+    lines = drawn(f"{masses} --M 10 --mu 0.4 --axle {axle}", command).axes[0].lines
+    (turn,) = (line.get_xydata() @ [1, 1j] for line in lines if line.get_color() == figure.ORANGE)
+    assert np.all(sign * np.diff(np.unwrap(np.angle(turn))) < 0)
+    boxes = {1: 1.0, 2: -1.0}  # where the masses hang
+    ways = {
+        which: np.sign(line.get_ydata()[1] - line.get_ydata()[0])
+        for line in lines
+        for which, x in boxes.items()
+        if line.get_color() == figure.PURPLE and abs(line.get_xdata()[0] - x) < 0.4
+    }
+    assert ways == ({1: sign, 2: -sign} if axle == 2 else {})
 
 
 @pytest.mark.parametrize(

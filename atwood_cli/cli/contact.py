@@ -17,9 +17,11 @@ from .options import (
     DONE,
     AsCsv,
     AsJson,
+    Bare,
     Digits,
     FigureFile,
     Force,
+    M1Side,
     check,
     option,
     takes_scene,
@@ -55,15 +57,6 @@ Extrapolate = Annotated[
     bool,
     option("String elements", "--extrapolate", help="Extrapolate from N/2 and N elements (Richardson)."),
 ]
-M1Side = Annotated[
-    str | None,
-    option(
-        "Files",
-        metavar="left|right",
-        help="On which side the figure has m1; right if not given.",
-    ),
-]
-
 COLUMN_UNITS = {
     "angle": "°",
     "tension": "N",
@@ -94,6 +87,7 @@ def contact(
     extrapolate: Extrapolate = False,
     figure: FigureFile = None,
     m1_side: M1Side = None,
+    bare: Bare = False,
     force: Force = False,
     digits: Digits = None,
     json: AsJson = False,
@@ -115,7 +109,7 @@ def contact(
         if figure is not None:
             from ..output.arc_figure import save
 
-            save(answers, arc, figure, force, m1_side)
+            save(answers, arc.kind, figure, force, m1_side, bare, curves=True)
     say(*show(forms, json, csv))
     return DONE
 

@@ -18,6 +18,7 @@ from .options import (
     DONE,
     AsCsv,
     AsJson,
+    Bare,
     FigureFile,
     Force,
     Labels,
@@ -80,7 +81,6 @@ Explain = Annotated[
     bool, option("Output", "--explain", help="Instead, show how the line follows, with its numbers.")
 ]
 Plot = Annotated[bool, option("Output", "--plot", help="Draw the line in place of the tables (extra: plot).")]
-Bare = Annotated[bool, option("Files", "--bare", help="With --figure: leave out the sentences above it.")]
 
 HELP = """Fit runs of a laboratory: the pulley's inertia, its axle's friction.
 

@@ -154,6 +154,13 @@ FigureFile = Annotated[
     str | None,
     option("Files", metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure)."),
 ]
+Bare = Annotated[
+    bool, option("Files", "--bare", help="With --figure: draw without sentences, as for a report.")
+]
+M1Side = Annotated[
+    str | None,
+    option("Files", metavar="left|right", help="On which side the figure has m1; right if not given."),
+]
 Force = Annotated[bool, option("Files", "--force", help="Replace a file that is there.")]
 Labels = Annotated[
     list[str] | None,

@@ -17,7 +17,10 @@ from .options import (
     DONE,
     AsCsv,
     AsJson,
+    Bare,
     Digits,
+    Force,
+    M1Side,
     Markdown,
     check,
     option,
@@ -68,6 +71,14 @@ Explain = Annotated[
         help="Instead, show how it follows: step by step, with the numbers put in.",
     ),
 ]
+Figure = Annotated[
+    str | None,
+    option(
+        "Files",
+        metavar="FILE",
+        help="Also draw the machine and its forces to FILE.svg, .png or .pdf (extra: figure).",
+    ),
+]
 
 HELP = """Solve one scene: acceleration, tensions, friction, critical masses.
 
@@ -112,6 +123,10 @@ def solve(
     budget: Budget = False,
     explain: Explain = False,
     markdown: Markdown = False,
+    figure: Figure = None,
+    m1_side: M1Side = None,
+    bare: Bare = False,
+    force: Force = False,
 ) -> int:
     check(locals(), explain="a drop time")
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
@@ -120,9 +135,11 @@ def solve(
         raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
     if budget and names and not json:
         raise SceneError("budget", None, "has no place in bare values; take --json")
+    if explain and answers.uncertainties:
+        raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
+    if figure is not None:
+        _draw(answers, figure, m1_side, bare, force)
     if explain:
-        if answers.uncertainties:
-            raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
         from ..derivation.steps import explain as explained
         from ..output.page import print_explanation
 
@@ -137,6 +154,17 @@ def solve(
     )
     say(*show(forms, json, csv))
     return COULD_NOT if "" in forms.bare else DONE
+
+
+def _draw(answers: Answers, path: str, m1_side: str | None, bare: bool, force: bool) -> None:
+    """Draw the machine. Raises SceneError where the scene leaves its tensions open, OSError."""
+    from ..output.arc_figure import save
+    from ..solver.contact import kind_of
+
+    if answers["tension_1"] is None:
+        why = unmarked(answers.reasons["tension_1"])
+        raise SceneError("figure", path, f"draws the tensions, which are not known: {why}")
+    save(answers, kind_of(answers.case) if answers.case.light else None, path, force, m1_side, bare)
 
 
 def _record(answers: Answers, only: Sequence[str], budget: bool) -> dict[str, object]:

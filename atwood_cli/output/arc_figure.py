@@ -1,5 +1,6 @@
-"""The arc of contact as a picture: the forces on the machine, and what they are along the arc."""
+"""The page of the machine's picture, alone or beside curves of what acts along the arc of contact."""
 
+from math import radians
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,11 +10,11 @@ from ..model import arc
 from ..model.machine import Machine
 from ..model.scene import SceneError
 from ..solver.answers import Answers
-from ..solver.contact import Contact
+from ..solver.contact import about
 from ..solver.messages import unmarked, verdict
-from .figure import BLUE, FAINT, RED, check_file, page, say_above, say_below
+from .figure import BLUE, FAINT, INCHES, RED, check_file, page, say_above, say_below
 from .labels import Label, write_labels
-from .machine_figure import TURNS, Profile, draw
+from .machine_figure import TURNS, Profile, draw, mark_theta
 from .text import describe
 
 if TYPE_CHECKING:
@@ -22,44 +23,70 @@ if TYPE_CHECKING:
 DRAWABLE = (1e-100, 1e100)
 WRAPS = (1e-100, 1e9)  # degrees: of more, doubles no longer say where the end of the arc is
 DIGITS, CURVE_POINTS = 4, 200
+ALONE = 8  # inches: the width of a page without curves
 SIDES = ("left", "right")
 
 
-def save(answers: Answers, shown: Contact, path: str, force: bool, m1_side: str | None) -> None:
-    """Draw the arc to a file, whose suffix is its format. Raises SceneError, OSError."""
+def save(
+    answers: Answers,
+    kind: arc.Kind | None,
+    path: str,
+    force: bool,
+    m1_side: str | None,
+    bare: bool,
+    curves: bool = False,
+) -> None:
+    """Draw the machine to a file, whose suffix is its format, with ``curves`` also what acts along the arc.
+
+    ``kind`` is the profile of the tension; there is none where the string is fixed to the pulley. ``bare``
+    leaves out all sentences but those on the scale of arrows. Raises SceneError, OSError.
+    """
     if m1_side not in (None, *SIDES):
         raise SceneError("m1_side", m1_side, f"must be {' or '.join(SIDES)}")
     check_file(path, force)
-    scene, doubles = answers.case.scene, Answers(answers.case.scene)
-    few = Answers(scene, min(answers.digits or DIGITS, DIGITS))
+    scene, doubles = answers.case.scene, answers.to(None)
+    few = answers.to(min(answers.digits or DIGITS, DIGITS))
     weights = [to_double(mass * scene.g) for mass in (scene.m1, scene.m2)]
     tensions = [float(doubles[name] or 0) for name in ("tension_1", "tension_2")]
-    if min(tensions) < DRAWABLE[0] or max(*tensions, *weights) > DRAWABLE[1]:
+    least = min(tensions) if kind else max(weights)
+    if least < DRAWABLE[0] or max(*tensions, *weights) > DRAWABLE[1]:
         raise SceneError("figure", path, f"draws forces between {DRAWABLE[0]} and {DRAWABLE[1]} N only")
     wrap = float(doubles.settle(lambda m: scene.wrap.degrees(m.ar)))
     if not WRAPS[0] <= wrap <= WRAPS[1]:
         raise SceneError("figure", path, f"draws wraps between {WRAPS[0]} and {WRAPS[1]:.0e} degrees only")
-    profile = Profile.of(doubles, shown.kind)
-    with page(path, force) as figure:
-        say_above(figure, describe(scene), unmarked(verdict(few)))
-        machine, curves = figure.subplots(1, 2, width_ratios=[1.1, 1])
+    profile = Profile.of(doubles, kind) if kind else None
+    widths = [1.1, 1] if curves else [1]
+    with page(path, force, INCHES if curves else ALONE) as figure:
+        if not bare:
+            inputs = describe(scene, answers.case.motion, answers.uncertain)
+            say_above(figure, inputs, unmarked(verdict(few)))
+        machine, *beside = figure.subplots(1, len(widths), width_ratios=widths, squeeze=False)[0]
         names, of_arrows = draw(machine, doubles, few, profile, m1_side == "left")
-        labels = _draw_curves(curves, profile, wrap, m1_side or "right")
-        about = [
-            "The string acts on the pulley along the arc of contact only: it presses with the normal force nR"
-            " and rubs along the rim with the friction fR, both per radian.",
-            shown.notes[0],
-            *_said_of_friction(few, shown.kind),
-            *of_arrows,
-        ]
+        labels = {machine: names}
+        if curves and profile:
+            mark_theta(machine, radians(wrap))
+            labels[beside[0]] = _draw_curves(beside[0], profile, wrap, m1_side or "right")
+        said = [*([] if bare else _sentences(few, kind, curves)), *of_arrows]
         if wrap > 360 * TURNS:
             turns = text(few.settle(lambda m: scene.wrap.degrees(m.ar) / 360))
-            about.append(f"Of the string's {turns} turns a few are drawn.")
-        say_below(figure, " ".join(about))
-        write_labels(figure, {machine: names, curves: labels}, 10)
+            said.append(f"Of the string's {turns} turns a few are drawn.")
+        say_below(figure, " ".join(said))
+        write_labels(figure, labels, 10)
 
 
-def _said_of_friction(few: Answers, kind: arc.Kind) -> list[str]:
+def _sentences(few: Answers, kind: arc.Kind | None, curves: bool) -> list[str]:
+    """What the forces in the picture are, in sentences."""
+    if kind is None:
+        return []
+    return [
+        "The string acts on the pulley along the arc of contact only: it presses with the normal force nR"
+        " and rubs along the rim with the friction fR, both per radian.",
+        about(few.case, kind),
+        *_said_of_friction(few, kind, "grey part" if curves else "rest"),
+    ]
+
+
+def _said_of_friction(few: Answers, kind: arc.Kind, rest: str) -> list[str]:
     """What all friction on the pulley amounts to, and over which parts of the arc it acts if not over all."""
     if few.case.frictionless:
         return []
@@ -80,7 +107,7 @@ def _said_of_friction(few: Answers, kind: arc.Kind) -> list[str]:
         rubbing = [piece for piece, stuck in enumerate(arc.STUCK[kind]) if not stuck][:: few.case.sign]
         ends = ["first", "last"] if rubbing[1:] else ["last" if few.case.sign > 0 else "first"]
         parts = " and ".join(f"the {end} {degrees(piece)}°" for end, piece in zip(ends, rubbing, strict=True))
-        said.append(f"It acts over {parts} of the arc; over the grey part the string is stuck.")
+        said.append(f"It acts over {parts} of the arc; over the {rest} the string is stuck.")
     return said
 
 

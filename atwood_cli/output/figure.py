@@ -27,7 +27,7 @@ FORMATS = (".svg", ".png", ".pdf")
 BLUE, RED, GREEN, PURPLE, ORANGE = "#0072b2", "#d55e00", "#009e73", "#b05d91", "#b07800"
 """Told apart without seeing red or green, and on paper: after M. Okabe and K. Ito, Color universal design."""
 INK, GREY, FAINT = "#222222", "#777777", "#999999"
-WIDE = 130  # characters: more do not fit the page
+INCHES, WIDE = 11, 130  # a page's width; characters: more do not fit it
 NAMES = re.compile(r"\b(m1|m2|mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 STYLE: Any = {
@@ -62,8 +62,8 @@ def _load() -> None:
 
 
 @contextmanager
-def page(path: str, force: bool) -> Iterator["Figure"]:
-    """A figure to draw on, which is then saved."""
+def page(path: str, force: bool, inches: float = INCHES) -> Iterator["Figure"]:
+    """A figure to draw on, of some width, which is then saved."""
     _load()
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -75,7 +75,7 @@ def page(path: str, force: bool) -> Iterator["Figure"]:
     drawn = BytesIO()  # a full disk is none of matplotlib's business
     with written_beside(Path(path), force) as beside:
         with warnings.catch_warnings(action="ignore"), rc_context({**rcParamsDefault, **STYLE}):
-            figure = Figure(figsize=(11, 6), layout="constrained")
+            figure = Figure(figsize=(inches, 6), layout="constrained")
             FigureCanvasAgg(figure)  # which knows how wide words are
             yield figure
             figure.savefig(drawn, format=kind, dpi=200, metadata={dated: None} if dated else None)
@@ -84,15 +84,15 @@ def page(path: str, force: bool) -> Iterator["Figure"]:
 
 def say_above(figure: "Figure", *sentences: str) -> None:
     """Write sentences above a picture."""
-    figure.suptitle("\n".join(map(_lines, sentences)), fontsize=10)
+    figure.suptitle("\n".join(_lines(figure, words) for words in sentences), fontsize=10)
 
 
 def say_below(figure: "Figure", words: str) -> None:
     """Write words below a picture."""
-    figure.supxlabel(_lines(words), fontsize=10)
+    figure.supxlabel(_lines(figure, words), fontsize=10)
 
 
-def _lines(words: str) -> str:
+def _lines(figure: "Figure", words: str) -> str:
     """Words in lines that fit, parameters by their symbols; numbers that nobody reads to the end are cut."""
     words = NAMES.sub(lambda name: AXES[name[0]][1], LONG_DIGITS.sub(r"\1…", words))
-    return "\n".join(wrapped(words, WIDE))
+    return "\n".join(wrapped(words, int(WIDE * figure.get_figwidth() / INCHES)))

@@ -6,8 +6,9 @@ where the arc begins; with m1 on the left, the axis runs the other way.
 
 from collections.abc import Callable, Sequence
 from decimal import Decimal
+from fractions import Fraction
 from itertools import pairwise
-from math import cos, floor, log10, nan, pi, radians, sin, sqrt
+from math import cos, floor, inf, log10, nan, pi, radians, sin, sqrt
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from ..arithmetic.rounding import text, tidy, to_double
 from ..model import arc
 from ..model.machine import Machine
 from ..solver.answers import Answers
-from .figure import BLUE, FAINT, GREEN, INK, RED
+from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED
 from .labels import Label
 
 if TYPE_CHECKING:
@@ -29,10 +30,12 @@ GROWTH = 0.09  # radii by which a turn of the string lies outside the one before
 LONGEST, LONGEST_WEIGHT, SHORTEST, SHORTEST_WEIGHT = 0.5, 0.8, 0.05, 0.14  # of arrows
 APART = radians(15)  # arrows along the arc
 MOST_ARROWS = 24
-SMALL, CROWDED = 0.1, 0.22
+SMALL, CROWDED = 0.14, 0.22
 """Of friction's longest arrow: below the first, all are drawn larger; above the second, only every other."""
 RIM, INSIDE = 0.93, 0.86  # where arrows of friction and of the normal force start
+WIDEST = 2.4  # from the axle to either side, but for words
 SHEAVE, BOX = 0.2, 0.3  # radius and width
+AXLE, ACCELERATION = 0.24, 0.36  # radius and length of the arrows of its friction, and of the acceleration
 PIECES = 60  # of a turn of the string as it is drawn
 NOT_TO_SCALE = "Arrows with open heads are not to scale."
 
@@ -84,44 +87,75 @@ def drawn_turns(wrap: float) -> float:
 
 
 def draw(
-    axes: "Axes", answers: Answers, shown: Answers, profile: Profile, m1_left: bool
+    axes: "Axes", answers: Answers, shown: Answers, profile: Profile | None, m1_left: bool
 ) -> tuple[list[Label], list[str]]:
     """Draw the machine; names still to be written, and what is to be said of the arrows.
 
-    Arrows are drawn by ``answers``, in doubles, and numbers written as they are ``shown``.
+    Arrows are drawn by ``answers``, in doubles, and numbers written as they are ``shown``. Without a profile,
+    as where an end of the string is fixed to the pulley, there are no forces along the arc.
     """
-    scene = answers.case.scene
+    case, scene = answers.case, answers.case.scene
+    masses = scene.m1, scene.m2
     phi = TURN * drawn_turns(float(answers.settle(lambda m: scene.wrap.degrees(m.ar))))
     growth = GROWTH if phi > ALMOST_A_TURN else 0.0
     outermost = 1 + growth * phi / TURN
     axes.axis("off")
-    axes.set_xlim(*((2.4, -2.4) if m1_left else (-2.4, 2.4)))
-    foot = _draw_string(axes, phi, growth, outermost)
-    _mark_theta(axes, phi)
+    axes.set_xlim(*((WIDEST, -WIDEST) if m1_left else (-WIDEST, WIDEST)))
+    foot = _draw_string(axes, phi, growth, outermost, masses)
 
-    weights = [to_double(mass * scene.g) for mass in (scene.m1, scene.m2)]
-    scale = LONGEST / max(profile.tensions)
+    tensions = [float(answers[name]) for name in ("tension_1", "tension_2")]
+    weights = [to_double(mass * scene.g) for mass in masses]
+    scale = LONGEST / (max(tensions) or inf)
     fitting = LONGEST_WEIGHT / max(weights)
-    if scale / 2 <= fitting < scale:
+    if scale / 2 <= fitting < scale or not scale:
         scale = fitting
-    names, notes = _draw_contact(axes, phi, outermost, profile, scale)
+    names, notes = _draw_contact(axes, phi, outermost, profile, scale) if profile else ([], [])
+    if friction := _axle_friction(shown):
+        _draw_turn(axes, AXLE, -pi / 2, -case.sign * radians(70), ORANGE)
+        names.append(Label(f"axle friction\n{friction} N at the rim", 0, -AXLE, ORANGE))
+    pulley = _pulley(shown)
+    if phi < pi + APART:  # there are no arrows in the lower half
+        axes.text(0, -0.8 if friction else -0.4, pulley, ha="center", va="center", size=10)
+    elif pulley:
+        names.append(Label(pulley, 0, -0.7))
 
     m2_is_right = foot.real > 1
     places = ((1 + 1j * foot.imag, -1 if m2_is_right else 1), (foot, 1 if m2_is_right else -1))
     to_scale = True
-    for i, weight, (top, side) in zip("12", weights, places, strict=True):
-        tension = float(answers[f"tension_{i}"])
+    for i, (top, side) in enumerate(places):
+        if not masses[i]:
+            continue
+        sub = "₁₂"[i]
         said = (
-            f"T{SUBSCRIPT[i]} = {text(shown[f'tension_{i}'])} N",
-            f"W{SUBSCRIPT[i]} = {text(shown.round(getattr(scene, f'm{i}') * scene.g))} N",
+            f"T{sub} = {text(shown[f'tension_{i + 1}'])} N",
+            f"W{sub} = {text(shown.round(masses[i] * scene.g))} N",
         )
-        to_scale &= _draw_mass(axes, f"m{SUBSCRIPT[i]}", top, side, (scale * tension, scale * weight), said)
-    axes.set_ylim(foot.imag - BOX - LONGEST_WEIGHT - 0.1, outermost + 0.6)
-    axes.set_aspect("equal", adjustable="datalim")
+        to_scale &= _draw_mass(axes, f"m{sub}", top, side, (scale * tensions[i], scale * weights[i]), said)
+        _draw_acceleration(axes, top, side, case.sign == (-1, 1)[i], shown["acceleration"])
+    lowest, highest = axes.dataLim.intervaly
+    axes.set_ylim(lowest - 0.1, max(highest + 0.1, outermost + 0.3))
+    axes.set_aspect("equal")
     return names, notes if to_scale else [*notes, NOT_TO_SCALE]
 
 
-SUBSCRIPT = {"1": "₁", "2": "₂"}
+def _pulley(shown: Answers) -> str:
+    """What is known of the pulley's inertia; empty where the scene leaves it open."""
+    case, scene = shown.case, shown.case.scene
+    if case.locked:
+        return "M = inf"
+    if scene.I is not None and scene.M is None:
+        return f"I = {text(tidy(shown.round(scene.I)))} kg m²"
+    mass = shown["critical_pulley_mass"] if case.regime == "verge" else case.pulley_mass
+    return "" if mass is None else f"M = {text(tidy(shown.round(mass)))} kg"
+
+
+def _axle_friction(shown: Answers) -> str:
+    """The axle's friction as a force at the rim (N), as far as it acts; empty where it does not."""
+    case = shown.case
+    if case.axle_friction is None or case.locked or not case.sign:
+        return ""
+    held = case.rim_stands if case.regime == "slip" else case.axle_holds
+    return text(tidy(Decimal(shown.settle(lambda m: m.difference if held else m.f))))
 
 
 def _draw_contact(
@@ -154,11 +188,16 @@ def _factor(longest: float) -> float:
     return max((n * power for n in (2, 5) if n * power * longest <= LONGEST), default=power)
 
 
-def _draw_string(axes: "Axes", phi: float, growth: float, outermost: float) -> complex:
-    """Draw pulley, string and guide sheaves; the place where m2 hangs, as low as m1."""
+def _draw_string(
+    axes: "Axes", phi: float, growth: float, outermost: float, masses: tuple[Fraction, Fraction]
+) -> complex:
+    """Draw pulley, string and guide sheaves; the place where m2 hangs, as low as m1.
+
+    An end without a mass is fixed to the pulley, where the arc begins or ends.
+    """
     turned = np.linspace(0, phi, max(2, round(PIECES * phi / TURN)) + 1)
     wound = (1 + growth * turned / TURN) * np.exp(1j * turned)
-    guided, sheaves = _route(phi % TURN or TURN, wound[-1], outermost)
+    guided, sheaves = _route(phi % TURN or TURN, wound[-1], outermost) if masses[1] else ([wound[-1]], [])
     circle = np.exp(1j * np.linspace(0, TURN, PIECES))
     for centre, radius in [(0j, 1.0), *((sheave, SHEAVE) for sheave in sheaves)]:
         edge = centre + radius * circle
@@ -167,8 +206,12 @@ def _draw_string(axes: "Axes", phi: float, growth: float, outermost: float) -> c
     lowest = min([0.0, *(sheave.imag for sheave in sheaves)])
     bottom = min(-outermost - 0.75, lowest - SHEAVE - LONGEST - 0.05)
     foot = complex(guided[-1].real, bottom)
-    for string in (np.array([1 + 1j * bottom, *wound]), np.array([*guided, foot])):
+    strings = [[1 + 1j * bottom, *wound] if masses[0] else wound, [*guided, foot] if masses[1] else []]
+    for string in map(np.array, strings):
         axes.plot(string.real, string.imag, color=INK, lw=2.2, solid_capstyle="butt")
+    for mass, end in zip(masses, (wound[0], wound[-1]), strict=True):
+        if not mass:
+            axes.plot([end.real], [end.imag], "o", color=INK, ms=8)
     return foot
 
 
@@ -207,17 +250,25 @@ def _unit(angle: float) -> complex:
     return complex(cos(angle), sin(angle))
 
 
-def _mark_theta(axes: "Axes", phi: float) -> None:
+def mark_theta(axes: "Axes", phi: float) -> None:
     """The angle, from m1's end of the arc onwards."""
     wide = min(phi, 1.0)
     if wide < 0.2:
         return
     axes.plot([0, 0.3], [0, 0], color=FAINT, lw=0.8)
-    line = 0.17 * np.exp(1j * np.linspace(0, 0.75 * wide, 10))
-    axes.plot(line.real, line.imag, color=INK, lw=1)
-    _draw_heads(axes, [(0.17 * _unit(wide), 0.09 * _unit(wide + pi / 2 - 0.2))], INK)
+    _draw_turn(axes, 0.17, wide / 2, wide / 2, INK)
     at = 0.27 * _unit(wide / 2)
     axes.text(at.real, at.imag, "θ", ha="center", va="center", size=9)
+
+
+def _draw_turn(axes: "Axes", radius: float, middle: float, half: float, colour: str) -> None:
+    """An arrow around the axle, from middle - half to middle + half: clockwise if half is below 0."""
+    bent = 0.25 * min(1.0, 2 * abs(half)) * (0.17 / radius)  # the angle that the head hides
+    way = 1 if half > 0 else -1
+    line = radius * np.exp(1j * np.linspace(middle - half, middle + half - way * bent, 20))
+    axes.plot(line.real, line.imag, color=colour, lw=1)
+    tip = middle + half
+    _draw_heads(axes, [(radius * _unit(tip), 0.09j * way * _unit(tip - 0.2 * way))], colour)
 
 
 def _arrows_along(phi: float) -> Any:
@@ -259,13 +310,26 @@ def _draw_mass(
     forces = ((top + 0.11 * side, 1j, 0.2, INK), (below, -1j, 0.12, GREEN))
     to_scale = True
     for (start, way, off, colour), length, words in zip(forces, lengths, said, strict=True):
-        drawn = min(max(length, SHORTEST_WEIGHT), LONGEST_WEIGHT)
+        drawn = min(max(length, SHORTEST_WEIGHT), LONGEST_WEIGHT) if length else 0.0
         _draw_arrows(axes, [start], [drawn * way], colour, whole=drawn == length)
         to_scale &= drawn == length
-        left = (side > 0) == (axes.xaxis_inverted())
-        at = top.real + off * side, start.imag + 0.24 * way.imag
-        axes.text(*at, words, ha="right" if left else "left", va="center", color=colour)
+        _write_beside(axes, complex(x + off * side, start.imag + 0.24 * way.imag), side, words, colour)
     return to_scale
+
+
+def _draw_acceleration(axes: "Axes", top: complex, side: int, descends: bool, a: Decimal) -> None:
+    """The acceleration beside a mass: how much, and an arrow that says which way."""
+    at = top - 0.5j * BOX + 0.27 * side
+    way = 1j * ACCELERATION * (-1 if descends else 1) if a else 0j
+    _draw_arrows(axes, [at - way / 2], [way], PURPLE)
+    words = f"a = {text(abs(a))} m/s²" if a else "a = 0"
+    _write_beside(axes, at + 0.09 * side, side, words, PURPLE)
+
+
+def _write_beside(axes: "Axes", at: complex, side: int, words: str, colour: str) -> None:
+    """Write words that begin at a place, or end there if they are on the left."""
+    left = (side > 0) == axes.xaxis_inverted()
+    axes.text(at.real, at.imag, words, ha="right" if left else "left", va="center", color=colour)
 
 
 def _draw_arrows(

@@ -60,13 +60,11 @@ def check_arc(case: Case) -> None:
         raise SceneError("m1" if case.scene.m1 == 0 else "m2", 0, f"leaves no arc: {FREE_END}")
 
 
-def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -> Contact:
-    """The arc of contact of a scene at so many equally spaced angles.
+def kind_of(case: Case, kind: str | None = None) -> Kind:
+    """How the tension runs along the arc: where friction is to spare as asked for, creep if not.
 
-    ``kind`` is "creep" (the default) or "least" and matters only where friction is to spare.
     Raises SceneError where the scene does not determine the arc.
     """
-    case = answers.case
     check_arc(case)
     if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
         raise SceneError("M", None, f"is missing: {unmarked(NEEDS_M)}")
@@ -76,6 +74,16 @@ def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -
     shown: Kind = "exponential" if not spare else "least" if kind == "least" else "creep"
     if shown == "least" and case.long_wrap:
         raise SceneError("profile", kind, "is known for up to half a turn of wrap (180 degrees)")
+    return shown
+
+
+def contact(answers: Answers, points: int | str = 13, kind: str | None = None) -> Contact:
+    """The arc of contact of a scene at so many equally spaced angles.
+
+    ``kind`` is "creep" (the default) or "least" and matters only where friction is to spare.
+    Raises SceneError where the scene does not determine the arc.
+    """
+    shown = kind_of(answers.case, kind)
     last = read_whole("points", points, 2, MAX_POINTS) - 1
     rows = [_point(answers, shown, Fraction(j, last)) for j in range(last + 1)]
     balance = _balance(answers, shown)
@@ -172,10 +180,14 @@ def _sum(answers: Answers, a: Number, b: Number, sign: int = 1) -> Number:
     return value
 
 
-def _notes(answers: Answers, kind: Kind, balance: dict[str, dict[str, Number]]) -> list[str]:
-    case = answers.case
+def about(case: Case, kind: Kind) -> str:
+    """Which of the profiles that the scene allows this is, in a sentence."""
     without_mu = case.regime == "no-slip" and case.scene.mu is None
-    notes = [WITHOUT_FRICTION if case.frictionless else WITHOUT_MU if without_mu else ABOUT_KIND[kind]]
+    return WITHOUT_FRICTION if case.frictionless else WITHOUT_MU if without_mu else ABOUT_KIND[kind]
+
+
+def _notes(answers: Answers, kind: Kind, balance: dict[str, dict[str, Number]]) -> list[str]:
+    notes = [about(answers.case, kind)]
     for name in ("tension_1", "tension_2"):
         if answers[name] is not None and name in answers.reasons:
             notes.append(f"{name}: {answers.reasons[name]}.")
