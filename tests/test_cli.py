@@ -93,6 +93,15 @@ def test_the_table_shows_what_the_scene_is_about(atwood: Atwood, words: str, nam
         ),
         ("--m1 1 --m2 3 --M 100 --mu 0.3", r"│ acceleration .*\(1\), \(26\)", "…"),  # equations of the regime
         ("--m1 1 --m2 3 --M 10 --mu 0.3", r"│ acceleration .*\(4\)", "…"),
+        # Without mu, F holds at the least coefficient that is enough; the row says so.
+        (
+            "--m1 1 --m2 3 --M 10 --all",
+            r"│ friction_force at mu_verge .*\n│ friction_force_x at mu_verge ",
+            "…",
+        ),
+        ("--m1 1 --m2 3 --M inf --a 4", r"│ friction_force +│", "at mu_verge"),
+        ("--m1 1 --m2 3 --mu 0.3", r"│ friction_force +│", "at mu_verge"),
+        ("--m1 1 --m2 3", r"│ friction_force +│", "at mu_verge"),
         ("--m1 1 --m2 3 --mu 1e9", "^m1 = 1 kg", "│"),  # a table without rows is none
         ("--m1 1 --m2 3 --mu 0.3 --json", '"acceleration": 0.764026672247107,', "…"),
         ("--m1 1 --m2 3 --mu 0.3 --json --digits 4", '"acceleration": 0.7640,', "…"),

@@ -6,7 +6,7 @@ from itertools import chain, groupby
 from typing import TYPE_CHECKING, Annotated
 
 from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
-from ..model.quantities import AXLE_ENTERS, MEASURED_NAMES, NAMES, QUANTITIES, read_names
+from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, cited, read_names
 from ..model.scene import SceneError, read_digits
 from ..output.text import Forms, cell, for_stream, inputs_in_words, say, scene_record, show
 from ..solver.answers import Answers
@@ -194,6 +194,8 @@ def _beside_bare(answers: Answers, only: Sequence[str]) -> list[str]:
 
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
+AT_LIMIT = ("friction_force", "friction_force_x", "friction_force_y")
+"""What is one number only where friction is at its limit."""
 
 
 def print_table(
@@ -236,12 +238,9 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
         about, case = QUANTITIES[name], answers.case
-        equation = about.equation
-        if case.regime == "slip" and about.equation_in_slip is not None:
-            equation = about.equation_in_slip
-        elif case.axle_friction is not None and name in AXLE_ENTERS:
-            equation += "+b"
-        row = [name, value, about.unit, about.symbol, equation]
+        equation = cited(name, case.regime == "slip", case.axle_friction is not None)
+        at = " at mu_verge" * (name in AT_LIMIT and case.mu_assumed)
+        row = [f"{name}{at}", value, about.unit, about.symbol, equation]
         groups.setdefault(about.group, []).append([for_stream(word, sys.stdout) for word in row])
     return list(groups.values())
 

@@ -147,6 +147,11 @@ class Case:
         return Fraction(0) if limit is None else limit
 
     @property
+    def mu_assumed(self) -> bool:
+        """Whether the friction force is the one at the least coefficient that holds, as none is given."""
+        return self.regime == "no-slip" and self.scene.mu is None and not self.tensions_equal
+
+    @property
     def at_static_limit(self) -> bool:
         """Whether the friction that acts, where it is at its limit, is static friction's."""
         return not self.slide_measured and self.limiting_mu is self.scene.mu

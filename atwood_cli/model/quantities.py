@@ -31,7 +31,7 @@ QUANTITIES = {
     "tension_2": About("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)"),
     "mu_verge": About("friction", "μ*", "", "(27)", "friction coefficient below which the string slips"),
     "safety_factor": About("friction", "μ/μ*", "", "", "times the friction that is needed; below 1 the string slips"),
-    "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser"),
+    "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser", "(26)"),
     "capstan_ratio": About("friction", "k", "", "(26)", "greatest ratio of tensions that friction holds"),
     "friction_force": About("friction", "F", "N", "(32)", "net friction force on the pulley"),
     "friction_force_min": About("friction", "F min", "N", "", "least net friction force of a string that grips"),
@@ -61,11 +61,20 @@ QUANTITIES = {
 # fmt: on
 
 AXLE_ENTERS = {
-    *("acceleration", "tension_1", "tension_2", "rim_acceleration"),
+    *("acceleration", "tension_1", "tension_2", "tension_ratio", "rim_acceleration"),
     *("critical_pulley_mass", "critical_heavier_mass", "least_pulley_mass"),
     *("pulley_mass", "gravity", "m1", "m2"),
 }
 """The quantities into whose equation the friction of an axle comes, which the paper does not have."""
+
+
+def cited(name: str, slips: bool, rubs: bool) -> str:
+    """The paper's equation for a quantity in a regime; +b marks one that an axle's friction enters."""
+    about = QUANTITIES[name]
+    if slips and about.equation_in_slip is not None:
+        return about.equation_in_slip
+    return about.equation + "+b" * (rubs and name in AXLE_ENTERS)
+
 
 FROM_MOTION: dict[str | None, tuple[str, ...]] = {
     "M": ("pulley_mass", "moment_of_inertia"),
