@@ -54,7 +54,7 @@ class Formula:
         return self if other == 1 else Formula("*", formula(other), self)
 
     def __truediv__(self, other: Term) -> Formula:
-        return Formula("/", self, formula(other))
+        return self if other == 1 else Formula("/", self, formula(other))
 
     def __rtruediv__(self, other: float) -> Formula:
         return Formula("/", formula(other), self)
@@ -88,6 +88,15 @@ def formula(part: Term | Fraction) -> Formula:
     if isinstance(part, Formula):
         return part
     return Formula("number", float(part) if isinstance(part, Fraction) else part)
+
+
+def factors(f: Formula) -> tuple[list[Formula], list[Formula]]:
+    """The factors of a product or quotient, whole numbers first, and those that divide it."""
+    if f.op not in ("*", "/"):
+        return [f], []
+    (a, b), (c, d) = map(factors, f.parts)
+    above, below = (a + c, b + d) if f.op == "*" else (a + d, b + c)
+    return sorted(above, key=lambda part: part.op != "number"), below
 
 
 def _recorded(function: str) -> Callable[[Any, Formula], Formula]:

@@ -6,15 +6,16 @@ the model does with symbols (`symbolic`), and the numbers are the solver's.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from operator import attrgetter
+from functools import reduce
+from operator import attrgetter, mul
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.interval import LARGEST_EXPONENT, Unsettled, enclosures
 from ..arithmetic.rounding import as_typed, is_infinite, settle, text, to_digits
-from ..arithmetic.symbolic import Formula, Symbol, Symbols
+from ..arithmetic.symbolic import Formula, Symbol, Symbols, factors
 from ..model import physics
 from ..model.machine import Machine
 from ..model.quantities import QUANTITIES
@@ -32,10 +33,10 @@ LONGEST = 1000
 
 
 class Law(NamedTuple):
-    """An equation that no number is put into."""
+    """An equation that no number is put into: in letters, or as its two sides."""
 
     label: str
-    words: str
+    words: str | tuple[Formula, Formula]
 
 
 class Equation(NamedTuple):
@@ -63,15 +64,21 @@ Part = str | Law | Equation
 INTERMEDIATE = {
     "k1": ("(26)", ""),
     "limiting_k1": ("(26)", ""),
-    "transfer": ("(26)", "kg"),
-    "limiting_transfer": ("(26)", "kg"),
-    "drive": ("(33)", "kg"),
-    "limiting_drive": ("(33)", "kg"),
-    "excess": ("(33)", ""),
+    "transfer": ("", "kg"),
+    "limiting_transfer": ("", "kg"),
+    "drive": ("", "kg"),
+    "limiting_drive": ("", "kg"),
+    "excess": ("", ""),
     "massless_verge": ("(27)", ""),
     "alpha": ("", "rad"),
 }
-"""The paper's number and the unit of what is no quantity of the registry."""
+"""The paper's number, if it is the paper's equation, and the unit of what is not in the registry."""
+IN_THE_PAPER: dict[str, tuple[Callable[..., Any], str]] = {
+    "tension_ratio": (physics.ratio_in_the_paper, "l h M"),
+    "critical_pulley_mass": (physics.pulley_mass_in_the_paper, "l h k"),
+    "critical_heavier_mass": (physics.heavier_mass_in_the_paper, "l M k"),
+}
+"""Quantities that the paper has in another form, for a disk: that form, and what it is made of."""
 
 
 class Derivation:
@@ -117,6 +124,8 @@ class Derivation:
             "mu_verge": "μ*",
             "massless_verge": "μ_0",
             "k1": "k - 1",
+            "capstan_ratio": "k",
+            "tension_ratio": f"T{self.heavy}/T{self.light}",
             "transfer": "z",
             "drive": "d",
             "alpha": "s",
@@ -129,44 +138,59 @@ class Derivation:
         self.names = names
 
     @property
+    def masses(self) -> tuple[Symbol, Symbol]:
+        """The symbols of the lighter and the heavier mass."""
+        return self.inputs[f"m{self.light}"], self.inputs[f"m{self.heavy}"]
+
+    def symbol(self, name: str) -> str:
+        """What equations write for a quantity."""
+        return self.names.get(name) or plain(QUANTITIES[name].symbol)
+
+    @property
     def half_turn(self) -> bool:
         return self.scene.wrap.is_half_turn
 
-    def formula(self, name: str) -> Formula:
-        """The model's formula for a quantity, in the symbols of the inputs and of what else has a name."""
+    def formula(self, name: str, expanded: str = "") -> Formula:
+        """The model's formula for a quantity, in the symbols of the inputs and of what else has a name.
+
+        What is ``expanded`` is put in by its own formula.
+        """
         arithmetic: Any = Symbols(list(self.inputs.values()))
         known = {
             other: Formula("symbol", Symbol(symbol, other))
             for other, symbol in self.names.items()
-            if other != name
+            if other not in (name, expanded)
         }
         formula: Formula = getattr(Machine(self.case, arithmetic, known), name)
         return formula
 
     def equation(self, name: str) -> Equation:
         """The equation of anything that the scene determines."""
-        grips = self.case.regime == "no-slip"
-        gives_tensions = "(1)" if grips else "(1), (26)"
-        of_the_motion = {
-            "magnitude": ("(4)" if grips else gives_tensions, "m/s²"),
-            "light_tension": (gives_tensions, "N"),
+        grips, moves = self.case.regime == "no-slip", not self.case.stands
+        own = INTERMEDIATE | {
+            "magnitude": ("(4)" if grips else "(1), (26)", "m/s²"),
+            "light_tension": ("(1)", "N"),
             "heavy_tension": ("", "N"),
-            "difference": (("(1)" if self.case.stands else "(3)") if grips else "(26)", "N"),
+            "difference": (("(3)" if moves else "(1)") if grips else "(26)", "N"),
+            "tension_ratio": ("", ""),
         }
-        symbol = self.names.get(name)
-        if name in QUANTITIES:
-            about = QUANTITIES[name]
-            symbol, label, unit = symbol or plain(about.symbol), about.equation, about.unit
+        if name in own:
+            label, unit = own[name]
         else:
-            label, unit = (of_the_motion | INTERMEDIATE)[name]
-        assert symbol is not None
+            label, unit = QUANTITIES[name].equation, QUANTITIES[name].unit
+        if name == "critical_heavier_mass" and self.slips_at_rest:
+            label = QUANTITIES["least_heavier_mass"].equation
+        symbol = self.symbol(name)
         return self.worked_out(label, symbol, self.formula(name), Symbol(symbol, name), unit)
 
     def worked_out(self, label: str, left: str, formula: Formula, result: Symbol, unit: str) -> Equation:
         """The equation with numbers put in, each with as many digits as give the result shown.
 
-        No numbers where they would be too large to write, or longer than anybody reads.
+        No numbers where they would be too large to write, or longer than anybody reads. The paper's number
+        is marked where the friction of the axle enters its equation.
         """
+        if label and any(symbol.name in ("b", "f_axle") for symbol in formula.symbols()):
+            label = self.cite(label)
         value, exact = self.number(result, self.digits, self.digits)
         if is_infinite(value):
             return Equation(label, left, formula, None, "=>", f"10^{LARGEST_EXPONENT}", unit)
@@ -189,7 +213,7 @@ class Derivation:
         precision = 2 * (longest + self.digits) + 20
         try:
             value = formula.worked_out(enclosures(precision), numbers)
-        except Unsettled:  # rounded numbers can make a denominator 0 or less, which c - 2z is not
+        except (Unsettled, ZeroDivisionError):  # rounded, c - 2z can be 0 or less, which it is not
             return False
         if not result:
             return value.lo == value.hi == 0
@@ -217,6 +241,59 @@ class Derivation:
             self._finer[digits] = Answers(self.scene, digits)
         value = self._finer[digits].settle(attrgetter(str(symbol.of)))
         return Decimal(value), False
+
+    def cite(self, label: str) -> str:
+        """The number of an equation of the paper, marked if the axle rubs, which it does not there."""
+        return label if self.case.axle_friction is None else f"{label}+b"
+
+    @property
+    def slips_at_rest(self) -> bool:
+        """Whether the critical heavier mass makes the string slip on a pulley that stands."""
+        return self.case.locked or self.case.slips_once_it_moves
+
+    def ratio_at_the_limit(self) -> Law:
+        """The ratio of tensions (33) less 1 on both sides, where friction is at its limit."""
+        return Law("", (self._excess, Formula("symbol", Symbol("k - 1", "k1"))))
+
+    def multiplied_out(self) -> Law:
+        """The same without a denominator, and with the transfer z = l (k - 1) in it."""
+        above, (_, *below) = factors(self._excess)  # what is left out is l
+        return Law("", (product(above), product([Formula("symbol", Symbol("z", "transfer")), *below])))
+
+    def collected(self, name: str) -> Law:
+        """The equation of a critical mass, multiplied out."""
+        above, below = factors(self.formula(name, expanded="drive"))
+        critical = Formula("symbol", Symbol(self.symbol(name), name))
+        return Law("", (product([*below, critical]), product(above)))
+
+    @property
+    def _excess(self) -> Formula:
+        """T_h/T_l - 1 of a string that grips, whatever the pulley."""
+        given = self.inputs
+        c, b = given.get("c") or Symbol("c", "rim_mass"), given.get("b")
+        l, h, *others = (Formula("symbol", one) for one in (*self.masses, c, b) if one is not None)
+        excess: Any = physics.excess_ratio
+        ratio: Formula = excess(l, h, *others)
+        return ratio
+
+    def in_the_paper(self, name: str) -> Iterator[Equation]:
+        """A quantity in the paper's own form, which is for a disk whose axle does not rub."""
+        scene, case = self.scene, self.case
+        if (
+            name not in IN_THE_PAPER
+            or scene.I is not None
+            or scene.inertia != Fraction(1, 2)
+            or case.axle_friction is not None
+        ):
+            return
+        if case.stands or (case.pulley_mass is None and name != "critical_pulley_mass"):
+            return
+        of_the_paper, symbols = IN_THE_PAPER[name]
+        l, h = self.masses
+        made_of = {"l": l, "h": h, "M": self.inputs.get("M"), "k": Symbol("k", "capstan_ratio")}
+        formula = of_the_paper(*(Formula("symbol", made_of[one]) for one in symbols.split()))
+        about, symbol = QUANTITIES[name], self.symbol(name)
+        yield self.worked_out(about.equation, symbol, formula, Symbol(symbol, name), about.unit)
 
     def lines(self, *names: str) -> Iterator[Equation]:
         """The equations of those that exist and have not been shown yet."""
@@ -314,6 +391,11 @@ class Derivation:
         """A symbol with its value, for a sentence."""
         about = QUANTITIES[name]
         return _is(plain(about.symbol), self.answers[name], about.unit)
+
+
+def product(factors: Iterable[Formula]) -> Formula:
+    """The formula of a product."""
+    return reduce(mul, factors)
 
 
 def _is(symbol: str, value: Any, unit: str) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from fractions import Fraction
 from typing import NamedTuple
 
+from ..arithmetic.rounding import is_infinite
 from ..model.quantities import QUANTITIES
 from ..solver.answers import Answers
 from ..solver.messages import (
@@ -125,7 +126,7 @@ def _pulley(derivation: Derivation) -> Iterator[Part]:
             " `c = I/R^2`, the pulley's inertia as a mass at the rim (`M/2` for the disk of the paper),"
         )
         friction = " + f_axle" * (case.axle_friction is not None)
-        yield Law("(3)", f"{difference} = c {derivation.names['magnitude']}{friction}")
+        yield Law(derivation.cite("(3)"), f"{difference} = c {derivation.names['magnitude']}{friction}")
         yield from derivation.rim_mass()
         yield from odd_inertia(derivation.answers)
 
@@ -141,10 +142,13 @@ def _turning(derivation: Derivation) -> Iterator[Part]:
         "The pulley's weight acts at the axle and does not turn it. The axle rubs: its friction opposes the"
         " turning like a force `f_axle` at the rim. So, while the pulley turns,"
     )
-    yield Law("(2)", f"({difference} - f_axle) R = I α")
+    yield Law(derivation.cite("(2)"), f"({difference} - f_axle) R = I α")
     yield "and it stands while the tensions differ by no more than `f_axle`, the weight of a mass `b`:"
     yield from derivation.axle()
-    yield "(The axle of the paper does not rub: its equations are those here with `f_axle = 0` and `b = 0`.)"
+    yield (
+        "(+b marks an equation of the paper that this friction enters. The axle of the paper does not rub:"
+        " its equations are those here with `f_axle = 0` and `b = 0`.)"
+    )
 
 
 def _motion(derivation: Derivation) -> Iterator[Part]:
@@ -158,7 +162,8 @@ def _motion(derivation: Derivation) -> Iterator[Part]:
     elif case.sign == 0 or case.stands:
         yield "At rest, `a` = 0, each tension is the weight that hangs on it."
     else:
-        yield "The sum of (1) and (3) has only the acceleration left. It gives the tensions."
+        both = f"(1) and {derivation.cite('(3)')}"
+        yield f"The sum of {both} has only the acceleration left. It gives the tensions."
         yield from derivation.motion("magnitude")
     yield from derivation.tensions()
     yield from _rim(derivation)
@@ -203,12 +208,13 @@ def _rim(derivation: Derivation) -> Iterator[Part]:
     elif case.rim_stands:
         yield "The tensions differ by less than `f_axle`: the axle holds the pulley."
     else:
-        yield "Friction turns the pulley by (3), but its rim falls behind the string:"
+        yield f"Friction turns the pulley by {derivation.cite('(3)')}, but its rim falls behind the string:"
         yield from derivation.lines("rim_acceleration")
 
 
 def _grip(derivation: Derivation) -> Iterator[Part]:
-    case, scene, l, h = derivation.case, derivation.scene, derivation.light, derivation.heavy
+    case, scene, answers = derivation.case, derivation.scene, derivation.answers
+    l, h = derivation.light, derivation.heavy
     if case.tensions_equal:
         yield "Equal tensions need no friction along the arc. So the string holds, whatever `μ` is."
         return
@@ -217,30 +223,39 @@ def _grip(derivation: Derivation) -> Iterator[Part]:
     yield Law("(25)", "dT/dθ = μ T")
     yield Law("(26)", f"T(θ) = T{l} e^(μ θ)")
     angle = "" if derivation.half_turn else f", where {derivation.value('phi', 'rad')}"
+    k = answers["capstan_ratio"]
+    at_most = "" if k is None or is_infinite(k) else f": {derivation.say('capstan_ratio')}"
     yield (
-        f"so at the most, friction makes `T{h}` as large as `k` = `e^(μ {derivation.names['phi']})`"
-        f" times `T{l}`{angle}."
+        f"so at the most, friction makes `T{h}` as large as `e^(μ {derivation.names['phi']})`"
+        f" times `T{l}`{angle}. This capstan ratio is called `k`{at_most}."
     )
     if not scene.mu and scene.mu is not None:
         yield "Without friction `k = 1`: the tensions are equal and nothing turns the pulley."
         if case.regime == "verge" and derivation.answers["critical_pulley_mass"] is not None:
             yield f"Only without mass does it go along: {derivation.say('critical_pulley_mass')}."
     elif case.pulley_known:
+        motion = derivation.cite("(4)")
         if case.stands:
             held = "a locked pulley" if case.locked else "a pulley that the axle holds"
             have = f"On {held} the tensions are the weights. Their ratio is"
         elif case.regime == "no-slip":
-            have = "By (4) the tensions have the ratio"
+            have = f"By {motion} the tensions have the ratio"
         else:
-            have = "If the string held, the tensions would by (4) have the ratio"
+            have = f"If the string held, the tensions would by {motion} have the ratio"
         yield f"{have} `T{h}/T{l}` = `1 + x`, with"
         yield from derivation.lines("excess")
-        yield "and the least coefficient that allows it is"
+        if case.regime == "no-slip":
+            yield "so the ratio is"
+            yield from derivation.lines("tension_ratio")
+            yield from _in_the_paper(derivation, "tension_ratio")
+        yield "The least coefficient that allows it is, by (26) for the whole arc,"
         yield from derivation.lines("mu_verge")
     else:
         yield from _grip_on_any_pulley(derivation)
-    yield verdict(derivation.answers)
-    yield from kinetic(derivation.answers)
+    yield verdict(answers)
+    if case.pulley_known and answers["safety_factor"] is not None:
+        yield f"There is {derivation.say('safety_factor')} times the friction that is needed."
+    yield from kinetic(answers)
 
 
 def _grip_on_any_pulley(derivation: Derivation) -> Iterator[Part]:
@@ -258,10 +273,8 @@ def _grip_on_any_pulley(derivation: Derivation) -> Iterator[Part]:
         )
         yield from derivation.lines("massless_verge")
     elif case.can_slip:
-        yield "It does, by"
-        yield from derivation.lines("drive")
-        yield "The ratio (33) is `k` on a pulley of the critical mass,"
-        yield from derivation.lines("critical_pulley_mass")
+        yield "It does."
+        yield from _critical(derivation, "critical_pulley_mass")
 
 
 def _friction(derivation: Derivation) -> Iterator[Part]:
@@ -305,12 +318,9 @@ def _friction(derivation: Derivation) -> Iterator[Part]:
 
 def _limits(derivation: Derivation) -> Iterator[Part]:
     answers = derivation.answers
-    if masses := [*derivation.lines("critical_pulley_mass", "critical_heavier_mass")]:
-        if derivation.case.regime != "verge":
-            yield "Static friction at its limit all along the arc makes the ratio (33) equal to `k`."
-        yield f"{', '.join(f'`{one.left}` is the {derivation.meaning(one.left)}' for one in masses)}."
-        yield from derivation.lines("k1", "transfer", *["drive"] * derivation.case.can_slip)
-        yield from masses
+    if not derivation.case.tensions_equal:
+        for name in ("critical_pulley_mass", "critical_heavier_mass", "critical_lighter_mass"):
+            yield from _critical(derivation, name)
     if least := [*derivation.lines("least_heavier_mass", "least_pulley_mass")]:
         pulley = " and the pulley's mass `M min`" * (answers["least_pulley_mass"] is not None)
         yield f"For the verge, the heavier mass must exceed `m min`{pulley}."
@@ -318,6 +328,50 @@ def _limits(derivation: Derivation) -> Iterator[Part]:
         yield from least
     yield from holding_again(answers)
     yield from conditions(answers)
+
+
+def _critical(derivation: Derivation, name: str) -> Iterator[Part]:
+    """A mass at which the string is on the verge of slipping, from the ratio of the tensions."""
+    case, l, h = derivation.case, derivation.light, derivation.heavy
+    if name in derivation.shown or derivation.answers[name] is None:
+        return
+    stands = {
+        "critical_heavier_mass": derivation.slips_at_rest,
+        "critical_lighter_mass": case.stands_until_it_slips,
+    }
+    symbol = derivation.symbol(name)
+    yield f"`{symbol}` is the {QUANTITIES[name].meaning}."
+    if stands.get(name):
+        yield "The pulley stands until then, so the tensions are the weights: their ratio reaches `k` at"
+        yield from derivation.lines("k1", "transfer", name)
+        return
+    if "verge" not in derivation.shown:
+        derivation.shown.add("verge")
+        yield (
+            f"On the verge the ratio {derivation.cite('(33)')} of the tensions is `k`. Less 1 on both sides,"
+            " this is"
+        )
+        yield derivation.ratio_at_the_limit()
+        if transfer := [*derivation.lines("k1", "transfer")]:
+            yield f"Friction at its limit adds a mass `z` to `m{l}`:"
+            yield from transfer
+        yield f"Multiplied out, with `z` for `m{l} (k - 1)`, the ratio is"
+        yield derivation.multiplied_out()
+    unknown = {"critical_pulley_mass": "c = β M*", "critical_heavier_mass": f"m{h} = m*"}
+    yield f"All terms with `{unknown.get(name, f'm{l} = l*')}` on one side, this becomes"
+    yield derivation.collected(name)
+    if name == "critical_pulley_mass":
+        yield f"`m{h} - m{l} - z` is the drive `d`, what friction at its limit leaves to drive the masses."
+        yield from derivation.lines("drive")
+    yield "So"
+    yield from derivation.lines(name)
+    yield from _in_the_paper(derivation, name)
+
+
+def _in_the_paper(derivation: Derivation, name: str) -> Iterator[Part]:
+    if found := [*derivation.in_the_paper(name)]:
+        yield "or, as the paper has it, for a disk,"
+        yield from found
 
 
 def _simpler(derivation: Derivation) -> Iterator[Step]:

@@ -9,7 +9,7 @@ from decimal import Decimal
 from textwrap import wrap
 
 from ..arithmetic.rounding import text
-from ..arithmetic.symbolic import Formula, Symbol
+from ..arithmetic.symbolic import Formula, Symbol, factors
 from ..model.quantities import QUANTITIES
 from ..model.scene import INPUTS
 from .equations import HELD, Equation, Law, Part, plain
@@ -74,7 +74,7 @@ def _write(f: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) ->
 
 def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, latex: bool) -> Written:
     """A product or quotient of all its factors: a minus in front, what divides below one line."""
-    above, below = _factors(f)
+    above, below = factors(f)
     minus = above[0].op == "number" and above[0].parts[0] < 0
     if minus:
         above = above[1:]
@@ -91,15 +91,6 @@ def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, la
     else:
         quotient = upper + (f"/({lower})" if below[1:] else f"/{lower}" if below else "")
     return f"{'-' * minus}{quotient}", SUM if minus else PRODUCT
-
-
-def _factors(f: Formula) -> tuple[list[Formula], list[Formula]]:
-    """The factors of a product or quotient, whole numbers first, and those that divide it."""
-    if f.op not in ("*", "/"):
-        return [f], []
-    (a, b), (c, d) = map(_factors, f.parts)
-    above, below = (a + c, b + d) if f.op == "*" else (a + d, b + c)
-    return sorted(above, key=lambda part: part.op != "number"), below
 
 
 def _write_number(digits: str, latex: bool) -> Written:
@@ -183,6 +174,13 @@ def in_text(words: str) -> str:
     return "".join(pieces).replace(" = ", f"{HELD}={HELD}")
 
 
+def law(law: Law, latex: bool = False) -> str:
+    """A law in a line."""
+    if isinstance(law.words, str):
+        return in_math(law.words) if latex else law.words
+    return " = ".join(written(side, None, latex) for side in law.words)
+
+
 def chain(equation: Equation, latex: bool = False) -> list[str]:
     """The sides of an equation from left to right: symbols, numbers put in, result."""
     unit = equation.unit
@@ -200,7 +198,7 @@ def chain(equation: Equation, latex: bool = False) -> list[str]:
 def _equation_lines(part: Law | Equation, width: int, spell: Spell, label: str) -> list[str]:
     """An equation in one line if it fits, else a line for each of its sides, below each other."""
     if isinstance(part, Law):
-        return wrapped(spell(part.words), width, label, " " * (len(label) + 2))
+        return wrapped(spell(law(part)), width, label, " " * (len(label) + 2))
     left, sides = spell(part.left), [spell(side) for side in chain(part)]
     whole = f"{label}{left} {' '.join(sides)}"
     if len(whole) <= width:
@@ -241,7 +239,7 @@ def as_markdown(given: Iterable[str], explanation: Explanation) -> Iterator[str]
 def _aligned(part: Law | Equation) -> str:
     """An equation in LaTeX, its = signs below each other."""
     if isinstance(part, Law):
-        return in_math(part.words)
+        return law(part, latex=True)
     sides = chain(part, latex=True)
     rows = " \\\\\n".join(f"&{side}" for side in sides)
     return f"\\begin{{aligned}}\n{in_math(part.left)} {rows}\n\\end{{aligned}}"

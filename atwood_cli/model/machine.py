@@ -449,7 +449,7 @@ class Machine(Generic[N]):
         """Lighter mass below which the string slips (kg); 0 where it holds under any."""
         k1, h = self.k1, self.h
         if self.case.stands_until_it_slips:
-            return physics.lightest_held(h, k1)
+            return physics.lightest_held(h, self.capstan_ratio)
         c = self._given(self.case.rim_mass, NEEDS_M)
         if is_zero(self.case.rim_mass) and self.b is None:
             return self.ar.number(0)

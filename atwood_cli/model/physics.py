@@ -14,8 +14,8 @@ a = g d/s, the light side hangs in its weight and what accelerates it, and the h
 side's tension and what friction makes up. What differs between regimes is only where d and s come from:
 
 - no slip (4): d = h - l and s = h + l + c; friction turns the pulley, T_h - T_l = c a (3);
-- verge (33) and slip: friction at its limit lets l count k-fold, d = h - l k and s = h + l k, and
-  T_h - T_l = (k - 1) T_l (26). The *transfer* z = l (k - 1) is the mass that friction adds.
+- verge and slip, (1) with (26): friction at its limit lets l count k-fold, d = h - l k and s = h + l k,
+  and T_h - T_l = (k - 1) T_l. The *transfer* z = l (k - 1) is the mass that friction adds.
 
 An axle that rubs takes a constant force f at the rim from what turns the pulley, so (3) becomes
 T_h - T_l = c a + f. As a mass it is ``b`` = f/g: without slip d = h - l - b, and for h - l <= b all rests.
@@ -212,7 +212,7 @@ def difference_of_friction(light: N, k1: N) -> N:
 
 
 def excess_ratio(l: N, h: N, c: N, b: N | None = None) -> N:
-    """T_h/T_l - 1 of a string that grips, from (4), without cancellation; beside an axle, h - l > b.
+    """T_h/T_l - 1 of a string that grips, by (33), without cancellation; beside an axle, h - l > b.
 
     >>> excess_ratio(1, 3, 6), excess_ratio(1, 3, 5, 1)
     (1.0, 1.4)
@@ -297,7 +297,7 @@ def critical_heavier_mass(l: N, c: N, transfer: N, b: N | None = None, side: int
 
 
 def critical_lighter_mass(h: N, c: N, k1: N, b: N | None = None) -> N:
-    """Lighter mass (kg) below which the string slips, the counterpart of (35): (33) solved for it.
+    """Lighter mass (kg) below which the string slips: (33) solved for it, as (34) and (35) are for theirs.
 
     >>> critical_lighter_mass(3, 6, 1), critical_lighter_mass(3, 6, 1, 3)
     (1.0, 2.25)
@@ -307,13 +307,40 @@ def critical_lighter_mass(h: N, c: N, k1: N, b: N | None = None) -> N:
     return h * ((c + b) / (c - b + k1 * (2 * h + c - b)))
 
 
-def lightest_held(h: N, k1: N) -> N:
-    """Lighter mass (kg) below which the string slips where the pulley stands: h/k, from (26).
+def lightest_held(h: N, k: N) -> N:
+    """Lighter mass (kg) below which the string slips where the pulley stands, from (26).
 
-    >>> lightest_held(3, 1)
+    >>> lightest_held(3, 2)
     1.5
     """
-    return h / (k1 + 1)
+    return h / k
+
+
+def ratio_in_the_paper(l: N, h: N, M: N) -> N:
+    """T_h/T_l of a string that grips a disk of mass M, as (33) has it; 1 + `excess_ratio`.
+
+    >>> ratio_in_the_paper(1, 3, 12)
+    2.0
+    """
+    return (4 * l + M) * h / ((4 * h + M) * l)
+
+
+def pulley_mass_in_the_paper(l: N, h: N, k: N) -> N:
+    """Mass (kg) of a disk above which the string slips, as (34) has it; `critical_pulley_mass`.
+
+    >>> pulley_mass_in_the_paper(1, 3, 2)
+    12.0
+    """
+    return 4 * l * h * (k - 1) / (h - l * k)
+
+
+def heavier_mass_in_the_paper(l: N, M: N, k: N) -> N:
+    """Heavier mass (kg) at which the string is on the verge, as (35) has it; `critical_heavier_mass`.
+
+    >>> heavier_mass_in_the_paper(1, 12, 2)
+    3.0
+    """
+    return M * l * k / (M - 4 * l * (k - 1))
 
 
 def least_heavier_mass(l: N, transfer: N) -> N:
