@@ -53,6 +53,9 @@ def test_they_undo_the_acceleration_and_the_load() -> None:
     T = sp.symbols("T", positive=True)
     mass = physics.hanging_mass(T, a, g)
     assert sp.simplify(mass * g - T - mass * a) == 0
+    lifted = physics.lifted_mass(T, a, g)
+    assert sp.simplify(T - lifted * g - lifted * a) == 0
+    assert sp.simplify(physics.heavy_tension(mass, a, g) - T) == 0
     k1 = sp.symbols("k1", positive=True)
     z = physics.transfer_at_limit(l, k1)
     slide = physics.acceleration(physics.drive(l, h, z), physics.load(l, h, z), g)

@@ -198,16 +198,12 @@ NEEDS = {
 """Of all commands: an option, and those of which it needs one."""
 
 
-def check(options: Mapping[str, Any], explain: str = "") -> None:
-    """Raises SceneError where an option that is given excludes another, or lacks one that it needs.
-
-    ``explain``: more options with which --explain has no effect.
-    """
-    no_effect = NO_EFFECT | {"explain": f"{NO_EFFECT['explain']} {explain}"}
+def check(options: Mapping[str, Any]) -> None:
+    """Raises SceneError where an option that is given excludes another, or lacks one that it needs."""
     given = {name: value for name, value in options.items() if value not in (None, False, [], ())}
     for name, value in given.items():
         shown = value[0] if isinstance(value, list | tuple) else None if value is True else value
-        for other in no_effect.get(name, "").split():
+        for other in NO_EFFECT.get(name, "").split():
             if other in given:
                 raise SceneError(name, shown, f"has no effect with {flag(other)}; leave one of them out")
         needed = [other for other in NEEDS.get(name, "").split() if other in options]

@@ -128,7 +128,7 @@ def solve(
     bare: Bare = False,
     force: Force = False,
 ) -> int:
-    check(locals(), explain="a drop time")
+    check(locals())
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
     answers = read_answers({**given, "a": a, "drop": drop, "time": time}, read_digits(digits))
     if budget and not answers.uncertainties:
@@ -143,7 +143,8 @@ def solve(
         from ..derivation.steps import explain as explained
         from ..output.page import print_explanation
 
-        print_explanation([*inputs_in_words(answers.case.scene).values()], explained(answers), markdown)
+        given_in_words = inputs_in_words(answers.case.scene, answers.case.motion)
+        print_explanation([*given_in_words.values()], explained(answers), markdown)
         return DONE
     forms = Forms(
         json=lambda: _record(answers, names, budget),

@@ -84,9 +84,10 @@ IN_THE_PAPER: dict[str, tuple[Callable[..., Any], str]] = {
 class Derivation:
     """The equations of a scene, each as the model has it, with the solver's numbers.
 
-    ``names`` are the symbols of what the model computes, ``inputs`` those of what is given, ``light`` and
-    ``heavy`` the indices of the masses. ``shown`` are the equations written so far, by name, ``explained``
-    the quantities whose absence has been explained.
+    ``names`` are the symbols of what the model computes, ``inputs`` those of what is given, of which
+    ``found`` follow from a measured motion, ``light`` and ``heavy`` the indices of the masses.
+    ``shown`` are the equations written so far, by name, ``explained`` the quantities whose absence has been
+    explained.
     """
 
     def __init__(self, answers: Answers) -> None:
@@ -97,6 +98,7 @@ class Derivation:
         self.explained: set[str] = set()
         case, scene = self.case, self.scene
         self.light, self.heavy = ("2", "1") if case.sign < 0 else ("1", "2")
+        magnitude = "a" if case.sign >= 0 else "|a|"
         values = {
             "m1": scene.m1,
             "m2": scene.m2,
@@ -110,12 +112,18 @@ class Derivation:
             "R": scene.R,
             "f_axle": case.axle_friction,
             "b": case.axle_mass,
+            magnitude: case.measured_acceleration if case.motion.finds else None,
+            "s": case.motion.drop,
+            "t": case.motion.time,
         }
         self.inputs = {name: Symbol(name, value) for name, value in values.items() if value is not None}
+        self.found = {"c", "M"} if case.motion.finds == "M" else {case.motion.finds}
+        if case.motion.time is not None:
+            self.found.add(magnitude)
         names = {
             "phi": "π" if self.half_turn else "φ",
             "half_sine": "sin(φ/2)",
-            "magnitude": "a" if case.sign >= 0 else "|a|",
+            "magnitude": magnitude,
             "light_tension": f"T{self.light}",
             "heavy_tension": f"T{self.heavy}",
             "difference": f"T{self.heavy} - T{self.light}",
@@ -128,13 +136,15 @@ class Derivation:
             "tension_ratio": f"T{self.heavy}/T{self.light}",
             "transfer": "z",
             "drive": "d",
-            "alpha": "s",
+            "alpha": "φ_lim",
             "critical_pulley_mass": "M*",
         }
         if case.regime == "slip" and scene.mu_k is not None:
             names |= {"limiting_k1": "k_kin - 1", "limiting_transfer": "z_kin", "limiting_drive": "d_kin"}
         if case.regime == "verge":
             del names["mu_verge"]  # it is the coefficient given
+        if case.slide_measured:
+            names |= {"limiting_k1": "x_kin", "mu_k": "μ_k"}
         self.names = names
 
     @property
@@ -180,6 +190,8 @@ class Derivation:
             label, unit = QUANTITIES[name].equation, QUANTITIES[name].unit
         if name == "critical_heavier_mass" and self.slips_at_rest:
             label = QUANTITIES["least_heavier_mass"].equation
+        if name == "limiting_k1" and self.case.slide_measured:
+            label = "(1)"
         symbol = self.symbol(name)
         return self.worked_out(label, symbol, self.formula(name), Symbol(symbol, name), unit)
 
@@ -229,7 +241,7 @@ class Derivation:
         """
         if isinstance(symbol.of, Fraction):
             exact: Fraction | None = symbol.of
-            keep = typed
+            keep = digits if symbol.name in self.found else typed
         else:
             exact, keep = self.answers.exactly(attrgetter(str(symbol.of))), digits
         if exact is not None:
@@ -238,7 +250,7 @@ class Derivation:
                 return Decimal(as_typed(exact)), True
             return to_digits(digits)(exact), False
         if digits not in self._finer:
-            self._finer[digits] = Answers(self.scene, digits)
+            self._finer[digits] = self.answers.to(digits)
         value = self._finer[digits].settle(attrgetter(str(symbol.of)))
         return Decimal(value), False
 
@@ -311,18 +323,23 @@ class Derivation:
             return
         names = ("I", "R") if self.scene.I is not None else ("β", "M")
         one, other = (Formula("symbol", given[name]) for name in names)
-        formula = one / Formula("square", other) if self.scene.I is not None else one * other
+        formula = one / (other * other) if self.scene.I is not None else one * other
         yield self.worked_out("", "c", formula, given["c"], "kg")
 
-    def axle(self) -> Iterator[Part]:
-        """The equations of the axle's friction as a force at the rim, and as a mass."""
+    def axle_force(self) -> Iterator[Part]:
+        """The equation of the axle's friction as a force at the rim, if it is given as a torque."""
         given, axle = self.inputs, self.scene.axle
         if axle is not None and axle.unit == "N m":
             torque, R = (Formula("symbol", one) for one in (Symbol("τ_axle", axle.number), given["R"]))
             yield self.worked_out("", "f_axle", torque / R, given["f_axle"], "N")
-        symbols: list[Any] = [Formula("symbol", given[name]) for name in ("f_axle", "g")]
-        mass: Any = physics.axle_mass(*symbols)
-        yield self.worked_out("", "b", mass, given["b"], "kg")
+
+    def axle_mass(self) -> Iterator[Part]:
+        """The equation of that friction as a mass, if there is any."""
+        given = self.inputs
+        if "b" in given:
+            symbols: list[Any] = [Formula("symbol", given[name]) for name in ("f_axle", "g")]
+            mass: Any = physics.axle_mass(*symbols)
+            yield self.worked_out("", "b", mass, given["b"], "kg")
 
     def motion(self, *names: str) -> Iterator[Part]:
         """The equations that end with the acceleration's magnitude, and its sign where it is negative."""
@@ -390,7 +407,7 @@ class Derivation:
     def say(self, name: str) -> str:
         """A symbol with its value, for a sentence."""
         about = QUANTITIES[name]
-        return _is(plain(about.symbol), self.answers[name], about.unit)
+        return _is(self.symbol(name), self.answers[name], about.unit)
 
 
 def product(factors: Iterable[Formula]) -> Formula:
@@ -410,4 +427,6 @@ def in_words(value: Any, unit: str) -> str:
 
 def plain(symbol: str) -> str:
     """The registry's symbol in plain letters, as equations write it."""
-    return {"T₁": "T1", "T₂": "T2", "a rim": "a_rim", "Fx": "F_x", "Fy": "F_y"}.get(symbol, symbol)
+    letters = {"T₁": "T1", "T₂": "T2", "m₁": "m1", "m₂": "m2"}
+    letters |= {"a rim": "a_rim", "Fx": "F_x", "Fy": "F_y", "μ kin": "μ_k"}
+    return letters.get(symbol, symbol)

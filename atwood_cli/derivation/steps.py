@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ..arithmetic.rounding import is_infinite
-from ..model.quantities import QUANTITIES
+from ..model.quantities import FROM_MOTION, QUANTITIES
 from ..solver.answers import Answers
 from ..solver.messages import (
     conditions,
@@ -21,6 +21,7 @@ from ..solver.messages import (
     verdict,
 )
 from .equations import Derivation, Law, Part
+from .measured import fallen, found
 
 
 class Step(NamedTuple):
@@ -52,11 +53,13 @@ def explain(answers: Answers) -> Explanation:
     elif case.regime == "no-slip":
         middle = [_motion, _grip, _friction]
     else:
-        middle = [_grip, _motion, _friction]
+        middle = [_grip, *[found] * case.slide_measured, _motion, _friction]
     limits = [_limits] if case.scene.mu and case.sign else []
-    first = [Step(TITLES[body], [*body(derivation)]) for body in (_masses, _pulley, *middle, *limits)]
+    told = [found] if case.motion.finds and not case.slide_measured else []
+    first = [Step(TITLES[body], [*body(derivation)]) for body in (_masses, _pulley, *told, *middle, *limits)]
     model = Step("What is modelled and what is not", [*_model(derivation)])
-    known = [name for name in ("acceleration", "tension_1", "tension_2") if answers[name] is not None]
+    main = (*FROM_MOTION.get(case.motion.finds, ())[:1], "acceleration", "tension_1", "tension_2")
+    known = [name for name in main if answers[name] is not None]
     values = ", ".join(map(derivation.say, known))
     return Explanation(
         [verdict(answers), *[f"{values}."] * bool(known)],
@@ -127,7 +130,8 @@ def _pulley(derivation: Derivation) -> Iterator[Part]:
         )
         friction = " + f_axle" * (case.axle_friction is not None)
         yield Law(derivation.cite("(3)"), f"{difference} = c {derivation.names['magnitude']}{friction}")
-        yield from derivation.rim_mass()
+        if case.motion.finds != "M":
+            yield from derivation.rim_mass()
         yield from odd_inertia(derivation.answers)
 
 
@@ -143,8 +147,12 @@ def _turning(derivation: Derivation) -> Iterator[Part]:
         " turning like a force `f_axle` at the rim. So, while the pulley turns,"
     )
     yield Law(derivation.cite("(2)"), f"({difference} - f_axle) R = I α")
-    yield "and it stands while the tensions differ by no more than `f_axle`, the weight of a mass `b`:"
-    yield from derivation.axle()
+    known = derivation.case.motion.finds != "g"
+    words = "and it stands while the tensions differ by no more than `f_axle`, the weight of a mass `b`"
+    yield f"{words}{':' if known else '.'}"
+    yield from derivation.axle_force()
+    if known:
+        yield from derivation.axle_mass()
     yield (
         "(+b marks an equation of the paper that this friction enters. The axle of the paper does not rub:"
         " its equations are those here with `f_axle = 0` and `b = 0`.)"
@@ -161,17 +169,24 @@ def _motion(derivation: Derivation) -> Iterator[Part]:
         return
     elif case.sign == 0 or case.stands:
         yield "At rest, `a` = 0, each tension is the weight that hangs on it."
+    elif case.motion.finds:
+        yield f"With the measured acceleration, (1) and {derivation.cite('(3)')} give the tensions."
     else:
         both = f"(1) and {derivation.cite('(3)')}"
         yield f"The sum of {both} has only the acceleration left. It gives the tensions."
         yield from derivation.motion("magnitude")
     yield from derivation.tensions()
     yield from _rim(derivation)
+    yield from fallen(derivation)
     yield from derivation.extras()
 
 
 def _motion_at_the_limit(derivation: Derivation) -> Iterator[Part]:
     case, scene, l, h = derivation.case, derivation.scene, derivation.light, derivation.heavy
+    if case.slide_measured:
+        yield "With the measured acceleration, (1) and this ratio give the tensions."
+        yield from derivation.motion()
+        return
     kinetic = case.regime == "slip" and scene.mu_k is not None
     k, z, d = ("k_kin", "z_kin", "d_kin") if kinetic else ("k", "z", "d")
     limiting = "limiting_" * kinetic
@@ -223,11 +238,14 @@ def _grip(derivation: Derivation) -> Iterator[Part]:
     yield Law("(25)", "dT/dθ = μ T")
     yield Law("(26)", f"T(θ) = T{l} e^(μ θ)")
     angle = "" if derivation.half_turn else f", where {derivation.value('phi', 'rad')}"
-    k = answers["capstan_ratio"]
-    at_most = "" if k is None or is_infinite(k) else f": {derivation.say('capstan_ratio')}"
+    called = ""
+    if scene.mu is not None:
+        known = not is_infinite(answers["capstan_ratio"])
+        value = f": {derivation.say('capstan_ratio')}" if known else ""
+        called = f" This capstan ratio is called `k`{value}."
     yield (
         f"so at the most, friction makes `T{h}` as large as `e^(μ {derivation.names['phi']})`"
-        f" times `T{l}`{angle}. This capstan ratio is called `k`{at_most}."
+        f" times `T{l}`{angle}.{called}"
     )
     if not scene.mu and scene.mu is not None:
         yield "Without friction `k = 1`: the tensions are equal and nothing turns the pulley."
@@ -237,7 +255,7 @@ def _grip(derivation: Derivation) -> Iterator[Part]:
         motion = derivation.cite("(4)")
         if case.stands:
             held = "a locked pulley" if case.locked else "a pulley that the axle holds"
-            have = f"On {held} the tensions are the weights. Their ratio is"
+            have = f"On {held} the tensions of a string that holds are the weights. Their ratio is"
         elif case.regime == "no-slip":
             have = f"By {motion} the tensions have the ratio"
         else:
@@ -253,7 +271,7 @@ def _grip(derivation: Derivation) -> Iterator[Part]:
     else:
         yield from _grip_on_any_pulley(derivation)
     yield verdict(answers)
-    if case.pulley_known and answers["safety_factor"] is not None:
+    if scene.mu and case.pulley_known:
         yield f"There is {derivation.say('safety_factor')} times the friction that is needed."
     yield from kinetic(answers)
 
@@ -414,6 +432,7 @@ def _model(derivation: Derivation) -> Iterator[Part]:
 TITLES = {
     _masses: "The masses",
     _pulley: "The pulley",
+    found: "What the measured acceleration tells",
     _motion: "The motion",
     _grip: "Does the string hold?",
     _friction: "The friction on the pulley",

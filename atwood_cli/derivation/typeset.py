@@ -54,7 +54,8 @@ def _write(f: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) ->
             return _write_number(str(f.parts[0]), latex)
         case "+" | "-":
             left, right = f.parts
-            return f"{write(left)[0]} {f.op} {tight(right, PRODUCT)}", SUM
+            level = SUM if f.op == "+" == right.op else PRODUCT
+            return f"{write(left)[0]} {f.op} {tight(right, level)}", SUM
         case "*" | "/":
             return _quotient(f, write, numbers is not None, latex)
         case "square":
@@ -81,6 +82,7 @@ def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, la
     times = (r" \cdot " if latex else " · ") if numbers else (r" \, " if latex else " ")
 
     def product(factors: list[Formula], alone: bool) -> str:
+        factors = _powers(factors)
         words = [(word if level >= POWER else f"({word})") for word, level in map(write, factors)]
         return write(factors[0])[0] if alone and not factors[1:] else times.join(words)
 
@@ -89,8 +91,20 @@ def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, la
     if below and latex:
         quotient = rf"\frac{{{upper}}}{{{lower}}}"
     else:
-        quotient = upper + (f"/({lower})" if below[1:] else f"/{lower}" if below else "")
+        quotient = upper + (f"/({lower})" if _powers(below)[1:] else f"/{lower}" if below else "")
     return f"{'-' * minus}{quotient}", SUM if minus else PRODUCT
+
+
+def _powers(factors: list[Formula]) -> list[Formula]:
+    """The factors, with the square of a symbol that is there twice."""
+    powers: list[Formula] = []
+    for factor in factors:
+        if factor.op == "symbol" and factor.parts in [one.parts for one in powers]:
+            same = [one.parts for one in powers].index(factor.parts)
+            powers[same] = Formula("square", factor)
+        else:
+            powers.append(factor)
+    return powers
 
 
 def _write_number(digits: str, latex: bool) -> Written:
@@ -281,7 +295,8 @@ PRINTED = {
     "inertia": "inertia factor `β`",
     "wrap": "angle of wrap `φ`",
     "axle": "axle friction",
-    "drop": "height of fall",
+    "drop": "height of fall `s`",
+    "time": "time of fall `t`",
     "inf": "`∞`",
     "give": "not known without",
 }

@@ -161,7 +161,7 @@ class Case:
         """Whether kinetic friction follows from the acceleration of a string that slides."""
         return self.motion.finds == "mu_k"
 
-    @property
+    @lazy
     def measured_acceleration(self) -> Fraction:
         """The acceleration that was measured (m/s²), positive when the heavier mass descends."""
         motion = self.motion

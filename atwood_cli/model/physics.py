@@ -93,12 +93,21 @@ def gravity_under(l: N, h: N, load: N, a: N, f: N | None = None) -> N:
 
 
 def hanging_mass(tension: N, a: N, g: N) -> N:
-    """Mass (kg) that descends with the acceleration a, or rises with -a, under a tension (N); from (1).
+    """Mass (kg) that descends with the acceleration a under a tension (N); from (1).
 
     >>> hanging_mass(21, 2, 9)
     3.0
     """
     return tension / (g - a)
+
+
+def lifted_mass(tension: N, a: N, g: N) -> N:
+    """Mass (kg) that rises with the acceleration a under a tension (N); from (1).
+
+    >>> lifted_mass(11, 2, 9)
+    1.0
+    """
+    return tension / (g + a)
 
 
 def slide_excess(l: N, h: N, a: N, g: N) -> N:
@@ -164,6 +173,15 @@ def light_tension(l: N, a: N, g: N) -> N:
     11
     """
     return l * (g + a)
+
+
+def heavy_tension(h: N, a: N, g: N) -> N:
+    """Tension on the heavier mass (N), from (1): its weight less what accelerates it.
+
+    >>> heavy_tension(3, 2, 9)
+    21
+    """
+    return h * (g - a)
 
 
 def difference_of_a_pulley(c: N, a: N, f: N | None = None) -> N:
