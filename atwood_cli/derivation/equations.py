@@ -263,8 +263,20 @@ class Derivation:
         """Whether the critical heavier mass makes the string slip on a pulley that stands."""
         return self.case.locked or self.case.slips_once_it_moves
 
+    @property
+    def is_the_papers(self) -> bool:
+        """Whether the pulley is a disk, and its axle does not rub, as in the paper."""
+        disk = self.scene.I is None and self.scene.inertia == Fraction(1, 2)
+        return disk and self.case.axle_friction is None
+
+    def ratio_in_the_paper(self) -> Law:
+        """The ratio of tensions as (33) has it, where friction is at its limit."""
+        symbols: list[Any] = [Formula("symbol", one) for one in (*self.masses, Symbol("M", "pulley_mass"))]
+        ratio: Any = physics.ratio_in_the_paper(*symbols)
+        return Law(QUANTITIES["tension_ratio"].equation, (ratio, Formula("symbol", Symbol("k", "k1"))))
+
     def ratio_at_the_limit(self) -> Law:
-        """The ratio of tensions (33) less 1 on both sides, where friction is at its limit."""
+        """The ratio of tensions less 1 on both sides, where friction is at its limit."""
         return Law("", (self._excess, Formula("symbol", Symbol("k - 1", "k1"))))
 
     def multiplied_out(self) -> Law:
@@ -290,15 +302,10 @@ class Derivation:
 
     def in_the_paper(self, name: str) -> Iterator[Equation]:
         """A quantity in the paper's own form, which is for a disk whose axle does not rub."""
-        scene, case = self.scene, self.case
-        if (
-            name not in IN_THE_PAPER
-            or scene.I is not None
-            or scene.inertia != Fraction(1, 2)
-            or case.axle_friction is not None
-        ):
+        case = self.case
+        if name not in IN_THE_PAPER or not self.is_the_papers or case.stands:
             return
-        if case.stands or (case.pulley_mass is None and name != "critical_pulley_mass"):
+        if case.pulley_mass is None and name != "critical_pulley_mass":
             return
         of_the_paper, symbols = IN_THE_PAPER[name]
         l, h = self.masses

@@ -9,6 +9,8 @@ from ..model import physics
 from ..model.quantities import QUANTITIES
 from .equations import Derivation, Part
 
+FALLEN = "A height `s` fallen from rest in the time `t` gives the acceleration:"
+
 
 def found(derivation: Derivation) -> Iterator[Part]:
     """What was not given, from the acceleration that was measured."""
@@ -22,7 +24,7 @@ def found(derivation: Derivation) -> Iterator[Part]:
         return law(*(Formula("symbol", one) for name in names.split() if (one := letters[name])))
 
     if case.motion.time is not None:
-        yield "A height `s` fallen from rest in the time `t` takes the constant acceleration"
+        yield FALLEN
         fall = (Formula("symbol", given[name]) for name in "st")
         recorded_fall: Any = physics.acceleration_of_fall
         yield derivation.worked_out("", a, recorded_fall(*fall), given[a], "m/s²")

@@ -365,10 +365,13 @@ def _critical(derivation: Derivation, name: str) -> Iterator[Part]:
         return
     if "verge" not in derivation.shown:
         derivation.shown.add("verge")
-        yield (
-            f"On the verge the ratio {derivation.cite('(33)')} of the tensions is `k`. Less 1 on both sides,"
-            " this is"
-        )
+        if derivation.is_the_papers:
+            yield "On the verge the ratio of the tensions is `k`. For a disk, as in the paper, that is"
+            yield derivation.ratio_in_the_paper()
+            yield "Less 1 on both sides, and with `c` = `M/2`, this becomes"
+        else:
+            ratio = derivation.cite("(33)")
+            yield f"On the verge the ratio {ratio} of the tensions is `k`. Less 1 on both sides, that is"
         yield derivation.ratio_at_the_limit()
         if transfer := [*derivation.lines("k1", "transfer")]:
             yield f"Friction at its limit adds a mass `z` to `m{l}`:"

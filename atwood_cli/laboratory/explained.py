@@ -5,6 +5,7 @@ from fractions import Fraction
 
 from ..arithmetic.rounding import text, tidy, to_digits
 from ..derivation.equations import Law, Part
+from ..derivation.measured import FALLEN
 from ..derivation.steps import Explanation, Step
 from ..solver.answers import SHOWN_DIGITS
 from .fitting import Fit
@@ -50,7 +51,7 @@ EQUATIONS: list[Part] = [
 def _points(fit: Fit) -> Iterator[Part]:
     timed = fit.runs.kind == "time"
     if timed:
-        yield "A height `s` fallen from rest in the time `t` gives the acceleration:"
+        yield FALLEN
         yield Law("", "a = 2 s/t^2")
     yield f"With `g` = {text(fit.estimate.values['gravity'])} m/s² the runs are"
     at, data = points(fit), fit.data
