@@ -1,13 +1,14 @@
 """The door for Python: `solve`, and the `Solution` that it returns."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, fields
 from decimal import Decimal
 from inspect import Parameter, Signature
-from typing import Any, Generic, TypedDict, TypeVar, Unpack, overload
+from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, overload
 
 from .model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from .model.scene import Given, Scene, read_digits
+from .solver.answers import Answers
 from .solver.messages import notes
 from .solver.reading import read_answers
 
@@ -45,16 +46,23 @@ def _described(names: Sequence[str]) -> str:
     return "\n".join(lines)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Solution(Generic[T]):
+class Answered:
+    """Where a solution has its values from."""
+
+    __slots__ = ("_answers",)
+    _answers: Answers
+
+
+@dataclass(frozen=True, slots=True, init=False, eq=False)
+class Solution(Answered, Generic[T]):
     __doc__ = f"""The state of a scene: floats, or Decimals if digits were asked for; None if undetermined.
 
     ``scene`` is what was given, ``regime`` is "no-slip", "verge" or "slip", ``notes`` say why it is
     what it is and why a value is None. ``uncertainty`` has the standard uncertainty of every quantity
     by name, and is empty if all that was given is exact; one is None, with a note, where there is none
-    to first order. Forces are on the pulley, x from the axle to where m1's string meets it, y up;
-    accelerations, torque and angles are positive the way m2 descends. The quantities, with their units
-    and the paper's equations:
+    to first order. Each is computed when it is first read, and kept. Forces are on the pulley, x from the
+    axle to where m1's string meets it, y up; accelerations, torque and angles are positive the way m2
+    descends. The quantities, with their units and the paper's equations:
 
 {_described(NAMES[1:])}
     """
@@ -84,24 +92,74 @@ class Solution(Generic[T]):
     least_heavier_mass: T | None
     least_pulley_mass: T | None
     least_wrap: T | None
-    uncertainty: Mapping[str, T | None] = field(default_factory=dict, hash=False)
+    uncertainty: Mapping[str, T | None]
+
+    def __init__(self, answers: Answers) -> None:
+        object.__setattr__(self, "_answers", answers)
+
+    if not TYPE_CHECKING:  # which would take any name for a field
+
+        def __getattr__(self, name: str) -> Any:
+            """A field that was not read yet."""
+            if name not in self.__dataclass_fields__:
+                return object.__getattribute__(self, name)  # raises the usual error
+            values = _computed(name, self._answers)
+            self._keep(values)
+            return values[name]
+
+    def _keep(self, values: Mapping[str, Any]) -> None:
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        return all(getattr(self, one.name) == getattr(other, one.name) for one in fields(self))
+
+    def __hash__(self) -> int:
+        return hash(self.scene)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        values = {one.name: getattr(self, one.name) for one in fields(self)}
+        return _restored, (type(self), self._answers.given, values)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, init=False, eq=False)
 class MeasuredSolution(Solution[T]):
     __doc__ = f"""A solution with what follows from a measured acceleration or a height of fall, else None.
 
 {_described(MEASURED_NAMES)}
     """
 
-    pulley_mass: T | None = None
-    moment_of_inertia: T | None = None
-    gravity: T | None = None
-    m1: T | None = None
-    m2: T | None = None
-    mu_k: T | None = None
-    fall_time: T | None = None
-    final_speed: T | None = None
+    pulley_mass: T | None
+    moment_of_inertia: T | None
+    gravity: T | None
+    m1: T | None
+    m2: T | None
+    mu_k: T | None
+    fall_time: T | None
+    final_speed: T | None
+
+
+def _computed(name: str, answers: Answers) -> dict[str, Any]:
+    """The value of a field, by its name; and all others with the notes, which are on all of them."""
+    if name == "scene":
+        return {name: answers.case.scene}
+    if name == "uncertainty":
+        return {name: answers.standard_uncertainties(answers.names)}
+    if name != "notes":
+        return {name: answers[name] if name in answers.names else None}
+    answers = Answers(*answers.given)  # asked in the order of the names, whichever were read before
+    values = {name: answers[name] for name in answers.names}
+    uncertainty = answers.standard_uncertainties(answers.names)
+    return {**values, "uncertainty": uncertainty, "notes": tuple(notes(answers))}
+
+
+def _restored(kind: type[Solution[T]], given: Any, values: Mapping[str, Any]) -> Solution[T]:
+    """A solution that was pickled."""
+    solution = kind(Answers(*given))
+    solution._keep(values)
+    return solution
 
 
 @overload
@@ -130,10 +188,7 @@ def solve(*, digits: int | str | None = None, **given: Unpack[Inputs]) -> Any:
     """
     inputs = SIGNATURE.bind(**given).arguments  # raises TypeError where there is no such input
     answers = read_answers(inputs, read_digits(digits))
-    values = {name: answers[name] for name in answers.names}
-    uncertainty = answers.standard_uncertainties(answers.names)
-    kind: type[Solution[Any]] = Solution if answers.names == NAMES else MeasuredSolution
-    return kind(scene=answers.case.scene, notes=tuple(notes(answers)), uncertainty=uncertainty, **values)
+    return Solution(answers) if answers.names == NAMES else MeasuredSolution(answers)
 
 
 SIGNATURE = Signature(

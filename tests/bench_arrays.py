@@ -1,7 +1,8 @@
 """solve_arrays beside the paper's formulas in plain NumPy: python -m tests.bench_arrays [ROWS]
 
 One run in turn, medians of the repeats. What counts are the ratios; the cold first calls stand apart. Then
-the families of rows that are hard, in rows a second.
+the families of rows that are hard, in rows a second. Last, `solve` scene by scene, in processor time: one
+quantity beside all of them.
 """
 
 import statistics
@@ -14,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atwood_cli import solve_arrays
+from atwood_cli import solve, solve_arrays
 from atwood_cli.model.quantities import NAMES
 from atwood_cli.tradeoff.baseline import paper_in_numpy
 
@@ -173,10 +174,10 @@ def copied(*columns: Any) -> Any:
     return [column.copy() for column in (*columns, *columns[:2])], np.zeros(len(columns[0]), np.int8)
 
 
-def seconds(work: Callable[[], Any]) -> float:
-    start = time.perf_counter()
+def seconds(work: Callable[[], Any], clock: Callable[[], float] = time.perf_counter) -> float:
+    start = clock()
     kept = work()
-    taken = time.perf_counter() - start
+    taken = clock() - start
     del kept
     return taken
 
@@ -208,6 +209,22 @@ def beside_the_paper(what: str, scenes: Columns) -> None:
         print(f"  {name:9}  {warm:6.3f} s, {ratio:5.2f} x the paper's throughput, cold {cold[name]:6.3f} s")
 
 
+def one_by_one(count: int) -> None:
+    """Scenes of floats, one quantity read of each, beside all of them with the notes."""
+    columns = named(ordinary(count))
+    rows = np.stack(list(columns.values()), axis=1).tolist()
+    scenes = [dict(zip(columns, row, strict=True)) for row in rows]
+    works = {
+        "acceleration": lambda: [solve(**scene).acceleration for scene in scenes],
+        "all quantities, and notes": lambda: [solve(**scene).notes for scene in scenes],
+    }
+    times = [{name: seconds(work, time.process_time) for name, work in works.items()} for _ in range(REPEATS)]
+    one, everything = (min(turn[name] for turn in times) for name in works)
+    for name, taken in zip(works, (one, everything), strict=True):
+        print(f"{count} scenes by solve, {name}: {taken / count * 1e3:.2f} ms each")
+    print(f"  acceleration takes {one / everything:.3f} of the time of all quantities")
+
+
 def main(rows: int) -> None:
     beside_the_paper("ordinary", ordinary(rows))
     beside_the_paper("ordinary (mu uniform in 0 to 1)", more_slip(rows))
@@ -221,6 +238,7 @@ def main(rows: int) -> None:
         print(f"100 rows, {accuracy}: {warm(few, accuracy, None, 99) * 1e3:.2f} ms")
     for what, names in (("the seven standard quantities", None), ("all quantities", NAMES[1:])):
         print(f"the slowest row known, exact, {what}: {warm(SLOWEST, 'exact', names, 9) * 1e3:.0f} ms")
+    one_by_one(10_000)
     tracemalloc.start()
     results = solve_arrays(*ordinary(rows // 5))
     _, peak = tracemalloc.get_traced_memory()

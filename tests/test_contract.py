@@ -1,12 +1,15 @@
 """What is given decides the scene: every line and corner of the contract, through `solve`."""
 
 import inspect
+import pickle
 import pydoc
 import re
 import subprocess
 import sys
 from collections.abc import Iterable
 from contextlib import suppress
+from copy import copy, deepcopy
+from dataclasses import fields
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from functools import partial
@@ -353,9 +356,38 @@ def test_an_inertia_factor_of_thousands_of_digits_is_written_shortly() -> None:
 def test_solution_is_a_record() -> None:
     s = solve(m1=1, m2=3)
     assert s == solve(m1="1.0", m2="3")
+    assert s != solve(m1=1, m2=3, M=0)
     with pytest.raises(AttributeError):
         s.regime = "slip"  # type: ignore[misc]
+    with pytest.raises(AttributeError, match="'Solution' object has no attribute 'pulley_mass'"):
+        s.pulley_mass  # type: ignore[attr-defined]  # noqa: B018
     assert set(REGIMES) == {"no-slip", "verge", "slip"}
+
+
+def test_a_quantity_is_computed_when_it_is_read_and_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(Machine, "friction_force_min", property(lambda _: 1 / 0))
+    s = solve(m1=1.0, m2=3.0, M=10.0, mu=0.3)
+    assert s.acceleration == pytest.approx(9.80665 * 2 / 9)
+    with pytest.raises(ZeroDivisionError):
+        _ = s.friction_force_min
+    monkeypatch.setattr(Machine, "acceleration", property(lambda _: 1 / 0))
+    assert s.acceleration == pytest.approx(9.80665 * 2 / 9)
+
+
+@pytest.mark.parametrize(
+    "given",
+    ["mu=0.3", "M=100 mu=0.3 mu_k=0.25 digits=5", "M=10(1) mu=0.2(1)", "a=1.0(1) drop=2", "drop=2 I=1 R=1"],
+)
+def test_a_solution_is_the_same_however_it_is_read(given: str) -> None:
+    s, backwards = (solve(**inputs(given)) for _ in range(2))
+    for one in reversed(fields(backwards)):
+        getattr(backwards, one.name)
+    pickled = pickle.loads(pickle.dumps(solve(**inputs(given))))
+    for other in (backwards, pickled, copy(pickled), deepcopy(backwards)):
+        assert repr(other) == repr(s)
+        assert other == s
+        assert hash(other) == hash(s)
+        assert str(other) == str(s)
 
 
 def test_the_python_door_needs_neither_typer_nor_rich_nor_numpy() -> None:

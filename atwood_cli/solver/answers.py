@@ -61,7 +61,7 @@ class Answers:
     def _round_to(self, digits: int | None) -> None:
         self.digits = digits
         self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
-        self._values: dict[str, Any] = {"regime": self.case.regime}
+        self._values: dict[str, Any] = {}
         self.reasons: dict[str, str] = {}
         self.unsure: dict[str, str] = {}
         self.spread: dict[str, Any] = {}
@@ -72,6 +72,11 @@ class Answers:
         vars(other).pop("shown", None)
         other._round_to(digits)
         return other
+
+    @property
+    def given(self) -> tuple[Scene, int | None, Motion, Mapping[str, Fraction]]:
+        """What the answers are made from."""
+        return self.case.scene, self.digits, self.case.motion, self.uncertain
 
     @lazy
     def shown(self) -> Answers:
@@ -120,25 +125,28 @@ class Answers:
 
     def __getitem__(self, name: str) -> Any:
         """The value of a quantity by its name, None where ``reasons`` says why there is none."""
+        if name == "regime":
+            return self.case.regime
         if name not in self._values:
-            try:
-                value = self._values[name] = self.settle(attrgetter(name))
-                if reason := self._out_of_range(value, self._on_machines(attrgetter(name))):
-                    self.reasons[name] = reason
-            except Undetermined as undetermined:
-                self._values[name] = None
-                self.reasons[name] = str(undetermined)
-            except OverflowError:  # of a denominator
-                self._values[name] = 0.0 if self.digits is None else None
-                self.reasons[name] = TOO_SMALL
+            digits = max(self.digits or 0, DOUBLE_DIGITS)  # so that fewer need no second computation
+            value, reason = self._settled(self._on_machines(attrgetter(name)), self.round, digits)
+            if reason:
+                self.reasons[name] = reason
+            self._values[name] = value
         return self._values[name]
 
-    def _out_of_range(self, value: float | Decimal, quantity: Quantity) -> str:
-        """Why the rounded value of a quantity cannot be shown, as it is infinite or 0; empty if it can."""
+    def _settled(self, quantity: Quantity, round_: Rounding[Any], digits: int) -> tuple[Any, str]:
+        """The rounded value of a quantity, or None; and if it cannot be shown as it is, why."""
+        try:
+            value = settle(quantity, round_, digits)
+        except Undetermined as undetermined:
+            return None, str(undetermined)
+        except OverflowError:  # of a denominator
+            return 0.0 if self.digits is None else None, TOO_SMALL
         if is_infinite(value):
-            return ABOVE_DOUBLES if self.digits is None else TOO_LARGE
+            return value, ABOVE_DOUBLES if self.digits is None else TOO_LARGE
         below = value == 0 and self.digits is None and settle(quantity, to_digits(1), DOUBLE_DIGITS)
-        return BELOW_DOUBLES if below else ""
+        return value, BELOW_DOUBLES if below else ""
 
     def uncertainty(self, name: str, round_: Rounding[Any] | None = None) -> Any:
         """The standard uncertainty of a quantity; None where there is none, or no value either."""
@@ -147,17 +155,10 @@ class Answers:
             return None
         if is_infinite(value) and is_infinite(self.settle(quantity, to_digits(1))):
             return None
-        of, digits = known.of(quantity), self.digits or DOUBLE_DIGITS
-        try:
-            u = settle(of, round_ or self.round, digits)
-        except Undetermined as undetermined:
-            self.unsure[name] = str(undetermined)
-            return None
-        except OverflowError:  # of a denominator
-            self.unsure[name] = TOO_SMALL
-            return None
-        self.spread[name] = u
-        if not round_ and (reason := self._out_of_range(u, of)):
+        u, reason = self._settled(known.of(quantity), round_ or self.round, self.digits or DOUBLE_DIGITS)
+        if u is not None:
+            self.spread[name] = u
+        if reason:
             self.unsure[name] = reason
         return u
 
