@@ -4,6 +4,7 @@ import re
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
+from functools import cache
 from math import inf
 from numbers import Rational, Real
 from typing import Any, NamedTuple, SupportsInt
@@ -236,8 +237,7 @@ UNMEASURED = Motion()
 def read_input(name: str, given: Given | None) -> Input:
     """One parameter, whose text may carry a standard uncertainty. Raises SceneError."""
     if given is None:
-        default = DEFAULTS.get(name)
-        return Input(default and read_value(name, default), Fraction(0), None)
+        return _default(name)
     if isinstance(given, str):
         number = _read_text(name, given, given)
     elif (isinstance(given, Angle) and name == "wrap") or (isinstance(given, Axle) and name == "axle"):
@@ -245,6 +245,13 @@ def read_input(name: str, given: Given | None) -> Input:
     else:
         number = Number(_read_number(name, given))
     return Input(_checked(name, given, number), number.uncertainty, given)
+
+
+@cache
+def _default(name: str) -> Input:
+    """A parameter that is not given."""
+    default = DEFAULTS.get(name)
+    return Input(default and read_value(name, default), Fraction(0), None)
 
 
 def read_exactly(name: str, given: Given | None) -> Input:

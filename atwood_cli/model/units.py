@@ -68,6 +68,7 @@ MAX_UNIT = 60
 """Characters of a unit."""
 # No text within those limits is longer as a numerator or denominator.
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
+_LARGEST = 10**MAX_MAGNITUDE
 TOO_LONG = f"is too long; numerator and denominator may have {MAX_MAGNITUDE} digits"
 
 _TERM = r"[A-Za-zµμ]+(?:\^?-?[1-9]|⁻?[¹²³])?"
@@ -242,7 +243,7 @@ def _check_size(digits: int, exponent: int, how: str = "") -> None:
 
 def limited(value: Fraction) -> Fraction:
     """The same number, refused where it would take long. Raises Malformed."""
-    if max(abs(value.numerator), value.denominator) >= 10**MAX_MAGNITUDE:
+    if max(abs(value.numerator), value.denominator) >= _LARGEST:
         raise Malformed(TOO_LONG)
     return value
 
