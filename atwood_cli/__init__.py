@@ -3,17 +3,32 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .api import Solution, solve
-    from .arrays import solve_arrays
+    from .api import MeasuredSolution, Solution, solve
+    from .arrays import STATUSES, solve_arrays
     from .laboratory import fit
+    from .laboratory.results import Results
     from .model.quantities import REGIMES
     from .model.scene import Scene, SceneError
 
-__all__ = ["REGIMES", "Scene", "SceneError", "Solution", "fit", "solve", "solve_arrays"]
+__all__ = [
+    "REGIMES",
+    "STATUSES",
+    "MeasuredSolution",
+    "Results",
+    "Scene",
+    "SceneError",
+    "Solution",
+    "fit",
+    "solve",
+    "solve_arrays",
+]
 __version__ = "0.1.0"
 
 _HOMES = {
     "REGIMES": "model.quantities",
+    "STATUSES": "arrays",
+    "MeasuredSolution": "api",
+    "Results": "laboratory.results",
     "Scene": "model.scene",
     "SceneError": "model.scene",
     "Solution": "api",

@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from decimal import Decimal
 from inspect import Parameter, Signature
-from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, overload
+from typing import TYPE_CHECKING, Any, Generic, Required, TypedDict, TypeVar, Unpack, overload
 
 from .model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from .model.scene import Given, Scene, read_digits
@@ -13,8 +13,8 @@ from .solver.messages import notes
 from .solver.reading import read_answers
 
 
-class Inputs(TypedDict, total=False):
-    """What `solve` takes beside ``digits``; None is not given, as is what is left out."""
+class SceneInputs(TypedDict, total=False):
+    """What a scene is given by; None is not given, as is what is left out."""
 
     m1: Given | None
     m2: Given | None
@@ -27,8 +27,29 @@ class Inputs(TypedDict, total=False):
     R: Given | None
     wrap: Given | None
     axle: Given | None
+
+
+class Inputs(SceneInputs, total=False):
+    """What `solve` takes beside ``digits``."""
+
     a: Given | None
     drop: Given | None
+    time: Given | None
+
+
+class WithAcceleration(SceneInputs, total=False):
+    """Inputs that a measured acceleration is among, so that the solution is a measured one."""
+
+    a: Required[Given]
+    drop: Given | None
+    time: Given | None
+
+
+class WithDrop(SceneInputs, total=False):
+    """Inputs that a height of fall is among, which makes it one as well."""
+
+    a: None
+    drop: Required[Given]
     time: Given | None
 
 
@@ -162,6 +183,14 @@ def _restored(kind: type[Solution[T]], given: Any, values: Mapping[str, Any]) ->
     return solution
 
 
+@overload
+def solve(*, digits: None = None, **given: Unpack[WithAcceleration]) -> MeasuredSolution[float]: ...
+@overload
+def solve(*, digits: None = None, **given: Unpack[WithDrop]) -> MeasuredSolution[float]: ...
+@overload
+def solve(*, digits: int | str, **given: Unpack[WithAcceleration]) -> MeasuredSolution[Decimal]: ...
+@overload
+def solve(*, digits: int | str, **given: Unpack[WithDrop]) -> MeasuredSolution[Decimal]: ...
 @overload
 def solve(*, digits: None = None, **given: Unpack[Inputs]) -> Solution[float]: ...
 @overload

@@ -18,14 +18,14 @@ from typing import Any
 
 import pytest
 
-from atwood_cli import REGIMES, Scene, SceneError, Solution, solve, solve_arrays
-from atwood_cli.api import Inputs, MeasuredSolution
+from atwood_cli import REGIMES, MeasuredSolution, Scene, SceneError, Solution, solve, solve_arrays
+from atwood_cli.api import Inputs
 from atwood_cli.arithmetic.interval import enclosures
 from atwood_cli.model.machine import Machine
 from atwood_cli.model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from atwood_cli.model.scene import INPUTS, MEASURED, Motion
 
-from . import oracle
+from . import oracle, user_script
 from .scenes import inputs, table
 
 
@@ -182,7 +182,7 @@ def test_the_greatest_acceleration_that_an_error_names_is_taken() -> None:
             solve(m1=m1, m2=m2, a=sign * 9)
         match = re.search("between 0 .* and (.*) m/s² \\(a massless one\\)", str(caught.value))
         assert match
-        assert solve(m1=m1, m2=m2, a=match[1]).pulley_mass is not None  # type: ignore[attr-defined]
+        assert solve(m1=m1, m2=m2, a=match[1]).pulley_mass is not None
 
 
 def test_an_inertia_factor_just_above_one_is_not_shown_as_one() -> None:
@@ -396,6 +396,15 @@ def test_the_python_door_needs_neither_typer_nor_rich_nor_numpy() -> None:
         "sys.exit(bool({'typer', 'rich', 'numpy'} & set(sys.modules)))"
     )
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+def test_pyright_knows_what_a_users_script_gets() -> None:
+    """mypy checks it with the whole tree."""
+    pytest.importorskip("basedpyright")
+    options = ["--level", "error", "--pythonpath", sys.executable]
+    command = [sys.executable, "-m", "basedpyright", *options, user_script.__file__]
+    checked = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert (checked.returncode, checked.stdout) == (0, "0 errors, 0 warnings, 0 notes\n")
 
 
 def test_a_shell_completes_the_public_names_before_their_first_use() -> None:

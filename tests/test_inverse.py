@@ -17,8 +17,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from uncertainties import umath
 
-from atwood_cli import Scene, SceneError, Solution, solve
-from atwood_cli.api import MeasuredSolution
+from atwood_cli import MeasuredSolution, Scene, SceneError, Solution, solve
 from atwood_cli.model import physics
 from atwood_cli.model.angle import Angle
 from atwood_cli.model.quantities import MEASURED_NAMES, NAMES

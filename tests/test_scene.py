@@ -206,7 +206,7 @@ def test_a_measured_acceleration_may_be_a_multiple_of_g() -> None:
     """Of the scene's g: (m2 - m1)/(m1 + m2 + M/2) is 1/4 for M = 8."""
     assert solve(m1=1, m2=3, a="g/4") == solve(m1=1, m2=3, a="2.4516625")
     for m1, m2, a in ((1, 3, "0.25g"), (3, 1, "-g/4"), (1, 3, "1/4 g")):
-        assert solve(m1=m1, m2=m2, a=a, g="moon", digits=5).pulley_mass == 8  # type: ignore[attr-defined]
+        assert solve(m1=m1, m2=m2, a=a, g="moon", digits=5).pulley_mass == 8
     u = solve(m1=1, m2=3, a="0.25(1)g", g=10).uncertainty
     assert u == solve(m1=1, m2=3, a="2.5(1)", g=10).uncertainty
     with pytest.raises(SceneError, match="a 'g/4' is a multiple of g, which is uncertain; give it in m/s2"):

@@ -38,18 +38,21 @@ REAL = "biufOSU"
 STATUSES = ("valid", *COLUMNS, "no mass", "friction at a free end", "mu_k without mu", "mu_k above mu")
 """What the codes in ``status`` mean: a parameter outside its domain, or inputs that do not go together."""
 
+Numbers = ArrayLike | Sequence[float | None]
+"""A number for all rows, or one for each; None is not given."""
+
 
 def solve_arrays(
-    m1: ArrayLike,
-    m2: ArrayLike,
-    M: ArrayLike | None = None,
-    mu: ArrayLike | None = None,
-    mu_k: ArrayLike | None = None,
+    m1: Numbers,
+    m2: Numbers,
+    M: Numbers | None = None,
+    mu: Numbers | None = None,
+    mu_k: Numbers | None = None,
     *,
-    g: ArrayLike = 9.80665,
-    inertia: ArrayLike = 0.5,
-    R: ArrayLike | None = None,
-    wrap: ArrayLike = 180.0,
+    g: Numbers = 9.80665,
+    inertia: Numbers = 0.5,
+    R: Numbers | None = None,
+    wrap: Numbers = 180.0,
     accuracy: Accuracy = "certified",
     quantities: Sequence[str] | None = None,
 ) -> dict[str, NDArray[Any]]:
@@ -74,7 +77,7 @@ def solve_arrays(
 
 
 def solve_and_count(
-    given: Mapping[str, ArrayLike | None], accuracy: Accuracy, quantities: Sequence[str] | None
+    given: Mapping[str, Numbers | None], accuracy: Accuracy, quantities: Sequence[str] | None
 ) -> tuple[dict[str, NDArray[Any]], Counter[tuple[str, str]]]:
     """As `solve_arrays`; and the number of valid rows without a value, by quantity and reason."""
     words = [quantities] if isinstance(quantities, str) else STANDARD if quantities is None else quantities
@@ -138,7 +141,7 @@ def _common_shape(inputs: Mapping[str, Column]) -> tuple[int, ...]:
     return shape
 
 
-def _doubles(name: str, value: ArrayLike) -> Column:
+def _doubles(name: str, value: Numbers) -> Column:
     """A parameter's numbers as doubles, NaN where masked.
 
     Raises SceneError for what is no real number, and for a number that would round to 0 or inf and is

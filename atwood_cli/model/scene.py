@@ -7,7 +7,7 @@ from fractions import Fraction
 from functools import cache
 from math import inf
 from numbers import Rational, Real
-from typing import Any, NamedTuple, SupportsInt
+from typing import TYPE_CHECKING, Any, NamedTuple, SupportsInt
 
 from ..arithmetic.rounding import as_typed
 from .angle import Angle
@@ -32,7 +32,14 @@ from .units import (
     without_blanks,
 )
 
-Given = str | int | float | Decimal | Fraction | Angle | Axle
+if TYPE_CHECKING:
+    from numpy import floating, integer
+
+    OfNumPy = integer[Any] | floating[Any]
+else:
+    OfNumPy = float
+
+Given = str | int | float | Decimal | Fraction | Angle | Axle | OfNumPy
 """An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
 
 INERTIA_FACTORS = {"disk": "1/2", "hoop": "1", "ring": "1", "sphere": "2/5", "shell": "2/3"}
