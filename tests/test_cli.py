@@ -443,7 +443,7 @@ def test_only_what_is_needed_is_imported(output: str) -> None:
     loaded = set(process(*PAPER, *output.split(), code=LOADED).err.split())
     ours = {name for name in loaded if name.startswith(("atwood_cli.cli.", "atwood_cli.output."))}
     assert ours - {"atwood_cli.output.page"} == {
-        f"atwood_cli.{name}" for name in ("cli.options", "cli.solve", "output.text")
+        f"atwood_cli.{name}" for name in ("cli.options", "cli.solve", "output.solution", "output.text")
     }
     assert "numpy" not in loaded
     assert ("rich" in loaded) == ("atwood_cli.output.page" in ours) == (output == "")

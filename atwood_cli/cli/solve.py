@@ -1,16 +1,14 @@
 """`atwood solve`: one scene, as a table, JSON, CSV, bare values, or with its derivation."""
 
-import sys
 from collections.abc import Mapping, Sequence
-from itertools import chain, groupby
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
-from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
-from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, cited, read_names
+from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, read_names
 from ..model.scene import SceneError, read_digits
-from ..output.text import Forms, cell, for_stream, inputs_in_words, say, scene_record, show
+from ..output.solution import beside_bare, print_table, record
+from ..output.text import Forms, cell, inputs_in_words, say, show
 from ..solver.answers import Answers
-from ..solver.messages import conditions, notes, reasons, remarks, unmarked
+from ..solver.messages import reasons, unmarked
 from ..solver.reading import read_answers
 from .options import (
     COULD_NOT,
@@ -28,11 +26,6 @@ from .options import (
     scene_option,
     takes_scene,
 )
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-    from ..output.page import Page
 
 
 def _answers() -> Mapping[str, str]:
@@ -147,10 +140,10 @@ def solve(
         print_explanation([*given_in_words.values()], explained(answers), markdown)
         return DONE
     forms = Forms(
-        json=lambda: _record(answers, names, budget),
+        json=lambda: record(answers, names, budget),
         records=lambda: [_line(answers, names or answers.names)],
         page=lambda: print_table(answers, all, budget),
-        notes=lambda: [*([] if json or csv else _beside_bare(answers, names)), *reasons(answers)],
+        notes=lambda: [*([] if json or csv else beside_bare(answers, names)), *reasons(answers)],
         bare=[cell(answers[name]) for name in names],
     )
     say(*show(forms, json, csv))
@@ -168,104 +161,7 @@ def _draw(answers: Answers, path: str, m1_side: str | None, bare: bool, force: b
     save(answers, kind_of(answers.case) if answers.case.light else None, path, force, m1_side, bare)
 
 
-def _record(answers: Answers, only: Sequence[str], budget: bool) -> dict[str, object]:
-    """The record for JSON: all quantities with scene and notes, or only those named."""
-    names = only or answers.names
-    results: dict[str, object] = {name: answers[name] for name in names}
-    if answers.uncertainties:
-        results["uncertainty"] = answers.standard_uncertainties(names)
-    if budget:
-        results["budget"] = {name: answers.budget(name) or None for name in names if name != "regime"}
-    if only:
-        return results
-    scene = scene_record(answers.case.scene, answers.case.motion, answers.round)
-    return {"scene": scene, **results, "notes": notes(answers)}
-
-
 def _line(answers: Answers, names: Sequence[str]) -> dict[str, object]:
     """The record for CSV: values, then uncertainties."""
     values = {name: answers[name] for name in names}
     return values | {f"u_{name}": u for name, u in answers.standard_uncertainties(names).items()}
-
-
-def _beside_bare(answers: Answers, only: Sequence[str]) -> list[str]:
-    """The uncertain values with their uncertainties, which bare values leave out."""
-    uncertain = [name for name in only if answers.standard_uncertainties([name]).get(name)]
-    return [_stated(answers, name) for name in uncertain]
-
-
-COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
-AT_LIMIT = ("friction_force", "friction_force_x", "friction_force_y")
-"""What is one number only where friction is at its limit."""
-
-
-def print_table(
-    answers: Answers, whole: bool = False, budget: bool = False, console: "Console | None" = None
-) -> None:
-    """Print the scene, what was found, the verdict, quantities, main or ``whole``, notes, and the budget."""
-    from ..output.page import Page, table_width
-
-    answers, page, columns = answers.shown, Page(console), list(COLUMNS)
-    names = answers.names[1:] if whole else answers.main
-    tabled = [name for name in names if name not in (*MEASURED_NAMES, *answers.found)]
-    groups, found = _rows(answers, tabled), _found(answers)
-    page.head(answers, found)
-    while page.room and table_width(columns, groups) > page.room:
-        columns.pop()
-        groups = [[row[: len(columns)] for row in group] for group in groups]
-    if groups and "Unit" in columns:
-        page.table(columns, groups)
-    else:  # no number without its unit: a plain line a quantity
-        page.say(*(_stated(answers, name) for name, *_ in chain.from_iterable(_rows(answers, tabled))))
-    said = [*remarks(answers), *(conditions(answers) if whole else ()), *reasons(answers)]
-    page.say(*(unmarked(one) for one in said if one not in found))
-    if budget:
-        _print_budget(page, answers, names)
-
-
-def _found(answers: Answers) -> list[str]:
-    """Sentences on what follows from what was measured; one may say that no pulley does."""
-    found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
-    none = answers.case.motion.beyond
-    said = [one for one in reasons(answers) if none and none in one]
-    return [*said, *[f"Found: {', '.join(found)}."] * bool(found)]
-
-
-def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
-    """The cells of the table: a row for each quantity that exists, by group."""
-    from ..output.page import aligned
-
-    values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
-    groups: dict[str, list[list[str]]] = {}
-    for name, value in zip(values, aligned(values.values()), strict=True):
-        about, case = QUANTITIES[name], answers.case
-        equation = cited(name, case.regime == "slip", case.axle_friction is not None)
-        at = " at mu_verge" * (name in AT_LIMIT and case.mu_assumed)
-        row = [f"{name}{at}", value, about.unit, about.symbol, equation]
-        groups.setdefault(about.group, []).append([for_stream(word, sys.stdout) for word in row])
-    return list(groups.values())
-
-
-def _stated(answers: Answers, name: str) -> str:
-    """A quantity with its value, uncertainty and unit."""
-    return f"{name} = {_with_uncertainty(answers, name)} {QUANTITIES[name].unit}".rstrip()
-
-
-def _with_uncertainty(answers: Answers, name: str) -> str:
-    """A value, and its uncertainty if it has one; empty if it does not exist."""
-    shown = cell(answers[name])
-    u = answers.uncertainty(name, to_digits(2)) if shown else None
-    return with_uncertainty(lambda place: answers.rounded(name, to_place(place)), u) if u else shown
-
-
-def _print_budget(page: "Page", answers: Answers, names: Sequence[str]) -> None:
-    """Each uncertain input's share of the variance of each quantity."""
-    from ..output.page import aligned
-
-    page.say("Each input's share of the variance, in percent:")
-    shares = {name: one for name in names if (one := answers.budget(name, to_place(-1)))}
-    inputs = list(answers.uncertainties.given) if answers.uncertainties else []
-    columns = [aligned(str(one[x]) for one in shares.values()) for x in inputs]
-    rows = ([name, *cells] for name, *cells in zip(shares, *columns, strict=True))
-    by_group = groupby(rows, lambda row: QUANTITIES[row[0]].group)
-    page.table(["Quantity", *inputs], [list(group) for _, group in by_group])
