@@ -1,7 +1,7 @@
 """The door for Python: `solve`, and the `Solution` that it returns."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from decimal import Decimal
 from inspect import Parameter, Signature
 from typing import TYPE_CHECKING, Any, Generic, Required, TypedDict, TypeVar, Unpack, overload
@@ -89,7 +89,7 @@ class Solution(Answered, Generic[T]):
     """
 
     scene: Scene
-    notes: tuple[str, ...]
+    notes: tuple[str, ...] = field(compare=False)
     regime: str
     acceleration: T | None
     tension_1: T | None
@@ -132,10 +132,31 @@ class Solution(Answered, Generic[T]):
         for name, value in values.items():
             object.__setattr__(self, name, value)
 
+    def to_dict(self) -> dict[str, Any]:
+        """What ``--json`` prints, ready for `json`: of Decimals text, None for what is infinite."""
+        from .output.solution import record
+        from .output.text import for_json
+
+        answers = Answers(*self._answers.given)
+        return {name: for_json(value, answers.digits) for name, value in record(answers).items()}
+
+    def __str__(self) -> str:
+        """The table of what the scene is about, as ``atwood solve`` prints it, without colours."""
+        from .output.solution import as_text
+
+        return as_text(Answers(*self._answers.given))
+
+    def _repr_html_(self) -> str:
+        """The same for a notebook."""
+        from .output.solution import as_html
+
+        return as_html(Answers(*self._answers.given))
+
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        return all(getattr(self, one.name) == getattr(other, one.name) for one in fields(self))
+        names = [one.name for one in fields(self) if one.compare]
+        return all(getattr(self, name) == getattr(other, name) for name in names)
 
     def __hash__(self) -> int:
         return hash(self.scene)

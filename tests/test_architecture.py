@@ -16,7 +16,7 @@ MAY_IMPORT = {
     "arithmetic": "",
     "model": "arithmetic",
     "solver": "arithmetic model",
-    "api": "arithmetic model solver",
+    "api": "arithmetic model solver output",
     "arrays": "arithmetic model solver",
     "derivation": "arithmetic model solver",
     "batch": "files arithmetic model solver arrays",

@@ -8,6 +8,8 @@ import subprocess
 import sys
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
+from xml.etree.ElementTree import fromstring
 
 import pytest
 
@@ -17,6 +19,7 @@ from atwood_cli.model.quantities import ASCII, MEASURED_NAMES, QUANTITIES, read_
 
 from . import oracle
 from .running import PAPER, Atwood, on_terminal, plain, process
+from .scenes import inputs
 
 LOADED = "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
 
@@ -49,6 +52,39 @@ def test_the_main_job_takes_one_screen() -> None:
     seen = plain(on_terminal(*PAPER, columns=80, rows=24))
     assert seen.count("\n") < 24
     assert max(map(len, seen.splitlines())) <= 80
+
+
+SHOWN = """
+m1=1 m2=3 mu=0.3
+m1=1.0(1) m2=3 M=10 mu=0.3 R=5cm
+m1=55g m2=60g a=0.38(1) digits=20
+m1=1 m2=3 M=inf mu=1e10 wrap=3rad
+m1=1e-400 m2=3 M=10 mu=1e8 digits=9
+"""
+
+
+@pytest.mark.parametrize("given", SHOWN.strip().splitlines())
+def test_a_solution_shows_itself_as_the_command_does(atwood: Atwood, given: str) -> None:
+    typed = ["solve", *(word for one in given.split() for word in f"--{one}".split("="))]
+    solution: Any = solve(**inputs(given))
+    assert f"{solution}\n" == atwood(*typed).out
+    number: Any = str if "digits" in given else float
+    shown = json.loads(atwood(*typed, "--json").out, parse_float=number, parse_int=number)
+    assert json.loads(json.dumps(solution.to_dict(), allow_nan=False)) == shown
+    page = fromstring(f"<div>{solution._repr_html_()}</div>")
+    said = " ".join(str(solution).split())
+    assert all((paragraph.text or "?") in said for paragraph in page.findall("p"))
+    rows = [[cell.text or "" for cell in row] for row in page.findall("table/tr")]
+    lines = [line.strip("│ ") for line in str(solution).splitlines() if line.startswith("│")]
+    assert rows == [[cell.strip() for cell in line.split("│")[:4]] for line in lines]
+
+
+def test_a_printed_solution_fits_the_terminal_and_has_no_colours(monkeypatch: pytest.MonkeyPatch) -> None:
+    solution = solve(m1=1, m2=3, M="10(1)")
+    monkeypatch.setenv("COLUMNS", "60")
+    monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
+    assert max(map(len, str(solution).splitlines())) <= 60
+    assert "\x1b" not in str(solution)
 
 
 MAIN = "acceleration tension_1 tension_2 mu_verge friction_force"

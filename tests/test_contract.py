@@ -280,6 +280,35 @@ def test_floats_mean_their_binary_value() -> None:
     exact = solve(m1=0.1, m2=3, M=1, digits=30)
     assert exact == solve(m1=Fraction(0.1), m2=3, M=1, digits=30)
     assert exact.acceleration != solve(m1="0.1", m2=3, M=1, digits=30).acceleration
+    assert repr(exact.scene.m1) == repr(Fraction(0.1))
+
+
+FLOATS = """
+mu=0.2 | Slips: mu = 0.2 is below the 0.206 that would hold it.
+mu=0.31 mu_k=0.1 M=50 | Holds from rest: mu = 0.31, and 0.306 is enough.
+mu=0.5 m2=3.3 M=None | Holds on any pulley: the heavier mass, 3.3 kg, would have to exceed 4.81 kg to slip.
+mu=0.2 M=40.1 | (36) for the verge: the heavier mass, 3 kg, must exceed 1.87446 kg (met); the pulley's mass, 40.1 kg,
+"""
+
+
+@pytest.mark.parametrize(("given", "said"), table(FLOATS))
+def test_notes_show_floats_as_they_are_written(given: str, said: str) -> None:
+    """They had all 54 digits of 0.2."""
+    words = {name: word and float(word) for name, word in inputs(given).items()}
+    scene: Any = {"m1": 1, "m2": 3, "M": 10, **words}
+    assert said in " ".join(solve(**scene).notes)
+
+
+@pytest.mark.parametrize(
+    ("mu", "mu_k", "sizes"),
+    [
+        (0.3, "0.3", "0.3 > 0.299999999999999988897769753748434595763683319091796875"),
+        (0.2, 0.3, "0.3 > 0.2"),
+    ],
+)
+def test_the_digits_of_a_float_are_shown_where_they_decide(mu: float, mu_k: Any, sizes: str) -> None:
+    with pytest.raises(SceneError, match=f"must not be above mu; exactly, {sizes}"):
+        solve(m1=1, m2=3, mu=mu, mu_k=mu_k)
 
 
 @pytest.mark.parametrize("digits", [1, 6, 17, 1000])

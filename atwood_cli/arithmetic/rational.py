@@ -15,6 +15,15 @@ class Irrational(ArithmeticError):
     """An operation leaves the rational numbers: compute in enclosures, or in floating point."""
 
 
+class OfFloat(Fraction):
+    """The exact value of a float, which texts show as the float: 0.3, without the 54 digits that it has."""
+
+    __slots__ = ()
+
+    def __repr__(self) -> str:
+        return repr(Fraction(self))
+
+
 class Rationals:
     """The arithmetic of exact fractions; an operation that may leave them raises `Irrational`."""
 

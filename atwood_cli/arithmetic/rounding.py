@@ -24,7 +24,7 @@ from math import inf, isinf
 from typing import TYPE_CHECKING, TypeVar
 
 from .interval import ZERO, Enclosure, Unsettled, decimal_context, enclosures
-from .rational import EXACT, Irrational
+from .rational import EXACT, Irrational, OfFloat
 
 if TYPE_CHECKING:
     from .protocol import Quantity
@@ -171,7 +171,12 @@ def exact_decimal(q: Fraction) -> Decimal | None:
 
 
 def as_typed(q: Fraction, longest: float = 16) -> str:
-    """The exact decimal of a rational number; where it has none n/d, rounded if that is too long to read."""
+    """The exact decimal of a rational number; where it has none n/d, rounded if that is too long to read.
+
+    A float is as it is written.
+    """
+    if isinstance(q, OfFloat):
+        return text(float(q))
     value = exact_decimal(q)
     if value is None and len(str(q)) > longest:
         value = tidy(to_digits(DOUBLE_DIGITS)(q))

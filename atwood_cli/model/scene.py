@@ -9,7 +9,8 @@ from math import inf
 from numbers import Rational, Real
 from typing import TYPE_CHECKING, Any, NamedTuple, SupportsInt
 
-from ..arithmetic.rounding import as_typed
+from ..arithmetic.rational import OfFloat
+from ..arithmetic.rounding import as_typed, to_double
 from .angle import Angle
 from .axle import Axle
 from .units import (
@@ -214,7 +215,9 @@ class Scene(NamedTuple):
         if self.mu_k is not None and self.mu is None:
             yield "mu_k", "needs mu, the coefficient that decides whether it slips"
         if self.mu_k is not None and self.mu is not None and self.mu_k > self.mu:
-            sizes = " > ".join(shortened(as_typed(mu, inf)) for mu in (self.mu_k, self.mu))
+            alike = to_double(self.mu_k) == to_double(self.mu)  # then a float's digits are the point
+            both = [Fraction(mu) if alike else mu for mu in (self.mu_k, self.mu)]
+            sizes = " > ".join(shortened(as_typed(mu, inf)) for mu in both)
             yield "mu_k", f"must not be above mu; exactly, {sizes}"
         if self.I is not None and self.R is None:
             yield "I", "needs the radius R as well"
@@ -362,7 +365,8 @@ def _read_number(name: str, given: object) -> Fraction | float:
     if isinstance(given, Decimal) and given.is_finite() and given and _longest(given) > MAX_MAGNITUDE:
         raise SceneError(name, given, TOO_LONG)
     try:
-        return limited(Fraction(*map(int, _ratio(given))))
+        kind = Fraction if isinstance(given, Rational | Decimal) else OfFloat
+        return limited(kind(*map(int, _ratio(given))))
     except Malformed as error:
         raise SceneError(name, given, str(error)) from None
     except ValueError:  # not a number

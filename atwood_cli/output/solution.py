@@ -2,14 +2,15 @@
 
 import sys
 from collections.abc import Sequence
+from html import escape
 from itertools import chain, groupby
 from typing import TYPE_CHECKING
 
 from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..solver.answers import Answers
-from ..solver.messages import conditions, notes, reasons, remarks, unmarked
-from .text import cell, for_stream, scene_record
+from ..solver.messages import conditions, notes, reasons, remarks, unmarked, verdict
+from .text import cell, describe, for_stream, scene_record
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
     from .page import Page
 
 
-def record(answers: Answers, only: Sequence[str], budget: bool) -> dict[str, object]:
+def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> dict[str, object]:
     """The record for JSON: all quantities with scene and notes, or only those named."""
     names = only or answers.names
     results: dict[str, object] = {name: answers[name] for name in names}
@@ -50,8 +51,8 @@ def print_table(
 
     answers, page, columns = answers.shown, Page(console), list(COLUMNS)
     names = answers.names[1:] if whole else answers.main
-    tabled = [name for name in names if name not in (*MEASURED_NAMES, *answers.found)]
-    groups, found = _rows(answers, tabled), _found(answers)
+    found, groups, said = _parts(answers, names, whole)
+    rows = [*chain.from_iterable(groups)]
     page.head(answers, found)
     while page.room and table_width(columns, groups) > page.room:
         columns.pop()
@@ -59,11 +60,20 @@ def print_table(
     if groups and "Unit" in columns:
         page.table(columns, groups)
     else:  # no number without its unit: a plain line a quantity
-        page.say(*(_stated(answers, name) for name, *_ in chain.from_iterable(_rows(answers, tabled))))
-    said = [*remarks(answers), *(conditions(answers) if whole else ()), *reasons(answers)]
-    page.say(*(unmarked(one) for one in said if one not in found))
+        page.say(*(f"{name} = {value.strip()} {unit}".rstrip() for name, value, unit, *_ in rows))
+    page.say(*said)
     if budget:
         _print_budget(page, answers, names)
+
+
+def _parts(
+    answers: Answers, names: Sequence[str], whole: bool
+) -> tuple[list[str], list[list[list[str]]], list[str]]:
+    """What was found, in sentences; the rows of the table, by group; and the sentences below it."""
+    groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *answers.found)])
+    found = _found(answers)
+    said = [*remarks(answers), *(conditions(answers) if whole else ()), *reasons(answers)]
+    return found, groups, [unmarked(one) for one in said if one not in found]
 
 
 def _found(answers: Answers) -> list[str]:
@@ -72,6 +82,39 @@ def _found(answers: Answers) -> list[str]:
     none = answers.case.motion.beyond
     said = [one for one in reasons(answers) if none and none in one]
     return [*said, *[f"Found: {', '.join(found)}."] * bool(found)]
+
+
+def as_text(answers: Answers) -> str:
+    """The same page as text, in the symbols and the width of where the program prints, without colours."""
+    from shutil import get_terminal_size
+
+    from rich.console import Console
+
+    width, height = get_terminal_size()
+    console = Console(highlight=False, color_system=None, width=width, height=height)
+    with console.capture() as captured:
+        print_table(answers, console=console)
+    return captured.get().rstrip("\n")
+
+
+def as_html(answers: Answers) -> str:
+    """The same for a notebook."""
+    answers = answers.shown
+    scene, motion, known = answers.case.scene, answers.case.motion, answers.uncertainties
+    found, groups, said = _parts(answers, answers.main, whole=False)
+    head = [describe(scene, motion, known.given if known else {}), *found, unmarked(verdict(answers))]
+    rows = [_html_row(row, "td") for row in chain.from_iterable(groups)]
+    table = ["<table>", _html_row(COLUMNS, "th"), *rows, "</table>"] if rows else []
+    return "\n".join([*map(_html_paragraph, head), *table, *map(_html_paragraph, said)])
+
+
+def _html_paragraph(words: str) -> str:
+    return f"<p>{escape(words)}</p>"
+
+
+def _html_row(row: Sequence[str], tag: str) -> str:
+    """A row of the table without its last column, the equations."""
+    return f"<tr>{''.join(f'<{tag}>{escape(word.strip())}</{tag}>' for word in row[:-1])}</tr>"
 
 
 def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:

@@ -139,6 +139,23 @@ def as_json(value: object, indent: str = "\n") -> Iterator[str]:
             yield json.dumps(value)
 
 
+def for_json(value: Any, digits: int | None) -> Any:
+    """A value as the `json` module takes it: the same as `as_json` writes.
+
+    Numbers are doubles. With ``digits``, and where it is beyond the doubles, a decimal is text.
+    """
+    match value:
+        case Mapping():
+            return {key: for_json(item, digits) for key, item in value.items()}
+        case list():
+            return [for_json(item, digits) for item in value]
+        case float() | Decimal():
+            if is_infinite(value):
+                return None
+            return text(value) if digits or is_infinite(float(value)) else float(value)
+    return value
+
+
 def print_csv(records: Iterable[Mapping[str, object]]) -> None:
     """A line of names and a line for each record, as they come."""
     from csv import writer
