@@ -9,7 +9,7 @@ from fractions import Fraction
 from typing import NamedTuple
 
 from ..arithmetic.rounding import is_infinite
-from ..model.quantities import FROM_MOTION, QUANTITIES
+from ..model.quantities import QUANTITIES
 from ..solver.answers import Answers
 from ..solver.messages import (
     conditions,
@@ -58,11 +58,17 @@ def explain(answers: Answers) -> Explanation:
     told = [found] if case.motion.finds and not case.slide_measured else []
     first = [Step(TITLES[body], [*body(derivation)]) for body in (_masses, _pulley, *told, *middle, *limits)]
     model = Step("What is modelled and what is not", [*_model(derivation)])
-    main = (*FROM_MOTION.get(case.motion.finds, ())[:1], "acceleration", "tension_1", "tension_2")
-    known = [name for name in main if answers[name] is not None]
-    values = ", ".join(map(derivation.say, known))
+    main = [name for name in ("acceleration", "tension_1", "tension_2") if name not in answers.found]
+    result, told_by_motion = (
+        ", ".join(derivation.say(name) for name in names if answers[name] is not None)
+        for names in (main, answers.found)
+    )
     return Explanation(
-        [verdict(answers), *[f"{values}."] * bool(known)],
+        [
+            *[f"Found: {told_by_motion}."] * bool(told_by_motion),
+            verdict(answers),
+            *[f"{result}."] * bool(result),
+        ],
         "After = both sides are exactly equal, after ≈ the result is rounded to"
         f" {derivation.digits} significant digits. Numbers put in have as many digits as it takes to give the"
         " result.",
