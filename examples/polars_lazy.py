@@ -11,8 +11,11 @@ NAMES = ("regime", "acceleration")
 
 
 def solve(scenes: pl.DataFrame) -> pl.DataFrame:
-    """A batch of rows with the results as columns, null where a row is no scene: -1 is the last name."""
-    results = solve_arrays(*(scenes[name].to_numpy() for name in ("m1", "m2", "M", "mu")), quantities=NAMES)
+    """A batch of rows with the results as columns, null where a row is no scene: -1 is the last name.
+
+    What is null is not given: without mu, for example, the string holds. A NaN is an error of its row.
+    """
+    results = solve_arrays(*(scenes[name] for name in ("m1", "m2", "M", "mu")), quantities=NAMES)
     return scenes.with_columns(
         regime=pl.Series([*REGIMES, None]).gather(results["regime"]),
         acceleration=pl.Series(results["acceleration"], nan_to_null=True),

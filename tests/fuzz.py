@@ -43,7 +43,7 @@ import typer
 from atwood_cli import SceneError, cli, solve, solve_arrays
 from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import NAMES
-from atwood_cli.model.scene import COLUMNS, INPUTS, MEASURED
+from atwood_cli.model.scene import INPUTS, MASSES, MEASURED
 from atwood_cli.tradeoff import measure
 
 from .running import hearing
@@ -219,11 +219,11 @@ def command_line(random: Dice) -> list[str]:
 
 def table(random: Dice, kind: str) -> bytes:
     """A table of scenes, more or less whole."""
-    columns = [*COLUMNS[:2], *(name for name in COLUMNS[2:] if random.random() < 0.2)]
-    columns += [name for name in (*TEXTS, "I", "mu_K", "a", "time") if random.is_odd()]
+    columns = [name for name in INPUTS if name in MASSES or random.random() < 0.2]
+    columns += [name for name in (*TEXTS, "mu_K", "a", "time") if random.is_odd()]
     random.shuffle(columns)
     rows = [
-        [number(random) if name in COLUMNS else random.choice(TEXTS) for name in columns]
+        [number(random) if name in INPUTS else random.choice(TEXTS) for name in columns]
         for _ in range(random.choice([0, 1, 2, 5, 30]))
     ]
     kind = random.choice(FORMATS) if random.is_odd() else kind
@@ -418,7 +418,7 @@ def wrong_with_arguments(random: Dice) -> str:
         )
     accuracy = random.choice(["fast", "certified", "exact", "x", None])
     quantities = random.choice([None, random.sample(NAMES, 3), ["x"], []])
-    return call(solve_arrays, {"accuracy": accuracy, "quantities": quantities}, COLUMNS)
+    return call(solve_arrays, {"accuracy": accuracy, "quantities": quantities}, [*INPUTS])
 
 
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(Path(cli.__file__).parents[2])}

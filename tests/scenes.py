@@ -1,14 +1,16 @@
 """Seeded scenes of every stress family, as the texts that a user would type."""
 
 import re
-from collections.abc import Callable, Iterator, Mapping
-from math import isnan
+from collections.abc import Callable, Iterator
+from decimal import Context, Decimal
+from fractions import Fraction
 from random import Random
 from typing import Any
 
 import flint
 
 from atwood_cli.model.scene import Scene
+from atwood_cli.solver.answers import Answers
 
 Given = dict[str, str]
 
@@ -137,6 +139,28 @@ def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
         yield _vary(rng, FAMILIES[family](rng))
 
 
+def with_axle(rng: Random, given: Given) -> Given:
+    """The scene with an axle: of no matter, or such that it decides; as a torque now and then."""
+    scene = Scene.read(given)
+    l, h = sorted((scene.m1, scene.m2))
+    g = scene.g
+    limits = [g * (h - l), g * l, g * h]
+    if isinstance(scene.M, Fraction) and scene.inertia is not None:
+        limits.append(g * scene.M * scene.inertia)
+    f = rng.choice(limits) * Fraction(10 ** rng.uniform(-3, 0.5))
+    if rng.random() < 0.3:  # just about what it holds
+        f = g * (h - l) * (1 + rng.choice([-1, 0, 1]) * Fraction(10 ** rng.uniform(-25, -2)))
+    if scene.mu and scene.mu < 1 and h > l and rng.random() < 0.3:
+        # The verge of a massless pulley: where b (h + l) = (k - 1) l (2 h - b).
+        k1 = Fraction(Answers(Scene.read({**given, "M": "1", "I": None}), 30).settle(lambda m: m.k1))
+        near = 1 + Fraction(rng.choice([-1, 1]) * 10 ** rng.uniform(-15, -3))
+        f = g * 2 * h * l * k1 / (h + l + l * k1) * near
+    context = Context(prec=rng.choice([3, 17, 40]), Emin=-5000, Emax=5000)
+    shown = context.divide(Decimal(f.numerator), Decimal(f.denominator))
+    text = str(max(min(shown, Decimal("1e450")), Decimal("1e-450")))  # as far as a number may be typed
+    return given | {"axle": f"{text} N" if rng.random() < 0.8 or "R" not in given else f"{text} Nm"}
+
+
 def of_all_kinds(count: int, seed: int = 2026) -> Iterator[Given]:
     """Scenes as people have them, some on an axle that rubs, with a free end or equal masses."""
     rng = Random(f"all kinds {seed}")
@@ -176,8 +200,3 @@ def with_friction(rng: Random, size: float = 1) -> Given:
     if rng.random() < 0.75:
         words["mu"] = rng.choice(["0", *[f"{_log_uniform(rng, -3, 0.2):.3g}"] * 5, "1e9"])
     return words
-
-
-def exact_scene(row: Mapping[str, float]) -> Scene:
-    """The scene that a row of doubles is, exactly; NaN is not given."""
-    return Scene.read({name: value for name, value in row.items() if not isnan(value)})

@@ -16,52 +16,56 @@ from typing import Any
 from unittest.mock import Mock
 
 import numpy as np
+import polars as pl
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
 from atwood_cli.arithmetic.lazy import lazy
-from atwood_cli.arrays import MAY_BE_ABSENT, STATUSES
+from atwood_cli.arrays import STATUSES
 from atwood_cli.arrays.plan import plan
 from atwood_cli.model.case import Case
 from atwood_cli.model.quantities import ACCURACIES, NAMES, STANDARD, Accuracy
-from atwood_cli.model.scene import COLUMNS, Scene
+from atwood_cli.model.scene import INPUTS, MASSES, Scene
 from atwood_cli.solver.answers import Answers
 
 from . import oracle
 from .conftest import examples
 from .running import HANGS
-from .scenes import FAMILIES, exact_scene, scenes
+from .scenes import FAMILIES, scenes, with_axle
 
 Row = dict[str, float]
 solve_any: Any = solve  # with inputs that are put together here
-SLICES = 4
-DEFAULTS = {"g": 9.80665, "inertia": 0.5, "wrap": 180.0}
+SLICES = BESIDE_AN_AXLE = 4
+G = 9.80665
 
 
 def row_of(given: dict[str, str]) -> Row | None:
-    """A scene's inputs as the doubles nearest to them, None if it takes more than those."""
+    """A scene's inputs as the doubles nearest to them, None if these are no such scene."""
     scene = Scene.read(given)
-    if scene.I is not None:
-        return None
-    numbers = scene._asdict() | {"wrap": scene.wrap.number}
-    values = {name: numbers[name] for name in COLUMNS}
+    numbers = scene._asdict() | {"wrap": scene.wrap.number, "axle": Case(scene).axle_friction}
     try:
-        row = {name: nan if value is None else float(value) for name, value in values.items()}
+        row = {name: float(value) for name, value in numbers.items() if value is not None}
     except OverflowError:
         return None
-    return row if row["m1"] and row["m2"] and row["g"] else None
+    return row if all(row.get(name, 1) for name in ("m1", "m2", "g", "I")) else None
 
 
 @cache
-def rows(family: str, count: int) -> list[Row]:
-    read = (row_of(given) for given in scenes(family, 2 * count))
-    return list(islice((row for row in read if row is not None), count))
+def rows(family: str, count: int, axle: bool = False) -> list[Row]:
+    """Without ``axle``, the pulley is given by its mass, and turns freely; with it, as it may be."""
+    rng, given = Random(f"axles of {family}"), scenes(family, 2 * count)
+    read = map(row_of, (with_axle(rng, one) for one in given) if axle else given)
+    return list(islice((row for row in read if row and (axle or "I" not in row)), count))
 
 
 def columns(of: list[Row]) -> dict[str, Any]:
-    return {name: np.array([row[name] for row in of]) for name in COLUMNS}
+    return {
+        name: np.ma.array([row.get(name, 0.0) for row in of], mask=[name not in row for row in of])
+        for name in INPUTS
+    }
 
 
 def within_4_ulp(got: float, nearest: float, want: oracle.Value) -> bool:
@@ -73,17 +77,20 @@ def within_4_ulp(got: float, nearest: float, want: oracle.Value) -> bool:
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-@pytest.mark.parametrize("part", range(SLICES))
+@pytest.mark.parametrize("part", [*range(SLICES), BESIDE_AN_AXLE])
 def test_certified_and_exact_values(family: str, part: int, pytestconfig: pytest.Config) -> None:
-    """20,000 rows with --every-digit, as .ci/run has it; every fourth of them otherwise."""
+    """25,000 rows with --every-digit, as .ci/run has it; every fourth of them otherwise."""
     every = 1 if pytestconfig.getoption("every_digit") else 4
-    given = rows(family, 4000)[part :: SLICES * every]
+    if part == BESIDE_AN_AXLE:
+        given = rows(family, 1000, axle=True)[::every]
+    else:
+        given = rows(family, 4000)[part :: SLICES * every]
     assert len(given) == 1000 / every
     certified = solve_arrays(**columns(given))
     exact = solve_arrays(**columns(given), accuracy="exact")
     regimes: Counter[str] = Counter()
     for i, row in enumerate(given):
-        want = oracle.expected(exact_scene(row))
+        want = oracle.expected(Scene.read(row))
         regimes[want["regime"]] += 1
         for results in (certified, exact):
             assert results["status"][i] == 0
@@ -100,7 +107,7 @@ def test_certified_and_exact_values(family: str, part: int, pytestconfig: pytest
 
 def assert_is_solve(results: Any, i: int, row: Row, accuracy: str) -> None:
     """A row's results are those of `solve`: to the bit if exact, within 4 ulp if certified."""
-    one = solve_any(**{"g": 9.80665} | {name: value for name, value in row.items() if not isnan(value)})
+    one = solve_any(**{"g": G} | row)
     for name, column in results.items():
         got, value = column[i].item(), getattr(one, name, 0)
         want = nan if value is None else value
@@ -203,6 +210,42 @@ def friction_straight_up(rng: Drawing) -> Columns:
     return given | {"wrap": low}
 
 
+def axle_that_just_holds(rng: Drawing) -> Columns:
+    given = _masses(rng)
+    return given | {"M": _usual(rng), "axle": G * (given["m2"] - given["m1"]) * _near_1(rng, 16)}
+
+
+def axle_that_just_moves_on_a_rough_string(rng: Drawing) -> Columns:
+    given, M = _masses(rng), rng.choice([0.0, inf, 3.0], CANCELLING_ROWS)
+    axle = G * (given["m2"] - given["m1"]) * (1 - abs(1 - _near_1(rng, 15)))
+    return given | {"M": M, "mu": _usual(rng, -2, 0), "axle": axle}
+
+
+def slip_on_any_pulley_or_hardly(rng: Drawing) -> Columns:
+    """Where the critical pulley mass is about 0."""
+    given, mu = _masses(rng), _usual(rng, -3, -1)
+    m1, m2 = given["m1"], given["m2"]
+    z = m1 * np.expm1(mu * np.pi)
+    return given | {"mu": mu, "axle": G * 2 * m2 * z / (m1 + m2 + z) * _near_1(rng, 16)}
+
+
+def slip_on_an_axle_that_just_turns(rng: Drawing) -> Columns:
+    given, mu = _masses(rng), _usual(rng, -3, -2)
+    m1, m2, k = given["m1"], given["m2"], np.exp(mu * np.pi / 2)
+    axle = (k - 1) * 2 * m1 * m2 * G / (m2 + m1 * k) * _near_1(rng, 16)
+    return given | {"M": 1e3 * m2, "mu": mu, "mu_k": mu / 2, "axle": axle}
+
+
+def axle_that_just_bears_the_heavier_mass(rng: Drawing) -> Columns:
+    given = _masses(rng)
+    return given | {"M": _usual(rng), "mu": _usual(rng), "axle": G * given["m2"] * _near_1(rng, 12)}
+
+
+def pulley_of_a_tiny_moment_of_inertia(rng: Drawing) -> Columns:
+    given = _masses(rng)
+    return given | {"I": _tiny(rng, 4, 60), "axle": G * _tiny(rng, 4, 60), "wrap": _turns(rng), "mu": 0.2}
+
+
 CANCELLING_ROWS = 48  # too many to be solved one by one from the start
 CANCELLING: list[Callable[[Drawing], Columns]] = [
     light_pulley_whole_turns,
@@ -215,6 +258,12 @@ CANCELLING: list[Callable[[Drawing], Columns]] = [
     near_the_least_pulley_mass,
     grip_with_little_to_spare,
     friction_straight_up,
+    axle_that_just_holds,
+    axle_that_just_moves_on_a_rough_string,
+    slip_on_any_pulley_or_hardly,
+    slip_on_an_axle_that_just_turns,
+    axle_that_just_bears_the_heavier_mass,
+    pulley_of_a_tiny_moment_of_inertia,
 ]
 
 
@@ -226,11 +275,11 @@ def test_what_cancels_is_solve_to_the_bit(
     given = family(np.random.default_rng(24))
     results = {a: solve_arrays(**given, accuracy=a, quantities=NAMES) for a in ACCURACIES[1:]}
     for i, columns_ in enumerate(zip(*np.broadcast_arrays(*given.values()), strict=True)):
-        row = DEFAULTS | dict(zip(given, map(float, columns_), strict=True))
+        row = {"g": G} | dict(zip(given, map(float, columns_), strict=True))
         for accuracy, found in results.items():
             assert_is_solve(found, i, row, accuracy)
         if i % 4 == 0 or pytestconfig.getoption("every_digit"):
-            for name, independent in oracle.expected(exact_scene(row)).items():
+            for name, independent in oracle.expected(Scene.read(row)).items():
                 if name in NAMES[1:] and independent is not None:
                     assert results["exact"][name][i] == oracle.correctly_rounded(independent, None), (
                         row,
@@ -267,7 +316,7 @@ def test_the_papers_scene() -> None:
 ODD = [nan, -1.0, -0.0, 0.0, 5e-324, 1e-200, 0.3, 0.5, 1.0, 3.0, 10.0, 1e200, 1.7e308, inf, -inf]
 odd_rows = st.fixed_dictionaries(
     {"m1": st.sampled_from(ODD), "m2": st.sampled_from(ODD)},
-    optional={name: st.sampled_from(ODD) for name in COLUMNS[2:]},
+    optional={name: st.sampled_from(ODD) for name in INPUTS if name not in MASSES},
 )
 
 
@@ -280,6 +329,7 @@ mixed_rows = st.fixed_dictionaries(
         "R": usual,
         "inertia": st.floats(0.1, 1),
         "wrap": st.sampled_from([17.5, 90.0, 180.0, 270.0, 360.0, 540.0]) | st.floats(1, 400),
+        "axle": st.sampled_from([0.0, 1e-40]) | st.floats(0.1, 100),
     },
 )
 
@@ -288,10 +338,9 @@ mixed_rows = st.fixed_dictionaries(
 @given(st.lists(odd_rows | mixed_rows, min_size=1, max_size=30), st.permutations(NAMES))
 def test_any_rows_side_by_side(some: list[dict[str, float]], names: list[str]) -> None:
     """Bad rows get a code and stop nobody, and whoever stands beside whom, each gets its own."""
-    full = [dict.fromkeys(COLUMNS, nan) | DEFAULTS | row for row in some]
     for accuracy in ACCURACIES[1:]:
-        results = solve_arrays(**columns(full), accuracy=accuracy, quantities=names)
-        for i, row in enumerate(full):
+        results = solve_arrays(**columns(some), accuracy=accuracy, quantities=names)
+        for i, row in enumerate(some):
             fault = _fault(row)
             if fault is None:
                 assert_is_solve(results, i, row, accuracy)
@@ -302,11 +351,12 @@ def test_any_rows_side_by_side(some: list[dict[str, float]], names: list[str]) -
 
 
 def _fault(row: Row) -> str | None:
+    if any(map(isnan, row.values())):
+        return "NaN"
     try:
-        Scene.read({name: x for name, x in row.items() if not (isnan(x) and name in MAY_BE_ABSENT)})
+        Scene.read(row)
     except SceneError as error:
-        above = error.rule.startswith("must not be above")
-        return "mu_k above mu" if above else FAULTS.get(error.rule, error.parameter)
+        return next((fault for rule, fault in FAULTS.items() if error.rule.startswith(rule)), error.parameter)
     return None
 
 
@@ -314,6 +364,10 @@ FAULTS = {
     "and m2 are both 0; at least one mass must hang": "no mass",
     "is a free end, which friction cannot hold; leave mu out": "friction at a free end",
     "needs mu, the coefficient that decides whether it slips": "mu_k without mu",
+    "must not be above": "mu_k above mu",
+    "and inertia both describe the pulley": "I and inertia",
+    "needs the radius R as well": "I without R",
+    "contradicts M": "I with M = 0 or inf",
 }
 
 
@@ -325,10 +379,12 @@ numbers = st.floats(1e-3, 1e3)
     st.lists(numbers, min_size=3, max_size=3),
     st.lists(numbers, min_size=4, max_size=4),
     numbers | st.none(),
-    st.lists(st.floats(0, 2) | st.just(nan), min_size=12, max_size=12),
+    st.lists(st.floats(0, 2) | st.none(), min_size=12, max_size=12),
 )
-def test_inputs_are_broadcast(m1: list[float], m2: list[float], M: float | None, mu: list[float]) -> None:
-    grid = np.array(mu).reshape(3, 4)
+def test_inputs_are_broadcast(
+    m1: list[float], m2: list[float], M: float | None, mu: list[float | None]
+) -> None:
+    grid = np.array(mu, object).reshape(3, 4)
     results = solve_arrays(np.array(m1)[:, None], m2, M, grid)
     for i in range(3):
         for j in range(4):
@@ -349,6 +405,7 @@ def test_a_number_is_a_column_of_it(accuracy: Any) -> None:
         "g": 9.81,
         "inertia": 0.4,
         "wrap": 170.0,
+        "axle": 2.5,
     }
     whole = solve_arrays(**{k: np.full(5, v) for k, v in row.items()}, accuracy=accuracy, quantities=NAMES)
     for name in row:
@@ -367,16 +424,15 @@ def test_why_values_are_missing_is_counted(
     monkeypatch.setattr(arrays, "BLOCK", block)
     rng = Random(5)
     numbers = {"m1": (1, 2, 0), "m2": (1, 2, 3), "M": (None, 0, 1, 100, inf), "mu": (None, 0, 0.1, 1)}
-    numbers |= {"R": (None, 1), "wrap": (90, 180, 360, 540)}
+    numbers |= {"R": (None, 1), "wrap": (90, 180, 360, 540), "axle": (*[None] * 4, 0, 10)}
     given = [{name: rng.choice(some) for name, some in numbers.items()} for _ in range(150)]
     counted: Counter[tuple[str, str]] = Counter()
     for row in given:
         if row["m1"] or row["mu"] is None:
             answers = Answers(Scene.read(row))
             counted.update((name, answers.reasons[name]) for name in NAMES if answers[name] is None)
-    whole: dict[str, Any] = {name: np.array([row[name] for row in given], float) for name in numbers}
-    defaults = {"g": 9.80665, "inertia": 0.5}
-    results, reasons = arrays.solve_and_count(whole | defaults, accuracy, NAMES)
+    whole: dict[str, Any] = {name: [row[name] for row in given] for name in numbers}
+    results, reasons = arrays.solve_and_count(whole, accuracy, NAMES)
     assert reasons == counted
     for name in NAMES[1:]:
         missing = int(np.isnan(results[name][results["status"] == 0]).sum())
@@ -519,7 +575,7 @@ NO_NUMBERS = [
 
 
 @pytest.mark.filterwarnings("error")
-@pytest.mark.parametrize("name", [name for name in COLUMNS if name != "mu_k"])
+@pytest.mark.parametrize("name", [name for name in INPUTS if name != "mu_k"])
 @pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
 def test_what_is_no_real_number_is_an_error_that_names_it(name: str, value: Any) -> None:
     """NumPy takes the real part of a complex number, the days of a date, the only field of a record."""
@@ -558,24 +614,84 @@ def test_0_and_infinity_of_any_type_are_themselves(value: Any) -> None:
         np.testing.assert_array_equal(found["acceleration"], wanted["acceleration"])
 
 
-@pytest.mark.parametrize("name", ["g", "inertia", "wrap"])
-def test_none_is_no_default(name: str) -> None:
-    none: Any = None
-    with pytest.raises(SceneError, match=f"^{name} is None; give it, or leave it out for the default$"):
-        solve_arrays(1, 3, **{name: none})
+class PandasColumn:
+    """What is used of a column of pandas."""
+
+    def __init__(self, values: list[Any], dtype: object) -> None:
+        self.values, self.dtype = values, dtype
+
+    def isna(self) -> list[bool]:
+        return [value is None or isnan(value) for value in self.values]
+
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
+        return np.array(self.values, dtype)
 
 
-@pytest.mark.parametrize("name", COLUMNS)
+NOT_GIVEN: dict[str, Any] = {
+    "numpy.ma": np.ma.array([0.25, 7.0, nan], mask=[False, True, False]),
+    "of integers": np.ma.array([1, 7, 1], mask=[False, True, False]),
+    "of texts": np.ma.array(["0.25", "x", "nan"], mask=[False, True, False]),
+    "list": [0.25, None, nan],
+    "objects": np.array([Decimal("0.25"), None, nan]),
+    "polars": pl.Series([0.25, None, nan]),
+    "polars, integers": pl.Series([1, None, 1]),
+    "polars, texts": pl.Series(["0.25", None, "NaN"]),
+    "pandas": PandasColumn([0.25, None, 0.25], "Float64"),
+    "pandas, of NumPy's type": PandasColumn([0.25, 0.25, nan], np.dtype(float)),
+}
+
+
+@pytest.mark.parametrize("name", INPUTS)
+@pytest.mark.parametrize("column", NOT_GIVEN.values(), ids=NOT_GIVEN.keys())
+def test_what_is_missing_is_not_given_and_nan_is_an_error(name: str, column: Any) -> None:
+    given: dict[str, Any] = {"m1": 1.0, "m2": 3.0, "M": 5.0, "mu": 1.0, "R": 1.0}
+    found = solve_arrays(**given | {name: column})
+    assert not any(isinstance(values, np.ma.MaskedArray) for values in found.values())
+    for i, value in enumerate(getattr(column, "values", None) or list(column)):
+        row = {key: x for key, x in given.items() if key != name}
+        if value is None or value is np.ma.masked:
+            status = name if name in MASSES else "valid"
+        else:
+            row[name] = float(value)
+            status = "NaN" if isnan(row[name]) else "valid"
+        assert STATUSES[found["status"][i]] == status
+        if status == "valid":
+            assert_is_solve(found, i, row, "certified")
+
+
+@pytest.mark.parametrize("name", INPUTS)
 @pytest.mark.parametrize("accuracy", ACCURACIES)
-def test_what_is_masked_is_not_given(name: str, accuracy: Accuracy) -> None:
-    given: dict[str, Any] = {"m1": 1.0, "m2": 3.0, "M": 5.0, "mu": 0.5}
-    masked = np.ma.array([0.25, 0.125], mask=[False, True])
-    usual = solve_arrays(**given | {name: [0.25, nan]}, accuracy=accuracy)
-    found = solve_arrays(**given | {name: masked}, accuracy=accuracy)
-    assert list(found["status"]) == [0, 0 if name in MAY_BE_ABSENT else 1 + COLUMNS.index(name)]
-    for quantity, values in found.items():
-        assert not isinstance(values, np.ma.MaskedArray)
-        np.testing.assert_array_equal(values, usual[quantity])
+def test_not_given_in_all_rows_is_not_given(name: str, accuracy: Accuracy) -> None:
+    """As `None` in `solve`, it leaves the usual value."""
+    given: dict[str, Any] = {"m1": 1.0, "m2": 3.0, "M": 5.0, "mu": 0.5, "R": 0.1, "axle": 2.0}
+    masked = solve_arrays(**given | {name: np.ma.masked}, accuracy=accuracy)
+    if name in MASSES:
+        assert masked["status"] == STATUSES.index(name)
+    else:
+        for other in (given | {name: None}, {key: x for key, x in given.items() if key != name}):
+            np.testing.assert_equal(solve_arrays(**other, accuracy=accuracy), masked)
+
+
+def test_either_inertia_or_moment_of_inertia_in_a_row() -> None:
+    found = solve_arrays(
+        *(1, 3, [8, None, 8, None, None]),
+        inertia=[1, None, None, 1, None],
+        I=[None, 0.08, 0.08, 0.08, None],
+        R=0.1,
+        accuracy="exact",
+    )
+    assert found["status"].tolist() == [0, 0, 0, STATUSES.index("I and inertia"), 0]
+    assert found["acceleration"][:3].tolist() == [solve(m1=1, m2=3, M=8, inertia=1, g=G).acceleration] * 3
+    assert found["acceleration"][4] == G / 2
+
+
+def test_status_codes_are_a_contract() -> None:
+    """New ones come last."""
+    words = (
+        "valid m1 m2 M mu mu_k g inertia R wrap no_mass friction_at_a_free_end mu_k_without_mu mu_k_above_mu"
+    )
+    words += " NaN I axle I_and_inertia I_without_R I_with_M_=_0_or_inf"
+    assert [status.replace(" ", "_") for status in STATUSES] == words.split()
 
 
 def test_a_table_of_many_kinds_is_planned_once() -> None:
@@ -614,7 +730,7 @@ def test_no_rows() -> None:
 
 
 def test_only_what_is_asked_for() -> None:
-    results = solve_arrays([1, 3], [3, 1], 10, quantities=["torque", "acceleration"], R=[0.1, nan])
+    results = solve_arrays([1, 3], [3, 1], 10, quantities=["torque", "acceleration"], R=[0.1, None])
     assert list(results) == ["torque", "acceleration", "status"]
     assert results["torque"][0] == pytest.approx(1.0896277777777778, rel=1e-15)
     assert isnan(results["torque"][1])

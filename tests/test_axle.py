@@ -1,8 +1,10 @@
 """Friction in the axle: Newton's laws in exact fractions, every digit, and what is said of it."""
 
+import csv
+import io
 import json
 from collections import Counter
-from decimal import Context, Decimal
+from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
 from math import inf, pi
@@ -10,14 +12,13 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-import numpy as np
 import pytest
 import uncertainties as unc
 from hypothesis import given
 from hypothesis import strategies as st
 from uncertainties import umath
 
-from atwood_cli import SceneError, solve, solve_arrays
+from atwood_cli import SceneError, solve
 from atwood_cli.arithmetic.rational import EXACT
 from atwood_cli.model.axle import Axle
 from atwood_cli.model.case import Case
@@ -27,7 +28,7 @@ from atwood_cli.solver.answers import Answers
 
 from . import oracle
 from .running import Atwood
-from .scenes import FAMILIES, Given, inputs, scenes, table
+from .scenes import FAMILIES, inputs, scenes, table, with_axle
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
 forces = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
@@ -49,28 +50,6 @@ def test_the_ratio_grows_with_the_pulley_and_bends_where_the_axle_lets_go() -> N
 
 
 # Every digit
-
-
-def with_axle(rng: Random, given: Given) -> Given:
-    """The scene with an axle: of no matter, or such that it decides; as a torque now and then."""
-    scene = Scene.read(given)
-    l, h = sorted((scene.m1, scene.m2))
-    g = scene.g
-    limits = [g * (h - l), g * l, g * h]
-    if isinstance(scene.M, Fraction) and scene.inertia is not None:
-        limits.append(g * scene.M * scene.inertia)
-    f = rng.choice(limits) * Fraction(10 ** rng.uniform(-3, 0.5))
-    if rng.random() < 0.3:  # just about what it holds
-        f = g * (h - l) * (1 + rng.choice([-1, 0, 1]) * Fraction(10 ** rng.uniform(-25, -2)))
-    if scene.mu and scene.mu < 1 and h > l and rng.random() < 0.3:
-        # The verge of a massless pulley: where b (h + l) = (k - 1) l (2 h - b).
-        k1 = Fraction(Answers(Scene.read({**given, "M": "1", "I": None}), 30).settle(lambda m: m.k1))
-        near = 1 + Fraction(rng.choice([-1, 1]) * 10 ** rng.uniform(-15, -3))
-        f = g * 2 * h * l * k1 / (h + l + l * k1) * near
-    context = Context(prec=rng.choice([3, 17, 40]), Emin=-5000, Emax=5000)
-    shown = context.divide(Decimal(f.numerator), Decimal(f.denominator))
-    text = str(max(min(shown, Decimal("1e450")), Decimal("1e-450")))  # as far as a number may be typed
-    return given | {"axle": f"{text} N" if rng.random() < 0.8 or "R" not in given else f"{text} Nm"}
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -297,12 +276,12 @@ def test_elements_find_the_critical_pulley_beside_it(atwood: Atwood) -> None:
     assert found["value"] == pytest.approx(found["exact"], rel=1e-7)
 
 
-def test_arrays_refuse_it_by_name(atwood: Atwood) -> None:
-    unknown: Any = {"axle": np.array([1.0])}
-    with pytest.raises(TypeError, match="'axle'"):
-        solve_arrays(1, 3, **unknown)
+def test_it_is_not_measured(atwood: Atwood) -> None:
     ran = atwood("tradeoff", "--m1", "1", "--m2", "3", "--axle", "5N")
-    assert ran.err == "atwood: --axle '5N' is not measured, as arrays have no such column; leave it out\n"
+    assert (
+        ran.err
+        == "atwood: --axle '5N' is not measured, as the paper's formulas do not take it; leave it out\n"
+    )
 
 
 # The inverse, and uncertainties
@@ -367,18 +346,29 @@ def test_the_scene_shows_it_with_its_uncertainty(atwood: Atwood) -> None:
     assert inf > solve(m1="1", m2="3", axle="1e400").tension_1 > 0  # type: ignore[operator]
 
 
-@pytest.mark.parametrize("column", ["axle", "Axle (N)", "axle_mN", "axle [mNm]"])
-def test_batch_refuses_it_by_name(atwood: Atwood, tmp_path: Path, column: str) -> None:
+def test_tables_take_it_beside_a_moment_of_inertia(atwood: Atwood, tmp_path: Path) -> None:
     file = tmp_path / "in.csv"
-    file.write_text(f"m1,m2,{column}\n1,3,7\n")
-    ran = atwood("batch", str(file))
-    assert (ran.status, ran.out, ran.err) == (
-        1,
-        "",
-        f"atwood: cannot read {file}: column {column!r} is not taken here; solve and sweep take --axle;"
-        f" or let it pass by --label {column!r}\n",
+    file.write_text(
+        "m1 (g),m2 (g),M (g),inertia,I (g cm2),R (cm),axle (mN)\n"
+        "200,210,84,,,,16\n200,210,,,1000,5,16\n200,210,84,0.4,,5,0\n200,201,,,1000,5,16\n"
+        "200,210,,,1000,,16\n200,210,,0.5,1000,5,16\n200,210,0,,1000,5,\n200,210,84,,,,-1\n200,210,84,,,,NaN\n"
     )
-    assert atwood("batch", str(file), "--label", column).status == 0
+    ran = atwood("batch", str(file), *"--only acceleration,tension_2 --accuracy exact".split())
+    rows = list(csv.DictReader(io.StringIO(ran.out)))
+    pulleys = [{"M": 0.084}, {"I": 1e-4, "R": 0.05}, {"M": 0.084, "inertia": 0.4}, {"I": 1e-4, "R": 0.05}]
+    masses = zip([0.21, 0.21, 0.21, 0.201], [0.016, 0.016, 0.0, 0.016], pulleys, strict=True)
+    solve_any: Any = solve
+    for row, (m2, axle, pulley) in zip(rows, masses, strict=False):
+        s = solve_any(m1=0.2, m2=m2, axle=axle, g=9.80665, **pulley)
+        assert [float(row["acceleration"]), float(row["tension_2"])] == [s.acceleration, s.tension_2]
+    assert [row["error"] for row in rows] == [
+        *[""] * 4,
+        "I '1000g cm2' needs the radius R as well",
+        "I '1000g cm2' and inertia both describe the pulley; give one of them",
+        "I '1000g cm2' contradicts M = 0g; leave one of them out",
+        "axle '-1mN' must be 0 or more, and finite",
+        "axle 'NaN' must be 0 or more, and finite",
+    ]
 
 
 def test_the_table_marks_the_equations_that_the_axle_enters(atwood: Atwood) -> None:

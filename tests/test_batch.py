@@ -12,7 +12,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from fractions import Fraction
 from functools import partial
 from itertools import count
@@ -32,7 +32,7 @@ from atwood_cli.batch import run
 from atwood_cli.batch.layout import inputs_among
 from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import NAMES, STANDARD
-from atwood_cli.model.scene import COLUMNS
+from atwood_cli.model.scene import INPUTS
 
 from .conftest import examples
 from .running import HANGS, PIP, Atwood, Ran, hearing, on_terminal, plain, process
@@ -58,7 +58,7 @@ def batch(atwood: Atwood, tmp_path: Path) -> Batch:
     return call
 
 
-def as_csv(rows: list[dict[str, str]], columns: tuple[str, ...] = COLUMNS) -> str:
+def as_csv(rows: list[dict[str, str]], columns: Collection[str] = tuple(INPUTS)) -> str:
     out = io.StringIO()
     writer = csv.DictWriter(out, columns, restval="", lineterminator="\n")
     writer.writeheader()
@@ -232,7 +232,7 @@ def test_every_format_into_every_format(atwood: Atwood, tmp_path: Path, source: 
     ran = atwood("batch", str(start), "-o", str(out), "--only", "regime")
     assert (ran.status, ran.out, ran.err) == (0, "", SUMMARY)
     result = read_back(out, target)
-    assert result.columns == [*COLUMNS, "regime", "error"]
+    assert result.columns == [*INPUTS, "regime", "error"]
     assert result["regime"].to_list() == REGIMES
     assert result["error"].null_count() == 6
     assert result["m1"].cast(pl.Float64).to_list() == [1, 1, 1, 1, 2, 0.25]
@@ -354,7 +354,7 @@ def test_a_bad_row_says_what_is_wrong(batch: Batch, row: dict[str, str], error: 
     first = f"atwood: first error, in row 2: {error}\n"
     assert (ran.status, ran.err) == (1, f"atwood: 3 rows: 2 no-slip; 1 error.\n{needs_mu}{first}")
     before, bad, after = records(ran)
-    assert bad == dict.fromkeys((*COLUMNS, *STANDARD), "") | rows[1] | {"error": error}
+    assert bad == dict.fromkeys((*INPUTS, *STANDARD), "") | rows[1] | {"error": error}
     assert (before["error"], after["error"]) == ("", "")
     assert float(before["acceleration"]) == -float(after["acceleration"]) != 0
 
@@ -410,7 +410,7 @@ def test_a_bad_value_in_ndjson_is_a_bad_row(batch: Batch, value: str) -> None:
 
 GOOD = st.sampled_from(["1", "3", "0.5", " 2 ", "1e3", "+4"])
 BAD = {
-    **{name: ["abc", "-1", "nan", "250g", "1e999", "inf", "1,5", "\u0663"] for name in COLUMNS},
+    **{name: ["abc", "-1", "nan", "250g", "1e999", "inf", "1,5", "\u0663"] for name in INPUTS},
     "M": ["abc", "-1", "nan", "-inf", "1e999"],
 }
 
@@ -420,7 +420,7 @@ def mixed_rows(draw: st.DrawFn) -> tuple[dict[str, str], str | None]:
     """A row, and the column that is wrong, if one is."""
     row = {"m1": draw(GOOD), "m2": draw(GOOD), "M": draw(st.sampled_from(["", "10", "inf", "0"]))}
     row["mu"] = draw(st.sampled_from(["", "0.3", "0", "nan"]))
-    wrong = "mu" if row["mu"] == "nan" else draw(st.sampled_from([None, None, *COLUMNS]))
+    wrong = "mu" if row["mu"] == "nan" else draw(st.sampled_from([None, None, *INPUTS]))
     if wrong is not None and row["mu"] != "nan":
         row[wrong] = draw(st.sampled_from(BAD[wrong]))
     return row, wrong
@@ -438,7 +438,7 @@ def test_nothing_is_lost_among_bad_rows(
     numbered = [{"id": str(i), **row} for i, (row, _) in enumerate(rows)]
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(tables, "PIECE_BYTES", size)
-        ran = batch(as_csv(numbered, ("id", *COLUMNS)), f"--to {kind}")
+        ran = batch(as_csv(numbered, ("id", *INPUTS)), f"--to {kind}")
     assert ran.status == any(wrong is not None for _, wrong in rows)
     if kind == "ndjson":
         objects = map(json.loads, ran.out.splitlines())
@@ -774,6 +774,8 @@ MEANT = {
     "mu_k": ["mu-k", "mu k", "μ_k", "muk"],
     "g": ["G", "gravity"],
     "inertia": ["beta", "Inertia"],
+    "I": ["moment of inertia", "Moment of inertia (g cm2)"],
+    "axle": ["Axle (N)", "axle_mN", "axle friction"],
 }
 
 
@@ -796,8 +798,7 @@ def test_a_column_that_could_be_meant_for_an_input_is_an_error(
     ("column", "why"),
     [
         *((name, "tells of a motion, which only solve takes") for name in ("a", "drop", "time", "Time (s)", "a (m/s2)")),
-        *((name, "is not taken here; give inertia, I/(M R^2)") for name in ("I", "I (kg m2)", "moment of inertia")),
-        ("axle", "is not taken here; solve and sweep take --axle"),
+        *((f"axle ({unit})", "has a unit of torque; it takes one of force (N, mN, kN, lbf, kgf)") for unit in ("mNm", "N m")),
         ("M (cm)", f"has a unit of length; {OF_MASS}"),
         ("M (est.)", "has the unknown unit 'est.'; there are kg, g, mg, ug, t, lb, lbs, oz, st, slug"),
         ("mu (kg)", "must hold plain numbers, without the 'kg'"),

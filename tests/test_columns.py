@@ -24,7 +24,7 @@ from atwood_cli.arrays.gap import gap, ratio
 from atwood_cli.arrays.plan import COLUMN, Pattern, _value, questioning
 from atwood_cli.arrays.program import OPERATIONS, Program, Room
 from atwood_cli.arrays.tables import cosines_and_sines, powers
-from atwood_cli.model.scene import COLUMNS
+from atwood_cli.model.scene import INPUTS
 
 from . import oracle
 from .conftest import examples
@@ -370,8 +370,8 @@ def test_a_question_is_open_where_the_bound_says_nothing() -> None:
     """e^{μπ} has no bound in pairs beyond e^700."""
     shared: dict[str, Any] = {"inertia": Fraction(1, 2), "wrap": Fraction(180)}
     inputs = {"m1": [1.0] * 3, "m2": [3.0] * 3, "M": [10.0] * 3, "mu": [0.2, 0.3, 400.0], "g": [9.8] * 3}
-    pattern = Pattern(1, tuple(COLUMN if name in inputs else shared.get(name) for name in COLUMNS))
-    program = questioning(pattern, frozenset(), "excess_ratio", "exact", PAIRS)
+    pattern = Pattern(1, tuple(COLUMN if name in inputs else shared.get(name) for name in INPUTS))
+    program = questioning(pattern, frozenset(), "beats_friction excess_ratio", "exact", PAIRS)
     slips, sure = np.empty((2, 3))
     columns = [np.array(inputs[name]) for name in program.inputs]
     program.run(columns, [slips, sure], Room().columns(program.between, 3))

@@ -111,13 +111,18 @@ def test_engines_keep_rows_that_are_no_scenes() -> None:
         run = runpy.run_path(str(script))
         if "by_regime" in run:
             frame = pl.LazyFrame(
-                {"m1": [1.0, *bad, None, 1.0], "m2": 3.0, "M": 50.0, "mu": 0.3}, run["schema"]
+                {"m1": [1.0, *bad, None, 1.0, 1.0], "m2": 3.0, "M": 50.0, "mu": [0.3] * 6 + [None]},
+                run["schema"],
             )
             found = run["by_regime"](frame).collect(engine="streaming")
-            assert {row["regime"]: row["len"] for row in found.to_dicts()} == {"slip": 2, None: 4}
+            assert {row["regime"]: row["len"] for row in found.to_dicts()} == {
+                "slip": 2,
+                "no-slip": 1,
+                None: 4,
+            }
             assert None not in found.filter(pl.col("regime") == "slip")["acceleration"].to_list()
         else:
-            M, mu = da.array([50.0, 10.0, -1.0]), da.array([0.3] * 3)
+            M, mu = da.ma.masked_equal(da.array([50.0, 10.0, -1.0, 7.0]), 7.0), da.array([0.3] * 4)
             assert run["share_of_slip"](M, mu) == 0.5
     with_rows = [path for path in (TOP / "examples").glob("*.py") if "solve_arrays" in path.read_text()]
     assert sorted(with_rows) == ENGINES

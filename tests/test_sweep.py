@@ -19,7 +19,7 @@ from hypothesis import strategies as st
 
 from atwood_cli import solve
 from atwood_cli.model.quantities import STANDARD
-from atwood_cli.model.scene import PARAMETERS, SceneError
+from atwood_cli.model.scene import INPUTS, SceneError
 from atwood_cli.output.curves import picture
 from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows
 
@@ -146,7 +146,7 @@ def test_every_row_is_what_solve_prints_for_its_values(
     ran = atwood("sweep", *(f"{words[n]}={grid[n]}" for n in grid), *options, "--csv")
     assert ran.status == 0
     rows = list(csv.DictReader(io.StringIO(ran.out)))
-    swept = [name for name in PARAMETERS if ":" in grid.get(name, "")]
+    swept = [name for name in INPUTS if ":" in grid.get(name, "")]
     assert list(rows[0]) == [*swept, *STANDARD]
     for row in rows:
         scene = grid | {name: row[name] for name in swept}

@@ -59,7 +59,6 @@ from atwood_cli.tradeoff.scenes import FAMILIES, draw_scenes
 
 from . import oracle
 from .running import Atwood, misplaced, pages_seen, plain
-from .scenes import exact_scene
 
 NAMES = [setting.name for setting in SETTINGS]
 G = 9.80665
@@ -155,7 +154,7 @@ def test_errors_are_those_against_the_oracle_and_promises_hold(family: str) -> N
 
 
 def oracle_error(row: dict[str, float], got: dict[str, Any]) -> float | None:
-    want = oracle.expected(exact_scene({"g": G, **row}))
+    want = oracle.expected(Scene.read({"g": G, **row}))
     if got["regime"] != want["regime"]:
         return None
     worst = 0.0
@@ -705,7 +704,7 @@ ERRORS = """
 --m1 1 -> --m2 is missing; give both masses, m1 and m2
 --m1 1e400 --m2 3 -> --m1 '1e400' is beyond the doubles, which are measured here
 --m1 1 --m2 3 --M 1e-400 -> --M '1e-400' is beyond the doubles, which are measured here
---m1 1 --m2 3 --I 2 --R 1 -> --I '2' is not measured, as arrays have no such column; give --inertia
+--m1 1 --m2 3 --I 2 --R 1 -> --I '2' is not measured, as the paper's formulas do not take it; give --inertia
 --figure x.gif -> --figure 'x.gif' must end in one of .svg, .png, .pdf
 --json --csv -> --json has no effect with --csv; leave one of them out
 """

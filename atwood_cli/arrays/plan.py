@@ -36,18 +36,20 @@ three doubles, whose range is wider than that of doubles.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from fractions import Fraction
 from functools import lru_cache
 from math import inf
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from ..arithmetic.lazy import lazy
 from ..arithmetic.symbolic import Formula, Term, formula
 from ..model.angle import Angle
+from ..model.axle import Axle
 from ..model.case import Case, Excess, is_zero
 from ..model.machine import Machine, Undetermined
 from ..model.quantities import REGIMES, Accuracy
-from ..model.scene import COLUMNS, Scene
+from ..model.scene import INPUTS, Scene
 from .double import (
     DOUBLES,
     Uncertified,
@@ -74,6 +76,8 @@ LIMITS = {"fast": inf, "certified": 3.49 * UNIT, "exact": UNIT / 16}
 """The largest bound to be certified. With a larger one few rows would pass for exact."""
 CLEAR = 2.0**-40
 """The relative difference of two sides at which doubles answer a question."""
+CANCELS = "beats_friction lightest_held_excess"
+"""The question that doubles do not answer, as the heavier mass less what the axle holds may cancel."""
 FINE = 2.0**-104
 """Of a value, more than the rounding errors of the ends of its bound, and than all parts after the second."""
 NORMAL = -1021.0  # below this power of two a double has fewer bits
@@ -101,6 +105,16 @@ class Pattern(NamedTuple):
     sign: int
     inputs: tuple[Fraction | float | str | None, ...]
 
+    def scene(self, column: Callable[[str], Any]) -> Scene:
+        """The scene of a row, or of all of them; ``column`` gives the number of an input that is a column."""
+        fields: dict[str, Any] = {
+            name: column(name) if value == COLUMN else value
+            for name, value in zip(INPUTS, self.inputs, strict=True)
+        }
+        fields["wrap"] = Angle(fields["wrap"])
+        fields["axle"] = None if fields["axle"] is None else Axle(fields["axle"])
+        return Scene(**fields)
+
 
 Decisions = frozenset[tuple[str, bool]]
 """Questions, and what the rows of a group have answered."""
@@ -123,12 +137,7 @@ class _GroupCase(Case):
     """The case of a group of rows: its inputs are columns, and its decisions are those of the group."""
 
     def __init__(self, pattern: Pattern, decisions: Decisions, ar: Any) -> None:
-        inputs: dict[str, Any] = {
-            name: ar.number(Formula("symbol", name)) if value == COLUMN else value
-            for name, value in zip(COLUMNS, pattern.inputs, strict=True)
-        }
-        inputs["wrap"] = Angle(inputs["wrap"])
-        super().__init__(Scene(**inputs, I=None))
+        super().__init__(pattern.scene(lambda name: ar.number(Formula("symbol", name))))
         self.sign, self._decisions = pattern.sign, dict(decisions)
         _covers(self.heavy, self.light)
 
@@ -153,7 +162,13 @@ class _GroupCase(Case):
         return wrap.ends_hang_down if isinstance(wrap.number, Fraction) else self._decided("ends_hang_down")
 
     def beats_friction(self, which: Excess) -> bool:
-        return self._decided(which)
+        return self._decided(f"beats_friction {which}")
+
+    def beats_limit(self, which: Excess) -> bool:
+        return self.beats_friction(which) if self.at_static_limit else self._decided(f"beats_limit {which}")
+
+    def moves_axle(self, which: Literal["difference", "heavy"]) -> bool:
+        return self._decided(f"moves_axle {which}")
 
 
 def _covers(larger: Any, smaller: Any) -> None:
@@ -177,7 +192,9 @@ def _never_negative(name: str) -> Any:
 class _ColumnsMachine(Machine[Any]):
     """The model of columns. It states what is never negative or never the larger, to save work."""
 
-    drive, limiting_drive, excess = map(_never_negative, ("drive", "limiting_drive", "excess"))
+    drive, limiting_drive, gripping_drive, excess = map(
+        _never_negative, ("drive", "limiting_drive", "gripping_drive", "excess")
+    )
 
     @lazy
     def magnitude(self) -> Any:
@@ -225,7 +242,7 @@ def plan(task: Task, accuracy: Accuracy) -> Plan:
     """The plan for a task. Certified values come with rounded products if these suffice for all of them."""
     arithmetic = LEVELS[accuracy][task.level]
     machine = _ColumnsMachine(_GroupCase(task.pattern, task.decisions, arithmetic), arithmetic)
-    if arithmetic is QUICK and accuracy == "certified":
+    if arithmetic is QUICK and accuracy == "certified" and machine.f is None:
         rounded = _planned(task, accuracy, _RoundedMachine(machine))
         if not rounded.later:
             return rounded
@@ -329,11 +346,18 @@ def questioning(pattern: Pattern, decided: Decisions, question: str, accuracy: A
     if question == "ends_hang_down":
         return Program([equal(Formula("fmod", wrap, formula(360.0)), 180.0), sure])
     case = _GroupCase(pattern, decided, ar)
-    excess, held = getattr(case, question)(ar), Machine[Any](case, ar).k1
+    machine, (method, which) = Machine[Any](case, ar), question.split()
+    one: Any
+    other: Any
+    if method == "moves_axle":
+        one, other = getattr(case, which) * machine.g, machine.f
+    else:
+        one = getattr(case, which)(ar)
+        other = machine.k1 if method == "beats_friction" else machine.limiting_k1
     if ar is not DOUBLES:
-        margin = excess - held
+        margin = one - other
         return Program([less(0.0, margin.parts[0]), less(margin.bound, 0.5)])
     if accuracy == "fast":
-        return Program([less(held, excess), equal(0.0, 0.0)])
-    beaten = less(held * (1 + CLEAR), excess)
-    return Program([beaten, either(beaten, less(excess, held * (1 - CLEAR)))])
+        return Program([less(other, one), equal(0.0, 0.0)])
+    clear = less(other * (1 + CLEAR), one)
+    return Program([clear, either(clear, less(one, other * (1 - CLEAR)))])

@@ -15,15 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.rational import Irrational
-from ..model.angle import Angle
 from ..model.case import Case
 from ..model.quantities import REGIMES, Accuracy
-from ..model.scene import COLUMNS, Scene
+from ..model.scene import Scene
 from ..solver.answers import Answers
 from .double import DOUBLES
 from .expansion import PAIRS, TRIPLES
 from .gap import gap, ratio
-from .plan import COLUMN, LEVELS, Pattern, Plan, Task, in_pairs, plan, questioning
+from .plan import CANCELS, LEVELS, Pattern, Plan, Task, in_pairs, plan, questioning
 from .program import Program, Room
 from .tables import Column
 
@@ -154,7 +153,8 @@ class Rows:
         yes = np.empty(size_of(index), np.bool_)
         open_: Any = slice(0, yes.size)
         far = LEVELS[self.accuracy][task.level] is TRIPLES
-        for ar in (TRIPLES,) if far else (DOUBLES, PAIRS, TRIPLES):
+        exact = question == CANCELS and self.accuracy != "fast"
+        for ar in (TRIPLES,) if far else (DOUBLES, PAIRS, TRIPLES)[exact:]:
             if ar is not DOUBLES and size_of(open_) <= FEW:
                 break
             program = questioning(task.pattern, task.decisions, question, self.accuracy, ar)
@@ -165,8 +165,8 @@ class Rows:
                     unsure.append(np.flatnonzero(~sure) + start)
             open_ = _select(open_, np.concatenate(unsure)) if unsure else np.empty(0, np.intp)
         for row in range(yes.size) if isinstance(open_, slice) else open_.tolist():
-            which: Any = question
-            yes[row] = Case(self._scene(index, row, task.pattern)).beats_friction(which)
+            method, which = question.split()
+            yes[row] = getattr(Case(self._scene(index, row, task.pattern)), method)(which)
         return yes
 
     def _settle_ties(self, index: NDArray[np.intp], task: Task) -> NDArray[np.intp]:
@@ -212,14 +212,12 @@ class Rows:
     def _scene(self, index: Index, row: int, pattern: Pattern) -> Scene:
         """One row as a scene of its own."""
         place = _select(index, row)
-        fields: dict[str, Any] = {}
-        for name, value in zip(COLUMNS, pattern.inputs, strict=True):
-            fields[name] = value
-            if value == COLUMN:
-                column = self.inputs[name]
-                fields[name] = Fraction(float(column[0 if column.size == 1 else place]))
-        fields["wrap"] = Angle(fields["wrap"])
-        return Scene(**fields, I=None)
+
+        def exactly(name: str) -> Fraction:
+            column = self.inputs[name]
+            return Fraction(float(column[0 if column.size == 1 else place]))
+
+        return pattern.scene(exactly)
 
 
 def size_of(index: Index) -> int:

@@ -12,7 +12,7 @@ from unicodedata import normalize
 
 from ..arithmetic.rounding import to_double
 from ..files import Unreadable
-from ..model.scene import COLUMNS, MASSES, MEASURED, SceneError, parameter_of, read_plain, read_value
+from ..model.scene import INPUTS, MASSES, MEASURED, SceneError, parameter_of, read_plain, read_value
 from ..model.units import Malformed, in_quotes, read_unit, symbol_of, without_blanks
 from .formats import PARTED_BY, Piece
 
@@ -29,16 +29,11 @@ OTHER_NAMES = {
     **dict.fromkeys(("friction_coefficient", "coefficient_of_friction"), "mu"),
     **dict.fromkeys(("muk", "mu_kinetic", "kinetic_friction"), "mu_k"),
     **{"gravity": "g", "beta": "inertia", "inertia_factor": "inertia", "moment_of_inertia": "I"},
+    **dict.fromkeys(("axle_friction", "bearing_friction"), "axle"),
     **{"r": "R", "radius": "R", "pulley_radius": "R", "wrap_angle": "wrap", "angle": "wrap", "phi": "wrap"},
 }
 # fmt: on
 """Other names of the inputs, in small ASCII letters."""
-TAKEN_ELSEWHERE = {
-    "I": "is not taken here; give inertia, I/(M R^2)",
-    "axle": "is not taken here; solve and sweep take --axle",
-    **dict.fromkeys(MEASURED, "tells of a motion, which only solve takes"),
-}
-"""What only other commands take, and what to do with such a column."""
 GREEK = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
 LARGEST_POWER = 22
 """The largest power of ten that is a double."""
@@ -110,16 +105,16 @@ def read_layout(piece: Piece, labels: Collection[str] = ()) -> Layout:
     A column that could be meant for an input and is none must be among the ``labels``.
     """
     headings = _headings(piece.columns, labels)
-    others = {column: meant(column) for column in piece.columns if column not in (*labels, *COLUMNS)}
+    others = {column: meant(column) for column in piece.columns if column not in (*labels, *INPUTS)}
     for column, name in others.items():
-        if name in COLUMNS and name not in headings:
+        if name in INPUTS and name not in headings:
             raise refused(column, f"could be meant for {name}; name it so, with a unit like 'm1 (g)'")
     for name in MASSES:
         if name not in headings:
             raise Unreadable(f"column {name} is missing; there are {listed(piece.columns)}")
     for column, name in others.items():
-        if name in TAKEN_ELSEWHERE:
-            raise refused(column, TAKEN_ELSEWHERE[name])
+        if name in MEASURED:
+            raise refused(column, "tells of a motion, which only solve takes")
     cells = piece.frame.select(heading.column for heading in headings.values())
     comma = decimal_commas_in(cells.iter_rows(), range(cells.width), piece.separator)
     return Layout(headings, piece.separator, comma)
@@ -157,7 +152,7 @@ def decimal_commas_in(rows: Iterable[Sequence[str]], places: Collection[int], se
 
 def inputs_among(columns: Sequence[str], labels: Collection[str] = ()) -> list[str]:
     """The columns with the name of an input, with any unit, that are not labels."""
-    return [column for column in columns if column not in labels and divided(column)[0] in COLUMNS]
+    return [column for column in columns if column not in labels and divided(column)[0] in INPUTS]
 
 
 def _headings(columns: Sequence[str], labels: Collection[str]) -> dict[str, Heading]:
@@ -186,7 +181,7 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
     """The factor from the unit of a column to the SI, or to degrees. Raises Unreadable."""
     if not unit:
         return Fraction(1)
-    dimension = parameter_of(name).dimension
+    dimension = "force" if name == "axle" else parameter_of(name).dimension
     try:
         if dimension is None:
             raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")
@@ -200,12 +195,12 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
 def meant(column: str) -> str | None:
     """The input that a heading could be meant for: with other letters, another name, or a unit after it."""
     name = divided(column)[0]
-    if name == "I":  # i may count rows
-        return name
+    if name in ("I", "i"):  # i may count rows
+        return name if name == "I" else None
     letters = normalize("NFKC", name).casefold().translate(GREEK)
     words = [word for word in re.split("[^0-9a-z]+", letters) if word]
     for key in ("_".join(words), "_".join(words[:-1])):
-        known = {one.lower(): one for one in (*reversed(COLUMNS), *MEASURED, "axle")}
+        known = {one.lower(): one for one in (*reversed(INPUTS), *MEASURED)}
         meant = OTHER_NAMES.get(key) or known.get(key)
         if meant and (key == "_".join(words) or is_unit(words[-1], meant)):
             return meant

@@ -9,13 +9,12 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import cache, partial
-from inspect import signature
 from io import BytesIO
 from math import inf, nan
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
-from ..arrays import solve_and_count, solve_arrays
+from ..arrays import solve_and_count
 from ..files import LONGEST_NAME, STREAM, Stdout, Unreadable, written_beside
 from ..model.quantities import NAMES, REGIMES, Accuracy
 from ..model.scene import Given, Scene, SceneError
@@ -232,7 +231,8 @@ def _inputs(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
 
 
 def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict[int, str]]:
-    """The inputs as doubles, by name, and the errors of cells that are none, by row (the first in each)."""
+    """The inputs as doubles, by name, masked where not given; and the first error of each row's cells."""
+    import numpy as np
     import polars as pl
 
     cells = _inputs(frame, layout)
@@ -242,7 +242,7 @@ def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict
     doubles = cells.select(
         layout.as_doubles(name, kind) for name, kind in cells.schema.items()
     )  # in parallel
-    scenes: dict[str, Any] = {**DEFAULTS}
+    scenes: dict[str, Any] = {}
     errors: dict[int, str] = {}
     for name in cells.columns:
         values = scenes[name] = doubles[name].to_numpy(writable=True)
@@ -251,16 +251,11 @@ def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict
                 values[row] = layout.double(name, cell)
             except SceneError as error:
                 errors.setdefault(row, str(error))
-        values[values != values] = DEFAULTS.get(name, nan)
+        if (empty := np.isnan(values)).any():  # or wrong: such a row has an error, whatever else it holds
+            scenes[name] = np.ma.array(values, mask=empty)
     return scenes, errors
 
 
-DEFAULTS = {
-    name: parameter.default
-    for name, parameter in signature(solve_arrays).parameters.items()
-    if isinstance(parameter.default, float)
-}
-"""Inputs that an empty cell, or no column, leaves at a usual value."""
 LONG = 100
 """Characters: a shorter text that is a nonzero double is within the limits of digits and exponents."""
 

@@ -6,7 +6,7 @@ import typer
 
 from ..files import FORMATS
 from ..model.quantities import ACCURACIES, STANDARD, read_name, read_names
-from ..model.scene import COLUMNS
+from ..model.scene import INPUTS
 from ..output.text import say
 from .options import COULD_NOT, DONE, Columns, Force, Labels, option
 
@@ -55,11 +55,11 @@ Examples:
   atwood batch scenes.csv --only regime --only acceleration | head
   generate | atwood batch - --from ndjson --to ndjson --allow-errors
 
-Columns {", ".join(COLUMNS)} are the options of solve, in SI units or in those
-of the heading, as m1 (g) or M [kg]; an empty cell is not given. Other columns stay as they are, but
-what could be meant for an input, like radius, is refused. Cells may be parted by semicolons or tabs,
-and have decimal commas then. A cell is read as the double nearest to it, as is g: so even exact can
-differ in the last digit from solve, which takes 0.1 for a tenth.
+Columns {", ".join(INPUTS)} are the options of solve, in SI units or
+in those of the heading, as m1 (g) or M [kg]; axle is a force, not a torque. An empty cell is not given.
+Other columns stay as they are, but what could be meant for an input, like radius, is refused. Cells may be
+parted by semicolons or tabs, and have decimal commas then. A cell is read as the double nearest to it, as
+is g: so even exact can differ in the last digit from solve, which takes 0.1 for a tenth.
 """
 
 

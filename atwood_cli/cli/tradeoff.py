@@ -98,7 +98,7 @@ def tradeoff(
     check({**locals(), **given})
     for name, instead in {"axle": "leave it out", "I": "give --inertia"}.items():
         if given[name] is not None:
-            why = f"is not measured, as arrays have no such column; {instead}"
+            why = f"is not measured, as the paper's formulas do not take it; {instead}"
             raise SceneError(name, given[name], why)
     from ..output.page import watched
     from ..solver.elements import MAX_ELEMENTS

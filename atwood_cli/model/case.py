@@ -99,8 +99,18 @@ class Case:
     @lazy
     def axle_holds(self) -> bool:
         """Whether the axle holds the difference of unequal masses, and so the pulley at rest."""
-        b = self.axle_mass
-        return b is not None and self.sign != 0 and not self.heavy - self.light > b
+        return self.axle_friction is not None and self.sign != 0 and not self.moves_axle("difference")
+
+    @property
+    def difference(self) -> Fraction:
+        """The heavier mass less the lighter one (kg)."""
+        return self.heavy - self.light
+
+    def moves_axle(self, which: Literal["difference", "heavy"]) -> bool:
+        """Whether the difference, or the heavier mass alone, is more than the axle holds."""
+        assert self.axle_friction is not None
+        mass: Fraction = getattr(self, which)
+        return mass * self.scene.g > self.axle_friction
 
     @property
     def stands(self) -> bool:
@@ -202,10 +212,9 @@ class Case:
     @property
     def stands_until_it_slips(self) -> bool:
         """Whether the pulley stands under the lightest mass that the string holds against the heavier."""
-        b = self.axle_mass
-        if self.locked or b is None or not self.heavy > b:
-            return self.locked or b is not None
-        return self.beats_friction("lightest_held_excess")
+        if self.locked or self.axle_friction is None:
+            return self.locked
+        return not self.moves_axle("heavy") or self.beats_friction("lightest_held_excess")
 
     @lazy
     def can_be_made_slip(self) -> bool:
@@ -229,7 +238,7 @@ class Case:
         # On a pulley without mass the axle takes all that friction makes up.
         if self.slide_measured:
             return not self.slide_excess(EXACT) > self.massless_excess(EXACT)
-        return self._exceeds("massless_excess", self.limiting_mu)
+        return self.beats_limit("massless_excess")
 
     @lazy
     def long_wrap(self) -> bool:
@@ -283,6 +292,10 @@ class Case:
     def beats_friction(self, which: Excess) -> bool:
         """Whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed."""
         return self._exceeds(which, self.scene.mu)
+
+    def beats_limit(self, which: Excess) -> bool:
+        """The same of the friction that acts, where it is at its limit: kinetic in slip."""
+        return self._exceeds(which, self.limiting_mu)
 
     def _exceeds(self, which: Excess, mu: Fraction | None) -> bool:
         excess: Quantity = getattr(self, which)

@@ -166,6 +166,11 @@ class Machine(Generic[N]):
         return physics.drive(self.l, self.h, self.limiting_transfer)
 
     @lazy
+    def gripping_drive(self) -> N:
+        """Drive d of a string that grips and moves (kg); see `physics`."""
+        return physics.drive(self.l, self.h, self.b)
+
+    @lazy
     def magnitude(self) -> N:
         """Magnitude of the acceleration (m/s²)."""
         l, h, case = self.l, self.h, self.case
@@ -174,7 +179,7 @@ class Machine(Generic[N]):
         elif case.sign == 0 or case.stands:
             return self.ar.number(0)
         else:
-            drive = physics.drive(l, h, self.b)
+            drive = self.gripping_drive
             load = physics.load(l, h, self._given(case.rim_mass, NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 

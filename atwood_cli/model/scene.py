@@ -105,7 +105,7 @@ class Parameter(NamedTuple):
         return f"must be {bound}{' (inf locks the pulley)' if self.inf else ', and finite'}"
 
 
-PARAMETERS = {
+INPUTS = {
     "m1": Parameter("mass on one end of the string", "kg", zero=True, dimension="mass"),
     "m2": Parameter("mass on the other end", "kg", zero=True, dimension="mass"),
     "M": Parameter("mass of the pulley", "kg", zero=True, inf=True, dimension="mass"),
@@ -116,18 +116,14 @@ PARAMETERS = {
     "I": Parameter("moment of inertia of the pulley", "kg m²", dimension="moment of inertia"),
     "R": Parameter("radius of the pulley", "m", dimension="length"),
     "wrap": Parameter("angle over which the string touches the pulley", "°", dimension="angle"),
-}
-INPUTS = PARAMETERS | {
     "axle": Parameter(
         "friction of the axle, as a torque or as a force at the rim",
         "N",
         zero=True,
         dimension="torque or force",
-    )
+    ),
 }
-"""What a scene is made of: the parameters, and an axle."""
-COLUMNS = tuple(name for name in PARAMETERS if name != "I")
-"""The inputs of arrays and tables, which take no axle yet."""
+"""What a scene is made of, and what the columns of arrays and of tables may be."""
 MEASURED = {
     "a": Parameter(
         "measured acceleration, positive when m2 descends", "m/s²", dimension="acceleration", signed=True
@@ -280,7 +276,7 @@ def read_plain(name: str, given: str, text: str) -> Fraction | float:
     """The number that a cell of a table stands for, by a text without unit or name. Raises SceneError."""
     if is_uncertain(text):
         raise SceneError(name, given, NO_UNCERTAINTY)
-    return _read_text(name, given, text, PARAMETERS[name]._replace(dimension=None, names={})).value
+    return _read_text(name, given, text, INPUTS[name]._replace(dimension=None, names={})).value
 
 
 def read_whole(name: str, given: int | str, least: int, most: int) -> int:

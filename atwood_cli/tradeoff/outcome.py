@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from ..arithmetic.rounding import as_typed, text, to_double
 from ..model.machine import Undetermined
-from ..model.scene import COLUMNS, Scene, SceneError
+from ..model.scene import INPUTS, Scene, SceneError
 from ..solver.messages import unmarked
 from .measure import MARGIN, March, Measured, counts, marches, measure, with_orders
 from .scenes import Inputs, draw_scenes
@@ -81,7 +81,7 @@ def inputs_of(scene: Scene) -> Inputs:
     """A scene as the doubles that it is measured with, m1 the lighter mass. Raises SceneError."""
     inputs: Inputs = {}
     given = scene._asdict() | {"wrap": scene.wrap.number}
-    for name in COLUMNS:
+    for name in INPUTS:
         if (value := given[name]) is not None:
             inputs[name] = double = to_double(value)
             if isinstance(value, Fraction) and (double == inf or (double == 0 and value)):
