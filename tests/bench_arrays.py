@@ -121,6 +121,10 @@ FAMILIES = {
     ),
     "masses and M over 1e±300": Family("certified", None, FAR),
     "the same, exact": Family("exact", None, FAR),
+    "beside an axle": Family("certified", None, {"axle": powers(-2, 3)}),
+    "the same, I for M": Family(
+        "certified", None, {"axle": powers(-2, 3), "M": same(None), "I": powers(-4, 1), "R": same(0.1)}
+    ),
     "μφ above 700": Family("certified", None, {"mu": uniform(225, 400)}),
     "ordinary, exact": Family(),
     "exact, wrap a column": Family("exact", None, {"wrap": uniform(1, 720)}),

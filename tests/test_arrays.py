@@ -38,7 +38,7 @@ from .scenes import FAMILIES, scenes, with_axle
 
 Row = dict[str, float]
 solve_any: Any = solve  # with inputs that are put together here
-SLICES = BESIDE_AN_AXLE = 4
+SLICES, BESIDE_AN_AXLE = 4, 3
 G = 9.80665
 
 
@@ -77,9 +77,9 @@ def within_4_ulp(got: float, nearest: float, want: oracle.Value) -> bool:
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-@pytest.mark.parametrize("part", [*range(SLICES), BESIDE_AN_AXLE])
+@pytest.mark.parametrize("part", range(SLICES))
 def test_certified_and_exact_values(family: str, part: int, pytestconfig: pytest.Config) -> None:
-    """25,000 rows with --every-digit, as .ci/run has it; every fourth of them otherwise."""
+    """20,000 rows with --every-digit, as .ci/run has it; every fourth of them otherwise."""
     every = 1 if pytestconfig.getoption("every_digit") else 4
     if part == BESIDE_AN_AXLE:
         given = rows(family, 1000, axle=True)[::every]
@@ -425,7 +425,7 @@ def test_why_values_are_missing_is_counted(
     rng = Random(5)
     numbers = {"m1": (1, 2, 0), "m2": (1, 2, 3), "M": (None, 0, 1, 100, inf), "mu": (None, 0, 0.1, 1)}
     numbers |= {"R": (None, 1), "wrap": (90, 180, 360, 540), "axle": (*[None] * 4, 0, 10)}
-    given = [{name: rng.choice(some) for name, some in numbers.items()} for _ in range(150)]
+    given = [{name: rng.choice(some) for name, some in numbers.items()} for _ in range(120)]
     counted: Counter[tuple[str, str]] = Counter()
     for row in given:
         if row["m1"] or row["mu"] is None:

@@ -17,10 +17,10 @@ also so large that the row is not certified, and more digits are asked for.
 
 Three things are assumed here and in `expansion`. Doubles follow IEEE 754, as in `error_free`. NumPy's log1p
 is within one unit in the last place, 2u of the value (`LIBRARY`; the tests measure at most 0.7 units); only
-`Quick` relies on it. And inputs are 0 or within 2^±120 (`WINDOW`), which the caller checks. So no product of
-the equations leaves the normal doubles, but for squares that are negligible beside what they are added to.
-(`TRIPLES` need no window.) Bounds are of first order: products of two bounds are left out. The limits that
-bounds are compared with leave room for them.
+`Quick` relies on it. And inputs are 0 or within 2^±120 (`WINDOW`), as are I/R² and f/g, which stand for I and
+the axle's friction: the caller checks that. So no product of the equations leaves the normal doubles, but for
+squares that are negligible beside what they are added to. (`TRIPLES` need no window.) Bounds are of first
+order: products of two bounds are left out. The limits that bounds are compared with leave room for them.
 """
 
 from __future__ import annotations

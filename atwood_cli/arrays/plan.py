@@ -239,7 +239,10 @@ class Plan(NamedTuple):
 
 @lru_cache(KEPT)
 def plan(task: Task, accuracy: Accuracy) -> Plan:
-    """The plan for a task. Certified values come with rounded products if these suffice for all of them."""
+    """The plan for a task. Certified values come with rounded products if these suffice for all of them.
+
+    Beside an axle they are not tried, as more differences of products cancel there.
+    """
     arithmetic = LEVELS[accuracy][task.level]
     machine = _ColumnsMachine(_GroupCase(task.pattern, task.decisions, arithmetic), arithmetic)
     if arithmetic is QUICK and accuracy == "certified" and machine.f is None:
