@@ -152,9 +152,12 @@ class Rows:
         """Each row's answer to a question, at the first level of precision that decides it."""
         yes = np.empty(size_of(index), np.bool_)
         open_: Any = slice(0, yes.size)
-        far = LEVELS[self.accuracy][task.level] is TRIPLES
-        exact = question == CANCELS and self.accuracy != "fast"
-        for ar in (TRIPLES,) if far else (DOUBLES, PAIRS, TRIPLES)[exact:]:
+        levels: tuple[Any, ...] = (DOUBLES, PAIRS, TRIPLES)
+        if LEVELS[self.accuracy][task.level] is TRIPLES:
+            levels = (TRIPLES,)
+        elif question == CANCELS and self.accuracy != "fast":
+            levels = (PAIRS, TRIPLES)
+        for ar in levels:
             if ar is not DOUBLES and size_of(open_) <= FEW:
                 break
             program = questioning(task.pattern, task.decisions, question, self.accuracy, ar)

@@ -251,7 +251,7 @@ def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict
                 values[row] = layout.double(name, cell)
             except SceneError as error:
                 errors.setdefault(row, str(error))
-        if (empty := np.isnan(values)).any():  # or wrong: such a row has an error, whatever else it holds
+        if (empty := np.isnan(values)).any():  # or wrong, as the error of the row says
             scenes[name] = np.ma.array(values, mask=empty)
     return scenes, errors
 
