@@ -885,7 +885,7 @@ def test_without_polars_one_line_says_what_to_install(batch: Batch, monkeypatch:
 def test_help_shows_the_columns_and_examples(atwood: Atwood) -> None:
     ran = atwood("batch", "-h")
     assert ran.status == 0
-    for words in ("m1, m2, M, mu, mu_k, g, inertia, R", "scenes.csv -o results.csv", "--allow-errors"):
+    for words in ("m1, m2, M, mu, mu_k, g, inertia, I, R", "scenes.csv -o results.csv", "--allow-errors"):
         assert words in ran.out
 
 
