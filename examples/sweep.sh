@@ -17,7 +17,7 @@ atwood solve --m1 1 --m2 3 --M 0.333333 --only acceleration
 
 echo "the curve, in a file that is there whole or not at all:"
 folder=$(mktemp -d)
-atwood sweep --m1 1 --m2 3 --mu 0.3 --M 1:100:100 --plot acceleration -o "$folder/curve.txt"
+atwood sweep --m1 1 --m2 3 --mu 0.3 --M 1:100:100 --plot -o "$folder/curve.txt"
 head -8 "$folder/curve.txt"
 atwood sweep --m1 1 --m2 3 --mu 0.3 --M 1:100:100 -o "$folder/curve.txt" 2>/dev/null || echo "status $?"
 rm -r "$folder"

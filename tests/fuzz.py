@@ -430,7 +430,7 @@ KILLED = [
     "batch in.parquet -o out.parquet --accuracy exact",
     "sweep --m1 1 --m2 3 --M 1:100:2000 -o out.csv",
     "sweep --m1 1 --m2 3 --M 1:100:20 -o out.json",
-    "sweep --m1 1 --m2 3 --M 1:100:20 --figure out.svg acceleration",
+    "sweep --m1 1 --m2 3 --M 1:100:20 --figure out.svg",
     "contact --m1 1 --m2 3 --mu 0.3 --figure out.svg",
 ]
 

@@ -348,7 +348,7 @@ solve --m1 1 --m2 2 --all --csv => --all has no effect with --csv; leave one of 
 solve --m1 1 --m2 2 --all --only a => --all has no effect with --only; leave one of them out
 solve --m1 1 --m2 2 --all --explain => --all has no effect with --explain; leave one of them out
 sweep --m1 1:2:3 => --m2 is missing; give both masses, m1 and m2
-sweep --m1 1 --m2 3 --M 1:2:3 --figure a.svg => Option '--figure' requires 2 arguments
+sweep --m1 1 --m2 3 --M 1:2:3 --figure => Option '--figure' requires an argument
 solve --m1 1 --m2 2 --json --csv => --json has no effect with --csv; leave one of them out
 solve --m1 1 --m2 2 --only tention_1 => --only 'tention_1' is no quantity; did you mean tension_1?
 solve --m1 1 --m2 2 --only accel => --only 'accel' is no quantity; did you mean acceleration?
@@ -446,8 +446,8 @@ def test_no_message_repeats_all_that_was_typed(atwood: Atwood, long: str) -> Non
             for command in ("solve", "contact")
             for name in ("--M", "--wrap", "--I")
         ),
-        *(["sweep", *scene, "--M", word] for word in (f"{long}:2:3", f"1:2:{long}", f"1:2:3:{long}")),
-        *(["sweep", *scene, "--M", "1:2:3", name, long] for name in ("--only", "--plot", "-o", "--digits")),
+        *(["sweep", *scene, "--M", word] for word in (long, f"{long}:2:3", f"1:2:{long}", f"1:2:3:{long}")),
+        *(["sweep", *scene, "--M", "1:2:3", name, long] for name in ("--only", "--figure", "-o", "--digits")),
         *([*words, long] for words in ([], ["solve"], ["solve", *scene], ["solve", *scene, "--M", "1"])),
         *(["solve", *scene, word] for word in (f"--{long}", f"--json={long}", f"-{long}=1")),
         *(["solve", *scene, "--M", f"--mu={long}"], ["solve", *scene, *["x"] * 20_000]),

@@ -105,7 +105,7 @@ def check_with_oracle(words: dict[str, str], *places: float) -> int:
     first = said[0].before if up and said else said[0].after if said else None
     stretches = list(pairwise([low, *(end for pair in ends for end in pair), high]))[::2]
     for one in said:
-        at = Fraction(along.bare(one.at))
+        at = along.number(one.at)
         if at != one.first:  # which is so of a regime of one point
             there = oracle.expected(with_value(swept.scene, along.name, at))["regime"]
             assert there == one.before, (words, one)

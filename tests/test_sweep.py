@@ -20,8 +20,8 @@ from hypothesis import strategies as st
 from atwood_cli import solve
 from atwood_cli.model.quantities import STANDARD
 from atwood_cli.model.scene import INPUTS, SceneError
-from atwood_cli.output.curves import picture
-from atwood_cli.solver.sweep import Row, point_text, read_range, read_sweep, solve_rows
+from atwood_cli.output.curves import Curve, axis_ends, picture, with_break
+from atwood_cli.solver.sweep import Row, Sweep, point_text, read_list, read_range, read_sweep, solve_rows
 
 from .running import PIP, Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
 
@@ -65,6 +65,24 @@ def test_points_of_an_angle_keep_what_makes_them_exact() -> None:
     assert points("90:360:4", "wrap") == ["90", "180", "270", "360"]
     assert points("90deg:1turn:4", "wrap") == ["90", "180", "270", "360"]
     assert points("1rad:2rad:3", "wrap") == ["1rad", "1.5rad", "2rad"]
+
+
+@pytest.mark.parametrize(
+    ("name", "typed", "expected", "words"),
+    [
+        ("M", "0,1, 10,inf", "0 1 10 inf", "M = 0 kg, 1 kg, 10 kg or inf"),
+        ("M", "0,500g,inf", "0 0.5 inf", "M = 0 kg, 0.5 kg or inf"),
+        ("inertia", "Disk,1/3,hoop", "0.5 1/3 1", "inertia = disk (0.5), 1/3 or hoop (1)"),
+        ("g", "moon,9.81", "1.62 9.81", "g = moon (1.62 m/s²) or 9.81 m/s²"),
+        ("wrap", "450,180", "450 180", "wrap = 450° or 180°"),
+        ("wrap", "1rad,1/3rad", "1rad 1/3rad", "wrap = 1rad or 1/3rad"),
+        ("mu", "1,2,3,4,5,6,7", "1 2 3 4 5 6 7", "mu = 1, 2, ... or 7"),
+    ],
+)
+def test_points_of_a_list_are_exact(name: str, typed: str, expected: str, words: str) -> None:
+    swept = read_list(name, typed)
+    assert [*map(point_text, swept.points)] == expected.split()
+    assert swept.words == words
 
 
 decimals = st.decimals(min_value=0, max_value=10**6, allow_nan=False, places=6)
@@ -133,6 +151,7 @@ GRIDS = [
     {"m1": "1", "m2": "3", "mu": "0.3", "mu_k": "0:0.3:4", "M": "50", "wrap": "1rad:7rad:4"},
     {"m1": "1", "m2": "3", "mu": "0.1:0.35:6"},
     {"m1": "1e-400:3e-400:3", "m2": "2", "g": "1:25:4"},
+    {"m1": "1", "m2": "3", "M": "inf,20,0.1", "inertia": "disk,2/7", "mu": "0.3"},
 ]
 
 
@@ -146,7 +165,7 @@ def test_every_row_is_what_solve_prints_for_its_values(
     ran = atwood("sweep", *(f"{words[n]}={grid[n]}" for n in grid), *options, "--csv")
     assert ran.status == 0
     rows = list(csv.DictReader(io.StringIO(ran.out)))
-    swept = [name for name in INPUTS if ":" in grid.get(name, "")]
+    swept = [name for name in INPUTS if re.search("[:,]", grid.get(name, ""))]
     assert list(rows[0]) == [*swept, *STANDARD]
     for row in rows:
         scene = grid | {name: row[name] for name in swept}
@@ -223,6 +242,36 @@ EVERY_PULLEY = "As M is not given, each row that is on the verge has a pulley of
         (
             "--m1 1:17:9 --m2 3 --mu 0.3 --M 100",
             "Regimes: slip up to m1 = 1.08920 kg, no-slip up to 9.48105 kg, slip beyond.",
+            "",
+        ),
+        # So it is of a list, in any order, and what a name stands for is said once.
+        (
+            "--m1 1 --m2 3 --mu 0.3 --M 50,0,inf,20",
+            "Regimes: no-slip up to M = 43.3419 kg, slip beyond.",
+            "at M = inf",
+        ),
+        ("--m1 1 --m2 3 --mu 0.3 --M 0,inf", "Regimes: no-slip, slip at M = inf.", ""),
+        (
+            "--m1 1 --m2 3 --mu 0.3 --M 0:50:3 --inertia disk,hoop",
+            "inertia = disk (0.5) or hoop",
+            "│ 0.5",
+        ),
+        (
+            "--m1 1 --m2 3 --mu 0.3 --M 1,40 --inertia hoop,0.5 --only a",
+            "│ 40   │ hoop    │ 0.764027",
+            "│ 1 ",
+        ),
+        ("--m1 1 --m2 3 --mu 0.3 --M 1:40:2 --inertia hoop,0.5 --only mu_verge --csv", "\n1,1,0.", "hoop"),
+        ("--m1 1 --m2 3 --M 0,1/3,inf --only regime --json", '"M": "0,1/3,inf"', ""),
+        ("--m1 1 --m2 3 --M 0,1/3,inf --only regime --json", '"M": "1/3",', ""),
+        (
+            "--m1 1 --m2 3 --mu 0.3 --M 0:50:3 --inertia disk,hoop",
+            "\ndisk: no-slip up to M = 43.3419 kg, slip beyond.\nhoop: no-slip up to M = 21.6709 kg,",
+            "",
+        ),
+        (
+            "--m1 1 --m2 3 --mu 0.3 --M inf,30 --inertia disk,hoop --only a",
+            "\ndisk: no-slip, slip at M = inf.\nhoop: slip.\n",
             "",
         ),
         # A column without values is left out of the table only.
@@ -335,7 +384,7 @@ def test_a_pipe_gets_every_row(environment: dict[str, str]) -> None:
     assert "..." not in ran.out
 
 
-@pytest.mark.parametrize("words", ["", "--plot acceleration"])
+@pytest.mark.parametrize("words", ["", "--plot"])
 def test_where_stdout_is_not_unicode(words: str) -> None:
     if words:
         pytest.importorskip("plotille")
@@ -429,7 +478,7 @@ def test_a_device_is_written_to_as_it_is(atwood: Atwood) -> None:
     "words",
     [
         "sweep --M 1:2:3 --output FILE",
-        "sweep --M 1:2:3 --figure FILE acceleration",
+        "sweep --M 1:2:3 --figure FILE",
         "contact --M 1 --figure FILE",
         "tradeoff --M 1 --figure FILE",
     ],
@@ -455,14 +504,19 @@ def test_a_file_is_replaced_only_by_force(
 # Curves
 
 
+def curves(swept: Sweep, name: str) -> list[Curve]:
+    (panel,) = picture(swept, "figure", [name], None).panels
+    return panel.curves
+
+
 def test_a_plot(atwood: Atwood) -> None:
     pytest.importorskip("plotille")
-    ran = atwood(*SWEEP, "--M", "0:100:101", "--plot", "acceleration")
+    ran = atwood(*SWEEP, "--M", "0:100:101", "--plot")
     lines = ran.out.splitlines()
     assert (ran.status, ran.err) == (0, "")
     assert lines[0].startswith("m1 = 1 kg, m2 = 3 kg, M from 0 to 100 kg")
     assert lines[1] == " acceleration a (m/s²)"
-    assert [line[:3].strip() for line in lines if "┤" in line] == ["4", "3", "2", "1"]
+    assert [line[:3].strip() for line in lines if "┤" in line] == ["4", "3", "2", "1", "0"]
     assert lines[-4].startswith("   └┬")
     assert lines[-3].split() == ["0", "20", "40", "60", "80", "100"]
     assert lines[-2].endswith("pulley mass M (kg)")
@@ -470,7 +524,7 @@ def test_a_plot(atwood: Atwood) -> None:
     assert max(map(len, lines[1:])) == 80
     # The dotted line stands where 43.34 is: above the curve there is nothing else.
     assert {line.rstrip().rfind(" ") + 1 for line in lines[2:12]} == {4 + int(0.4334 * 76)}
-    assert atwood(*SWEEP, "--M", "0:100:2", "--plot", "acceleration").out == ran.out  # as smooth
+    assert atwood(*SWEEP, "--M", "0:100:2", "--plot").out == ran.out  # as smooth
     assert not re.search(r"\x1b", ran.out)
 
 
@@ -478,7 +532,7 @@ def test_a_plot_with_gaps_and_letters(atwood: Atwood) -> None:
     pytest.importorskip("plotille")
     ran = atwood(
         *[*HELD, "--M", "1:1000:61:log", "--mu", "0.15:0.35:3", "--wrap", "200"],
-        *["--plot", "friction_force", "--digits", "30"],
+        *["--plot", "--only", "friction_force", "--digits", "30"],
     )
     lines = ran.out.splitlines()
     curves = "".join(lines[3:23])
@@ -497,7 +551,7 @@ def test_a_plot_with_gaps_and_letters(atwood: Atwood) -> None:
 
 def test_a_plot_of_what_is_not_one_number_has_its_bounds(atwood: Atwood) -> None:
     pytest.importorskip("plotille")
-    out = atwood(*SWEEP, "--M", "0:43:2", "--plot", "friction_force").out
+    out = atwood(*SWEEP, "--M", "0:43:2", "--plot", "--only", "friction_force").out
     between = [line[6:].strip("⠀ ") for line in out.splitlines()[3:20]]
     assert sum("  " in line.replace("⠀", " ") for line in between) > 10  # two lines, and room between
     assert "not one number" not in out
@@ -505,8 +559,8 @@ def test_a_plot_of_what_is_not_one_number_has_its_bounds(atwood: Atwood) -> None
 
 def test_more_points_lie_along_the_axis(atwood: Atwood) -> None:
     pytest.importorskip("plotille")
-    out = atwood("sweep", "--m1", "1:3:5", "--m2", "4", "--M", "1:2:2", "--plot", "tension_1").out
-    assert out.splitlines()[-3].endswith("mass m₁ (kg)")
+    out = atwood("sweep", "--m1", "1:3:5", "--m2", "4", "--M", "1:2:2", "--plot", "--only", "T1").out
+    assert out.splitlines()[-3].endswith("mass m₁ (kg), the axis starts at 1")
     assert out.splitlines()[-2:] == ["a: M = 1 kg: no-slip", "b: M = 2 kg: no-slip"]
 
 
@@ -523,14 +577,47 @@ def test_more_points_lie_along_the_axis(atwood: Atwood) -> None:
 )
 def test_plots_of_next_to_nothing(atwood: Atwood, words: str) -> None:
     pytest.importorskip("plotille")
-    ran = atwood("sweep", "--m1", "1", *words.split(), "--plot", "tension_2")
+    ran = atwood("sweep", "--m1", "1", *words.split(), "--plot", "--only", "tension_2")
     assert (ran.status, ran.err) == (0, "")
     assert len(ran.out.splitlines()) - ran.out.count("\ninertia") - ran.out.count("\nwrap") == 26
 
 
+def test_plots_stand_below_each_other(atwood: Atwood) -> None:
+    pytest.importorskip("plotille")
+    words = [
+        "--M",
+        "0,20,40,inf",
+        "--inertia",
+        "disk,1/3",
+        "--only",
+        "T1,regime,a,tension_2,torque",
+        "--plot",
+    ]
+    ran = atwood(*SWEEP, *words)
+    lines = ran.out.splitlines()
+    assert (ran.status, ran.err) == (1, "atwood: torque has no value in any row\n")
+    titles = [" tension T₁, T₂ (N)", " acceleration a (m/s²)"]
+    assert [line for line in lines if line.endswith(("(N)", "(m/s²)"))] == titles
+    assert sum(line.endswith("pulley mass M (kg)") for line in lines) == 2
+    assert [line for line in lines if re.match("[a-f]: ", line)] == [
+        "a: tension_1, disk",
+        "b: tension_1, inertia = 1/3",
+        "c: tension_2, disk",
+        "d: tension_2, inertia = 1/3",
+    ]
+    assert lines[-4:] == [
+        "disk: no-slip, slip at M = inf",
+        "inertia = 1/3: no-slip, slip at M = inf",
+        "M = inf has no place on the axis.",
+        "torque: give R, the pulley's radius.",
+    ]
+    seen = plain(on_terminal(*SWEEP, *words, columns=100, rows=40))
+    assert seen.count("\n") < 40
+
+
 def test_plot_on_a_terminal() -> None:
     pytest.importorskip("plotille")
-    words = [*SWEEP, "--M", "0:100:101", "--plot", "acceleration"]
+    words = [*SWEEP, "--M", "0:100:101", "--plot"]
     seen = on_terminal(*words, columns=50)
     assert "\x1b[36m" in seen
     assert "\x1b[33m" in seen
@@ -543,19 +630,20 @@ def test_plot_on_a_terminal() -> None:
 
 def test_a_plot_fits_a_low_terminal() -> None:
     pytest.importorskip("plotille")
-    words = [*SWEEP, "--M", "0:100:101", "--plot", "acceleration"]
+    words = [*SWEEP, "--M", "0:100:101", "--plot"]
     seen = plain(on_terminal(*words, columns=100, rows=20))
     assert seen.count("\n") < 20
     assert " 2 ┤" in seen
-    assert plain(on_terminal(*words, columns=100, rows=5)).count("│") >= 3
+    low = plain(on_terminal(*words, columns=100, rows=5))
+    assert low.count("│") + low.count("┤") == 5
 
 
 def test_a_figure(atwood: Atwood, tmp_path: Path) -> None:
     pytest.importorskip("matplotlib")
     files = [tmp_path / "a.svg", tmp_path / "b.svg"]
-    words = [*HELD, "--M", "1:100:34", "--mu", "0.2:0.3:2", "--only", "regime", "--csv"]
+    words = [*HELD, "--M", "1:100:34", "--mu", "0.2:0.3:2", "--only", "regime,friction_force", "--csv"]
     for file in files:
-        ran = atwood(*words, "--figure", str(file), "friction_force")
+        ran = atwood(*words, "--figure", str(file))
         assert (ran.status, ran.out) == (0, atwood(*words).out)
     first, second = (file.read_bytes() for file in files)
     assert first == second
@@ -564,15 +652,62 @@ def test_a_figure(atwood: Atwood, tmp_path: Path) -> None:
     assert {"slips from 9.32 kg", "slips from 43.3 kg"} <= shown
     assert any(
         label.startswith(
-            "How the friction force depends on the pulley mass: m₁ = 1 kg, m₂ = 3 kg, μ from 0.2"
+            "Friction force F against pulley mass M: m₁ = 1 kg, m₂ = 3 kg, μ from 0.2 to 0.3, g ="
         )
         for label in shown
     )
 
 
+def test_a_figure_of_several_quantities(atwood: Atwood, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    file = tmp_path / "a.svg"
+    words = [
+        *SWEEP[:-2],
+        "--mu",
+        "0.2,0.3",
+        "--M",
+        "10:60:2",
+        "--only",
+        "T1,tension_2,a",
+        "--figure",
+        str(file),
+    ]
+    assert atwood(*words).status == 0
+    shown = labels(file.read_text(encoding="utf-8"))
+    ends = {f"{of}μ = {mu}" for of in ("T₁, ", "T₂, ", "") for mu in ("0.2", "0.3")}
+    titles = {"tension T₁, T₂ (N)", "acceleration a (m/s²)", "pulley mass M (kg)"}
+    assert {*ends, *titles} <= {label.strip() for label in shown}
+    assert [shown.count(words) for words in ("pulley mass M (kg)", "slips from 43.3 kg")] == [1, 1]
+    assert atwood(*words, "--bare", "--force").status == 0
+    bare = labels(file.read_text(encoding="utf-8"))
+    assert sorted({*shown} - {*bare}) == [
+        "Tension T₁, T₂, acceleration a against pulley mass M: m₁ = 1 kg, m₂ = 3 kg, μ = 0.2 or 0.3,"
+        " g = 9.80665 m/s², β = 0.5, φ = 180°."
+    ]
+
+
+@pytest.mark.parametrize(
+    ("values", "title"),
+    [
+        ([1.0, 3.0], "x"),
+        ([2.0, 3.0], "x, the axis starts at 2"),
+        ([-3.0, -2.0006], "x, the axis ends at -2"),
+        ([-3.0, -1.0], "x"),
+        ([-1.0, 3.0], "x"),
+        ([2.0, 2.0], "x"),
+    ],
+)
+def test_an_axis_starts_at_0_or_says_where(values: list[float], title: str) -> None:
+    ends = axis_ends(values, 0.5)
+    assert with_break("x", *ends) == title
+    assert all(end in (0, *values) for end in ends)
+
+
 @pytest.mark.parametrize(
     "words",
     [
+        "a,T1,T2 --m1 1 --m2 3 --M 0:50:6 --mu 0.2,0.3,0.25",
+        "friction_force,mu_verge,a --m1 1 --m2 3 --M 1:1000:6:log --mu 0.3 --inertia disk,hoop,1/3",
         "acceleration --m1 1 --m2 3 --M 0:50:6 --mu 0.15:0.3:4",
         "acceleration --m1 1 --m2 3 --M 0:50:6 --mu 0.3",
         "acceleration --m1 1 --m2 3 --M 1:1000:6:log --mu 0.1:0.34:6",
@@ -592,7 +727,7 @@ def test_no_words_of_a_figure_overlap_or_run_off(
 ) -> None:
     name, *options = words.split()
     with pages_seen(monkeypatch) as pages:
-        ran = atwood("sweep", *options, "--csv", "--figure", str(tmp_path / "a.png"), name)
+        ran = atwood("sweep", *options, "--csv", "--figure", str(tmp_path / "a.png"), "--only", name)
     assert ran.status == 0
     (page,) = pages
     assert misplaced(page) == []
@@ -601,28 +736,30 @@ def test_no_words_of_a_figure_overlap_or_run_off(
 def test_curves_turn_exactly_where_the_regime_changes() -> None:
     """Four curves parted at M = 0 and slipped at 10, 10, 20 and 50: they coincide until then."""
     swept = read_sweep({"m1": "1", "m2": "3", "M": "0:50:6", "mu": "0.15:0.3:4"})
-    drawn = picture(swept, "figure", "acceleration", None)
-    assert [mark.words for curve in drawn.curves for mark in curve.marks] == [
+    drawn = curves(swept, "acceleration")
+    assert [mark.words for curve in drawn for mark in curve.marks] == [
         "slips from 5.17 kg",
         "slips from 9.32 kg",
         "slips from 17.8 kg",
         "slips from 43.3 kg",
     ]
-    for curve, mu in zip(drawn.curves, ("0.15", "0.2", "0.25", "0.3"), strict=True):
+    for curve, mu in zip(drawn, ("0.15", "0.2", "0.25", "0.3"), strict=True):
         exact = solve(m1="1", m2="3", mu=mu)
         (mark,) = curve.marks
         assert mark.x == pytest.approx(exact.critical_pulley_mass, rel=1e-6)
         assert mark.y == pytest.approx(exact.acceleration, rel=1e-6)
         assert len(curve.xs) > 200
-        for x, y in [*zip(curve.xs, curve.ys, strict=True)][::8]:
+        for x, y in [*zip(curve.xs, curve.lines[0], strict=True)][::8]:
             assert y == pytest.approx(solve(m1=1, m2=3, M=x, mu=mu).acceleration, rel=1e-6)
 
 
 def test_a_jump_is_drawn_as_one() -> None:
     swept = read_sweep({"m1": "1", "m2": "3", "M": "0:50:6", "mu": "0.3", "mu_k": "0.2"})
-    (curve,) = picture(swept, "figure", "acceleration", None).curves
+    (curve,) = curves(swept, "acceleration")
     steps = [
-        (b - a, y2 - y1) for (a, y1), (b, y2) in pairwise(zip(curve.xs, curve.ys, strict=True)) if y1 and y2
+        (b - a, y2 - y1)
+        for (a, y1), (b, y2) in pairwise(zip(curve.xs, curve.lines[0], strict=True))
+        if y1 and y2
     ]
     width, height = max(steps, key=itemgetter(1))
     assert height > 1
@@ -631,25 +768,26 @@ def test_a_jump_is_drawn_as_one() -> None:
 
 def test_a_figure_of_friction_has_a_band_where_it_is_not_one_number() -> None:
     swept = read_sweep({"m1": "1", "m2": "3", "M": "0:50:6", "mu": "0.3"})
-    (curve,) = picture(swept, "figure", "friction_force", None).curves
-    at_ten = curve.xs.index(10.0)
-    assert curve.ys[at_ten] is None
-    assert curve.band[at_ten] == pytest.approx((5.405688718651033, 8.94931775365255))
-    assert curve.band[0] == (0, 0)
-    assert curve.band[-1] == (curve.ys[-1], curve.ys[-1])
+    (curve,) = curves(swept, "friction_force")
+    ys, *edges = curve.lines
+    band, at_ten = [*zip(*edges, strict=True)], curve.xs.index(10.0)
+    assert ys[at_ten] is None
+    assert band[at_ten] == pytest.approx((5.405688718651033, 8.94931775365255))
+    assert band[0] == (0, 0)
+    assert band[-1] == (ys[-1], ys[-1])
 
 
 @pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
 def test_a_figure_of_every_kind(atwood: Atwood, tmp_path: Path, suffix: str) -> None:
     pytest.importorskip("matplotlib")
     file = tmp_path / f"a.{suffix}"
-    assert atwood(*SWEEP, "--M", "1:1000:9:log", "--figure", str(file), "acceleration").status == 0
+    assert atwood(*SWEEP, "--M", "1:1000:9:log", "--figure", str(file)).status == 0
     assert file.read_bytes().startswith({"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}[suffix])
 
 
 @pytest.mark.parametrize(
     ("missing", "options", "extra"),
-    [("plotille", "--plot acceleration", "plot"), ("matplotlib", "--figure x.svg acceleration", "figure")],
+    [("plotille", "--plot", "plot"), ("matplotlib", "--figure x.svg", "figure")],
 )
 def test_without_its_extra_it_names_the_pip_command(missing: str, options: str, extra: str) -> None:
     code = f"import sys; sys.modules['{missing}'] = None; from atwood_cli.cli import run; sys.exit(run(sys.argv[1:]))"
@@ -666,9 +804,9 @@ FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
 
 
 WRONG_USAGE = """
- => --M or another option of the scene must carry a range: {FORM}
---M 1 => --M or another option of the scene must carry a range: {FORM}
---M 1:2:3 --mu 1:2:3 --g 1:2:3 => --g '1:2:3' is a third range, after M and mu; give two
+ => --M or another option of the scene must carry a list, as 0,1,10, or a range: {FORM}
+--M 1 => --M or another option of the scene must carry a list, as 0,1,10, or a range: {FORM}
+--M 1:2:3 --mu 1:2:3 --g 1:2:3 => --g '1:2:3' is a third range or list, after M and mu; give two
 --M 1:2 => --M '1:2' is no range; write {FORM}
 --M 1:2:3:ln => --M '1:2:3:ln' is no range; write {FORM}
 --M 1:2:3:log:5 => --M '1:2:3:log:5' is no range; write {FORM}
@@ -677,30 +815,48 @@ WRONG_USAGE = """
 --M 1:2:log => --M '1:2:log' has the count 'log', which must be a whole number from 2 to 1000000
 --M 0:inf:3 => --M '0:inf:3' has the end 'inf'; a range runs between finite numbers
 --inertia disk:hoop:3 => --inertia 'disk:hoop:3' has the end 'disk'; a range runs between finite numbers
---M 2:2000g:3 => --M '2:2000g:3' has a unit at one end only; write it at both
+--M 2:2000g:3 => --M '2:2000g:3' has a unit at some numbers only; write it at each
 --M 2kg:2000g:3 => --M '2kg:2000g:3' has equal ends; a range runs from one value to another
---wrap 90deg:3rad:3 => --wrap '90deg:3rad:3' has ends in units of two kinds; write both in the same unit
+--wrap 90deg:3rad:3 => --wrap '90deg:3rad:3' has units of two kinds; write all numbers in the same unit
 --M 0:2:3:log => --M '0:2:3:log' has no equal ratios from or to 0; both ends must be above 0
 --M 1:2x:3 => --M '2x' has the unknown unit 'x'; there are kg, g, mg, ug, t, lb, lbs, oz, st, slug
 --M :2:3 => --M ':2:3' is no range; write {FORM}
 --M -1:2:4 => --M '-1' must be 0 or more (inf locks the pulley)
 --M 1:2:2000 --mu 1:2:2000 => --mu '1:2:2000' makes 4000000 points with M; at most 1000000 are taken
+--M 0,1:2:3 => --M '0,1:2:3' mixes a list with a range; give one of them
+--M 5, => --M '5,' has an empty place; write a list as 0,1,10
+--M 1,2,1.0 => --M '1,2,1.0' has the value '1.0' twice; give it once
+--M 1kg,500g,1000g => --M '1kg,500g,1000g' has the value '1000g' twice; give it once
+--inertia disk,0.5 => --inertia 'disk,0.5' has the value '0.5' twice; give it once
+--inertia disk,ball => --inertia 'ball' is not a number; write it like 2, 0.5 or 1.5e-3, or one of disk, hoop
+--M 0,100g,200,inf => --M '0,100g,200,inf' has a unit at some numbers only; write it at each
+--axle 0,1N,1mNm => --axle '0,1N,1mNm' has units of two kinds; write all numbers in the same unit
+--mu 0.1,inf => --mu 'inf' must be 0 or more, and finite
+--M 1,05 => --M '1,05' is not a number; write it with a decimal point, 1.05
+--M 1,000 => --M '1,000' is not a number; write 1000 or 1.000, whichever is meant
+--M 1,2 --mu 0.1,0.2 --g 1:2:3 => --g '1:2:3' is a third range or list, after M and mu; give two
+--mu 0.3 --mu-k 0.1,0.2,0.4 => --mu-k '0.4' must not be above mu; exactly, 0.4 > 0.3
+--I 1 --R 1 --M 1,inf,0 => --I '1' contradicts M = 0; leave one of them out (at M = 0 kg)
 --mu 0.3 --mu-k 0.2:0.4:3 => --mu-k '0.4' must not be above mu; exactly, 0.4 > 0.3
 --mu 0.2:0.4:3 --mu-k 0.3 => --mu-k '0.3' must not be above mu; exactly, 0.3 > 0.2 (at mu = 0.2)
 --I 1 --R 1 --M 0:1:3 => --I '1' contradicts M = 0; leave one of them out (at M = 0 kg)
 --M 1:2:3 --g x => --g 'x' is not a number; write it like 2, 0.5 or 1.5e-3, or one of mercury, venus, earth, moon, mars, jupiter, saturn, uranus, neptune, pluto
 --M 1:2:3 --only accel => --only 'accel' is no quantity; did you mean acceleration?
---M 1:2:3 --plot accel => --plot 'accel' is no quantity; did you mean acceleration?
---M 1:2:3 --csv -o ./a.svg --figure a.svg acceleration => --figure 'a.svg' is the file of --output; name another
---M 1:2:3 --figure a.svg accel => --figure 'accel' is no quantity; did you mean acceleration?
---M 1:2:3 --plot regime => --plot 'regime' is not a number to draw; name another quantity
---M 1:2:7 --g 1:2:7 --plot acceleration => --plot 'acceleration' would be more than 6 curves; give one of the ranges at most 6 points
---M 1:2:3 --figure a.gif acceleration => --figure 'a.gif' must end in one of .svg, .png, .pdf
---M 1e200:2e200:3 --plot least_heavier_mass --mu 1 => --plot 'least_heavier_mass' draws numbers between 1e-100 and 1e+100 in magnitude only
---M 1e-200:2:3:log --figure a.svg acceleration => --figure 'acceleration' draws numbers between 1e-100 and 1e+100 in magnitude only
---M 1:2:3 --plot acceleration --csv => --plot 'acceleration' has no effect with --csv; leave one of them out
---M 1:2:3 --plot acceleration -o a.json => --plot 'acceleration' has no effect with --json; leave one of them out
---M 1:2:3 --plot acceleration --only regime => --only 'regime' has no effect with --plot; leave one of them out
+--M 1:2:3 --plot acceleration => --only must stand before the name of a quantity: --only acceleration
+--M 1:2:3 --figure a.svg acceleration => --only must stand before the name of a quantity: --only acceleration
+--M 1:2:3 --figure a.svg T1 => --only must stand before the name of a quantity: --only T1
+--M 1:2:3 --csv -o ./a.svg --figure a.svg => --figure 'a.svg' is the file of --output; name another
+--M 1:2:3 --plot --only regime => --only 'regime' is no number to draw, the table shows it; name a quantity
+--M 1:2:7 --g 1:2:7 --plot => --plot would draw 7 curves on one pair of axes, more than 6; give one of the ranges at most 6 points
+--M 1:2:7 --g 1:2:4 --figure a.svg --only T1,T2 => --figure would draw 8 curves on one pair of axes, more than 6; name fewer quantities, or give fewer points
+--M 5,inf --plot => --M '5,inf' has one finite value, which makes no axis; give another
+--M 1:2:3 --figure a.gif => --figure 'a.gif' must end in one of .svg, .png, .pdf
+--M 1e200:2e200:3 --plot --mu 1 => --plot draws numbers between 1e-100 and 1e+100 in magnitude only, not such M
+--M 1:2:3 --plot --only mu_verge,F --g 1e200 => --plot draws numbers between 1e-100 and 1e+100 in magnitude only, not such friction_force
+--M 1e-200:2:3:log --figure a.svg => --figure draws numbers between 1e-100 and 1e+100 in magnitude only, not such M
+--M 1:2:3 --plot --csv => --plot has no effect with --csv; leave one of them out
+--M 1:2:3 --plot -o a.json => --plot has no effect with --json; leave one of them out
+--M 1:2:3 --bare => --bare needs --figure
 --M 1:2:3 --json --csv => --json has no effect with --csv; leave one of them out
 --M 1:2:3 --digits 0 => --digits '0' must be a whole number from 1 to 1000
 --M 1:2:3 --force => --force needs --output or --figure
@@ -716,11 +872,11 @@ def test_wrong_usage(atwood: Atwood, line: str) -> None:
     assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
 
 
-@pytest.mark.parametrize("option", ["--plot torque", "--figure a.svg torque"])
+@pytest.mark.parametrize("option", ["--plot", "--figure a.svg"])
 def test_a_curve_that_does_not_exist(atwood: Atwood, option: str) -> None:
     pytest.importorskip("plotille")
     pytest.importorskip("matplotlib")
-    ran = atwood(*HELD, "--M", "1:2:3", *option.split())
+    ran = atwood(*HELD, "--M", "1:2:3", "--only", "torque", *option.split())
     assert (ran.status, ran.out) == (1, "")
     assert ran.err == (
         "atwood: torque exists at no point, so there is nothing to draw: give R, the pulley's radius\n"

@@ -24,7 +24,7 @@ COMMANDS = {
     "contact": f"contact {SCENE} --M 10 --mu 0.3 --R 5cm --points 4 --digits 30",
     "elements": f"contact {SCENE} --mu 0.3 --elements 100",
     "sweep": f"sweep {SCENE} --M 0:100:9 --mu 0.3 --digits 30",
-    "plot": f"sweep {SCENE} --M 0:100:9 --mu 0.3 --plot acceleration",
+    "plot": f"sweep {SCENE} --M 0:100:9 --mu 0.3 --plot",
     "batch": "batch {table}",
     "help": "",
     "helps": "sweep -h",

@@ -13,10 +13,11 @@ from typer.core import TyperCommand, TyperGroup
 
 from .. import __version__
 from ..files import LONGEST_NAME, ClosedStdout
+from ..model.quantities import NAMES, SYMBOLS
 from ..model.scene import SceneError
 from ..model.units import in_quotes, near, shortened
 from ..output.text import drop, finish, say
-from .options import COMPLETING, COULD_NOT, DONE, WORDS, WRONG_USAGE, flag
+from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag
 
 COMMANDS = ("solve", "fit", "sweep", "contact", "batch", "tradeoff")
 EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
@@ -43,7 +44,6 @@ class Command(TyperCommand):
     """A command with our help, which refuses words that were hardly meant as typer takes them."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        ctx.meta[WORDS] = list(args)
         if not ctx.resilient_parsing:  # which completes what is typed so far
             options = {flag: param for param in self.get_params(ctx) for flag in param.opts}
             try:
@@ -95,13 +95,18 @@ def _check_values(values: Mapping[str, Any], order: Sequence[Any], options: Mapp
 
 
 def _check_left(args: Sequence[str], left: Sequence[str], options: Mapping[str, Any]) -> None:
-    """Refuse a value that was split into words."""
+    """Refuse a value that was split into words, and the name of a quantity without its option."""
     for before, value, word in zip(args, args[1:], args[2:], strict=False):
         if word in left[:1] and before in options:
-            option = options[before]
-            joined = f"{value}{',' if getattr(option, 'multiple', 0) else ' '}{word}"
+            several = getattr(options[before], "multiple", 0)
+            if SYMBOLS.get(word, word) in NAMES and not several:
+                break
+            joined = f"{value}{',' if several else ' '}{word}"
             rule = f"is followed by a stray {in_quotes(word)}; write {in_quotes(joined)} if it belongs there"
-            raise SceneError(option.name, value, rule)
+            raise SceneError(options[before].name, value, rule)
+    takes_words = any(not name.startswith("-") for name in options)
+    if left and SYMBOLS.get(left[0], left[0]) in NAMES and "--only" in options and not takes_words:
+        raise SceneError("only", None, f"must stand before the name of a quantity: --only {left[0]}")
 
 
 class Group(TyperGroup):

@@ -23,6 +23,7 @@ from .options import (
     Force,
     Labels,
     Markdown,
+    Plot,
     check,
     check_extras,
     option,
@@ -80,7 +81,6 @@ FitDigits = Annotated[
 Explain = Annotated[
     bool, option("Output", "--explain", help="Instead, show how the line follows, with its numbers.")
 ]
-Plot = Annotated[bool, option("Output", "--plot", help="Draw the line in place of the tables (extra: plot).")]
 
 HELP = """Fit runs of a laboratory: the pulley's inertia, its axle's friction.
 
@@ -132,7 +132,7 @@ def fit(
     force: Force = False,
 ) -> int:
     options = dict(locals())
-    check(options)
+    check(options, only="plot")
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
     out = [read_whole("without", word, 1, 10**9) for word in divided(without or [])]
     precision = read_digits(digits)

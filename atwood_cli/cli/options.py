@@ -15,8 +15,6 @@ from ..output.text import say
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """The environment variable by which a shell asks how a word could go on."""
-WORDS = "words typed"
-"""Where the context of a command keeps them, for completion."""
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 """Exit status."""
 
@@ -49,10 +47,7 @@ Words = Callable[[], Mapping[str, str]]
 def option(group: str, *flags: str, metavar: str = "", words: Words | None = None, **more: Any) -> Any:
     """An option: the group in which help shows it, and the words it takes, if not those of a metavar a|b."""
 
-    def complete(ctx: typer.Context, incomplete: str) -> list[tuple[str, str]]:
-        # FILE NAME: the first is no word, and a shell without words completes files.
-        if " " in metavar and ctx.meta[WORDS][-1:] in [[one] for one in flags]:
-            return []
+    def complete(incomplete: str) -> list[tuple[str, str]]:
         return list((words() if words else dict.fromkeys(metavar.split("|"), "")).items())
 
     return typer.Option(
@@ -108,10 +103,11 @@ LIKE_RADIANS = (0.3, 12.6)
 
 
 def _may_be_radians(typed: str) -> bool:
-    """Whether a valid angle, or both ends of a range, has no unit and the size of radians."""
+    """Whether a valid angle, or all numbers of a range or a list, have no unit and the size of radians."""
     least, most = LIKE_RADIANS
-    ends = [read_number(word, "angle") for word in typed.split(":")[:2]]
-    return not any(end.unit for end in ends) and least < max(end.value for end in ends) < most
+    words = typed.split(":")[:2] if ":" in typed else typed.split(",")
+    angles = [read_number(word, "angle") for word in words]
+    return not any(angle.unit for angle in angles) and least < max(angle.value for angle in angles) < most
 
 
 def numbers() -> Mapping[str, str]:
@@ -150,6 +146,9 @@ Markdown = Annotated[
     bool,
     option("Output", "--markdown", help="With --explain: a page of Markdown, its mathematics in LaTeX."),
 ]
+Plot = Annotated[
+    bool, option("Output", "--plot", help="Draw it in the terminal, in place of tables (extra: plot).")
+]
 FigureFile = Annotated[
     str | None,
     option("Files", metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure)."),
@@ -178,7 +177,6 @@ Labels = Annotated[
 NO_EFFECT = {
     "json": "csv",
     "plot": "json csv",
-    "only": "plot",
     "explain": "json csv only plot budget",
     "all": "json csv only explain",
     "budget": "csv",
@@ -198,12 +196,16 @@ NEEDS = {
 """Of all commands: an option, and those of which it needs one."""
 
 
-def check(options: Mapping[str, Any]) -> None:
-    """Raises SceneError where an option that is given excludes another, or lacks one that it needs."""
+def check(options: Mapping[str, Any], **more: str) -> None:
+    """Raises SceneError where an option that is given excludes another, or lacks one that it needs.
+
+    ``more``: by option, others with which it has no effect in this command.
+    """
+    no_effect = NO_EFFECT | {name: f"{NO_EFFECT.get(name, '')} {others}" for name, others in more.items()}
     given = {name: value for name, value in options.items() if value not in (None, False, [], ())}
     for name, value in given.items():
         shown = value[0] if isinstance(value, list | tuple) else None if value is True else value
-        for other in NO_EFFECT.get(name, "").split():
+        for other in no_effect.get(name, "").split():
             if other in given:
                 raise SceneError(name, shown, f"has no effect with {flag(other)}; leave one of them out")
         needed = [other for other in NEEDS.get(name, "").split() if other in options]
@@ -211,7 +213,7 @@ def check(options: Mapping[str, Any]) -> None:
             raise SceneError(name, shown, f"needs {' or '.join(map(flag, needed))}")
 
 
-def check_extras(plot: str | bool | None, figure: str | None, force: bool) -> None:
+def check_extras(plot: bool, figure: str | None, force: bool) -> None:
     """Raise, before anything is solved, what a picture will run into: SceneError, OSError, ImportError."""
     if plot:
         import_module("plotille")

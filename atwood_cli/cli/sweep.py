@@ -1,58 +1,41 @@
-"""`atwood sweep`: ranges of scenes, as a table with its regimes, JSON, CSV, curves or a figure."""
+"""`atwood sweep`: ranges and lists of scenes, as a table with its regimes, JSON, CSV, curves or a figure."""
 
 import os
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from fractions import Fraction
 from itertools import groupby, pairwise
+from operator import attrgetter
 from typing import Annotated
 
-from ..arithmetic.rounding import text, to_digits, to_double
+from ..arithmetic.rounding import to_digits, to_double
 from ..files import STREAM, stdout_into
-from ..model.quantities import QUANTITIES, STANDARD, read_name, read_names
+from ..model.quantities import QUANTITIES, STANDARD, read_names
 from ..model.scene import SceneError, read_digits
-from ..output.curves import MAX_CURVES, axis_words, check_drawable, longest, picture, regimes
+from ..output.curves import MAX_CURVES, Picture, axis_words, drawable, longest, picture, regimes
 from ..output.page import Page, aligned, watched
 from ..output.text import Forms, cell, inputs_in_words, say, scene_record, show
 from ..solver.answers import SHOWN_DIGITS
 from ..solver.messages import reasons_at
 from ..solver.regimes import changes
-from ..solver.sweep import Row, Sweep, read_sweep, solve_rows, stated_point
+from ..solver.sweep import Row, Sweep, read_sweep, solve_rows
 from .options import (
     COULD_NOT,
     DONE,
     AsCsv,
     AsJson,
+    Bare,
     Columns,
     Digits,
+    FigureFile,
     Force,
+    Plot,
     check,
     check_extras,
-    numbers,
     option,
     takes_scene,
 )
 
-Plot = Annotated[
-    str | None,
-    option(
-        "Output",
-        metavar="NAME",
-        words=numbers,
-        help="Draw this quantity's curve in place of the table (extra: plot).",
-    ),
-]
-SweepFigure = Annotated[
-    tuple[str, str] | None,
-    option(
-        "Files",
-        "--figure",
-        metavar="FILE NAME",
-        words=numbers,
-        help="Also draw this quantity's curve to FILE.svg, .png or .pdf (extra: figure).",
-    ),
-]
 OutputFile = Annotated[
     str | None,
     option(
@@ -66,14 +49,18 @@ OutputFile = Annotated[
 SUFFIXES = ("", ".txt", ".csv", ".json")
 
 
-HELP = """Solve a range of scenes: one or two options carry start:stop:count or start:stop:count:log.
+HELP = """Solve a range of scenes: one or two options carry start:stop:count[:log], or a list, as 0,1,10.
 
 Examples:
   atwood sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3
   atwood sweep --m1 1 --m2 3 --M 1:1000:4:log --mu 0.2:0.4:3 --only regime
   atwood sweep --m1 100g:500g:5 --m2 300g --M 50g --csv
-  atwood sweep --m1 1 --m2 3 --M 0:60:2 --mu 0.3 --plot acceleration
-  atwood sweep --m1 1 --m2 3 --M 0:60:61 --figure a.svg mu_verge -o a.csv
+  atwood sweep --m1 1 --m2 3 --M 0,1,10,inf --inertia disk,hoop
+  atwood sweep --m1 1 --m2 3 --M 0:60:2 --mu 0.3 --plot
+  atwood sweep --m1 1 --m2 3 --M 0:60:61 --only tension_1,tension_2 --figure t.svg
+
+--plot and --figure draw what --only names, or the acceleration: quantities of one unit on one pair of axes,
+others below each other. Curves run along a range; a second one, or a list, is a curve for each value.
 """
 
 
@@ -81,8 +68,9 @@ Examples:
 def sweep(
     given: Mapping[str, str | None],
     *,
-    plot: Plot = None,
-    figure: SweepFigure = None,
+    plot: Plot = False,
+    figure: FigureFile = None,
+    bare: Bare = False,
     output: OutputFile = None,
     force: Force = False,
     digits: Digits = None,
@@ -95,20 +83,18 @@ def sweep(
     names = list(dict.fromkeys(read_names("only", only or [])))
     precision = read_digits(digits)
     swept = read_sweep(given, precision)
-    asked = {"plot": plot, "figure": figure and figure[1]}
-    drawn = {where: read_name(where, word) for where, word in asked.items() if word is not None}
-    for where, name in drawn.items():
-        check_drawable(swept, where, name)
-    check_extras(plot, figure and figure[0], force)
-    if figure and output and os.path.realpath(figure[0]) == os.path.realpath(output):
-        raise SceneError("figure", figure[0], "is the file of --output; name another")
+    drawing = "plot" if plot else "figure" if figure is not None else ""
+    drawn = drawable(swept, drawing, names) if drawing else []
+    check_extras(plot, figure, force)
+    if figure and output and os.path.realpath(figure) == os.path.realpath(output):
+        raise SceneError("figure", figure, "is the file of --output; name another")
     with stdout_into(output, force):
-        if figure is not None:
+        curves = picture(swept, drawing, drawn, precision) if drawn else None
+        if figure is not None and curves is not None:
             from ..output.sweep_figure import save
 
-            curves = picture(swept, "figure", drawn["figure"], precision)
-            save(curves, _caption(swept, drawn["figure"]), figure[0], force)
-        forms = _Forms(swept, names, precision, drawn.get("plot"), plain=output not in (None, STREAM))
+            save(curves, "" if bare else _caption(swept, curves), figure, force)
+        forms = _Forms(swept, names, precision, curves if plot else None, plain=output not in (None, STREAM))
         aside = show(Forms(forms.json, forms.records, forms.page, lambda: [*forms.notes()]), json, csv)
     say(*aside or [f"{name} has no value in any row" for name in names if name in forms.missing])
     return COULD_NOT if forms.missing else DONE
@@ -132,10 +118,11 @@ class _Forms:
     """
 
     def __init__(
-        self, sweep: Sweep, names: Sequence[str], digits: int | None, plot: str | None, plain: bool
+        self, sweep: Sweep, names: Sequence[str], digits: int | None, curves: Picture | None, plain: bool
     ) -> None:
-        self.sweep, self.digits, self.plot, self.plain = sweep, digits, plot, plain
-        self.missing = set(names)  # the quantities asked for that no row has
+        self.sweep, self.digits, self.curves, self.plain = sweep, digits, curves, plain
+        # The quantities asked for that no row has, or no curve.
+        self.missing = set(names) & curves.missing if curves else set(names)
         self.names = names or STANDARD
         # Where a sentence tells the regimes, a column of them must be asked for.
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
@@ -169,10 +156,10 @@ class _Forms:
 
     def page(self) -> None:
         page, head = Page(plain=self.plain), ", ".join(_inputs(self.sweep).values())
-        if self.plot is not None:
+        if self.curves:
             from ..output.plot import print_plot
 
-            print_plot(page, head, picture(self.sweep, "plot", self.plot, self.digits))
+            print_plot(page, head, self.curves)
         else:
             self._print_table(page, head)
 
@@ -198,7 +185,7 @@ class _Forms:
         if len(same) < len(shown) or not shown:
             columns = {
                 f"{range_.name}\n{_in_brackets(range_.unit)}": aligned(
-                    text(range_.bare(row.at[range_.name])) for row in rows
+                    range_.cell(row.at[range_.name]) for row in rows
                 )
                 for range_ in sweep.ranges
             }
@@ -221,19 +208,22 @@ PULLEYS = "As M is not given, each row that is on the verge has a pulley of its 
 
 
 def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:
-    """The regimes along the range that varies fast, for each point of the other if these are few."""
-    *slow, fast = sweep.ranges
-    if len({row.regime for row in rows}) == 1 and slow:
+    """The regimes along one range, that which varies fast if two come into question.
+
+    There is a sentence for each point of the other, if these are few.
+    """
+    along = max(reversed(sweep.ranges), key=attrgetter("rank"))
+    if len({row.regime for row in rows}) == 1 and sweep.ranges[1:]:
         yield f"Regimes: {rows[0].regime}."
-    elif not slow or len(slow[0].points) <= MAX_CURVES:
-        count = len(fast.points)
-        for i, (scene, at) in enumerate(sweep.along(fast)):
-            part = rows[i * count : (i + 1) * count]
+    elif sweep.total // len(along.points) <= MAX_CURVES:
+        for scene, at in sweep.along(along):
+            part = [row for row in rows if at.items() <= row.at.items()]
+            if along.is_list:
+                part = [row for point in along.finite for row in part if row.at[along.name] == point]
             beside = [two for two in pairwise(part) if two[0].regime != two[1].regime]
-            known = {Fraction(fast.bare(row.at[fast.name])): row.regime for two in beside for row in two}
-            words = ", ".join(regimes(fast, list(changes(scene, fast, digits, known)), scene))
-            where = ", ".join(stated_point(name, point) for name, point in at.items())
-            yield f"{where or 'Regimes'}: {words}."
+            known = {along.number(row.at[along.name]): row.regime for two in beside for row in two}
+            words = ", ".join(regimes(along, list(changes(scene, along, digits, known)), scene))
+            yield f"{sweep.stated(at) or 'Regimes'}: {words}."
 
 
 def _stated(name: str, value: str) -> str:
@@ -249,8 +239,10 @@ def _inputs(sweep: Sweep) -> dict[str, str]:
     return inputs_in_words(sweep.scene) | {range_.name: range_.words for range_ in sweep.ranges}
 
 
-def _caption(sweep: Sweep, name: str) -> str:
-    """What a picture of a quantity shows, in a sentence."""
-    (title, _), along = axis_words(name), longest(sweep).name
-    others = (f"{axis_words(x)[1]}{words[len(x) :]}" for x, words in _inputs(sweep).items() if x != along)
-    return f"How the {title} depends on the {axis_words(along)[0]}: {', '.join(others)}."
+def _caption(sweep: Sweep, curves: Picture) -> str:
+    """What a picture shows, in sentences."""
+    words = _inputs(sweep)
+    words.pop(longest(sweep).name)
+    others = ", ".join(f"{axis_words(name)[1]}{said[len(name) :]}" for name, said in words.items())
+    title = curves.title[0].upper() + curves.title[1:]
+    return " ".join([f"{title}: {others}.", *curves.notes])

@@ -12,6 +12,7 @@ from .options import (
     DONE,
     AsCsv,
     AsJson,
+    Bare,
     FigureFile,
     Force,
     check,
@@ -91,6 +92,7 @@ def tradeoff(
     elements: Elements = None,
     all: Everything = False,  # noqa: A002 - the name of the option
     figure: FigureFile = None,
+    bare: Bare = False,
     force: Force = False,
     json: AsJson = False,
     csv: AsCsv = False,
@@ -108,7 +110,7 @@ def tradeoff(
 
     scene = Scene.read(given) if any(value is not None for value in given.values()) else None
     families = list(dict.fromkeys(read_names("family", family or FAMILIES, FAMILIES, "family of scenes")))
-    check_extras(None, figure, force)
+    check_extras(False, figure, force)
     count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
     start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
     most = read_whole("elements", elements or USUAL_ELEMENTS, COUNTS[0], MAX_ELEMENTS)
@@ -116,7 +118,7 @@ def tradeoff(
     if figure is not None:
         from ..output.tradeoff_figure import save
 
-        save(outcome, figure, force)
+        save(outcome, figure, force, bare)
     say(*show(_forms(outcome, all), json, csv))
     return DONE
 

@@ -1,22 +1,29 @@
 """The curves of a sweep, for a terminal or a file, and the regimes along them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from fractions import Fraction
+from math import inf
 from typing import Any, NamedTuple
 
-from ..arithmetic.rounding import is_infinite, tidy, to_digits
+from ..arithmetic.rounding import is_infinite, text, tidy, to_digits
 from ..model.case import Case
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, SceneError
 from ..solver.answers import Answers
 from ..solver.messages import reasons_at, unmarked
 from ..solver.regimes import Change, changes, with_value
-from ..solver.sweep import Range, Sweep, point_in_units, stated_point
+from ..solver.sweep import LOCKED, Point, Range, Sweep, point_in_units
 
 MAX_CURVES = 6
+"""On one pair of axes, and values of the other parameter; of more, colours cannot be told apart."""
+USUAL = ["acceleration"]
+"""What is drawn if nothing is named."""
+EMPTY_X, EMPTY_Y = 0.25, 0.5
+"""The shares of axes that may be empty for them to start at 0."""
 LARGEST_DRAWN = 1e100
 STEPS = 240
 """Of a curve, so that it is smooth however few points the sweep has."""
-MARK_DIGITS, DRAWN_DIGITS = 3, 12
+MARK_DIGITS, LABEL_DIGITS, DRAWN_DIGITS = 3, 4, 12
 AXES = {
     "m1": ("mass", "m₁"),
     "m2": ("mass", "m₂"),
@@ -30,13 +37,17 @@ AXES = {
     "wrap": ("angle of wrap", "φ"),
     "axle": ("friction of the axle", "f"),
     "mu_verge": ("verge coefficient", "μ*"),
+    "friction_force_min": ("least friction force", "F min"),
+    "friction_force_max": ("greatest friction force", "F max"),
+    "friction_force_x": ("horizontal friction force", "Fx"),
+    "friction_force_y": ("vertical friction force", "Fy"),
 }
 """Names and symbols on axes, of parameters and of quantities whose own name says less."""
 BEGINS = {"slip": "slips", "no-slip": "holds", "verge": "on the verge"}
 
 
 class Mark(NamedTuple):
-    """A point of a curve at which the regime changes, and what begins there."""
+    """A point of a curve at which the regime changes, and what begins there, unless another curve says it."""
 
     x: float
     y: float | None
@@ -44,92 +55,165 @@ class Mark(NamedTuple):
 
 
 class Curve(NamedTuple):
-    """A quantity along a range: ``ys`` is None where it has no value; ``band`` are its bounds, if it has any.
+    """A quantity along a range: its heights and those of both edges of its band; None where there is none.
 
-    ``label`` says which of several curves it is, ``symbols`` says it in symbols.
+    ``label`` says which of several curves it is, ``symbols`` says it in symbols. ``colour`` is the number
+    of its scene, ``style`` that of its quantity; where one of these is the same for all, both are the other.
     """
 
     label: str
     symbols: str
+    colour: int
+    style: int
     xs: list[float]
-    ys: list[float | None]
-    band: list[tuple[float | None, float | None]]
-    regimes: list[str]
+    lines: list[list[float | None]]
     marks: list[Mark]
 
+
+class Panel(NamedTuple):
+    """The curves on one pair of axes, of quantities of one unit, and what the y axis says."""
+
+    names: list[str]
+    y: str
+    curves: list[Curve]
+
     @property
-    def lines(self) -> list[list[float | None]]:
-        """The curve and both edges of its band."""
-        return [self.ys, [low for low, _ in self.band], [high for _, high in self.band]]
+    def ys(self) -> list[float]:
+        """All heights."""
+        return [y for curve in self.curves for line in curve.lines for y in line if y is not None]
 
 
 class Picture(NamedTuple):
-    """Curves, what their axes say, and why something is missing."""
+    """Panels over one x axis.
 
+    ``regimes`` says for each scene which one it is, and its regimes along the axis; ``missing`` are the
+    quantities that exist at no point, and ``notes`` say why something is missing.
+    """
+
+    title: str
     x: str
-    y: str
     log: bool
-    curves: list[Curve]
+    panels: list[Panel]
+    regimes: list[tuple[str, str]]
+    missing: set[str]
     notes: list[str]
 
+    @property
+    def xs(self) -> list[float]:
+        return self.panels[0].curves[0].xs
 
-def check_drawable(sweep: Sweep, option: str, name: str) -> None:
-    """Raises SceneError where the sweep and the quantity make no curves."""
-    if name not in QUANTITIES:
-        raise SceneError(option, name, "is not a number to draw; name another quantity")
-    if min(len(range_.points) for range_ in sweep.ranges) > MAX_CURVES and sweep.ranges[1:]:
-        rule = f"would be more than {MAX_CURVES} curves; give one of the ranges at most {MAX_CURVES} points"
-        raise SceneError(option, name, rule)
+
+def drawable(sweep: Sweep, option: str, names: Sequence[str]) -> list[str]:
+    """The quantities to draw: the numbers among those named. Raises SceneError where they make no picture."""
+    drawn = [name for name in names or USUAL if name in QUANTITIES]
+    if not drawn:
+        raise SceneError("only", names[0], "is no number to draw, the table shows it; name a quantity")
+    x = longest(sweep)
+    if len(x.finite) < 2:
+        raise SceneError(x.name, x.typed, "has one finite value, which makes no axis; give another")
+    scenes, units = sweep.total // len(x.points), [QUANTITIES[name].unit for name in drawn]
+    if (count := scenes * max(map(units.count, units))) > MAX_CURVES:
+        rule = f"would draw {count} curves on one pair of axes, more than {MAX_CURVES}"
+        fewer = f"give one of the ranges at most {MAX_CURVES} points" * (scenes > MAX_CURVES)
+        raise SceneError(option, None, f"{rule}; {fewer or 'name fewer quantities, or give fewer points'}")
+    return drawn
 
 
 def longest(sweep: Sweep) -> Range:
-    """The range of more points, along which curves run."""
-    return max(reversed(sweep.ranges), key=lambda range_: len(range_.points))
+    """The range along which curves run: if two come into question, the one of more points."""
+    return max(reversed(sweep.ranges), key=lambda one: (one.rank, len(one.finite)))
 
 
-def picture(sweep: Sweep, option: str, name: str, digits: int | None) -> Picture:
-    """Curves of a quantity along the range of more points, one for each point of the other.
+def picture(sweep: Sweep, option: str, names: Sequence[str], digits: int | None) -> Picture:
+    """Curves of quantities along one range, for each point of the other.
 
     Raises SceneError where numbers are too large to draw, ArithmeticError where there are none.
     """
     x = longest(sweep)
     reasons: dict[tuple[str, str], int] = {}
-    curves = [_curve(x, at, name, digits, reasons) for at in sweep.along(x)]
-    ys = [y for curve in curves for line in curve.lines for y in line if y is not None]
-    if not ys:
+    scenes, places = zip(*sweep.along(x), strict=True)
+    sampled = [_sampled(x, scene, names, reasons) for scene in scenes]
+    drawn = [name for name in names if any(map(_has_values, (one.lines[name] for one in sampled)))]
+    if not drawn:
         why = unmarked("; ".join(dict.fromkeys(reason for _, reason in reasons)))
-        raise ArithmeticError(f"{name} exists at no point, so there is nothing to draw: {why}")
-    xs = curves[0].xs
-    if max(map(abs, [*xs, *ys])) > LARGEST_DRAWN or (x.log and min(xs) < 1 / LARGEST_DRAWN):
-        rule = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only"
-        raise SceneError(option, name, rule)
-    titles = (axis_title(x.name, x.unit), axis_title(name, QUANTITIES[name].unit))
-    return Picture(*titles, x.log, curves, reasons_at(reasons, 1))
+        raise ArithmeticError(f"{', '.join(names)} exists at no point, so there is nothing to draw: {why}")
+    which = [sweep.stated(at) for at in places]
+    symbols = _in_symbols(next(one for one in sweep.ranges if one is not x)) if sweep.ranges[1:] else [""]
+    panels = []
+    for unit in dict.fromkeys(QUANTITIES[name].unit for name in drawn):
+        here = [name for name in drawn if QUANTITIES[name].unit == unit]
+        curves = [
+            Curve(
+                label=_joined(name * bool(here[1:]), which[i]),
+                symbols=_joined(axis_words(name)[1] * bool(here[1:]), symbols[i]),
+                colour=i if scenes[1:] else number,
+                style=number if here[1:] else i,
+                xs=one.xs,
+                lines=one.lines[name],
+                marks=[
+                    Mark(
+                        float(c.first),
+                        _height(c, one.xs, one.lines[name]),
+                        _begins(x, c) if name == drawn[0] else "",
+                    )
+                    for c in one.corners
+                    if c.before[0] != c.after[0]
+                ],
+            )
+            for number, name in enumerate(here)
+            for i, one in enumerate(sampled)
+        ]
+        panels.append(Panel(here, axis_title(here, unit), curves))
+    for name, values in ((x.name, sampled[0].xs), *((" or ".join(one.names), one.ys) for one in panels)):
+        small = name == x.name and x.log and min(values) < 1 / LARGEST_DRAWN
+        if small or max(map(abs, values)) > LARGEST_DRAWN:
+            rule = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only"
+            raise SceneError(option, None, f"{rule}, not such {name}")
+    return Picture(
+        title=f"{', '.join(axis_title(panel.names) for panel in panels)} against {axis_title([x.name])}",
+        x=axis_title([x.name], x.unit),
+        log=x.log,
+        panels=panels,
+        regimes=[
+            (one, ", ".join(regimes(x, list(changes(scene, x, digits)), scene)))
+            for one, scene in zip(which, scenes, strict=True)
+        ],
+        missing=set(names) - set(drawn),
+        notes=[*[f"{x.stated(LOCKED)} has no place on the axis."] * x.locks, *reasons_at(reasons, 1)],
+    )
 
 
-def _curve(
-    x: Range, fixed: tuple[Scene, Mapping[str, Any]], name: str, digits: int | None, reasons: dict[Any, int]
-) -> Curve:
-    scene, at = fixed
+class _Sampled(NamedTuple):
+    """Quantities along a range in one scene: at which values, their lines, where these may have corners."""
+
+    xs: list[float]
+    lines: dict[str, list[list[float | None]]]
+    corners: list[Change]
+
+
+def _sampled(x: Range, scene: Scene, names: Sequence[str], reasons: dict[Any, int]) -> _Sampled:
+    """The answers at many values; ``reasons`` gets why some are missing."""
     corners = list(changes(scene, x, DRAWN_DIGITS, what=_state))
-    values = [*x.steps(STEPS), *(value for one in corners for value in (one.last, one.first))]
-    xs, ys, band = [], [], []
-    for value in sorted(set(values), reverse=x.ends[0] > x.ends[1]):
+    values = {*x.steps(STEPS), *(value for one in corners for value in (one.last, one.first))}
+    sampled = _Sampled([], {name: [[], [], []] for name in names}, corners)
+    for value in sorted(values, reverse=x.ends[0] > x.ends[1]):
         answers = Answers(with_value(scene, x.name, value))
-        xs.append(float(value))
-        ys.append(_drawn(answers[name]))
-        bounds = _bounds(answers, name)
-        band.append(bounds)
-        if answers[name] is None and bounds == (None, None):
-            reasons[name, answers.reasons[name]] = 1
-    marks = [
-        Mark(float(one.first), _height(one, xs, ys, band), _begins(x, one))
-        for one in corners
-        if one.before[0] != one.after[0]
-    ]
-    label = ", ".join(stated_point(other, point) for other, point in at.items())
-    symbols = ", ".join(f"{AXES[other][1]} = {point_in_units(other, point)}" for other, point in at.items())
-    return Curve(label, symbols, xs, ys, band, regimes(x, list(changes(scene, x, digits)), scene), marks)
+        sampled.xs.append(float(value))
+        for name in names:
+            heights = [_drawn(answers[name]), *_bounds(answers, name)]
+            for line, height in zip(sampled.lines[name], heights, strict=True):
+                line.append(height)
+            if answers[name] is None and not any(height is not None for height in heights):
+                reasons[name, answers.reasons[name]] = 1
+    return sampled
+
+
+def _has_values(lines: list[list[float | None]]) -> bool:
+    return any(height is not None for line in lines for height in line)
+
+
+def _joined(*words: str) -> str:
+    return ", ".join(filter(None, words))
 
 
 def _state(case: Case) -> tuple[str, int, bool]:
@@ -146,15 +230,10 @@ def _bounds(answers: Answers, name: str) -> tuple[float | None, float | None]:
     return _drawn(answers["friction_force_min"]), _drawn(answers["friction_force_max"])
 
 
-def _height(
-    change: Change,
-    xs: Sequence[float],
-    ys: Sequence[float | None],
-    band: Sequence[tuple[float | None, float | None]],
-) -> float | None:
-    """The height of a curve at a change, None where neither side of it has one."""
+def _height(change: Change, xs: Sequence[float], lines: Sequence[Sequence[float | None]]) -> float | None:
+    """The height of a curve, or of its band, at a change; None where neither side of it has one."""
     beside = [i for i, x in enumerate(xs) if x in (float(change.first), float(change.last))]
-    heights = [y for i in beside for y in (ys[i], band[i][1]) if y is not None]
+    heights = [line[i] for i in beside for line in lines if line[i] is not None]
     return heights[-1] if heights else None
 
 
@@ -166,14 +245,16 @@ def _begins(along: Range, change: Change) -> str:
 
 def regimes(along: Range, found: Sequence[Change], scene: Scene) -> list[str]:
     """Each regime along a range, and up to where it holds."""
-    if not found:
-        return [Case(with_value(scene, along.name, along.ends[0])).regime]
     parts = []
     for before, one in zip([None, *found], found, strict=False):
         place = point_in_units(along.name, one.at)
-        where = "at" if one.at == (before.at if before else along.points[0]) else "up to"
+        where = "at" if one.at == (before.at if before else along.finite[0]) else "up to"
         parts.append(f"{one.before} {where} {f'{along.name} = ' * (before is None)}{place}")
-    return [*parts, f"{found[-1].after} beyond"]
+    last = found[-1].after if found else Case(with_value(scene, along.name, along.ends[0])).regime
+    parts.append(f"{last} beyond" if found else last)
+    if along.locks and (locked := Case(scene._replace(M=inf)).regime) != last:
+        parts.append(f"{locked} at {along.stated(LOCKED)}")
+    return parts
 
 
 def _drawn(value: Any) -> float | None:
@@ -188,6 +269,40 @@ def axis_words(name: str) -> tuple[str, str]:
     return name.rstrip("_12").replace("_", " "), QUANTITIES[name].symbol
 
 
-def axis_title(name: str, unit: str) -> str:
-    """What an axis says: name, symbol and unit."""
-    return f"{' '.join(axis_words(name))}{f' ({unit})' * bool(unit)}"
+def axis_title(names: Sequence[str], unit: str = "") -> str:
+    """What an axis says: names, symbols and unit, as tension T₁, T₂ (N)."""
+    symbols: dict[str, list[str]] = {}
+    for words, symbol in map(axis_words, names):
+        symbols.setdefault(words, []).append(symbol)
+    said = ", ".join(f"{words} {', '.join(them)}" for words, them in symbols.items())
+    return f"{said}{f' ({unit})' * bool(unit)}"
+
+
+def axis_ends(values: Sequence[float], empty: float) -> tuple[float, float]:
+    """The ends of an axis over some values: from 0 if that leaves no more than a share of it empty."""
+    low, high = min(values), max(values)
+    if low == high and empty:
+        return min(low, 0.0), max(high, 0.0)
+    return 0.0 if 0 < low <= empty * high else low, 0.0 if 0 > high >= empty * low else high
+
+
+def with_break(title: str, low: float, high: float) -> str:
+    """The title of an axis, which says so if 0 is not on it."""
+    if low <= 0 <= high:
+        return title
+    end = tidy(to_digits(MARK_DIGITS)(Fraction(low if low > 0 else high)))
+    return f"{title}, the axis {'starts' if low > 0 else 'ends'} at {text(end)}"
+
+
+def _in_symbols(range_: Range) -> list[str]:
+    """What tells each point from the others, in symbols and in few digits: μ = 0.1333, or disk."""
+    name = range_.name
+
+    def shown(point: Point, digits: int) -> str:
+        short = point if point == LOCKED else range_.point(tidy(to_digits(digits)(range_.number(point))))
+        return range_.names.get(point) or f"{AXES[name][1]} = {point_in_units(name, short)}"
+
+    digits = LABEL_DIGITS
+    while len(said := dict.fromkeys(shown(point, digits) for point in range_.points)) < len(range_.points):
+        digits += 1
+    return list(said)

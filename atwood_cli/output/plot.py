@@ -4,14 +4,14 @@ import sys
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from itertools import pairwise
+from itertools import chain, pairwise
 from math import ceil, floor, log10
 from typing import TYPE_CHECKING, Any
 
 from plotille import Canvas
 
 from ..arithmetic.rounding import as_typed
-from .curves import Curve, Picture
+from .curves import EMPTY_X, EMPTY_Y, Curve, Panel, Picture, axis_ends, with_break
 from .page import Page
 from .text import for_stream, takes_unicode
 
@@ -22,7 +22,7 @@ PIPE_WIDTH, HEIGHT = 80, 20
 LEAST_WIDTH, LEAST_HEIGHT = 10, 5
 LEAST_TICKS = 3  # asking for fewer may give none
 LONGEST_POWER = 4  # of ten, written out
-AROUND = 9  # lines above and below the curves, with the prompt
+AROUND = 4  # lines above and below the curves on one pair of axes
 COLOURS = ("cyan", "magenta", "green", "blue", "red", "bright_cyan")
 MARK = "yellow"
 LETTERS = "abcdefgh"
@@ -31,11 +31,14 @@ NOT_UNICODE = str.maketrans(dict(zip("┤│└┬─", "||++-", strict=True)) |
 
 
 class Axis:
-    """Where numbers lie on an axis of so many ``dots``, and its ticks."""
+    """Where numbers lie on an axis of so many ``dots``, and its ticks and title."""
 
-    def __init__(self, values: list[float], dots: int, ticks: int, log: bool = False) -> None:
+    def __init__(
+        self, title: str, ends: tuple[float, float], dots: int, ticks: int, log: bool = False
+    ) -> None:
         self.dots, self.log = dots, log
-        low, high = min(values), max(values)
+        low, high = ends
+        self.title = title if log else with_break(title, low, high)
         if self._place(low) == self._place(high):
             low, high = low - (abs(low) or 1) / 2, high + (abs(high) or 1) / 2
         self.low, self.high = self._place(low), self._place(high)
@@ -65,29 +68,42 @@ def _decades(low: float, high: float, most: int) -> list[Decimal]:
 
 
 def print_plot(page: Page, head: str, drawn: Picture) -> None:
-    """The curves below their head, with dotted lines where regimes change; then the regimes and the notes."""
+    """The panels below their head, with dotted lines where regimes change; then the regimes and the notes."""
+    legends = [_lettered([curve.label for curve in one.curves] * bool(one.names[1:])) for one in drawn.panels]
+    said = [f"{which or 'Regimes'}: {words}{'.' * (not which)}" for which, words in drawn.regimes]
+    if said[1:] and not any(legends):
+        said = _lettered(said)
+    said += drawn.notes
+    height = HEIGHT
+    if page.room:
+        beside = 1 + len(page.lines(head, *chain(*legends), *said))  # with the prompt
+        height = (page.console.height - beside) // len(drawn.panels) - AROUND
     page.say(head)
-    height = min(HEIGHT, max(page.console.height - AROUND, LEAST_HEIGHT)) if page.room else HEIGHT
-    several = len(drawn.curves) > 1
+    for panel, legend in zip(drawn.panels, legends, strict=True):
+        _print_panel(page, drawn, panel, max(LEAST_HEIGHT, min(height, HEIGHT)))
+        page.say(*legend)
+    page.say(*said)
+
+
+def _lettered(names: Sequence[str]) -> list[str]:
+    """What curves are called, each after its letter."""
+    return [f"{letter}: {name}" for letter, name in zip(LETTERS, names, strict=False)]
+
+
+def _print_panel(page: Page, drawn: Picture, panel: Panel, height: int) -> None:
+    """The curves on one pair of axes."""
+    several = len(panel.curves) > 1
 
     def draw(canvas: Any, x_axis: Axis, y_axis: Axis) -> None:
-        for curve in drawn.curves:
+        for curve in panel.curves:
             for x, y, _ in curve.marks:
                 top = y_axis.dot(y) if several and y is not None else y_axis.dots
                 for dot in range(0, top, 3):
                     canvas.point(x_axis.dot(x), dot, color=MARK)
-        for number, curve in enumerate(drawn.curves):
-            _draw_curve(canvas, curve, x_axis, y_axis, number, several)
+        for number, curve in enumerate(panel.curves):
+            _draw_curve(canvas, curve, x_axis, y_axis, LETTERS[number] if several else "")
 
-    ys = [y for curve in drawn.curves for line in curve.lines for y in line if y is not None]
-    _print_axes(page, (drawn.x, drawn.y), (drawn.curves[0].xs, ys), height, draw, drawn.log)
-    regimes = [", ".join(curve.regimes) for curve in drawn.curves]
-    if several:
-        for letter, curve, words in zip(LETTERS, drawn.curves, regimes, strict=False):
-            page.say(f"{letter}: {curve.label}: {words}")
-    else:
-        page.say(f"Regimes: {regimes[0]}.")
-    page.say(*drawn.notes)
+    _print_axes(page, (drawn.x, panel.y), (drawn.xs, panel.ys), height, draw, drawn.log)
 
 
 def print_fit_plot(page: Page, head: Sequence[str], fit: "Fit") -> None:
@@ -126,11 +142,12 @@ def _print_axes(
     """Print axes over the values in x and y, and what is drawn on them; ``log`` is of the x axis."""
     from rich.text import Text
 
-    y_axis = Axis(values[1], 4 * height, max(height // 4, LEAST_TICKS))
+    y_axis = Axis(titles[1], axis_ends(values[1], EMPTY_Y), 4 * height, max(height // 4, LEAST_TICKS))
     labels = {y_axis.dot(float(tick)) // 4: _label(tick) for tick in y_axis.ticks}
     margin = max(map(len, labels.values()), default=0)
     width = max((page.room or PIPE_WIDTH) - margin - 3, LEAST_WIDTH)
-    x_axis = Axis(values[0], 2 * width, max(width // 12, LEAST_TICKS), log)
+    x_ends = axis_ends(values[0], 0 if log else EMPTY_X)
+    x_axis = Axis(titles[0], x_ends, 2 * width, max(width // 12, LEAST_TICKS), log)
     canvas = Canvas(width, height, 0, 0, 2 * width, 4 * height)
     draw(canvas, x_axis, y_axis)
     rows = canvas.plot("\n").split("\n")
@@ -138,11 +155,11 @@ def _print_axes(
     ticks = {x_axis.dot(float(tick)) // 2: _label(tick) for tick in x_axis.ticks}
     bottom = "".join("┬" if i in ticks else "─" for i in range(width))
     for line in (
-        f" {titles[1]}",
+        f" {y_axis.title}",
         *(start + row for start, row in zip(reversed(left), rows, strict=True)),
         f" {'':>{margin}} └{bottom}",
         f" {'':>{margin}}  {_under(ticks, width)}",
-        f" {'':>{margin}}  {titles[0]:>{width}}",
+        f" {'':>{margin}}  {x_axis.title:>{width}}",
     ):
         shown = line.replace(EMPTY, " ").rstrip()
         if not takes_unicode(sys.stdout):
@@ -150,8 +167,8 @@ def _print_axes(
         page.console.print(Text.from_ansi(shown), soft_wrap=True)
 
 
-def _draw_curve(canvas: Any, curve: Curve, x_axis: Axis, y_axis: Axis, number: int, several: bool) -> None:
-    colour = COLOURS[number]
+def _draw_curve(canvas: Any, curve: Curve, x_axis: Axis, y_axis: Axis, letter: str) -> None:
+    colour = COLOURS[curve.colour]
     for line in curve.lines:
         dots = [
             None if y is None else (x_axis.dot(x), y_axis.dot(y)) for x, y in zip(curve.xs, line, strict=True)
@@ -162,9 +179,9 @@ def _draw_curve(canvas: Any, curve: Curve, x_axis: Axis, y_axis: Axis, number: i
             if start and end:
                 canvas.line(*start, *end, color=colour)
         there = [dot for dot in dots if dot]
-        if several and there:  # letters tell the curves apart without colour, each at its own place
-            place = there[-1 - (2 * number + 1) * len(there) // 24]
-            canvas.point(*place, color=colour, marker=LETTERS[number])
+        if letter and there:  # letters tell the curves apart without colour, each at its own place
+            place = there[-1 - (2 * LETTERS.index(letter) + 1) * len(there) // 24]
+            canvas.point(*place, color=colour, marker=letter)
 
 
 def _label(tick: Decimal) -> str:

@@ -32,14 +32,18 @@ COUNTED = (10, 1000, 100_000)  # elements: numbers that are written beside their
 HOLLOW = "Hollow: another setting is both faster and more accurate."
 
 
-def save(outcome: Tradeoff, path: str, force: bool) -> None:
-    """Draw error against time to a file, whose suffix is its format. Raises SceneError, OSError."""
+def save(outcome: Tradeoff, path: str, force: bool, bare: bool = False) -> None:
+    """Draw error against time to a file, whose suffix is its format, below sentences unless it is to be bare.
+
+    Raises SceneError, OSError.
+    """
     families = [list(group) for _, group in groupby(outcome.measured, attrgetter("family"))]
     # Of no error there is no logarithm.
     marches = [one for one in outcome.marches if one.relative_error]
     with page(path, force) as figure:
-        about = [] if outcome.seed is not None else [describe(outcome.scene)]
-        say_above(figure, *about, f"{outcome.advice} {HOLLOW}")
+        if not bare:
+            about = [] if outcome.seed is not None else [describe(outcome.scene)]
+            say_above(figure, *about, f"{outcome.advice} {HOLLOW}")
         panels = _panels(figure, len(families) + any(one.elements for one in marches))
         labels = {}
         for number, (axes, settings) in enumerate(zip(panels, families, strict=False)):

@@ -1,56 +1,96 @@
-"""Ranges in place of values: the points of a sweep, and the answers there.
+"""Ranges and lists in place of values: the points of a sweep, and the answers there.
 
 A point is the number that is printed, exactly, so that `solve` given that number prints the same row.
 Linear ranges step in exact fractions from one end to the other: steps of 0.1 are 0.1. Points that are no
 decimals (steps of a third), or at equal ratios, are rounded to as many digits as results are shown with, or
-to more if it takes more to tell them apart well. Ends that are decimals are hit exactly.
+to more if it takes more to tell them apart well. Ends that are decimals are hit exactly. The values of a list
+are all exact: a name such as disk is a point 0.5, a third is the text 1/3.
 """
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
 from itertools import product
 from math import lcm
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from ..arithmetic.interval import decimal_context
-from ..arithmetic.rounding import exact_decimal, exact_or_rounded, text, tidy, to_digits
+from ..arithmetic.rounding import as_typed, exact_decimal, exact_or_rounded, text, tidy, to_digits
 from ..model.scene import INPUTS, Scene, SceneError, in_units, read_value, read_whole
 from ..model.units import MAX_DIGITS, in_quotes, read_number
 from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
 
 Point = Decimal | str
-"""A value of a swept parameter as it is printed; text where it has a unit (an angle in radians, a torque)."""
+"""A value of a swept parameter as it is printed; text where it has a unit (an angle in radians, a torque),
+where it is no decimal (1/3), and LOCKED."""
+LOCKED = "inf"
 
 UNUSUAL = {"rad": "rad", "N m": "Nm"}
 """The units that points carry, as there are others for the same parameter."""
 MAX_POINTS, MAX_RANGES = 1_000_000, 2
 FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
+LONGEST_LIST = 6
+"""Values of a list that a sentence writes out."""
 
 
 class Range(NamedTuple):
-    """A parameter that is swept: as typed, its points, and the unit that they carry, if any."""
+    """A parameter that is swept, over a range or a list: as typed, its points, and the unit that they carry.
+
+    ``names`` are those of points that were typed by name.
+    """
 
     name: str
     typed: str
     points: list[Point]
     log: bool
     suffix: str
+    names: Mapping[Point, str] = {}
+
+    @property
+    def is_list(self) -> bool:
+        return "," in self.typed
 
     @property
     def words(self) -> str:
-        """What a sentence says of it: M from 0 to 50 kg."""
-        start, stop = self.points[0], self.points[-1]
-        return f"{self.name} from {text(self.bare(start))} to {point_in_units(self.name, stop)}"
+        """What a sentence says of it: M from 0 to 50 kg, or M = 0 kg, 10 kg or inf."""
+        if not self.is_list:
+            start, stop = self.points[0], self.points[-1]
+            return f"{self.name} from {self.cell(start)} to {point_in_units(self.name, stop)}"
+        values = [point_in_units(self.name, point) for point in self.points]
+        said = [
+            f"{self.names[x]} ({y})" if x in self.names else y
+            for x, y in zip(self.points, values, strict=True)
+        ]
+        first = said[:-1] if len(said) <= LONGEST_LIST else [*said[:2], "..."]
+        return f"{self.name} = {', '.join(first)} or {said[-1]}"
 
     @property
     def unit(self) -> str:
         return self.suffix or INPUTS[self.name].unit
 
     @property
+    def rank(self) -> int:
+        """Curves run along a range rather than along a list, and along numbers rather than names."""
+        return 2 * (not self.is_list) + (not self.names)
+
+    @property
+    def locks(self) -> bool:
+        """Whether one of its points is a locked pulley."""
+        return self.is_list and LOCKED in self.points
+
+    @property
+    def finite(self) -> list[Point]:
+        """The points that have a place on an axis, in the order in which they stand there."""
+        if not self.is_list:
+            return self.points
+        return sorted((point for point in self.points if point != LOCKED), key=self.number)
+
+    @property
     def ends(self) -> tuple[Fraction, Fraction]:
-        """The first and the last of its values, in its unit."""
-        return Fraction(self.bare(self.points[0])), Fraction(self.bare(self.points[-1]))
+        """The first and the last of its finite values, in its unit."""
+        points = self.finite
+        return self.number(points[0]), self.number(points[-1])
 
     def steps(self, count: int) -> Iterator[Fraction]:
         """So many equal steps from one end to the other, about, or equal ratios; with both ends."""
@@ -65,9 +105,17 @@ class Range(NamedTuple):
         """A number as a point of it."""
         return f"{text(number)}{self.suffix}" if self.suffix else number
 
-    def bare(self, point: Point) -> Decimal:
-        """A point without its unit."""
-        return Decimal(str(point).removesuffix(self.suffix))
+    def cell(self, point: Point) -> str:
+        """A point as a table shows it, where a head has the unit."""
+        return self.names.get(point) or point_text(point).removesuffix(self.suffix)
+
+    def number(self, point: Point) -> Fraction:
+        """The number that a finite point is, in its unit."""
+        return Fraction(point_text(point).removesuffix(self.suffix))
+
+    def stated(self, point: Point) -> str:
+        """What tells a point from others, in a sentence: M = 10 kg, or disk."""
+        return self.names.get(point) or stated_point(self.name, point)
 
 
 class Sweep(NamedTuple):
@@ -86,7 +134,11 @@ class Sweep(NamedTuple):
         others = [range_ for range_ in self.ranges if range_ is not along]
         for points in product(*(range_.points for range_ in others)):
             at = dict(zip((range_.name for range_ in others), points, strict=True))
-            yield scene_at(self.given, {along.name: along.points[0], **at}), at
+            yield scene_at(self.given, {along.name: along.finite[0], **at}), at
+
+    def stated(self, at: Mapping[str, Point]) -> str:
+        """What tells one place of a sweep from others, in a sentence."""
+        return ", ".join(range_.stated(at[range_.name]) for range_ in self.ranges if range_.name in at)
 
 
 class Row(NamedTuple):
@@ -99,21 +151,26 @@ class Row(NamedTuple):
 
 
 def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sweep:
-    """The sweep given: values, of which one or two are ranges, for so many digits. Raises SceneError."""
-    typed = {name: words for name in INPUTS if ":" in (words := given.get(name) or "")}
+    """The sweep given: values, with one or two ranges or lists, for so many digits. Raises SceneError."""
+    typed = {name: words for name in INPUTS if re.search("[:,]", words := given.get(name) or "")}
     if not typed:
-        raise SceneError("M", None, f"or another option of the scene must carry a range: {FORM}")
+        rule = f"or another option of the scene must carry a list, as 0,1,10, or a range: {FORM}"
+        raise SceneError("M", None, rule)
     names = list(typed)
     if len(names) > MAX_RANGES:
         third = names[MAX_RANGES]
-        raise SceneError(third, typed[third], f"is a third range, after {' and '.join(names[:2])}; give two")
+        rule = f"is a third range or list, after {' and '.join(names[:2])}; give two"
+        raise SceneError(third, typed[third], rule)
     for name in INPUTS:
         if name not in typed:
             read_value(name, given.get(name))  # what is wrong everywhere is not the first point's fault
-    ranges = [read_range(name, words, digits) for name, words in typed.items()]
+    ranges = [
+        read_list(name, words) if "," in words else read_range(name, words, digits)
+        for name, words in typed.items()
+    ]
     # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
-    ends = [[range_.points[0], range_.points[-1]] for range_ in ranges]
-    scene, *_ = (scene_at(given, dict(zip(names, corner, strict=True))) for corner in product(*ends))
+    corners = ([x.finite[0], x.finite[-1], *[LOCKED] * x.locks] for x in ranges)
+    scene, *_ = (scene_at(given, dict(zip(names, corner, strict=True))) for corner in product(*corners))
     sweep = Sweep(ranges, given, scene)
     if sweep.total > MAX_POINTS:
         rule = f"makes {sweep.total} points with {names[0]}; at most {MAX_POINTS} are taken"
@@ -121,12 +178,15 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
     return sweep
 
 
-class _End(NamedTuple):
-    """An end of a range, the unit that points carry for it, and whether it was typed with a unit."""
+class _Number(NamedTuple):
+    """A number of a range or a list, the unit that points carry for it, and whether it was typed with a unit.
 
-    value: Fraction
+    A name is typed neither with a unit nor without: None.
+    """
+
+    value: Any
     suffix: str
-    has_unit: bool
+    has_unit: bool | None
 
 
 def read_range(name: str, typed: str, digits: int | None = None) -> Range:
@@ -134,13 +194,13 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     words = typed.split(":")
     if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
         raise SceneError(name, typed, f"is no range; write {FORM}")
-    one, other = (_read_end(name, typed, word) for word in words[:2])
-    start, stop, log = one.value, other.value, len(words) == 4
-    if one.has_unit != other.has_unit and start and stop:
-        # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
-        raise SceneError(name, typed, "has a unit at one end only; write it at both")
-    if one.suffix != other.suffix and start and stop:
-        raise SceneError(name, typed, "has ends in units of two kinds; write both in the same unit")
+    for word in words[:2]:
+        if word.strip().lower() in (LOCKED, *INPUTS[name].names):
+            rule = f"has the end {in_quotes(word)}; a range runs between finite numbers"
+            raise SceneError(name, typed, rule)
+    numbers = [_read_number(name, word) for word in words[:2]]
+    suffix = _common_unit(name, typed, numbers)
+    start, stop, log = numbers[0].value, numbers[1].value, len(words) == 4
     if start == stop:
         raise SceneError(name, typed, "has equal ends; a range runs from one value to another")
     if log and not (start > 0 and stop > 0):
@@ -155,19 +215,58 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
         raise SceneError(name, typed, f"{rule}; take fewer points, or ends further apart")
     ends = [tidy(exact_or_rounded(end, to_digits(kept))) for end in (start, stop)]
     points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last, kept), ends[1]]
-    suffix = one.suffix if start else other.suffix
     return Range(name, typed, [f"{text(x)}{suffix}" if suffix else x for x in points], log, suffix)
 
 
-def _read_end(name: str, typed: str, word: str) -> _End:
-    """An end of a range. Raises SceneError."""
-    if word.strip().lower() in ("inf", *INPUTS[name].names):
-        raise SceneError(name, typed, f"has the end {in_quotes(word)}; a range runs between finite numbers")
+def read_list(name: str, typed: str) -> Range:
+    """A list of values of a parameter. Raises SceneError."""
+    words = [word.strip() for word in typed.split(",")]
+    if ":" in typed:
+        raise SceneError(name, typed, "mixes a list with a range; give one of them")
+    if not all(words):
+        raise SceneError(name, typed, "has an empty place; write a list as 0,1,10")
+    if any(re.match(r"0\d", word) for word in words[1:]):
+        read_value(name, typed)  # refuses 1,05 and 1,000: numbers rather than lists
+    numbers = [_read_number(name, word) for word in words]
+    suffix = _common_unit(name, typed, numbers)
+    values = [number.value for number in numbers]
+    if len(set(values)) < len(values):
+        again = next(word for i, word in enumerate(words) if values[i] in values[:i])
+        raise SceneError(name, typed, f"has the value {in_quotes(again)} twice; give it once")
+    points = [_exact_point(value, suffix) for value in values]
+    names = {
+        x: word.lower() for x, word in zip(points, words, strict=True) if word.lower() in INPUTS[name].names
+    }
+    return Range(name, typed, points, False, suffix, names)
+
+
+def _exact_point(value: Fraction | float, suffix: str) -> Point:
+    """A value of a list as a point."""
+    if isinstance(value, float):
+        return LOCKED
+    number = exact_decimal(value)
+    return f"{as_typed(value)}{suffix}" if suffix or number is None else tidy(number)
+
+
+def _read_number(name: str, word: str) -> _Number:
+    """A number of a range or a list. Raises SceneError."""
     value = read_value(name, word)
-    has_unit = bool(read_number(word, INPUTS[name].dimension).unit)
+    named = word.strip().lower() in (LOCKED, *INPUTS[name].names)
+    has_unit = None if named else bool(read_number(word, INPUTS[name].dimension).unit)
     if name in ("wrap", "axle"):
-        return _End(value.number, UNUSUAL.get(value.unit, ""), has_unit)
-    return _End(value, "", has_unit)
+        return _Number(value.number, UNUSUAL.get(value.unit, ""), has_unit)
+    return _Number(value, "", has_unit)
+
+
+def _common_unit(name: str, typed: str, numbers: Sequence[_Number]) -> str:
+    """The unit that points carry, if any. Raises SceneError."""
+    # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
+    numbers = [x for x in numbers if x.value and x.has_unit is not None]
+    if len({x.has_unit for x in numbers}) > 1:
+        raise SceneError(name, typed, "has a unit at some numbers only; write it at each")
+    if len({x.suffix for x in numbers}) > 1:
+        raise SceneError(name, typed, "has units of two kinds; write all numbers in the same unit")
+    return numbers[0].suffix if numbers else ""
 
 
 def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: int | None) -> int:
