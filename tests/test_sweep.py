@@ -707,6 +707,7 @@ def test_an_axis_starts_at_0_or_says_where(values: list[float], title: str) -> N
     "words",
     [
         "a,T1,T2 --m1 1 --m2 3 --M 0:50:6 --mu 0.2,0.3,0.25",
+        "T1,T2,mu_verge --m1 1000 --m2 400:1000:3 --mu 0.1,0.2 --M 100",
         "friction_force,mu_verge,a --m1 1 --m2 3 --M 1:1000:6:log --mu 0.3 --inertia disk,hoop,1/3",
         "acceleration --m1 1 --m2 3 --M 0:50:6 --mu 0.15:0.3:4",
         "acceleration --m1 1 --m2 3 --M 0:50:6 --mu 0.3",
