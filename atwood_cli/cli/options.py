@@ -110,14 +110,9 @@ def _may_be_radians(typed: str) -> bool:
     return not any(angle.unit for angle in angles) and least < max(angle.value for angle in angles) < most
 
 
-def numbers() -> Mapping[str, str]:
-    """The quantities that are numbers, with what they mean."""
-    return {name: QUANTITIES[name].meaning for name in NAMES[1:]}
-
-
 def quantities() -> Mapping[str, str]:
     """The quantities that every scene has, with what they mean."""
-    return {"regime": "no-slip, verge or slip", **numbers()}
+    return {"regime": "no-slip, verge or slip", **{name: QUANTITIES[name].meaning for name in NAMES[1:]}}
 
 
 # Shared by several commands
