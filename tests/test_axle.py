@@ -255,7 +255,7 @@ def test_it_is_swept(atwood: Atwood) -> None:
     assert "│ 0.5  │ 2.4033       │" in ran.out
     ran = atwood("sweep", "--m1", "1", "--m2", "3", "--R", "5cm", "--axle", "1N:1Nm:3")
     assert ran.err == (
-        "atwood: --axle '1N:1Nm:3' has ends in units of two kinds; write both in the same unit\n"
+        "atwood: --axle '1N:1Nm:3' has units of two kinds; write all numbers in the same unit\n"
     )
 
 
