@@ -1,26 +1,22 @@
-"""Tables of scenes, read and written in pieces so that memory is bounded (extra ``batch``).
+"""Tables of scenes, read in pieces so that memory is bounded (extra ``batch``): the formats, and CSV.
 
 The cells of CSV, TSV and NDJSON keep their text, and the columns of Parquet their types.
 """
 
-import json
 import os
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from io import BytesIO
-from json.decoder import JSONDecodeError
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn
 
-from ..files import FORMATS, LONGEST_NAME, STREAM, Stdout, Unreadable
+from ..files import FORMATS, LONGEST_NAME, STREAM, Unreadable
 from ..model.scene import SceneError
-from ..model.units import in_quotes, shortened
+from ..model.units import counted, in_quotes, shortened
 from .csv_quotes import checked, first_end, last_end, portions, split, widths
-from .parquet import PIECE_CELLS, PIECE_ROWS, read_frames, write_frames
+from .parquet import PIECE_CELLS, PIECE_ROWS
 
 if TYPE_CHECKING:
     import polars as pl
@@ -54,15 +50,15 @@ class Piece(NamedTuple):
 
     ``columns`` are those met so far, and ``size`` is how much of the input the piece is, in bytes (rows of
     Parquet). ``lines`` are rows of NDJSON that are to be written as they came: the frame then has the columns
-    of inputs only. ``short`` gives the number of cells of each row of CSV that lacks some.
+    of inputs only. ``errors`` are those of rows that cannot be read.
     """
 
     columns: Sequence[str]
     frame: "pl.DataFrame"
     size: int
-    lines: Sequence[str] = ()
-    short: Mapping[int, int] = {}
+    errors: Mapping[int, str] = {}
     separator: str = ""
+    lines: Sequence[str] = ()
 
 
 def read_format(option: str, given: str | None, path: str) -> str:
@@ -108,30 +104,12 @@ def block_of(file: IO[bytes]) -> bytes:
         raise Unreadable(error.strerror or str(error)) from None
 
 
-def read(kind: str, file: IO[bytes], inputs: Inputs, as_lines: bool) -> Iterator[Piece]:
-    """The pieces of a table: at least one, which may have no rows. Raises Unreadable.
-
-    With ``as_lines`` NDJSON comes as lines, and a frame of the inputs.
-    """
-    if kind == "parquet":
-        return _read_parquet(file)
-    if kind == "ndjson":
-        return _read_ndjson(file, inputs if as_lines else None)
-    return _read_csv(file, SEPARATORS[kind], inputs)
-
-
-def _read_parquet(file: IO[bytes]) -> Iterator[Piece]:
-    for frame in read_frames(file):
-        _check_count(frame.columns)
-        yield Piece(frame.columns, frame, frame.height)
-
-
-def _check_count(columns: Sequence[str]) -> None:
+def check_count(columns: Sequence[str]) -> None:
     if len(columns) > MOST_COLUMNS:
         raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
 
 
-def _check_distinct(columns: Sequence[str]) -> None:
+def check_distinct(columns: Sequence[str]) -> None:
     for name, times in Counter(columns).items():
         if times > 1:
             unnamed = f"{times} columns have no heading; name them, or delete them"
@@ -220,31 +198,31 @@ def _header(row: bytes, line: int, usual: str, inputs: Inputs) -> tuple[list[str
     separator = max((usual, *PARTED_BY), key=score)
     checked(row, separator, line)
     header = split(text, separator)
-    _check_count(header)
+    check_count(header)
     return header, separator
 
 
-def _read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
+def read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
     done, line = 0, 1
     for header, separator, rows, size, lines in rows_of_csv(file, usual, inputs):
-        _check_distinct(header)
+        check_distinct(header)
         line += lines
         most = min(PIECE_ROWS, PIECE_CELLS // len(header))
         for part in [rows] if lines <= most else portions(rows, most):
             try:
-                frame, short = _parsed(part, header, separator, done)
+                frame, errors = _parsed(part, header, separator, done)
             except Unreadable:
                 decoded(rows, line - rows.count(b"\n"))  # polars does not say where it is not UTF-8
                 raise
             done += frame.height
-            yield Piece(header, frame, size, short=short, separator=separator)
+            yield Piece(header, frame, size, errors, separator)
             size = 0
 
 
 def _parsed(
     rows: bytes, header: Sequence[str], separator: str, done: int
-) -> "tuple[pl.DataFrame, dict[int, int]]":
-    """The rows as a frame, and how many cells each short one has. Raises Unreadable."""
+) -> "tuple[pl.DataFrame, dict[int, str]]":
+    """The rows as a frame, and the errors of those with too few cells. Raises Unreadable."""
     import polars as pl
 
     width, mark, why = len(header), separator.encode(), ""
@@ -270,7 +248,11 @@ def _parsed(
         stops = f"stops after {lines[-1]} of {width} cells, without a line end: it is truncated"
         raise Unreadable(f"row {done + len(counts)}, the last, {stops}")
     frame = frame.filter(pl.Series(lines[: frame.height], dtype=pl.Int64) > 0)
-    return frame, {row: cells for row, cells in enumerate(counts) if cells < width}
+    return frame, {
+        row: f"the row has {counted(cells, 'cell')}, and the header {width}"
+        for row, cells in enumerate(counts)
+        if cells < width
+    }
 
 
 def refuse_long(number: int, cells: int, width: int, separator: str) -> NoReturn:
@@ -279,145 +261,3 @@ def refuse_long(number: int, cells: int, width: int, separator: str) -> NoReturn
     if width == 1:
         how = "; the headings must come first, without lines above them"
     raise Unreadable(f"row {number} has {cells} cells, and the header {width}{how}")
-
-
-# NDJSON
-
-
-def _read_ndjson(file: IO[bytes], inputs: Inputs | None) -> Iterator[Piece]:
-    """The rows as texts of all columns, or with ``inputs`` as lines and a frame of these."""
-    import polars as pl
-
-    columns: dict[str, None] = {}
-    done = 0
-    for lines, size in _lines(file):
-        rows = [_object(line, number) for number, line in enumerate(lines, done + 1)]
-        new = {name: None for row in rows for name in row if name not in columns}
-        if new and done and inputs is None:
-            how = "for which there is no column by now; give --to ndjson"
-            raise Unreadable(f"a row after row {done} has {in_quotes(next(iter(new)))}, {how}")
-        columns |= new
-        _check_count(list(columns))
-        wanted = list(columns) if inputs is None else inputs(list(columns))
-        most = max(1, PIECE_CELLS // max(1, len(wanted)))
-        for start in range(0, len(rows), most):
-            part = slice(start, start + most)
-            cells = {
-                name: [
-                    _text(row.get(name), line, name)
-                    for row, line in zip(rows[part], lines[part], strict=True)
-                ]
-                for name in wanted
-            }
-            try:
-                frame = pl.DataFrame(cells, schema=dict.fromkeys(wanted, pl.String))
-            except UnicodeEncodeError as error:
-                why = f"the key {in_quotes(error.object)} is not Unicode; give --to ndjson"
-                raise Unreadable(why) from None
-            done += frame.height
-            yield Piece(list(columns), frame, size, [] if inputs is None else lines[part])
-            size = 0
-    if not done:
-        raise Unreadable("it is empty")
-
-
-def _lines(file: IO[bytes]) -> Iterator[tuple[list[str], int]]:
-    """Lines that are not blank, few enough to be objects at once, and the bytes read for them."""
-    for text, first, _ in records(file, quoted=False):
-        lines = [line for line in map(str.strip, decoded(text, first).split("\n")) if line]
-        for start in range(0, len(lines), PIECE_ROWS):
-            yield lines[start : start + PIECE_ROWS], 0 if start else len(text)
-
-
-def _object(line: str, number: int) -> Mapping[str, object]:
-    """A row of NDJSON, with numbers as they are written. Raises Unreadable."""
-    why = "it is no object"
-    try:
-        row = _DECODER.decode(line)
-        if isinstance(row, dict):
-            return row
-    except RecursionError:
-        why = "it is nested too deeply"
-    except JSONDecodeError as error:
-        why = f"{error.msg.removesuffix(' at')} at character {error.colno}"
-    except Unreadable as error:
-        why = str(error)
-    raise Unreadable(f"row {number} is not a line of NDJSON: {why}")
-
-
-def _members(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
-    row = dict(pairs)
-    if len(row) < len(pairs):
-        _check_distinct([name for name, _ in pairs])
-    return row
-
-
-_DECODER = json.JSONDecoder(object_pairs_hook=_members, parse_float=str, parse_int=str, parse_constant=str)
-
-
-def _text(value: object, line: str, name: str) -> str | None:
-    """A value as text: as it is written in its line unless it is text, a number or null."""
-    if value is None:
-        return None
-    if isinstance(value, str):  # halves of surrogate pairs, which UTF-8 does not have, are written as in JSON
-        return value if value.isascii() else value.encode(errors="backslashreplace").decode()
-    at = line.index("{") + 1
-    while True:
-        key, at = _value(line, at)
-        start = line.index(":", at) + 1
-        _, end = _value(line, start)
-        if key == name:
-            return line[start:end].strip()
-        at = line.index(",", end) + 1
-
-
-def _value(line: str, at: int) -> tuple[object, int]:
-    """The JSON value there, after blanks, and where it ends."""
-    while line[at] in " \t\r":
-        at += 1
-    return _DECODER.raw_decode(line, at)
-
-
-# Writing
-
-
-def write(kind: str, file: IO[bytes] | Stdout, solved: Iterable[tuple[Piece, "pl.DataFrame"]]) -> None:
-    """Write a table from its pieces, each with the columns to append. Raises OSError, PolarsError."""
-    if kind == "parquet":
-        assert not isinstance(file, Stdout)  # which gets it once it is whole
-        write_frames(file, (piece.frame.hstack(results) for piece, results in solved))
-        return
-    with ThreadPoolExecutor(1) as encoder:  # one that only computes: nothing to wait for on Ctrl-C
-        last: Future[bytes | memoryview] | None = None
-        for piece, results in solved:
-            ready, last = last, encoder.submit(_encoded, kind, piece, results, last is None)
-            if ready:
-                file.write(ready.result())
-        if last:
-            file.write(last.result())
-
-
-def _encoded(kind: str, piece: Piece, results: "pl.DataFrame", first: bool) -> bytes | memoryview:
-    """A piece and its results as text, under a header if it is the first. Raises OSError, PolarsError."""
-    import polars as pl
-
-    if piece.lines:
-        ends = results.write_ndjson().rstrip("\n").split("\n")
-        return "".join(map(_spliced, piece.lines, ends)).encode()
-    for name, dtype in piece.frame.schema.items():
-        has_bytes = re.search(r"\bBinary\b(?!')", str(dtype))  # not the name of a field
-        if has_bytes or (kind != "ndjson" and (dtype.is_nested() or dtype == pl.Duration)):
-            what = f"column {in_quotes(name)}, which holds {shortened(str(dtype))},"
-            raise OSError(f"cannot write {what} as {kind}; give --to parquet")
-    frame = piece.frame.hstack(results)
-    if kind == "ndjson":
-        return frame.write_ndjson().encode()
-    buffer = BytesIO()
-    frame.write_csv(buffer, separator=SEPARATORS[kind], include_header=first)
-    return buffer.getbuffer()
-
-
-def _spliced(line: str, end: str) -> str:
-    """A JSON object as it came, followed by the members of a second one."""
-    comma = "," if line[1:-1].strip() else ""
-    return f"{line[:-1].rstrip()}{comma}{end[1:]}\n"

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     import polars as pl
 
 NO_UNIT = ("", "-", "1")
+NOT_GIVEN = ("NA", "NULL", "null")
+"""What programs write into cells that are empty: of R, and of databases."""
 
 # fmt: off
 OTHER_NAMES = {
@@ -54,6 +56,11 @@ class Layout(NamedTuple):
     separator: str = ""
     comma: bool = False
 
+    def as_it_stands(self) -> "Layout":
+        """The layout with numbers in the units of the headings, not in the SI."""
+        headings = {name: Heading(heading.column) for name, heading in self.headings.items()}
+        return self._replace(headings=headings)
+
     def pointed(self, cell: str) -> str:
         """A cell with a decimal point."""
         return cell.replace(",", ".") if self.comma else cell
@@ -80,10 +87,10 @@ class Layout(NamedTuple):
         return doubles
 
     def double(self, name: str, cell: str | float) -> float:
-        """A cell as the double nearest to it in the SI, NaN if it is empty. Raises SceneError."""
+        """A cell as the double nearest to it in the SI, NaN if it is not given. Raises SceneError."""
         if isinstance(cell, str):
             cell = cell.strip()
-            if not cell:
+            if not cell or cell in NOT_GIVEN:
                 return nan
             if self.comma and "." in cell:
                 raise SceneError(name, cell, "has a point in a table of decimal commas; write all alike")
@@ -153,6 +160,11 @@ def decimal_commas_in(rows: Iterable[Sequence[str]], places: Collection[int], se
 def inputs_among(columns: Sequence[str], labels: Collection[str] = ()) -> list[str]:
     """The columns with the name of an input, with any unit, that are not labels."""
     return [column for column in columns if column not in labels and divided(column)[0] in INPUTS]
+
+
+def has_masses(columns: Sequence[str], labels: Collection[str] = ()) -> bool:
+    """Whether there are columns of both masses, as a table must have."""
+    return {*MASSES} <= {divided(column)[0] for column in columns if column not in labels}
 
 
 def _headings(columns: Sequence[str], labels: Collection[str]) -> dict[str, Heading]:

@@ -25,13 +25,15 @@ from .formats import (
     Piece,
     block_of,
     cannot_read,
+    check_count,
     is_stream,
     opened,
-    read,
-    write,
+    read_csv,
 )
-from .layout import Layout, inputs_among, read_as, read_layout
-from .parquet import count_rows
+from .layout import NOT_GIVEN, Layout, has_masses, inputs_among, read_as, read_layout
+from .ndjson import read_ndjson
+from .parquet import count_rows, read_frames
+from .writing import write
 
 if TYPE_CHECKING:
     import polars as pl
@@ -44,7 +46,9 @@ ERROR = "error"
 
 @dataclass
 class Tally:
-    """The counts of a run. ``missing`` are the results that no row has; ``remarks`` are on the columns."""
+    """The counts of a run. ``missing`` are the results that no row has, ``not_given`` the words for an empty
+    cell, ``remarks`` how the table was read.
+    """
 
     missing: set[str]
     rows: int = 0
@@ -53,6 +57,7 @@ class Tally:
     first_error: str = ""
     beyond: int = 0
     reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
+    not_given: set[str] = field(default_factory=set)
     remarks: list[str] = field(default_factory=list)
 
     def lines(self) -> list[str]:
@@ -142,8 +147,7 @@ def _solved(
     job: Job, source: IO[bytes], tally: Tally, watch: Watch
 ) -> "Iterator[tuple[Piece, pl.DataFrame]]":
     """Each piece with its results."""
-    inputs = partial(inputs_among, labels=job.labels)
-    pieces = read(job.source_format, source, inputs, as_lines=job.target_format == "ndjson")
+    pieces = _pieces(job, source)
     if job.target != STREAM or not sys.stdout.isatty():
         pieces = watch(pieces, _size(job, source), lambda piece: piece.size)
     known: Sequence[str] = ()
@@ -153,10 +157,26 @@ def _solved(
                 how = "as a result is named so; rename it, or name other results by --only"
                 raise Unreadable(f"column {in_quotes(clash[0])} would be there twice, {how}")
             layout = read_layout(piece, job.labels)
-            usual = SEPARATORS.get(job.source_format, "")
-            tally.remarks = read_as(layout.headings.items(), layout.separator, usual, layout.comma)
             known = piece.columns
-        yield piece, _solve(piece, layout, job, tally)
+        yield _solve(piece, layout, job, tally)
+    words = [" and ".join(sorted(tally.not_given)) + " as not given"] if tally.not_given else []
+    usual = SEPARATORS.get(job.source_format, "")
+    tally.remarks = read_as(layout.headings.items(), layout.separator, usual, layout.comma, words)
+
+
+def _pieces(job: Job, source: IO[bytes]) -> Iterator[Piece]:
+    """The table in pieces: at least one, which may have no rows. Raises Unreadable."""
+    inputs = partial(inputs_among, labels=job.labels)
+    match job.source_format:
+        case "parquet":
+            for frame in read_frames(source):
+                check_count(frame.columns)
+                yield Piece(frame.columns, frame, frame.height)
+        case "ndjson":
+            is_table = partial(has_masses, labels=job.labels)
+            yield from read_ndjson(source, inputs, job.target_format == "ndjson", is_table)
+        case kind:
+            yield from read_csv(source, SEPARATORS[kind], inputs)
 
 
 def _size(job: Job, source: IO[bytes]) -> int | None:
@@ -167,16 +187,17 @@ def _size(job: Job, source: IO[bytes]) -> int | None:
     return about.st_size if stat.S_ISREG(about.st_mode) else None
 
 
-def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "pl.DataFrame":
-    """The columns to append: the results, which are empty in rows that failed, and the errors."""
+def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "tuple[Piece, pl.DataFrame]":
+    """The piece as it is to be written, and the columns to append: the results, which are empty in rows that
+    failed, and the errors.
+    """
     import polars as pl
 
     frame = piece.frame
-    scenes, errors = _scenes(frame, layout)
-    width = len(piece.columns)
-    for row, cells in piece.short.items():
-        errors[row] = f"the row has {counted(cells, 'cell')}, and the header {width}"
+    scenes, errors, words = _scenes(frame, layout)
+    errors |= piece.errors
     scenes["m1"][list(errors)] = nan  # such a row has no results
+    tally.not_given |= {*NOT_GIVEN} & words
     wanted = list(dict.fromkeys(["regime", *job.names]))
     results, reasons = solve_and_count(scenes, job.accuracy, wanted)
     bad = [row for row in results["status"].nonzero()[0].tolist() if row not in errors]
@@ -200,7 +221,9 @@ def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "pl.DataFram
     tally.reasons += reasons
     tally.errors += len(errors)
     tally.rows += frame.height
-    return pl.DataFrame({name: columns[name] for name in [*job.names, ERROR]})
+    if job.source_format != "parquet" and job.target_format not in SEPARATORS and not piece.lines:
+        piece = piece._replace(frame=_with_numbers(frame, layout))
+    return piece, pl.DataFrame({name: columns[name] for name in [*job.names, ERROR]})
 
 
 def _regimes(codes: Any, tally: Tally) -> "pl.Series":
@@ -230,9 +253,32 @@ def _inputs(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
     return frame.select(pl.col(heading.column).alias(name) for name, heading in layout.headings.items())
 
 
-def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict[int, str]]:
-    """The inputs as doubles, by name, masked where not given; and the first error of each row's cells."""
+def _with_numbers(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
+    """A frame of texts with its inputs as numbers in the units of the headings, null where a cell is none."""
+    import polars as pl
+
+    doubles, _, _ = _doubles(frame, layout.as_it_stands())
+    return frame.with_columns(
+        pl.Series(heading.column, doubles[name], nan_to_null=True)
+        for name, heading in layout.headings.items()
+    )
+
+
+def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict[int, str], set[str]]:
+    """As `_doubles`, but masked where a cell is empty or wrong."""
     import numpy as np
+
+    doubles, errors, words = _doubles(frame, layout)
+    for name, values in doubles.items():
+        if (empty := np.isnan(values)).any():
+            doubles[name] = np.ma.array(values, mask=empty)
+    return doubles, errors, words
+
+
+def _doubles(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict[int, str], set[str]]:
+    """The inputs by name, NaN where a cell is empty or wrong; the first error of each row that has one; and
+    cells that are no numbers.
+    """
     import polars as pl
 
     cells = _inputs(frame, layout)
@@ -244,16 +290,18 @@ def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict
     )  # in parallel
     scenes: dict[str, Any] = {}
     errors: dict[int, str] = {}
+    words: set[str] = set()
     for name in cells.columns:
         values = scenes[name] = doubles[name].to_numpy(writable=True)
         for row, cell in _odd_cells(cells[name], values).items():
             try:
                 values[row] = layout.double(name, cell)
             except SceneError as error:
+                values[row] = nan
                 errors.setdefault(row, str(error))
-        if (empty := np.isnan(values)).any():  # or wrong, as the error of the row says
-            scenes[name] = np.ma.array(values, mask=empty)
-    return scenes, errors
+            if values[row] != values[row]:
+                words.add(str(cell).strip())
+    return scenes, errors, words
 
 
 LONG = 100
@@ -284,7 +332,7 @@ def _why(row: Mapping[str, Any], layout: Layout) -> str:
     for name, cell in row.items():
         unit = layout.headings[name].unit
         text = layout.pointed(cell).strip() if isinstance(cell, str) else cell
-        if text is None or text == "":
+        if text is None or text in ("", *NOT_GIVEN):
             continue
         if layout.double(name, cell) == inf:
             cells[name] = inf

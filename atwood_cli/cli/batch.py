@@ -56,10 +56,12 @@ Examples:
   generate | atwood batch - --from ndjson --to ndjson --allow-errors
 
 Columns {", ".join(INPUTS)} are the options of solve, in SI units or
-in those of the heading, as m1 (g) or M [kg]; axle is a force, not a torque. An empty cell is not given.
-Other columns stay as they are, but what could be meant for an input, like radius, is refused. Cells may be
-parted by semicolons or tabs, and have decimal commas then. A cell is read as the double nearest to it, as
-is g: so even exact can differ in the last digit from solve, which takes 0.1 for a tenth.
+in those of the heading, as m1 (g) or M [kg]; axle is a force, not a torque. An empty cell, NA, NULL or null
+is not given. Other columns stay as they are, but what could be meant for an input, like radius, is refused.
+Cells may be parted by semicolons or tabs, and have decimal commas then. CSV into CSV keeps the text of each
+cell; into NDJSON and Parquet the inputs go as numbers, null where a cell is none. A cell is read as the
+double nearest to it, as is g: so even exact can differ in the last digit from solve, which takes 0.1 for a
+tenth.
 """
 
 

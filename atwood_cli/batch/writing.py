@@ -1,0 +1,82 @@
+"""Tables of scenes, written piece by piece with their results (extra ``batch``)."""
+
+import re
+from collections.abc import Iterable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from io import BytesIO
+from typing import IO, TYPE_CHECKING
+
+from ..files import Stdout
+from ..model.units import in_quotes, shortened
+from .formats import SEPARATORS, Piece
+from .parquet import write_frames
+
+if TYPE_CHECKING:
+    import polars as pl
+
+
+def write(kind: str, file: IO[bytes] | Stdout, solved: Iterable[tuple[Piece, "pl.DataFrame"]]) -> None:
+    """Write a table from its pieces, each with the columns to append. Raises OSError, PolarsError."""
+    if kind == "parquet":
+        assert not isinstance(file, Stdout)  # which gets it once it is whole
+        write_frames(file, (piece.frame.hstack(results) for piece, results in solved))
+        return
+    with ThreadPoolExecutor(1) as encoder:  # one that only computes: nothing to wait for on Ctrl-C
+        last: Future[bytes | memoryview] | None = None
+        for piece, results in solved:
+            ready, last = last, encoder.submit(_encoded, kind, piece, results, last is None)
+            if ready:
+                file.write(ready.result())
+        if last:
+            file.write(last.result())
+
+
+def _encoded(kind: str, piece: Piece, results: "pl.DataFrame", first: bool) -> bytes | memoryview:
+    """A piece and its results as text, under a header if it is the first. Raises OSError, PolarsError."""
+    import polars as pl
+
+    if piece.lines:
+        return _spliced(piece.lines, results)
+    for name, dtype in piece.frame.schema.items():
+        has_bytes = re.search(r"\bBinary\b(?!')", str(dtype))  # not the name of a field
+        if has_bytes or (kind != "ndjson" and (dtype.is_nested() or dtype == pl.Duration)):
+            what = f"column {in_quotes(name)}, which holds {shortened(str(dtype))},"
+            raise OSError(f"cannot write {what} as {kind}; give --to parquet")
+    frame = piece.frame.hstack(results)
+    if kind == "ndjson":
+        return _as_ndjson(frame)
+    buffer = BytesIO()
+    frame.write_csv(buffer, separator=SEPARATORS[kind], include_header=first)
+    return buffer.getbuffer()
+
+
+def _as_ndjson(frame: "pl.DataFrame") -> bytes:
+    """A frame as NDJSON. JSON has no infinity, and null would be another scene: it is written as text."""
+    import polars as pl
+
+    infinite = frame.select(pl.selectors.float().is_infinite().fill_null(False))
+    infinite = infinite.select(column for column in infinite if column.any())
+    if not infinite.width:
+        return frame.write_ndjson().encode()
+    lines = [""] * frame.height
+    for which in infinite.unique().iter_rows(named=True):
+        rows = pl.arg_where(pl.all_horizontal(pl.col(name) == is_so for name, is_so in which.items()))
+        places = infinite.select(rows).to_series()
+        names = [name for name, is_so in which.items() if is_so]
+        texts = frame[places].with_columns(pl.col(names).cast(pl.String)).write_ndjson()
+        for place, line in zip(places, texts.splitlines(keepends=True), strict=True):
+            lines[place] = line
+    return "".join(lines).encode()
+
+
+def _spliced(lines: Sequence[str], results: "pl.DataFrame") -> bytes | memoryview:
+    """JSON objects as they came, each followed by the members of its results."""
+    import polars as pl
+
+    line, members = pl.col("line"), pl.struct(results.columns).struct.json_encode().str.slice(1)
+    comma = pl.when(line.str.contains(r"^\{\s*\}$")).then(pl.lit("")).otherwise(pl.lit(","))
+    start = line.str.strip_suffix("}").str.strip_chars_end()
+    table = results.with_columns(line=pl.Series(lines))
+    buffer = BytesIO()
+    table.select(start + comma + members).write_csv(buffer, include_header=False, quote_style="never")
+    return buffer.getbuffer()
