@@ -205,7 +205,8 @@ def command_line(random: Dice) -> list[str]:
                 break
     random.shuffle(words)
     if command == "batch":
-        words.append([random.choice([*(f"in.{kind}" for kind in FORMATS), "-", "in"])])
+        sources = [*(f"in.{kind}" for kind in FORMATS), "-", "in"]
+        words.append(random.choices(sources, k=random.choice([1, 1, 1, 2])))
     if command == "fit":
         words.append([random.choice(["in.csv"] * 8 + ["in.tsv", "-", "in"])])
     line = [command, *(word for option in words for word in option)]

@@ -297,6 +297,89 @@ def test_a_pipe_by_any_name_is_csv(tmp_path: Path) -> None:
         assert (ran.status, ran.out) == (0, "m1,m2,regime,error\n1,3,no-slip,\n")
 
 
+@pytest.mark.parametrize("suffix", ["gz", "bz2", "xz"])
+@pytest.mark.parametrize("command", ["batch --only regime", "fit"])
+def test_compressed_files_are_unpacked_by_their_suffix(
+    atwood: Atwood, tmp_path: Path, suffix: str, command: str
+) -> None:
+    packers: dict[str, Any] = {"gz": gzip.compress, "bz2": bz2.compress, "xz": lzma.compress}
+    pack = packers[suffix]
+    text = "m1,m2,T (s)\n1,3,1.5\n1,3,1.6\n1,4,1.2\n1,2.5,1.9\n"
+    if command == "fit":
+        text = text.replace("T (s)", "time")
+    path, plain_path = tmp_path / f"in.csv.{suffix}", tmp_path / "in.csv"
+    path.write_bytes(pack(text.encode()))
+    plain_path.write_text(text)
+    words = [*command.split(), *(["--drop", "1"] if command == "fit" else [])]
+    assert atwood(*words, str(path)) == (right := atwood(*words, str(plain_path)))
+    assert right.status == 0
+    path.write_bytes(pack(text.encode())[:-9])
+    ran = atwood(*words, str(path))
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err.startswith(f"atwood: cannot read {path}: Compressed file ended before")
+
+
+def test_an_unpacker_that_this_python_lacks(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "compression.zstd", None)
+    why = "atwood: cannot read IN: this Python cannot unpack .zst (3.14 can); unpack it first\n"
+    assert batch(TEXT, name="in.csv.zst") == (1, "", why)
+
+
+SEVERAL = {
+    "a.csv": "m1,m2,n\n1,3,a\n",
+    "b.csv": "n;m2;m1\nb;3,5;1\nc;x;1\n",
+    "c.csv": "m1,m2\n1,3\n",
+    "d.csv": "m1,m2,n,x\n1,3,d,e\n",
+    "e.ndjson": '{"n":"e","m1":1,"m2":2.5}\n',
+    "f.parquet": "",
+}
+
+
+@pytest.mark.parametrize(
+    ("words", "out", "said"),
+    [
+        ("a.csv b.csv e.ndjson --only regime", 'm1,m2,n,regime,error\n1,3,a,no-slip,\n1,"3,5",b,no-slip,\n1,x,c,,"m2 \'x\' is not a number; write it like 2, 0.5 or 1.5e-3"\n1,2.5,e,no-slip,\n', "first error, in row 2 of b.csv: m2 'x' "),
+        ("e.ndjson a.csv --only regime --to ndjson", '{"n":"e","m1":1,"m2":2.5,"regime":"no-slip","error":null}\n{"m1":1.0,"m2":3.0,"n":"a","regime":"no-slip","error":null}\n', "2 rows: 2 no-slip; no errors."),
+        ("a.csv c.csv", None, "cannot read c.csv: it has no column 'n', which a.csv has"),
+        ("a.csv d.csv", None, "cannot read d.csv: it has a column 'x', which a.csv has not"),
+        ("a.csv g.csv", None, "cannot read g.csv: No such file or directory"),
+        ("f.parquet a.csv -o out.parquet", None, "cannot read a.csv: column 'n' holds String, and in f.parquet Int64"),
+        ("a.csv b.csv -o b.csv --force", None, "--output 'b.csv' is the input, which is never overwritten; name another"),
+    ],
+)  # fmt: skip
+def test_several_inputs_become_one_table(
+    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: str, out: str | None, said: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name, text in SEVERAL.items():
+        Path(name).write_text(text)
+    pl.DataFrame({"m1": [1.0], "m2": [3.0], "n": [1]}).write_parquet("f.parquet")
+    ran = atwood("batch", *words.split())
+    assert f"atwood: {said}" in ran.err
+    assert ran.out == out or (out is None and ran.status > 0 and not Path("out.parquet").exists())
+
+
+def test_a_pipe_of_ndjson_is_answered_row_by_row() -> None:
+    words = "batch - --from ndjson --to ndjson --only regime --allow-errors".split()
+    with subprocess.Popen(
+        [sys.executable, "-m", "atwood_cli", *words],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+    ) as child:  # fmt: skip
+        assert child.stdin
+        assert child.stdout
+        answers = ['{"regime":null,"error":"\'x\' is not a line of NDJSON: Expecting value at character 1"}']
+        answers += [f'{{"m1":1,"m2":{i},"regime":"no-slip","error":null}}' for i in range(3)]
+        child.stdin.write(b"x\n")  # which waits for a line that tells the columns
+        for i, answer in enumerate(answers):
+            if i:
+                child.stdin.write(f'{{"m1":1,"m2":{i - 1}}}\n'.encode())
+            child.stdin.flush()
+            for line in [answers[0], answer][i != 1 :] if i else []:
+                assert child.stdout.readline().decode() == f"{line}\n"
+        child.stdin.write(b'{"m1":1,"m2":9}')  # the last has no line end
+        assert child.communicate(timeout=HANGS)[0] == b'{"m1":1,"m2":9,"regime":"no-slip","error":null}\n'
+
+
 # Nothing is changed
 
 ODD_TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=8) | st.text(
@@ -805,7 +888,7 @@ def test_pieces_have_few_rows_and_cells(
     pieces = list(
         tables.read_csv(file, ",", inputs_among)
         if kind == "csv"
-        else ndjson.read_ndjson(file, inputs_among, False, has_masses)
+        else ndjson.read_ndjson(tables.blocks_of(file), inputs_among, False, has_masses)
     )
     assert [piece.frame.height for piece in pieces if piece.frame.height] == heights
     assert [piece.size for piece in pieces] == [len(content), *[0] * (len(pieces) - 1)]
@@ -958,7 +1041,7 @@ def test_a_heading_whose_unit_is_long_takes_no_time(batch: Batch, unit: str) -> 
         ("x.csv --accuracy certifed", "--accuracy 'certifed' is no accuracy; did you mean certified?"),
         ("x.csv --accuracy best", "--accuracy 'best' is no accuracy; there are fast, certified, exact"),
         ("x.csv --only accel", "--only 'accel' is no quantity; did you mean acceleration?"),
-        ("", "Missing argument 'IN'; atwood batch -h shows how"),
+        ("", "Missing argument 'IN...'; atwood batch -h shows how"),
         ("x.csv -o a.csv -o b.csv", "--output is given 2 times; give it once"),
     ],
 )
@@ -1045,23 +1128,42 @@ def test_a_run_stopped_in_an_import_shows_no_traceback(blow: str) -> None:
 
 
 @needs_signals
-@pytest.mark.parametrize("blows", ["SIGKILL", "SIGINT", "SIGTERM", "SIGHUP", "SIGINT SIGINT"])
-def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str) -> None:
+@pytest.mark.parametrize(
+    ("blows", "before"),
+    [
+        ("SIGKILL", None),
+        ("SIGINT", None),
+        ("SIGTERM", "as it was"),
+        ("SIGHUP", None),
+        ("SIGINT SIGINT", None),
+    ],
+)
+def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str, before: str | None) -> None:
     out = tmp_path / "out.csv"
-    child = hearing("batch", "-", "-o", str(out), stdin=subprocess.PIPE)
+    if before:
+        out.write_text(before)
+    child = hearing("batch", "-", "-o", str(out), "--force", stdin=subprocess.PIPE)
     assert child.stdin is not None
     child.stdin.write(b"m1,m2,M\n" + b"1,3,10\n" * 1_000_000)  # some pieces are done, more are awaited
     child.stdin.flush()
-    while not any(path.stat().st_size for path in tmp_path.iterdir()):
+    while not any(path.stat().st_size for path in tmp_path.glob(".atwood-*")):
         assert child.poll() is None
         time.sleep(0.01)
     for blow in blows.split():
         child.send_signal(signal.Signals[blow])
     _, err = child.communicate(timeout=HANGS)
-    assert (child.returncode, err) == (STATUS[blows.split()[0]], b"")
-    assert not out.exists()
-    if blows != "SIGKILL":
-        assert list(tmp_path.iterdir()) == []
+    assert child.returncode == STATUS[blows.split()[0]]
+    assert out.exists() == (before is not None)
+    if blows == "SIGKILL":
+        assert err == b""
+    else:
+        assert [path.read_text() for path in tmp_path.iterdir()] == ([before] if before else [])
+        is_left = "stays as it was" if before else "was not written"
+        said = re.fullmatch(
+            rf"atwood: stopped after (\d+) rows; {re.escape(str(out))} {is_left}\n", err.decode()
+        )
+        assert said
+        assert 0 < int(said[1]) <= 1_000_000
 
 
 @needs_signals

@@ -7,10 +7,13 @@ import os
 import re
 import sys
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from importlib import import_module
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, NamedTuple, NoReturn
+from select import select
+from time import monotonic
+from typing import IO, TYPE_CHECKING, Any, NamedTuple, NoReturn
 
 from ..files import FORMATS, LONGEST_NAME, STREAM, Unreadable
 from ..model.scene import SceneError
@@ -38,6 +41,10 @@ FOREIGN = {
     rb"\[[{\n]": "a JSON array; write an object a line, and give --from ndjson to batch",
 }
 """How files of other kinds begin, what they are, and what to do."""
+PACKED = {".gz": "gzip", ".bz2": "bz2", ".xz": "lzma", ".zst": "compression.zstd"}
+"""The modules that read compressed files, by suffix; that of .zst came with Python 3.14."""
+MOMENT = 0.05
+"""Seconds in which what a pipe brings is taken together."""
 JSON_FOR_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
 
 
@@ -62,12 +69,17 @@ class Piece(NamedTuple):
 
 
 def read_format(option: str, given: str | None, path: str) -> str:
-    """The format named, or that of the suffix; CSV for a stream, a pipe or a device. Raises SceneError."""
+    """The format named, or that of the suffix, which in a compressed input stands before another; CSV for a
+    stream, a pipe or a device. Raises SceneError.
+    """
     if given is not None:
         if given not in FORMATS:
             raise SceneError(option, given, f"is no format; there are {', '.join(FORMATS)}")
         return given
-    if suffix := SUFFIXES.get(Path(path).suffix.lower()):
+    name = Path(path)
+    if option == "from" and is_packed(path):
+        name = name.with_suffix("")
+    if suffix := SUFFIXES.get(name.suffix.lower()):
         return suffix
     if is_stream(path):
         return "csv"
@@ -79,14 +91,24 @@ def is_stream(path: str) -> bool:
     return path == STREAM or (os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path)))
 
 
+def is_packed(path: str) -> bool:
+    """Whether a file is compressed, by its suffix."""
+    return Path(path).suffix.lower() in PACKED
+
+
 def opened(source: str, stack: ExitStack) -> IO[bytes]:
-    """The file of that name, or stdin. Raises Unreadable."""
+    """The file of that name, unpacked if it is compressed, or stdin. Raises Unreadable."""
     if source == STREAM:
         if sys.stdin is None:
             raise Unreadable("it is closed")
         return sys.stdin.buffer
+    suffix = Path(source).suffix.lower()
     try:
-        return stack.enter_context(open(source, "rb"))
+        opener: Any = import_module(PACKED[suffix]).open if suffix in PACKED else open
+        file: IO[bytes] = stack.enter_context(opener(source, "rb"))
+        return file
+    except ImportError:
+        raise Unreadable(f"this Python cannot unpack {suffix} (3.14 can); unpack it first") from None
     except OSError as error:
         raise Unreadable(error.strerror) from None
 
@@ -96,12 +118,40 @@ def cannot_read(source: str, why: Unreadable) -> OSError:
     return OSError(f"cannot read {'stdin' if source == STREAM else shortened(source, LONGEST_NAME)}: {why}")
 
 
-def block_of(file: IO[bytes]) -> bytes:
-    """The next bytes of a file, none at its end. Raises Unreadable."""
+def blocks_of(file: IO[bytes]) -> Iterator[bytes]:
+    """The bytes of a file, in blocks. Raises Unreadable."""
+    with _reading():
+        while block := file.read(PIECE_BYTES):
+            yield block
+
+
+def blocks_as_they_come(file: Any) -> Iterator[bytes]:
+    """The bytes of a pipe, in blocks of what it brings within a moment. Raises Unreadable."""
+    with _reading():
+        while block := file.read1(PIECE_BYTES):
+            end, more = monotonic() + MOMENT, block
+            while more and len(block) < PIECE_BYTES and _has_more(file, end - monotonic()):
+                block += (more := file.read1(PIECE_BYTES))
+            yield block
+            if not more:
+                break
+
+
+def _has_more(file: IO[bytes], seconds: float) -> bool:
+    """Whether a pipe brings something within some seconds; no where the system cannot tell, as on Windows."""
     try:
-        return file.read(PIECE_BYTES)
-    except OSError as error:
-        raise Unreadable(error.strerror or str(error)) from None
+        return bool(select([file], [], [], max(0, seconds))[0])
+    except OSError:
+        return False
+
+
+@contextmanager
+def _reading() -> Iterator[None]:
+    """Raises Unreadable for whatever the modules that unpack make of damaged files."""
+    try:
+        yield
+    except Exception as error:  # each has one of its own
+        raise Unreadable(getattr(error, "strerror", None) or str(error)) from None
 
 
 def check_count(columns: Sequence[str]) -> None:
@@ -119,13 +169,13 @@ def check_distinct(columns: Sequence[str]) -> None:
 # Text
 
 
-def records(file: IO[bytes], quoted: bool) -> Iterator[tuple[bytes, int, int]]:
-    """A file of text in pieces that end where a record ends, each with its first line and its line ends.
+def records(blocks: Iterable[bytes], quoted: bool) -> Iterator[tuple[bytes, int, int]]:
+    """Blocks of text in pieces that end where a record ends, each with its first line and its line ends.
 
     Line ends within quotation marks do not count where records may be ``quoted``. Raises Unreadable.
     """
     rest, line = b"", 1
-    while block := block_of(file):
+    for block in blocks:
         if line == 1 and not rest:
             block = block.removeprefix(b"\xef\xbb\xbf")
             for start, kind in (FOREIGN | JSON_FOR_CSV if quoted else FOREIGN).items():
@@ -165,7 +215,7 @@ def rows_of_csv(
     """The columns, the separator and some rows; how many bytes and line ends of the file these are."""
     header: list[str] = []
     separator = usual
-    for text, line, lines in records(file, quoted=True):
+    for text, line, lines in records(blocks_of(file), quoted=True):
         rows = text
         if not header:
             rows = text.lstrip(b"\r\n")

@@ -7,10 +7,10 @@ Both give the same: numbers, and values within values, as they are written.
 
 import json
 import re
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from json.decoder import JSONDecodeError
-from typing import IO, TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..files import Unreadable
 from ..model.units import in_quotes
@@ -45,7 +45,7 @@ class Block(NamedTuple):
 
 
 def read_ndjson(
-    file: IO[bytes], inputs: Inputs, as_lines: bool, is_table: Callable[[Sequence[str]], bool]
+    blocks: Iterable[bytes], inputs: Inputs, as_lines: bool, is_table: Callable[[Sequence[str]], bool]
 ) -> Iterator[Piece]:
     """The rows as texts of all columns, or ``as_lines`` and a frame of the ``inputs``. Raises Unreadable.
 
@@ -54,7 +54,7 @@ def read_ndjson(
     columns: dict[str, None] = {}
     held: list[str] = []
     done = size = 0
-    for lines, read in chain(_lines(file), [([], 0)]):
+    for lines, read in chain(_lines(blocks), [([], 0)]):
         held, size = held + lines if held else lines, size + read
         if not held:
             break
@@ -88,9 +88,9 @@ def read_ndjson(
         raise Unreadable("it is empty")
 
 
-def _lines(file: IO[bytes]) -> Iterator[tuple[list[str], int]]:
+def _lines(blocks: Iterable[bytes]) -> Iterator[tuple[list[str], int]]:
     """Lines that are not blank, few enough to be objects at once, and the bytes read for them."""
-    for text, first, _ in records(file, quoted=False):
+    for text, first, _ in records(blocks, quoted=False):
         lines = list(filter(None, map(str.strip, decoded(text, first).split("\n"))))
         for start in range(0, len(lines), PIECE_ROWS):
             yield lines[start : start + PIECE_ROWS], 0 if start else len(text)

@@ -23,9 +23,11 @@ from ..solver.messages import reasons_at
 from .formats import (
     SEPARATORS,
     Piece,
-    block_of,
+    blocks_as_they_come,
+    blocks_of,
     cannot_read,
     check_count,
+    is_packed,
     is_stream,
     opened,
     read_csv,
@@ -46,8 +48,10 @@ ERROR = "error"
 
 @dataclass
 class Tally:
-    """The counts of a run. ``missing`` are the results that no row has, ``not_given`` the words for an empty
-    cell, ``remarks`` how the table was read.
+    """The counts of a run. ``missing`` are the results that no row has.
+
+    ``source`` is the input that is read now, after ``rows_before`` of others. By input, ``not_given`` are the
+    words that stand for an empty cell, and ``remarks`` make a line of them on how it was read.
     """
 
     missing: set[str]
@@ -57,8 +61,10 @@ class Tally:
     first_error: str = ""
     beyond: int = 0
     reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
-    not_given: set[str] = field(default_factory=set)
-    remarks: list[str] = field(default_factory=list)
+    source: str = ""
+    rows_before: int = 0
+    not_given: dict[str, set[str]] = field(default_factory=dict)
+    remarks: dict[str, Callable[[list[str]], list[str]]] = field(default_factory=dict)
 
     def lines(self) -> list[str]:
         """The messages: remarks, the summary, why valid rows lack results, the first error."""
@@ -72,15 +78,18 @@ class Tally:
         # Threads count in any order: the most frequent reason first.
         reasons = sorted(self.reasons.items(), key=lambda one: (-one[1], NAMES.index(one[0][0]), one[0][1]))
         missing = reasons_at(dict(reasons), self.rows, "in {} of {} rows")
-        return [*self.remarks, summary, *missing, *first]
+        remarks = []
+        for source, words in self.not_given.items():
+            others = [f"{' and '.join(sorted(words))} as not given"] if words else []
+            remarks += self.remarks[source](others)
+        return [*dict.fromkeys(remarks), summary, *missing, *first]
 
 
 @dataclass(frozen=True)
 class Job:
     """The files with their formats, and the results wanted with their accuracy."""
 
-    source: str
-    source_format: str
+    sources: Sequence[tuple[str, str]]
     target: str
     target_format: str
     names: Sequence[str]
@@ -89,51 +98,69 @@ class Job:
     labels: Sequence[str] = ()
 
 
-def run_batch(job: Job, watch: Watch) -> Tally:
-    """Solve a table of scenes; ``watch`` shows progress unless results go to a terminal. Raises OSError."""
+def run_batch(job: Job, watch: Watch, tally: Tally) -> None:
+    """Solve tables of scenes; ``watch`` shows progress unless results go to a terminal. Raises OSError."""
     _check_apart(job)
     with ExitStack() as stack:
         import polars as pl
 
         if hasattr(signal, "siginterrupt"):  # as it is imported, polars has Ctrl-C wait for a pipe
             signal.siginterrupt(signal.SIGINT, True)
-        tally = Tally(set(job.names))
         try:
-            source = _open(job, stack)
+            sizes = []
+            for tally.source, kind in job.sources:
+                sizes.append(_size(tally.source, kind))
+            total = None if None in sizes else sum(filter(None, sizes))
+            at_once = any(_is_answered_at_once(job, *source) for source in job.sources)
             target = _target(job, stack)
-            solved = _solved(job, source, tally, watch)
+            solved = _solved(job, total, tally, watch)
             if job.target_format == "parquet" and is_stream(job.target):
                 # polars completes the file even where it fails, so a stream gets it only when it is whole.
-                write(job.target_format, whole := BytesIO(), solved)
+                write(job.target_format, whole := BytesIO(), solved, at_once=False)
                 target.write(whole.getbuffer())
             else:
-                write(job.target_format, target, solved)
+                write(job.target_format, target, solved, at_once)
         except Unreadable as error:
-            raise cannot_read(job.source, error) from None
+            raise cannot_read(tally.source, error) from None
         except (pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
             why = shortened(str(error).splitlines()[0], LONGEST_NAME)
             raise OSError(f"cannot write {job.target_format}: {why}") from None
         target.flush()
-    return tally
 
 
 def _check_apart(job: Job) -> None:
-    """Refuse an output that is the input, by whatever name. Raises SceneError."""
+    """Refuse an output that is an input, by whatever name. Raises SceneError."""
+    for source, _ in job.sources:
+        try:
+            read = _about(source)
+            target = os.stat(job.target) if job.target != STREAM else os.fstat(sys.stdout.fileno())
+        except (OSError, ValueError, AttributeError):  # one is closed, or not there yet
+            continue
+        if stat.S_ISREG(target.st_mode) and os.path.samestat(read, target):
+            raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
+
+
+def _about(source: str) -> os.stat_result:
+    return os.fstat(sys.stdin.fileno()) if source == STREAM else os.stat(source)
+
+
+def _size(source: str, kind: str) -> int | None:
+    """The size of an input in the unit of `Piece.size`, None if it is not known. Raises Unreadable."""
     try:
-        source = os.stat(job.source) if job.source != STREAM else os.fstat(sys.stdin.fileno())
-        target = os.stat(job.target) if job.target != STREAM else os.fstat(sys.stdout.fileno())
-    except (OSError, ValueError, AttributeError):  # one is closed, or not there yet
-        return
-    if stat.S_ISREG(target.st_mode) and os.path.samestat(source, target):
-        raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
+        about = _about(source)
+    except (OSError, ValueError, AttributeError) as error:
+        raise Unreadable(getattr(error, "strerror", None) or "it is closed") from None
+    if not stat.S_ISREG(about.st_mode) or is_packed(source):
+        return None
+    if kind != "parquet":
+        return about.st_size
+    with ExitStack() as stack:
+        return None if source == STREAM else count_rows(opened(source, stack))
 
 
-def _open(job: Job, stack: ExitStack) -> IO[bytes]:
-    """The input; all of a stream of Parquet, which is not read from front to back. Raises Unreadable."""
-    stream = opened(job.source, stack)
-    if job.source_format == "parquet" and is_stream(job.source):
-        return BytesIO(b"".join(iter(partial(block_of, stream), b"")))
-    return stream
+def _is_answered_at_once(job: Job, source: str, kind: str) -> bool:
+    """Whether the input is a pipe from which each row is to be answered as it comes."""
+    return (kind, job.target_format) == ("ndjson", "ndjson") and not stat.S_ISREG(_about(source).st_mode)
 
 
 def _target(job: Job, stack: ExitStack) -> IO[bytes] | Stdout:
@@ -144,47 +171,73 @@ def _target(job: Job, stack: ExitStack) -> IO[bytes] | Stdout:
 
 
 def _solved(
-    job: Job, source: IO[bytes], tally: Tally, watch: Watch
+    job: Job, total: int | None, tally: Tally, watch: Watch
 ) -> "Iterator[tuple[Piece, pl.DataFrame]]":
     """Each piece with its results."""
-    pieces = _pieces(job, source)
+    pieces = _pieces(job, tally)
     if job.target != STREAM or not sys.stdout.isatty():
-        pieces = watch(pieces, _size(job, source), lambda piece: piece.size)
-    known: Sequence[str] = ()
+        pieces = watch(pieces, total, lambda piece: piece.size)
+    known: object = None
+    header: pl.Schema | None = None
     for piece in pieces:
-        if piece.columns != known:
+        if (tally.source, piece.columns) != known:
+            known = tally.source, piece.columns
             if clash := [name for name in piece.columns if name in (*job.names, ERROR)]:
                 how = "as a result is named so; rename it, or name other results by --only"
                 raise Unreadable(f"column {in_quotes(clash[0])} would be there twice, {how}")
             layout = read_layout(piece, job.labels)
-            known = piece.columns
-        yield _solve(piece, layout, job, tally)
-    words = [" and ".join(sorted(tally.not_given)) + " as not given"] if tally.not_given else []
-    usual = SEPARATORS.get(job.source_format, "")
-    tally.remarks = read_as(layout.headings.items(), layout.separator, usual, layout.comma, words)
+            usual = SEPARATORS.get(dict(job.sources)[tally.source], "")
+            tally.remarks[tally.source] = partial(
+                read_as, layout.headings.items(), layout.separator, usual, layout.comma
+            )
+        piece, results = _solve(piece, layout, job, tally)
+        if not piece.lines:
+            header = header or piece.frame.schema
+            piece = piece._replace(frame=_in_order(piece.frame, header, job))
+        yield piece, results
 
 
-def _pieces(job: Job, source: IO[bytes]) -> Iterator[Piece]:
-    """The table in pieces: at least one, which may have no rows. Raises Unreadable."""
+def _in_order(frame: "pl.DataFrame", header: "pl.Schema", job: Job) -> "pl.DataFrame":
+    """The frame with its columns in the order of those of the first. Raises Unreadable if they are others."""
+    import polars as pl
+
+    schema = frame.schema
+    if list(schema.items()) == list(header.items()):
+        return frame
+    first = shortened(job.sources[0][0], LONGEST_NAME)
+    for name in header:
+        if name not in schema:
+            raise Unreadable(f"it has no column {in_quotes(name)}, which {first} has")
+        if job.target_format == "parquet" and schema[name] != header[name]:
+            raise Unreadable(f"column {in_quotes(name)} holds {schema[name]}, and in {first} {header[name]}")
+    for name in schema:
+        if name not in header:
+            raise Unreadable(f"it has a column {in_quotes(name)}, which {first} has not")
+    return pl.DataFrame([frame.get_column(name) for name in header])
+
+
+def _pieces(job: Job, tally: Tally) -> Iterator[Piece]:
+    """The tables in pieces: at least one of each, which may have no rows. Raises Unreadable."""
     inputs = partial(inputs_among, labels=job.labels)
-    match job.source_format:
-        case "parquet":
-            for frame in read_frames(source):
-                check_count(frame.columns)
-                yield Piece(frame.columns, frame, frame.height)
-        case "ndjson":
-            is_table = partial(has_masses, labels=job.labels)
-            yield from read_ndjson(source, inputs, job.target_format == "ndjson", is_table)
-        case kind:
-            yield from read_csv(source, SEPARATORS[kind], inputs)
-
-
-def _size(job: Job, source: IO[bytes]) -> int | None:
-    """The size of the input in the unit of `Piece.size`, None if it is not known. Raises Unreadable."""
-    if job.source_format == "parquet":
-        return count_rows(source)
-    about = os.fstat(source.fileno())
-    return about.st_size if stat.S_ISREG(about.st_mode) else None
+    for source, kind in job.sources:
+        tally.source, tally.rows_before = source, tally.rows
+        tally.not_given[source] = set()
+        with ExitStack() as stack:
+            file = opened(source, stack)
+            match kind:
+                case "parquet":
+                    if is_stream(source) or is_packed(source):  # it is not read from front to back
+                        file = BytesIO(b"".join(blocks_of(file)))
+                    for frame in read_frames(file):
+                        check_count(frame.columns)
+                        yield Piece(frame.columns, frame, frame.height)
+                case "ndjson":
+                    at_once = _is_answered_at_once(job, source, kind)
+                    blocks = blocks_as_they_come(file) if at_once else blocks_of(file)
+                    is_table = partial(has_masses, labels=job.labels)
+                    yield from read_ndjson(blocks, inputs, job.target_format == "ndjson", is_table)
+                case _:
+                    yield from read_csv(file, SEPARATORS[kind], inputs)
 
 
 def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "tuple[Piece, pl.DataFrame]":
@@ -197,7 +250,7 @@ def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "tuple[Piece
     scenes, errors, words = _scenes(frame, layout)
     errors |= piece.errors
     scenes["m1"][list(errors)] = nan  # such a row has no results
-    tally.not_given |= {*NOT_GIVEN} & words
+    tally.not_given[tally.source] |= {*NOT_GIVEN} & words
     wanted = list(dict.fromkeys(["regime", *job.names]))
     results, reasons = solve_and_count(scenes, job.accuracy, wanted)
     bad = [row for row in results["status"].nonzero()[0].tolist() if row not in errors]
@@ -209,7 +262,9 @@ def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "tuple[Piece
 
     errors |= {row: why(*cells) for row, cells in zip(bad, inputs.iter_rows(), strict=True)}
     if errors and not tally.errors:
-        tally.first_error = f"row {tally.rows + min(errors) + 1}: {errors[min(errors)]}"
+        of = f" of {shortened(tally.source, LONGEST_NAME)}" if len(job.sources) > 1 else ""
+        row = tally.rows - tally.rows_before + min(errors) + 1
+        tally.first_error = f"row {row}{of}: {errors[min(errors)]}"
     columns = {
         "regime": _regimes(results["regime"], tally),
         **{name: _finite(results[name], tally) for name in wanted[1:]},
@@ -221,7 +276,8 @@ def _solve(piece: Piece, layout: Layout, job: Job, tally: Tally) -> "tuple[Piece
     tally.reasons += reasons
     tally.errors += len(errors)
     tally.rows += frame.height
-    if job.source_format != "parquet" and job.target_format not in SEPARATORS and not piece.lines:
+    is_text = dict(job.sources)[tally.source] != "parquet"
+    if is_text and job.target_format not in SEPARATORS and not piece.lines:
         piece = piece._replace(frame=_with_numbers(frame, layout))
     return piece, pl.DataFrame({name: columns[name] for name in [*job.names, ERROR]})
 

@@ -15,19 +15,26 @@ if TYPE_CHECKING:
     import polars as pl
 
 
-def write(kind: str, file: IO[bytes] | Stdout, solved: Iterable[tuple[Piece, "pl.DataFrame"]]) -> None:
-    """Write a table from its pieces, each with the columns to append. Raises OSError, PolarsError."""
+def write(
+    kind: str, file: IO[bytes] | Stdout, solved: Iterable[tuple[Piece, "pl.DataFrame"]], at_once: bool
+) -> None:
+    """Write a table from its pieces, each with the columns to append. Raises OSError, PolarsError.
+
+    ``at_once``, a piece is written before the next is asked for, else while it is made.
+    """
     if kind == "parquet":
         assert not isinstance(file, Stdout)  # which gets it once it is whole
         write_frames(file, (piece.frame.hstack(results) for piece, results in solved))
         return
     with ThreadPoolExecutor(1) as encoder:  # one that only computes: nothing to wait for on Ctrl-C
-        last: Future[bytes | memoryview] | None = None
-        for piece, results in solved:
-            ready, last = last, encoder.submit(_encoded, kind, piece, results, last is None)
-            if ready:
-                file.write(ready.result())
-        if last:
+        waiting: list[Future[bytes | memoryview]] = []
+        for number, (piece, results) in enumerate(solved):
+            waiting.append(encoder.submit(_encoded, kind, piece, results, number == 0))
+            if at_once or number:
+                file.write(waiting.pop(0).result())
+            if at_once:
+                file.flush()
+        for last in waiting:
             file.write(last.result())
 
 

@@ -1,21 +1,24 @@
 """`atwood batch`: a file of scenes, the same file with their results."""
 
+import os
 from typing import Annotated, Any
 
 import typer
 
-from ..files import FORMATS
+from ..files import FORMATS, LONGEST_NAME
 from ..model.quantities import ACCURACIES, STANDARD, read_name, read_names
 from ..model.scene import INPUTS
+from ..model.units import counted, shortened
 from ..output.text import say
 from .options import COULD_NOT, DONE, Columns, Force, Labels, option
 
-Table = Annotated[
-    str,
+Tables = Annotated[
+    list[str],
     typer.Argument(
-        metavar="IN",
+        metavar="IN...",
         rich_help_panel="Files",
-        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl or .parquet; - for stdin; a pipe is read as CSV.",
+        help="Tables of scenes, with the same columns: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, "
+        "as .csv.gz; - for stdin; a pipe is read as CSV.",
         show_default=False,
     ),
 ]
@@ -53,20 +56,21 @@ Examples:
   atwood batch scenes.csv -o results.csv
   atwood batch scenes.parquet -o results.parquet --accuracy exact
   atwood batch scenes.csv --only regime --only acceleration | head
+  atwood batch a.csv b.csv.gz -o all.csv
   generate | atwood batch - --from ndjson --to ndjson --allow-errors
 
 Columns {", ".join(INPUTS)} are the options of solve, in SI units or
 in those of the heading, as m1 (g) or M [kg]; axle is a force, not a torque. An empty cell, NA, NULL or null
 is not given. Other columns stay as they are, but what could be meant for an input, like radius, is refused.
 Cells may be parted by semicolons or tabs, and have decimal commas then. CSV into CSV keeps the text of each
-cell; into NDJSON and Parquet the inputs go as numbers, null where a cell is none. A cell is read as the
-double nearest to it, as is g: so even exact can differ in the last digit from solve, which takes 0.1 for a
-tenth.
+cell; into NDJSON and Parquet the inputs go as numbers, null where a cell is none. NDJSON from a pipe into
+NDJSON is answered line by line, as it comes. A cell is read as the double nearest to it, as is g: so even
+exact can differ in the last digit from solve, which takes 0.1 for a tenth.
 """
 
 
 def batch(
-    table: Table,
+    tables: Tables,
     *,
     output: OutTable = "-",
     from_: FromFormat = None,
@@ -77,16 +81,33 @@ def batch(
     allow_errors: AllowErrors = False,
     force: Force = False,
 ) -> int:
-    from ..batch.formats import read_format
-    from ..batch.run import Job, run_batch
+    from ..batch.formats import is_stream, read_format
+    from ..batch.run import Job, Tally, run_batch
     from ..output.page import watched
 
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
     known: Any = read_name("accuracy", accuracy, ACCURACIES, "accuracy")
-    formats = read_format("from", from_, table), read_format("to", to, output)
-    job = Job(table, formats[0], output, formats[1], names, known, force, label or ())
-    tally = run_batch(job, watched)
+    sources = [(table, read_format("from", from_, table)) for table in tables]
+    job = Job(sources, output, read_format("to", to, output), names, known, force, label or ())
+    tally = Tally(set(names))
+    before = _stamp(output)
+    try:
+        run_batch(job, watched, tally)
+    except KeyboardInterrupt:
+        if not is_stream(output) and _stamp(output) == before:
+            is_left = "stays as it was" if before else "was not written"
+            say(f"stopped after {counted(tally.rows, 'row')}; {shortened(output, LONGEST_NAME)} {is_left}")
+        raise
     say(*tally.lines())
     failed = tally.errors and not allow_errors
     missing = only and tally.missing and tally.rows > tally.errors
     return COULD_NOT if failed or missing else DONE
+
+
+def _stamp(path: str) -> tuple[int, int] | None:
+    """What tells a file from one that took its place; None if there is none."""
+    try:
+        about = os.stat(path)
+        return about.st_ino, about.st_mtime_ns
+    except (OSError, ValueError):
+        return None

@@ -7,7 +7,16 @@ from io import BytesIO, StringIO
 from typing import IO, NamedTuple
 
 from ..batch.csv_quotes import split
-from ..batch.formats import LONGEST_RECORD, PARTED_BY, PIECE_BYTES, Inputs, records, refuse_long, rows_of_csv
+from ..batch.formats import (
+    LONGEST_RECORD,
+    PARTED_BY,
+    PIECE_BYTES,
+    Inputs,
+    blocks_of,
+    records,
+    refuse_long,
+    rows_of_csv,
+)
 from ..files import Unreadable
 
 MOST_ABOVE = 40
@@ -28,7 +37,9 @@ def read_cells(file: IO[bytes], usual: str, recognised: Inputs) -> Cells:
 
     ``recognised`` returns those of some headings that a run is made of.
     """
-    text, remarks = _tidied(b"".join(lines for lines, _, _ in records(file, quoted=False)), recognised)
+    text, remarks = _tidied(
+        b"".join(lines for lines, _, _ in records(blocks_of(file), quoted=False)), recognised
+    )
     columns: list[str] = []
     rows: list[list[str]] = []
     separator = usual
