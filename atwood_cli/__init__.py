@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .api import MeasuredSolution, Solution, solve
     from .arrays import STATUSES, solve_arrays
+    from .batch.solving import solve_table
     from .laboratory import fit
     from .laboratory.results import Results
     from .model.quantities import REGIMES
@@ -21,6 +22,7 @@ __all__ = [
     "fit",
     "solve",
     "solve_arrays",
+    "solve_table",
 ]
 __version__ = "0.1.0"
 
@@ -35,6 +37,7 @@ _HOMES = {
     "fit": "laboratory",
     "solve": "api",
     "solve_arrays": "arrays",
+    "solve_table": "batch.solving",
 }
 
 

@@ -29,7 +29,7 @@ from hypothesis import strategies as st
 from atwood_cli import SceneError, solve
 from atwood_cli.arrays import solve_and_count
 from atwood_cli.batch import formats as tables
-from atwood_cli.batch import ndjson, run
+from atwood_cli.batch import ndjson, solving
 from atwood_cli.batch.layout import has_masses, inputs_among
 from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import NAMES, STANDARD
@@ -133,7 +133,7 @@ def test_every_accuracy_is_handed_on(batch: Batch, monkeypatch: pytest.MonkeyPat
         asked.append(accuracy)
         return solve_and_count(given, accuracy, names)
 
-    monkeypatch.setattr(run, "solve_and_count", spy)
+    monkeypatch.setattr(solving, "solve_and_count", spy)
     assert batch(as_csv(SCENES), f"--accuracy {accuracy}").status == 0
     assert set(asked) == {accuracy}
 
@@ -592,13 +592,13 @@ def test_what_is_wrong_with_rows_that_are_alike_is_found_once(
 ) -> None:
     """It takes 25 us a row: two million of them took a minute."""
     asked = []
-    why = run._why
+    why = solving._why
 
     def watched(row: dict[str, Any], layout: Any) -> str:
         asked.append(row)
         return why(row, layout)
 
-    monkeypatch.setattr(run, "_why", watched)
+    monkeypatch.setattr(solving, "_why", watched)
     errors = errors_of(batch("m1,m2,note\n" + "1,-1,a\n1,3,b\n1,,c\n" * 50, "--only regime"))
     negative, missing = "m2 '-1' must be 0 or more, and finite", "m2 is missing; give both masses, m1 and m2"
     assert errors == [negative, "", missing] * 50

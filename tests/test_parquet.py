@@ -2,6 +2,7 @@
 
 import io
 import math
+import re
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from datetime import timedelta
@@ -17,6 +18,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from atwood_cli import solve_table
 from atwood_cli.batch.parquet import write_frames
 
 from .conftest import examples
@@ -103,6 +105,59 @@ def test_columns_of_every_type_pass_through(batch: Batch, tmp_path: Path, name: 
     before, after = (pl.read_parquet(tmp_path / f"{one}.parquet")["x"] for one in ("in", "out"))
     assert before.dtype == after.dtype
     assert before.equals(after)
+
+
+TABLE = pl.DataFrame(
+    {
+        "id": ["a", "b", "c", None],
+        "m1 (g)": [100.0, None, 1.0, 5.0],
+        "m2": [3, 1, 1, 2],
+        "M": [None, math.inf, math.nan, 8.0],
+        "x": [[1], [], [2], None],
+    }
+)
+
+
+@pytest.mark.parametrize("kind", ["polars", "polars lazy", "pandas", "pyarrow"])
+@pytest.mark.parametrize("quantities", [None, ["tension_1", "regime"]])
+def test_solve_table_appends_what_batch_does(
+    batch: Batch, tmp_path: Path, kind: str, quantities: list[str] | None
+) -> None:
+    only = [word for name in quantities or [] for word in ("--only", name)]
+    batch(TABLE, *only, "--accuracy", "exact", "-o", "OUT.parquet", "--force")
+    right = pl.read_parquet(tmp_path / "out.parquet")
+    if kind == "pandas":
+        pd = pytest.importorskip("pandas")
+        table = TABLE.to_pandas(use_pyarrow_extension_array=True).set_index(pd.Index([7, 7, 2, 0]))
+        solved = solve_table(table, quantities, "exact")
+        assert list(solved.index) == [7, 7, 2, 0]
+        assert all(solved.dtypes[table.columns] == table.dtypes)
+        frame = pl.from_pandas(solved[right.columns[5:]])
+        assert solved[table.columns].to_string() == table.to_string()
+        frame = right[:, :5].hstack(frame)
+    else:
+        table = {"polars": TABLE, "polars lazy": TABLE.lazy(), "pyarrow": TABLE.to_arrow()}[kind]
+        solved = solve_table(table, quantities, "exact")
+        assert type(solved) is type(table)
+        frame = pl.DataFrame(solved.lazy().collect() if "polars" in kind else solved)
+    assert frame.equals(right)
+    assert frame.schema == right.schema
+    assert frame["error"].null_count() == 2
+
+
+@pytest.mark.parametrize(
+    ("table", "why"),
+    [
+        ([1], "a table is a data frame of polars or pandas, or an Arrow table, not list"),
+        (pl.Series([1]), "a table is a data frame of polars or pandas, or an Arrow table, not Series"),
+        (TABLE.drop("m2"), "cannot read the table: column m2 is missing; there are 'id', 'm1 (g)', 'M', 'x'"),
+        (TABLE.rename({"id": "radius"}), "cannot read the table: column 'radius' could be meant for R; name it so, with a unit like 'm1 (g)'"),
+        (TABLE.rename({"id": "error"}), "cannot read the table: column 'error' would be there twice, as a result is named so; rename it, or name other results by quantities"),
+    ],
+)  # fmt: skip
+def test_what_solve_table_refuses(table: Any, why: str) -> None:
+    with pytest.raises(ValueError, match=f"^{re.escape(why)}$"):
+        solve_table(table)
 
 
 @pytest.mark.parametrize("kind", [pl.Int8, pl.UInt64, pl.Float32, pl.Decimal(10, 2)])

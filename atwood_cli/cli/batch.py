@@ -82,7 +82,8 @@ def batch(
     force: Force = False,
 ) -> int:
     from ..batch.formats import is_stream, read_format
-    from ..batch.run import Job, Tally, run_batch
+    from ..batch.run import Job, run_batch
+    from ..batch.solving import Tally
     from ..output.page import watched
 
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
