@@ -1,6 +1,7 @@
 """Parquet: columns keep their types, damage is a sentence, and groups have a fixed number of rows."""
 
 import io
+import json
 import math
 import re
 from collections.abc import Callable
@@ -105,6 +106,16 @@ def test_columns_of_every_type_pass_through(batch: Batch, tmp_path: Path, name: 
     before, after = (pl.read_parquet(tmp_path / f"{one}.parquet")["x"] for one in ("in", "out"))
     assert before.dtype == after.dtype
     assert before.equals(after)
+
+
+def test_a_number_outside_its_domain_is_an_error_of_its_row(batch: Batch) -> None:
+    """It ended the run."""
+    for kind, minus in ((pl.Int64, "-1"), (pl.Float64, "-1.0")):
+        frame = pl.DataFrame({"m1 (g)": [1, -1, 1], "m2": [3, 3, -1]}).cast(kind)
+        ran = batch(frame, "--only", "regime", "--to", "ndjson")
+        errors = [json.loads(line)["error"] for line in ran.out.splitlines()]
+        domain = "must be 0 or more, and finite"
+        assert (ran.status, errors) == (1, [None, f"m1 '{minus}g' {domain}", f"m2 -1.0 {domain}"])
 
 
 TABLE = pl.DataFrame(

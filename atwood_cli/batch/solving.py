@@ -283,7 +283,7 @@ def _why(row: Mapping[str, Any], layout: Layout) -> str:
         text = layout.pointed(cell).strip() if isinstance(cell, str) else cell
         if text is None or text in ("", *NOT_GIVEN):
             continue
-        if layout.double(name, cell) == inf:
+        if (layout.double(name, cell) if isinstance(cell, str) else cell) == inf:
             cells[name] = inf
         else:
             cells[name] = f"{text}{unit}" if unit or isinstance(text, str) else float(text)
