@@ -12,7 +12,7 @@ TOP = Path(__file__).parent.parent
 EXAMPLES = TOP / "examples"
 PAGES = [TOP / "README.md", *sorted(EXAMPLES.glob("*.md"))]
 SCRIPTS = sorted(EXAMPLES.glob("*.sh"))
-ENGINES = [EXAMPLES / "dask_blocks.py", EXAMPLES / "polars_lazy.py"]
+ENGINES = [EXAMPLES / f"{name}.py" for name in ("dask_blocks", "dask_tables", "polars_lazy")]
 SCENE = "--m1 1 --m2 3 --M 10 --mu 0.3"
 
 

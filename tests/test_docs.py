@@ -1,6 +1,7 @@
 """What the README and the examples show is run, and must come out as shown."""
 
 import doctest
+import os
 import re
 import runpy
 from collections import Counter
@@ -15,7 +16,7 @@ from atwood_cli.tradeoff.outcome import PAPERS_SCENE, Tradeoff, legend
 from atwood_cli.tradeoff.scenes import FAMILIES
 
 from .regenerate import ENGINES, KEPT, SCRIPTS, TOP, Kept, essence, printed
-from .running import labels
+from .running import labels, process
 
 PAGES = {
     path.relative_to(TOP).as_posix(): path.read_text(encoding="utf-8")
@@ -108,11 +109,12 @@ def test_engines_keep_rows_that_are_no_scenes() -> None:
 
     bad = [-1.0, nan, inf]
     for script in ENGINES:
+        if script.stem == "dask_tables":  # which a cluster runs, below
+            continue
         run = runpy.run_path(str(script))
         if "by_regime" in run:
             frame = pl.LazyFrame(
-                {"m1": [1.0, *bad, None, 1.0, 1.0], "m2": 3.0, "M": 50.0, "mu": [0.3] * 6 + [None]},
-                run["schema"],
+                {"m1": [1.0, *bad, None, 1.0, 1.0], "m2": 3.0, "M": 50.0, "mu": [0.3] * 6 + [None]}
             )
             found = run["by_regime"](frame).collect(engine="streaming")
             assert {row["regime"]: row["len"] for row in found.to_dicts()} == {
@@ -125,7 +127,34 @@ def test_engines_keep_rows_that_are_no_scenes() -> None:
             M, mu = da.ma.masked_equal(da.array([50.0, 10.0, -1.0, 7.0]), 7.0), da.array([0.3] * 4)
             assert run["share_of_slip"](M, mu) == 0.5
     with_rows = [path for path in (TOP / "examples").glob("*.py") if "solve_arrays" in path.read_text()]
-    assert sorted(with_rows) == ENGINES
+    with_tables = [path for path in (TOP / "examples").glob("*.py") if "solve_table" in path.read_text()]
+    assert sorted({*with_rows, *with_tables}) == sorted(ENGINES)
+
+
+WORKER_KILLED = """
+import os, runpy, signal, sys
+from tempfile import TemporaryDirectory
+from distributed import Client, LocalCluster, wait
+example = runpy.run_path(sys.argv[1])
+cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
+with TemporaryDirectory() as folder, cluster, Client(cluster) as client:
+    example["write_scenes"](folder, 24, 20_000)
+    parts = client.compute(example["solved"](folder).to_delayed())
+    wait(parts, return_when="FIRST_COMPLETED")
+    os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
+    open_parts = sum(part.status == "pending" for part in parts)
+    tables = client.gather(parts)
+    rows = {M for table in tables for M in table["M"]}
+    print(open_parts > 0, sum(map(len, tables)), len(rows), sum(table["error"].notna().sum() for table in tables))
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
+def test_a_cluster_that_loses_a_worker_loses_no_row() -> None:
+    pytest.importorskip("distributed")
+    pytest.importorskip("dask.dataframe")
+    ran = process(str(TOP / "examples" / "dask_tables.py"), code=WORKER_KILLED, PYTHONPATH=str(TOP))
+    assert (ran.status, ran.out) == (0, "True 480000 480000 0\n"), ran.err
 
 
 def test_what_was_measured_is_of_todays_settings() -> None:
