@@ -209,6 +209,14 @@ RADIANS = "--m1 1 --m2 3 --mu 0.3 --M 10 --wrap 1rad:4rad:4 --only regime"
 EVERY_PULLEY = "As M is not given, each row that is on the verge has a pulley of its own: the critical one."
 
 
+def test_words_in_a_column_of_numbers_are_not_moved(atwood: Atwood) -> None:
+    ran = atwood(*"sweep --m1 1 --m2 3 --M 10,inf --inertia sphere,hoop --only a".split())
+    assert [line.split("│")[1:3] for line in ran.out.splitlines() if "sphere" in line][1:] == [
+        [" 10   ", " sphere  "],
+        [" inf  ", " sphere  "],
+    ]
+
+
 @pytest.mark.parametrize(
     ("words", "shown", "absent"),
     [

@@ -191,7 +191,7 @@ class _Forms:
             }
             for name in [name for name in shown if name not in same]:
                 unit = _in_brackets(QUANTITIES[name].unit) if name in QUANTITIES else ""
-                columns[f"{name}\n{unit}"] = shown[name] if name == "regime" else aligned(shown[name])
+                columns[f"{name}\n{unit}"] = aligned(shown[name])
             lines = zip(*columns.values(), strict=True)
             slow = sweep.ranges[0].name  # groups are of its points, or of regimes
             groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)

@@ -135,14 +135,18 @@ def table_width(columns: Sequence[str], groups: Groups) -> int:
 
 
 def aligned(numbers: Iterable[str]) -> list[str]:
-    """The numbers with their decimal points below each other."""
+    """The numbers with their decimal points below each other; words are left as they are."""
     numbers = list(numbers)
     point = max(map(_integer_part, numbers), default=0)
-    return [" " * (point - _integer_part(number)) + number for number in numbers]
+    return [" " * (point - _integer_part(one)) + one if _is_number(one) else one for one in numbers]
+
+
+def _is_number(value: str) -> bool:
+    return value.lstrip("(+-.")[:1].isdigit()
 
 
 def _integer_part(value: str) -> int:
-    return len(value.partition(" ")[0].partition(".")[0].partition("e")[0])
+    return len(value.partition(" ")[0].partition(".")[0].partition("e")[0]) if _is_number(value) else 0
 
 
 def _shortened(groups: Groups, room: int) -> tuple[Groups, int]:
