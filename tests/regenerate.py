@@ -15,6 +15,11 @@ SCRIPTS = sorted(EXAMPLES.glob("*.sh"))
 ENGINES = [EXAMPLES / f"{name}.py" for name in ("dask_blocks", "dask_tables", "polars_lazy")]
 SCENE = "--m1 1 --m2 3 --M 10 --mu 0.3"
 
+PICTURES = {
+    "contact.svg": f"contact {SCENE}",
+    "tensions.svg": "sweep --m1 1 --m2 3 --mu 0.3 --M 0:60:4 --only T1,T2",
+}
+
 
 class Kept(NamedTuple):
     """A text that is a part of a file or all of it, and what it is today."""
@@ -55,9 +60,12 @@ KEPT = [
     *(whole(engine.with_suffix(".txt"), f'"$PYTHON" "{engine}"') for engine in ENGINES),
     whole(EXAMPLES / "help.txt", '"$PYTHON" -m examples.help'),
     whole(EXAMPLES / "handout.md", f"atwood solve {SCENE} --explain --markdown"),
-    whole(
-        EXAMPLES / "contact.svg",
-        f'cd $(mktemp -d); atwood contact {SCENE} --figure it.svg > table; cat it.svg; rm -r "$PWD"',
+    *(
+        whole(
+            EXAMPLES / name,
+            f'cd $(mktemp -d); atwood {words} --figure {name} > table; cat {name}; rm -r "$PWD"',
+        )
+        for name, words in PICTURES.items()
     ),
 ]
 
