@@ -151,7 +151,8 @@ def _reading() -> Iterator[None]:
     try:
         yield
     except Exception as error:  # each has one of its own
-        raise Unreadable(getattr(error, "strerror", None) or str(error)) from None
+        said = getattr(error, "strerror", None) or str(error)
+        raise Unreadable(said) from None
 
 
 def check_count(columns: Sequence[str]) -> None:
