@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from ..arithmetic.interval import decimal_context
 from ..arithmetic.rounding import as_typed, exact_decimal, exact_or_rounded, text, tidy, to_digits
-from ..model.scene import INPUTS, Scene, SceneError, in_units, read_value, read_whole
+from ..model.scene import INPUTS, Input, Scene, SceneError, in_units, read_exactly, read_value, read_whole
 from ..model.units import MAX_DIGITS, in_quotes, read_number
 from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
 
@@ -119,10 +119,10 @@ class Range(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """Ranges, the first of which varies slowest, what else was given, and the scene at the first point."""
+    """Ranges, the first of which varies slowest, the other inputs, and the scene at the first point."""
 
     ranges: list[Range]
-    given: Mapping[str, str | None]
+    fixed: Mapping[str, Input]
     scene: Scene
 
     @property
@@ -134,7 +134,7 @@ class Sweep(NamedTuple):
         others = [range_ for range_ in self.ranges if range_ is not along]
         for points in product(*(range_.points for range_ in others)):
             at = dict(zip((range_.name for range_ in others), points, strict=True))
-            yield scene_at(self.given, {along.name: along.finite[0], **at}), at
+            yield scene_at(self.fixed, {along.name: along.finite[0], **at}), at
 
     def stated(self, at: Mapping[str, Point]) -> str:
         """What tells one place of a sweep from others, in a sentence."""
@@ -161,17 +161,16 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
         third = names[MAX_RANGES]
         rule = f"is a third range or list, after {' and '.join(names[:2])}; give two"
         raise SceneError(third, typed[third], rule)
-    for name in INPUTS:
-        if name not in typed:
-            read_value(name, given.get(name))  # what is wrong everywhere is not the first point's fault
+    # What is wrong everywhere is not the first point's fault.
+    fixed = {name: read_exactly(name, given.get(name)) for name in INPUTS if name not in typed}
     ranges = [
         read_list(name, words) if "," in words else read_range(name, words, digits)
         for name, words in typed.items()
     ]
     # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
     corners = ([x.finite[0], x.finite[-1], *[LOCKED] * x.locks] for x in ranges)
-    scene, *_ = (scene_at(given, dict(zip(names, corner, strict=True))) for corner in product(*corners))
-    sweep = Sweep(ranges, given, scene)
+    scene, *_ = (scene_at(fixed, dict(zip(names, corner, strict=True))) for corner in product(*corners))
+    sweep = Sweep(ranges, fixed, scene)
     if sweep.total > MAX_POINTS:
         rule = f"makes {sweep.total} points with {names[0]}; at most {MAX_POINTS} are taken"
         raise SceneError(names[1], typed[names[1]], rule)
@@ -326,11 +325,11 @@ def stated_point(name: str, point: Point) -> str:
     return f"{name} = {point_in_units(name, point)}"
 
 
-def scene_at(given: Mapping[str, str | None], at: Mapping[str, Point]) -> Scene:
-    """The scene given, at a point. Raises SceneError."""
-    here = {name: point_text(point) for name, point in at.items()}
+def scene_at(fixed: Mapping[str, Input], at: Mapping[str, Point]) -> Scene:
+    """The scene of the fixed inputs and those at a point. Raises SceneError."""
+    here = {name: read_exactly(name, point_text(point)) for name, point in at.items()}
     try:
-        return Scene.read({**given, **here})
+        return Scene.of({**fixed, **here})
     except SceneError as error:
         if error.parameter in here or error.value is None:
             raise
@@ -343,6 +342,6 @@ def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterat
     swept = [range_.name for range_ in sweep.ranges]
     for points in product(*(range_.points for range_ in sweep.ranges)):
         at = dict(zip(swept, points, strict=True))
-        answers = Answers(scene_at(sweep.given, at), digits)
+        answers = Answers(scene_at(sweep.fixed, at), digits)
         values = {name: answers[name] for name in names}
         yield Row(at, answers.case.regime, values, answers.reasons)
