@@ -145,7 +145,7 @@ def is_positive(quantity: Quantity) -> bool:
     def sign(value: Enclosure) -> bool | None:
         return value.lo > 0 if value.lo > 0 or value.hi < 0 else None
 
-    return _refine(quantity, sign, 24)
+    return _refine(quantity, sign, DOUBLE_DIGITS + GUARD)
 
 
 def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits: int) -> A:
