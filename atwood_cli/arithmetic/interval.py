@@ -11,11 +11,11 @@ cosine and sine change by at most δ, and e^x by at most 2δ e^x.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Context, Decimal
 from fractions import Fraction
 from functools import lru_cache
-from math import isqrt
 
 from .lazy import lazy
 from .rational import EXACT, Irrational
@@ -25,6 +25,7 @@ LARGEST_EXPONENT = 10**8
 LARGEST_ARGUMENT = LARGEST_EXPONENT * 2_302_585_092 // 10**9  # of an exponential: times ln 10
 ZERO, ONE, TWO, INFINITY = Decimal(0), Decimal(1), Decimal(2), Decimal("inf")
 KEPT = 256  # values of a function: a quantity and its slopes ask for the same ones
+DOUBLES = 300  # the largest exponent of a number that is taken for a double
 LOG10_E = Decimal("0.434294481903")  # rounded down, so that the rest of an argument is not negative
 
 
@@ -105,8 +106,12 @@ class Enclosures:
         self.down, self.up = decimal_context(digits, ROUND_FLOOR), decimal_context(digits, ROUND_CEILING)
 
     def number(self, q: Fraction | int) -> Enclosure:
-        n, d = Decimal(q.numerator), Decimal(q.denominator)
-        return Enclosure(self, self.down.divide(n, d), self.up.divide(n, d))
+        return self._quotient(q.numerator, q.denominator)
+
+    @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
+    def _quotient(self, n: int, d: int) -> Enclosure:
+        over, under = Decimal(n), Decimal(d)
+        return Enclosure(self, self.down.divide(over, under), self.up.divide(over, under))
 
     def is_zero(self, x: Enclosure) -> bool:
         return x.lo == x.hi == 0
@@ -164,7 +169,7 @@ class Enclosures:
         """
         n, d = x.as_integer_ratio()
         bits = _bits(self.digits + max(0, -x.adjusted()))
-        halvings = isqrt(bits) // 2
+        halvings = math.isqrt(bits) // 2
         w = bits + halvings + 2 * bits.bit_length() + (n // d).bit_length() + 8
         angle, quarter = (n << w) // d, _pi(w) >> 1
         turns = (angle + (quarter >> 1)) // quarter
@@ -252,7 +257,7 @@ class Enclosures:
             return Enclosure(self, INFINITY, INFINITY)
         tens = int(self.down.multiply(x, LOG10_E)) if x > 2 else 0
         bits = _bits(self.digits + max(0, -x.adjusted()))
-        halvings = isqrt(bits)
+        halvings = math.isqrt(bits)
         w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
         n, d = x.as_integer_ratio()
         rest = (n << w) // d - (tens * _ln10(w) if tens else 0)
@@ -287,8 +292,10 @@ class Enclosures:
 
     def _log1p_guess(self, y: Decimal) -> Decimal:
         """ln(1 + y) to about half the digits: each step of `_log1p` doubles them."""
-        if self.digits > 36:
+        if self.digits > 28:
             return enclosures(self.digits // 2 + 2)._log1p(y).lo
+        if -DOUBLES < y.adjusted() < DOUBLES:
+            return Decimal(math.log1p(float(y)))
         at = self.down
         if y.adjusted() < -9:
             return at.multiply(y, at.subtract(ONE, at.divide(y, TWO)))
