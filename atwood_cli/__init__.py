@@ -7,15 +7,15 @@ if TYPE_CHECKING:
     from .arrays import STATUSES, solve_arrays
     from .batch.solving import solve_table
     from .laboratory import fit
-    from .laboratory.results import Results
+    from .laboratory.results import Fit
     from .model.quantities import REGIMES
     from .model.scene import Scene, SceneError
 
 __all__ = [
     "REGIMES",
     "STATUSES",
+    "Fit",
     "MeasuredSolution",
-    "Results",
     "Scene",
     "SceneError",
     "Solution",
@@ -30,7 +30,7 @@ _HOMES = {
     "REGIMES": "model.quantities",
     "STATUSES": "arrays",
     "MeasuredSolution": "api",
-    "Results": "laboratory.results",
+    "Fit": "laboratory.results",
     "Scene": "model.scene",
     "SceneError": "model.scene",
     "Solution": "api",

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from atwood_cli.laboratory.fitting import Fit, Odd, conditions_of, fitted
+from atwood_cli.laboratory.fitting import Fitted, Odd, conditions_of, fitted
 from atwood_cli.laboratory.headings import Kind
 from atwood_cli.laboratory.least_squares import expected
 from atwood_cli.laboratory.probability import student_within
@@ -144,7 +144,7 @@ def drawn(design: Design, random: Random) -> Set:
     return Set(design, l, h, values, said, u, u_run, half)
 
 
-def fit_of(made: Set) -> Fit:
+def fit_of(made: Set) -> Fitted:
     runs = made.runs()
     return fitted(runs, conditions_of(NOTHING, runs), [])
 

@@ -21,7 +21,7 @@ from scipy import optimize, stats
 
 from atwood_cli import SceneError, solve
 from atwood_cli import fit as laboratory_fit
-from atwood_cli.laboratory.fitting import Fit, as_data, conditions_of, fitted
+from atwood_cli.laboratory.fitting import Fitted, as_data, conditions_of, fitted
 from atwood_cli.laboratory.headings import Kind
 from atwood_cli.laboratory.least_squares import Data, estimate, expected
 from atwood_cli.laboratory.numbers import published
@@ -32,7 +32,7 @@ from atwood_cli.laboratory.probability import (
     student_beyond,
     student_within,
 )
-from atwood_cli.laboratory.results import Results, points
+from atwood_cli.laboratory.results import Fit, points
 from atwood_cli.laboratory.runs import Run, Runs
 from atwood_cli.laboratory.statistics import Alike, sum_of_squares
 from atwood_cli.model.scene import Input, read_input
@@ -201,7 +201,7 @@ def test_slopes_are_those_of_differences(kind: Kind) -> None:
 # Against SciPy
 
 
-def by_scipy(best: Fit, sigma: Any, absolute: bool) -> tuple[Any, Any]:
+def by_scipy(best: Fitted, sigma: Any, absolute: bool) -> tuple[Any, Any]:
     data = best.data
 
     def ideal(_: Any, c: float, f: float) -> Any:
@@ -717,7 +717,7 @@ def test_the_command_that_predicts_does(atwood: Atwood, fit: Any, more: tuple[st
 def test_in_python_it_is_what_json_has(atwood: Atwood) -> None:
     rit = Path(RIT[1])
     want = found(atwood(*RIT, "--R", "25mm", "--without", "5", "--json"))
-    result: Results = laboratory_fit(rit, drop="98cm", g="9.804", R="25mm", without=[5])
+    result: Fit = laboratory_fit(rit, drop="98cm", g="9.804", R="25mm", without=[5])
     assert json.loads(json.dumps(result._asdict())) == want
     with rit.open() as file:
         header, *rows = csv.reader(file)

@@ -10,7 +10,7 @@ from typing import Any, assert_type
 
 import numpy as np
 
-from atwood_cli import REGIMES, STATUSES, MeasuredSolution, Results, Solution, fit, solve, solve_arrays
+from atwood_cli import REGIMES, STATUSES, Fit, MeasuredSolution, Solution, fit, solve, solve_arrays
 
 
 def of_a_form(a: str | None, digits: int | None) -> Solution[float] | Solution[Decimal]:
@@ -35,6 +35,6 @@ assert_type([REGIMES[int(code)] for code in arrays["regime"]], list[str])
 assert_type([STATUSES[int(code)] for code in arrays["status"]], list[str])
 
 runs: dict[str, list[Any]] = {"m1 (g)": [55, 60, 65], "m2 (g)": [60, 65, 70], "a": [0.380, 0.354, None]}
-assert_type(fit(runs, find=["rim_mass"], axle=0), Results)
+assert_type(fit(runs, find=["rim_mass"], axle=0), Fit)
 
 print(of_a_form("1.5", None).regime, plain.notes, found.pulley_mass, arrays["status"])

@@ -31,7 +31,7 @@ from .options import (
 )
 
 if TYPE_CHECKING:
-    from ..laboratory.fitting import Fit
+    from ..laboratory.fitting import Fitted
     from ..output.page import Page
 
 Table = Annotated[
@@ -161,7 +161,7 @@ def fit(
 class _Forms:
     """A fit in the forms in which it may be asked for."""
 
-    def __init__(self, fit: "Fit", only: Sequence[str], digits: int | None, plot: bool) -> None:
+    def __init__(self, fit: "Fitted", only: Sequence[str], digits: int | None, plot: bool) -> None:
         from ..laboratory.results import results_of
         from ..laboratory.sentences import head, notes, odd_cells
 
@@ -292,7 +292,7 @@ WITHOUT = {
 }
 
 
-def _conditions(fit: "Fit") -> list[str]:
+def _conditions(fit: "Fitted") -> list[str]:
     """What is the same in all runs."""
     inputs = dict(fit.given.inputs)
     if fit.runs.one_drop and (drop := fit.used[0].drop) is not None:

@@ -10,8 +10,8 @@ from ..files import Unreadable
 from ..model.scene import INPUTS, Given, Input, read_input
 
 if TYPE_CHECKING:
-    from .fitting import Fit
-    from .results import Results
+    from .fitting import Fitted
+    from .results import Fit
 
 
 class Frame(Protocol):
@@ -38,7 +38,7 @@ def fit(
     wrap: Given | None = None,
     find: str | Sequence[str] | None = None,
     without: Collection[int] = (),
-) -> Results:
+) -> Fit:
     """The pulley's inertia and its axle's friction, from runs of a laboratory, by T_h - T_l = c a + f.
 
     Args:
@@ -57,7 +57,7 @@ def fit(
         without: Numbers of rows to leave out, from 1.
 
     Returns:
-        `Results`: values by name in SI units, their standard uncertainties and intervals of 95 %, the runs,
+        `Fit`: values by name in SI units, their standard uncertainties and intervals of 95 %, the runs,
         and ``notes``, which also name what is odd. As text, the table and the notes.
 
     Raises:
@@ -82,7 +82,7 @@ def fit_of(
     find: Sequence[str],
     labels: Collection[str] = (),
     without: Collection[int] = (),
-) -> Fit:
+) -> Fitted:
     """The fit of a table, which may be "-" for stdin. Raises as `fit` does."""
     from ..batch.formats import cannot_read
     from .fitting import conditions_of, fitted, read_find

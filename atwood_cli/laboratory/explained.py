@@ -8,14 +8,14 @@ from ..derivation.equations import Law, Part
 from ..derivation.measured import FALLEN
 from ..derivation.steps import Explanation, Step
 from ..solver.answers import SHOWN_DIGITS
-from .fitting import Fit
+from .fitting import Fitted
 from .headings import MEASURED
 from .numbers import few, rows_of
 from .results import points
 from .sentences import head, notes
 
 
-def explained(fit: Fit) -> Explanation:
+def explained(fit: Fitted) -> Explanation:
     """The derivation of the line, its results, and what was assumed."""
     return Explanation(
         head(fit),
@@ -48,7 +48,7 @@ EQUATIONS: list[Part] = [
 ]
 
 
-def _points(fit: Fit) -> Iterator[Part]:
+def _points(fit: Fitted) -> Iterator[Part]:
     timed = fit.runs.kind == "time"
     if timed:
         yield FALLEN
@@ -61,7 +61,7 @@ def _points(fit: Fit) -> Iterator[Part]:
         yield f"- {run.name}: {masses}{fall}: `a = {_number(x)}` m/s², `y = {_number(y)}` N"
 
 
-def _line(fit: Fit) -> Iterator[Part]:
+def _line(fit: Fitted) -> Iterator[Part]:
     yield Law("", "y = c a + f")
     what = f"{MEASURED[fit.runs.kind]}s"
     yield (

@@ -64,7 +64,7 @@ class Odd(NamedTuple):
     repeats: Mapping[tuple[int, int], float] = {}
     rows: Mapping[int, float] = {}
     cannot: Mapping[int, str] = {}
-    without: "Fit | None" = None
+    without: "Fitted | None" = None
 
     @property
     def runs(self) -> set[int]:
@@ -72,7 +72,7 @@ class Odd(NamedTuple):
         return {*(i for i, _ in self.repeats), *self.rows, *self.cannot}
 
 
-class Fit(NamedTuple):
+class Fitted(NamedTuple):
     """The best values, and how well the runs determine them.
 
     ``find`` are the quantities that the user asked for, none if the choice is left to the fit; then
@@ -233,7 +233,7 @@ def read_find(words: Sequence[str], inputs: Mapping[str, Input]) -> list[str]:
     return names
 
 
-def fitted(runs: Runs, given: Conditions, find: Sequence[str]) -> Fit:
+def fitted(runs: Runs, given: Conditions, find: Sequence[str]) -> Fitted:
     """The fit of the inertia and the friction, or of just ``find``. Raises Unreadable, TooFew, Alike."""
     used = [run for run in runs.runs if not unusable(runs, run, given, find)]
     if not used:
@@ -244,7 +244,7 @@ def fitted(runs: Runs, given: Conditions, find: Sequence[str]) -> Fit:
 
 def _best(
     runs: Runs, used: Sequence[Run], given: Conditions, find: Sequence[str], judged: bool = True
-) -> Fit:
+) -> Fitted:
     """The fit of ``find``, or of both, or of the inertia alone where the runs determine no more.
 
     If ``judged`` it says what is odd about the runs.
@@ -255,7 +255,7 @@ def _best(
     assumed = ""
     for names in choices:
         try:
-            fit = Fit(runs, used, given, find, data, _estimate(data, used, given, names), assumed)
+            fit = Fitted(runs, used, given, find, data, _estimate(data, used, given, names), assumed)
             fit = fit._replace(odd=_odd(fit)) if judged else fit
             if not fit.vague or fit.odd.without is not None:
                 return fit
@@ -278,7 +278,7 @@ def _estimate(data: Data, used: Sequence[Run], given: Conditions, names: Sequenc
         raise Alike(undetermined(used, names)) from None
 
 
-def _odd(fit: Fit) -> Odd:
+def _odd(fit: Fitted) -> Odd:
     """The repeats that are far from their siblings, then the runs that are far from the others."""
     values, u, index = _measured(fit.used)
     repeated = len(index) > len(fit.used)
@@ -308,7 +308,7 @@ def _odd(fit: Fit) -> Odd:
     return Odd(repeats, rows, cannot, clean) if repeats or rows or cannot else Odd()
 
 
-def _without(fit: Fit, left: Sequence[Run]) -> Fit | None:
+def _without(fit: Fitted, left: Sequence[Run]) -> Fitted | None:
     """The same fit of other runs; None where they do not determine it."""
     try:
         return _best(fit.runs, left, fit.given, fit.find, judged=False) if left else None
@@ -316,7 +316,7 @@ def _without(fit: Fit, left: Sequence[Run]) -> Fit | None:
         return None
 
 
-def _cannot(fit: Fit, run: Run) -> str:
+def _cannot(fit: Fitted, run: Run) -> str:
     """Why the string's friction forbids a run; empty if it does not."""
     scene, values, mu = fit.given.scene, fit.estimate.values, fit.given.scene.mu
     if mu is None or not run.m1.value or not run.m2.value or values["gravity"] <= 0:

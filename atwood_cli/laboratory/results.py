@@ -10,7 +10,7 @@ from ..arithmetic.rounding import as_typed
 from ..arrays.tables import Column
 from ..derivation.typeset import wrapped
 from ..model import physics
-from .fitting import Fit, as_data
+from .fitting import Fitted, as_data
 from .least_squares import Data
 from .numbers import COLUMNS, Result, cut, rows_of
 from .quantities import QUANTITIES
@@ -21,7 +21,7 @@ WIDTH = 80
 """Characters of a line of text, at most."""
 
 
-class Results(NamedTuple):
+class Fit(NamedTuple):
     """All of a fit by name, as JSON has it; None where the runs do not determine it.
 
     ``rim_mass`` (kg) is the pulley's inertia as a mass at its rim, c = I/R², and ``axle`` (N) the friction
@@ -55,10 +55,10 @@ class Results(NamedTuple):
         return "\n".join([*lines, *(line for note in self.notes for line in wrapped(note, WIDTH))])
 
 
-def results_of(fit: Fit) -> Results:
+def results_of(fit: Fitted) -> Fit:
     """All of a fit, with its sentences."""
     values, correlation = fit.results, fit.correlation
-    return Results(
+    return Fit(
         **{name: values[name].value if name in values else None for name in QUANTITIES},
         uncertainty={name: one.uncertainty for name, one in values.items()},
         interval={name: list(one.interval) for name, one in values.items()},
@@ -71,7 +71,7 @@ def results_of(fit: Fit) -> Results:
     )
 
 
-def _lines(fit: Fit) -> list[dict[str, Any]]:
+def _lines(fit: Fitted) -> list[dict[str, Any]]:
     """The runs, as JSON and CSV have them; the residual is in standard uncertainties."""
     columns = (fit.data.measured, fit.estimate.expected, fit.sigma)
     used = {run.rows: one for run, *one in zip(fit.used, *(c.tolist() for c in columns), strict=True)}
@@ -111,7 +111,7 @@ class Points(NamedTuple):
     intercept: float
 
 
-def points(fit: Fit) -> Points:
+def points(fit: Fitted) -> Points:
     """The runs that were used, as points."""
     data, values, u = fit.data, fit.estimate.values, fit.sigma
     a, y = _as_points(data, values["gravity"])
@@ -123,7 +123,7 @@ def points(fit: Fit) -> Points:
     return Points(a, y, u, masses * u, y - line, (masses + c) * u, c, f)
 
 
-def left_out(fit: Fit) -> tuple[Sequence[Run], Column, Column]:
+def left_out(fit: Fitted) -> tuple[Sequence[Run], Column, Column]:
     """The runs that the user left out, as points (a, T_h - T_l)."""
     runs = [run for run in fit.runs.runs if run.left_out and run.mean]
     none = np.empty(0)
@@ -139,7 +139,7 @@ def _as_points(data: Data, gravity: float) -> tuple[Column, Column]:
     return a, y
 
 
-def prediction(fit: Fit) -> str:
+def prediction(fit: Fitted) -> str:
     """The command that solves a scene with the results; empty if that is no scene."""
     if any(fit.values[name] < 0 for name in fit.values):
         return ""

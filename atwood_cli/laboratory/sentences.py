@@ -9,7 +9,7 @@ from ..arithmetic.rounding import text
 from ..model import physics
 from ..model.scene import parameter_of
 from ..model.units import counted
-from .fitting import SAME, Fit, to_vary, undetermined, unusable
+from .fitting import SAME, Fitted, to_vary, undetermined, unusable
 from .headings import MEASURED
 from .numbers import cut, far, few, shown
 from .probability import fisher_beyond
@@ -28,12 +28,12 @@ NO_RESULT = {
 }
 
 
-def head(fit: Fit) -> list[str]:
+def head(fit: Fitted) -> list[str]:
     """The result in words, and what is odd about the runs: above all tables."""
     return [verdict(fit), *_oddities(fit)]
 
 
-def verdict(fit: Fit) -> str:
+def verdict(fit: Fitted) -> str:
     """How many runs there are, and which quantities are significant."""
     said = [
         f"{counted(len(fit.used), 'run')}, {counted(int(fit.data.times.sum()), MEASURED[fit.runs.kind])}."
@@ -55,7 +55,7 @@ def verdict(fit: Fit) -> str:
     return " ".join(said)
 
 
-def coefficients(fit: Fit) -> Iterator[str]:
+def coefficients(fit: Fitted) -> Iterator[str]:
     """The slope and the intercept of the line, if they are a result, with symbols as in LaTeX."""
     for name, label in zip(USUAL, ("slope $c$", "intercept $f$"), strict=True):
         if not fit.void and name not in fit.impossible:
@@ -64,13 +64,13 @@ def coefficients(fit: Fit) -> Iterator[str]:
             yield f"{label} = {shown(fit.estimate.values[name], spread)} {QUANTITIES[name].unit}{why}"
 
 
-def odd_cells(fit: Fit) -> list[str]:
+def odd_cells(fit: Fitted) -> list[str]:
     """The cells and rows that are odd: row 3, or row 3, time 2 where a row has several measurements."""
     rows = sorted({row for i in {*fit.odd.rows, *fit.odd.cannot} for row in fit.used[i].rows})
     return [*(fit.used[i].cells[k] for i, k in fit.odd.repeats), *(f"row {row}" for row in rows)]
 
 
-def _oddities(fit: Fit) -> list[str]:
+def _oddities(fit: Fitted) -> list[str]:
     """What is odd about the runs, and the result without it; none if the runs are sound."""
     odd = fit.odd
     if not odd.runs:
@@ -102,13 +102,13 @@ def _oddities(fit: Fit) -> list[str]:
     return [*said, f"Without {what}: {', '.join(values) or 'no result'}. {end}"]
 
 
-def notes(fit: Fit) -> list[str]:
+def notes(fit: Fitted) -> list[str]:
     """What else there is to say, first how the table was read."""
     said = [*map(_capital, fit.runs.remarks), *_unused(fit)]
     return said if fit.vague else [*said, *_assumptions(fit), *_spread(fit), *_indistinct(fit)]
 
 
-def _unused(fit: Fit) -> Iterator[str]:
+def _unused(fit: Fitted) -> Iterator[str]:
     used, others = {run.rows for run in fit.used}, []
     for run in fit.runs.runs:
         if run.left_out:
@@ -119,7 +119,7 @@ def _unused(fit: Fit) -> Iterator[str]:
     yield from _some(others, "could not be used")
 
 
-def _assumptions(fit: Fit) -> Iterator[str]:
+def _assumptions(fit: Fitted) -> Iterator[str]:
     """What is taken to be 0, and by how much that may change the results."""
     if fit.assumed:
         yield f"Axle friction is assumed to be 0: {fit.assumed}."
@@ -139,7 +139,7 @@ def _assumptions(fit: Fit) -> Iterator[str]:
         )
 
 
-def _spread(fit: Fit) -> Iterator[str]:
+def _spread(fit: Fitted) -> Iterator[str]:
     """How the scatter of the runs is known."""
     data, between = fit.data, fit.between_runs
     by = "their repeats explain" if isfinite(data.within) else "their uncertainties say"
@@ -165,7 +165,7 @@ def _spread(fit: Fit) -> Iterator[str]:
         )
 
 
-def _indistinct(fit: Fit) -> Iterator[str]:
+def _indistinct(fit: Fitted) -> Iterator[str]:
     """What the results can hardly be distinguished from, and what to vary."""
     one_sided = len({run.m2.value > run.m1.value for run in fit.used}) == 1
     if "axle" in fit.values and fit.significant("axle") > 0 and one_sided:

@@ -7,13 +7,13 @@ from .labels import Label, write_labels
 from .text import wrapped
 
 if TYPE_CHECKING:
-    from ..laboratory.fitting import Fit
+    from ..laboratory.fitting import Fitted
 
 TITLE_WIDTH = 130  # characters: more do not fit the page
 NAMED = 60  # runs: of more, none is named
 
 
-def save(fit: "Fit", head: str | None, path: str, force: bool) -> None:
+def save(fit: "Fitted", head: str | None, path: str, force: bool) -> None:
     """Draw runs and their line to a file, whose suffix is its format, below sentences if there is a head.
 
     Raises SceneError, OSError.

@@ -16,7 +16,7 @@ from .page import Page
 from .text import for_stream, takes_unicode
 
 if TYPE_CHECKING:
-    from ..laboratory.fitting import Fit
+    from ..laboratory.fitting import Fitted
 
 PIPE_WIDTH, HEIGHT = 80, 20
 LEAST_WIDTH, LEAST_HEIGHT = 10, 5
@@ -106,7 +106,7 @@ def _print_panel(page: Page, drawn: Picture, panel: Panel, height: int) -> None:
     _print_axes(page, (drawn.x, panel.y), (drawn.xs, panel.ys), height, draw, drawn.log)
 
 
-def print_fit_plot(page: Page, head: Sequence[str], fit: "Fit") -> None:
+def print_fit_plot(page: Page, head: Sequence[str], fit: "Fitted") -> None:
     """Runs as points, and their line; then what it is."""
     from ..laboratory.results import points
     from ..laboratory.sentences import coefficients
