@@ -92,6 +92,7 @@ def run(
     encoding = environment.get("PYTHONIOENCODING", "utf-8")
     sys.stdin, sys.stdout = open(0, encoding=encoding), open(1, "w", encoding=encoding)  # noqa: SIM115
     sys.stderr = open(2, "w", buffering=1, encoding=encoding, errors="backslashreplace")  # noqa: SIM115
+    vars(sys)["__stdout__"] = sys.stdout
     sys.argv = [__main__.__file__, *words]
     vars(page)["monotonic"] = lambda: 0.0  # on a slow machine it would show bars
     sys.exit(__main__.main())

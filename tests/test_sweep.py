@@ -413,6 +413,7 @@ def test_only_what_is_needed_is_imported() -> None:
 # Files
 
 
+@pytest.mark.parametrize("command", [["sweep", "--M", "1:2:3"], ["solve", "--M", "1"]])
 @pytest.mark.parametrize(
     ("name", "options", "printed_by"),
     [
@@ -427,9 +428,9 @@ def test_only_what_is_needed_is_imported() -> None:
     ],
 )
 def test_a_file_gets_what_stdout_would(
-    atwood: Atwood, tmp_path: Path, name: str, options: str, printed_by: str
+    atwood: Atwood, tmp_path: Path, command: list[str], name: str, options: str, printed_by: str
 ) -> None:
-    words = [*HELD, "--M", "1:2:3", "--only", "tension_1", "--only", "torque"]
+    words = [*command, *HELD[1:], "--only", "tension_1", "--only", "torque"]
     expected = atwood(*words, *printed_by.split())
     assert atwood(*words, *printed_by.split(), "-o", "-") == expected
     ran = atwood(*words, *options.split(), "-o", str(tmp_path / name))
@@ -466,6 +467,13 @@ def test_the_table_in_a_file_is_whole_and_uncoloured(tmp_path: Path) -> None:
     assert "│ friction_force │" in text
 
 
+def test_a_derivation_and_a_table_of_one_scene_go_into_files(tmp_path: Path) -> None:
+    for more, name in (("--explain --markdown", "a.md"), ("--explain", "a.txt"), ("", "b.txt")):
+        words = ["solve", *HELD[1:], "--M", "1", *more.split()]
+        assert on_terminal(*words, "-o", str(tmp_path / name), columns=60, FORCE_COLOR="1") == ""
+        assert (tmp_path / name).read_text(encoding="utf-8") == process(*words, LC_ALL="C.UTF-8").out
+
+
 def test_a_file_that_cannot_be_written(atwood: Atwood, tmp_path: Path) -> None:
     for file, reason in (
         (tmp_path / "no" / "a.csv", "No such file or directory"),
@@ -486,6 +494,7 @@ def test_a_device_is_written_to_as_it_is(atwood: Atwood) -> None:
     "words",
     [
         "sweep --M 1:2:3 --output FILE",
+        "solve --mu 0.3 --only M* --csv --output FILE",
         "sweep --M 1:2:3 --figure FILE",
         "contact --M 1 --figure FILE",
         "tradeoff --M 1 --figure FILE",
@@ -505,7 +514,7 @@ def test_a_file_is_replaced_only_by_force(
     assert ran.err == f"atwood: cannot write {file}: it exists already; --force replaces it\n"
     assert file.read_text() == "kept"
     assert atwood(command, "--m1", "1", "--m2", "3", *rest, "--force").status == 0
-    assert file.read_text(encoding="utf-8").startswith(("<?xml", "M,"))
+    assert file.read_text(encoding="utf-8").startswith(("<?xml", "M,", "critical"))
     assert list(tmp_path.iterdir()) == [file]
 
 

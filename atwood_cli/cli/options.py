@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
+from ..files import STREAM
 from ..model.quantities import NAMES, QUANTITIES
 from ..model.scene import INPUTS, SceneError, parameter_of
 from ..model.units import read_number, shortened
@@ -155,6 +156,17 @@ M1Side = Annotated[
     str | None,
     option("Files", metavar="left|right", help="On which side the figure has m1; right if not given."),
 ]
+OutputFile = Annotated[
+    str | None,
+    option(
+        "Files",
+        "--output",
+        "-o",
+        metavar="FILE",
+        help="Write to FILE, whole or not at all: as CSV (.csv), JSON (.json) or as shown (.txt).",
+    ),
+]
+SUFFIXES = ("", ".txt", ".csv", ".json")
 Force = Annotated[bool, option("Files", "--force", help="Replace a file that is there.")]
 Labels = Annotated[
     list[str] | None,
@@ -165,6 +177,23 @@ Labels = Annotated[
         help="Pass this column on as it is, though it may be meant for an input; repeatable.",
     ),
 ]
+
+
+def form_of(options: Mapping[str, Any]) -> tuple[bool, bool]:
+    """Whether to print JSON or CSV, by the options or else by the suffix of --output. Raises SceneError."""
+    output, json, csv = options["output"], options["json"], options["csv"]
+    if output in (None, STREAM):
+        return json, csv
+    figure = options["figure"]
+    if figure is not None and os.path.realpath(figure) == os.path.realpath(output):
+        raise SceneError("figure", figure, "is the file of --output; name another")
+    if json or csv or options.get("markdown"):
+        return json, csv
+    suffix = os.path.splitext(output)[1].lower()
+    if suffix not in SUFFIXES:
+        rule = f"must end in one of {', '.join(filter(None, SUFFIXES))}, or name --json or --csv"
+        raise SceneError("output", output, rule)
+    return suffix == ".json", suffix == ".csv"
 
 
 # Which options exclude or need which

@@ -3,6 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import Annotated
 
+from ..files import stdout_into
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, read_names
 from ..model.scene import SceneError, read_digits
 from ..output.solution import beside_bare, print_table, record
@@ -20,7 +21,9 @@ from .options import (
     Force,
     M1Side,
     Markdown,
+    OutputFile,
     check,
+    form_of,
     option,
     quantities,
     scene_option,
@@ -119,8 +122,10 @@ def solve(
     figure: Figure = None,
     m1_side: M1Side = None,
     bare: Bare = False,
+    output: OutputFile = None,
     force: Force = False,
 ) -> int:
+    json, csv = form_of(locals())
     check(locals())
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
     answers = read_answers({**given, "a": a, "drop": drop, "time": time}, read_digits(digits))
@@ -130,24 +135,27 @@ def solve(
         raise SceneError("budget", None, "has no place in bare values; take --json")
     if explain and answers.uncertainties:
         raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
-    if figure is not None:
-        _draw(answers, figure, m1_side, bare, force)
-    if explain:
-        from ..derivation.steps import explain as explained
-        from ..output.page import print_explanation
-
-        given_in_words = inputs_in_words(answers.case.scene, answers.case.motion)
-        print_explanation([*given_in_words.values()], explained(answers), markdown)
-        return DONE
     forms = Forms(
         json=lambda: record(answers, names, budget),
         records=lambda: [_line(answers, names or answers.names)],
-        page=lambda: print_table(answers, all, budget),
+        page=lambda: _explain(answers, markdown) if explain else print_table(answers, all, budget),
         notes=lambda: [*([] if json or csv else beside_bare(answers, names)), *reasons(answers)],
         bare=[cell(answers[name]) for name in names],
     )
-    say(*show(forms, json, csv))
+    with stdout_into(output, force):
+        if figure is not None:
+            _draw(answers, figure, m1_side, bare, force)
+        aside = show(forms, json, csv)
+    say(*aside)
     return COULD_NOT if "" in forms.bare else DONE
+
+
+def _explain(answers: Answers, markdown: bool) -> None:
+    from ..derivation.steps import explain
+    from ..output.page import print_explanation
+
+    given = inputs_in_words(answers.case.scene, answers.case.motion)
+    print_explanation([*given.values()], explain(answers), markdown)
 
 
 def _draw(answers: Answers, path: str, m1_side: str | None, bare: bool, force: bool) -> None:

@@ -1,17 +1,15 @@
 """`atwood sweep`: ranges and lists of scenes, as a table with its regimes, JSON, CSV, curves or a figure."""
 
-import os
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import groupby, pairwise
 from operator import attrgetter
-from typing import Annotated
 
 from ..arithmetic.rounding import to_digits, to_double
-from ..files import STREAM, stdout_into
+from ..files import stdout_into
 from ..model.quantities import QUANTITIES, STANDARD, read_names
-from ..model.scene import SceneError, read_digits
+from ..model.scene import read_digits
 from ..output.curves import MAX_CURVES, Picture, axis_words, drawable, longest, picture, regimes
 from ..output.page import Page, aligned, watched
 from ..output.text import Forms, cell, inputs_in_words, say, scene_record, show
@@ -29,25 +27,13 @@ from .options import (
     Digits,
     FigureFile,
     Force,
+    OutputFile,
     Plot,
     check,
     check_extras,
-    option,
+    form_of,
     takes_scene,
 )
-
-OutputFile = Annotated[
-    str | None,
-    option(
-        "Files",
-        "--output",
-        "-o",
-        metavar="FILE",
-        help="Write to FILE, whole or not at all: as CSV (.csv), JSON (.json) or as shown (.txt).",
-    ),
-]
-SUFFIXES = ("", ".txt", ".csv", ".json")
-
 
 HELP = """Solve a range of scenes: one or two options carry start:stop:count[:log], or a list, as 0,1,10.
 
@@ -78,7 +64,7 @@ def sweep(
     csv: AsCsv = False,
     only: Columns = None,
 ) -> int:
-    json, csv = _form_for(output, json, csv)
+    json, csv = form_of(locals())
     check(locals())
     names = list(dict.fromkeys(read_names("only", only or [])))
     precision = read_digits(digits)
@@ -86,41 +72,25 @@ def sweep(
     drawing = "plot" if plot else "figure" if figure is not None else ""
     drawn = drawable(swept, drawing, names) if drawing else []
     check_extras(plot, figure, force)
-    if figure and output and os.path.realpath(figure) == os.path.realpath(output):
-        raise SceneError("figure", figure, "is the file of --output; name another")
     with stdout_into(output, force):
         curves = picture(swept, drawing, drawn, precision) if drawn else None
         if figure is not None and curves is not None:
             from ..output.sweep_figure import save
 
             save(curves, "" if bare else _caption(swept, curves), figure, force)
-        forms = _Forms(swept, names, precision, curves if plot else None, plain=output not in (None, STREAM))
+        forms = _Forms(swept, names, precision, curves if plot else None)
         aside = show(Forms(forms.json, forms.records, forms.page, lambda: [*forms.notes()]), json, csv)
     say(*aside or [f"{name} has no value in any row" for name in names if name in forms.missing])
     return COULD_NOT if forms.missing else DONE
 
 
-def _form_for(output: str | None, json: bool, csv: bool) -> tuple[bool, bool]:
-    """Whether to print JSON or CSV, by the options or else by the suffix of the file to write."""
-    if output in (None, STREAM) or json or csv:
-        return json, csv
-    suffix = os.path.splitext(output)[1].lower()
-    if suffix not in SUFFIXES:
-        rule = f"must end in one of {', '.join(filter(None, SUFFIXES))}, or name --json or --csv"
-        raise SceneError("output", output, rule)
-    return suffix == ".json", suffix == ".csv"
-
-
 class _Forms:
-    """A sweep in the forms in which it may be asked for; rows of JSON and CSV are written as they come.
-
-    ``plain``: what is printed goes to a file, without colours.
-    """
+    """A sweep in the forms in which it may be asked for; rows of JSON and CSV are written as they come."""
 
     def __init__(
-        self, sweep: Sweep, names: Sequence[str], digits: int | None, curves: Picture | None, plain: bool
+        self, sweep: Sweep, names: Sequence[str], digits: int | None, curves: Picture | None
     ) -> None:
-        self.sweep, self.digits, self.curves, self.plain = sweep, digits, curves, plain
+        self.sweep, self.digits, self.curves = sweep, digits, curves
         # The quantities asked for that no row has, or no curve.
         self.missing = set(names) & curves.missing if curves else set(names)
         self.names = names or STANDARD
@@ -155,7 +125,7 @@ class _Forms:
         return ({**row.at, **{name: row.values[name] for name in self.names}} for row in rows)
 
     def page(self) -> None:
-        page, head = Page(plain=self.plain), ", ".join(_inputs(self.sweep).values())
+        page, head = Page(), ", ".join(_inputs(self.sweep).values())
         if self.curves:
             from ..output.plot import print_plot
 

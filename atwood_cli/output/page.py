@@ -30,14 +30,14 @@ REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 class Page:
     """Where tables and sentences go: the terminal, or a pipe that takes any width."""
 
-    def __init__(self, console: "Console | None" = None, plain: bool = False) -> None:
+    def __init__(self, console: "Console | None" = None) -> None:
         from rich.console import Console
 
         # rich itself takes COLUMNS=0 at its word, and every dumb terminal for one of 80 columns.
         width, height = get_terminal_size()
-        self.console = console or Console(
-            highlight=False, force_terminal=False if plain else None, width=width, height=height
-        )
+        # FORCE_COLOR is for what a terminal is shown, not for the file of --output.
+        force = None if sys.stdout is sys.__stdout__ else False
+        self.console = console or Console(highlight=False, force_terminal=force, width=width, height=height)
         self.room = self.console.width if self.console.is_terminal else None
         self.width = self.room or PIPED
 
