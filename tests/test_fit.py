@@ -714,11 +714,20 @@ def test_the_command_that_predicts_does(atwood: Atwood, fit: Any, more: tuple[st
     )
 
 
+def without_nulls(value: Any) -> Any:
+    if isinstance(value, list):
+        return [*map(without_nulls, value)]
+    if not isinstance(value, dict):
+        return value
+    return {key: without_nulls(one) for key, one in value.items() if one is not None}
+
+
 def test_in_python_it_is_what_json_has(atwood: Atwood) -> None:
     rit = Path(RIT[1])
     want = found(atwood(*RIT, "--R", "25mm", "--without", "5", "--json"))
     result: Fit = laboratory_fit(rit, drop="98cm", g="9.804", R="25mm", without=[5])
-    assert json.loads(json.dumps(result._asdict())) == want
+    printed = {key: one for key, one in want.items() if key != "version"}
+    assert without_nulls(json.loads(json.dumps(result._asdict()))) == without_nulls(printed)
     with rit.open() as file:
         header, *rows = csv.reader(file)
     texts: dict[str, list[str]] = dict(zip(header, map(list, zip(*rows, strict=True)), strict=True))

@@ -328,10 +328,9 @@ def test_a_note_says_at_how_many_points(atwood: Atwood) -> None:
 def test_json(atwood: Atwood) -> None:
     ran = atwood(*SWEEP, "--M", "0:0.2:3", "--wrap", "1rad:2rad:2", "--only", "regime", "--json")
     result = json.loads(ran.out, parse_constant=lambda word: pytest.fail(word))
-    assert list(result) == ["scene", "rows", "notes"]
-    assert result["scene"] == {
-        **{"m1": 1, "m2": 3, "M": "0:0.2:3", "mu": 0.3, "mu_k": None, "g": 9.80665},
-        **{"inertia": 0.5, "I": None, "R": None, "wrap": "1rad:2rad:2"},
+    assert {name: one for name, one in result["scene"].items() if one is not None} == {
+        **{"m1": 1, "m2": 3, "M": "0:0.2:3", "mu": 0.3, "g": 9.80665},
+        **{"inertia": 0.5, "wrap": "1rad:2rad:2"},
     }
     assert result["rows"][3] == {"M": 0.1, "wrap": "2rad", "regime": "no-slip"}
     assert '"M": 0.1,' in ran.out

@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import re
+import sys
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
@@ -462,6 +463,7 @@ def screen(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) 
         monkeypatch.setenv(name, value)
 
     def lines(shown: Tradeoff, everything: bool = False) -> list[str]:
+        monkeypatch.setattr(sys, "__stdout__", sys.stdout)
         command._forms(shown, everything).page()
         return [line.rstrip() for line in plain(capsys.readouterr().out).splitlines()]
 
@@ -546,7 +548,6 @@ def test_the_elements_in_a_sentence() -> None:
 def test_json(atwood: Atwood, brief: list[str]) -> None:
     ran = atwood(*brief, "--json", "--seed", "7", "--family", "whole-range", "--family", "ordinary")
     printed = json.loads(ran.out)
-    assert list(printed) == ["seed", "scenes", "arithmetic", "elements", "notes", "advice"]
     assert (printed["seed"], printed["scenes"], printed["notes"]) == (7, 6, [])
     assert [(one["family"], one["setting"]) for one in printed["arithmetic"]] == [
         (family, name) for family in ("whole-range", "ordinary") for name in NAMES

@@ -6,10 +6,11 @@ from typing import Annotated, Any
 
 from ..arithmetic.rounding import tidy
 from ..model.scene import Scene, read_digits
-from ..output.text import Forms, cell, say, scene_record, show
+from ..output.text import VERSION, Forms, cell, say, scene_record, show
 from ..solver.answers import Answers
 from ..solver.contact import TO_SPARE, Contact
 from ..solver.contact import contact as solve_contact
+from ..solver.elements import EXACT
 from ..solver.elements import Elements as Solved
 from ..solver.elements import elements as march_elements
 from ..solver.messages import unmarked, verdict
@@ -100,11 +101,13 @@ def contact(
     if elements is not None:
         solved = march_elements(answers, elements, extrapolate)
         rows = [row._asdict() for row in solved.rows]
-        found: dict[str, Any] = {"elements": {row.pop("name"): row for row in map(dict, rows)}}
+        by_name = {row.pop("name"): row for row in map(dict, rows)}
+        found: dict[str, Any] = {"elements": {name: by_name.get(name) for name in EXACT}}
         forms = _forms(answers, solved.notes, found, rows, lambda: _print_elements(answers, solved))
     else:
         arc = solve_contact(answers, points or DEFAULT_POINTS, profile)
-        found = {"profile": arc.kind, "points": arc.points, "balance": arc.balance}
+        points_found = [{name: point.get(name) for name in COLUMN_UNITS} for point in arc.points]
+        found = {"profile": arc.kind, "points": points_found, "balance": arc.balance}
         forms = _forms(answers, arc.notes, found, arc.points, lambda: _print_arc(answers, arc))
         if figure is not None:
             from ..output.arc_figure import save
@@ -123,6 +126,7 @@ def _forms(
 ) -> Forms:
     return Forms(
         json=lambda: {
+            "version": VERSION,
             "scene": scene_record(answers.case.scene, round_=answers.round),
             "regime": answers.case.regime,
             **found,

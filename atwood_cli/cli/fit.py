@@ -12,7 +12,7 @@ from ..laboratory.quantities import FITTED, QUANTITIES, SYMBOLS
 from ..model.quantities import divided, read_names
 from ..model.scene import INPUTS, UNMEASURED, parameter_of, read_digits, read_input, read_whole
 from ..model.units import counted
-from ..output.text import Forms, cell, inputs_in_words, say, show
+from ..output.text import VERSION, Forms, cell, inputs_in_words, say, show
 from .options import (
     COULD_NOT,
     DONE,
@@ -188,8 +188,14 @@ class _Forms:
         return value
 
     def json(self) -> Any:
-        only = {name: self.values[name] for name in self.only}
-        return only or self._rounded(self.record)
+        from ..laboratory.headings import TAKEN
+
+        if self.only:
+            return {name: self.values[name] for name in self.only}
+        record, absent = self._rounded(self.record), dict.fromkeys(QUANTITIES)
+        by_name = {name: absent | record[name] for name in ("uncertainty", "interval")}
+        runs = [line | {name: line.get(name) for name in TAKEN} for line in record["runs"]]
+        return {"version": VERSION, **record, **by_name, "runs": runs}
 
     def records(self) -> Any:
         return [self.json()] if self.only else self._rounded(self.record["runs"])

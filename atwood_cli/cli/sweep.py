@@ -12,7 +12,7 @@ from ..model.quantities import QUANTITIES, STANDARD, read_names
 from ..model.scene import read_digits
 from ..output.curves import MAX_CURVES, Picture, axis_words, drawable, longest, picture, regimes
 from ..output.page import Page, aligned, watched
-from ..output.text import Forms, cell, inputs_in_words, say, scene_record, show
+from ..output.text import VERSION, Forms, cell, inputs_in_words, say, scene_record, show
 from ..solver.answers import SHOWN_DIGITS
 from ..solver.messages import reasons_at
 from ..solver.regimes import changes
@@ -114,6 +114,7 @@ class _Forms:
         ranges = {range_.name: range_.typed for range_ in self.sweep.ranges}
         rounding = to_double if self.digits is None else to_digits(self.digits)
         return {
+            "version": VERSION,
             "scene": scene_record(self.sweep.scene, round_=rounding) | ranges,
             "rows": self.records(),
             "notes": self.notes(),

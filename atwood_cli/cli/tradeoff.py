@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from ..model.quantities import read_names
 from ..model.scene import Scene, SceneError, read_whole
-from ..output.text import Forms, describe, say, scene_record, show
+from ..output.text import VERSION, Forms, describe, say, scene_record, show
 from .options import (
     DONE,
     AsCsv,
@@ -135,11 +135,13 @@ def _forms(outcome: "Tradeoff", everything: bool) -> Forms:
 
 
 def _record(outcome: "Tradeoff") -> dict[str, object]:
-    """For JSON: what was measured, the seed or the scene, the notes and the advice."""
-    about: dict[str, object] = {"scene": scene_record(outcome.scene)}
-    if outcome.seed is not None:
-        about = {"seed": outcome.seed, "scenes": outcome.scenes}
-    return about | {
+    """For JSON: what was measured, the scene or the seed, the notes and the advice."""
+    drawn = outcome.seed is not None
+    return {
+        "version": VERSION,
+        "scene": None if drawn else scene_record(outcome.scene),
+        "seed": outcome.seed,
+        "scenes": outcome.scenes if drawn else None,
         "arithmetic": [one._asdict() for one in outcome.measured],
         "elements": [one._asdict() for one in outcome.marches],
         "notes": outcome.notes,

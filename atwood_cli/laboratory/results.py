@@ -22,7 +22,7 @@ WIDTH = 80
 
 
 class Fit(NamedTuple):
-    """All of a fit by name, as JSON has it; None where the runs do not determine it.
+    """All of a fit by name; None where the runs do not determine it.
 
     ``rim_mass`` (kg) is the pulley's inertia as a mass at its rim, c = I/R², and ``axle`` (N) the friction
     of its axle as a force there; ``gravity`` (m/s²) is fitted only if asked for. ``pulley_mass`` (kg) needs

@@ -10,7 +10,7 @@ from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..solver.answers import Answers
 from ..solver.messages import conditions, notes, reasons, remarks, unmarked, verdict
-from .text import cell, describe, for_stream, scene_record
+from .text import VERSION, cell, describe, for_stream, scene_record
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -22,14 +22,21 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
     """The record for JSON: all quantities with scene and notes, or only those named."""
     names = only or answers.names
     results: dict[str, object] = {name: answers[name] for name in names}
-    if answers.uncertainties:
-        results["uncertainty"] = answers.standard_uncertainties(names)
-    if budget:
-        results["budget"] = {name: answers.budget(name) or None for name in names if name != "regime"}
+    uncertainty = answers.standard_uncertainties(names) or None
+    shares = {name: answers.budget(name) or None for name in names if name != "regime"} if budget else None
+    beside = {"uncertainty": uncertainty, "budget": shares}
     if only:
-        return results
-    scene = scene_record(answers.case.scene, answers.case.motion, answers.round)
-    return {"scene": scene, **results, "notes": notes(answers)}
+        return results | {name: one for name, one in beside.items() if one is not None}
+    absent = dict.fromkeys(QUANTITIES)
+    return {
+        "version": VERSION,
+        "scene": scene_record(answers.case.scene, answers.case.motion, answers.round),
+        "regime": answers.case.regime,
+        **absent,
+        **results,
+        **{name: one and absent | one for name, one in beside.items()},
+        "notes": notes(answers),
+    }
 
 
 def beside_bare(answers: Answers, only: Sequence[str]) -> list[str]:

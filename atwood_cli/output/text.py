@@ -80,6 +80,10 @@ def drop(stream: TextIO) -> None:
         os.close(nowhere)
 
 
+VERSION = 1
+"""Of the keys of JSON, which `examples/json.md` lists; it grows when one goes, or changes its meaning."""
+
+
 class Forms(NamedTuple):
     """A result in the forms in which it may be asked for, each of which is made only if it is.
 
@@ -196,14 +200,11 @@ def scene_record(
 
 def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
     """The inputs by name, each with its unit where that is not the usual one."""
-    given: dict[str, Any] = scene._asdict()
-    if motion != UNMEASURED:
-        given |= {name: getattr(motion, name) for name in MEASURED}
-        given |= {motion.finds: None} if motion.finds else {}
+    given: dict[str, Any] = scene._asdict() | {name: getattr(motion, name) for name in MEASURED}
+    if motion.finds:
+        given[motion.finds] = None
     if scene.M == inf:
         given["M"] = "inf"
-    if scene.axle is None:
-        del given["axle"]
     units = {"rad": "rad", "N m": " Nm"}
     return {
         name: (value.number, units.get(value.unit, "")) if isinstance(value, Angle | Axle) else (value, "")
