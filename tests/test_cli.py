@@ -8,6 +8,8 @@ import subprocess
 import sys
 from itertools import pairwise
 from pathlib import Path
+from shlex import quote
+from types import SimpleNamespace
 from typing import Any
 from xml.etree.ElementTree import fromstring
 
@@ -577,3 +579,33 @@ def test_the_program_collects_garbage_and_a_library_is_left_alone() -> None:
     program = "from atwood_cli.__main__ import main; sys.argv[1:] = ['--version']; main()"
     for what, seen in ((solved, "True False\n"), (program, "True True\n")):
         assert process(code=code.format(what)).err == seen
+
+
+@pytest.mark.parametrize(
+    ("mark", "installer", "command"),
+    [
+        ("", "pip\n", "{python} -m pip install"),
+        ("", None, "{python} -m pip install"),
+        ("", "uv\n", "uv pip install --python {python}"),
+        ("uv-receipt.toml", "uv\n", "uv tool install"),
+        ("pipx_metadata.json", "pip\n", "pipx runpip atwood-cli install"),
+    ],
+)
+def test_a_missing_extra_is_installed_by_what_installed_the_program(
+    atwood: Atwood,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    mark: str,
+    installer: str | None,
+    command: str,
+) -> None:
+    """Environments of uv and pipx have no pip."""
+    if mark:
+        (tmp_path / mark).touch()
+    here = SimpleNamespace(read_text=lambda file: installer)
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    monkeypatch.setitem(sys.modules, "plotille", None)
+    monkeypatch.setattr("importlib.metadata.distribution", lambda name: here)
+    ran = atwood("sweep", "--m1", "1", "--m2", "3", "--M", "1:2:2", "--plot")
+    how = f"{command.format(python=quote(sys.executable))} 'atwood-cli[plot]'"
+    assert (ran.status, ran.err) == (1, f"atwood: this needs plotille; install it with: {how}\n")

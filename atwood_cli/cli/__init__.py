@@ -21,6 +21,11 @@ from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag
 
 COMMANDS = ("solve", "fit", "sweep", "contact", "batch", "tradeoff")
 EXTRAS = {"matplotlib": "figure", "plotille": "plot", "polars": "batch"}
+OF_TOOLS = {
+    "uv-receipt.toml": "uv tool install",
+    "pipx_metadata.json": "pipx runpip atwood-cli install",
+}
+"""Files by which installers of tools mark an environment, and what adds a package there."""
 HELP = """Atwood's machine with a massive pulley and a rough string, every digit right.
 
 Examples:
@@ -150,6 +155,23 @@ def program(names: Iterable[str] = COMMANDS) -> Any:
     return typer.main.get_command(app)
 
 
+def _installer() -> str:
+    """The command that installs a package where this runs, by what installed the program there."""
+    from importlib.metadata import PackageNotFoundError, distribution
+    from pathlib import Path
+    from shlex import quote
+
+    for file, command in OF_TOOLS.items():
+        if Path(sys.prefix, file).exists():
+            return command
+    try:
+        by = (distribution("atwood-cli").read_text("INSTALLER") or "").strip()
+    except PackageNotFoundError:  # it runs from its source
+        by = ""
+    python = quote(sys.executable or "python3")
+    return f"uv pip install --python {python}" if by == "uv" else f"{python} -m pip install"
+
+
 def _needed(arguments: list[str]) -> tuple[str, ...]:
     """The command named; all where none is, so that help, completion and hints know them."""
     first = next(iter(arguments), "")
@@ -195,10 +217,7 @@ def run(arguments: list[str] | None = None) -> int:
     except ModuleNotFoundError as error:
         if error.name not in EXTRAS:
             raise
-        from shlex import quote
-
-        pip = f"{quote(sys.executable or 'python3')} -m pip"  # the one that installs where this runs
-        say(f"this needs {error.name}; install it with: {pip} install 'atwood-cli[{EXTRAS[error.name]}]'")
+        say(f"this needs {error.name}; install it with: {_installer()} 'atwood-cli[{EXTRAS[error.name]}]'")
         return COULD_NOT
     except OSError as error:
         known = error.errno is None  # a sentence of ours
