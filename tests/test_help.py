@@ -92,7 +92,7 @@ def test_help_and_completion_import_little(words: str) -> None:
 
 def completed(*words: str, shell: str = "bash") -> list[str]:
     """What the program offers for the last of the words, by the protocol of the shell."""
-    typed = " ".join(["atwood", *words])
+    typed = ("\n" if "2 lb" in "".join(words) else " ").join(["atwood", *words])
     asked = {
         "COMP_WORDS": typed,
         "COMP_CWORD": str(len(words)),
@@ -133,6 +133,26 @@ def completed(*words: str, shell: str = "bash") -> list[str]:
 )
 def test_completion(words: str, offered: list[str]) -> None:
     assert completed(*words.split(" ")) == offered
+
+
+@pytest.mark.parametrize(
+    ("words", "shell", "offered"),
+    [
+        ("solve --only=ten", "fish", ["--only=tension_1", "--only=tension_2", "--only=tension_ratio"]),
+        ("solve --only=ten", "bash", ["--only=tension_1", "--only=tension_2", "--only=tension_ratio"]),
+        ("solve --only = ten", "bash", ["tension_1", "tension_2", "tension_ratio"]),
+        ("solve --m1=1 --g=mo", "fish", ["--g=moon"]),
+        ("sweep --only =", "bash", list(NAMES)),
+        ("solve --m1 = 1 --only = ten", "bash", ["tension_1", "tension_2", "tension_ratio"]),
+        ("solve --m1=", "bash", []),
+        ("solve --g=moon --inertia ", "fish", list(INERTIA_FACTORS)),
+        ("solve\n--m1\n'2 lb'\n--g\n=\nmo", "bash", ["moon"]),
+    ],
+)
+def test_values_behind_an_equals_sign_are_completed(words: str, shell: str, offered: list[str]) -> None:
+    """As one word, or as three where bash breaks words at the sign."""
+    found = completed(*words.split("\n" if "\n" in words else " "), shell=shell)
+    assert [line.split("\t")[0] for line in found] == offered
 
 
 def test_every_shell_gets_names_with_what_they_mean() -> None:
@@ -183,6 +203,16 @@ def test_bash_completes() -> None:
     """
     shown = in_shell("bash", script)
     assert shown == "tension_1 tension_2 tension_ratio\ncomplete -o default -F _atwood_completion atwood\n"
+
+
+def test_bash_completes_behind_an_equals_sign() -> None:
+    script = """
+    eval "$(_ATWOOD_COMPLETE=source_bash atwood)"
+    COMP_WORDS=(atwood solve --only = acc) COMP_CWORD=4
+    _atwood_completion atwood
+    echo "${COMPREPLY[@]}"
+    """
+    assert in_shell("bash", script) == "acceleration\n"
 
 
 def test_fish_completes(tmp_path: Path) -> None:

@@ -187,6 +187,10 @@ def run(arguments: list[str] | None = None) -> int:
         if arguments[:1] == ["help"]:
             arguments = [*arguments[1:], "-h"]
         command = program(_needed(arguments))
+        if COMPLETING in os.environ:
+            from .completion import take_equals
+
+            take_equals(command)
         status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
         if status == ON_CTRL_C:
             raise KeyboardInterrupt
