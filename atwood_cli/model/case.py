@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import EXACT
@@ -35,6 +35,7 @@ class Case:
 
     def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
         self.scene, self.motion = scene, motion
+        self._excess_ratios: dict[Arithmetic[Any], Any] = {}
 
     @lazy
     def sign(self) -> int:
@@ -251,7 +252,13 @@ class Case:
         return self.scene.wrap.ends_hang_down
 
     def excess_ratio(self, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 of a string that grips."""
+        """T_h/T_l - 1 of a string that grips, kept: decisions and quantities ask for it."""
+        if ar not in self._excess_ratios:
+            self._excess_ratios[ar] = self._excess_ratio(ar)
+        ratio: N = self._excess_ratios[ar]
+        return ratio
+
+    def _excess_ratio(self, ar: Arithmetic[N]) -> N:
         if self.stands or self.rim_mass is None:
             return self.locked_excess(ar)
         given = [self.light, self.heavy, self.rim_mass]
