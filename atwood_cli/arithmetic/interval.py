@@ -52,7 +52,7 @@ class Enclosure:
         self.arithmetic, self.lo, self.hi = arithmetic, lo, hi
 
     def _lift(self, other: Enclosure | int) -> Enclosure:
-        return self.arithmetic.number(other) if isinstance(other, int) else other
+        return other if isinstance(other, Enclosure) else self.arithmetic.number(other)
 
     def __add__(self, other: Enclosure | int) -> Enclosure:
         other, at = self._lift(other), self.arithmetic
@@ -66,6 +66,8 @@ class Enclosure:
 
     def __mul__(self, other: Enclosure | int) -> Enclosure:
         other, at = self._lift(other), self.arithmetic
+        if self.lo >= ZERO and other.lo >= ZERO:
+            return Enclosure(at, at.down.multiply(self.lo, other.lo), at.up.multiply(self.hi, other.hi))
         one, two = (other, self) if self.lo < 0 < self.hi else (self, other)
         if one.lo >= 0:
             lo = at.down.multiply(one.lo if two.lo >= 0 else one.hi, two.lo)
@@ -89,10 +91,10 @@ class Enclosure:
         other, at = self._lift(other), self.arithmetic
         if other.lo == INFINITY:
             raise OverflowError(f"a denominator is beyond 10^{LARGEST_EXPONENT}")
-        if other.lo <= 0:
+        if other.lo <= ZERO:
             raise ZeroDivisionError if other.hi == 0 == other.lo else Unsettled
-        lo = at.down.divide(self.lo, other.hi if self.lo >= 0 else other.lo)
-        return Enclosure(at, lo, at.up.divide(self.hi, other.lo if self.hi >= 0 else other.hi))
+        lo = at.down.divide(self.lo, other.hi if self.lo >= ZERO else other.lo)
+        return Enclosure(at, lo, at.up.divide(self.hi, other.lo if self.hi >= ZERO else other.hi))
 
     def __rtruediv__(self, other: int) -> Enclosure:
         return self._lift(other) / self
