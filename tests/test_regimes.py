@@ -13,8 +13,8 @@ from hypothesis import strategies as st
 
 from atwood_cli import solve
 from atwood_cli.model.case import Case
-from atwood_cli.solver.regimes import changes, with_value
-from atwood_cli.solver.sweep import read_sweep
+from atwood_cli.solver.regimes import changes
+from atwood_cli.solver.sweep import read_sweep, with_value
 
 from . import oracle
 from .conftest import examples

@@ -11,8 +11,8 @@ from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, SceneError
 from ..solver.answers import Answers
 from ..solver.messages import reasons_at, unmarked
-from ..solver.regimes import Change, changes, with_value
-from ..solver.sweep import LOCKED, Point, Range, Sweep, point_in_units
+from ..solver.regimes import Change, changes
+from ..solver.sweep import LOCKED, Point, Range, Sweep, point_in_units, with_value
 
 MAX_CURVES = 6
 """On one pair of axes, and values of the other parameter; of more, colours cannot be told apart."""

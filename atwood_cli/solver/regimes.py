@@ -35,11 +35,10 @@ from typing import Any, NamedTuple
 
 from ..arithmetic.rounding import tidy, to_digits
 from ..model.case import Case
-from ..model.motion import with_number
-from ..model.scene import MASSES, UNMEASURED, Scene
+from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
 from .answers import SHOWN_DIGITS
-from .sweep import Point, Range, about_power
+from .sweep import Point, Range, about_power, with_value
 
 CLOSER = 50
 """Both sides of a change at a number itself are narrowed to so many digits beyond those shown."""
@@ -58,11 +57,6 @@ class Change(NamedTuple):
     after: Any
     last: Fraction
     first: Fraction
-
-
-def with_value(scene: Scene, name: str, value: Fraction) -> Scene:
-    """The scene with another value of a parameter, in the unit that it has there."""
-    return with_number(scene, UNMEASURED, name, value)[0]
 
 
 def changes(

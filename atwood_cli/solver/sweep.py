@@ -12,12 +12,23 @@ from collections.abc import Iterator, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
 from itertools import product
-from math import lcm
+from math import inf, lcm
 from typing import Any, NamedTuple
 
 from ..arithmetic.interval import decimal_context
 from ..arithmetic.rounding import as_typed, exact_decimal, exact_or_rounded, text, tidy, to_digits
-from ..model.scene import INPUTS, Input, Scene, SceneError, in_units, read_exactly, read_value, read_whole
+from ..model.motion import with_number
+from ..model.scene import (
+    INPUTS,
+    UNMEASURED,
+    Input,
+    Scene,
+    SceneError,
+    in_units,
+    read_exactly,
+    read_value,
+    read_whole,
+)
 from ..model.units import MAX_DIGITS, in_quotes, read_number
 from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
 
@@ -111,7 +122,11 @@ class Range(NamedTuple):
 
     def number(self, point: Point) -> Fraction:
         """The number that a finite point is, in its unit."""
-        return Fraction(point_text(point).removesuffix(self.suffix))
+        return Fraction(point.removesuffix(self.suffix) if isinstance(point, str) else point)
+
+    def value(self, point: Point) -> Fraction | float:
+        """The same of any point: inf, where the pulley is locked."""
+        return inf if point == LOCKED else self.number(point)
 
     def stated(self, point: Point) -> str:
         """What tells a point from others, in a sentence: M = 10 kg, or disk."""
@@ -119,10 +134,9 @@ class Range(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """Ranges, the first of which varies slowest, the other inputs, and the scene at the first point."""
+    """Ranges, the first of which varies slowest, and the scene at their first finite values."""
 
     ranges: list[Range]
-    fixed: Mapping[str, Input]
     scene: Scene
 
     @property
@@ -134,7 +148,15 @@ class Sweep(NamedTuple):
         others = [range_ for range_ in self.ranges if range_ is not along]
         for points in product(*(range_.points for range_ in others)):
             at = dict(zip((range_.name for range_ in others), points, strict=True))
-            yield scene_at(self.fixed, {along.name: along.finite[0], **at}), at
+            yield self.at(at), at
+
+    def at(self, at: Mapping[str, Point]) -> Scene:
+        """The scene at a point, valid as those at the corners are. What is left out is as in ``scene``."""
+        scene = self.scene
+        for range_ in self.ranges:
+            if range_.name in at:
+                scene = with_value(scene, range_.name, range_.value(at[range_.name]))
+        return scene
 
     def stated(self, at: Mapping[str, Point]) -> str:
         """What tells one place of a sweep from others, in a sentence."""
@@ -170,7 +192,7 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
     # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
     corners = ([x.finite[0], x.finite[-1], *[LOCKED] * x.locks] for x in ranges)
     scene, *_ = (scene_at(fixed, dict(zip(names, corner, strict=True))) for corner in product(*corners))
-    sweep = Sweep(ranges, fixed, scene)
+    sweep = Sweep(ranges, scene)
     if sweep.total > MAX_POINTS:
         rule = f"makes {sweep.total} points with {names[0]}; at most {MAX_POINTS} are taken"
         raise SceneError(names[1], typed[names[1]], rule)
@@ -303,6 +325,11 @@ def _equal_ratios(start: Fraction, stop: Fraction, last: int, kept: int) -> Iter
         yield tidy(context.plus(value))
 
 
+def with_value(scene: Scene, name: str, value: Fraction | float) -> Scene:
+    """The scene with another value of a parameter, in the unit that it has there."""
+    return with_number(scene, UNMEASURED, name, value)[0]
+
+
 def about_power(ratio: Fraction, share: Fraction) -> Fraction:
     """A ratio to a power between 0 and 1, to a few digits."""
     context = decimal_context(DOUBLE_DIGITS, ROUND_HALF_EVEN)
@@ -326,7 +353,10 @@ def stated_point(name: str, point: Point) -> str:
 
 
 def scene_at(fixed: Mapping[str, Input], at: Mapping[str, Point]) -> Scene:
-    """The scene of the fixed inputs and those at a point. Raises SceneError."""
+    """The scene of the fixed inputs and those at a point, which are read as `solve` reads them.
+
+    Raises SceneError.
+    """
     here = {name: read_exactly(name, point_text(point)) for name, point in at.items()}
     try:
         return Scene.of({**fixed, **here})
@@ -342,6 +372,6 @@ def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterat
     swept = [range_.name for range_ in sweep.ranges]
     for points in product(*(range_.points for range_ in sweep.ranges)):
         at = dict(zip(swept, points, strict=True))
-        answers = Answers(scene_at(sweep.fixed, at), digits)
+        answers = Answers(sweep.at(at), digits)
         values = {name: answers[name] for name in names}
         yield Row(at, answers.case.regime, values, answers.reasons)
