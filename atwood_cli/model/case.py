@@ -194,9 +194,8 @@ class Case:
         """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
         if self.sign == 0:
             return False
-        # Whatever slips on a pulley that turns slips on a heavier one.
-        slips = not self.stands and self.rim_mass is not None and self.slips
-        return slips or self.beats_friction("locked_excess")
+        # Whatever slips on a pulley slips on a heavier one. If that is not known, the pulley does not matter.
+        return vars(self).get("slips", False) or self.beats_friction("locked_excess")
 
     @lazy
     def always_slips(self) -> bool:

@@ -367,11 +367,36 @@ def scene_at(fixed: Mapping[str, Input], at: Mapping[str, Point]) -> Scene:
         raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
 
 
+class _Watched:
+    """A scene that notes what of it is read."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.read = scene, set[str]()
+
+    def __getattr__(self, name: str) -> Any:
+        self.read.add(name)
+        return getattr(self.scene, name)
+
+
+def _unchanged(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[tuple[str, Answers]]:
+    """The quantities that are found from the other inputs alone, and so are the same at all points."""
+    fixed = set(INPUTS) - {range_.name for range_ in sweep.ranges}
+    for name in names:
+        watched: Any = _Watched(sweep.scene)
+        answers = Answers(watched, digits)
+        _ = answers[name]
+        if watched.read <= fixed:
+            yield name, answers
+
+
 def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[Row]:
     """The quantities named at every point, each point solved by itself."""
     swept = [range_.name for range_ in sweep.ranges]
+    unchanged = dict(_unchanged(sweep, ["regime", *names], digits))
     for points in product(*(range_.points for range_ in sweep.ranges)):
         at = dict(zip(swept, points, strict=True))
         answers = Answers(sweep.at(at), digits)
-        values = {name: answers[name] for name in names}
-        yield Row(at, answers.case.regime, values, answers.reasons)
+        found = {name: unchanged.get(name, answers) for name in ["regime", *names]}
+        values = {name: found[name][name] for name in names}
+        reasons = {name: found[name].reasons[name] for name in names if name in found[name].reasons}
+        yield Row(at, found["regime"]["regime"], values, reasons)
