@@ -248,7 +248,7 @@ def test_words_in_a_column_of_numbers_are_not_moved(atwood: Atwood) -> None:
         ("--m1 1 --m2 3 --M 0:50:6 --mu 0.1:0.3:9", "│ regime ", ""),
         # Where the regime changes is told exactly.
         ("--m1 1 --m2 3 --mu 0.3 --M 0:20:3", "Regimes: no-slip.", ""),
-        ("--m1 1 --m2 3 --mu 0.3 --M 50:0:3", "Regimes: slip up to M = 43.3420 kg, no-slip beyond.", ""),
+        ("--m1 1 --m2 3 --mu 0.3 --M 50:0:3", "Regimes: no-slip up to M = 43.3419 kg, slip beyond.", ""),
         (
             "--m1 1:17:9 --m2 3 --mu 0.3 --M 100",
             "Regimes: slip up to m1 = 1.08920 kg, no-slip up to 9.48105 kg, slip beyond.",
@@ -770,6 +770,16 @@ def test_curves_turn_exactly_where_the_regime_changes() -> None:
         assert len(curve.xs) > 200
         for x, y in [*zip(curve.xs, curve.lines[0], strict=True)][::8]:
             assert y == pytest.approx(solve(m1=1, m2=3, M=x, mu=mu).acceleration, rel=1e-6)
+
+
+def test_a_range_that_runs_down_is_drawn_as_one_that_runs_up() -> None:
+    """Beside a string that slips from 43.3 kg on stood that it holds from there."""
+    up, down = (
+        curves(read_sweep({"m1": "1", "m2": "3", "M": M, "mu": "0.3"}), "acceleration")
+        for M in ("0:50:6", "50:0:6")
+    )
+    assert up == down
+    assert [mark.words for mark in down[0].marks] == ["slips from 43.3 kg"]
 
 
 def test_a_jump_is_drawn_as_one() -> None:

@@ -196,7 +196,7 @@ def _sampled(x: Range, scene: Scene, names: Sequence[str], reasons: dict[Any, in
     corners = list(changes(scene, x, DRAWN_DIGITS, what=_state))
     values = {*x.steps(STEPS), *(value for one in corners for value in (one.last, one.first))}
     sampled = _Sampled([], {name: [[], [], []] for name in names}, corners)
-    for value in sorted(values, reverse=x.ends[0] > x.ends[1]):
+    for value in sorted(values):
         answers = Answers(with_value(scene, x.name, value))
         sampled.xs.append(float(value))
         for name in names:

@@ -27,7 +27,7 @@ once, too. A condition that changes at most once, and is the same at both ends, 
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from decimal import ROUND_CEILING, ROUND_FLOOR, Decimal
+from decimal import ROUND_FLOOR, Decimal
 from fractions import Fraction
 from itertools import pairwise
 from operator import attrgetter
@@ -47,7 +47,7 @@ SMALLEST = Fraction(1, 10**MAX_MAGNITUDE)
 
 
 class Change(NamedTuple):
-    """A change along a range: ``at`` its place, rounded towards what was before, and its bracket.
+    """A change along a range: ``at`` its place, rounded down, and its bracket.
 
     At ``last`` is still what was ``before``, at ``first`` what is ``after``.
     """
@@ -66,7 +66,7 @@ def changes(
     known: Mapping[Fraction, str] = {},
     what: Callable[[Case], Any] = attrgetter("regime"),
 ) -> Iterator[Change]:
-    """The changes of regime along a range, in its direction, or of anything else about its cases.
+    """The changes of regime along a range, from its least value on, or of anything else about its cases.
 
     ``known`` is what it is at some values, which a place of a change must not contradict.
     """
@@ -75,11 +75,10 @@ def changes(
         return what(Case(with_value(scene, along.name, value)))
 
     start, stop = along.ends
-    low, high = sorted(along.ends)
-    asked = [start, *(value for value in _turns(scene, along.name) if low < value < high), stop]
+    asked = [start, *(value for value in _turns(scene, along.name) if start < value < stop), stop]
     states = {value: state(value) for value in asked if value not in known} | dict(known)
     bound = start
-    for last, other in pairwise(sorted(states, reverse=start > stop)):
+    for last, other in pairwise(sorted(states)):
         bound = last if last in known else bound
         while states[last] != states[other]:
             before = states[last]
@@ -110,7 +109,7 @@ def _between(
     The interval from ``last``, where the state is the one ``before``, to ``first``, where it is not, is
     halved until the place of the change can be written down. That ends in one of these ways:
 
-    - Both sides round, towards ``last``, to the same digits. These are the place, unless they lie before
+    - Both sides, rounded down, have the same digits. These are the place, unless they lie before
       ``bound``: a row there says otherwise, so more digits are taken.
     - Both sides agree in far more digits than are shown, and still round to two numbers. Then the change is
       at a number of so few digits itself, like that of a regime at one point.
@@ -118,19 +117,18 @@ def _between(
       before ``bound``. Then the digits asked for have to do.
     - Both sides are smaller than any input: the change is at 0.
     """
-    up, shown = last < first, digits
-    towards_last = ROUND_FLOOR if up else ROUND_CEILING
-    while max(last, first) > SMALLEST:
-        at, other = (to_digits(shown, towards_last)(value) for value in (last, first))
+    shown = digits
+    while first > SMALLEST:
+        at, other = (to_digits(shown, ROUND_FLOOR)(value) for value in (last, first))
         if at != other:
-            if abs(first - last) * 10 ** (shown + CLOSER) <= max(last, first):
+            if (first - last) * 10 ** (shown + CLOSER) <= first:
                 return tidy(to_digits(shown)(first)), last, first
             middle = _middle(last, first)
             last, first = (middle, first) if state(middle) == before else (last, middle)
-        elif bound <= at if up else at <= bound:
+        elif bound <= at:
             return tidy(at) if at == last else at, last, first
         elif shown == digits + CLOSER:
-            return to_digits(digits, towards_last)(last), last, first
+            return to_digits(digits, ROUND_FLOOR)(last), last, first
         else:
             shown += 1
     return Decimal(0), last, first

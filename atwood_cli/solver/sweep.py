@@ -93,13 +93,11 @@ class Range(NamedTuple):
     @property
     def finite(self) -> list[Point]:
         """The points that have a place on an axis, in the order in which they stand there."""
-        if not self.is_list:
-            return self.points
         return sorted((point for point in self.points if point != LOCKED), key=self.number)
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
-        """The first and the last of its finite values, in its unit."""
+        """The least and the greatest of its finite values, in its unit."""
         points = self.finite
         return self.number(points[0]), self.number(points[-1])
 
