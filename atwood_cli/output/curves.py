@@ -111,12 +111,19 @@ def drawable(sweep: Sweep, option: str, names: Sequence[str]) -> list[str]:
     x = longest(sweep)
     if len(x.finite) < 2:
         raise SceneError(x.name, x.typed, "has one finite value, which makes no axis; give another")
+    if x.ends[1] > LARGEST_DRAWN or (x.log and x.ends[0] < 1 / LARGEST_DRAWN):
+        raise _undrawable(option, x.name)
     scenes, units = sweep.total // len(x.points), [QUANTITIES[name].unit for name in drawn]
     if (count := scenes * max(map(units.count, units))) > MAX_CURVES:
         rule = f"would draw {count} curves on one pair of axes, more than {MAX_CURVES}"
-        fewer = f"give one of the ranges at most {MAX_CURVES} points" * (scenes > MAX_CURVES)
+        fewer = f"give one of the ranges at most {MAX_CURVES} points" * (count == scenes)
         raise SceneError(option, None, f"{rule}; {fewer or 'name fewer quantities, or give fewer points'}")
     return drawn
+
+
+def _undrawable(option: str, name: str) -> SceneError:
+    rule = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only"
+    return SceneError(option, None, f"{rule}, not such {name}")
 
 
 def longest(sweep: Sweep) -> Range:
@@ -164,11 +171,9 @@ def picture(sweep: Sweep, option: str, names: Sequence[str], digits: int | None)
             for i, one in enumerate(sampled)
         ]
         panels.append(Panel(here, axis_title(here, unit), curves))
-    for name, values in ((x.name, sampled[0].xs), *((" or ".join(one.names), one.ys) for one in panels)):
-        small = name == x.name and x.log and min(values) < 1 / LARGEST_DRAWN
-        if small or max(map(abs, values)) > LARGEST_DRAWN:
-            rule = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only"
-            raise SceneError(option, None, f"{rule}, not such {name}")
+    for one in panels:
+        if max(map(abs, one.ys)) > LARGEST_DRAWN:
+            raise _undrawable(option, " or ".join(one.names))
     return Picture(
         title=f"{', '.join(axis_title(panel.names) for panel in panels)} against {axis_title([x.name])}",
         x=axis_title([x.name], x.unit),
