@@ -271,6 +271,8 @@ def test_words_in_a_column_of_numbers_are_not_moved(atwood: Atwood) -> None:
             "│ 40   │ hoop    │ 0.764027",
             "│ 1 ",
         ),
+        ("--m1 1 --m2 3 --g earth,moon,2 --only a", "\n│ earth  │ 4.9", ""),  # not aligned at its e
+        ("--m1 1 --m2 3 --g earth,moon,2 --only a", "\n│ moon   │ 0.8", ""),
         ("--m1 1 --m2 3 --mu 0.3 --M 1:40:2 --inertia hoop,0.5 --only mu_verge --csv", "\n1,1,0.", "hoop"),
         ("--m1 1 --m2 3 --M 0,1/3,inf --only regime --json", '"M": "0,1/3,inf"', ""),
         ("--m1 1 --m2 3 --M 0,1/3,inf --only regime --json", '"M": "1/3",', ""),

@@ -154,12 +154,11 @@ class _Forms:
         notes = list(self.notes())
         page.say(*above)
         if len(same) < len(shown) or not shown:
-            columns = {
-                f"{range_.name}\n{_in_brackets(range_.unit)}": aligned(
-                    range_.cell(row.at[range_.name]) for row in rows
-                )
-                for range_ in sweep.ranges
-            }
+            columns = {}
+            for range_ in sweep.ranges:
+                points = [range_.cell(row.at[range_.name]) for row in rows]
+                unit = _in_brackets(range_.unit)
+                columns[f"{range_.name}\n{unit}"] = points if range_.names else aligned(points)
             for name in [name for name in shown if name not in same]:
                 unit = _in_brackets(QUANTITIES[name].unit) if name in QUANTITIES else ""
                 columns[f"{name}\n{unit}"] = aligned(shown[name])
