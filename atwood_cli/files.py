@@ -106,7 +106,8 @@ def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
             raise type(error)(error.errno, error.strerror, str(path)) from None
         raise
     finally:
-        beside.unlink(missing_ok=True)
+        with suppress(FileNotFoundError, NotADirectoryError):
+            beside.unlink()
 
 
 @contextmanager

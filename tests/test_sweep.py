@@ -480,6 +480,7 @@ def test_a_derivation_and_a_table_of_one_scene_go_into_files(tmp_path: Path) -> 
 def test_a_file_that_cannot_be_written(atwood: Atwood, tmp_path: Path) -> None:
     for file, reason in (
         (tmp_path / "no" / "a.csv", "No such file or directory"),
+        (Path(__file__) / "a.csv", "Not a directory"),
         (tmp_path, "Is a directory"),
     ):
         ran = atwood(*HELD, "--M", "1:2:3", "--output", str(file))
