@@ -33,7 +33,10 @@ def test_newtons_equations_hold_exactly_without_slip(
     assert h * g - t_h == h * a  # (1b)
     assert t_h - t_l == c * a + (f or 0)  # (3), M/2 = c
     assert t_l * (1 + physics.excess_ratio(l, h, c, b)) == t_h
-    assert physics.gravity_under(l, h, physics.load(l, h, c), a, f) == g
+    assert physics.rim_mass(l, h, a, g, b) == c
+    assert physics.gravity(l, h, c, a, f) == g
+    assert physics.heavier_mass(l, c, a, g, f) == h
+    assert physics.lighter_mass(h, c, a, g, f) == l
     if b is not None:
         assert c or t_l * (1 + physics.massless_excess(l, h, b)) == t_h
         # Just held: the weights differ by f.
@@ -83,7 +86,10 @@ def test_the_critical_heavier_mass_is_where_the_ratio_is_the_capstans(
         (physics.difference_of_a_pulley, "c g"),
         (physics.rim_acceleration, "h c"),
         (physics.excess_ratio, "l h c"),
-        (physics.gravity_under, "l h c g"),
+        (physics.rim_mass, "l h c g"),
+        (physics.gravity, "l h c g"),
+        (physics.heavier_mass, "l h c g"),
+        (physics.lighter_mass, "l h c g"),
         (physics.critical_pulley_mass, "l h c g beta"),
         (physics.critical_heavier_mass, "l c g"),
         (physics.least_pulley_mass, "c beta"),

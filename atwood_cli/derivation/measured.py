@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from typing import Any
 
 from ..arithmetic.symbolic import Formula, Symbol
-from ..model import motion as motions
 from ..model import physics
 from ..model.quantities import QUANTITIES
 from .equations import Derivation, Part
@@ -32,7 +31,7 @@ def found(derivation: Derivation) -> Iterator[Part]:
     both = f"(1) and {derivation.cite('(3)')}"
     if finds == "M":
         yield f"The sum of {both}, solved for `c`, and with that the mass of the pulley, are"
-        yield derivation.worked_out("(4)", "c", recorded(motions.rim_mass, "l h a g b"), given["c"], "kg")
+        yield derivation.worked_out("(4)", "c", recorded(physics.rim_mass, "l h a g b"), given["c"], "kg")
         M = Formula("symbol", given["c"]) / Formula("symbol", given["β"])
         yield derivation.worked_out("", "M", M, given["M"], "kg")
         if derivation.scene.R is not None:
@@ -42,7 +41,7 @@ def found(derivation: Derivation) -> Iterator[Part]:
             yield derivation.worked_out("", I, inertia, Symbol(I, "moment_of_inertia"), unit)
     elif finds == "g":
         yield f"The sum of {both}, solved for `g`, is"
-        yield derivation.worked_out("(4)", "g", recorded(motions.gravity, "l h c a f"), given["g"], "m/s²")
+        yield derivation.worked_out("(4)", "g", recorded(physics.gravity, "l h c a f"), given["g"], "m/s²")
         yield from derivation.axle_mass()
     elif finds == "mu_k":
         yield f"(1) gives both tensions. What `T{h}` exceeds `T{l}` by is a part `x_kin` of `T{l}`:"
@@ -55,7 +54,7 @@ def found(derivation: Derivation) -> Iterator[Part]:
     else:
         known = next(name for name in ("m1", "m2") if name != finds)
         falls = case.sign and given[str(finds)] is derivation.masses[1]
-        law, names = (motions.heavier_mass, "l c a g f") if falls else (motions.lighter_mass, "h c a g f")
+        law, names = (physics.heavier_mass, "l c a g f") if falls else (physics.lighter_mass, "h c a g f")
         letters |= {"l": given[known], "h": given[known]}
         yield f"(1) gives the tension on `{known}`, and with {derivation.cite('(3)')} that on `{finds}`. So"
         yield derivation.worked_out("(1), (3)", str(finds), recorded(law, names), given[str(finds)], "kg")

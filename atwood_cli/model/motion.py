@@ -10,7 +10,6 @@ from math import inf
 from typing import Any
 
 from ..arithmetic.dual import Dual
-from ..arithmetic.protocol import N
 from ..arithmetic.rounding import as_typed, settle, text, to_digits, to_double, to_threshold
 from . import physics
 from .angle import Angle
@@ -155,8 +154,8 @@ def _mass(case: Case, unknown: str) -> Fraction | None:
     if not scene.g > down:
         return None
     if down > 0:
-        return heavier_mass(known, case.rim_mass, down, scene.g, case.axle_friction)
-    return lighter_mass(known, case.rim_mass, -1 * down, scene.g, case.axle_friction)
+        return physics.heavier_mass(known, case.rim_mass, down, scene.g, case.axle_friction)
+    return physics.lighter_mass(known, case.rim_mass, -1 * down, scene.g, case.axle_friction)
 
 
 def _most(case: Case) -> Fraction:
@@ -208,31 +207,6 @@ def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scen
     return scene, motion._replace(**{x: number})
 
 
-# What is found, from (1) with (3), in any kind of numbers; letters are those of `physics`
-
-
-def rim_mass(l: N, h: N, a: N, g: N, b: N | None = None) -> N:
-    """c of the pulley (kg) on which the masses have the acceleration a."""
-    return physics.added_load(l, h, physics.drive(l, h, b), a, g)
-
-
-def gravity(l: N, h: N, c: N, a: N, f: N | None = None) -> N:
-    """Gravity (m/s²) under which the masses have the acceleration a."""
-    return physics.gravity_under(l, h, physics.load(l, h, c), a, f)
-
-
-def heavier_mass(l: N, c: N, a: N, g: N, f: N | None = None) -> N:
-    """Mass (kg) that descends with the acceleration a against the lighter one."""
-    tension = physics.light_tension(l, a, g) + physics.difference_of_a_pulley(c, a, f)
-    return physics.hanging_mass(tension, a, g)
-
-
-def lighter_mass(h: N, c: N, a: N, g: N, f: N | None = None) -> N:
-    """Mass (kg) that rises with the acceleration a against the heavier one."""
-    tension = physics.heavy_tension(h, a, g) - physics.difference_of_a_pulley(c, a, f)
-    return physics.lifted_mass(tension, a, g)
-
-
 def completed(scene: Scene, motion: Motion) -> Scene:
     """The scene with what follows from the motion in it. Raises Undetermined."""
     if motion.finds in (None, "mu_k"):
@@ -248,8 +222,8 @@ def completed(scene: Scene, motion: Motion) -> Scene:
     l, h, a = case.light, case.heavy, case.measured_acceleration
     if motion.finds == "g":
         assert case.rim_mass is not None
-        return scene._replace(g=gravity(l, h, case.rim_mass, a, case.axle_friction))
-    c = rim_mass(l, h, a, scene.g, case.axle_mass)
+        return scene._replace(g=physics.gravity(l, h, case.rim_mass, a, case.axle_friction))
+    c = physics.rim_mass(l, h, a, scene.g, case.axle_mass)
     if c < 0:
         raise Undetermined(NO_PULLEY)
     assert scene.inertia is not None

@@ -82,32 +82,41 @@ def acceleration(drive: N, load: N, g: N) -> N:
     return g * (drive / load)
 
 
-def gravity_under(l: N, h: N, load: N, a: N, f: N | None = None) -> N:
-    """Gravity (m/s²) under which the load has a measured acceleration a, beside an axle with f (N).
+def rim_mass(l: N, h: N, a: N, g: N, b: N | None = None) -> N:
+    """c (kg) of the pulley on which the masses have a measured acceleration a; (4) solved for it.
 
-    >>> gravity_under(1, 3, 9, 2), gravity_under(1, 3, 9, 1, 9)
+    >>> rim_mass(1, 3, 2, 9), rim_mass(1, 3, 1, 9, 1)
+    (5.0, 5.0)
+    """
+    return g * (drive(l, h, b) / a) - l - h
+
+
+def gravity(l: N, h: N, c: N, a: N, f: N | None = None) -> N:
+    """Gravity (m/s²) under which the masses have a measured acceleration a; (4) solved for it.
+
+    >>> gravity(1, 3, 5, 2), gravity(1, 3, 5, 1, 9)
     (9.0, 9.0)
     """
-    weights = a * load if f is None else a * load + f
-    return weights / (h - l)
+    weights = a * load(l, h, c)
+    return (weights if f is None else weights + f) / (h - l)
 
 
-def hanging_mass(tension: N, a: N, g: N) -> N:
-    """Mass (kg) that descends with the acceleration a under a tension (N); from (1).
+def heavier_mass(l: N, c: N, a: N, g: N, f: N | None = None) -> N:
+    """Mass (kg) that descends with a measured acceleration a against a lighter one; from (1) with (3).
 
-    >>> hanging_mass(21, 2, 9)
-    3.0
+    >>> heavier_mass(1, 5, 2, 9), heavier_mass(1, 5, 1, 9, 9)
+    (3.0, 3.0)
     """
-    return tension / (g - a)
+    return (light_tension(l, a, g) + difference_of_a_pulley(c, a, f)) / (g - a)
 
 
-def lifted_mass(tension: N, a: N, g: N) -> N:
-    """Mass (kg) that rises with the acceleration a under a tension (N); from (1).
+def lighter_mass(h: N, c: N, a: N, g: N, f: N | None = None) -> N:
+    """Mass (kg) that rises with a measured acceleration a against a heavier one; from (1) with (3).
 
-    >>> lifted_mass(11, 2, 9)
-    1.0
+    >>> lighter_mass(3, 5, 2, 9), lighter_mass(3, 5, 1, 9, 9)
+    (1.0, 1.0)
     """
-    return tension / (g + a)
+    return (h * (g - a) - difference_of_a_pulley(c, a, f)) / (g + a)
 
 
 def slide_excess(l: N, h: N, a: N, g: N) -> N:
@@ -117,15 +126,6 @@ def slide_excess(l: N, h: N, a: N, g: N) -> N:
     1.0
     """
     return difference_of_moving_masses(l, h, a, g) / light_tension(l, a, g)
-
-
-def added_load(l: N, h: N, drive: N, a: N, g: N) -> N:
-    """What is added to the masses (kg) that move with a measured acceleration: c; inverse of (4).
-
-    >>> added_load(1, 3, 2, 2, 9)
-    5.0
-    """
-    return g * (drive / a) - l - h
 
 
 def moment_of_inertia(c: N, R: N) -> N:
@@ -173,15 +173,6 @@ def light_tension(l: N, a: N, g: N) -> N:
     11
     """
     return l * (g + a)
-
-
-def heavy_tension(h: N, a: N, g: N) -> N:
-    """Tension on the heavier mass (N), from (1): its weight less what accelerates it.
-
-    >>> heavy_tension(3, 2, 9)
-    21
-    """
-    return h * (g - a)
 
 
 def difference_of_a_pulley(c: N, a: N, f: N | None = None) -> N:
