@@ -4,11 +4,13 @@ Every number and every equation with numbers comes from `equations`, the words o
 missing from the solver's `messages`. `typeset` puts it on a page.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fractions import Fraction
-from typing import NamedTuple
+from operator import mul, truediv
+from typing import Any, NamedTuple
 
-from ..arithmetic.rounding import is_infinite
+from ..arithmetic.rounding import as_typed, is_infinite
+from ..model import physics
 from ..model.quantities import QUANTITIES
 from ..solver.answers import Answers
 from ..solver.messages import (
@@ -20,7 +22,8 @@ from ..solver.messages import (
     open_range,
     verdict,
 )
-from .equations import Derivation, Law, Part
+from .critical import critical, in_the_paper
+from .equations import MOTION, Derivation, Law, Part
 from .measured import fallen, found
 
 
@@ -48,27 +51,23 @@ def explain(answers: Answers) -> Explanation:
     answers = answers.shown
     derivation = Derivation(answers)
     case = answers.case
+    motion = [*[found] * bool(case.motion.finds), _motion]
     if not case.light:
-        middle = [_motion]
+        middle = motion
     elif case.regime == "no-slip":
-        middle = [_motion, _grip, _friction]
+        middle = [*motion, _grip, _friction]
     else:
-        middle = [_grip, *[found] * case.slide_measured, _motion, _friction]
+        middle = [_grip, *motion, _friction]
     limits = [_limits] if case.scene.mu and case.sign else []
-    told = [found] if case.motion.finds and not case.slide_measured else []
-    first = [Step(TITLES[body], [*body(derivation)]) for body in (_masses, _pulley, *told, *middle, *limits)]
+    first = [Step(TITLES[body], [*body(derivation)]) for body in (_masses, _pulley, *middle, *limits)]
     model = Step("What is modelled and what is not", [*_model(derivation)])
-    main = [name for name in ("acceleration", "tension_1", "tension_2") if name not in answers.found]
-    result, told_by_motion = (
-        ", ".join(derivation.say(name) for name in names if answers[name] is not None)
-        for names in (main, answers.found)
-    )
+
+    def values(names: Iterable[str]) -> str:
+        return ", ".join(derivation.say(name) for name in names if answers[name] is not None)
+
+    told, main = values(answers.found), values(name for name in MOTION if name not in answers.found)
     return Explanation(
-        [
-            *[f"Found: {told_by_motion}."] * bool(told_by_motion),
-            verdict(answers),
-            *[f"{result}."] * bool(result),
-        ],
+        [*[f"Found: {told}."] * bool(told), verdict(answers), *[f"{main}."] * bool(main)],
         "After = both sides are exactly equal, after ≈ the result is rounded to"
         f" {derivation.digits} significant digits. Numbers put in have as many digits as it takes to give the"
         " result.",
@@ -136,8 +135,12 @@ def _pulley(derivation: Derivation) -> Iterator[Part]:
         )
         friction = " + f_axle" * (case.axle_friction is not None)
         yield Law(derivation.cite("(3)"), f"{difference} = c {derivation.names['magnitude']}{friction}")
-        if case.motion.finds != "M":
-            yield from derivation.rim_mass()
+        if case.rim_mass is None:
+            yield f"where `c = β M` and `β` = {as_typed(derivation.scene.inertia or Fraction(1))}."
+        elif derivation.scene.I is not None:
+            yield derivation.by("c", lambda I, R: I / (R * R), "I R")
+        elif case.motion.finds != "M":
+            yield derivation.by("c", mul, "β M")
         yield from odd_inertia(derivation.answers)
 
 
@@ -156,9 +159,10 @@ def _turning(derivation: Derivation) -> Iterator[Part]:
     known = derivation.case.motion.finds != "g"
     words = "and it stands while the tensions differ by no more than `f_axle`, the weight of a mass `b`"
     yield f"{words}{':' if known else '.'}"
-    yield from derivation.axle_force()
+    if "τ_axle" in derivation.inputs:
+        yield derivation.by("f_axle", truediv, "τ_axle R")
     if known:
-        yield from derivation.axle_mass()
+        yield derivation.by("b", physics.axle_mass, "f g")
     yield (
         "(+b marks an equation of the paper that this friction enters. The axle of the paper does not rub:"
         " its equations are those here with `f_axle = 0` and `b = 0`.)"
@@ -178,13 +182,25 @@ def _motion(derivation: Derivation) -> Iterator[Part]:
     elif case.motion.finds:
         yield f"With the measured acceleration, (1) and {derivation.cite('(3)')} give the tensions."
     else:
-        both = f"(1) and {derivation.cite('(3)')}"
-        yield f"The sum of {both} has only the acceleration left. It gives the tensions."
+        yield (
+            f"The sum of (1) and {derivation.cite('(3)')} has only the acceleration left. It gives the"
+            " tensions."
+        )
         yield from derivation.motion("magnitude")
-    yield from derivation.tensions()
+    yield from derivation.lines("light_tension")
+    if case.frictionless:
+        yield Law("", f"T{derivation.heavy} = T{derivation.light}")
+    else:
+        yield from derivation.lines("difference", "heavy_tension")
     yield from _rim(derivation)
     yield from fallen(derivation)
-    yield from derivation.extras()
+    if derivation.scene.R is not None and case.sign:
+        yield "On the pulley, that makes"
+        turns = case.regime != "slip" or not case.rim_stands
+        yield from derivation.lines("torque", *["angular_acceleration"] * turns)
+    if answers["axle_force"] is not None:
+        yield "The axle bears both tensions, as (20) says, and the pulley's weight:"
+        yield from derivation.lines("axle_force")
 
 
 def _motion_at_the_limit(derivation: Derivation) -> Iterator[Part]:
@@ -243,11 +259,10 @@ def _grip(derivation: Derivation) -> Iterator[Part]:
     yield Law("(24)", "f = μ n")
     yield Law("(25)", "dT/dθ = μ T")
     yield Law("(26)", f"T(θ) = T{l} e^(μ θ)")
-    angle = "" if derivation.half_turn else f", where {derivation.value('phi', 'rad')}"
+    angle = "" if derivation.scene.wrap.is_half_turn else f", where {derivation.say('phi')}"
     called = ""
     if scene.mu is not None:
-        known = not is_infinite(answers["capstan_ratio"])
-        value = f": {derivation.say('capstan_ratio')}" if known else ""
+        value = "" if is_infinite(answers["capstan_ratio"]) else f": {derivation.say('capstan_ratio')}"
         called = f" This capstan ratio is called `k`{value}."
     yield (
         f"so at the most, friction makes `T{h}` as large as `e^(μ {derivation.names['phi']})`"
@@ -258,20 +273,19 @@ def _grip(derivation: Derivation) -> Iterator[Part]:
         if case.regime == "verge" and derivation.answers["critical_pulley_mass"] is not None:
             yield f"Only without mass does it go along: {derivation.say('critical_pulley_mass')}."
     elif case.pulley_known:
-        motion = derivation.cite("(4)")
         if case.stands:
             held = "a locked pulley" if case.locked else "a pulley that the axle holds"
             have = f"On {held} the tensions of a string that holds are the weights. Their ratio is"
         elif case.regime == "no-slip":
-            have = f"By {motion} the tensions have the ratio"
+            have = f"By {derivation.cite('(4)')} the tensions have the ratio"
         else:
-            have = f"If the string held, the tensions would by {motion} have the ratio"
+            have = f"If the string held, the tensions would by {derivation.cite('(4)')} have the ratio"
         yield f"{have} `T{h}/T{l}` = `1 + x`, with"
         yield from derivation.lines("excess")
         if case.regime == "no-slip":
             yield "so the ratio is"
             yield from derivation.lines("tension_ratio")
-            yield from _in_the_paper(derivation, "tension_ratio")
+            yield from in_the_paper(derivation, "tension_ratio")
         yield "The least coefficient that allows it is, by (26) for the whole arc,"
         yield from derivation.lines("mu_verge")
     else:
@@ -298,7 +312,7 @@ def _grip_on_any_pulley(derivation: Derivation) -> Iterator[Part]:
         yield from derivation.lines("massless_verge")
     elif case.can_slip:
         yield "It does."
-        yield from _critical(derivation, "critical_pulley_mass")
+        yield from critical(derivation, "critical_pulley_mass")
 
 
 def _friction(derivation: Derivation) -> Iterator[Part]:
@@ -313,7 +327,7 @@ def _friction(derivation: Derivation) -> Iterator[Part]:
         yield from derivation.lines("friction_force")
         axes = "`x` towards the side of `m1` and `y` upwards"
         if not case.ends_hang_down:
-            yield f"with {derivation.value('half_sine')}."
+            yield f"with {derivation.say('half_sine')}."
             axes = "`x` towards where `m1`'s string meets the pulley and `y` a quarter turn on along the arc"
         vector = ", ".join(map(derivation.say, ("friction_force_x", "friction_force_y")))
         yield f"As a vector, {axes}, it is {vector} by (31)."
@@ -322,8 +336,9 @@ def _friction(derivation: Derivation) -> Iterator[Part]:
     elif not case.pulley_known:
         yield "It depends on the pulley's mass, which is not given."
     else:
+        derivation.explained.add("friction_force")
         yield (
-            f"The {QUANTITIES['friction_force'].meaning} is {derivation.reason('friction_force')}. (So the"
+            f"The {QUANTITIES['friction_force'].meaning} is {answers.reasons['friction_force']}. (So the"
             " paper says after (17), as `T(θ)` is not known.)"
         )
         if answers["friction_force_max"] is not None:
@@ -344,7 +359,7 @@ def _limits(derivation: Derivation) -> Iterator[Part]:
     answers = derivation.answers
     if not derivation.case.tensions_equal:
         for name in ("critical_pulley_mass", "critical_heavier_mass", "critical_lighter_mass"):
-            yield from _critical(derivation, name)
+            yield from critical(derivation, name)
     if least := [*derivation.lines("least_heavier_mass", "least_pulley_mass")]:
         pulley = " and the pulley's mass `M min`" * (answers["least_pulley_mass"] is not None)
         yield f"For the verge, the heavier mass must exceed `m min`{pulley}."
@@ -354,72 +369,29 @@ def _limits(derivation: Derivation) -> Iterator[Part]:
     yield from conditions(answers)
 
 
-def _critical(derivation: Derivation, name: str) -> Iterator[Part]:
-    """A mass at which the string is on the verge of slipping, from the ratio of the tensions."""
-    case, l, h = derivation.case, derivation.light, derivation.heavy
-    if name in derivation.shown or derivation.answers[name] is None:
-        return
-    stands = {
-        "critical_heavier_mass": derivation.slips_at_rest,
-        "critical_lighter_mass": case.stands_until_it_slips,
-    }
-    symbol = derivation.symbol(name)
-    yield f"`{symbol}` is the {QUANTITIES[name].meaning}."
-    if stands.get(name):
-        yield "The pulley stands until then, so the tensions are the weights: their ratio reaches `k` at"
-        yield from derivation.lines("k1", "transfer", name)
-        return
-    if "verge" not in derivation.shown:
-        derivation.shown.add("verge")
-        if derivation.is_the_papers:
-            yield "On the verge the ratio of the tensions is `k`. For a disk, as in the paper, that is"
-            yield derivation.ratio_in_the_paper()
-            yield "Less 1 on both sides, and with `c` = `M/2`, this becomes"
-        else:
-            ratio = derivation.cite("(33)")
-            yield f"On the verge the ratio {ratio} of the tensions is `k`. Less 1 on both sides, that is"
-        yield derivation.ratio_at_the_limit()
-        if transfer := [*derivation.lines("k1", "transfer")]:
-            yield f"Friction at its limit adds a mass `z` to `m{l}`:"
-            yield from transfer
-        yield f"Multiplied out, with `z` for `m{l} (k - 1)`, the ratio is"
-        yield derivation.multiplied_out()
-    unknown = {"critical_pulley_mass": "c = β M*", "critical_heavier_mass": f"m{h} = m*"}
-    yield f"All terms with `{unknown.get(name, f'm{l} = l*')}` on one side, this becomes"
-    yield derivation.collected(name)
-    if name == "critical_pulley_mass":
-        yield f"`m{h} - m{l} - z` is the drive `d`, what friction at its limit leaves to drive the masses."
-        yield from derivation.lines("drive")
-    yield "So"
-    yield from derivation.lines(name)
-    yield from _in_the_paper(derivation, name)
-
-
-def _in_the_paper(derivation: Derivation, name: str) -> Iterator[Part]:
-    if found := [*derivation.in_the_paper(name)]:
-        yield "or, as the paper has it, for a disk,"
-        yield from found
-
-
 def _simpler(derivation: Derivation) -> Iterator[Step]:
     """What simpler models would give for this scene, and how far off."""
-    case, scene, digits = derivation.case, derivation.scene, derivation.digits
+    case = derivation.case
     if case.sign == 0 or derivation.answers["acceleration"] is None:
         return
-    runs_freely = case.frictionless and case.axle_friction is None
-    if not (runs_freely or case.axle_holds or case.rim_mass == 0):
-        massless = Answers(scene._replace(M=Fraction(0), I=None, inertia=Fraction(1)), digits)
-        body = [*derivation.compared(massless)]
-        if case.regime == massless.case.regime == "slip":
+
+    def instead(title: str, **changes: Any) -> Iterator[Step]:
+        other = Answers(derivation.scene._replace(**changes), derivation.digits)
+        if other["acceleration"] is None:
+            return
+        body = [*derivation.compared(other)]
+        if other.case.regime == case.regime == "slip":
             body = ["Nothing changes: the string slips over a pulley without mass, too, as its axle rubs."]
-        yield Step("What if the pulley's mass is ignored?", body)
-    if case.axle_friction is not None and case.regime == "no-slip" and not case.locked:
-        freely = Answers(scene._replace(axle=None), digits)
-        if freely["acceleration"] is not None:
-            yield Step("What if the axle did not rub?", [*derivation.compared(freely)])
+        yield Step(title, body)
+
+    rubs = case.axle_friction is not None
+    if (rubs or not case.frictionless) and not case.axle_holds and case.rim_mass != 0:
+        massless = {"M": Fraction(0), "I": None, "inertia": Fraction(1)}
+        yield from instead("What if the pulley's mass is ignored?", **massless)
+    if rubs and case.regime == "no-slip" and not case.locked:
+        yield from instead("What if the axle did not rub?", axle=None)
     if case.regime == "slip" and case.pulley_known:
-        holding = Answers(scene._replace(mu=None, mu_k=None), digits)
-        yield Step("What if slipping is ignored?", [*derivation.compared(holding)])
+        yield from instead("What if slipping is ignored?", mu=None, mu_k=None)
 
 
 def _model(derivation: Derivation) -> Iterator[Part]:

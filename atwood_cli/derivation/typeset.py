@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from decimal import Decimal
 from textwrap import wrap
+from typing import Any
 
 from ..arithmetic.rounding import text
 from ..arithmetic.symbolic import Formula, Symbol, factors
@@ -96,15 +97,12 @@ def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, la
 
 
 def _powers(factors: list[Formula]) -> list[Formula]:
-    """The factors, with the square of a symbol that is there twice."""
-    powers: list[Formula] = []
+    """The factors; of a symbol that is there twice, the square."""
+    powers: dict[Any, Formula] = {}
     for factor in factors:
-        if factor.op == "symbol" and factor.parts in [one.parts for one in powers]:
-            same = [one.parts for one in powers].index(factor.parts)
-            powers[same] = Formula("square", factor)
-        else:
-            powers.append(factor)
-    return powers
+        same = factor.parts if factor.op == "symbol" else factor
+        powers[same] = Formula("square", factor) if same in powers else factor
+    return [*powers.values()]
 
 
 def _write_number(digits: str, latex: bool) -> Written:
