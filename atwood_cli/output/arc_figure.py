@@ -1,5 +1,6 @@
 """The page of the machine's picture, alone or beside curves of what acts along the arc of contact."""
 
+from functools import partial
 from math import radians
 from typing import TYPE_CHECKING, Any
 
@@ -66,7 +67,8 @@ def save(
         if curves and profile:
             mark_theta(machine, radians(wrap))
             labels[beside[0]] = _draw_curves(beside[0], profile, wrap, m1_side or "right")
-        said = [*([] if bare else _sentences(few, kind, curves)), *of_arrows]
+        said = _sentences(few, kind, "grey part" if curves else "rest") if kind and not bare else []
+        said += of_arrows
         if wrap > 360 * TURNS:
             turns = text(few.settle(lambda m: scene.wrap.degrees(m.ar) / 360))
             said.append(f"Of the string's {turns} turns a few are drawn.")
@@ -74,39 +76,29 @@ def save(
         write_labels(figure, labels, 10)
 
 
-def _sentences(few: Answers, kind: arc.Kind | None, curves: bool) -> list[str]:
-    """What the forces in the picture are, in sentences."""
-    if kind is None:
-        return []
-    return [
+def _sentences(few: Answers, kind: arc.Kind, rest: str) -> list[str]:
+    """What the string does to the pulley, and over which parts of the arc friction acts if not over all."""
+    said = [
         "The string acts on the pulley along the arc of contact only: it presses with the normal force nR"
         " and rubs along the rim with the friction fR, both per radian.",
         about(few.case, kind),
-        *_said_of_friction(few, kind, "grey part" if curves else "rest"),
     ]
-
-
-def _said_of_friction(few: Answers, kind: arc.Kind, rest: str) -> list[str]:
-    """What all friction on the pulley amounts to, and over which parts of the arc it acts if not over all."""
     if few.case.frictionless:
-        return []
+        return said
 
     def net(m: Machine[Any]) -> Any:
         x, y = arc.friction(m.arcs(kind))
         return m.ar.sqrt(x * x + y * y)
 
-    def degrees(piece: int) -> str:
-        return text(
-            few.settle(
-                lambda m: (m.arcs(kind)[piece].end.angle - m.arcs(kind)[piece].start.angle) * 180 / m.ar.pi
-            )
-        )
+    def angle(piece: int, m: Machine[Any]) -> Any:
+        return (m.arcs(kind)[piece].end.angle - m.arcs(kind)[piece].start.angle) * 180 / m.ar.pi
 
-    said = [f"All friction together is a force of {text(few.settle(net))} N."]
+    said.append(f"All friction together is a force of {text(few.settle(net))} N.")
     if True in arc.STUCK[kind]:
         rubbing = [piece for piece, stuck in enumerate(arc.STUCK[kind]) if not stuck][:: few.case.sign]
         ends = ["first", "last"] if rubbing[1:] else ["last" if few.case.sign > 0 else "first"]
-        parts = " and ".join(f"the {end} {degrees(piece)}°" for end, piece in zip(ends, rubbing, strict=True))
+        angles = [text(few.settle(partial(angle, piece))) for piece in rubbing]
+        parts = " and ".join(f"the {end} {wide}°" for end, wide in zip(ends, angles, strict=True))
         said.append(f"It acts over {parts} of the arc; over the {rest} the string is stuck.")
     return said
 

@@ -125,6 +125,8 @@ class _Panel:
 
     def cost(self, point: Any, place: tuple[float, float], box: "Bbox") -> float:
         """What is wrong with a place."""
+        from matplotlib.transforms import Bbox
+
         inside = self.axes.bbox
         unreadable = sum(map(box.overlaps, self.words))
         unreadable += not (inside.contains(*box.min) and inside.contains(*box.max))
@@ -134,11 +136,8 @@ class _Panel:
             line = _line(box, point)
             cost += CROSSED * sum(_within(line, words).any() for words in self.words)
             cost += CROSSED * sum(_cross(line, lead) for lead in self.leads)
-            near = ((line.min(axis=0) - SPARE < self.dots) & (self.dots < line.max(axis=0) + SPARE)).all(
-                axis=1
-            )
-            if near.any():
-                cost += (np.hypot(*(self.dots[near][:, None] - line).T) < SPARE).any(axis=0).sum()
+            near = self.dots[_within(self.dots, Bbox([line.min(axis=0), line.max(axis=0)]).padded(SPARE))]
+            cost += (np.hypot(*(near[:, None] - line).T) < SPARE).any(axis=0).sum()
         else:
             own, *all_ = (hypot(*(one - one.clip(box.min, box.max))) for one in (point, *self.points))
             cost += AMBIGUOUS * (sum(off <= own + SPARE for off in all_) > 1)
