@@ -193,6 +193,47 @@ def in_shell(shell: str, script: str, **environment: str) -> str:
     return done.stdout
 
 
+STARTS = {"bash": ".bashrc", "zsh": ".zshrc"}
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_installing_completion_writes_nothing_else(tmp_path: Path, shell: str) -> None:
+    """typer added the start of zsh's completion and a style of menus to .zshrc."""
+    home = {"HOME": str(tmp_path), "ZDOTDIR": "", "XDG_CONFIG_HOME": "", "SHELL": f"/usr/bin/{shell}"}
+    start = tmp_path / STARTS.get(shell, ".profile")
+    start.write_text("alias ll='ls -l'")
+    first, again = process("--install-completion", **home), process("--install-completion", shell, **home)
+    assert first == again
+    assert (first.status, first.err) == (0, "")
+    (file,) = (path for path in tmp_path.rglob("*") if path.is_file() and path != start)
+    assert f"Completion for {shell} is in {file}" in first.out
+    line = f"\nsource {file}\n" if shell in STARTS else ""
+    assert start.read_text() == f"alias ll='ls -l'{line}"
+    assert file.read_text() == process("--show-completion", shell, **home).out
+    assert "_ATWOOD_COMPLETE=complete_" in file.read_text()
+    assert "zstyle" not in file.read_text()
+
+
+@pytest.mark.parametrize("option", ["show", "install"])
+@pytest.mark.parametrize(
+    ("shell", "why"),
+    [("bahs", "did you mean bash?"), ("tcsh", "there are bash, zsh, fish, powershell, pwsh")],
+)
+def test_other_shells_are_refused(option: str, shell: str, why: str) -> None:
+    ran = process(f"--{option}-completion", shell)
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err == f"atwood: --{option}-completion '{shell}' is no shell with completion; {why}\n"
+
+
+def test_powershell_has_its_script_and_keeps_its_tab_key() -> None:
+    shown = process("--show-completion", "pwsh").out
+    assert shown.startswith("$scriptblock = {")
+    assert "PSReadLine" not in shown
+    ran = process("--install-completion", "pwsh")
+    assert (ran.status, ran.out) == (2, "")
+    assert ran.err.endswith("; run there: atwood --show-completion pwsh >> $PROFILE\n")
+
+
 def test_bash_completes() -> None:
     script = """
     eval "$(_ATWOOD_COMPLETE=source_bash atwood)"

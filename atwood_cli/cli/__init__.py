@@ -9,6 +9,7 @@ from importlib import import_module
 from typing import Annotated, Any, cast
 
 import typer
+from typer._completion_classes import completion_init
 from typer.core import TyperCommand, TyperGroup
 
 from .. import __version__
@@ -132,7 +133,26 @@ Version = Annotated[
 ]
 
 
-def root(context: typer.Context, version: Version = False) -> None:
+def _completing(do: str) -> Any:
+    """An option that takes the name of a shell, for the function of that name in `completion`."""
+
+    def act(shell: str | None) -> None:
+        if shell is not None:
+            getattr(import_module(".completion", __name__), do)(shell)
+            raise typer.Exit
+
+    help_ = f"{do.capitalize()} completion for your shell, or for the one named."
+    flag_ = f"--{do}-completion"
+    return typer.Option(flag_, metavar="[SHELL]", callback=act, is_eager=True, help=help_, show_default=False)
+
+
+Install = Annotated[str | None, _completing("install")]
+Show = Annotated[str | None, _completing("show")]
+
+
+def root(
+    context: typer.Context, version: Version = False, install: Install = None, show: Show = None
+) -> None:
     """Print the help where no command is named."""
     if context.invoked_subcommand is None:
         print(context.get_help())
@@ -145,6 +165,7 @@ def program(names: Iterable[str] = COMMANDS) -> Any:
         cls=Group,
         help=HELP,
         invoke_without_command=True,
+        add_completion=False,  # typer's writes lines that are not ours into start-up files
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(root)
@@ -186,10 +207,15 @@ def run(arguments: list[str] | None = None) -> int:
         arguments = sys.argv[1:] if arguments is None else arguments
         if arguments[:1] == ["help"]:
             arguments = [*arguments[1:], "-h"]
+        if arguments in (["--install-completion"], ["--show-completion"]):
+            from .completion import shell_here
+
+            arguments = [*arguments, shell_here()]
         command = program(_needed(arguments))
         if COMPLETING in os.environ:
             from .completion import take_equals
 
+            completion_init()
             take_equals(command)
         status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
         if status == ON_CTRL_C:
