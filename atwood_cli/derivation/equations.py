@@ -86,7 +86,6 @@ class Derivation:
     def __init__(self, answers: Answers) -> None:
         self.answers, self.case, self.scene = answers, answers.case, answers.case.scene
         self.digits = answers.digits or SHOWN_DIGITS
-        self._finer = {self.digits: answers}
         self.shown: set[str] = set()
         self.explained: set[str] = set()
         case, scene, motion = self.case, self.scene, self.case.motion
@@ -240,16 +239,12 @@ class Derivation:
             exact: Fraction | None = symbol.of
             keep = digits if symbol.name in self.found else max(digits, typed)
         else:
-            exact, keep = self.answers.exactly(attrgetter(str(symbol.of))), digits
-        if exact is not None:
-            rounded = to_digits(keep)(exact)
-            if Fraction(rounded) == exact:
-                return Decimal(as_typed(exact)), True
-            return to_digits(digits)(exact), False
-        if digits not in self._finer:
-            self._finer[digits] = self.answers.to(digits)
-        value = self._finer[digits].settle(attrgetter(str(symbol.of)))
-        return Decimal(value), False
+            exact, keep = self.answers.exactly(attrgetter(symbol.of)), digits
+        if exact is not None and Fraction(to_digits(keep)(exact)) == exact:
+            return Decimal(as_typed(exact)), True
+        if isinstance(symbol.of, Fraction):
+            return to_digits(digits)(symbol.of), False
+        return Decimal(self.answers.to(digits).settle(attrgetter(symbol.of))), False
 
     def cite(self, label: str) -> str:
         """The number of an equation of the paper, marked if the axle rubs, which it does not there."""

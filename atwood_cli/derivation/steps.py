@@ -13,15 +13,7 @@ from ..arithmetic.rounding import as_typed, is_infinite
 from ..model import physics
 from ..model.quantities import QUANTITIES
 from ..solver.answers import Answers
-from ..solver.messages import (
-    conditions,
-    holding_again,
-    kinetic,
-    missing,
-    odd_inertia,
-    open_range,
-    verdict,
-)
+from ..solver.messages import conditions, holding_again, kinetic, missing, odd_inertia, open_range, verdict
 from .critical import critical, in_the_paper
 from .equations import MOTION, Derivation, Law, Part
 from .measured import fallen, found

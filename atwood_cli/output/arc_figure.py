@@ -62,7 +62,7 @@ def save(
             inputs = describe(scene, answers.case.motion, answers.uncertain)
             say_above(figure, inputs, unmarked(verdict(few)))
         machine, *beside = figure.subplots(1, len(widths), width_ratios=widths, squeeze=False)[0]
-        names, of_arrows = draw(machine, doubles, few, profile, m1_side == "left")
+        names, of_arrows = draw(machine, doubles, few, profile, wrap, m1_side == "left")
         labels = {machine: names}
         if curves and profile:
             mark_theta(machine, radians(wrap))

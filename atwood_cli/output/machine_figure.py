@@ -87,16 +87,16 @@ def drawn_turns(wrap: float) -> float:
 
 
 def draw(
-    axes: "Axes", answers: Answers, shown: Answers, profile: Profile | None, m1_left: bool
+    axes: "Axes", answers: Answers, shown: Answers, profile: Profile | None, wrap: float, m1_left: bool
 ) -> tuple[list[Label], list[str]]:
-    """Draw the machine; names still to be written, and what is to be said of the arrows.
+    """Draw the machine with its wrap (°); names still to be written, and what is to be said of the arrows.
 
     Arrows are drawn by ``answers``, in doubles, and numbers written as they are ``shown``. Without a profile,
     as where an end of the string is fixed to the pulley, there are no forces along the arc.
     """
     case, scene = answers.case, answers.case.scene
     masses = scene.m1, scene.m2
-    phi = TURN * drawn_turns(float(answers.settle(lambda m: scene.wrap.degrees(m.ar))))
+    phi = TURN * drawn_turns(wrap)
     growth = GROWTH if phi > ALMOST_A_TURN else 0.0
     outermost = 1 + growth * phi / TURN
     axes.axis("off")
@@ -111,7 +111,8 @@ def draw(
         scale = fitting
     names, notes = _draw_contact(axes, phi, outermost, profile, scale) if profile else ([], [])
     if friction := _axle_friction(shown):
-        _draw_turn(axes, AXLE, -pi / 2, -case.sign * radians(70), ORANGE)
+        turned = case.sign * radians(70)
+        _draw_turn(axes, AXLE, -pi / 2 + turned, -pi / 2 - turned, ORANGE)
         names.append(Label(f"axle friction\n{friction} N at the rim", 0, -AXLE, ORANGE))
     pulley = _pulley(shown)
     if phi < pi + APART:  # there are no arrows in the lower half
@@ -119,19 +120,14 @@ def draw(
     elif pulley:
         names.append(Label(pulley, 0, -0.7))
 
-    m2_is_right = foot.real > 1
-    places = ((1 + 1j * foot.imag, -1 if m2_is_right else 1), (foot, 1 if m2_is_right else -1))
-    to_scale = True
-    for i, (top, side) in enumerate(places):
-        if not masses[i]:
-            continue
-        sub = "₁₂"[i]
-        said = (
-            f"T{sub} = {text(shown[f'tension_{i + 1}'])} N",
-            f"W{sub} = {text(shown.round(masses[i] * scene.g))} N",
-        )
-        to_scale &= _draw_mass(axes, f"m{sub}", top, side, (scale * tensions[i], scale * weights[i]), said)
-        _draw_acceleration(axes, top, side, case.sign == (-1, 1)[i], shown["acceleration"])
+    to_scale, side_of_2 = True, 1 if foot.real > 1 else -1
+    for i, (top, side) in enumerate(((complex(1, foot.imag), -side_of_2), (foot, side_of_2))):
+        if masses[i]:
+            sub, tension, weight = "₁₂"[i], shown[f"tension_{i + 1}"], shown.round(masses[i] * scene.g)
+            said = f"T{sub} = {text(tension)} N", f"W{sub} = {text(weight)} N"
+            lengths = scale * tensions[i], scale * weights[i]
+            to_scale &= _draw_mass(axes, f"m{sub}", top, side, lengths, said)
+            _draw_acceleration(axes, top, side, (1, -1)[i] * case.sign, shown["acceleration"])
     lowest, highest = axes.dataLim.intervaly
     axes.set_ylim(lowest - 0.1, max(highest + 0.1, outermost + 0.3))
     axes.set_aspect("equal")
@@ -256,19 +252,18 @@ def mark_theta(axes: "Axes", phi: float) -> None:
     if wide < 0.2:
         return
     axes.plot([0, 0.3], [0, 0], color=FAINT, lw=0.8)
-    _draw_turn(axes, 0.17, wide / 2, wide / 2, INK)
+    _draw_turn(axes, 0.17, 0, wide, INK)
     at = 0.27 * _unit(wide / 2)
     axes.text(at.real, at.imag, "θ", ha="center", va="center", size=9)
 
 
-def _draw_turn(axes: "Axes", radius: float, middle: float, half: float, colour: str) -> None:
-    """An arrow around the axle, from middle - half to middle + half: clockwise if half is below 0."""
-    bent = 0.25 * min(1.0, 2 * abs(half)) * (0.17 / radius)  # the angle that the head hides
-    way = 1 if half > 0 else -1
-    line = radius * np.exp(1j * np.linspace(middle - half, middle + half - way * bent, 20))
+def _draw_turn(axes: "Axes", radius: float, start: float, end: float, colour: str) -> None:
+    """An arrow around the axle, from one angle to another."""
+    way = 1 if end > start else -1
+    hidden = 0.25 * min(1.0, abs(end - start)) * (0.17 / radius)  # of the line, by the head
+    line = radius * np.exp(1j * np.linspace(start, end - way * hidden, 20))
     axes.plot(line.real, line.imag, color=colour, lw=1)
-    tip = middle + half
-    _draw_heads(axes, [(radius * _unit(tip), 0.09j * way * _unit(tip - 0.2 * way))], colour)
+    _draw_heads(axes, [(radius * _unit(end), 0.09j * way * _unit(end - 0.2 * way))], colour)
 
 
 def _arrows_along(phi: float) -> Any:
@@ -306,8 +301,7 @@ def _draw_mass(
     x, y, half = top.real, top.imag, BOX / 2
     axes.fill([x - half, x + half, x + half, x - half], [y, y, y - BOX, y - BOX], fc="#e3ddcf", ec=INK, lw=1)
     axes.text(x, y - half, name, ha="center", va="center")
-    below = top - 1j * BOX
-    forces = ((top + 0.11 * side, 1j, 0.2, INK), (below, -1j, 0.12, GREEN))
+    forces = ((top + 0.11 * side, 1j, 0.2, INK), (top - 1j * BOX, -1j, 0.12, GREEN))
     to_scale = True
     for (start, way, off, colour), length, words in zip(forces, lengths, said, strict=True):
         drawn = min(max(length, SHORTEST_WEIGHT), LONGEST_WEIGHT) if length else 0.0
@@ -317,10 +311,9 @@ def _draw_mass(
     return to_scale
 
 
-def _draw_acceleration(axes: "Axes", top: complex, side: int, descends: bool, a: Decimal) -> None:
+def _draw_acceleration(axes: "Axes", top: complex, side: int, up: int, a: Decimal) -> None:
     """The acceleration beside a mass: how much, and an arrow that says which way."""
-    at = top - 0.5j * BOX + 0.27 * side
-    way = 1j * ACCELERATION * (-1 if descends else 1) if a else 0j
+    at, way = top - 0.5j * BOX + 0.27 * side, 1j * ACCELERATION * up if a else 0j
     _draw_arrows(axes, [at - way / 2], [way], PURPLE)
     words = f"a = {text(abs(a))} m/s²" if a else "a = 0"
     _write_beside(axes, at + 0.09 * side, side, words, PURPLE)
