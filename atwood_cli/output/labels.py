@@ -75,19 +75,14 @@ class _Panel:
     def place(self, label: Label) -> None:
         """Find the place of least cost for a label, where the others are by now."""
         self.placed.pop(label, None)
-        boxes = [self.box(other, place) for other, place in self.placed.items()]
-        self.words = [*self.texts, *boxes]
-        self.leads = [
-            _line(box, self.point(other))
-            for (other, place), box in zip(self.placed.items(), boxes, strict=True)
-            if hypot(*place) > FAR
-        ]
+        others = [(self.point(other), far, self.box(other, far)) for other, far in self.placed.items()]
+        self.words = [*self.texts, *(box for *_, box in others)]
+        self.leads = [_line(box, point) for point, far, box in others if hypot(*far) > FAR]
         least, best = inf, PLACES[0]
         for place in PLACES:
             if least <= hypot(*place) / AWAY:
                 break  # no place so far away costs less
-            cost = self.cost(self.point(label), place, self.box(label, place))
-            if cost < least:
+            if (cost := self.cost(label, place)) < least:
                 least, best = cost, place
         self.placed[label] = best
 
@@ -123,11 +118,11 @@ class _Panel:
         corner = self.point(label) + np.multiply(place, self.pixels) + (np.sign(place) - 1) * extent / 2
         return Bbox.from_bounds(*corner, *extent).padded(SPARE)
 
-    def cost(self, point: Any, place: tuple[float, float], box: "Bbox") -> float:
-        """What is wrong with a place."""
+    def cost(self, label: Label, place: tuple[float, float]) -> float:
+        """What is wrong with a place for a label."""
         from matplotlib.transforms import Bbox
 
-        inside = self.axes.bbox
+        point, box, inside = self.point(label), self.box(label, place), self.axes.bbox
         unreadable = sum(map(box.overlaps, self.words))
         unreadable += not (inside.contains(*box.min) and inside.contains(*box.max))
         cost = UNREADABLE * unreadable + _within(self.dots, box).sum() + hypot(*place) / AWAY
