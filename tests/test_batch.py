@@ -248,7 +248,7 @@ id,m1 (g),m2,M,mu
 007,0.10,3e0,inf,NA
 1e5," 250 ",1,1.5,
 ,abc,1,inf,-1
-x,1e-400,nan,10,1e400
+x\u2028,1e-400,nan,10,1e400
 y,5
 """.lstrip()
 
@@ -260,14 +260,15 @@ def test_inputs_read_from_text_are_written_as_numbers_where_a_format_has_numbers
         ("007", 0.1, 3.0, math.inf, None),
         ("1e5", 250.0, 1.0, 1.5, None),
         (None, None, 1.0, math.inf, -1.0),
-        ("x", None, None, 10.0, None),
+        ("x\u2028", None, None, 10.0, None),
         ("y", 5.0, None, None, None),
     ]
     batch(TYPED, "-o OUT.parquet --only regime")
     frame = pl.read_parquet(tmp_path / "out.parquet")
     assert frame[:, :5].rows() == rows
     assert frame.dtypes == [pl.String, *[pl.Float64] * 4, pl.String, pl.String]
-    printed = [json.loads(line) for line in batch(TYPED, "--to ndjson --only regime").out.splitlines()]
+    lines = batch(TYPED, "--to ndjson --only regime").out.removesuffix("\n").split("\n")
+    printed = [json.loads(line) for line in lines]
     in_json = [["inf" if cell == math.inf else cell for cell in row] for row in rows]
     assert [list(row.values())[:5] for row in printed] == in_json
     assert [row["error"] for row in printed] == frame["error"].to_list()

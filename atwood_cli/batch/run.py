@@ -5,7 +5,7 @@ import signal
 import stat
 import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import partial
 from io import BytesIO
@@ -31,13 +31,15 @@ from .formats import (
 from .layout import has_masses, inputs_among, read_as, read_layout
 from .ndjson import read_ndjson
 from .parquet import count_rows, read_frames
-from .solving import Tally, check_clash, solve_frame, with_numbers
+from .solving import ERROR, Tally, check_clash, solve_frame, with_numbers
 from .writing import write
 
 if TYPE_CHECKING:
     import polars as pl
 
-Watch = Callable[[Iterator[Piece], int | None, Callable[[Piece], int]], Iterator[Piece]]
+Solved = Iterator[tuple[Piece, "pl.DataFrame"]]
+"""Pieces, each with the columns to append."""
+Watch = Callable[[Solved, int | None, Callable[[tuple[Piece, "pl.DataFrame"]], int]], Solved]
 """Passes pieces on, and may show progress: its arguments are the pieces, the size of all, and of one."""
 
 
@@ -56,28 +58,29 @@ class Job:
 
 def run_batch(job: Job, watch: Watch, tally: Tally) -> None:
     """Solve tables of scenes; ``watch`` shows progress unless results go to a terminal. Raises OSError."""
-    _check_apart(job)
-    with ExitStack() as stack:
-        import polars as pl
+    import polars as pl
 
-        if hasattr(signal, "siginterrupt"):  # as it is imported, polars has Ctrl-C wait for a pipe
-            signal.siginterrupt(signal.SIGINT, True)
+    if hasattr(signal, "siginterrupt"):  # as it is imported, polars has Ctrl-C wait for a pipe
+        signal.siginterrupt(signal.SIGINT, True)
+    _check_apart(job)
+    sizes = [_size(*source) for source in job.sources]
+    solved = _solved(job, tally)
+    if job.target != STREAM or not sys.stdout.isatty():
+        total = None if None in sizes else sum(filter(None, sizes))
+        solved = watch(solved, total, lambda one: one[0].size)
+    at_once = any(_is_answered_at_once(job, *source) for source in job.sources)
+    with ExitStack() as stack:
+        target: IO[bytes] | Stdout = Stdout()
+        if job.target != STREAM:
+            beside = stack.enter_context(written_beside(Path(job.target), job.force))
+            target = stack.enter_context(beside.open("wb"))
         try:
-            sizes = []
-            for tally.source, kind in job.sources:
-                sizes.append(_size(tally.source, kind))
-            total = None if None in sizes else sum(filter(None, sizes))
-            at_once = any(_is_answered_at_once(job, *source) for source in job.sources)
-            target = _target(job, stack)
-            solved = _solved(job, total, tally, watch)
             if job.target_format == "parquet" and is_stream(job.target):
                 # polars completes the file even where it fails, so a stream gets it only when it is whole.
                 write(job.target_format, whole := BytesIO(), solved, at_once=False)
                 target.write(whole.getbuffer())
             else:
                 write(job.target_format, target, solved, at_once)
-        except Unreadable as error:
-            raise cannot_read(tally.source, error) from None
         except (pl.exceptions.PolarsError, pl.exceptions.PanicException) as error:
             why = shortened(str(error).splitlines()[0], LONGEST_NAME)
             raise OSError(f"cannot write {job.target_format}: {why}") from None
@@ -88,7 +91,7 @@ def _check_apart(job: Job) -> None:
     """Refuse an output that is an input, by whatever name. Raises SceneError."""
     for source, _ in job.sources:
         try:
-            read = _about(source)
+            read = os.stat(source) if source != STREAM else os.fstat(sys.stdin.fileno())
             target = os.stat(job.target) if job.target != STREAM else os.fstat(sys.stdout.fileno())
         except (OSError, ValueError, AttributeError):  # one is closed, or not there yet
             continue
@@ -96,62 +99,59 @@ def _check_apart(job: Job) -> None:
             raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
 
 
-def _about(source: str) -> os.stat_result:
-    return os.fstat(sys.stdin.fileno()) if source == STREAM else os.stat(source)
-
-
 def _size(source: str, kind: str) -> int | None:
-    """The size of an input in the unit of `Piece.size`, None if it is not known. Raises Unreadable."""
-    try:
-        about = _about(source)
-    except (OSError, ValueError, AttributeError) as error:
-        raise Unreadable(getattr(error, "strerror", None) or "it is closed") from None
-    if not stat.S_ISREG(about.st_mode) or is_packed(source):
+    """The size of an input in the unit of `Piece.size`, None if it is not known. Raises OSError."""
+    if is_stream(source):
         return None
-    if kind != "parquet":
-        return about.st_size
-    with ExitStack() as stack:
-        return None if source == STREAM else count_rows(opened(source, stack))
+    with _reading(source) as file:
+        if is_packed(source):
+            return None
+        return count_rows(file) if kind == "parquet" else os.fstat(file.fileno()).st_size
+
+
+@contextmanager
+def _reading(source: str) -> Iterator[IO[bytes]]:
+    """The input, opened. Raises OSError, which names it, for what is Unreadable."""
+    try:
+        with ExitStack() as stack:
+            yield opened(source, stack)
+    except Unreadable as error:
+        raise cannot_read(source, error) from None
 
 
 def _is_answered_at_once(job: Job, source: str, kind: str) -> bool:
     """Whether the input is a pipe from which each row is to be answered as it comes."""
-    return (kind, job.target_format) == ("ndjson", "ndjson") and not stat.S_ISREG(_about(source).st_mode)
+    return job.target_format == kind == "ndjson" and is_stream(source)
 
 
-def _target(job: Job, stack: ExitStack) -> IO[bytes] | Stdout:
-    """The output, under its name once it is whole."""
-    if job.target == STREAM:
-        return Stdout()
-    return stack.enter_context(open(stack.enter_context(written_beside(Path(job.target), job.force)), "wb"))
-
-
-def _solved(
-    job: Job, total: int | None, tally: Tally, watch: Watch
-) -> "Iterator[tuple[Piece, pl.DataFrame]]":
-    """Each piece with its results."""
-    pieces = _pieces(job, tally)
-    if job.target != STREAM or not sys.stdout.isatty():
-        pieces = watch(pieces, total, lambda piece: piece.size)
-    known: object = None
+def _solved(job: Job, tally: Tally) -> Solved:
+    """Each piece with its results. Raises OSError for an input that is no table."""
     header: pl.Schema | None = None
-    for piece in pieces:
-        if (tally.source, piece.columns) != known:
-            known = tally.source, piece.columns
-            check_clash(piece.columns, job.names, "--only")
-            layout = read_layout(piece, job.labels)
-            usual = SEPARATORS.get(dict(job.sources)[tally.source], "")
-            tally.remarks[tally.source] = partial(
-                read_as, layout.headings.items(), layout.separator, usual, layout.comma
-            )
-        results = solve_frame(piece.frame, layout, job.names, job.accuracy, tally, piece.errors)
-        if not piece.lines:
-            is_text = dict(job.sources)[tally.source] != "parquet"
-            if is_text and job.target_format not in SEPARATORS:
-                piece = piece._replace(frame=with_numbers(piece.frame, layout))
-            header = header or piece.frame.schema
-            piece = piece._replace(frame=_in_order(piece.frame, header, job))
-        yield piece, results
+    for source, kind in job.sources:
+        where = f" of {shortened(source, LONGEST_NAME)}" if len(job.sources) > 1 else ""
+        columns: Sequence[str] | None = None
+        rows = 0
+        tally.not_given.clear()
+        with _reading(source) as file:
+            for piece in _pieces(job, source, kind, file):
+                if piece.columns != columns:
+                    columns = piece.columns
+                    check_clash(columns, job.names, "--only")
+                    layout = read_layout(piece, job.labels)
+                results = solve_frame(piece.frame, layout, job.names, job.accuracy, tally, piece.errors)
+                if tally.errors and not tally.first_error:
+                    row = results[ERROR].is_not_null().arg_max() or 0
+                    tally.first_error = f"row {rows + row + 1}{where}: {results[ERROR][row]}"
+                rows += results.height
+                if not piece.lines:
+                    if kind != "parquet" and job.target_format not in SEPARATORS:
+                        piece = piece._replace(frame=with_numbers(piece.frame, layout))
+                    header = header or piece.frame.schema
+                    piece = piece._replace(frame=_in_order(piece.frame, header, job))
+                yield piece, results
+        words = [f"{' and '.join(sorted(tally.not_given))} as not given"] if tally.not_given else []
+        usual = SEPARATORS.get(kind, "")
+        tally.remarks += read_as(layout.headings.items(), layout.separator, usual, layout.comma, words)
 
 
 def _in_order(frame: "pl.DataFrame", header: "pl.Schema", job: Job) -> "pl.DataFrame":
@@ -173,25 +173,20 @@ def _in_order(frame: "pl.DataFrame", header: "pl.Schema", job: Job) -> "pl.DataF
     return pl.DataFrame([frame.get_column(name) for name in header])
 
 
-def _pieces(job: Job, tally: Tally) -> Iterator[Piece]:
-    """The tables in pieces: at least one of each, which may have no rows. Raises Unreadable."""
+def _pieces(job: Job, source: str, kind: str, file: IO[bytes]) -> Iterator[Piece]:
+    """A table in pieces: at least one, which may have no rows. Raises Unreadable."""
     inputs = partial(inputs_among, labels=job.labels)
-    for source, kind in job.sources:
-        tally.source, tally.rows_before = source, tally.rows
-        tally.where = f" of {shortened(source, LONGEST_NAME)}" if len(job.sources) > 1 else ""
-        with ExitStack() as stack:
-            file = opened(source, stack)
-            match kind:
-                case "parquet":
-                    if is_stream(source) or is_packed(source):  # it is not read from front to back
-                        file = BytesIO(b"".join(blocks_of(file)))
-                    for frame in read_frames(file):
-                        check_count(frame.columns)
-                        yield Piece(frame.columns, frame, frame.height)
-                case "ndjson":
-                    at_once = _is_answered_at_once(job, source, kind)
-                    blocks = blocks_as_they_come(file) if at_once else blocks_of(file)
-                    is_table = partial(has_masses, labels=job.labels)
-                    yield from read_ndjson(blocks, inputs, job.target_format == "ndjson", is_table)
-                case _:
-                    yield from read_csv(file, SEPARATORS[kind], inputs)
+    match kind:
+        case "parquet":
+            if is_stream(source) or is_packed(source):  # it is not read from front to back
+                file = BytesIO(b"".join(blocks_of(file)))
+            for frame in read_frames(file):
+                check_count(frame.columns)
+                yield Piece(frame.columns, frame, frame.height)
+        case "ndjson":
+            at_once = _is_answered_at_once(job, source, kind)
+            blocks = blocks_as_they_come(file) if at_once else blocks_of(file)
+            is_table = partial(has_masses, labels=job.labels)
+            yield from read_ndjson(blocks, inputs, job.target_format == "ndjson", is_table)
+        case _:
+            yield from read_csv(file, SEPARATORS[kind], inputs)

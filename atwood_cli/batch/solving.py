@@ -1,6 +1,6 @@
 """Solves a data frame of scenes: its results, and for a row that is no scene an error."""
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache, partial
@@ -84,11 +84,10 @@ def _results(
 
 @dataclass
 class Tally:
-    """The counts of a run. ``missing`` are the results that no row has.
+    """The counts of a run, and how its tables were read.
 
-    ``source`` is the input that is read now, after ``rows_before`` of others, and ``where`` names it to a
-    reader who has several. By input, ``not_given`` are the
-    words that stand for an empty cell, and ``remarks`` make a line of them on how it was read.
+    ``missing`` are the results that no row has, and ``not_given`` the words that stand for an empty cell of
+    the table that is read now.
     """
 
     missing: set[str]
@@ -98,11 +97,8 @@ class Tally:
     first_error: str = ""
     beyond: int = 0
     reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
-    source: str = ""
-    rows_before: int = 0
-    where: str = ""
-    not_given: defaultdict[str, set[str]] = field(default_factory=lambda: defaultdict(set))
-    remarks: dict[str, Callable[[list[str]], list[str]]] = field(default_factory=dict)
+    not_given: set[str] = field(default_factory=set)
+    remarks: list[str] = field(default_factory=list)
 
     def lines(self) -> list[str]:
         """The messages: remarks, the summary, why valid rows lack results, the first error."""
@@ -116,11 +112,7 @@ class Tally:
         # Threads count in any order: the most frequent reason first.
         reasons = sorted(self.reasons.items(), key=lambda one: (-one[1], NAMES.index(one[0][0]), one[0][1]))
         missing = reasons_at(dict(reasons), self.rows, "in {} of {} rows")
-        remarks = []
-        for source, words in self.not_given.items():
-            others = [f"{' and '.join(sorted(words))} as not given"] if words else []
-            remarks += self.remarks[source](others)
-        return [*dict.fromkeys(remarks), summary, *missing, *first]
+        return [*dict.fromkeys(self.remarks), summary, *missing, *first]
 
 
 def check_clash(columns: Sequence[str], names: Sequence[str], option: str) -> None:
@@ -147,7 +139,7 @@ def solve_frame(
     scenes, errors, words = _scenes(frame, layout)
     errors |= others
     scenes["m1"][list(errors)] = nan  # such a row has no results
-    tally.not_given[tally.source] |= {*NOT_GIVEN} & words
+    tally.not_given |= {*NOT_GIVEN} & words
     wanted = list(dict.fromkeys(["regime", *names]))
     results, reasons = solve_and_count(scenes, accuracy, wanted)
     bad = [row for row in results["status"].nonzero()[0].tolist() if row not in errors]
@@ -158,9 +150,6 @@ def solve_frame(
         return _why(dict(zip(inputs.columns, cells, strict=True)), layout)
 
     errors |= {row: why(*cells) for row, cells in zip(bad, inputs.iter_rows(), strict=True)}
-    if errors and not tally.errors:
-        row = tally.rows - tally.rows_before + min(errors) + 1
-        tally.first_error = f"row {row}{tally.where}: {errors[min(errors)]}"
     columns = {
         "regime": _regimes(results["regime"], tally),
         **{name: _finite(results[name], tally) for name in wanted[1:]},

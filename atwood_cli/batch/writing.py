@@ -32,7 +32,6 @@ def write(
             waiting.append(encoder.submit(_encoded, kind, piece, results, number == 0))
             if at_once or number:
                 file.write(waiting.pop(0).result())
-            if at_once:
                 file.flush()
         for last in waiting:
             file.write(last.result())
@@ -51,29 +50,25 @@ def _encoded(kind: str, piece: Piece, results: "pl.DataFrame", first: bool) -> b
             raise OSError(f"cannot write {what} as {kind}; give --to parquet")
     frame = piece.frame.hstack(results)
     if kind == "ndjson":
-        return _as_ndjson(frame)
+        return _as_ndjson(frame).encode()
     buffer = BytesIO()
     frame.write_csv(buffer, separator=SEPARATORS[kind], include_header=first)
     return buffer.getbuffer()
 
 
-def _as_ndjson(frame: "pl.DataFrame") -> bytes:
+def _as_ndjson(frame: "pl.DataFrame") -> str:
     """A frame as NDJSON. JSON has no infinity, and null would be another scene: it is written as text."""
     import polars as pl
 
-    infinite = frame.select(pl.selectors.float().is_infinite().fill_null(False))
-    infinite = infinite.select(column for column in infinite if column.any())
-    if not infinite.width:
-        return frame.write_ndjson().encode()
-    lines = [""] * frame.height
-    for which in infinite.unique().iter_rows(named=True):
-        rows = pl.arg_where(pl.all_horizontal(pl.col(name) == is_so for name, is_so in which.items()))
-        places = infinite.select(rows).to_series()
-        names = [name for name, is_so in which.items() if is_so]
-        texts = frame[places].with_columns(pl.col(names).cast(pl.String)).write_ndjson()
-        for place, line in zip(places, texts.splitlines(keepends=True), strict=True):
-            lines[place] = line
-    return "".join(lines).encode()
+    for column in frame.select(pl.selectors.float()):
+        infinite = column.is_infinite().fill_null(False)
+        if infinite.any():
+            as_text = frame.filter(infinite).with_columns(column.filter(infinite).cast(pl.String))
+            texts, numbers = (
+                iter(_as_ndjson(some).split("\n")) for some in (as_text, frame.filter(~infinite))
+            )
+            return "".join(f"{next(texts if one else numbers)}\n" for one in infinite)
+    return frame.write_ndjson()
 
 
 def _spliced(lines: Sequence[str], results: "pl.DataFrame") -> bytes | memoryview:
