@@ -30,7 +30,7 @@ from atwood_cli import SceneError, solve
 from atwood_cli.arrays import solve_and_count
 from atwood_cli.batch import formats as tables
 from atwood_cli.batch import ndjson, solving
-from atwood_cli.batch.layout import has_masses, inputs_among
+from atwood_cli.batch.layout import inputs_among
 from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import NAMES, STANDARD
 from atwood_cli.model.scene import INPUTS
@@ -889,7 +889,7 @@ def test_pieces_have_few_rows_and_cells(
     pieces = list(
         tables.read_csv(file, ",", inputs_among)
         if kind == "csv"
-        else ndjson.read_ndjson(tables.blocks_of(file), inputs_among, False, has_masses)
+        else ndjson.read_ndjson(tables.blocks_of(file), inputs_among, False)
     )
     assert [piece.frame.height for piece in pieces if piece.frame.height] == heights
     assert [piece.size for piece in pieces] == [len(content), *[0] * (len(pieces) - 1)]

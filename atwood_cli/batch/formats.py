@@ -8,7 +8,7 @@ import re
 import sys
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import ExitStack, contextmanager, suppress
 from importlib import import_module
 from pathlib import Path
 from select import select
@@ -41,13 +41,11 @@ FOREIGN = {
     rb"\[[{\n]": "a JSON array; write an object a line, and give --from ndjson to batch",
 }
 """How files of other kinds begin, what they are, and what to do."""
+JSON_FOR_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
 PACKED = {".gz": "gzip", ".bz2": "bz2", ".xz": "lzma", ".zst": "compression.zstd"}
 """The modules that read compressed files, by suffix; that of .zst came with Python 3.14."""
 MOMENT = 0.05
 """Seconds in which what a pipe brings is taken together."""
-JSON_FOR_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
-
-
 Inputs = Callable[[Sequence[str]], Sequence[str]]
 """A function that picks the inputs among columns."""
 
@@ -129,20 +127,19 @@ def blocks_as_they_come(file: Any) -> Iterator[bytes]:
     """The bytes of a pipe, in blocks of what it brings within a moment. Raises Unreadable."""
     with _reading():
         while block := file.read1(PIECE_BYTES):
-            end, more = monotonic() + MOMENT, block
-            while more and len(block) < PIECE_BYTES and _has_more(file, end - monotonic()):
-                block += (more := file.read1(PIECE_BYTES))
+            end = monotonic() + MOMENT
+            while len(block) < PIECE_BYTES and _has_more(file, end - monotonic()):
+                if not (more := file.read1(PIECE_BYTES)):
+                    break
+                block += more
             yield block
-            if not more:
-                break
 
 
-def _has_more(file: IO[bytes], seconds: float) -> bool:
+def _has_more(pipe: IO[bytes], seconds: float) -> bool:
     """Whether a pipe brings something within some seconds; no where the system cannot tell, as on Windows."""
-    try:
-        return bool(select([file], [], [], max(0, seconds))[0])
-    except OSError:
-        return False
+    with suppress(OSError):
+        return bool(select([pipe], [], [], max(0, seconds))[0])
+    return False
 
 
 @contextmanager

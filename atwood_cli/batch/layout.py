@@ -162,9 +162,9 @@ def inputs_among(columns: Sequence[str], labels: Collection[str] = ()) -> list[s
     return [column for column in columns if column not in labels and divided(column)[0] in INPUTS]
 
 
-def has_masses(columns: Sequence[str], labels: Collection[str] = ()) -> bool:
-    """Whether there are columns of both masses, as a table must have."""
-    return {*MASSES} <= {divided(column)[0] for column in columns if column not in labels}
+def has_masses(inputs: Iterable[str]) -> bool:
+    """Whether columns of inputs include both masses, as a table must."""
+    return {*MASSES} <= {divided(column)[0] for column in inputs}
 
 
 def _headings(columns: Sequence[str], labels: Collection[str]) -> dict[str, Heading]:

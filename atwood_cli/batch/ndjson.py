@@ -7,7 +7,7 @@ Both give the same: numbers, and values within values, as they are written.
 
 import json
 import re
-from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 from json.decoder import JSONDecodeError
 from typing import TYPE_CHECKING, NamedTuple
@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ..files import Unreadable
 from ..model.units import in_quotes
 from .formats import Inputs, Piece, check_count, check_distinct, decoded, records
+from .layout import has_masses
 from .parquet import PIECE_CELLS, PIECE_ROWS
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ FEWEST_LINES = 50
 MOST_KEYS = 100
 """A pattern for objects with more keys would take long to compile."""
 MOST_HELD = 1000
-"""Lines that wait for the first row with the columns that a table must have."""
+"""Lines that wait for the columns of both masses."""
 PLAIN_KEY = re.compile(r'[^"\\\x00-\x1f\ud800-\udfff]*')
 BLANKS = r"[ \t\r]*"
 TEXT = r'[^"\\\x00-\x1f]*'
@@ -44,13 +45,12 @@ class Block(NamedTuple):
     errors: Mapping[int, str]
 
 
-def read_ndjson(
-    blocks: Iterable[bytes], inputs: Inputs, as_lines: bool, is_table: Callable[[Sequence[str]], bool]
-) -> Iterator[Piece]:
+def read_ndjson(blocks: Iterable[bytes], inputs: Inputs, as_lines: bool) -> Iterator[Piece]:
     """The rows as texts of all columns, or ``as_lines`` and a frame of the ``inputs``. Raises Unreadable.
 
-    A line that is no object is an error of its row. The first rows wait until the columns ``is_table``.
+    A line that is no object is an error of its row. The first rows wait until there are both masses.
     """
+    wanted: Inputs = inputs if as_lines else list
     columns: dict[str, None] = {}
     held: list[str] = []
     done = size = 0
@@ -58,29 +58,27 @@ def read_ndjson(
         held, size = held + lines if held else lines, size + read
         if not held:
             break
-        block = _block(held, inputs if as_lines else list)
+        block = _block(held, wanted)
         new = [name for name in block.columns if name not in columns]
         if new and done and not as_lines:
             how = "for which there is no column by now; give --to ndjson"
             raise Unreadable(f"a row after row {done} has {in_quotes(new[0])}, {how}")
         columns |= dict.fromkeys(new)
         check_count(list(columns))
-        if lines and len(held) < MOST_HELD and not is_table(list(columns)):
+        if lines and len(held) < MOST_HELD and not has_masses(inputs(list(columns))):
             continue
         if not columns:
-            first = min(block.errors, default=None)
-            raise Unreadable(
-                "its objects are empty" if first is None else f"row {first + 1}: {block.errors[first]}"
-            )
+            why = [f"row {row + 1}: {error}" for row, error in block.errors.items()]
+            raise Unreadable(why[0] if why else "its objects are empty")
         for row in block.errors:
             held[row] = "{}"
-        wanted = inputs(list(columns)) if as_lines else list(columns)
-        most = max(1, PIECE_CELLS // max(1, len(wanted)))
+        names = wanted(list(columns))
+        most = PIECE_CELLS // max(1, len(names))
         for start in range(0, len(held), most):
             rows = range(start, min(start + most, len(held)))
             errors = {row - start: why for row, why in block.errors.items() if row in rows}
-            texts = block.lines[rows.start : rows.stop] if as_lines else ()
-            yield Piece(list(columns), _frame(block, rows, wanted), size, errors, lines=texts)
+            texts = held[start : rows.stop] if as_lines else ()
+            yield Piece(list(columns), _frame(block, rows, names), size, errors, lines=texts)
             size = 0
         done += len(held)
         held = []
@@ -100,40 +98,37 @@ def _block(lines: list[str], wanted: Inputs) -> Block:
     """The lines with the ``wanted`` values of plain ones in frames."""
     import polars as pl
 
-    columns: dict[int, Sequence[str]] = {}  # by the place of the line that has them first
+    columns: dict[str, None] = {}
     frames: list[tuple[pl.Series, pl.DataFrame]] = []
     objects: dict[int, Mapping[str, object]] = {}
     errors: dict[int, str] = {}
     texts, left = pl.Series(lines, dtype=pl.String), pl.int_range(len(lines), eager=True)
 
-    def read(place: int) -> Mapping[str, object]:
+    def read(place: int) -> list[str]:
         try:
-            row = _object(lines[place])
+            objects[place] = _object(lines[place])
         except Unreadable as error:
-            errors[place] = str(error)
-            row = {}
-        columns[place] = list(row)
-        return row
+            objects[place], errors[place] = {}, str(error)
+        columns.update(dict.fromkeys(objects[place]))  # in order: each line read stands below the last one
+        return list(objects[place])
 
     for _ in range(MOST_PATTERNS):
         if len(left) < FEWEST_LINES:
             break
-        first = left[0]
-        row = objects[first] = read(first)
-        left = left[1:]
-        if not 0 < len(row) <= MOST_KEYS or not all(map(PLAIN_KEY.fullmatch, row)):
+        keys, left = read(left[0]), left[1:]
+        if not 0 < len(keys) <= MOST_KEYS or not all(map(PLAIN_KEY.fullmatch, keys)):
             continue
-        names = wanted(list(row))
-        groups = texts.gather(left).str.extract_groups(_pattern(row, names)).struct.unnest()
+        names = wanted(keys)
+        groups = texts.gather(left).str.extract_groups(_pattern(keys, names)).struct.unnest()
         matching = groups[:, -1].is_not_null()
         frame = groups.filter(matching).select(
             pl.coalesce(pl.nth(2 * i), pl.nth(2 * i + 1)).alias(name) for i, name in enumerate(names)
         )
         frames.append((left.filter(matching), frame))
         left = left.filter(~matching)
-    objects |= {place: read(place) for place in left}
-    in_order = (name for place in sorted(columns) for name in columns[place])
-    return Block(lines, list(dict.fromkeys(in_order)), frames, objects, errors)
+    for place in left:
+        read(place)
+    return Block(lines, list(columns), frames, objects, errors)
 
 
 def _pattern(keys: Collection[str], wanted: Collection[str]) -> str:

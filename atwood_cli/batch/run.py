@@ -28,7 +28,7 @@ from .formats import (
     opened,
     read_csv,
 )
-from .layout import has_masses, inputs_among, read_as, read_layout
+from .layout import inputs_among, read_as, read_layout
 from .ndjson import read_ndjson
 from .parquet import count_rows, read_frames
 from .solving import ERROR, Tally, check_clash, solve_frame, with_numbers
@@ -156,21 +156,15 @@ def _solved(job: Job, tally: Tally) -> Solved:
 
 def _in_order(frame: "pl.DataFrame", header: "pl.Schema", job: Job) -> "pl.DataFrame":
     """The frame with its columns in the order of those of the first. Raises Unreadable if they are others."""
-    import polars as pl
-
-    schema = frame.schema
-    if list(schema.items()) == list(header.items()):
-        return frame
-    first = shortened(job.sources[0][0], LONGEST_NAME)
-    for name in header:
+    schema, first = frame.schema, shortened(job.sources[0][0], LONGEST_NAME)
+    for name in [*header, *schema]:
         if name not in schema:
             raise Unreadable(f"it has no column {in_quotes(name)}, which {first} has")
-        if job.target_format == "parquet" and schema[name] != header[name]:
-            raise Unreadable(f"column {in_quotes(name)} holds {schema[name]}, and in {first} {header[name]}")
-    for name in schema:
         if name not in header:
             raise Unreadable(f"it has a column {in_quotes(name)}, which {first} has not")
-    return pl.DataFrame([frame.get_column(name) for name in header])
+        if job.target_format == "parquet" and schema[name] != header[name]:
+            raise Unreadable(f"column {in_quotes(name)} holds {schema[name]}, and in {first} {header[name]}")
+    return frame[:, list(header)]
 
 
 def _pieces(job: Job, source: str, kind: str, file: IO[bytes]) -> Iterator[Piece]:
@@ -186,7 +180,6 @@ def _pieces(job: Job, source: str, kind: str, file: IO[bytes]) -> Iterator[Piece
         case "ndjson":
             at_once = _is_answered_at_once(job, source, kind)
             blocks = blocks_as_they_come(file) if at_once else blocks_of(file)
-            is_table = partial(has_masses, labels=job.labels)
-            yield from read_ndjson(blocks, inputs, job.target_format == "ndjson", is_table)
+            yield from read_ndjson(blocks, inputs, as_lines=job.target_format == "ndjson")
         case _:
             yield from read_csv(file, SEPARATORS[kind], inputs)

@@ -134,11 +134,13 @@ def solve_frame(
 
     ``others`` are errors of rows that could not be read.
     """
+    import numpy as np
     import polars as pl
 
-    scenes, errors, words = _scenes(frame, layout)
+    doubles, errors, words = _doubles(frame, layout)
     errors |= others
-    scenes["m1"][list(errors)] = nan  # such a row has no results
+    doubles["m1"][list(errors)] = nan  # such a row has no results
+    scenes: Any = {name: np.ma.array(values, mask=np.isnan(values)) for name, values in doubles.items()}
     tally.not_given |= {*NOT_GIVEN} & words
     wanted = list(dict.fromkeys(["regime", *names]))
     results, reasons = solve_and_count(scenes, accuracy, wanted)
@@ -202,17 +204,6 @@ def with_numbers(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
     )
 
 
-def _scenes(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict[int, str], set[str]]:
-    """As `_doubles`, but masked where a cell is empty or wrong."""
-    import numpy as np
-
-    doubles, errors, words = _doubles(frame, layout)
-    for name, values in doubles.items():
-        if (empty := np.isnan(values)).any():
-            doubles[name] = np.ma.array(values, mask=empty)
-    return doubles, errors, words
-
-
 def _doubles(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict[int, str], set[str]]:
     """The inputs by name, NaN where a cell is empty or wrong; the first error of each row that has one; and
     cells that are no numbers.
@@ -223,14 +214,11 @@ def _doubles(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dic
     for name, kind in cells.schema.items():
         if not (kind.is_numeric() or kind in (pl.String, pl.Null)):
             raise Unreadable(f"column {name} holds {shortened(str(kind))}, not numbers")
-    doubles = cells.select(
-        layout.as_doubles(name, kind) for name, kind in cells.schema.items()
-    )  # in parallel
-    scenes: dict[str, Any] = {}
+    frame = cells.select(layout.as_doubles(name, kind) for name, kind in cells.schema.items())
+    doubles = {name: frame[name].to_numpy(writable=True) for name in cells.columns}
     errors: dict[int, str] = {}
     words: set[str] = set()
-    for name in cells.columns:
-        values = scenes[name] = doubles[name].to_numpy(writable=True)
+    for name, values in doubles.items():
         for row, cell in _odd_cells(cells[name], values).items():
             try:
                 values[row] = layout.double(name, cell)
@@ -239,7 +227,7 @@ def _doubles(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dic
                 errors.setdefault(row, str(error))
             if values[row] != values[row]:
                 words.add(str(cell).strip())
-    return scenes, errors, words
+    return doubles, errors, words
 
 
 LONG = 100
