@@ -23,7 +23,7 @@ from .inputs import DEFAULTS, GivenColumn, Numbers, groups, input_columns, read_
 from .inputs import STATUSES as STATUSES
 from .plan import LEVELS, Task
 from .program import Room
-from .rows import Index, Rows, size_of
+from .rows import Index, Rows
 
 BLOCK = 131_072  # rows, as measured
 THREADS = 4  # more would wait for the interpreter's lock
@@ -82,11 +82,7 @@ def solve_and_count(
     for mass in MASSES:
         if given.get(mass) is None:
             raise SceneError(mass, None, MISSING_MASS)
-    inputs = {
-        name: read_column(name, given.get(name))
-        for name in INPUTS
-        if name in DEFAULTS or given.get(name) is not None
-    }
+    inputs = {name: read_column(name, given.get(name)) for name in INPUTS}
     shape = _common_shape(inputs)
     kinds = {"regime": np.int8, "status": np.int8}
     results = {name: np.empty(shape, kinds.get(name, np.float64)) for name in (*names, "status")}
@@ -94,31 +90,34 @@ def solve_and_count(
     left: dict[Task, list[NDArray[np.intp]]] = {}
     counted: list[Counter[tuple[str, str]]] = []
 
-    def solve_block(block: Index, room: Room, task: Task | None) -> None:
-        """Solve all rows of a block, or the rows of a task that was left for the end."""
-        given = {name: one.cut(shape, block) for name, one in inputs.items()}
-        out = {name: flat[name][block] for name in results}
-        rows = Rows({name: one.column for name, one in given.items()}, out, accuracy, room)
-        if task is None:
-            assert isinstance(block, slice)
-            rows.left = {} if len(blocks) > 1 else None
-            _solve(rows, given, tuple(names))
-            for few, some in (rows.left or {}).items():
-                left.setdefault(few, []).extend(index + block.start for index in some)
-        else:
-            rows.solve(slice(0, size_of(block)), task)
+    def rows_at(index: Index, room: Room) -> tuple[Rows, dict[str, GivenColumn]]:
+        given = {name: one.cut(shape, index) for name, one in inputs.items()}
+        columns = {name: one.column for name, one in given.items()}
+        rows = Rows(columns, {name: flat[name][index] for name in results}, accuracy, room)
         counted.append(rows.reasons)
-        if not isinstance(block, slice):
-            for name in task.names if task else ():
-                flat[name][block] = out[name]
+        return rows, given
+
+    def solve_block(block: slice, room: Room) -> None:
+        """Solve all rows of a block, but for the tasks that are left for the end."""
+        rows, given = rows_at(block, room)
+        rows.left = {} if len(blocks) > 1 else None
+        _solve(rows, given, tuple(names))
+        for task, some in (rows.left or {}).items():
+            left.setdefault(task, []).extend(index + block.start for index in some)
+
+    def solve_left(index: NDArray[np.intp], task: Task, room: Room) -> None:
+        rows, _ = rows_at(index, room)
+        rows.solve(slice(0, index.size), task)
+        for name in task.names:
+            flat[name][index] = rows.results[name]
 
     blocks = _blocks(prod(shape), BLOCK, THREADS)
-    _on_threads(solve_block, [(block, None) for block in blocks])
-    again: list[tuple[Index, Task | None]] = []
+    _on_threads(solve_block, [(block,) for block in blocks])
+    again = []
     for task, indices in left.items():
         index = np.sort(np.concatenate(indices))  # the same order whichever thread was first
         again += [(index[block], task) for block in _blocks(index.size, BLOCK)]
-    _on_threads(solve_block, again)
+    _on_threads(solve_left, again)
     return results, sum(counted, Counter())
 
 
@@ -162,8 +161,7 @@ def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> 
                     part = next(waiting, None)
                 if part is None:
                     return
-                block, task = part
-                work(block, room, task)
+                work(*part, room)
 
     count = min(THREADS, os.cpu_count() or 1, len(parts))
     if count < 2:

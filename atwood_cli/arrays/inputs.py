@@ -115,41 +115,28 @@ def _absent(value: Any, array: NDArray[Any]) -> NDArray[np.bool_] | None:
 
 # The pattern of each row's inputs
 
-USUAL, ABSENT, ZERO, INFINITE, FAR = range(5)
+KINDS = USUAL, ABSENT, NAN, NEGATIVE, ZERO, INFINITE, FAR = range(7)
+OUTSIDE = {
+    name: np.isin(KINDS, [NEGATIVE, *[ZERO] * (not domain.zero), *[INFINITE] * (not domain.inf)])
+    for name, domain in INPUTS.items()
+}
+"""Of each input, by kind, whether such a number is outside its domain."""
+SAME_IN_ALL = {ABSENT: None, ZERO: Fraction(0), INFINITE: inf}
+"""What stands in a `Pattern` for numbers of a kind, if not their column."""
 
 
 class InputColumn(NamedTuple):
-    """An input in the rows of a block: its column, and the kind of each number, or just USUAL if all are."""
+    """An input in the rows of a block: its numbers, the kind of each, and whether it is given.
 
-    name: str
+    Any of them has a single item where that holds for all rows.
+    """
+
     column: Column
-    kinds: Any
-    absent: NDArray[np.bool_] | None
+    kinds: NDArray[np.int_]
+    given: NDArray[np.bool_]
 
-    @property
-    def given(self) -> Any:
-        """In which rows it is given."""
-        return np.array(True) if self.absent is None else ~self.absent
-
-    @property
-    def faults(self) -> Any:
-        """Which rows are outside the parameter's domain."""
-        may_be = [USUAL, ABSENT, FAR, *[ZERO] * INPUTS[self.name].zero, *[INFINITE] * INPUTS[self.name].inf]
-        return ~np.isin(self.kinds, may_be) | (self.column < 0)
-
-    def kind(self, row: int) -> Any:
-        return self.kinds if self.kinds is USUAL else self.kinds[0 if self.kinds.size == 1 else row]
-
-    def in_pattern(self, row: int) -> Any:
-        """This input in the `Pattern` of a row."""
-        kind = self.kind(row)
-        if kind == ABSENT or (kind == ZERO and self.name == "axle"):  # no friction is no axle
-            return None
-        if kind == INFINITE:
-            return inf
-        if kind == ZERO:
-            return Fraction(0)
-        return Fraction(float(self.column[0])) if self.column.size == 1 and self.name in SHAPES else COLUMN
+    def kind(self, row: int) -> int:
+        return int(self.kinds[0 if self.kinds.size == 1 else row])
 
 
 def input_columns(given: Mapping[str, GivenColumn], accuracy: Accuracy) -> dict[str, InputColumn]:
@@ -162,50 +149,47 @@ def input_columns(given: Mapping[str, GivenColumn], accuracy: Accuracy) -> dict[
     columns = {}
     for name, (column, absent) in given.items():
         sizes = [column]
-        if name == "I" and "R" in given:
+        if name == "I":
             sizes.append(column / given["R"].column / given["R"].column)
         if name == "axle":
             sizes.append(column / given["g"].column)
-        if all(low < size.min() and size.max() < high for size in sizes):
-            kinds: Any = USUAL
-        else:
-            kinds = ZERO * (column == 0) + INFINITE * (column == inf)
-            for size in sizes:
-                kinds = np.where((kinds == USUAL) & ((size <= low) | (size >= high)), FAR, kinds)
-            if absent is not None and name not in WHERE_ABSENT:
-                kinds = np.where(absent, ABSENT, kinds)
-        columns[name] = InputColumn(name, column, kinds, absent)
+        kinds = np.array([USUAL])
+        if not all(low < size.min() and size.max() < high for size in sizes):
+            is_kind = [
+                (ABSENT, np.array(False) if absent is None or name in WHERE_ABSENT else absent),
+                (NAN, np.isnan(column)),
+                (NEGATIVE, column < 0),
+                (ZERO, column == 0),
+                (INFINITE, column == inf),
+                *((FAR, (size <= low) | (size >= high)) for size in sizes),
+            ]
+            for kind, rows in reversed(is_kind):  # the first kind overwrites the others
+                if rows.any():
+                    kinds = np.where(rows, kind, kinds)
+        columns[name] = InputColumn(column, kinds, np.array([True]) if absent is None else ~absent)
     return columns
 
 
 def status_of(inputs: Mapping[str, InputColumn], size: int) -> NDArray[np.int8]:
     """The index into STATUSES for each row: whether its inputs are in their domains and go together."""
-
-    def given(name: str) -> Any:
-        return inputs[name].given if name in inputs else np.array(False)
-
-    def column(name: str) -> Column:
-        return inputs[name].column if name in inputs else np.array(nan)
-
-    unusual = {name: one for name, one in inputs.items() if one.kinds is not USUAL}
-    faults = [("NaN", np.isnan(one.column) & (one.kinds != ABSENT)) for one in unusual.values()]
-    faults += [(name, one.faults) for name, one in unusual.items()]
-    faults += [(name, ~given(name)) for name in MASSES if inputs[name].absent is not None]
-    if "I" in inputs:
-        faults.append(("I and inertia", given("I") & given("inertia")))
-    if not unusual.keys().isdisjoint(MASSES):
-        m1, m2 = column("m1"), column("m2")
-        faults.append(("no mass", (m1 == 0) & (m2 == 0)))
-        faults.append(("friction at a free end", ((m1 == 0) | (m2 == 0)) & given("mu")))
-    if "mu_k" in inputs:
-        faults.append(("mu_k without mu", given("mu_k") & ~given("mu")))
-        faults.append(("mu_k above mu", column("mu_k") > column("mu")))
-    if "I" in inputs:
-        faults.append(("I without R", given("I") & ~given("R")))
-        faults.append(("I with M = 0 or inf", given("I") & ((column("M") == 0) | (column("M") == inf))))
+    given = {name: one.given for name, one in inputs.items()}
+    zero = {name: one.kinds == ZERO for name, one in inputs.items()}
+    faults = [
+        *(("NaN", one.kinds == NAN) for one in inputs.values()),
+        *((name, OUTSIDE[name][one.kinds]) for name, one in inputs.items()),
+        *((name, ~given[name]) for name in MASSES),
+        ("I and inertia", given["I"] & given["inertia"]),
+        ("no mass", zero["m1"] & zero["m2"]),
+        ("friction at a free end", (zero["m1"] | zero["m2"]) & given["mu"]),
+        ("mu_k without mu", given["mu_k"] & ~given["mu"]),
+        ("mu_k above mu", inputs["mu_k"].column > inputs["mu"].column),
+        ("I without R", given["I"] & ~given["R"]),
+        ("I with M = 0 or inf", given["I"] & (zero["M"] | (inputs["M"].kinds == INFINITE))),
+    ]
     status = np.zeros(size, np.int8)
     for fault, rows in reversed(faults):  # the first fault overwrites the others
-        status[np.broadcast_to(rows, size)] = STATUSES.index(fault)
+        if rows.any():
+            status[np.broadcast_to(rows, size)] = STATUSES.index(fault)
     return status
 
 
@@ -214,7 +198,7 @@ def groups(
 ) -> Iterator[tuple[Index, Pattern, bool]]:
     """A block's valid rows, grouped by pattern, and whether an input of the group is beyond the window."""
     size, (m1, m2) = len(status), (inputs["m1"].column, inputs["m2"].column)
-    digits = [(5, one.kinds) for one in inputs.values() if one.kinds is not USUAL]
+    digits = [(len(KINDS), one.kinds) for one in inputs.values() if one.kinds.size > 1]
     if not (m2 > m1).all():
         digits.append((3, 1 * (m1 > m2) + 2 * (m1 == m2)))
     if status.any():
@@ -228,9 +212,16 @@ def groups(
         row = 0 if isinstance(index, slice) else int(index[0])
         if status[row]:
             continue
-        pattern = dict.fromkeys(INPUTS) | {name: of.in_pattern(row) for name, of in inputs.items()}
+        pattern = {name: _in_pattern(name, one, row) for name, one in inputs.items()}
         if pattern["I"] is not None:
             pattern["inertia"] = None
-        far = any(of.kind(row) == FAR for of in inputs.values())
-        light, heavy = (float(np.broadcast_to(mass, size)[row]) for mass in (m1, m2))
-        yield index, Pattern((heavy > light) - (heavy < light), tuple(pattern.values())), far
+        far = any(one.kind(row) == FAR for one in inputs.values())
+        first, second = (float(np.broadcast_to(mass, size)[row]) for mass in (m1, m2))
+        yield index, Pattern((second > first) - (second < first), tuple(pattern.values())), far
+
+
+def _in_pattern(name: str, one: InputColumn, row: int) -> Fraction | float | str | None:
+    """An input in the `Pattern` of a row."""
+    if (kind := one.kind(row)) in SAME_IN_ALL:
+        return None if name == "axle" else SAME_IN_ALL[kind]  # no friction is no axle
+    return Fraction(float(one.column[0])) if name in SHAPES and one.column.size == 1 else COLUMN
