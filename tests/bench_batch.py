@@ -1,6 +1,6 @@
 """A million scenes, CSV to CSV, beside DuckDB and mawk: python -m tests.bench_batch [PAIRS] [ROWS]
 
-Those do the paper's formulas as they stand. Whole processes in turn, A B C A B C ...; what counts is
+Those do the paper's formulas as they stand. The same scenes go from NDJSON to NDJSON too. Whole processes in turn, A B C A B C ...; what counts is
 the median of the ratios, round by round, and the largest memory of any run.
 """
 
@@ -13,6 +13,8 @@ import time
 from importlib.util import find_spec
 from pathlib import Path
 from shutil import which
+
+import polars as pl
 
 TOP = Path(__file__).parent.parent
 
@@ -71,8 +73,12 @@ def main(rounds: int, rows: int) -> None:
         scenes, out, program = (Path(folder, name) for name in ("scenes.csv", "out.csv", "naive.awk"))
         write_scenes(scenes, rows)
         program.write_text(MAWK)
+        lines, lines_out = scenes.with_suffix(".ndjson"), out.with_suffix(".ndjson")
+        pl.read_csv(scenes).write_ndjson(lines)
+        atwood = [sys.executable, "-m", "atwood_cli", "batch", "--force"]
         commands = {
-            "atwood": [sys.executable, "-m", "atwood_cli", "batch", str(scenes), "-o", str(out), "--force"],
+            "atwood": [*atwood, str(scenes), "-o", str(out)],
+            "atwood, NDJSON": [*atwood, str(lines), "-o", str(lines_out)],
             "duckdb": [sys.executable, "-c", DUCKDB, str(scenes), str(out)],
             "mawk": ["sh", "-c", 'mawk -f "$0" "$1" > "$2"', str(program), str(scenes), str(out)],
         }
