@@ -837,6 +837,7 @@ def test_what_matplotlib_warns_of_reaches_nobody(
 SMALL_DISK = """
 import resource, signal, sys
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+sys.dont_write_bytecode = True  # which would be cut off, too
 resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
 from atwood_cli.__main__ import main
 sys.exit(main())

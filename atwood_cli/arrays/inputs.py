@@ -154,7 +154,9 @@ def input_columns(given: Mapping[str, GivenColumn], accuracy: Accuracy) -> dict[
         if name == "axle":
             sizes.append(column / given["g"].column)
         kinds = np.array([USUAL])
-        if not all(low < size.min() and size.max() < high for size in sizes):
+        if absent is not None and absent.all() and name not in WHERE_ABSENT:
+            kinds = np.array([ABSENT])
+        elif not all(low < size.min() and size.max() < high for size in sizes):
             is_kind = [
                 (ABSENT, np.array(False) if absent is None or name in WHERE_ABSENT else absent),
                 (NAN, np.isnan(column)),

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Literal
 from .curves import EMPTY_X, EMPTY_Y, axis_ends, with_break
 from .figure import BLUE, GREEN, INK, ORANGE, PURPLE, RED, check_file, page, say_above
 from .labels import Label, write_labels
+from .text import wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -21,6 +22,7 @@ MARGIN = 0.1  # of the height, above and below the curves
 POWERS = (-3, 5)  # of ten: beyond, numbers on axes have a power of ten behind them
 NEAR = 0.01  # of the height, between ends of curves that share a label
 PANEL = 3.5  # inches, for each pair of axes more
+TITLE = 40  # characters: more do not fit beside an axis
 
 
 def save(picture: "Picture", caption: str, path: str, force: bool) -> None:
@@ -54,7 +56,7 @@ def _draw(axes: "Axes", panel: "Panel") -> list[Label]:
     if low > 0:
         low = max(tick for tick in axes.get_yticks() if tick <= low)
         axes.set_ylim(bottom=low)
-    axes.set_ylabel(with_break(panel.y, low, axes.get_ylim()[1]))
+    axes.set_ylabel("\n".join(wrapped(with_break(panel.y, low, axes.get_ylim()[1]), TITLE)))
     bottom, _ = axes.get_ylim()
     labels: list[Label] = []
     ends: tuple[list[Label], list[Label]] = [], []  # the last points of curves, and the first
