@@ -755,6 +755,21 @@ def test_no_words_of_a_figure_overlap_or_run_off(
     assert misplaced(page) == []
 
 
+def test_with_twelve_marks_no_line_to_a_label_crosses_another(
+    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    words = "sweep --m1 0.1:30:9 --m2 3 --M 50 --mu 0.05:0.3:6 --csv --figure".split()
+    with pages_seen(monkeypatch) as pages:
+        assert atwood(*words, str(tmp_path / "a.png")).status == 0
+    (page,) = pages
+    (axes,) = page.axes
+    assert page.get_suptitle().endswith("\nAt a dot the string begins to slip, or to hold.")
+    assert sum(line.get_marker() == "o" for line in axes.lines) == 12
+    names = sorted(axes.texts, key=lambda name: name.xyann[1])
+    assert [name.get_text() for name in names] == [f"μ = {mu}" for mu in (0.05, 0.1, 0.15, 0.2, 0.25, 0.3)]
+    assert names == sorted(names, key=lambda name: name.xy[1])  # lines between two sorted columns
+
+
 def test_curves_turn_exactly_where_the_regime_changes() -> None:
     """Four curves parted at M = 0 and slipped at 10, 10, 20 and 50: they coincide until then."""
     swept = read_sweep({"m1": "1", "m2": "3", "M": "0:50:6", "mu": "0.15:0.3:4"})

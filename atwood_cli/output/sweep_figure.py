@@ -20,8 +20,13 @@ LINES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
 
 MARGIN = 0.1  # of the height, above and below the curves
 POWERS = (-3, 5)  # of ten: beyond, numbers on axes have a power of ten behind them
-NEAR = 0.01  # of the height, between ends of curves that share a label
+MOST_MARKS = 6  # more words would lie across each other, and the table has the numbers
+BESIDE = 1.02  # of the axes' width: where the names of curves stand
+LEAD = {"arrowstyle": "-", "lw": 0.6, "relpos": (0, 0.5), "shrinkA": 0, "shrinkB": 0}
+SIZE, LINE = 10, 1.5  # of words, in points, and from one line to the next as a multiple of it
 PANEL = 3.5  # inches, for each pair of axes more
+AXES_SHARE = 0.75  # of the height, about
+DOTS = "At a dot the string begins to slip, or to hold."
 TITLE = 40  # characters: more do not fit beside an axis
 
 
@@ -42,14 +47,15 @@ def save(picture: "Picture", caption: str, path: str, force: bool) -> None:
             axes.spines[["top", "right"]].set_visible(False)
             axis: Literal["y", "both"] = "y" if picture.log else "both"
             axes.ticklabel_format(axis=axis, scilimits=POWERS, useMathText=True)
-            labels[axes] = _draw(axes, panel)
+            labels[axes] = _draw(axes, panel, AXES_SHARE * figure.get_figheight() / len(panels))
         if caption:
-            say_above(figure, caption)
-        write_labels(figure, labels, 10)
+            dots = any(curve.marks for curve in picture.panels[0].curves) and not labels[panels[0]]
+            say_above(figure, caption, *[DOTS] * dots)
+        write_labels(figure, labels, SIZE)
 
 
-def _draw(axes: "Axes", panel: "Panel") -> list[Label]:
-    """Draw the curves on one pair of axes; words still to be written."""
+def _draw(axes: "Axes", panel: "Panel", inches: float) -> list[Label]:
+    """Draw the curves on one pair of axes, about so high; words still to be written."""
     low, high = axis_ends(panel.ys, EMPTY_Y)
     room = MARGIN * (high - low)
     axes.set_ylim(low - room * (low != 0), (high + room * (high != 0)) or 1)
@@ -59,7 +65,7 @@ def _draw(axes: "Axes", panel: "Panel") -> list[Label]:
     axes.set_ylabel("\n".join(wrapped(with_break(panel.y, low, axes.get_ylim()[1]), TITLE)))
     bottom, _ = axes.get_ylim()
     labels: list[Label] = []
-    ends: tuple[list[Label], list[Label]] = [], []  # the last points of curves, and the first
+    ends: list[Label] = []
     for curve in panel.curves:
         colour, style = COLOURS[curve.colour], LINES[curve.style]
         ys, least, most = ([nan if y is None else y for y in line] for line in curve.lines)
@@ -69,30 +75,38 @@ def _draw(axes: "Axes", panel: "Panel") -> list[Label]:
             axes.plot(curve.xs, edge, color=colour, ls=style, lw=0.8)
         there = [(x, y) for x, *both in zip(curve.xs, ys, most, strict=True) for y in both if not isnan(y)]
         if curve.symbols and there:
-            for some, at in zip(ends, (there[-1], there[0]), strict=True):
-                some.append(Label(curve.symbols, *at, colour))
+            ends.append(Label(curve.symbols, *max(there), colour))
         for x, height, words in curve.marks:
             y = bottom if height is None else height
             axes.plot([x, x], [bottom, y], color=colour, lw=0.8, ls=":")
             axes.plot([x], [y], "o", color=colour, ms=4)
             if words:
                 labels.append(Label(words, x, y, colour))
-    near = NEAR * (axes.get_ylim()[1] - bottom)
-    return [*labels, *max((_merged(some, near) for some in ends), key=len)]  # where more lie apart
+    _name_ends(axes, ends, inches)
+    return labels if len(labels) <= MOST_MARKS else []
 
 
-def _merged(labels: Sequence[Label], near: float) -> list[Label]:
-    """The labels of the ends of curves, one for all that end as near to each other."""
-    groups: list[list[Label]] = []
-    for label in sorted(labels, key=attrgetter("x", "y")):
-        last = groups[-1][-1] if groups else None
-        if last and label.x == last.x and label.y - last.y <= near:
-            groups[-1].append(label)
-        else:
-            groups.append([label])
-    return [
-        one._replace(
-            words="\n".join(label.words for label in (one, *more)), colour=INK if more else one.colour
+def _name_ends(axes: "Axes", ends: Sequence[Label], inches: float) -> None:
+    """Name curves beside the axes, at the heights of their ends or as near as the words have room."""
+    low, high = axes.get_ylim()
+    ends = sorted(ends, key=attrgetter("y"))
+    heights = [(end.y - low) / (high - low) for end in ends]
+    room = LINE * SIZE / (72 * inches)
+    up, down = heights[:1], heights[-1:]
+    for one, other in zip(heights[1:], heights[-2::-1], strict=True):
+        up.append(max(one, up[-1] + room))
+        down.append(min(other, down[-1] - room))
+    # Both keep words apart, and so does what lies between; the lowest stays above the numbers of the x axis.
+    places = [(one + other) / 2 for one, other in zip(up, reversed(down), strict=True)]
+    lift = max(0, room / 2 - min(places, default=0))
+    for end, place in zip(ends, places, strict=True):
+        axes.annotate(
+            end.words,
+            (end.x, end.y),
+            xytext=(BESIDE, place + lift),
+            textcoords="axes fraction",
+            va="center",
+            color=end.colour,
+            size=SIZE,
+            arrowprops={**LEAD, "color": end.colour},
         )
-        for one, *more in groups
-    ]
