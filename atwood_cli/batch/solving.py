@@ -246,7 +246,7 @@ def _odd_cells(cells: "pl.Series", values: Any) -> dict[int, Any]:
     if (zero := values == 0).any():  # what is too small for a double would be another scene
         some = cells.str.contains("[1-9]") if text else cells != 0  # in an exponent it may be beyond bounds
         odd |= zero & some.fill_null(False).to_numpy()
-    if text and (cells.str.len_bytes().max() or 0) > LONG:  # type: ignore[operator]
+    if text:
         odd |= (cells.str.len_bytes() > LONG).fill_null(False).to_numpy()
     rows = odd.nonzero()[0]
     return dict(zip(rows.tolist(), cells.gather(rows).to_list(), strict=True)) if len(rows) else {}

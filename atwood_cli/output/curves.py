@@ -15,7 +15,7 @@ from ..solver.regimes import Change, changes
 from ..solver.sweep import LOCKED, Point, Range, Sweep, point_in_units, with_value
 
 MAX_CURVES = 6
-"""On one pair of axes, and values of the other parameter; of more, colours cannot be told apart."""
+"""The most on one pair of axes: there are six colours that everybody can distinguish."""
 USUAL = ["acceleration"]
 """What is drawn if nothing is named."""
 EMPTY_X, EMPTY_Y = 0.25, 0.5
