@@ -25,8 +25,9 @@ import polars as pl
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from polars.testing import assert_frame_equal
 
-from atwood_cli import SceneError, solve
+from atwood_cli import SceneError, arrays, solve, solve_table
 from atwood_cli.arrays import solve_and_count
 from atwood_cli.batch import formats as tables
 from atwood_cli.batch import ndjson, solving
@@ -37,6 +38,7 @@ from atwood_cli.model.scene import INPUTS
 
 from .conftest import examples
 from .running import HANGS, PIP, Atwood, Ran, hearing, on_terminal, plain, process
+from .scenes import FAMILIES, scenes
 
 NEEDS_MU = "atwood: critical_pulley_mass: give mu, the friction coefficient.\n"
 SEPARATORS = {"csv": ",", "tsv": "\t"}
@@ -133,9 +135,30 @@ def test_every_accuracy_is_handed_on(batch: Batch, monkeypatch: pytest.MonkeyPat
         asked.append(accuracy)
         return solve_and_count(given, accuracy, names)
 
-    monkeypatch.setattr(solving, "solve_and_count", spy)
-    assert batch(as_csv(SCENES), f"--accuracy {accuracy}").status == 0
+    monkeypatch.setattr(arrays, "solve_and_count", spy)
+    assert batch(as_csv(SCENES * 4), f"--accuracy {accuracy}").status == 0
     assert set(asked) == {accuracy}
+
+
+def test_few_rows_have_the_results_of_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of scenes of every kind, wrong ones too."""
+    rows = [dict(zip(INPUTS, cells.split(), strict=False)) for cells in ("0 0", "-1 3", "1 3 1 .1 .2")]
+    for family in FAMILIES:
+        rows += scenes(family, 40)
+    table = pl.DataFrame(rows, dict.fromkeys(INPUTS, pl.String))
+    monkeypatch.setattr(solving, "FEW", len(table))
+    few = solve_table(table, NAMES, "exact")
+    monkeypatch.setattr(solving, "FEW", 0)
+    many = solve_table(table, NAMES, "exact")
+    assert_frame_equal(few, many, check_exact=True)
+
+
+def test_few_rows_need_no_numpy(tmp_path: Path) -> None:
+    (tmp_path / "in.csv").write_text("m1,m2\n" + "1,3\n" * 20)
+    code = "import sys\nfrom atwood_cli.cli import run\nrun()\nprint(*sys.modules, file=sys.stderr)"
+    loaded = process("batch", str(tmp_path / "in.csv"), code=code).err.split()
+    assert "polars" in loaded
+    assert "numpy" not in loaded
 
 
 FROM_JSON = "--from ndjson"
@@ -944,7 +967,7 @@ def test_units_in_headings(
     """A cell is the double nearest to it in the SI, not a product that was rounded twice."""
     row = {"m1": "1", "m2": "3", "R": "1"}
     row.pop(name, None)
-    frame = pl.DataFrame({**{other: [text] for other, text in row.items()}, heading: [cell]})
+    frame = pl.DataFrame({**{other: [text] * 2 for other, text in row.items()}, heading: [cell] * 2})
     value: Any = exact and float(exact)
     if source == "parquet":
         frame = frame.with_columns(pl.all().str.strip_chars().cast(pl.Float64, strict=False))
@@ -956,12 +979,12 @@ def test_units_in_headings(
     for target in ("csv", "ndjson"):
         only = ["--only", "tension_1,torque,mu_verge"]
         ran = atwood("batch", start, "--accuracy", "exact", *only, "--to", target)
-        printed = records(ran)[0] if target == "csv" else json.loads(ran.out)
+        printed = records(ran)[0] if target == "csv" else json.loads(ran.out.splitlines()[0])
         assert not printed["error"]
         assert [float(printed[one]) for one in ("tension_1", "torque")] == [right.tension_1, right.torque]
         unit = heading.strip(f"{name}[( )]-")
         said = f"atwood: read as: {heading!r} as {name}{f' in {unit}' if unit else ''}.\n" * (heading != name)
-        assert ran.err.startswith(f"{said}atwood: 1 row")
+        assert ran.err.startswith(f"{said}atwood: 2 rows")
 
 
 def test_what_a_unit_takes_beyond_the_doubles_is_an_error_of_the_row(atwood: Atwood, tmp_path: Path) -> None:

@@ -65,26 +65,30 @@ class Layout(NamedTuple):
         """A cell with a decimal point."""
         return cell.replace(",", ".") if self.comma else cell
 
-    def as_doubles(self, name: str, kind: "pl.DataType") -> "pl.Expr":
+    def as_doubles(self, name: str, cells: "pl.Series") -> "pl.Series":
         """The double nearest to each cell of a column, null where only `double` can tell."""
         import polars as pl
 
-        cells, factor = pl.col(name), self.headings[name].factor
+        factor = self.headings[name].factor
         power = len(str(max(factor, 1 / factor))) - 1
         if power > LARGEST_POWER or max(factor, 1 / factor) != 10**power:
-            return cells.cast(pl.Float64, strict=False) * pl.lit(None, pl.Float64)
-        if kind == pl.String:
-            cells = cells.str.strip_chars()
-            if self.comma:
-                pointed = cells.str.replace(",", ".", literal=True)
-                cells = pl.when(~cells.str.contains(".", literal=True)).then(pointed)
-            return (cells + f"e{power if factor > 1 else -power}" if power else cells).cast(
-                pl.Float64, strict=False
-            )
-        doubles = cells.cast(pl.Float64, strict=False)
-        if power:  # a power of ten that is a double: rounded once
-            doubles = doubles * float(10**power) if factor > 1 else doubles / float(10**power)
-        return doubles
+            return pl.repeat(None, len(cells), dtype=pl.Float64, eager=True)
+        if cells.dtype != pl.String:
+            doubles = cells.cast(pl.Float64, strict=False)
+            # A column, as polars would divide by a single number in two steps, and round twice.
+            powers = pl.repeat(float(10**power), len(cells), eager=True)
+            return doubles * powers if factor > 1 else doubles / powers
+        if self.comma:
+            cells = cells.set(cells.str.contains(".", literal=True), None)
+            cells = cells.str.replace(",", ".", literal=True)
+
+        def read(cells: pl.Series) -> pl.Series:
+            exact = cells + f"e{power if factor > 1 else -power}" if power else cells
+            return exact.cast(pl.Float64, strict=False)
+
+        doubles = read(cells)
+        # Blanks around a number are no part of it.
+        return doubles if doubles.null_count() == cells.null_count() else read(cells.str.strip_chars())
 
     def double(self, name: str, cell: str | float) -> float:
         """A cell as the double nearest to it in the SI, NaN if it is not given. Raises SceneError."""

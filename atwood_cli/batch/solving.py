@@ -7,11 +7,11 @@ from functools import cache, partial
 from math import inf, nan
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from ..arrays import solve_and_count
 from ..files import Unreadable
 from ..model.quantities import NAMES, REGIMES, STANDARD, Accuracy
 from ..model.scene import Given, Scene, SceneError
-from ..model.units import counted, in_quotes, shortened
+from ..model.units import STANDARD_GRAVITY, counted, in_quotes, shortened
+from ..solver.answers import Answers
 from ..solver.messages import reasons_at
 from .formats import Piece
 from .layout import NOT_GIVEN, Layout, inputs_among, read_layout
@@ -20,6 +20,8 @@ if TYPE_CHECKING:
     import polars as pl
 
 ERROR = "error"
+FEW = 20
+"""Rows that are solved one by one before NumPy is there."""
 Table = TypeVar("Table")
 
 
@@ -134,17 +136,16 @@ def solve_frame(
 
     ``others`` are errors of rows that could not be read.
     """
-    import numpy as np
     import polars as pl
 
     doubles, errors, words = _doubles(frame, layout)
     errors |= others
-    doubles["m1"][list(errors)] = nan  # such a row has no results
-    scenes: Any = {name: np.ma.array(values, mask=np.isnan(values)) for name, values in doubles.items()}
+    doubles["m1"].scatter(list(errors), None)  # such a row has no results
     tally.not_given |= {*NOT_GIVEN} & words
-    wanted = list(dict.fromkeys(["regime", *names]))
-    results, reasons = solve_and_count(scenes, accuracy, wanted)
-    bad = [row for row in results["status"].nonzero()[0].tolist() if row not in errors]
+    solve = _one_by_one if frame.height <= FEW else _at_once
+    columns, reasons = solve(doubles, list(dict.fromkeys(["regime", *names])), accuracy)
+    regimes = columns["regime"]
+    bad = [row for row in regimes.is_null().arg_true() if row not in errors]
     inputs = _inputs(frame, layout)[bad]
 
     @cache  # as many rows may be alike
@@ -152,38 +153,54 @@ def solve_frame(
         return _why(dict(zip(inputs.columns, cells, strict=True)), layout)
 
     errors |= {row: why(*cells) for row, cells in zip(bad, inputs.iter_rows(), strict=True)}
-    columns = {
-        "regime": _regimes(results["regime"], tally),
-        **{name: _finite(results[name], tally) for name in wanted[1:]},
-        ERROR: pl.repeat(None, frame.height, dtype=pl.String, eager=True).scatter(
-            list(errors), list(errors.values())
-        ),
-    }
-    tally.missing -= {name for name in names if columns[name].null_count() < frame.height}
+    error = pl.repeat(None, frame.height, dtype=pl.String, eager=True)
+    error = error.scatter(list(errors), list(errors.values()))
+    values = pl.selectors.float()
+    tally.beyond += sum(map(sum, columns.select(values.is_infinite().sum()).iter_rows()))
+    results = columns.select(pl.when(values.is_finite()).then(values).name.keep(), "regime")
+    tally.missing -= {name for name in names if results[name].null_count() < frame.height}
+    tally.regimes.update({regime: count for regime, count in regimes.value_counts().iter_rows() if regime})
     tally.reasons += reasons
     tally.errors += len(errors)
     tally.rows += frame.height
-    return pl.DataFrame({name: columns[name] for name in [*names, ERROR]})
+    return results.select(*names, error.alias(ERROR))
 
 
-def _regimes(codes: Any, tally: Tally) -> "pl.Series":
-    """A column of the regimes' names, empty in rows that failed; the tally counts them."""
-    import numpy as np
+def _at_once(
+    doubles: Mapping[str, "pl.Series"], names: Sequence[str], accuracy: Accuracy
+) -> "tuple[pl.DataFrame, Counter[tuple[str, str]]]":
+    """The results of all rows, where that of a bad row has no regime; in how many others one is missing, by
+    its name and the reason.
+    """
     import polars as pl
 
-    _, *counts = np.bincount(codes + 1, minlength=len(REGIMES) + 1).tolist()  # -1 is the code of an error
-    tally.regimes.update(dict(zip(REGIMES, counts, strict=True)))
-    return pl.Series([*REGIMES, None]).gather(codes)
+    from ..arrays import solve_and_count
+
+    columns: Any = doubles
+    results, reasons = solve_and_count(columns, accuracy, names)
+    regimes = pl.Series([*REGIMES, None]).gather(results["regime"])
+    return pl.DataFrame({**results, "regime": regimes}), reasons
 
 
-def _finite(values: Any, tally: Tally) -> "pl.Series":
-    """A column of results, empty where a value does not exist or no double can hold it."""
-    import numpy as np
+def _one_by_one(
+    doubles: Mapping[str, "pl.Series"], names: Sequence[str], accuracy: Accuracy
+) -> "tuple[pl.DataFrame, Counter[tuple[str, str]]]":
+    """As `_at_once`, but without NumPy, and exact whatever the accuracy."""
     import polars as pl
 
-    beyond = np.isinf(values)
-    tally.beyond += int(beyond.sum())
-    return pl.Series(np.where(beyond, nan, values), nan_to_null=True)
+    rows: list[dict[str, Any]] = []
+    reasons: Counter[tuple[str, str]] = Counter()
+    for row in pl.DataFrame(doubles).iter_rows(named=True):
+        row["g"] = float(STANDARD_GRAVITY) if row.get("g") is None else row["g"]
+        try:
+            answers = Answers(Scene.read(row))
+        except SceneError:
+            rows.append({})
+            continue
+        rows.append({name: answers[name] for name in names})
+        reasons.update((name, answers.reasons[name]) for name in names if answers[name] is None)
+    kinds = {name: pl.String if name == "regime" else pl.Float64 for name in names}
+    return pl.DataFrame(rows, kinds), reasons
 
 
 def _inputs(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
@@ -195,61 +212,57 @@ def _inputs(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
 
 def with_numbers(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
     """A frame of texts with its inputs as numbers in the units of the headings, null where a cell is none."""
-    import polars as pl
-
     doubles, _, _ = _doubles(frame, layout.as_it_stands())
     return frame.with_columns(
-        pl.Series(heading.column, doubles[name], nan_to_null=True)
-        for name, heading in layout.headings.items()
+        doubles[name].alias(heading.column) for name, heading in layout.headings.items()
     )
 
 
-def _doubles(frame: "pl.DataFrame", layout: Layout) -> tuple[dict[str, Any], dict[int, str], set[str]]:
-    """The inputs by name, NaN where a cell is empty or wrong; the first error of each row that has one; and
+def _doubles(
+    frame: "pl.DataFrame", layout: Layout
+) -> "tuple[dict[str, pl.Series], dict[int, str], set[str]]":
+    """The inputs by name, null where a cell is empty or wrong; the first error of each row that has one; and
     cells that are no numbers.
     """
     import polars as pl
 
-    cells = _inputs(frame, layout)
-    for name, kind in cells.schema.items():
-        if not (kind.is_numeric() or kind in (pl.String, pl.Null)):
-            raise Unreadable(f"column {name} holds {shortened(str(kind))}, not numbers")
-    frame = cells.select(layout.as_doubles(name, kind) for name, kind in cells.schema.items())
-    doubles = {name: frame[name].to_numpy(writable=True) for name in cells.columns}
+    columns: dict[str, pl.Series] = {}
     errors: dict[int, str] = {}
     words: set[str] = set()
-    for name, values in doubles.items():
-        for row, cell in _odd_cells(cells[name], values).items():
+    for name, cells in zip(layout.headings, _inputs(frame, layout), strict=True):
+        if not (cells.dtype.is_numeric() or cells.dtype in (pl.String, pl.Null)):
+            raise Unreadable(f"column {name} holds {shortened(str(cells.dtype))}, not numbers")
+        columns[name] = layout.as_doubles(name, cells)
+        odd = _odd_cells(cells, columns[name])
+        for row, cell in odd.items():
             try:
-                values[row] = layout.double(name, cell)
+                odd[row] = layout.double(name, cell)
             except SceneError as error:
-                values[row] = nan
+                odd[row] = nan
                 errors.setdefault(row, str(error))
-            if values[row] != values[row]:
+            if odd[row] != odd[row]:
+                odd[row] = None
                 words.add(str(cell).strip())
-    return doubles, errors, words
+        columns[name].scatter(list(odd), pl.Series(odd.values(), dtype=pl.Float64))
+    return columns, errors, words
 
 
 LONG = 100
 """Characters: a shorter text that is a nonzero double is within the limits of digits and exponents."""
 
 
-def _odd_cells(cells: "pl.Series", values: Any) -> dict[int, Any]:
+def _odd_cells(cells: "pl.Series", doubles: "pl.Series") -> dict[int, Any]:
     """The cells, by row, that may not be equal to the doubles that polars read."""
-    import numpy as np
     import polars as pl
 
     text = cells.dtype == pl.String
-    odd = ~np.isfinite(values)
-    if odd.any():
-        odd &= cells.is_not_null().to_numpy()
-    if (zero := values == 0).any():  # what is too small for a double would be another scene
-        some = cells.str.contains("[1-9]") if text else cells != 0  # in an exponent it may be beyond bounds
-        odd |= zero & some.fill_null(False).to_numpy()
+    odd = cells.is_not_null() & ~doubles.is_finite().fill_null(False)
+    if (zero := doubles == 0).any():  # what is too small for a double would be another scene
+        odd |= zero & (cells.str.contains("[1-9]") if text else cells != 0)  # it may be an exponent's, too
     if text:
-        odd |= (cells.str.len_bytes() > LONG).fill_null(False).to_numpy()
-    rows = odd.nonzero()[0]
-    return dict(zip(rows.tolist(), cells.gather(rows).to_list(), strict=True)) if len(rows) else {}
+        odd |= cells.str.len_bytes() > LONG
+    rows = odd.arg_true()
+    return dict(zip(rows, cells[rows], strict=True))
 
 
 def _why(row: Mapping[str, Any], layout: Layout) -> str:
