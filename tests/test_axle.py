@@ -148,13 +148,12 @@ def test_a_light_pulley_slips_only_under_middling_masses() -> None:
     given_: dict[str, Any] = {"m1": "1", "M": "0.1", "axle": "3", "mu": "0.08"}
     s: Any = solve(**given_, m2="1.5", digits=20)
     assert s.critical_heavier_mass == s.least_heavier_mass
-    holding = Answers(s.scene, 20).settle(lambda m: m.holding_heavier_mass)
-    assert any("Under more than 1.53 kg it holds again" in note for note in s.notes)
+    assert any("Under a much heavier mass it holds again" in note for note in s.notes)
     for mass, regime in (
         (s.critical_heavier_mass * Decimal("0.999999"), "no-slip"),
         (s.critical_heavier_mass * Decimal("1.000001"), "slip"),
-        (Fraction(holding) * Fraction("0.999999"), "slip"),
-        (Fraction(holding) * Fraction("1.000001"), "no-slip"),
+        ("1.52", "slip"),
+        ("1.53", "no-slip"),
         (1000, "no-slip"),
     ):
         assert solve(**given_, m2=mass).regime == regime

@@ -70,10 +70,9 @@ def test_the_critical_heavier_mass_is_where_the_ratio_is_the_capstans(
 ) -> None:
     z = l * (k - 1)
     assume(c != b and c + (b or 0) != 2 * z)
-    for side in (1, -1):
-        h = physics.critical_heavier_mass(l, c, z, b, side)
-        if h - l > (b or 0):
-            assert physics.excess_ratio(l, h, c, b) == k - 1
+    h = physics.critical_heavier_mass(l, c, z, b)
+    if h - l > (b or 0):
+        assert physics.excess_ratio(l, h, c, b) == k - 1
     if 2 * z > (b or 0):
         pulley = physics.least_pulley_mass(z, Fraction(1, 2), b)
         assert physics.heaviest_excess(l, pulley / 2 + (b or 0)) == k - 1

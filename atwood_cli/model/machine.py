@@ -461,12 +461,6 @@ class Machine(Generic[N]):
         return physics.critical_lighter_mass(h, c, k1, self.b)
 
     @lazy
-    def holding_heavier_mass(self) -> N:
-        """Heavier mass above which a string that slips under the critical one holds again (kg)."""
-        c = self._given(self.case.rim_mass, NEEDS_M)
-        return physics.critical_heavier_mass(self.l, c, self.transfer, self.b, -1)
-
-    @lazy
     def least_heavier_mass(self) -> N:
         """What the heavier mass must exceed for any pulley to make the string slip (kg) (36)."""
         self._check_applicable()

@@ -290,11 +290,8 @@ def critical_pulley_mass(l: N, h: N, transfer: N, drive: N, beta: N, b: N | None
     return (2 * h * transfer - b * (h + l + transfer)) / (drive * beta)
 
 
-def critical_heavier_mass(l: N, c: N, transfer: N, b: N | None = None, side: int = 1) -> N:
-    """Heavier mass (kg) at which the string is on the verge (35); needs c > 2 l (k - 1).
-
-    Beside an axle ``side`` is 1 for c > b, where it slips above that mass, and -1 for c < b, where it
-    slips below.
+def critical_heavier_mass(l: N, c: N, transfer: N, b: N | None = None) -> N:
+    """Heavier mass (kg) above which the string slips (35); needs c > 2 l (k - 1), beside an axle c > b too.
 
     >>> critical_heavier_mass(1, 4, 1), critical_heavier_mass(1, 6, 2, 1)
     (4.0, 5.0)
@@ -302,7 +299,7 @@ def critical_heavier_mass(l: N, c: N, transfer: N, b: N | None = None, side: int
     least = least_heavier_mass(l, transfer)
     if b is None:
         return c / (c - 2 * transfer) * least
-    return (c - b) * side / ((c + b - 2 * transfer) * side) * least
+    return (c - b) / (c + b - 2 * transfer) * least
 
 
 def critical_lighter_mass(h: N, c: N, k1: N, b: N | None = None) -> N:

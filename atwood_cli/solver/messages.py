@@ -140,12 +140,11 @@ def odd_inertia(answers: Answers) -> list[str]:
 
 
 def holding_again(answers: Answers) -> list[str]:
-    """The sentence on a string that slips above the critical mass and holds again above a greater one."""
+    """The sentence on a string that slips above the critical mass and holds again under much greater ones."""
     if answers.case.scene.mu is None or not answers.case.holds_again:
         return []
-    least = _threshold(answers, "holding_heavier_mass", up=True, given=answers.case.heavy)
     return [
-        f"Under more than {least} kg it holds again: the more the heavier"
+        "Under a much heavier mass it holds again: the more the heavier"
         " mass weighs, the less the friction of the axle counts beside it."
     ]
 
