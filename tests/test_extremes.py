@@ -10,7 +10,6 @@ l and h are the lighter and the heavier mass, c = M/2 is the disk's mass at the 
 from collections.abc import Sequence
 from decimal import Context, Decimal
 from fractions import Fraction
-from itertools import pairwise
 from math import inf, isnan, ldexp, log, nextafter, pi, ulp
 from typing import Any
 
@@ -357,74 +356,6 @@ def test_kinetic_friction_below_static_makes_the_motion_jump(
     for value, law in zip(after, laws, strict=True):
         assert_near(value, law, DOORS[door])
     assert [new > old for new, old in zip(after, before, strict=True)] == [True, True, False, False]
-
-
-# What grows with what
-
-
-def assert_rises(door: str, values: Sequence[Any]) -> None:
-    """Rounding to nearest keeps an order; what is only near the truth keeps it within that."""
-    loose = 0 if door in ("doubles", "exact") else 2 * DOORS[door]
-    for one, other in pairwise(values):
-        assert other > one if door == "digits" else other >= one - abs(one) * loose
-
-
-@everywhere
-@few
-@given(unequal, st.lists(st.floats(1e-3, 1e5), min_size=2, max_size=6, unique=True))
-def test_a_heavier_pulley_slows_the_masses_and_takes_more_friction(
-    door: str, pair: tuple[float, float], pulleys: list[float]
-) -> None:
-    answers = [
-        ask(door, [*MOTION[:3], "mu_verge"], m1=pair[1], m2=pair[0], M=M) for M in [*sorted(pulleys), inf]
-    ]
-    a, heavy, light, mu = zip(*answers, strict=True)
-    assert_rises(door, a)  # m1 is the heavier here: a is negative
-    assert_rises(door, heavy)
-    assert_rises(door, [-t for t in light])
-    assert_rises(door, mu)
-
-
-@everywhere
-@few
-@given(verges, st.floats(0.01, 1), st.lists(st.floats(1.01, 1e9), min_size=2, max_size=4))
-def test_only_the_rim_feels_the_mass_of_a_pulley_on_which_the_string_slips(
-    door: str, scene: tuple[float, float, float], share: float, above: list[float]
-) -> None:
-    m1, m2, mu = scene
-    mu_k = mu * share
-    (critical,) = ask("doubles", ["critical_pulley_mass"], m1=m1, m2=m2, mu=mu)
-    names = ["regime", *MOTION, "friction_force", "friction_force_x"]
-    pulleys = [critical * factor for factor in above]
-    answers = [ask(door, names, m1=m1, m2=m2, mu=mu, mu_k=mu_k, M=M) for M in pulleys]
-    assert len({(*values[:4], *values[5:]) for values in answers}) == 1
-    assert answers[0][0] == "slip"
-    k = mp.exp(mu_k * mp.pi)
-    l, h, g = exactly(m1, m2, G)
-    difference = 2 * l * h * g * (k - 1) / (h + l * k)
-    for M, (_, a, _, _, rim, *_) in zip(pulleys, answers, strict=True):
-        assert_near(rim, difference / M * 2, DOORS[door])
-        assert rim < a
-
-
-@everywhere
-@few
-@given(unequal, st.lists(st.floats(0.01, 0.99), min_size=2, max_size=6, unique=True))
-def test_more_friction_holds_heavier_pulleys_and_heavier_masses(
-    door: str, pair: tuple[float, float], parts: list[float]
-) -> None:
-    limit = log(pair[1] / pair[0]) / pi
-    mus = sorted({part * limit for part in parts})
-    M = 4 * pair[1]  # condition (36): above 4 l (k - 1) for all of them
-    names = ["critical_pulley_mass", "critical_heavier_mass", "least_heavier_mass", "least_pulley_mass"]
-    answers = [ask(door, names, m1=pair[0], m2=pair[1], M=M, mu=mu) for mu in mus]
-    for values in zip(*answers, strict=True):
-        assert_rises(door, values)
-    slipping = [ask(door, MOTION, m1=pair[0], m2=pair[1], M=inf, mu=limit * 0.999, mu_k=mu) for mu in mus]
-    a, light, heavy, _ = zip(*slipping, strict=True)
-    assert_rises(door, [-value for value in a])
-    assert_rises(door, [-value for value in light])
-    assert_rises(door, heavy)
 
 
 # The same machine in other units, and from behind

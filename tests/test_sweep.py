@@ -24,6 +24,7 @@ from atwood_cli.output.curves import Curve, axis_ends, picture, with_break
 from atwood_cli.solver.sweep import Row, Sweep, point_text, read_list, read_range, read_sweep, solve_rows
 
 from .running import PIP, Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
+from .scenes import table
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]
@@ -36,27 +37,24 @@ def points(typed_range: str, name: str = "M") -> list[str]:
 # Ranges
 
 
-@pytest.mark.parametrize(
-    ("range_", "expected"),
-    [
-        ("0:1:11", "0 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1"),
-        ("1:0:3", "1 0.5 0"),
-        ("0:1:4", "0 0.333333 0.666667 1"),
-        ("100g:500g:5", "0.1 0.2 0.3 0.4 0.5"),
-        ("0:500g:2", "0 0.5"),
-        ("1lb:2lb:2", "0.45359237 0.90718474"),
-        ("1e-400:3e-400:3", "1e-400 2e-400 3e-400"),
-        ("1:1000:4:log", "1 10 100 1000"),
-        ("1000:1:4:log", "1000 100 10 1"),
-        ("1e-500:1e500:3:log", "1e-500 1 1e500"),
-        ("2:512:5:log", "2 8 32 128 512"),
-        ("1:10:3:log", "1 3.16228 10"),
-        (
-            "1:1.00000000000000000003:4",
-            "1 1.00000000000000000001 1.00000000000000000002 1.00000000000000000003",
-        ),
-    ],
-)
+POINTS = """
+0:1:11               | 0 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1
+1:0:3                | 1 0.5 0
+0:1:4                | 0 0.333333 0.666667 1
+100g:500g:5          | 0.1 0.2 0.3 0.4 0.5
+0:500g:2             | 0 0.5
+1lb:2lb:2            | 0.45359237 0.90718474
+1e-400:3e-400:3      | 1e-400 2e-400 3e-400
+1:1000:4:log         | 1 10 100 1000
+1000:1:4:log         | 1000 100 10 1
+1e-500:1e500:3:log   | 1e-500 1 1e500
+2:512:5:log          | 2 8 32 128 512
+1:10:3:log           | 1 3.16228 10
+1:1.00000000000000000003:4 | 1 1.00000000000000000001 1.00000000000000000002 1.00000000000000000003
+"""
+
+
+@pytest.mark.parametrize(("range_", "expected"), table(POINTS))
 def test_points(range_: str, expected: str) -> None:
     assert points(range_) == expected.split()
 
@@ -67,18 +65,18 @@ def test_points_of_an_angle_keep_what_makes_them_exact() -> None:
     assert points("1rad:2rad:3", "wrap") == ["1rad", "1.5rad", "2rad"]
 
 
-@pytest.mark.parametrize(
-    ("name", "typed", "expected", "words"),
-    [
-        ("M", "0,1, 10,inf", "0 1 10 inf", "M = 0 kg, 1 kg, 10 kg or inf"),
-        ("M", "0,500g,inf", "0 0.5 inf", "M = 0 kg, 0.5 kg or inf"),
-        ("inertia", "Disk,1/3,hoop", "0.5 1/3 1", "inertia = disk (0.5), 1/3 or hoop (1)"),
-        ("g", "moon,9.81", "1.62 9.81", "g = moon (1.62 m/s²) or 9.81 m/s²"),
-        ("wrap", "450,180", "450 180", "wrap = 450° or 180°"),
-        ("wrap", "1rad,1/3rad", "1rad 1/3rad", "wrap = 1rad or 1/3rad"),
-        ("mu", "1,2,3,4,5,6,7", "1 2 3 4 5 6 7", "mu = 1, 2, ... or 7"),
-    ],
-)
+LISTS = """
+M       | 0,1, 10,inf   | 0 1 10 inf    | M = 0 kg, 1 kg, 10 kg or inf
+M       | 0,500g,inf    | 0 0.5 inf     | M = 0 kg, 0.5 kg or inf
+inertia | Disk,1/3,hoop | 0.5 1/3 1     | inertia = disk (0.5), 1/3 or hoop (1)
+g       | moon,9.81     | 1.62 9.81     | g = moon (1.62 m/s²) or 9.81 m/s²
+wrap    | 450,180       | 450 180       | wrap = 450° or 180°
+wrap    | 1rad,1/3rad   | 1rad 1/3rad   | wrap = 1rad or 1/3rad
+mu      | 1,2,3,4,5,6,7 | 1 2 3 4 5 6 7 | mu = 1, 2, ... or 7
+"""
+
+
+@pytest.mark.parametrize(("name", "typed", "expected", "words"), table(LISTS))
 def test_points_of_a_list_are_exact(name: str, typed: str, expected: str, words: str) -> None:
     swept = read_list(name, typed)
     assert [*map(point_text, swept.points)] == expected.split()
@@ -205,12 +203,6 @@ def test_the_table(atwood: Atwood) -> None:
     ]
 
 
-FIRST = ["--m1 1 --m2 3 --mu 0.3 --M 0:50:6", "--m1 1 --m2 3 --mu 0.1:0.4:4 --only acceleration"]
-TORQUE = "--m1 1:2:2 --m2 3 --M 1 --only torque --only tension_1"
-RADIANS = "--m1 1 --m2 3 --mu 0.3 --M 10 --wrap 1rad:4rad:4 --only regime"
-EVERY_PULLEY = "As M is not given, each row that is on the verge has a pulley of its own: the critical one."
-
-
 def test_words_in_a_column_of_numbers_are_not_moved(atwood: Atwood) -> None:
     ran = atwood(*"sweep --m1 1 --m2 3 --M 10,inf --inertia sphere,hoop --only a".split())
     assert [line.split("│")[1:3] for line in ran.out.splitlines() if "sphere" in line][1:] == [
@@ -219,105 +211,59 @@ def test_words_in_a_column_of_numbers_are_not_moved(atwood: Atwood) -> None:
     ]
 
 
-@pytest.mark.parametrize(
-    ("words", "shown", "absent"),
-    [
-        # What is the same in all rows is said once.
-        (FIRST[0], "beyond.\nIn all rows: critical_pulley_mass = 43.3419 kg.\n", "│ regime"),
-        (f"{FIRST[0]} --only critical_pulley_mass", "\nIn all rows: critical_pulley_mass = 43.3419 kg.", "│"),
-        ("--m1 1 --m2 3 --mu 0.3 --M 0:1:6 --only regime", "\nRegimes: no-slip.", "│"),
-        ("--m1 1 --m2 3 --mu 0.3 --g 1:2:2", "mu_verge = 0.300000, critical_pulley_mass = 43.3419 kg.", ""),
-        # Without M each row on the verge shows its own pulley.
-        (FIRST[1], EVERY_PULLEY, ""),
-        (FIRST[1], "│ 0.3 │ 0.764027     │ 43.3419              │", ""),
-        (FIRST[1], "Regimes: verge up to mu = 0.349699, no-slip beyond.", ""),
-        (f"{FIRST[1]} --csv", "mu,acceleration\n", "critical"),
-        (f"{FIRST[1]} --M 5", "acceleration", "critical"),
-        # A group for each value of the slow range.
-        (
-            "--m1 1 --m2 3 --M 1:100:3:log --mu 0.2:0.3:2 --only regime",
-            "│  10  │ 0.2 │ slip    │\n│  10  │ 0.3 │ no-slip │",
-            "│ 10   │",
-        ),
-        (
-            "--m1 1 --m2 3 --M 1:100:3:log --mu 0.2:0.3:2 --only regime",
-            "\nM = 10 kg: slip up to mu = 0.205827, no-slip beyond.\n",
-            "",
-        ),
-        ("--m1 1 --m2 3 --M 1:100:7 --mu 0.2:0.3:2 --only regime", "│ slip", " up to "),
-        ("--m1 1 --m2 3 --M 0:50:6 --mu 0.1:0.3:9", "│ regime ", ""),
-        # Where the regime changes is told exactly.
-        ("--m1 1 --m2 3 --mu 0.3 --M 0:20:3", "Regimes: no-slip.", ""),
-        ("--m1 1 --m2 3 --mu 0.3 --M 50:0:3", "Regimes: no-slip up to M = 43.3419 kg, slip beyond.", ""),
-        (
-            "--m1 1:17:9 --m2 3 --mu 0.3 --M 100",
-            "Regimes: slip up to m1 = 1.08920 kg, no-slip up to 9.48105 kg, slip beyond.",
-            "",
-        ),
-        # So it is of a list, in any order, and what a name stands for is said once.
-        (
-            "--m1 1 --m2 3 --mu 0.3 --M 50,0,inf,20",
-            "Regimes: no-slip up to M = 43.3419 kg, slip beyond.",
-            "at M = inf",
-        ),
-        ("--m1 1 --m2 3 --mu 0.3 --M 0,inf", "Regimes: no-slip, slip at M = inf.", ""),
-        (
-            "--m1 1 --m2 3 --mu 0.3 --M 0:50:3 --inertia disk,hoop",
-            "inertia = disk (0.5) or hoop",
-            "│ 0.5",
-        ),
-        (
-            "--m1 1 --m2 3 --mu 0.3 --M 1,40 --inertia hoop,0.5 --only a",
-            "│ 40   │ hoop    │ 0.764027",
-            "│ 1 ",
-        ),
-        ("--m1 1 --m2 3 --g earth,moon,2 --only a", "\n│ earth  │ 4.9", ""),  # not aligned at its e
-        ("--m1 1 --m2 3 --g earth,moon,2 --only a", "\n│ moon   │ 0.8", ""),
-        ("--m1 1 --m2 3 --mu 0.3 --M 1:40:2 --inertia hoop,0.5 --only mu_verge --csv", "\n1,1,0.", "hoop"),
-        ("--m1 1 --m2 3 --M 0,1/3,inf --only regime --json", '"M": "0,1/3,inf"', ""),
-        ("--m1 1 --m2 3 --M 0,1/3,inf --only regime --json", '"M": "1/3",', ""),
-        (
-            "--m1 1 --m2 3 --mu 0.3 --M 0:50:3 --inertia disk,hoop",
-            "\ndisk: no-slip up to M = 43.3419 kg, slip beyond.\nhoop: no-slip up to M = 21.6709 kg,",
-            "",
-        ),
-        (
-            "--m1 1 --m2 3 --mu 0.3 --M inf,30 --inertia disk,hoop --only a",
-            "\ndisk: no-slip, slip at M = inf.\nhoop: slip.\n",
-            "",
-        ),
-        # A column without values is left out of the table only.
-        (TORQUE, "torque: give R, the pulley's radius.\n", "torque\n"),
-        (f"{TORQUE} --csv", "m1,torque,tension_1\n1,,", ""),
-        (f"{TORQUE} --json", '"torque": null', ""),
-        (f"{TORQUE} --json", '"torque: give R, the pulley\'s radius."', ""),
-        # An angle in radians is headed so.
-        (RADIANS, "│ wrap  │ regime  │\n│ (rad) │         │", ""),
-        (RADIANS, "│ 3     │ no-slip │", ""),
-        (RADIANS, "Regimes: slip up to wrap = 2.15542rad, no-slip beyond.", ""),
-        (f"{RADIANS} --csv", "3rad,no-slip\n", ""),
-        # Digits, order, columns
-        ("--m1 1 --m2 3 --M 1:2:2 --mu 0.3 --only tension_1 --digits 4 --json", '"tension_1": 14.17', ""),
-        ("--m1 1 --m2 3 --M 0:50:7 --mu 0.3 --only tension_1 --digits 4 --csv", "0,14.71\n8.333,12.21\n", ""),
-        ("--m1 1 --m2 3 --M 1:2:2 --csv --only tension_2,regime,tension_2", "M,tension_2,regime\n", ""),
-        (f"{FIRST[0]} --csv", "M,regime,acceleration,", ""),
-        (
-            "--M 1:2:2 --m2 3 --m1 1:2:2 --only regime --csv",  # the first range varies slowest
-            "m1,M,regime\n1,1,no-slip\n1,2,no-slip\n2,1,no-slip\n2,2,no-slip\n",
-            "",
-        ),
-        ("--m1 1e400 --m2 3e400 --M 1:2:2 --only tension_1 --csv", "M,tension_1\n1,\n2,\n", ""),
-        (
-            "--m1 1e400 --m2 3e400 --M 1:2:2 --only tension_1 --csv --digits 3",
-            "\n1,1.47e401\n2,1.47e401\n",
-            "",
-        ),
-    ],
-)
-def test_what_is_shown(atwood: Atwood, words: str, shown: str, absent: str) -> None:
-    out = atwood("sweep", *words.split()).out
-    assert shown in out
-    assert not absent or absent not in out
+SHOWN = r"""
+# What is the same in all rows is said once.
+--mu 0.3 --M 0:50:6 => beyond.\nIn all rows: critical_pulley_mass = 43.3419 kg.\n !! │ regime
+--mu 0.3 --M 0:50:6 --only critical_pulley_mass => \nIn all rows: critical_pulley_mass = 43.3419 kg. !! │
+--mu 0.3 --M 0:1:6 --only regime => \nRegimes: no-slip. !! │
+--mu 0.3 --g 1:2:2 => mu_verge = 0.300000, critical_pulley_mass = 43.3419 kg.
+# Without M each row on the verge shows its own pulley.
+--mu 0.1:0.4:4 --only acceleration => As M is not given, each row that is on the verge has a pulley of its own: the critical one. => │ 0.3 │ 0.764027     │ 43.3419              │ => Regimes: verge up to mu = 0.349699, no-slip beyond.
+--mu 0.1:0.4:4 --only acceleration --csv => mu,acceleration\n !! critical
+--mu 0.1:0.4:4 --only acceleration --M 5 => acceleration !! critical
+# A group for each value of the slow range.
+--M 1:100:3:log --mu 0.2:0.3:2 --only regime => │  10  │ 0.2 │ slip    │\n│  10  │ 0.3 │ no-slip │ => \nM = 10 kg: slip up to mu = 0.205827, no-slip beyond.\n !! │ 10   │
+--M 1:100:7 --mu 0.2:0.3:2 --only regime => │ slip !! up to mu
+--M 0:50:6 --mu 0.1:0.3:9 => │ regime
+# Where the regime changes is told exactly; of a list too, in any order.
+--mu 0.3 --M 0:20:3 => Regimes: no-slip.
+--mu 0.3 --M 50:0:3 => Regimes: no-slip up to M = 43.3419 kg, slip beyond.
+--m1 1:17:9 --m2 3 --mu 0.3 --M 100 => Regimes: slip up to m1 = 1.08920 kg, no-slip up to 9.48105 kg, slip beyond.
+--mu 0.3 --M 50,0,inf,20 => Regimes: no-slip up to M = 43.3419 kg, slip beyond. !! at M = inf
+--mu 0.3 --M 0,inf => Regimes: no-slip, slip at M = inf.
+# What a name stands for is said once.
+--mu 0.3 --M 0:50:3 --inertia disk,hoop => inertia = disk (0.5) or hoop => \ndisk: no-slip up to M = 43.3419 kg, slip beyond.\nhoop: no-slip up to M = 21.6709 kg, !! │ 0.5
+--mu 0.3 --M 1,40 --inertia hoop,0.5 --only a => │ 40   │ hoop    │ 0.764027 !! │ 1    │
+--g earth,moon,2 --only a => \n│ earth  │ 4.9 => \n│ moon   │ 0.8
+--mu 0.3 --M 1:40:2 --inertia hoop,0.5 --only mu_verge --csv => \n1,1,0. !! hoop
+--M 0,1/3,inf --only regime --json => "M": "0,1/3,inf" => "M": "1/3",
+--mu 0.3 --M inf,30 --inertia disk,hoop --only a => \ndisk: no-slip, slip at M = inf.\nhoop: slip.\n
+# A column without values is left out of the table only.
+--m1 1:2:2 --m2 3 --M 1 --only torque --only tension_1 => torque: give R, the pulley's radius.\n !! torque\n
+--m1 1:2:2 --m2 3 --M 1 --only torque --only tension_1 --csv => m1,torque,tension_1\n1,,
+--m1 1:2:2 --m2 3 --M 1 --only torque --only tension_1 --json => "torque": null => "torque: give R, the pulley's radius."
+# An angle in radians is headed so.
+--mu 0.3 --M 10 --wrap 1rad:4rad:4 --only regime => │ wrap  │ regime  │\n│ (rad) │         │ => │ 3     │ no-slip │ => Regimes: slip up to wrap = 2.15542rad, no-slip beyond.
+--mu 0.3 --M 10 --wrap 1rad:4rad:4 --only regime --csv => 3rad,no-slip\n
+# Digits, order, columns: the first range varies slowest.
+--M 1:2:2 --mu 0.3 --only tension_1 --digits 4 --json => "tension_1": 14.17
+--M 0:50:7 --mu 0.3 --only tension_1 --digits 4 --csv => 0,14.71\n8.333,12.21\n
+--M 1:2:2 --csv --only tension_2,regime,tension_2 => M,tension_2,regime\n
+--mu 0.3 --M 0:50:6 --csv => M,regime,acceleration,
+--M 1:2:2 --m2 3 --m1 1:2:2 --only regime --csv => m1,M,regime\n1,1,no-slip\n1,2,no-slip\n2,1,no-slip\n2,2,no-slip\n
+--m1 1e400 --m2 3e400 --M 1:2:2 --only tension_1 --csv => M,tension_1\n1,\n2,\n
+--m1 1e400 --m2 3e400 --M 1:2:2 --only tension_1 --csv --digits 3 => \n1,1.47e401\n2,1.47e401\n
+"""
+
+
+@pytest.mark.parametrize("line", [line for line in SHOWN.strip().splitlines() if not line.startswith("#")])
+def test_what_is_shown(atwood: Atwood, line: str) -> None:
+    """Of each line: words typed, => what is shown, !! what is not."""
+    words, *shown = line.replace(r"\n", "\n").split(" => ")
+    last, *absent = shown.pop().split(" !! ")
+    out = atwood(*(["sweep"] if "--m1" in words else HELD), *words.split()).out
+    assert all(one in out for one in [*shown, last])
+    assert not any(one in out for one in absent)
 
 
 def test_a_note_says_at_how_many_points(atwood: Atwood) -> None:
