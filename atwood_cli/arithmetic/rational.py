@@ -5,10 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 from math import isqrt
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from .protocol import Arithmetic, N
 
 
 class Irrational(ArithmeticError):
@@ -66,22 +62,3 @@ class Rationals:
 
 
 EXACT = Rationals()
-
-
-def power(ar: Arithmetic[N], excess: N, share: Fraction) -> N:
-    """(1 + excess)^share for a share from 0 to 1. Of exact fractions it must be rational, else Irrational."""
-    if not isinstance(excess, Fraction):
-        return ar.exp(ar.number(share) * ar.log1p(excess))
-    base, times = 1 + excess, share.denominator
-    root = Fraction(_root(base.numerator, times), _root(base.denominator, times))
-    if root**times != base:
-        raise Irrational
-    return ar.number(root**share.numerator)
-
-
-def _root(n: int, k: int) -> int:
-    """The greatest integer whose k-th power is at most n > 0 (I. Newton)."""
-    x = 1 << -(-n.bit_length() // k)
-    while (smaller := ((k - 1) * x + n // x ** (k - 1)) // k) < x:
-        x = smaller
-    return x

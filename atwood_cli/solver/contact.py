@@ -12,7 +12,6 @@ from fractions import Fraction
 from math import inf
 from typing import Any, NamedTuple
 
-from ..arithmetic.rational import power
 from ..arithmetic.rounding import is_infinite
 from ..model import arc
 from ..model.arc import Kind
@@ -103,9 +102,6 @@ def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
             return machine.light_tension
         if from_light == 1:
             return machine.heavy_tension
-        if scene.mu is None:
-            excess = machine.difference / machine.light_tension
-            return machine.light_tension * power(machine.ar, excess, from_light)
         angle = machine.ar.number(from_light) * machine.phi
         return arc.tension(machine.ar, machine.arcs(kind)[piece], angle)
 
