@@ -1,7 +1,7 @@
 """The door for Python: `solve`, and the `Solution` that it returns."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass
 from decimal import Decimal
 from inspect import Parameter, Signature
 from typing import TYPE_CHECKING, Any, Generic, Required, TypedDict, TypeVar, Unpack, overload
@@ -89,7 +89,7 @@ class Solution(Answered, Generic[T]):
     """
 
     scene: Scene
-    notes: tuple[str, ...] = field(compare=False)
+    notes: tuple[str, ...]
     regime: str
     acceleration: T | None
     tension_1: T | None
@@ -125,12 +125,9 @@ class Solution(Answered, Generic[T]):
             if name not in self.__dataclass_fields__:
                 return object.__getattribute__(self, name)  # raises the usual error
             values = _computed(name, self._answers)
-            self._keep(values)
+            for one, value in values.items():
+                object.__setattr__(self, one, value)
             return values[name]
-
-    def _keep(self, values: Mapping[str, Any]) -> None:
-        for name, value in values.items():
-            object.__setattr__(self, name, value)
 
     def to_dict(self) -> dict[str, Any]:
         """What ``--json`` prints, ready for `json`: of Decimals text, None for what is infinite."""
@@ -155,15 +152,13 @@ class Solution(Answered, Generic[T]):
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
             return NotImplemented
-        names = [one.name for one in fields(self) if one.compare]
-        return all(getattr(self, name) == getattr(other, name) for name in names)
+        return bool(self._answers.given == other._answers.given)
 
     def __hash__(self) -> int:
         return hash(self.scene)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        values = {one.name: getattr(self, one.name) for one in fields(self)}
-        return _restored, (type(self), self._answers.given, values)
+        return _solved, self._answers.given
 
 
 @dataclass(frozen=True, slots=True, init=False, eq=False)
@@ -197,11 +192,10 @@ def _computed(name: str, answers: Answers) -> dict[str, Any]:
     return {**values, "uncertainty": uncertainty, "notes": tuple(notes(answers))}
 
 
-def _restored(kind: type[Solution[T]], given: Any, values: Mapping[str, Any]) -> Solution[T]:
-    """A solution that was pickled."""
-    solution = kind(Answers(*given))
-    solution._keep(values)
-    return solution
+def _solved(*given: Any) -> Solution[Any]:
+    """The solution to what is given; one that was copied or pickled is computed again when it is read."""
+    answers = Answers(*given)
+    return Solution(answers) if answers.names == NAMES else MeasuredSolution(answers)
 
 
 @overload
@@ -237,8 +231,7 @@ def solve(*, digits: int | str | None = None, **given: Unpack[Inputs]) -> Any:
     correctly rounded to N significant digits. Raises SceneError (a ValueError) on bad input.
     """
     inputs = SIGNATURE.bind(**given).arguments  # raises TypeError where there is no such input
-    answers = read_answers(inputs, read_digits(digits))
-    return Solution(answers) if answers.names == NAMES else MeasuredSolution(answers)
+    return _solved(*read_answers(inputs, read_digits(digits)).given)
 
 
 SIGNATURE = Signature(
