@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import marshal
 import re
 import subprocess
 import sys
@@ -309,7 +310,7 @@ def test_only(atwood: Atwood, words: str, out: str, err: str, status: int) -> No
 def test_every_symbol_names_its_quantity(name: str) -> None:
     symbol = QUANTITIES[name].symbol
     plain = symbol.translate(ASCII)
-    ways = [symbol, plain, plain.replace(" ", "_"), plain.replace(" ", "")]
+    ways = [symbol, plain, plain.replace(" ", "_"), plain.replace(" ", ""), name, name.replace("_", "-")]
     assert read_names("only", ways, QUANTITIES) == [name] * len(ways)
 
 
@@ -533,6 +534,16 @@ def test_an_error_that_is_no_interrupt_is_raised(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("signal.signal", lambda *_: None)  # this process goes on
     with pytest.raises(ImportError):
         main()
+
+
+def test_a_compiled_module_that_was_cut_off_is_no_interrupt(
+    atwood: Atwood, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Python raises this as it loads one, and typer takes it for Ctrl-D: it ended with 130, without a word."""
+    monkeypatch.setattr("atwood_cli.cli.solve.read_answers", lambda *_: marshal.loads(b""))
+    ran = atwood(*PAPER)
+    assert (ran.status, ran.out) == (1, "")
+    assert ran.err.lstrip() == "atwood: a file of the program is damaged; install it again\n"
 
 
 def test_python_dash_m_and_the_command_are_one() -> None:

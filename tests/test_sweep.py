@@ -539,7 +539,6 @@ def test_more_points_lie_along_the_axis(atwood: Atwood) -> None:
         "--g 1:1.000001:3 --m2 3",
         "--M 2:3:9:log --m2 1.0001",
         "--M 1e10:10000000000.000002:3:log --m2 3",
-        "--M 1:1.00000000000000000001:3 --m2 3",
     ],
 )
 def test_plots_of_next_to_nothing(atwood: Atwood, words: str) -> None:
@@ -850,6 +849,8 @@ WRONG_USAGE = """
 --M 1,1e400 --figure a.svg => --figure draws numbers between 1e-100 and 1e+100 in magnitude only, not such M
 --M 1:2:3 --plot --only mu_verge,F --g 1e200 => --plot draws numbers between 1e-100 and 1e+100 in magnitude only, not such friction_force
 --M 1e-200:2:3:log --figure a.svg => --figure draws numbers between 1e-100 and 1e+100 in magnitude only, not such M
+--M 1:2:3 --only M => --only 'M' is an input, no quantity
+--M 1:1.00000000000000000001:3 --plot => --M '1:1.00000000000000000001:3' has ends too close together to draw what is between them
 --M 1:2:3 --plot --csv => --plot has no effect with --csv; leave one of them out
 --M 1:2:3 --plot -o a.json => --plot has no effect with --json; leave one of them out
 --M 1:2:3 --bare => --bare needs --figure

@@ -241,7 +241,10 @@ def run(arguments: list[str] | None = None) -> int:
         how = "by which a shell asks for words, but not COMP_WORDS and COMP_CWORD; unset it"
         say(f"{COMPLETING} is set, {how}")
         return WRONG_USAGE
-    except (KeyboardInterrupt, typer.Abort):
+    except (KeyboardInterrupt, EOFError, typer.Abort) as error:
+        if EOFError in (type(error), type(error.__cause__)):  # of a compiled module that was cut off
+            say("a file of the program is damaged; install it again")
+            return COULD_NOT
         drop(sys.stdout)  # who reads it may have stopped, and writing would wait for ever
         raise KeyboardInterrupt from None
     except ModuleNotFoundError as error:

@@ -10,7 +10,17 @@ from math import inf
 from typing import Any
 
 from ..arithmetic.dual import Dual
-from ..arithmetic.rounding import as_typed, settle, text, to_digits, to_double, to_threshold
+from ..arithmetic.rounding import (
+    SHOWN_DIGITS,
+    as_typed,
+    settle,
+    text,
+    tidy,
+    to_digits,
+    to_double,
+    to_side_of,
+    to_threshold,
+)
 from . import physics
 from .angle import Angle
 from .axle import Axle
@@ -70,7 +80,10 @@ def _contradiction(scene: Scene, motion: Motion, g_given: bool) -> str:
     """Why an acceleration contradicts the other inputs; empty if it does not."""
     finds, pulley = motion.finds, "M" if scene.M is not None else "I"
     if scene.mu is not None and finds != "mu_k":
-        return "has no place beside mu, as a string that slips moves alike on any pulley; leave mu out"
+        why = "a string that slips moves alike on any pulley"
+        if finds in MASSES:
+            why = f"whether the string slips depends on {finds}"
+        return f"has no place beside mu, as {why}; leave mu out"
     if finds in MASSES:
         if scene.M == inf:
             return "has no place beside M = inf, which lets nothing move; leave one of them out"
@@ -112,7 +125,7 @@ def impossible(case: Case, name: str) -> str:
         if motion.finds == "mu_k" and case.scene.mu is not None and case.beats_friction("slide_excess"):
             return "is that of a string with more kinetic friction than mu; check both"
         return ""
-    implied = f"implies a = {text(to_double(case.sign * a))} m/s², which " * (name == "time")
+    implied = f"implies a = {_beside(case.sign * a, case.sign * most)} m/s², which " * (name == "time")
     heavier = f"as {'m2' if case.sign > 0 else 'm1'} is the heavier mass"
     if motion.finds == "g":
         return f"{implied}must be {'above' if case.sign > 0 else 'below'} 0, {heavier}"
@@ -178,11 +191,17 @@ def _beyond(scene: Scene, motion: Motion, uncertain: Mapping[str, Fraction]) -> 
     if over**2 > AGREES**2 * variance:
         return ""
     times = settle(lambda ar: ar.sqrt(ar.number(over**2 / variance)), to_digits(2), 2)
-    a, most = (text(to_double(case.sign * one)) for one in (case.measured_acceleration, _most(case)))
+    found, limit = (case.sign * one for one in (case.measured_acceleration, _most(case)))
+    a, most = _beside(found, limit), _beside(limit, found)
     return (
         f"none, as a = {a} m/s² is beyond the {most} m/s² of a massless pulley; it agrees with M = 0, which"
         f" the other results are for, within {text(times)} standard uncertainties"
     )
+
+
+def _beside(value: Fraction, other: Fraction) -> str:
+    """A number in a sentence, with so many digits that it lies on its side of another."""
+    return text(tidy(to_side_of(other, SHOWN_DIGITS)(value)))
 
 
 def number_of(scene: Scene, motion: Motion, x: str) -> Any:

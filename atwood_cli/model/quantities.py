@@ -1,10 +1,11 @@
 """The registry: every quantity's name, symbol, unit, equation and meaning, once; and names as typed."""
 
+import re
 from collections.abc import Collection, Iterable, Mapping
 from itertools import chain
 from typing import Literal, NamedTuple, get_args
 
-from .scene import SceneError
+from .scene import INPUTS, SceneError
 from .units import nearest
 
 REGIMES = ("no-slip", "verge", "slip")
@@ -108,11 +109,11 @@ ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", S
 
 
 def _plain(symbol: str) -> str:
-    """A symbol as it may be typed: F min is Fmin, as F_min is."""
-    return symbol.translate(ASCII).replace(" ", "").replace("_", "")
+    """A symbol or a name as it may be typed: F min is Fmin, as F_min is, and mu_k is muk, as mu-k is."""
+    return re.sub("[ _-]", "", symbol.translate(ASCII))
 
 
-SYMBOLS = {_plain(about.symbol): name for name, about in QUANTITIES.items()}
+SYMBOLS = {_plain(typed): name for name, about in QUANTITIES.items() for typed in (name, about.symbol)}
 
 
 def read_names(
@@ -138,6 +139,8 @@ def read_name(
         return word
     if (name := symbols.get(_plain(word), "")) in known:
         return name
+    if word in INPUTS:
+        raise SceneError(parameter, word, f"is an input, no {kind}")
     small = _plain(word).lower()
     alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
     hint = f"did you mean {alike[0]}?" if len(alike) == 1 else f"there are {', '.join(known)}"

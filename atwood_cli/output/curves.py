@@ -113,6 +113,8 @@ def drawable(sweep: Sweep, option: str, names: Sequence[str]) -> list[str]:
         raise SceneError(x.name, x.typed, "has one finite value, which makes no axis; give another")
     if x.ends[1] > LARGEST_DRAWN or (x.log and x.ends[0] < 1 / LARGEST_DRAWN):
         raise _undrawable(option, x.name)
+    if len({*map(float, x.ends)}) < 2:
+        raise SceneError(x.name, x.typed, "has ends too close together to draw what is between them")
     scenes, units = sweep.total // len(x.points), [QUANTITIES[name].unit for name in drawn]
     if (count := scenes * max(map(units.count, units))) > MAX_CURVES:
         rule = f"would draw {count} curves on one pair of axes, more than {MAX_CURVES}"
