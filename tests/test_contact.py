@@ -496,7 +496,7 @@ ERRORS = """
 --m1 1 --m2 3 --mu 0.3 --elements 0 -> --elements '0' must be a whole number from 1 to 10000000
 --m1 1 --m2 3 --mu 0.3 --elements 5 --extrapolate -> --elements 5 must be even, to extrapolate from half as many
 --m1 1 --m2 3 --mu 0.3 --extrapolate -> --extrapolate needs --elements
---m1 1 --m2 1.2 --elements 1 -> --elements 1 are too few, as each must be below 180 degrees; take at least 2
+--m1 1 --m2 1.2 --elements 1 -> --elements 1 are too few for this mu_verge and wrap, which take at least 2
 --m1 1 --m2 1e6 --M inf --elements 2 -> --elements 2 are too few for this mu_verge and wrap, which take at least 8
 --m1 1 --m2 3 --mu 50 --elements 10 -> --elements 10 are too few for this mu and wrap, which take at least 79
 --m1 1e400 --m2 3e400 --mu 0.3 --elements 10 -> --elements 10 run in doubles, which this scene is too large for

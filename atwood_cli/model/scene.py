@@ -7,7 +7,7 @@ from fractions import Fraction
 from functools import cache
 from math import inf
 from numbers import Rational, Real
-from typing import TYPE_CHECKING, Any, NamedTuple, SupportsInt
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.rational import OfFloat
 from ..arithmetic.rounding import as_typed, to_double
@@ -361,25 +361,15 @@ def _read_number(name: str, given: object) -> Fraction | float:
     if isinstance(given, Decimal) and given.is_finite() and given and _longest(given) > MAX_MAGNITUDE:
         raise SceneError(name, given, TOO_LONG)
     try:
+        if isinstance(given, Rational):
+            ratio: tuple[Any, Any] = given.numerator, given.denominator
+        else:  # NumPy's long doubles are beyond doubles
+            ratio = (given if hasattr(given, "as_integer_ratio") else float(given)).as_integer_ratio()
         kind = Fraction if isinstance(given, Rational | Decimal) else OfFloat
-        return limited(kind(*map(int, _ratio(given))))
+        return limited(kind(*map(int, ratio)))  # NumPy's integers have parts that are no ints
     except Malformed as error:
         raise SceneError(name, given, str(error)) from None
     except ValueError:  # not a number
         raise SceneError(name, given, parameter_of(name).domain) from None
     except OverflowError:
         return float(given)
-
-
-def _ratio(given: Any) -> tuple[SupportsInt, SupportsInt]:
-    """A number's numerator and denominator, exact. It is never compared, which some floats refuse.
-
-    NumPy's integers have parts that are no ints; its long doubles are beyond doubles. Raises ValueError
-    where it is not a number, OverflowError where it is infinite.
-    """
-    if isinstance(given, Rational):
-        return given.numerator, given.denominator
-    if isinstance(given, float) or not hasattr(given, "as_integer_ratio"):
-        return float.as_integer_ratio(float(given))
-    ratio: tuple[int, int] = given.as_integer_ratio()
-    return ratio

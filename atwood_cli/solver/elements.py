@@ -117,16 +117,13 @@ def _check_count(machine: _Doubles, count: int, times: int) -> None:
     if balanced(mu, phi, count // times):
         return
     cause = f"{'mu_verge' if machine.case.scene.mu is None else 'mu'} and wrap"
-    most = MAX_ELEMENTS // times
-    rule = f"are too few for this {cause}, and so are {MAX_ELEMENTS}, the most"
-    if balanced(mu, phi, most):
-        least = max(1, floor(phi / (2 * atan2(1, mu))))
-        while not balanced(mu, phi, least):
-            least += 1
-        rule = f"are too few for this {cause}, which take at least {times * least}"
-        if not balanced(0, phi, count // times):
-            rule = f"are too few, as each must be below 180 degrees; take at least {times * least}"
-    raise SceneError("elements", count, rule)
+    least, most = max(1, floor(phi / (2 * atan2(1, mu)))), MAX_ELEMENTS // times
+    while least <= most and not balanced(mu, phi, least):
+        least += 1
+    limit = (
+        f"which take at least {times * least}" if least <= most else f"and so are {MAX_ELEMENTS}, the most"
+    )
+    raise SceneError("elements", count, f"are too few for this {cause}, {limit}")
 
 
 def elements(answers: Answers, count: int | str, extrapolate: bool = False) -> Elements:
