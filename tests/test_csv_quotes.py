@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from atwood_cli.batch.csv_quotes import checked, first_end, portions
+from atwood_cli.batch.csv_quotes import checked, each, first_end
 from atwood_cli.files import Unreadable
 
 texts = st.text(st.sampled_from('""",,\n\r\nax'), max_size=16)
@@ -53,16 +53,14 @@ def test_marks_out_of_place_are_found(text: str) -> None:
             checked(text.encode(), ",", 1)
 
 
-@given(texts.filter(is_well_formed), st.integers(1, 3))
-@example('a\n"x\ny"', 1)  # a last row without a line end was cut within its marks
-def test_portions_are_whole_rows(text: str, lines: int) -> None:
-    parts = [part.decode() for part in portions(text.encode(), lines)]
-    assert "".join(parts) == text
-    assert all(part and part.count('"') % 2 == 0 for part in parts)
-    rows = [
-        len(list(csv.reader(StringIO(part, newline=""), strict=True))) for part in parts if "\r" not in text
-    ]
-    assert max(rows, default=0) <= lines + 1  # and one without a line end
+@given(texts.filter(is_well_formed))
+@example('a\n"x\ny"')  # a last row without a line end was cut within its marks
+def test_each_is_a_whole_row(text: str) -> None:
+    rows = [row.decode() for row in each(text.encode())]
+    assert "".join(rows) == text
+    assert all(row and row.count('"') % 2 == 0 for row in rows)
+    read = [len(list(csv.reader(StringIO(row, newline=""), strict=True))) for row in rows if "\r" not in text]
+    assert max(read, default=0) <= 1
     first = first_end(text.encode())
     assert text[:first].count('"') % 2 == 0
     assert first == len(text) or text[first - 1] == "\n"

@@ -11,7 +11,7 @@ because possessive groups fail before Python 3.11.5 (gh-106052).
 
 import re
 from collections.abc import Iterator
-from itertools import islice, pairwise
+from itertools import pairwise
 
 from ..files import Unreadable
 
@@ -55,7 +55,7 @@ def checked(rows: bytes, separator: str, line: int) -> bytes:
         def has_stray(rows: bytes) -> bool:
             return 2 * sum(1 for _ in pair.finditer(rows)) < rows.count(b'"')
 
-        for row in portions(rows, 1) if has_stray(rows) else ():
+        for row in each(rows) if has_stray(rows) else ():
             if has_stray(row):
                 where = f"the row that begins in line {line}"
                 if row.count(b'"') % 2 and re.search(opens + rb'[^"]*\Z', row.replace(b'""', b"")):
@@ -71,10 +71,11 @@ def checked(rows: bytes, separator: str, line: int) -> bytes:
     return rows
 
 
-def portions(rows: bytes, lines: int) -> list[bytes]:
-    """The rows in parts of at most so many lines; a part may have more if a cell has line ends."""
-    cuts = [0, *islice(_ends(rows), lines - 1, None, lines), len(rows)]
-    return [rows[start:end] for start, end in pairwise(cuts) if start < end]
+def each(rows: bytes) -> Iterator[bytes]:
+    """Each of the rows; the last one may have no line end."""
+    for start, end in pairwise([0, *_ends(rows), len(rows)]):
+        if start < end:
+            yield rows[start:end]
 
 
 def split(line: str, separator: str) -> list[str]:

@@ -18,7 +18,7 @@ from typing import IO, TYPE_CHECKING, Any, NamedTuple, NoReturn
 from ..files import FORMATS, LONGEST_NAME, STREAM, Unreadable
 from ..model.scene import SceneError
 from ..model.units import counted, in_quotes, shortened
-from .csv_quotes import checked, first_end, last_end, portions, split, widths
+from .csv_quotes import checked, first_end, last_end, split, widths
 from .parquet import PIECE_CELLS, PIECE_ROWS
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
 SEPARATORS = {"csv": ",", "tsv": "\t"}
 PARTED_BY = {",": "commas", "\t": "tabs", ";": "semicolons"}
-PIECE_BYTES = 1 << 21
+PIECE_BYTES = 3 << 20
 """The bytes of text that are read at a time; a piece takes several times as much memory."""
 MOST_COLUMNS = 1024
 """Each column of a piece takes a kilobyte and some microseconds, however few its rows."""
@@ -255,15 +255,17 @@ def read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
     for header, separator, rows, size, lines in rows_of_csv(file, usual, inputs):
         check_distinct(header)
         line += lines
+        try:
+            frame, errors = _parsed(rows, header, separator, done)
+        except Unreadable:
+            decoded(rows, line - rows.count(b"\n"))  # polars does not say where it is not UTF-8
+            raise
+        done += frame.height
         most = min(PIECE_ROWS, PIECE_CELLS // len(header))
-        for part in [rows] if lines <= most else portions(rows, most):
-            try:
-                frame, errors = _parsed(part, header, separator, done)
-            except Unreadable:
-                decoded(rows, line - rows.count(b"\n"))  # polars does not say where it is not UTF-8
-                raise
-            done += frame.height
-            yield Piece(header, frame, size, errors, separator)
+        for start in range(0, max(1, frame.height), most):
+            part = frame[start : start + most]
+            its = {row - start: why for row, why in errors.items() if 0 <= row - start < most}
+            yield Piece(header, part, size, its, separator)
             size = 0
 
 
