@@ -1,7 +1,7 @@
 """solve_arrays beside the paper's formulas in plain NumPy: python -m tests.bench_arrays [ROWS]
 
-One run in turn, medians of the repeats. What counts are the ratios; the cold first calls stand apart. Then
-the families of rows that are hard, in rows a second. Last, `solve` scene by scene, in processor time: one
+One run in turn: medians of the repeats, and the least processor time of a row. What counts are the ratios; the
+cold first calls stand apart. Then the families of rows that are hard, in rows a second. Last, `solve` scene by scene, in processor time: one
 quantity beside all of them.
 """
 
@@ -178,10 +178,16 @@ def copied(*columns: Any) -> Any:
     return [column.copy() for column in (*columns, *columns[:2])], np.zeros(len(columns[0]), np.int8)
 
 
-def seconds(work: Callable[[], Any], clock: Callable[[], float] = time.perf_counter) -> float:
-    start = clock()
+class Taken(NamedTuple):
+    wall: float
+    processor: float
+
+
+def taken_by(work: Callable[[], Any]) -> Taken:
+    """The seconds that a run takes, without those for the end of its results."""
+    wall, processor = time.perf_counter(), time.process_time()
     kept = work()
-    taken = clock() - start
+    taken = Taken(time.perf_counter() - wall, time.process_time() - processor)
     del kept
     return taken
 
@@ -193,7 +199,7 @@ def warm(given: dict[str, Any], accuracy: Any, quantities: Any, times: int) -> f
         return solve_arrays(**given, accuracy=accuracy, quantities=quantities)
 
     work()
-    return statistics.median(seconds(work) for _ in range(times))
+    return statistics.median(taken_by(work).wall for _ in range(times))
 
 
 def beside_the_paper(what: str, scenes: Columns) -> None:
@@ -204,13 +210,18 @@ def beside_the_paper(what: str, scenes: Columns) -> None:
         "copy": lambda: copied(*scenes),
     }
     with np.errstate(all="ignore"):
-        cold = {name: seconds(work) for name, work in works.items()}
-        times = [{name: seconds(work) for name, work in works.items()} for _ in range(REPEATS)]
-    print(f"{scenes[0].size} {what} scenes, the seven standard quantities:")
+        cold = {name: taken_by(work) for name, work in works.items()}
+        times = [{name: taken_by(work) for name, work in works.items()} for _ in range(REPEATS)]
+    rows = scenes[0].size
+    print(f"{rows} {what} scenes, the seven standard quantities:")
     for name in works:
-        warm = statistics.median(one[name] for one in times)
-        ratio = statistics.median(one["paper"] / one[name] for one in times)
-        print(f"  {name:9}  {warm:6.3f} s, {ratio:5.2f} x the paper's throughput, cold {cold[name]:6.3f} s")
+        warm = statistics.median(one[name].wall for one in times)
+        ratio = statistics.median(one["paper"].wall / one[name].wall for one in times)
+        least = min(one[name].processor for one in times) / rows * 1e9
+        print(
+            f"  {name:9}  {warm:6.3f} s, {ratio:5.2f} x the paper's throughput, {least:5.1f} ns of processor time"
+            f" a row, cold {cold[name].wall:6.3f} s"
+        )
 
 
 def one_by_one(count: int) -> None:
@@ -222,7 +233,7 @@ def one_by_one(count: int) -> None:
         "acceleration": lambda: [solve(**scene).acceleration for scene in scenes],
         "all quantities, and notes": lambda: [solve(**scene).notes for scene in scenes],
     }
-    times = [{name: seconds(work, time.process_time) for name, work in works.items()} for _ in range(REPEATS)]
+    times = [{name: taken_by(work).processor for name, work in works.items()} for _ in range(REPEATS)]
     one, everything = (min(turn[name] for turn in times) for name in works)
     for name, taken in zip(works, (one, everything), strict=True):
         print(f"{count} scenes by solve, {name}: {taken / count * 1e3:.2f} ms each")

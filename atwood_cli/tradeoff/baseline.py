@@ -1,4 +1,4 @@
-"""The baseline that accuracies are measured against: the paper's formulas as anybody would type them.
+"""The baseline that accuracies are measured against: the paper's formulas, with shared sums computed once.
 
 They are no part of the model, which has its equations in `physics`: they know no regime, subtract what is
 nearly equal, and what they form on the way may overflow.
@@ -24,12 +24,14 @@ def paper_in_numpy(
         M = np.zeros_like(l) if M is None else M
     else:
         k = np.exp(mu * phi)
-        critical = 2 * l * h * (k - 1) / (inertia * (h - l * k))  # (34)
+        critical = 2 / inertia * l * h * (k - 1) / (h - l * k)  # (34)
         M = critical if M is None else M
-    a = (h - l) * g / (l + h + inertia * M)  # (4)
-    t_l = (2 * h + inertia * M) * l * g / (l + h + inertia * M)
-    t_h = (2 * l + inertia * M) * h * g / (l + h + inertia * M)
+    c = inertia * M
+    q = g / (l + h + c)
+    a = (h - l) * q  # (4)
+    t_l = (2 * h + c) * l * q
+    t_h = (2 * l + c) * h * q
     mu_verge = np.log(t_h / t_l) / phi  # (27)
     limit = mu_verge if mu is None else mu
-    friction = limit / np.sqrt(1 + limit**2) * (t_l + t_h)  # (32)
+    friction = limit / np.sqrt(1 + limit * limit) * (t_l + t_h)  # (32)
     return dict(zip(STANDARD[1:], (a, t_l, t_h, mu_verge, friction, critical), strict=True))
