@@ -1,5 +1,6 @@
 """The command line, called in process, and the option that has every example tried."""
 
+import gc
 import os
 
 import pytest
@@ -31,6 +32,12 @@ def pytest_configure(config: pytest.Config) -> None:
     settings.load_profile("every-digit" if config.getoption("every_digit") else "usual")
     for name in [name for name in os.environ if name.startswith("PYTHON") and name != "PYTHONPATH"]:
         del os.environ[name]
+
+
+def pytest_collection_finish() -> None:
+    """Imported modules are not searched for garbage, and formulas, which have no circles, seldom."""
+    gc.freeze()
+    gc.set_threshold(20_000, 20, 20)
 
 
 @pytest.fixture

@@ -154,22 +154,25 @@ class Program:
         fixed, first = set(slots), len(leaves) + len(wanted)
         free: dict[type[Any], list[int]] = {}
         last_use = {part: n for n, (_, parts) in enumerate(values.all) if n not in leaves for part in parts}
+        kinds = [KINDS.get(op, np.float64) for op, _ in values.all]
         for n, (op, parts) in enumerate(values.all):
             if n in leaves:
                 continue
-            done = [part for part in dict.fromkeys(parts) if last_use[part] == n and part not in fixed]
+            done = [part for part in parts if last_use[part] == n and part not in fixed]
+            if len(done) > 1:
+                done = list(dict.fromkeys(done))
             in_place = op not in NOT_IN_PLACE
             for part in done if in_place else ():
-                free.setdefault(values.kind(part), []).append(slots[part])
+                free.setdefault(kinds[part], []).append(slots[part])
             if n not in slots:
-                kind = values.kind(n)
+                kind = kinds[n]
                 if not free.get(kind):
                     free[kind] = [first + len(self.between)]
                     self.between.append(kind)
                 slots[n] = free[kind].pop()
             for part in () if in_place else done:
-                free.setdefault(values.kind(part), []).append(slots[part])
-            self.operations.append((OPERATIONS[op], (*(slots[part] for part in parts), slots[n])))
+                free.setdefault(kinds[part], []).append(slots[part])
+            self.operations.append((OPERATIONS[op], (*[slots[part] for part in parts], slots[n])))
         self.operations += copies
 
     def run(
@@ -189,36 +192,31 @@ class _Values:
     def __init__(self) -> None:
         self.all: list[tuple[str, tuple[Any, ...]]] = []
         self._numbers: dict[tuple[str, tuple[Any, ...]], int] = {}
-        self._of: dict[
-            int, tuple[int, Formula]
-        ] = {}  # by id; the formula is kept so that its id stays its own
+        self._of: dict[Formula, int] = {}
 
     def number(self, root: Formula) -> int:
         """The number of a formula's value. Formulas are too deep for recursion."""
-        waiting = [root]
+        numbers, waiting = self._of, [root]
         while waiting:
             one = waiting[-1]
-            if id(one) in self._of:
+            if one in numbers:
                 waiting.pop()
                 continue
-            parts = [part for part in one.parts if isinstance(part, Formula)]
-            missing = [part for part in parts if id(part) not in self._of]
+            missing = [part for part in one.parts if isinstance(part, Formula) and part not in numbers]
             if missing:
                 waiting += reversed(missing)
-                continue
-            waiting.pop()
-            self._of[id(one)] = self._numbered(one), one
-        return self._of[id(root)][0]
+            else:
+                numbers[waiting.pop()] = self._numbered(one)
+        return numbers[root]
 
     def _numbered(self, one: Formula) -> int:
         if one.op == "symbol":
             return self._kept("symbol", one.parts)
         if one.op == "number":
             return self._constant(float(one.parts[0]))
-        parts = tuple(
-            self._of[id(part)][0] if isinstance(part, Formula) else self._constant(part) for part in one.parts
-        )
-        return self._kept(one.op, tuple(sorted(parts)) if one.op in "+*" else parts)
+        numbers = self._of
+        parts = [numbers[part] if isinstance(part, Formula) else self._constant(part) for part in one.parts]
+        return self._kept(one.op, tuple(sorted(parts) if one.op in "+*" else parts))
 
     def _constant(self, value: Any) -> int:
         if isinstance(value, np.ndarray):  # a table
@@ -227,10 +225,7 @@ class _Values:
 
     def _kept(self, op: str, parts: tuple[Any, ...], key: Any = None) -> int:
         key = op, parts if key is None else key
-        if key not in self._numbers:
-            self._numbers[key] = len(self.all)
+        number = self._numbers.setdefault(key, len(self.all))
+        if number == len(self.all):
             self.all.append((op, parts))
-        return self._numbers[key]
-
-    def kind(self, n: int) -> type[Any]:
-        return KINDS.get(self.all[n][0], np.float64)
+        return number
