@@ -3,6 +3,7 @@
 A fork differs from a new process in what Python and the program's modules do as they start.
 """
 
+import gc
 import json
 import os
 import socket
@@ -64,6 +65,8 @@ def serve(door: socket.socket) -> None:
     for name in WARM:
         if find_spec(name.partition(".")[0]):  # what it belongs to is installed
             import_module(name)
+    gc.collect()
+    gc.freeze()
     while True:
         size, streams, *_ = socket.recv_fds(door, SIZE, 3)
         if not size:
@@ -95,7 +98,10 @@ def run(
     vars(sys)["__stdout__"] = sys.stdout
     sys.argv = [__main__.__file__, *words]
     vars(page)["monotonic"] = lambda: 0.0  # on a slow machine it would show bars
-    sys.exit(__main__.main())
+    status = __main__.main()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)  # to take all modules apart would copy the server's memory
 
 
 if __name__ == "__main__":
