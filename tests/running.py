@@ -171,7 +171,7 @@ def misplaced(page: Any) -> list[str]:
 
     Text.draw = drawing  # type: ignore
     try:
-        page.draw(page.canvas.get_renderer())
+        page.draw_without_rendering()
     finally:
         Text.draw = draw  # type: ignore
     edge = page.bbox.padded(1)
