@@ -891,6 +891,20 @@ def test_what_a_file_holds_or_is_called_steers_no_terminal(
 # Memory
 
 
+def test_quotation_marks_are_written_where_they_are_needed(
+    batch: Batch, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(tables, "PIECE_BYTES", 16)
+    heading = '"a ""b"", c"'
+    ran = batch(f"{heading},m1,m2\n" + "x,1,2\n" * 3, "--only regime")
+    assert ran.out == f"{heading},m1,m2,regime,error\n" + "x,1,2,no-slip,\n" * 3
+    assert batch(heading + ",m1,m2\nx,1,2\n", "--only regime").out == ran.out.replace(
+        "x,1,2,no-slip,\n" * 2, ""
+    )
+    ran = batch("m1;m2\n" + "0,5;1\n" * 3, "--only regime")
+    assert ran.out == "m1,m2,regime,error\n" + '"0,5",1,no-slip,\n' * 3
+
+
 @pytest.mark.parametrize(
     ("limit", "kind", "content", "heights"),
     [

@@ -55,7 +55,8 @@ class Piece(NamedTuple):
 
     ``columns`` are those met so far, and ``size`` is how much of the input the piece is, in bytes (rows of
     Parquet). ``lines`` are rows of NDJSON that are to be written as they came: the frame then has the columns
-    of inputs only. ``errors`` are those of rows that cannot be read.
+    of inputs only. ``errors`` are those of rows that cannot be read. Where a piece is ``bare``, no cell has a
+    quotation mark or needs one.
     """
 
     columns: Sequence[str]
@@ -64,6 +65,7 @@ class Piece(NamedTuple):
     errors: Mapping[int, str] = {}
     separator: str = ""
     lines: Sequence[str] = ()
+    bare: bool = False
 
 
 def read_format(option: str, given: str | None, path: str) -> str:
@@ -265,7 +267,7 @@ def read_csv(file: IO[bytes], usual: str, inputs: Inputs) -> Iterator[Piece]:
         for start in range(0, max(1, frame.height), most):
             part = frame[start : start + most]
             its = {row - start: why for row, why in errors.items() if 0 <= row - start < most}
-            yield Piece(header, part, size, its, separator)
+            yield Piece(header, part, size, its, separator, bare=b'"' not in rows)
             size = 0
 
 

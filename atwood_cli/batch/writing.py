@@ -4,12 +4,13 @@ import re
 from collections.abc import Iterable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from io import BytesIO
-from typing import IO, TYPE_CHECKING
+from typing import IO, TYPE_CHECKING, Any
 
 from ..files import Stdout
 from ..model.units import in_quotes, shortened
 from .formats import SEPARATORS, Piece
 from .parquet import write_frames
+from .solving import ERROR
 
 if TYPE_CHECKING:
     import polars as pl
@@ -51,8 +52,12 @@ def _encoded(kind: str, piece: Piece, results: "pl.DataFrame", first: bool) -> b
     frame = piece.frame.hstack(results)
     if kind == "ndjson":
         return _as_ndjson(frame).encode()
-    buffer = BytesIO()
-    frame.write_csv(buffer, separator=SEPARATORS[kind], include_header=first)
+    buffer, separator = BytesIO(), SEPARATORS[kind]
+    # Whether a cell needs quotation marks is looked for in each, unless it is known.
+    no_error = results[ERROR].null_count() == results.height
+    bare = piece.bare and piece.separator == separator and no_error and not first
+    style: Any = "never" if bare else "necessary"
+    frame.write_csv(buffer, separator=separator, include_header=first, quote_style=style)
     return buffer.getbuffer()
 
 
