@@ -198,6 +198,19 @@ def test_what_a_format_has_no_place_for(batch: Batch, kind: str, column: list[An
     assert ran == (1, "", f"atwood: {why}\n")
 
 
+@pytest.mark.parametrize("kind", ["csv", "ndjson"])
+def test_a_date_beyond_those_of_polars_is_a_sentence(batch: Batch, kind: str) -> None:
+    for one in (pa.array([10**8], pa.date32()), pa.array([-(2**63)], pa.timestamp("us"))):
+        ran = batch(with_scene(one), "--to", kind)
+        why = "which holds a date beyond the years of polars, -262143 to 262142,"
+        assert (ran.status, ran.err) == (
+            1,
+            f"atwood: cannot write column 'x', {why} as {kind}; give --to parquet\n",
+        )
+    latest = pa.array([95_026_236], pa.date32())
+    assert "+262142-12-31" in batch(with_scene(latest), "--to", kind).out
+
+
 def test_nested_columns_go_into_json(batch: Batch) -> None:
     ran = batch(with_scene(pa.array([{"Binary": [1]}])), "--to", "ndjson", "--only", "regime")
     assert ran.out == '{"m1":1.0,"m2":3,"x":{"Binary":[1]},"regime":"no-slip","error":null}\n'

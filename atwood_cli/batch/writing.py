@@ -44,10 +44,16 @@ def _encoded(kind: str, piece: Piece, results: "pl.DataFrame", first: bool) -> b
 
     if piece.lines:
         return _spliced(piece.lines, results)
-    for name, dtype in piece.frame.schema.items():
+    for column in piece.frame:
+        dtype = column.dtype
         has_bytes = re.search(r"\bBinary\b(?!')", str(dtype))  # not the name of a field
+        holds = ""
         if has_bytes or (kind != "ndjson" and (dtype.is_nested() or dtype == pl.Duration)):
-            what = f"column {in_quotes(name)}, which holds {shortened(str(dtype))},"
+            holds = shortened(str(dtype))
+        elif dtype in (pl.Date, pl.Datetime) and column.dt.year().null_count() > column.null_count():
+            holds = "a date beyond the years of polars, -262143 to 262142"
+        if holds:
+            what = f"column {in_quotes(column.name)}, which holds {holds},"
             raise OSError(f"cannot write {what} as {kind}; give --to parquet")
     frame = piece.frame.hstack(results)
     if kind == "ndjson":
