@@ -30,7 +30,7 @@ from atwood_cli.solver.messages import unmarked
 from atwood_cli.solver.reading import read_answers
 
 from . import oracle
-from .conftest import examples
+from .conftest import examples, many
 from .running import Atwood, on_terminal, plain, process
 from .scenes import FAMILIES, Given, inputs, of_all_kinds, scenes, table
 
@@ -324,8 +324,8 @@ def test_what_simpler_models_give_is_what_solve_gives_for_them() -> None:
     """The pulley without mass had no mu: where the string slips over that, too, the numbers were false."""
     slips: Given = {"m1": "1", "m2": "3", "M": "10", "mu": "0.05", "axle": "6"}
     assert check_what_if(slips) >= {"What if the pulley's mass is ignored?"}
-    seen = [title for given in of_all_kinds(300) for title in check_what_if(given)]
-    assert all(seen.count(title) > 40 for title in SIMPLER), Counter(seen)
+    seen = [title for given in of_all_kinds(many(300)) for title in check_what_if(given)]
+    assert all(seen.count(title) > many(40) for title in SIMPLER), Counter(seen)
 
 
 def known_numbers(given: Given) -> list[Decimal]:
@@ -347,7 +347,7 @@ def known_numbers(given: Given) -> list[Decimal]:
 def test_every_number_in_a_sentence_is_one_that_solve_gives() -> None:
     """But for those of simpler models, which are held to solve above."""
     mp.mp.dps, checked = 40, 0
-    for scene in of_all_kinds(200, seed=7):
+    for scene in of_all_kinds(many(200), seed=7):
         known = known_numbers(scene)
         for words in sentences(told(Scene.read(scene))):
             if " in place of " in words:
@@ -358,7 +358,7 @@ def test_every_number_in_a_sentence_is_one_that_solve_gives() -> None:
                 unit = Decimal((0, (1,), int(short.as_tuple().exponent)))
                 assert any(abs(number - one) < unit or number == one for one in known), (scene, words, number)
                 checked += 1
-    assert checked > 2000
+    assert checked > many(2000)
 
 
 @kinds
@@ -685,7 +685,7 @@ def formulas(page: str) -> Iterator[str]:
 def test_latex_takes_every_formula() -> None:
     """It takes no second superscript: the square of the least coefficient had two."""
     mathtext = pytest.importorskip("matplotlib.mathtext").MathTextParser("path")
-    pages = [*map(handout, HANDOUTS), *map(handout_of, of_all_kinds(120))]
+    pages = [*map(handout, HANDOUTS), *map(handout_of, of_all_kinds(many(120)))]
     shapes = {shape: None for page in pages for shape in formulas(page)}
     assert len(shapes) > 200
     for shape in shapes:

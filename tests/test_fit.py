@@ -37,6 +37,7 @@ from atwood_cli.laboratory.runs import Run, Runs
 from atwood_cli.laboratory.statistics import Alike, sum_of_squares
 from atwood_cli.model.scene import Input, read_input
 
+from .conftest import many
 from .coverage import DESIGNS, DROP, NOTHING, C, Design, G, counts, drawn, fit_of
 from .running import Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
 from .test_explain import check_markdown
@@ -130,7 +131,7 @@ def test_what_made_exact_runs_is_found(kind: Kind) -> None:
 
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     """A short `python -m tests.coverage`: each within 3 standard deviations of a binomial of its bar."""
-    sets, designs = 40, [design for design in DESIGNS[1::4] if design.seen]
+    sets, designs = many(80), [design for design in DESIGNS[1::4] if design.seen]
     of = [counts(design, sets) for design in designs]
     shares = np.array([one.within_95 for one in of])
     assert shares.min() > 0.90 - 3 * sqrt(0.90 * 0.10 / sets)

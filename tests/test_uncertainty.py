@@ -29,6 +29,7 @@ from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.reading import read_answers
 
 from . import oracle
+from .conftest import many
 from .running import Atwood, on_terminal, plain, process
 from .scenes import FAMILIES, of_all_kinds, scenes
 
@@ -208,7 +209,7 @@ def test_extremes_against_sympy(name: str, formula: sp.Expr, values: str, us: st
 def test_every_family_against_flint(family: str) -> None:
     """The oracle's own formulas, stepped by 10^-500 with 2,000 digits; every input to 1 %."""
     compared = 0
-    for given in scenes(family, 30):
+    for given in scenes(family, many(30)):
         scene = Scene.read(given)
         numbers = scene._asdict() | {"wrap": scene.wrap.number}
         moving = {x: numbers[x] for x in given if numbers[x] != inf}
@@ -242,7 +243,7 @@ def test_every_family_against_flint(family: str) -> None:
                     part = flint.arb(str(share)) / 100 - squares[name, x] / variance
                     assert abs(part) < 1e-18, (given, name, x)
                 compared += 1
-    assert compared > 200
+    assert compared > many(200)
 
 
 def as_ball(value: oracle.Value) -> flint.arb:
@@ -486,7 +487,7 @@ def test_where_first_order_misleads_the_values_are_said(given: str) -> None:
 def test_where_first_order_misleads_is_where_solve_says_otherwise_an_uncertainty_off() -> None:
     """Tried on scenes of all kinds, each input an uncertainty more and less, with no help but `solve`."""
     rng, seen = Random(5), Counter[int]()
-    for exact in of_all_kinds(60):
+    for exact in of_all_kinds(many(60)):
         given = {
             x: value
             for x, value in exact.items()
@@ -508,8 +509,8 @@ def test_where_first_order_misleads_is_where_solve_says_otherwise_an_uncertainty
             assert named == far[:3], (exact, x, u)
             assert not notes or ("and so on for" in notes[0]) == (len(far) > 3)
             seen[len(far)] += 1
-    assert seen[0] > 50
-    assert sum(seen.values()) > seen[0] + 50
+    assert seen[0] > many(50)
+    assert sum(seen.values()) > seen[0] + many(50)
 
 
 def clamped(given: Mapping[str, str], x: str, value: Fraction) -> Fraction:
