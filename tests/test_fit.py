@@ -131,7 +131,7 @@ def test_what_made_exact_runs_is_found(kind: Kind) -> None:
 
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     """A short `python -m tests.coverage`: each within 3 standard deviations of a binomial of its bar."""
-    sets, designs = many(80), [design for design in DESIGNS[1::4] if design.seen]
+    sets, designs = max(20, many(40)), [design for design in DESIGNS[1::4] if design.seen]
     of = [counts(design, sets) for design in designs]
     shares = np.array([one.within_95 for one in of])
     assert shares.min() > 0.90 - 3 * sqrt(0.90 * 0.10 / sets)
