@@ -25,12 +25,11 @@ import polars as pl
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from polars.testing import assert_frame_equal
 
-from atwood_cli import SceneError, arrays, solve, solve_table
+from atwood_cli import SceneError, arrays, solve
 from atwood_cli.arrays import solve_and_count
 from atwood_cli.batch import formats as tables
-from atwood_cli.batch import ndjson, solving
+from atwood_cli.batch import ndjson, run, solving
 from atwood_cli.batch.layout import inputs_among
 from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import NAMES, STANDARD
@@ -140,17 +139,16 @@ def test_every_accuracy_is_handed_on(batch: Batch, monkeypatch: pytest.MonkeyPat
     assert set(asked) == {accuracy}
 
 
-def test_few_rows_have_the_results_of_many(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_few_rows_have_the_results_of_many(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of scenes of every kind, wrong ones too."""
     rows = [dict(zip(INPUTS, cells.split(), strict=False)) for cells in ("0 0", "-1 3", "1 3 1 .1 .2")]
     for family in FAMILIES:
         rows += scenes(family, 40)
     table = pl.DataFrame(rows, dict.fromkeys(INPUTS, pl.String))
-    monkeypatch.setattr(solving, "FEW", len(table))
-    few = solve_table(table, NAMES, "exact")
-    monkeypatch.setattr(solving, "FEW", 0)
-    many = solve_table(table, NAMES, "exact")
-    assert_frame_equal(few, many, check_exact=True)
+    asked = f"--accuracy exact --only {','.join(NAMES)}"
+    many = batch(table.write_csv(), asked)
+    monkeypatch.setattr(run, "FEW", len(table))
+    assert batch(table.write_csv(), asked) == many
 
 
 def test_few_rows_need_no_numpy(tmp_path: Path) -> None:

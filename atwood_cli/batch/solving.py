@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     import polars as pl
 
 ERROR = "error"
-FEW = 20
-"""Rows that are solved one by one before NumPy is there."""
 Table = TypeVar("Table")
 
 
@@ -131,10 +129,11 @@ def solve_frame(
     accuracy: Accuracy,
     tally: Tally,
     others: Mapping[int, str] = {},
+    few: bool = False,
 ) -> "pl.DataFrame":
     """The columns to append: the results, which are empty in rows that failed, and the errors.
 
-    ``others`` are errors of rows that could not be read.
+    ``others`` are errors of rows that could not be read. A ``few`` rows are solved without NumPy.
     """
     import polars as pl
 
@@ -142,7 +141,7 @@ def solve_frame(
     errors |= others
     doubles["m1"].scatter(list(errors), None)  # such a row has no results
     tally.not_given |= {*NOT_GIVEN} & words
-    solve = _one_by_one if frame.height <= FEW else _at_once
+    solve = _one_by_one if few else _at_once
     columns, reasons = solve(doubles, list(dict.fromkeys(["regime", *names])), accuracy)
     regimes = columns["regime"]
     bad = [row for row in regimes.is_null().arg_true() if row not in errors]

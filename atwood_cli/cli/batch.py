@@ -44,7 +44,8 @@ Accuracy = Annotated[
     option(
         "Output",
         metavar="|".join(ACCURACIES),
-        help="How accurate results are; certified, within 4 units in the last place, if not given.",
+        help="How accurate results are; certified, within 4 units in the last place, if not given. A table of"
+        " at most 20 rows is exact.",
     ),
 ]
 AllowErrors = Annotated[bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")]
