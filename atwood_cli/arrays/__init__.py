@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ..model.quantities import ACCURACIES, STANDARD, Accuracy, read_names
 from ..model.scene import INPUTS, MASSES, MISSING_MASS, SceneError
-from .inputs import DEFAULTS, GivenColumn, Numbers, groups, input_columns, read_column, status_of
+from .inputs import DEFAULTS, GivenColumn, Numbers, groups, input_columns, read_column
 from .inputs import STATUSES as STATUSES
 from .plan import LEVELS, Task
 from .program import Room
@@ -125,6 +125,8 @@ def _common_shape(inputs: Mapping[str, GivenColumn]) -> tuple[int, ...]:
     """The shape that the columns are broadcast to. Raises SceneError."""
     shape: tuple[int, ...] = ()
     for name, (column, _) in inputs.items():
+        if column.shape in ((), shape):
+            continue
         try:
             shape = np.broadcast_shapes(shape, column.shape)
         except ValueError:
@@ -177,12 +179,13 @@ def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> 
 
 
 def _solve(rows: Rows, given: Mapping[str, GivenColumn], names: tuple[str, ...]) -> None:
-    """Write the status of all rows, and the quantities of the valid ones."""
-    inputs = input_columns(given, rows.accuracy)
-    rows.results["status"][:] = status = status_of(inputs, len(rows.results["status"]))
-    for index, pattern, far in groups(inputs, status):
-        level = len(LEVELS[rows.accuracy]) - 1 if far else 0
-        rows.solve(index, Task(pattern, frozenset(), names, level))
-    if status.any():
+    """Write the status of all rows, and the quantities: those of invalid rows have no value."""
+    size = len(rows.results["status"])
+    for index, status, pattern, far in groups(input_columns(given, rows.accuracy), size):
+        rows.results["status"][index] = status
+        if pattern:
+            level = len(LEVELS[rows.accuracy]) - 1 if far else 0
+            rows.solve(index, Task(pattern, frozenset(), names, level))
+            continue
         for name in names:
-            rows.results[name][status != 0] = -1 if name == "regime" else nan
+            rows.results[name][index] = -1 if name == "regime" else nan

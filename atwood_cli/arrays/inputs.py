@@ -53,7 +53,7 @@ class GivenColumn(NamedTuple):
 
 def _cut(column: NDArray[Any], shape: tuple[int, ...], rows: Index) -> NDArray[Any]:
     if column.size == 1:
-        return column.reshape(1)
+        return column.reshape(())
     if column.shape == shape and column.flags.c_contiguous:
         return column.reshape(-1)[rows]
     return np.broadcast_to(column, shape).flat[rows]
@@ -117,94 +117,77 @@ def _absent(value: Any, array: NDArray[Any]) -> NDArray[np.bool_] | None:
 
 KINDS = USUAL, ABSENT, NAN, NEGATIVE, ZERO, INFINITE, FAR = range(7)
 OUTSIDE = {
-    name: np.isin(KINDS, [NEGATIVE, *[ZERO] * (not domain.zero), *[INFINITE] * (not domain.inf)])
+    name: {NEGATIVE, *[ZERO] * (not domain.zero), *[INFINITE] * (not domain.inf)}
     for name, domain in INPUTS.items()
 }
-"""Of each input, by kind, whether such a number is outside its domain."""
+"""Of each input, the kinds of numbers that are outside its domain."""
 SAME_IN_ALL = {ABSENT: None, ZERO: Fraction(0), INFINITE: inf}
 """What stands in a `Pattern` for numbers of a kind, if not their column."""
 
 
 class InputColumn(NamedTuple):
-    """An input in the rows of a block: its numbers, the kind of each, and whether it is given.
-
-    Any of them has a single item where that holds for all rows.
-    """
+    """An input in the rows of a block: its numbers, and the kind of each, or the one kind of all."""
 
     column: Column
-    kinds: NDArray[np.int_]
-    given: NDArray[np.bool_]
+    kinds: int | NDArray[np.int_]
 
     def kind(self, row: int) -> int:
-        return int(self.kinds[0 if self.kinds.size == 1 else row])
+        return self.kinds if isinstance(self.kinds, int) else int(self.kinds[row])
 
 
 def input_columns(given: Mapping[str, GivenColumn], accuracy: Accuracy) -> dict[str, InputColumn]:
-    """The inputs of a block, with the kinds of their numbers.
+    """The inputs of a block, with the kinds of their numbers."""
+    window = FAST_WINDOW if accuracy == "fast" else WINDOW
+    return {name: InputColumn(one.column, _kinds(name, given, window)) for name, one in given.items()}
+
+
+def _kinds(
+    name: str, given: Mapping[str, GivenColumn], window: tuple[float, float]
+) -> int | NDArray[np.int_]:
+    """The kind of each number of an input, or the one kind of all.
 
     The equations take I as the mass I/R² and the axle's friction as the mass f/g. So these must be within the
     window too.
     """
-    low, high = FAST_WINDOW if accuracy == "fast" else WINDOW
-    columns = {}
-    for name, (column, absent) in given.items():
-        sizes = [column]
-        if name == "I":
-            sizes.append(column / given["R"].column / given["R"].column)
-        if name == "axle":
-            sizes.append(column / given["g"].column)
-        kinds = np.array([USUAL])
-        if absent is not None and absent.all() and name not in WHERE_ABSENT:
-            kinds = np.array([ABSENT])
-        elif not all(low < size.min() and size.max() < high for size in sizes):
-            is_kind = [
-                (ABSENT, np.array(False) if absent is None or name in WHERE_ABSENT else absent),
-                (NAN, np.isnan(column)),
-                (NEGATIVE, column < 0),
-                (ZERO, column == 0),
-                (INFINITE, column == inf),
-                *((FAR, (size <= low) | (size >= high)) for size in sizes),
-            ]
-            for kind, rows in reversed(is_kind):  # the first kind overwrites the others
-                if rows.any():
-                    kinds = np.where(rows, kind, kinds)
-        columns[name] = InputColumn(column, kinds, np.array([True]) if absent is None else ~absent)
-    return columns
-
-
-def status_of(inputs: Mapping[str, InputColumn], size: int) -> NDArray[np.int8]:
-    """The index into STATUSES for each row: whether its inputs are in their domains and go together."""
-    given = {name: one.given for name, one in inputs.items()}
-    zero = {name: one.kinds == ZERO for name, one in inputs.items()}
-    faults = [
-        *(("NaN", one.kinds == NAN) for one in inputs.values()),
-        *((name, OUTSIDE[name][one.kinds]) for name, one in inputs.items()),
-        *((name, ~given[name]) for name in MASSES),
-        ("I and inertia", given["I"] & given["inertia"]),
-        ("no mass", zero["m1"] & zero["m2"]),
-        ("friction at a free end", (zero["m1"] | zero["m2"]) & given["mu"]),
-        ("mu_k without mu", given["mu_k"] & ~given["mu"]),
-        ("mu_k above mu", inputs["mu_k"].column > inputs["mu"].column),
-        ("I without R", given["I"] & ~given["R"]),
-        ("I with M = 0 or inf", given["I"] & (zero["M"] | (inputs["M"].kinds == INFINITE))),
+    (column, absent), (low, high) = given[name], window
+    if absent is not None and absent.all():
+        return ABSENT
+    sizes = [column]
+    if name == "I":
+        sizes.append(column / given["R"].column / given["R"].column)
+    if name == "axle":
+        sizes.append(column / given["g"].column)
+    if absent is None and all(low < size.min() and size.max() < high for size in sizes):
+        return USUAL
+    is_kind = [
+        *([] if absent is None else [(ABSENT, absent)]),
+        (NAN, np.isnan(column)),
+        (NEGATIVE, column < 0),
+        (ZERO, column == 0),
+        (INFINITE, column == inf),
+        *((FAR, (size <= low) | (size >= high)) for size in sizes),
     ]
-    status = np.zeros(size, np.int8)
-    for fault, rows in reversed(faults):  # the first fault overwrites the others
+    kinds = np.array(USUAL)
+    for kind, rows in reversed(is_kind):  # the first kind overwrites the others
         if rows.any():
-            status[np.broadcast_to(rows, size)] = STATUSES.index(fault)
-    return status
+            kinds = np.where(rows, kind, kinds)
+    return kinds if kinds.ndim else int(kinds)
 
 
-def groups(
-    inputs: Mapping[str, InputColumn], status: NDArray[np.int8]
-) -> Iterator[tuple[Index, Pattern, bool]]:
-    """A block's valid rows, grouped by pattern, and whether an input of the group is beyond the window."""
-    size, (m1, m2) = len(status), (inputs["m1"].column, inputs["m2"].column)
-    digits = [(len(KINDS), one.kinds) for one in inputs.values() if one.kinds.size > 1]
+def groups(inputs: Mapping[str, InputColumn], size: int) -> Iterator[tuple[Index, int, Pattern | None, bool]]:
+    """A block's rows, grouped by pattern, and whether an input of the group is beyond the window.
+
+    Each group comes with its status; where that is no valid one, without a pattern.
+    """
+    m1, m2, mu, mu_k = (inputs[name].column for name in ("m1", "m2", "mu", "mu_k"))
+    digits: list[tuple[int, NDArray[Any]]] = [
+        (len(KINDS), one.kinds) for one in inputs.values() if not isinstance(one.kinds, int)
+    ]
+    above = mu_k > mu
     if not (m2 > m1).all():
         digits.append((3, 1 * (m1 > m2) + 2 * (m1 == m2)))
-    if status.any():
-        digits.append((2, status != 0))
+    if above.any():
+        digits.append((2, above))
     key, place = np.zeros(1, np.int64), 1
     for base, digit in digits:
         key, place = key + place * digit, place * base
@@ -212,18 +195,44 @@ def groups(
     for one in np.unique(key) if digits else key[:1]:
         index = np.flatnonzero(key == one) if digits else slice(0, size)
         row = 0 if isinstance(index, slice) else int(index[0])
-        if status[row]:
+        kinds = {name: one.kind(row) for name, one in inputs.items()}
+        if status := STATUSES.index(_fault(kinds, bool(_at(above, row)))):
+            yield index, status, None, False
             continue
-        pattern = {name: _in_pattern(name, one, row) for name, one in inputs.items()}
+        pattern = {name: _in_pattern(name, kinds[name], one.column) for name, one in inputs.items()}
         if pattern["I"] is not None:
             pattern["inertia"] = None
-        far = any(one.kind(row) == FAR for one in inputs.values())
-        first, second = (float(np.broadcast_to(mass, size)[row]) for mass in (m1, m2))
-        yield index, Pattern((second > first) - (second < first), tuple(pattern.values())), far
+        sign = int(_at(m2, row) > _at(m1, row)) - int(_at(m2, row) < _at(m1, row))
+        yield index, status, Pattern(sign, tuple(pattern.values())), FAR in kinds.values()
 
 
-def _in_pattern(name: str, one: InputColumn, row: int) -> Fraction | float | str | None:
+def _at(column: NDArray[Any], row: int) -> Any:
+    """The item of a row."""
+    return column[row] if column.ndim else column[()]
+
+
+def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool) -> str:
+    """The first fault of inputs of these kinds: whether they are in their domains and go together."""
+    given = {name for name, kind in kinds.items() if kind != ABSENT}
+    zero = {name for name, kind in kinds.items() if kind == ZERO}
+    faults = [
+        *(("NaN", kind == NAN) for kind in kinds.values()),
+        *((name, kind in OUTSIDE[name]) for name, kind in kinds.items()),
+        *((name, name not in given) for name in MASSES),
+        ("I and inertia", given >= {"I", "inertia"}),
+        ("no mass", zero >= {"m1", "m2"}),
+        ("friction at a free end", bool(zero & {"m1", "m2"}) and "mu" in given),
+        ("mu_k without mu", "mu_k" in given and "mu" not in given),
+        ("mu_k above mu", mu_k_above_mu),
+        ("I without R", "I" in given and "R" not in given),
+        ("I with M = 0 or inf", "I" in given and kinds["M"] in (ZERO, INFINITE)),
+        ("valid", True),
+    ]
+    return next(fault for fault, is_so in faults if is_so)
+
+
+def _in_pattern(name: str, kind: int, column: Column) -> Fraction | float | str | None:
     """An input in the `Pattern` of a row."""
-    if (kind := one.kind(row)) in SAME_IN_ALL:
+    if kind in SAME_IN_ALL and not (kind == ABSENT and name in DEFAULTS):
         return None if name == "axle" else SAME_IN_ALL[kind]  # no friction is no axle
-    return Fraction(float(one.column[0])) if name in SHAPES and one.column.size == 1 else COLUMN
+    return Fraction(float(column)) if name in SHAPES and not column.ndim else COLUMN

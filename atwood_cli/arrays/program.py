@@ -221,7 +221,7 @@ class _Values:
     def _constant(self, value: Any) -> int:
         if isinstance(value, np.ndarray):  # a table
             return self._kept("number", (value,), id(value))
-        return self._kept("number", (np.array([value]),), (str(float(value)), type(value) is int))
+        return self._kept("number", (np.array(value),), (str(float(value)), type(value) is int))
 
     def _kept(self, op: str, parts: tuple[Any, ...], key: Any = None) -> int:
         key = op, parts if key is None else key

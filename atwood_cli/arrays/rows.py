@@ -134,11 +134,11 @@ class Rows:
             room = iter(self.room.columns(kinds, size_of(tile)))
             answers = [next(room) for _ in range(more)]
             if direct:
-                inputs = [column if column.size == 1 else column[tile] for column in inputs]
+                inputs = [column[tile] if column.ndim else column for column in inputs]
                 results = [self.results[name][tile] for name in names]
             else:
                 inputs = [
-                    column if column.size == 1 else column.take(tile, out=here, mode="clip")
+                    column.take(tile, out=here, mode="clip") if column.ndim else column
                     for column, here in zip(inputs, room, strict=False)
                 ]
                 results = [next(room) for _ in names]
@@ -182,9 +182,7 @@ class Rows:
         open_ = np.ones(index.size, np.bool_)
         for start in range(0, index.size, SMALLEST):
             tile = index[start : start + SMALLEST]
-            inputs = {
-                name: column if column.size == 1 else column[tile] for name, column in self.inputs.items()
-            }
+            inputs = {name: column[tile] if column.ndim else column for name, column in self.inputs.items()}
             try:
                 bits = ratio(plain, inputs)
             except Irrational:
@@ -218,7 +216,7 @@ class Rows:
 
         def exactly(name: str) -> Fraction:
             column = self.inputs[name]
-            return Fraction(float(column[0 if column.size == 1 else place]))
+            return Fraction(float(column[place] if column.ndim else column))
 
         return pattern.scene(exactly)
 
