@@ -21,7 +21,7 @@ from atwood_cli.arrays.double_double import QUICK
 from atwood_cli.arrays.error_free import UNIT, head_of, two_product
 from atwood_cli.arrays.expansion import PAIRS, TRIPLES, Expansion
 from atwood_cli.arrays.gap import gap, ratio
-from atwood_cli.arrays.plan import COLUMN, Pattern, _value, questioning
+from atwood_cli.arrays.plan import COLUMN, Pattern, Task, _value, questioning
 from atwood_cli.arrays.program import OPERATIONS, Program, Room
 from atwood_cli.arrays.tables import cosines_and_sines, powers
 from atwood_cli.model.scene import INPUTS
@@ -371,10 +371,10 @@ def test_a_question_is_open_where_the_bound_says_nothing() -> None:
     shared: dict[str, Any] = {"inertia": Fraction(1, 2), "wrap": Fraction(180)}
     inputs = {"m1": [1.0] * 3, "m2": [3.0] * 3, "M": [10.0] * 3, "mu": [0.2, 0.3, 400.0], "g": [9.8] * 3}
     pattern = Pattern(1, tuple(COLUMN if name in inputs else shared.get(name) for name in INPUTS))
-    program = questioning(pattern, frozenset(), "beats_friction excess_ratio", "exact", PAIRS)
-    slips, sure = np.empty((2, 3))
+    program = questioning(Task(pattern, frozenset(), (), 0), "beats_friction excess_ratio", "exact", PAIRS)
+    sure, slips = np.empty((2, 3))
     columns = [np.array(inputs[name]) for name in program.inputs]
-    program.run(columns, [slips, sure], Room().columns(program.between, 3))
+    program.run(columns, [sure, slips], Room().columns(program.between, 3))
     assert sure.tolist() == [True, True, False]
     assert slips[:2].tolist() == [True, False]
 

@@ -183,7 +183,7 @@ def groups(inputs: Mapping[str, InputColumn], size: int) -> Iterator[tuple[Index
     digits: list[tuple[int, NDArray[Any]]] = [
         (len(KINDS), one.kinds) for one in inputs.values() if not isinstance(one.kinds, int)
     ]
-    above = mu_k > mu
+    above = np.array(False) if inputs["mu_k"].kinds is ABSENT else mu_k > mu
     if not (m2 > m1).all():
         digits.append((3, 1 * (m1 > m2) + 2 * (m1 == m2)))
     if above.any():

@@ -224,7 +224,8 @@ class Plan(NamedTuple):
 
     The program gives the ``quantities``, and then, for each of the ``conditional`` ones, whether a row is
     certified. ``constants`` have the same value in all rows, ``missing`` have none, for a reason. ``later``
-    cannot be computed at this level. Those that are ``asking`` need the answer to the ``question`` first.
+    cannot be computed at this level. Those that are ``asking`` need the answer to the ``question`` first. If
+    there is one, the program gives in the end whether the answer is certain, and whether it is yes.
     """
 
     program: Program | None
@@ -276,7 +277,10 @@ def _planned(task: Task, accuracy: Accuracy, machine: Machine[Any]) -> Plan:
             values[name] = value
             if condition is not None:
                 certified[name] = condition
-    program = Program([*values.values(), *certified.values()]) if values else None
+    formulas = [*values.values(), *certified.values()]
+    if question:
+        formulas += _answer(task, question, accuracy, levels_of(question, task.level, accuracy)[0])
+    program = Program(formulas) if formulas else None
     fixed = tuple(constants), tuple(missing)
     return Plan(program, tuple(values), tuple(certified), *fixed, tuple(later), question, tuple(asking))
 
@@ -339,16 +343,28 @@ def in_pairs(pattern: Pattern, decisions: Decisions, name: str) -> tuple[Program
     return Program([first, second, absolute(first) * value.bound]), plain
 
 
+def levels_of(question: str, level: int, accuracy: Accuracy) -> tuple[Any, ...]:
+    """The arithmetics that answer a question of a task of that level, one after the other."""
+    if LEVELS[accuracy][level] is TRIPLES:
+        return (TRIPLES,)
+    return (PAIRS, TRIPLES) if question == CANCELS and accuracy != "fast" else (DOUBLES, PAIRS, TRIPLES)
+
+
 @lru_cache(KEPT)
-def questioning(pattern: Pattern, decided: Decisions, question: str, accuracy: Accuracy, ar: Any) -> Program:
-    """The program that answers a question in each row: whether it is yes, and whether that is certain."""
+def questioning(task: Task, question: str, accuracy: Accuracy, ar: Any) -> Program:
+    """The program that answers a question in each row: whether that is certain, and whether it is yes."""
+    return Program(_answer(task, question, accuracy, ar))
+
+
+def _answer(task: Task, question: str, accuracy: Accuracy, ar: Any) -> tuple[Formula, Formula]:
+    """Whether the answer to a question is certain, and whether it is yes."""
     wrap = Formula("symbol", "wrap")
     sure = less(0.0, wrap)
     if question == "long_wrap":
-        return Program([less(180.0, wrap), sure])
+        return sure, less(180.0, wrap)
     if question == "ends_hang_down":
-        return Program([equal(Formula("fmod", wrap, formula(360.0)), 180.0), sure])
-    case = _GroupCase(pattern, decided, ar)
+        return sure, equal(Formula("fmod", wrap, formula(360.0)), 180.0)
+    case = _GroupCase(task.pattern, task.decisions, ar)
     machine, (method, which) = Machine[Any](case, ar), question.split()
     one: Any
     other: Any
@@ -359,8 +375,8 @@ def questioning(pattern: Pattern, decided: Decisions, question: str, accuracy: A
         other = machine.k1 if method == "beats_friction" else machine.limiting_k1
     if ar is not DOUBLES:
         margin = one - other
-        return Program([less(0.0, margin.parts[0]), less(margin.bound, 0.5)])
+        return less(margin.bound, 0.5), less(0.0, margin.parts[0])
     if accuracy == "fast":
-        return Program([less(other, one), equal(0.0, 0.0)])
+        return equal(0.0, 0.0), less(other, one)
     clear = less(other * (1 + CLEAR), one)
-    return Program([clear, either(clear, less(one, other * (1 - CLEAR)))])
+    return either(clear, less(one, other * (1 - CLEAR))), clear

@@ -19,10 +19,9 @@ from ..model.case import Case
 from ..model.quantities import REGIMES, Accuracy
 from ..model.scene import Scene
 from ..solver.answers import Answers
-from .double import DOUBLES
 from .expansion import PAIRS, TRIPLES
 from .gap import gap, ratio
-from .plan import CANCELS, LEVELS, Pattern, Plan, Task, in_pairs, plan, questioning
+from .plan import LEVELS, Pattern, Plan, Task, in_pairs, levels_of, plan, questioning
 from .program import Program, Room
 from .tables import Column
 
@@ -66,8 +65,8 @@ class Rows:
         certified, it is left to the next level. Some cannot be computed at this level and are left to the
         next one in all rows. Some need an answer first: the rows of either answer become a new task.
 
-        The program runs on ``rows``, which may be more than those of ``index`` where that is cheaper than to
-        select them. The results of the other rows are overwritten afterwards.
+        The program runs on ``rows``, which may be more than those of ``index``, but not twice as many, where
+        that is cheaper than to select them. The results of the other rows are overwritten afterwards.
         """
         levels = LEVELS[self.accuracy]
         if task.level == len(levels) or (levels[task.level] is TRIPLES and size_of(index) <= FEW):
@@ -82,9 +81,13 @@ class Rows:
         left: list[Waiting] = []
         if how.later:
             left.append((index, task._replace(names=how.later, level=task.level + 1), index))
-        for name, failed in self._run_plan(how, rows).items():
+        yes, all_failed = self._run_plan(how, rows)
+        for name, failed in all_failed.items():
             if rows is not index and not isinstance(index, slice):
                 failed = np.intersect1d(failed, index, assume_unique=True)
+            if name == how.question:
+                yes[_places(rows, failed)] = self._ask(failed, task, name)
+                continue
             one = task._replace(names=(name,), level=task.level + 1)
             if self.accuracy == "exact" and levels[task.level] is PAIRS and failed.size > FEW:
                 failed = self._settle_ties(failed, one)
@@ -93,7 +96,8 @@ class Rows:
             elif failed.size:
                 left.append((failed, one, failed))
         if how.asking:
-            yes = self._ask(index, task, how.question)
+            if rows is not index and not isinstance(index, slice):
+                yes = yes[_places(rows, index)]
             most = bool(2 * np.count_nonzero(yes) > yes.size)
             for answer in (not most, most):  # the larger group is solved first, the other one overwrites
                 members = np.flatnonzero(yes == answer)
@@ -102,19 +106,28 @@ class Rows:
                     part = task._replace(
                         decisions=task.decisions | {(how.question, answer)}, names=how.asking
                     )
-                    all_rows = isinstance(index, slice) and answer == most
-                    left.append((own, part, index if all_rows else own))
+                    wide = answer == most and isinstance(rows, slice) and 2 * members.size > size_of(rows)
+                    left.append((own, part, rows if wide else own))
         return left
 
-    def _run_plan(self, how: Plan, index: Index) -> dict[str, NDArray[np.intp]]:
-        """Run a plan's program; returns the rows in which a quantity is not certified, by its name."""
-        failed: dict[str, list[NDArray[np.intp]]] = {name: [] for name in how.conditional}
+    def _run_plan(self, how: Plan, index: Index) -> tuple[NDArray[np.bool_], dict[str, NDArray[np.intp]]]:
+        """Run a plan's program.
+
+        Returns the rows' answers to the plan's question, and the rows in which the answer, or a quantity, is
+        not certified, by the question or the name.
+        """
+        asked = [how.question] if how.question else []
+        yes = np.empty(size_of(index) if asked else 0, np.bool_)
+        names = (*how.conditional, *asked)
+        failed: dict[str, list[NDArray[np.intp]]] = {name: [] for name in names}
         if how.program:
-            for start, *certified in self._run(how.program, index, how.quantities, len(how.conditional)):
-                for name, sure in zip(how.conditional, certified, strict=True):
+            for start, *columns in self._run(how.program, index, how.quantities, len(names) + len(asked)):
+                for name, sure in zip(names, columns, strict=False):
                     if np.count_nonzero(sure) < sure.size:
                         failed[name].append(np.flatnonzero(~sure) + start)
-        return {name: _select(index, np.concatenate(some)) for name, some in failed.items() if some}
+                if asked:
+                    yes[start : start + columns[-1].size] = columns[-1]
+        return yes, {name: _select(index, np.concatenate(some)) for name, some in failed.items() if some}
 
     def _run(
         self, program: Program, index: Index, names: Sequence[str], more: int
@@ -148,26 +161,21 @@ class Rows:
                     self.results[name][tile] = column
             yield start, *answers
 
-    def _ask(self, index: Index, task: Task, question: str) -> NDArray[np.bool_]:
-        """Each row's answer to a question, at the first level of precision that decides it."""
-        yes = np.empty(size_of(index), np.bool_)
-        open_: Any = slice(0, yes.size)
-        levels: tuple[Any, ...] = (DOUBLES, PAIRS, TRIPLES)
-        if LEVELS[self.accuracy][task.level] is TRIPLES:
-            levels = (TRIPLES,)
-        elif question == CANCELS and self.accuracy != "fast":
-            levels = (PAIRS, TRIPLES)
-        for ar in levels:
-            if ar is not DOUBLES and size_of(open_) <= FEW:
+    def _ask(self, index: NDArray[np.intp], task: Task, question: str) -> NDArray[np.bool_]:
+        """Each row's answer to a question that the task's plan leaves open."""
+        yes = np.empty(index.size, np.bool_)
+        open_ = np.arange(index.size)
+        for ar in levels_of(question, task.level, self.accuracy)[1:]:
+            if open_.size <= FEW:
                 break
-            program = questioning(task.pattern, task.decisions, question, self.accuracy, ar)
-            unsure: list[NDArray[np.intp]] = []
-            for start, says, sure in self._run(program, _select(index, open_), (), 2):
-                yes[_select(open_, slice(start, start + says.size))] = says
-                if np.count_nonzero(sure) < sure.size:
-                    unsure.append(np.flatnonzero(~sure) + start)
-            open_ = _select(open_, np.concatenate(unsure)) if unsure else np.empty(0, np.intp)
-        for row in range(yes.size) if isinstance(open_, slice) else open_.tolist():
+            program = questioning(task, question, self.accuracy, ar)
+            unsure = []
+            for start, sure, says in self._run(program, index[open_], (), 2):
+                tile = open_[start : start + says.size]
+                yes[tile] = says
+                unsure.append(tile[~sure])
+            open_ = np.concatenate(unsure)
+        for row in open_.tolist():
             method, which = question.split()
             yes[row] = getattr(Case(self._scene(index, row, task.pattern)), method)(which)
         return yes
@@ -233,3 +241,10 @@ def _select(index: Any, some: Any) -> Any:
     if isinstance(some, slice):
         return slice(index.start + some.start, min(index.start + some.stop, index.stop))
     return some + index.start if index.start else some
+
+
+def _places(index: Index, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    """The places of some rows in a selection, which is in ascending order: the reverse of `_select`."""
+    if not isinstance(index, slice):
+        return np.searchsorted(index, rows)
+    return rows - index.start if index.start else rows
