@@ -359,6 +359,7 @@ solve --m1 1 --m2 2 --only tention_1 => --only 'tention_1' is no quantity; did y
 solve --m1 1 --m2 2 --only accel => --only 'accel' is no quantity; did you mean acceleration?
 solve --m1 1 --m2 2 --only t1 => --only 't1' is no quantity; did you mean tension_1?
 solve --m1 1 --m2 2 --only zzz => --only 'zzz' is no quantity; there are {NAMES}
+solve --m1 1 --m2 2 --only wrap => --only 'wrap' is an input, no quantity; there are {NAMES}
 solve --m1 1 --m2 2 --radus 3 => No such option: --radus. Did you mean --radius?; atwood solve -h shows how
 solve --zzz => No such option: --zzz; atwood solve -h shows how
 solve --bogus 1 => No such option: --bogus; atwood solve -h shows how

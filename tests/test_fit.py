@@ -634,7 +634,7 @@ ERRORS = [
     (SIMMONS, "--g 1e-31", 2, "--g '1e-31' is beyond what a fit computes with, 1e-30 to 1e+30"),
     (TIMED, "--drop 1e31", 2, "--drop '1e31' is beyond what a fit computes with, 1e-30 to 1e+30"),
     (SIMMONS, "--axle 1Nm", 2, "--axle '1Nm' is a torque, which needs the radius R as well"),
-    (SIMMONS, "--only mu", 2, f"--only 'mu' is no result; there are {ALL}"),
+    (SIMMONS, "--only mu", 2, f"--only 'mu' is an input, no result; there are {ALL}"),
     (SIMMONS, "--only gravity", 1, NO_VALUE),
     (SIMMONS, "--only pulley_mass", 1,
         "pulley_mass: needs the rim mass to be fitted, and the pulley's shape, --inertia."),

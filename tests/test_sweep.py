@@ -849,7 +849,6 @@ WRONG_USAGE = """
 --M 1,1e400 --figure a.svg => --figure draws numbers between 1e-100 and 1e+100 in magnitude only, not such M
 --M 1:2:3 --plot --only mu_verge,F --g 1e200 => --plot draws numbers between 1e-100 and 1e+100 in magnitude only, not such friction_force
 --M 1e-200:2:3:log --figure a.svg => --figure draws numbers between 1e-100 and 1e+100 in magnitude only, not such M
---M 1:2:3 --only M => --only 'M' is an input, no quantity
 --M 1:1.00000000000000000001:3 --plot => --M '1:1.00000000000000000001:3' has ends too close together to draw what is between them
 --M 1:2:3 --plot --csv => --plot has no effect with --csv; leave one of them out
 --M 1:2:3 --plot -o a.json => --plot has no effect with --json; leave one of them out

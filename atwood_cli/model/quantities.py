@@ -140,7 +140,7 @@ def read_name(
     if (name := symbols.get(_plain(word), "")) in known:
         return name
     if word in INPUTS:
-        raise SceneError(parameter, word, f"is an input, no {kind}")
+        raise SceneError(parameter, word, f"is an input, no {kind}; there are {', '.join(known)}")
     small = _plain(word).lower()
     alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
     hint = f"did you mean {alike[0]}?" if len(alike) == 1 else f"there are {', '.join(known)}"
