@@ -3,11 +3,10 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .api import MeasuredSolution, Solution, solve
+    from .api import Solution, solve
     from .arrays import STATUSES, solve_arrays
-    from .batch.solving import solve_table
-    from .laboratory import fit
-    from .laboratory.results import Fit
+    from .batch.frames import solve_table
+    from .laboratory import Fit, fit
     from .model.quantities import REGIMES
     from .model.scene import Scene, SceneError
 
@@ -15,7 +14,6 @@ __all__ = [
     "REGIMES",
     "STATUSES",
     "Fit",
-    "MeasuredSolution",
     "Scene",
     "SceneError",
     "Solution",
@@ -29,15 +27,14 @@ __version__ = "0.1.0"
 _HOMES = {
     "REGIMES": "model.quantities",
     "STATUSES": "arrays",
-    "MeasuredSolution": "api",
-    "Fit": "laboratory.results",
+    "Fit": "laboratory",
     "Scene": "model.scene",
     "SceneError": "model.scene",
     "Solution": "api",
     "fit": "laboratory",
     "solve": "api",
     "solve_arrays": "arrays",
-    "solve_table": "batch.solving",
+    "solve_table": "batch.frames",
 }
 
 

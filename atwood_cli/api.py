@@ -4,20 +4,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from inspect import Parameter, Signature
-from typing import TYPE_CHECKING, Any, Generic, Required, TypedDict, TypeVar, Unpack, overload
+from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, overload
 
 from .model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from .model.scene import Given, Scene, read_digits
-from .solver.answers import Answers
+from .solver.answers import Answers, read_answers
 from .solver.messages import notes
-from .solver.reading import read_answers
 
 
-class SceneInputs(TypedDict, total=False):
-    """What a scene is given by; None is not given, as is what is left out."""
+class Inputs(TypedDict, total=False):
+    """What `solve` takes beside masses and ``digits``; None is not given, as is what is left out."""
 
-    m1: Given | None
-    m2: Given | None
     M: Given | None
     mu: Given | None
     mu_k: Given | None
@@ -27,29 +24,8 @@ class SceneInputs(TypedDict, total=False):
     R: Given | None
     wrap: Given | None
     axle: Given | None
-
-
-class Inputs(SceneInputs, total=False):
-    """What `solve` takes beside ``digits``."""
-
     a: Given | None
     drop: Given | None
-    time: Given | None
-
-
-class WithAcceleration(SceneInputs, total=False):
-    """Inputs that a measured acceleration is among, so that the solution is a measured one."""
-
-    a: Required[Given]
-    drop: Given | None
-    time: Given | None
-
-
-class WithDrop(SceneInputs, total=False):
-    """Inputs that a height of fall is among, which makes it one as well."""
-
-    a: None
-    drop: Required[Given]
     time: Given | None
 
 
@@ -86,6 +62,10 @@ class Solution(Answered, Generic[T]):
     descends. The quantities, with their units and the paper's equations:
 
 {_described(NAMES[1:])}
+
+    Where ``a`` or ``drop`` was given, what follows from it; else None:
+
+{_described(MEASURED_NAMES)}
     """
 
     scene: Scene
@@ -113,6 +93,14 @@ class Solution(Answered, Generic[T]):
     least_heavier_mass: T | None
     least_pulley_mass: T | None
     least_wrap: T | None
+    pulley_mass: T | None
+    moment_of_inertia: T | None
+    gravity: T | None
+    m1: T | None
+    m2: T | None
+    mu_k: T | None
+    fall_time: T | None
+    final_speed: T | None
     uncertainty: Mapping[str, T | None]
 
     def __init__(self, answers: Answers) -> None:
@@ -131,7 +119,7 @@ class Solution(Answered, Generic[T]):
 
     def to_dict(self) -> dict[str, Any]:
         """What ``--json`` prints, ready for `json`: of Decimals text, None for what is infinite."""
-        from .output.solution import record
+        from .output.scene_page import record
         from .output.text import for_json
 
         answers = Answers(*self._answers.given)
@@ -139,15 +127,9 @@ class Solution(Answered, Generic[T]):
 
     def __str__(self) -> str:
         """The table of what the scene is about, as ``atwood solve`` prints it, without colours."""
-        from .output.solution import as_text
+        from .output.scene_page import as_text
 
         return as_text(Answers(*self._answers.given))
-
-    def _repr_html_(self) -> str:
-        """The same for a notebook."""
-        from .output.solution import as_html
-
-        return as_html(Answers(*self._answers.given))
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -159,23 +141,6 @@ class Solution(Answered, Generic[T]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _solved, self._answers.given
-
-
-@dataclass(frozen=True, slots=True, init=False, eq=False)
-class MeasuredSolution(Solution[T]):
-    __doc__ = f"""A solution with what follows from a measured acceleration or a height of fall, else None.
-
-{_described(MEASURED_NAMES)}
-    """
-
-    pulley_mass: T | None
-    moment_of_inertia: T | None
-    gravity: T | None
-    m1: T | None
-    m2: T | None
-    mu_k: T | None
-    fall_time: T | None
-    final_speed: T | None
 
 
 def _computed(name: str, answers: Answers) -> dict[str, Any]:
@@ -194,23 +159,23 @@ def _computed(name: str, answers: Answers) -> dict[str, Any]:
 
 def _solved(*given: Any) -> Solution[Any]:
     """The solution to what is given; one that was copied or pickled is computed again when it is read."""
-    answers = Answers(*given)
-    return Solution(answers) if answers.names == NAMES else MeasuredSolution(answers)
+    return Solution(Answers(*given))
+
+
+Mass = Given | None
 
 
 @overload
-def solve(*, digits: None = None, **given: Unpack[WithAcceleration]) -> MeasuredSolution[float]: ...
+def solve(
+    m1: Mass = ..., m2: Mass = ..., *, digits: None = None, **given: Unpack[Inputs]
+) -> Solution[float]: ...
 @overload
-def solve(*, digits: None = None, **given: Unpack[WithDrop]) -> MeasuredSolution[float]: ...
-@overload
-def solve(*, digits: int | str, **given: Unpack[WithAcceleration]) -> MeasuredSolution[Decimal]: ...
-@overload
-def solve(*, digits: int | str, **given: Unpack[WithDrop]) -> MeasuredSolution[Decimal]: ...
-@overload
-def solve(*, digits: None = None, **given: Unpack[Inputs]) -> Solution[float]: ...
-@overload
-def solve(*, digits: int | str, **given: Unpack[Inputs]) -> Solution[Decimal]: ...
-def solve(*, digits: int | str | None = None, **given: Unpack[Inputs]) -> Any:
+def solve(
+    m1: Mass = ..., m2: Mass = ..., *, digits: int | str, **given: Unpack[Inputs]
+) -> Solution[Decimal]: ...
+def solve(
+    m1: Mass = None, m2: Mass = None, *, digits: int | str | None = None, **given: Unpack[Inputs]
+) -> Any:
     """The state of Atwood's machine: m1 and m2 on a rough string over a pulley.
 
     Masses in kg, R in m, I in kg m², g in m/s², wrap in degrees; text may carry a unit ("250g",
@@ -221,8 +186,7 @@ def solve(*, digits: int | str | None = None, **given: Unpack[Inputs]) -> Any:
 
     ``a``, a measured acceleration, stands in place of M, or beside M of a mass or g, and finds it; of a
     string that slips, as it must on M="inf", it finds mu_k. ``drop``, a height, gives the time and speed
-    of the fall, and with ``time`` stands for the ``a`` it implies. A MeasuredSolution comes back, which
-    has these results too.
+    of the fall, and with ``time`` stands for the ``a`` it implies. The solution has what was found.
 
     Text may carry a standard uncertainty, as "1.000(2)", "1.000±0.002" or "(250±1)g"; the solution's
     ``uncertainty`` then has those of the quantities by name, to first order.
@@ -230,11 +194,17 @@ def solve(*, digits: int | str | None = None, **given: Unpack[Inputs]) -> Any:
     Floats come back, each the double nearest to the exact value; with ``digits=N`` Decimals, each
     correctly rounded to N significant digits. Raises SceneError (a ValueError) on bad input.
     """
-    inputs = SIGNATURE.bind(**given).arguments  # raises TypeError where there is no such input
+    inputs = SIGNATURE.bind(m1, m2, **given).arguments  # raises TypeError where there is no such input
     return _solved(*read_answers(inputs, read_digits(digits)).given)
 
 
 SIGNATURE = Signature(
-    [Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in (*Inputs.__annotations__, "digits")]
+    [
+        *(Parameter(name, Parameter.POSITIONAL_OR_KEYWORD, default=None) for name in ("m1", "m2")),
+        *(
+            Parameter(name, Parameter.KEYWORD_ONLY, default=None)
+            for name in (*Inputs.__annotations__, "digits")
+        ),
+    ]
 )
 solve.__dict__["__signature__"] = SIGNATURE  # for help() and editors: the inputs by name

@@ -1,22 +1,26 @@
-"""A folder of Parquet files, solved by dask on a cluster: solve_table is a function of one data frame.
+"""A folder of Parquet files, solved by dask on a cluster: each task is one solve_table, on one file.
 
 Here the cluster is two processes on this machine; on many machines, another of dask's takes its place.
 """
 
+from collections.abc import Iterable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-import dask.dataframe as dd
-import pandas as pd
-from distributed import Client, LocalCluster
+import polars as pl
+from distributed import Client, Future, LocalCluster
 
 from atwood_cli import solve_table
 
 
-def solved(folder: str) -> dd.DataFrame:
-    """The scenes with their results; with Arrow's types, a value that is missing is not taken for a NaN."""
-    scenes = dd.read_parquet(folder, dtype_backend="pyarrow")
-    return scenes.map_partitions(solve_table, ["regime", "acceleration"])
+def solved(file: Path) -> pl.DataFrame:
+    """The scenes of a file with their results."""
+    return solve_table(pl.read_parquet(file), ["regime", "acceleration"])
+
+
+def tasks(client: Client, files: Iterable[Path]) -> list[Future]:
+    """A task for each file. Should a worker be lost, dask has another one do its tasks again."""
+    return client.map(solved, sorted(files))
 
 
 def write_scenes(folder: str, files: int, rows: int) -> None:
@@ -24,12 +28,12 @@ def write_scenes(folder: str, files: int, rows: int) -> None:
     for i in range(files):
         M = [100 * (i * rows + row) / (files * rows) for row in range(rows)]
         mu = [None if row % 10 == 0 else 0.3 for row in range(rows)]
-        scenes = pd.DataFrame({"m1": 1.0, "m2": 3.0, "M": M, "mu": mu})
-        scenes.to_parquet(Path(folder, f"{i}.parquet"))
+        pl.DataFrame({"m1": 1.0, "m2": 3.0, "M": M, "mu": mu}).write_parquet(Path(folder, f"{i}.parquet"))
 
 
 if __name__ == "__main__":
     cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
-    with TemporaryDirectory() as folder, cluster, Client(cluster):
+    with TemporaryDirectory() as folder, cluster, Client(cluster) as client:
         write_scenes(folder, files=8, rows=10_000)
-        print(solved(folder).groupby("regime").size().compute().sort_index().to_string())
+        scenes = pl.concat(client.gather(tasks(client, Path(folder).iterdir())))
+        print(scenes.group_by("regime").len().sort("regime").write_csv(), end="")

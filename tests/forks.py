@@ -24,13 +24,9 @@ TOP = Path(__file__).parent.parent
 WARM = [
     *(f"atwood_cli.cli.{name}" for name in cli.COMMANDS),
     "atwood_cli.arrays",
-    "atwood_cli.derivation.typeset",
+    "atwood_cli.output.typeset",
 ]
-WARM += [
-    "rich.table",
-    "plotille",
-    "matplotlib.backends.backend_svg",
-]  # not polars: its threads would not survive
+WARM += ["rich.table", "matplotlib.backends.backend_svg"]  # not polars: its threads would not survive
 SIZE = 8  # bytes that say how long a request is
 
 

@@ -2,7 +2,6 @@
 
 import os
 import re
-import shlex
 import signal
 import subprocess
 import sys
@@ -19,7 +18,6 @@ import pytest
 from . import forks
 from .forks import HANGS as HANGS
 
-PIP = f"{shlex.quote(sys.executable)} -m pip"
 PAPER = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 
 QUICK = """
@@ -134,7 +132,7 @@ def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: st
     os.close(leader)
     assert status.result() >= 0, seen
     seen = seen.removesuffix(END)
-    return seen.decode("utf-8").replace("\r\n", "\n")
+    return seen.decode("utf-8", "replace").replace("\r\n", "\n")
 
 
 def plain(seen: str) -> str:

@@ -20,7 +20,7 @@ from atwood_cli.arithmetic.rational import EXACT, Irrational
 from atwood_cli.arithmetic.rounding import to_digits, to_double
 
 if TYPE_CHECKING:
-    from atwood_cli.arithmetic.protocol import Arithmetic, N
+    from atwood_cli.arithmetic.rational import Arithmetic, N
 
 precisions = st.sampled_from([20, 25, 50, 97, 200, 1000])
 rationals = st.fractions().filter(lambda q: abs(q) < 10**30)

@@ -9,10 +9,11 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cache
 from itertools import islice
-from math import inf, isfinite, isinf, isnan, nan, ulp
+from math import inf, isfinite, isnan, nan, ulp
 from random import Random
 from sys import maxsize
 from threading import Barrier
+from time import process_time
 from typing import Any
 from unittest.mock import Mock
 
@@ -21,7 +22,6 @@ import polars as pl
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
 from atwood_cli.arithmetic.lazy import lazy
@@ -79,12 +79,9 @@ def columns(of: list[Row]) -> dict[str, Any]:
     return given
 
 
-def within_4_ulp(got: float, nearest: float, want: oracle.Value) -> bool:
-    """Whether a double is within 4 ulp of what is wanted, to which `nearest` is the nearest one."""
-    if isinf(nearest) or abs(got - nearest) <= 3 * ulp(nearest):
-        return got == nearest or not isinf(nearest)
-    exact = oracle.correctly_rounded(want, 40)
-    return isfinite(got) and abs(Fraction(got) - Fraction(exact)) <= 4 * Fraction(ulp(nearest))
+def within_promise(got: float, nearest: float) -> bool:
+    """Whether a double is within 2e-14 of the exact value, to which `nearest` is the nearest double."""
+    return got == nearest or abs(got - nearest) <= 2e-14 * abs(nearest) + 0.5 * ulp(nearest)
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -93,7 +90,7 @@ def test_values_of_each_accuracy(family: str, axle: bool, pytestconfig: pytest.C
     """20,000 rows with --every-digit, as .ci/run has it; a quarter of them otherwise."""
     share = 1 if pytestconfig.getoption("every_digit") else 4
     given = rows(family, (1000 if axle else 3000) // share, axle)
-    fast, certified, exact = (solve_arrays(**columns(given), accuracy=accuracy) for accuracy in ACCURACIES)
+    certified, exact = (solve_arrays(**columns(given), accuracy=accuracy) for accuracy in ACCURACIES)
     regimes: Counter[str] = Counter()
     for i, row in enumerate(given):
         want = oracle.expected(Scene.read(row))
@@ -107,30 +104,12 @@ def test_values_of_each_accuracy(family: str, axle: bool, pytestconfig: pytest.C
             if value is not None:
                 nearest = float(oracle.correctly_rounded(value, None))
                 assert exact[name][i] == nearest, (row, name)
-                assert within_4_ulp(certified[name][i], nearest, value), (row, name, certified[name][i])
+                assert within_promise(certified[name][i], nearest), (row, name, certified[name][i])
     assert min(regimes["slip"], regimes["no-slip"]) > 50 / share
-    if not axle:
-        assert_stable(fast, exact, family)
-
-
-def assert_stable(fast: Any, exact: Any, family: str) -> None:
-    """What is fast has the exact regimes but for few rows, and values near the exact ones.
-
-    Of a thousand rows: among more there is one that hardly slips, and so loses more digits.
-    """
-    fast, exact = ({name: column[:1000] for name, column in some.items()} for some in (fast, exact))
-    same = fast["regime"] == exact["regime"]
-    assert same.mean() > {"near_critical": 0.8, "whole_range": 0.95}.get(family, 0.999)
-    for name in STANDARD[1:]:
-        here, there = fast[name][same], exact[name][same]
-        assert not (np.isinf(here) & np.isfinite(there)).any(), name  # no avoidable overflow
-        if family in ("ordinary", "nearly_equal") and name != "critical_pulley_mass":
-            both = ~np.isnan(here) & ~np.isnan(there)
-            np.testing.assert_allclose(here[both], there[both], rtol=3e-14)
 
 
 def assert_is_solve(results: Any, i: int, row: Row, accuracy: str) -> None:
-    """A row's results are those of `solve`: to the bit if exact, within 4 ulp if certified."""
+    """A row's results are those of `solve`: to the bit if exact, within 2e-14 if certified."""
     one = solve_any(**{"g": G} | row)
     for name, column in results.items():
         got, value = column[i].item(), getattr(one, name, 0)
@@ -140,10 +119,10 @@ def assert_is_solve(results: Any, i: int, row: Row, accuracy: str) -> None:
         elif accuracy == "exact" or not isfinite(want):
             assert repr(got) == repr(want), (row, name)
         else:
-            assert abs(got - want) <= 4 * ulp(want), (row, name, got)
+            assert within_promise(got, want), (row, name, got)
 
 
-@pytest.mark.parametrize("accuracy", ACCURACIES[1:])
+@pytest.mark.parametrize("accuracy", ACCURACIES)
 @pytest.mark.parametrize("family", FAMILIES)
 def test_rows_are_as_one_scene(family: str, accuracy: Accuracy, pytestconfig: pytest.Config) -> None:
     given = rows(family, 150 if pytestconfig.getoption("every_digit") else 50)
@@ -297,7 +276,7 @@ def test_what_cancels_is_solve_to_the_bit(
 ) -> None:
     """From 2^-40 to beyond 2^-1000: all quantities, and what FLINT has of them."""
     given = family(np.random.default_rng(24))
-    results = {a: solve_arrays(**given, accuracy=a, quantities=NAMES) for a in ACCURACIES[1:]}
+    results = {a: solve_arrays(**given, accuracy=a, quantities=NAMES) for a in ACCURACIES}
     for i, columns_ in enumerate(zip(*np.broadcast_arrays(*given.values()), strict=True)):
         row = {"g": G} | dict(zip(given, map(float, columns_), strict=True))
         for accuracy, found in results.items():
@@ -309,6 +288,40 @@ def test_what_cancels_is_solve_to_the_bit(
                         row,
                         name,
                     )
+
+
+@cache
+def hostile() -> list[tuple[Columns, Columns]]:
+    """Rows that lose digits, and ordinary ones, with their exact results."""
+    rng = np.random.default_rng(24)
+    ordinary = _masses(rng) | {"M": _usual(rng, -2, 3), "mu": _usual(rng, -2, 0.3)}
+    without_mu = {name: column for name, column in ordinary.items() if name != "mu"}
+    families = [
+        *(family(rng) for family in CANCELLING),
+        ordinary | {"axle": _usual(rng, -2, 2)},
+        without_mu | {"wrap": rng.uniform(1, 720, CANCELLING_ROWS)},
+        ordinary | {"wrap": rng.uniform(1, 720, CANCELLING_ROWS)},
+        ordinary | {"mu": _usual(rng, 0, 1.5)},
+    ]
+    names = [name for name in NAMES if name not in ("regime", "friction_force_min", "friction_force_max")]
+    return [(given, solve_arrays(**given, accuracy="exact", quantities=names)) for given in families]
+
+
+@pytest.mark.parametrize("limit", [5e-16, 2e-15, 5e-15, 2e-14])
+def test_errors_are_within_any_limit_that_bounds_are(limit: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Not only within the promise, from which most are far: so a bound that is too small shows."""
+    monkeypatch.setattr(arrays.certified, "LIMIT", limit)
+    plan.cache_clear()
+    worst = 0.0
+    for inputs, exact in hostile():
+        certified = solve_arrays(**inputs, quantities=[*exact][:-1])
+        for name, wanted in exact.items():
+            finite = np.isfinite(wanted) & (wanted != 0)
+            off = np.abs(certified[name][finite] / wanted[finite] - 1)
+            assert (off <= limit + 2.0**-51).all(), (name, inputs.keys())
+            worst = max([worst, *off])
+    plan.cache_clear()
+    assert worst > limit / 8
 
 
 def test_the_papers_scene() -> None:
@@ -348,7 +361,7 @@ mixed_rows = st.fixed_dictionaries(
 @given(st.lists(odd_rows | mixed_rows, min_size=1, max_size=30), st.permutations(NAMES))
 def test_any_rows_side_by_side(some: list[dict[str, float]], names: list[str]) -> None:
     """Bad rows get a code and stop nobody, and whoever stands beside whom, each gets its own."""
-    for accuracy in ACCURACIES[1:]:
+    for accuracy in ACCURACIES:
         results = solve_arrays(**columns(some), accuracy=accuracy, quantities=names)
         for i, row in enumerate(some):
             fault = _fault(row)
@@ -449,6 +462,34 @@ def test_why_values_are_missing_is_counted(
         assert missing == sum(times for (of, _), times in reasons.items() if of == name)
 
 
+@pytest.mark.parametrize("wraps", [180.0, [90.0, 180.0] * 50])
+def test_rows_that_are_computed_in_vain_are_not_counted(wraps: Any) -> None:
+    """Of 100 rows most hold: their program runs on all of them, and what it says of the others is dropped."""
+    rng = np.random.default_rng(7)
+    given: Columns = {"m1": 1.0, "m2": rng.uniform(1.1, 3, 100), "M": 10.0, "mu": rng.uniform(0, 0.8, 100)}
+    given |= {"wrap": wraps, "axle": rng.uniform(0, 15, 100)}
+    rows_ = [
+        dict(zip(given, map(float, row), strict=True))
+        for row in zip(*np.broadcast_arrays(*given.values()), strict=True)
+    ]
+    solved = [Answers(Scene.read(row | {"g": G})) for row in rows_]
+    counted = Counter((name, one.reasons[name]) for name in NAMES for one in solved if one[name] is None)
+    assert 10 < sum(one.case.regime == "slip" for one in solved) < 45
+    assert arrays.solve_and_count(given, "certified", NAMES)[1] == counted
+
+
+def test_a_quantity_without_a_program_is_not_traced_for_long() -> None:
+    """Of 50 patterns it took 8 to 12 s."""
+    rng = np.random.default_rng(8)
+    given: Columns = {"m1": 1.0, "m2": 3.0, "M": rng.uniform(1, 10, 48), "mu": 0.9}
+    given["axle"], given["mu_k"], given["inertia"], given["R"] = (
+        np.ma.array(np.full(48, 0.3), mask=np.arange(48) // size % 2 == 0) for size in (1, 2, 4, 8)
+    )
+    before = process_time()
+    solve_arrays(**given, quantities=["friction_force_min", "friction_force_max", "friction_force_x"])
+    assert process_time() - before < 2
+
+
 @pytest.mark.parametrize("accuracy", ACCURACIES)
 def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     given = columns(rows("ordinary", 100) + rows("near_critical", 100))
@@ -492,12 +533,12 @@ def test_single_numbers_keep_no_columns() -> None:
 
 
 def test_what_leaves_the_doubles_is_infinite() -> None:
-    """e^{μφ} is within them and l e^{μφ} is not, in an expansion of two doubles and in one scene."""
+    """e^{μφ} is within them and l e^{μφ} is not."""
     mu, names = 690 / np.pi, ["least_heavier_mass", "least_pulley_mass"]
     for m1 in (*(2.0**power for power in range(26, 32)), 2.0**100, 2.0**-100):
         given: dict[str, Any] = {"m1": [m1] * 40, "m2": 2 * m1, "M": 1.0, "mu": mu, "quantities": names}
         one = solve_any(m1=m1, m2=2 * m1, M=1.0, mu=mu)
-        for accuracy, ulps in (("certified", 4), ("exact", 0)):
+        for accuracy, ulps in (("certified", 180), ("exact", 0)):
             results = solve_arrays(**given, accuracy=accuracy)  # type: ignore[arg-type]
             for name in names:
                 np.testing.assert_array_max_ulp(results[name], np.full(40, float(getattr(one, name))), ulps)
@@ -512,7 +553,7 @@ def test_rows_of_the_next_level_are_solved_wherever_they_wait(monkeypatch: pytes
         monkeypatch.setattr(arrays.rows, "LEAVE", leave)
         results = solve_arrays(**given)
         for name in exact:
-            np.testing.assert_array_max_ulp(results[name], exact[name], 4)
+            np.testing.assert_allclose(results[name], exact[name], 2e-14, 0)
 
 
 def test_ties_are_settled_in_columns(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -581,6 +622,10 @@ NO_NUMBERS = [
     "heavy",
     10**400,
     {1: 2},
+    True,
+    [True, 2.0],
+    np.array([True]),
+    np.array([2.0, True], dtype=object),
 ]
 
 
@@ -588,7 +633,7 @@ NO_NUMBERS = [
 @pytest.mark.parametrize("name", [name for name in INPUTS if name != "mu_k"])
 @pytest.mark.parametrize("value", NO_NUMBERS, ids=repr)
 def test_what_is_no_real_number_is_an_error_that_names_it(name: str, value: Any) -> None:
-    """NumPy takes the real part of a complex number, the days of a date, the only field of a record."""
+    """NumPy takes the real part of a complex number, the days of a date, the only field of a record, 1 for True."""
     with pytest.raises(SceneError) as error:
         solve_arrays(**{"m1": 1.0, "m2": 3.0, name: value})
     assert error.value.parameter == name
@@ -624,19 +669,6 @@ def test_0_and_infinity_of_any_type_are_themselves(value: Any) -> None:
         np.testing.assert_array_equal(found["acceleration"], wanted["acceleration"])
 
 
-class PandasColumn:
-    """What is used of a column of pandas."""
-
-    def __init__(self, values: list[Any], dtype: object) -> None:
-        self.values, self.dtype = values, dtype
-
-    def isna(self) -> list[bool]:
-        return [value is None or isnan(value) for value in self.values]
-
-    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
-        return np.array(self.values, dtype)
-
-
 NOT_GIVEN: dict[str, Any] = {
     "numpy.ma": np.ma.array([0.25, 7.0, nan], mask=[False, True, False]),
     "of integers": np.ma.array([1, 7, 1], mask=[False, True, False]),
@@ -646,8 +678,6 @@ NOT_GIVEN: dict[str, Any] = {
     "polars": pl.Series([0.25, None, nan]),
     "polars, integers": pl.Series([1, None, 1]),
     "polars, texts": pl.Series(["0.25", None, "NaN"]),
-    "pandas": PandasColumn([0.25, None, 0.25], "Float64"),
-    "pandas, of NumPy's type": PandasColumn([0.25, 0.25, nan], np.dtype(float)),
 }
 
 
@@ -718,7 +748,7 @@ def test_a_table_of_many_kinds_is_planned_once() -> None:
 def test_sums_of_negative_forces() -> None:
     """The smaller in size, not in value, must come second where two operations give a sum's error."""
     row = {"m1": 1.7564649058808377, "m2": 865.29649231545, "mu": 0.7514867515890271, "wrap": 270.0}
-    for accuracy in ACCURACIES[1:]:
+    for accuracy in ACCURACIES:
         results = solve_arrays(**row, accuracy=accuracy, quantities=NAMES)
         one = solve_any(**row, g=9.80665)
         for name in ("friction_force_x", "friction_force_y"):
@@ -758,7 +788,11 @@ def test_quantities_by_their_symbols_have_their_names(words: Any) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"accuracy": "best"}, "accuracy 'best' must be one of fast, certified, exact"),
+        ({"accuracy": "best"}, "accuracy 'best' is no accuracy; there are certified, exact"),
+        (
+            {"accuracy": "fast"},
+            "accuracy 'fast' is no longer there, as certified takes hardly longer; take that",
+        ),
         ({"quantities": ["tension"]}, "quantities 'tension' is no quantity; did you mean tension_2?"),
         ({"quantities": "a,t1"}, "quantities 't1' is no quantity; did you mean tension_1?"),
         ({"quantities": [["torque"]]}, r"quantities .*torque.* is no quantity.*"),

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from atwood_cli import solve
-from atwood_cli.laboratory import quantities as laboratory
+from atwood_cli.laboratory import published as laboratory
 from atwood_cli.model.quantities import QUANTITIES
 from atwood_cli.model.scene import parameter_of
 
@@ -35,7 +35,6 @@ NAMED = {
     "solve": {r"^(uncertainty|budget)\.\w+": r"\1.NAME", r"^(budget\.NAME)\.\w+": r"\1.INPUT"},
     "sweep": {r"^(rows\[\])\.\w+": r"\1.NAME"},
     "fit": {r"^(uncertainty|interval)\.\w+": r"\1.NAME", r"^runs\[\]\.shift$": "runs[].LABEL"},
-    "contact --elements": {r"^elements\.\w+": "elements.NAME"},
 }
 """Of a command, the keys that are names of quantities, of inputs, or of a file."""
 PRINTED = {
@@ -48,9 +47,9 @@ PRINTED = {
     ],
     "sweep": ["--m1 1 --m2 3 --M 1,inf", "--m1 1 --m2 3 --mu 0.3 --wrap 1rad:2rad:2 --g 1:2:2 --only regime"],
     "contact": ["--m1 1 --m2 3 --mu 0.3", "--m1 1 --m2 3 --M inf --R 1 --axle 1N --points 2"],
-    "contact --elements": ["4 --m1 1 --m2 3 --mu 0.3", "4 --m1 1 --m2 3 --M 10 --mu 0.4"],
     "fit": ["{rit} --drop 98cm", "{labelled} --R 1 --g 9.8"],
-    "tradeoff": ["--m1 1 --m2 3 --M 10 --mu 1000", "--family ordinary --scenes 5 --elements 10"],
+    "quantities": [""],
+    "tradeoff": ["--family ordinary --scenes 5"],
 }
 
 
@@ -71,17 +70,18 @@ def test_every_key_is_on_the_page_and_of_its_type(
     atwood: Atwood, tmp_path: Path, command: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("atwood_cli.tradeoff.measure.REPEATS", 1)
-    monkeypatch.setattr("atwood_cli.tradeoff.measure.COUNTS", (4, 10))
     labelled = tmp_path / "runs.csv"
     labelled.write_text("shift,m1,m2,a\nday,1,2,2.4\nday,1,3,3.9\nnight,2,3,1.6\nnight,1,4,4.9\n")
-    page = SECTIONS["The scene"] | SECTIONS[command] if command != "fit" else SECTIONS[command]
+    page = SECTIONS[command] | (
+        SECTIONS["The scene"] if command not in ("fit", "quantities", "tradeoff") else {}
+    )
     top, found = [], set()
     for words in PRINTED[command]:
         words = f"{command} {words} --json".format(rit=TOP / "examples" / "rit.csv", labelled=labelled)
         ran = atwood(*words.split())
         assert ran.err == ""
         result = json.loads(ran.out)
-        assert result["version"] == 1
+        assert result["version"] == 2
         top.append(list(result))
         for key, value in keys(result):
             for named, name in NAMED.get(command, {}).items():

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from atwood_cli import Scene, SceneError, solve
 from atwood_cli.model.scene import BODIES
-from atwood_cli.model.units import LENGTH, MASS, STANDARD_GRAVITY
+from atwood_cli.model.units import STANDARD_GRAVITY, UNITS
 
 from .running import Atwood, process
 
@@ -27,7 +27,7 @@ def error(**given: Any) -> str:
     return str(caught.value)
 
 
-NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
+NOT_A_NUMBER = "is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1)"
 FINITE, POSITIVE = "must be 0 or more, and finite", "must be above 0, and finite"
 MASSES = "kg, g, mg, ug, t, lb, lbs, oz, st, slug"
 SHAPES = "disk, hoop, ring, sphere, shell"
@@ -57,30 +57,21 @@ RULES: list[tuple[str, list[Any], str]] = [
     ("m1", ["1" * 1001], "has 1001 digits; at most 1000 are taken"),
     ("m1", [Decimal("1e9999999"), f"1.{'1' * 999}/{'7' * 999}e500"], TOO_LONG),
     ("m1", ["4" * 1000 + "lb"], "has 1008 digits, its unit included; at most 1000 are taken"),
-    ("m1", ["1e500t", "1e-500g", f"1 kg{' t^9/ug^9' * 5}"], f"{EXPONENT}, its unit included"),
-    ("m1", [f"1 kg{'*st^9' * 20_000}"], "has a unit of 100002 characters; at most 60 are taken"),
-    ("mu", [f"1{'g' * 200}"], f"must be a plain number, without the '{'g' * 39}...{'g' * 9}'"),
+    ("m1", ["1e500t", "1e-500g"], f"{EXPONENT}, its unit included"),
+    ("m1", [f"1 kg{'*st^9' * 20_000}", f"1{'g' * 13}"], NOT_A_NUMBER),
     ("mu", ["0.3kg"], "must be a plain number, without the 'kg'"),
     ("m1", [True, b"1", 1j, np.timedelta64(1, "s"), np.timedelta64(1), np.datetime64("2020")], TYPES),
-    ("m1", ["1kgg"], "has the unknown unit 'kgg'; did you mean kg?"),
-    ("m1", ["1ton"], "has the unknown unit 'ton'; did you mean tonne?"),
     *(
-        ("m1", [f"1 {unit}"], f"has the unknown unit {unit!r}; there are {MASSES}")
-        for unit in ("Mg", "furlong")
+        (name, [f"1 {unit}"], f"has the unit {unit!r}; it takes {units}")
+        for units, name, taken in (
+            (MASSES, "m1", ["kgg", "Mg", "KG", "pounds", "lbf", "kg/m", "cm"]),
+            ("m/s2, m s-2, cm/s2, ft/s2, N/kg", "g", ["m/s", "m/s/s", "km/h2"]),
+            ("kg m2, kg cm2, g cm2, lb ft2, lb in2", "I", ["kg", "N m s2"]),
+            ("deg, °, turn, rad", "wrap", ["cm", "tuns", "rad m/m"]),
+            ("m, km, dm, cm, mm, um, in, ft, yd", "R", ["kg", "inches"]),
+        )
+        for unit in taken
     ),
-    ("m1", ["1lbf"], f"has a unit of force; it takes one of mass ({MASSES})"),
-    ("m1", ["1 kg/m"], f"has a unit of another dimension; it takes one of mass ({MASSES})"),
-    ("m1", ["5cm"], f"has a unit of length; it takes one of mass ({MASSES})"),
-    (
-        "g",
-        ["9.81m/s"],
-        "has a unit of another dimension; it takes one of acceleration (m/s2, cm/s2, ft/s2, N/kg)",
-    ),
-    ("I", ["3 kgm2"], "has the unknown unit 'kgm'; there are kg m2, g cm2, lb ft2"),
-    ("wrap", ["5cm"], f"has a unit of length; it takes one of angle ({ANGLES})"),
-    ("wrap", ["2 tuns"], "has the unknown unit 'tuns'; did you mean turn?"),
-    ("wrap", ["3rad m/m"], f"has a unit of several parts; it takes one of angle ({ANGLES})"),
-    ("R", ["5kg"], "has a unit of mass; it takes one of length (m, km, dm, cm, mm, um, in, ft, yd)"),
     ("g", ["moo"], f"{NOT_A_NUMBER}, or one of {', '.join(BODIES)}; did you mean moon?"),
     ("inertia", ["disc"], f"{NOT_A_NUMBER}, or one of {SHAPES}; did you mean disk?"),
     ("mu_k", ["0.1"], "needs mu, the coefficient that decides whether it slips"),
@@ -152,7 +143,7 @@ def test_the_grammar_of_numbers(text: str) -> None:
         except SceneError:
             return
         # Only a unit, a blank of another script, or minus nothing, makes a mass of what is no plain number.
-        assert value == 0 or not text.isascii() or text.strip().lower().endswith(tuple(MASS))
+        assert value == 0 or not text.isascii() or text.strip().lower().endswith(tuple(UNITS["mass"]))
 
 
 # fmt: off
@@ -160,21 +151,21 @@ TEXTS: dict[str, Any] = {
     "+1": 1, ".5": "1/2", "1.": 1, " 1 ": 1, "\xa01\u202f": 1, "-0": 0, "1.5e-3": "3/2000", "1E-3": "1/1000",
     "1e+2": 100, "1e0000000000000003": 1000, "1e500": 10**500, "1e497t": 10**500, "9" * 1000: int("9" * 1000),
     "4" * 1000 + "g": Fraction(int("4" * 1000), 1000), "4" * 992 + "lb": Fraction(int("4" * 992) * 45359237, 10**8),
-    "250g": "1/4", "250 g": "1/4", "250\xa0g": "1/4", "2 lb": "0.90718474", "1e3mg": "1/1000", "1KG": 1, "1Kg": 1,
-    "3kgs": 3, "2 tonnes": 2000, "500 grams": "1/2", "1 Pound": "0.45359237",
+    "250g": "1/4", "250 g": "1/4", "250\xa0g": "1/4", "2 lb": "0.90718474", "1e3mg": "1/1000",
+    "3lbs": "1.36077711", "1 slug": Fraction("4.4482216152605") / Fraction("0.3048"), "2 t": 2000, "3 μg": "3e-9",
     "1/3": "1/3", "1 / 3 kg": "1/3", "-1/-1.5e1": "1/15", "1/3g": "1/3000",
 }
 """Masses in kg."""
 OTHERS: dict[str, dict[str, Any]] = {
     "g": {
-        **dict.fromkeys(["9.81m/s2", "9.81 m/s²", "9.81 m/s^2", "981cm/s2", "9.81 m/s/s", "9.81 m s-2"], "9.81"),
+        **dict.fromkeys(["9.81m/s2", "9.81 m/s²", "9.81 m/s^2", "981cm/s2", "9.81 m s-2"], "9.81"),
         **dict.fromkeys(["9.81 m s⁻²", "9.81N/kg", "9.81 m·s⁻²"], "9.81"),
         "32ft/s2": "9.7536", "MOON": "1.62", "g/4": "2.4516625", "0.25 g": "2.4516625",
     },
-    "I": dict.fromkeys(["3g cm2", "3 g cm²", "3 g*cm^2", "3g·cm²", "3e-7 N m s2"], "3e-7"),
-    "R": {"2 inches": "0.0508", "1 foot": "0.3048", "3 Feet": "0.9144", "5CM": "0.05", "5µm": "5e-6"},
+    "I": dict.fromkeys(["3g cm2", "3 g cm²", "3 g*cm^2", "3g·cm²", "3e-3kg cm2", "3e-7 kgm2"], "3e-7"),
+    "R": {"2 in": "0.0508", "1 ft": "0.3048", "1yd": "0.9144", "5cm": "0.05", "5µm": "5e-6"},
     "wrap": {
-        "1.5 turns": 540, "90 Degrees": 90, "1/2turn": 180, "pi": 180,
+        "1.5 turn": 540, "90 deg": 90, "90°": 90, "1/2turn": 180, "pi": 180,
         **dict.fromkeys(["3pi/2", "3π/2", "1.5 PI", "3/2*pi", "3 / 2 π", "3π / 2 rad"], 270),
     },
     "inertia": {"Hoop": 1, "ring": 1, "disk": "1/2", "sphere": "2/5", "Shell": "2/3"},
@@ -198,7 +189,7 @@ def test_units_and_names_as_people_write_them(name: str, text: str, value: Any) 
 def test_what_was_measured_takes_units_too() -> None:
     a = solve(m1="55g", m2="60g", a="38cm/s2")
     assert a == solve(m1="0.055", m2="0.060", a="0.38")
-    fall = solve(m1="55g", m2="60g", drop="2 feet", time="2.05 Secs")
+    fall = solve(m1="55g", m2="60g", drop="2 ft", time="2050 ms")
     assert fall == solve(m1="0.055", m2="0.060", drop="0.6096", time="2.05")
 
 
@@ -272,17 +263,24 @@ def test_a_float_that_cannot_be_compared_is_its_number(name: str) -> None:
 
 
 def test_units_are_consistent() -> None:
-    grams = {unit: Fraction(factor) * 1000 for unit, factor in MASS.items()}
-    assert grams["lb"] == 16 * grams["oz"] == grams["st"] / 14 == Fraction("453.59237")
-    assert (
-        grams["t"] == 1000 * grams["kg"] == 10**6 * grams["g"] == 10**9 * grams["mg"] == 10**12 * grams["ug"]
+    mass, length, force, torque = (
+        {unit: Fraction(factor) for unit, factor in UNITS[name].items()}
+        for name in ("mass", "length", "force", "torque")
     )
-    metres = {unit: Fraction(factor) for unit, factor in LENGTH.items()}
+    assert mass["lb"] == mass["lbs"] == 16 * mass["oz"] == mass["st"] / 14 == Fraction("0.45359237")
+    assert [mass[unit] for unit in ("t", "g", "mg", "ug")] == [
+        1000,
+        Fraction("1e-3"),
+        Fraction("1e-6"),
+        Fraction("1e-9"),
+    ]
     # A pound-force gives a slug 1 ft/s², and a pound standard gravity.
-    assert grams["slug"] * metres["ft"] == grams["lb"] * Fraction(STANDARD_GRAVITY)
-    assert metres["yd"] == 3 * metres["ft"] == 36 * metres["in"] == Fraction("0.9144")
-    assert metres["km"] == 1000 * metres["m"] == 10**4 * metres["dm"] == 10**5 * metres["cm"]
-    assert metres["m"] == 1000 * metres["mm"] == 10**6 * metres["um"]
+    assert mass["slug"] * length["ft"] == force["lbf"] == Fraction("4.4482216152605")
+    assert force["kgf"] == Fraction(STANDARD_GRAVITY)
+    assert torque["lbf ft"] == 12 * torque["lbf in"] == force["lbf"] * length["ft"]
+    assert length["yd"] == 3 * length["ft"] == 36 * length["in"] == Fraction("0.9144")
+    assert length["km"] == 1000 * length["m"] == 10**4 * length["dm"] == 10**5 * length["cm"]
+    assert length["m"] == 1000 * length["mm"] == 10**6 * length["um"]
 
 
 def test_bodies_and_shapes_have_names() -> None:

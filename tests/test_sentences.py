@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from atwood_cli.model import machine
+from atwood_cli.model import mechanics
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver import answers as answers_
 from atwood_cli.solver.answers import Answers
@@ -161,31 +161,6 @@ def may_slip_somewhere(c: Claims) -> bool:
     return "slip" in {c.regime(h=c.l + c.b), c.regime(h=c.h * 10**300)}
 
 
-def conditions(c: Claims, heavy: str, least: str, met: str, rest: str, digits: int) -> None:
-    answers = c.expected()
-    assert Fraction(heavy) == c.h
-    assert (met == "met") == (c.regime(pulley=inf) == "slip")
-    least = least.removesuffix(" kg")
-    if "too large" in least or Decimal(least).adjusted() > 1000:  # its fraction may have millions of digits
-        assert met == "not met"
-        return
-    near = abs(Fraction(least) / c.h - 1) < Fraction(10) ** (1 - digits)  # so more digits tell it from h
-    assert near or c.is_shown(least, answers["least_heavier_mass"], digits)
-    assert (Fraction(least) < c.h) == (met == "met")
-    match = re.fullmatch(
-        r"; the pulley's mass(?:, (.*?) kg,|, infinite,)? must exceed (.*) kg \((.*)\)", rest
-    )
-    assert bool(match) == bool(rest)
-    if match:
-        mass, least, met = match.groups()
-        value = answers["least_pulley_mass"]
-        assert c.is_shown(least, value, digits) or mass is not None
-        if mass is not None:
-            assert (met == "met") == may_slip_somewhere(c) == (Fraction(mass) > Fraction(least))
-        elif c.scene.M is None:
-            assert (met == "open without M") == (c.regime() == "no-slip")
-
-
 def inertia(c: Claims, shown: str, digits: int) -> None:
     scene = c.scene
     beta = scene.inertia
@@ -259,33 +234,31 @@ SENTENCES: dict[str, Callable[..., None]] = {
         f"{name} from {NUMBER} to {NUMBER}" for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
     )
     + r"\.": open_range,
-    rf"Conditions \(36\) for the verge: the heavier mass, {NUMBER} kg, must exceed (.*?) \((met|not met)\)"
-    r"(;.*)?\.": conditions,
     rf"(.*?): ({RANGES})\.": out_of_range,
     rf"The inertia factor I/\(M R\^2\) is {NUMBER}, above 1: .*": inertia,
 }
 """What is said of a scene, and the claim in it."""
 
 REASONS: dict[str, Callable[[Claims], bool]] = {
-    machine.NO_CRITICAL_MASS: lambda c: c.any_pulley() == {"no-slip"},
-    machine.AXLE_HOLDS: lambda c: c.any_pulley() == {"no-slip"} and c.h - c.l <= c.b,
-    machine.ALWAYS_SLIPS: lambda c: c.any_pulley() == {"slip"} and c.b > 0,
-    machine.NO_CRITICAL_HEAVIER_MASS: lambda c: not may_slip_somewhere(c),
-    machine.AXLE_ENOUGH: lambda c: c.any_pulley(h=c.l + c.b) == {"slip"},
-    machine.NO_NEED: lambda c: c.regime(mu=Fraction(0)) == "no-slip" or c.scene.mu == 0,
-    machine.NO_WRAP: lambda c: c.regime(mu=Fraction(0)) == "slip",
-    machine.NOT_APPLICABLE: lambda c: c.scene.mu == c.b == 0 and c.scene.M is None,
-    machine.FREE_END: lambda c: c.l == 0,
-    machine.DEFINITE: lambda c: c.regime() != "no-slip",
-    machine.NOT_DEFINITE: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
-    machine.NOT_BOUNDED: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
-    machine.LONG_WRAP: lambda c: c.scene.wrap.number > 180,
-    machine.NEEDS_MU: lambda c: c.scene.mu is None,
-    machine.NEEDS_M: lambda c: c.scene.M is None,
-    machine.NEEDS_R: lambda c: c.scene.R is None,
-    machine.UNKNOWN_SHAPE: lambda c: c.scene.I is not None and c.scene.M is None,
-    machine.LOCKED_AXLE: lambda c: c.scene.M == inf,
-    machine.ONE_SIDED: lambda c: (c.scene.wrap.number - 180) % 360 != 0,
+    mechanics.NO_CRITICAL_MASS: lambda c: c.any_pulley() == {"no-slip"},
+    mechanics.AXLE_HOLDS: lambda c: c.any_pulley() == {"no-slip"} and c.h - c.l <= c.b,
+    mechanics.ALWAYS_SLIPS: lambda c: c.any_pulley() == {"slip"} and c.b > 0,
+    mechanics.NO_CRITICAL_HEAVIER_MASS: lambda c: not may_slip_somewhere(c),
+    mechanics.AXLE_ENOUGH: lambda c: c.any_pulley(h=c.l + c.b) == {"slip"},
+    mechanics.NO_NEED: lambda c: c.regime(mu=Fraction(0)) == "no-slip" or c.scene.mu == 0,
+    mechanics.NO_WRAP: lambda c: c.regime(mu=Fraction(0)) == "slip",
+    mechanics.NOT_APPLICABLE: lambda c: c.scene.mu == c.b == 0 and c.scene.M is None,
+    mechanics.FREE_END: lambda c: c.l == 0,
+    mechanics.DEFINITE: lambda c: c.regime() != "no-slip",
+    mechanics.NOT_DEFINITE: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
+    mechanics.NOT_BOUNDED: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
+    mechanics.LONG_WRAP: lambda c: c.scene.wrap.number > 180,
+    mechanics.NEEDS_MU: lambda c: c.scene.mu is None,
+    mechanics.NEEDS_M: lambda c: c.scene.M is None,
+    mechanics.NEEDS_R: lambda c: c.scene.R is None,
+    mechanics.UNKNOWN_SHAPE: lambda c: c.scene.I is not None and c.scene.M is None,
+    mechanics.LOCKED_AXLE: lambda c: c.scene.M == inf,
+    mechanics.ONE_SIDED: lambda c: (c.scene.wrap.number - 180) % 360 != 0,
 }
 """Why something is missing, and whether that is so."""
 

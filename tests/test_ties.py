@@ -15,9 +15,8 @@ from hypothesis import strategies as st
 from atwood_cli import solve, solve_arrays
 from atwood_cli.arithmetic.rounding import is_positive, settle, to_digits, to_threshold
 from atwood_cli.model.scene import Scene
-from atwood_cli.solver.answers import Answers
-from atwood_cli.solver.contact import contact
-from atwood_cli.solver.reading import read_answers
+from atwood_cli.solver.answers import Answers, read_answers
+from atwood_cli.solver.balance import contact
 
 from .running import Atwood
 

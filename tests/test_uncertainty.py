@@ -6,33 +6,32 @@ import json
 import re
 import subprocess
 import sys
-from collections import Counter
 from collections.abc import Mapping
-from decimal import Decimal
+from decimal import Decimal, localcontext
 from fractions import Fraction
-from math import exp, hypot, inf, pi, sqrt
+from itertools import chain
+from math import exp, hypot, pi
 from random import Random
 from typing import Any
 
-import flint
-import mpmath
+import numpy as np
 import pytest
-import sympy as sp
+import uncertainties as unc
+from uncertainties import umath
 
-from atwood_cli import SceneError, solve
-from atwood_cli.arithmetic import interval, rounding
+from atwood_cli import SceneError, solve, solve_arrays
 from atwood_cli.arithmetic.rounding import to_digits, to_place, with_uncertainty
 from atwood_cli.model.angle import Angle
 from atwood_cli.model.quantities import MEASURED_NAMES, NAMES
-from atwood_cli.model.scene import Scene, read_input
-from atwood_cli.solver.answers import Answers
-from atwood_cli.solver.reading import read_answers
+from atwood_cli.model.scene import read_input
+from atwood_cli.solver.answers import Answers, read_answers
 
-from . import oracle
 from .conftest import many
-from .running import Atwood, on_terminal, plain, process
-from .scenes import FAMILIES, of_all_kinds, scenes
+from .running import Atwood, process
+from .scenes import of_all_kinds, with_friction
 
+A_STEPS = [9.80665 / 2 * (2.002 / 8.998 - 1.998 / 9.002), 9.80665 / 2 * (2.01 / 9.01 - 1.99 / 8.99)]
+"""Of a = g (m2 - m1)/(m1 + m2 + 5) with m1 and with m2, in the scene that follows."""
 UNCERTAIN = ["solve", "--m1", "1.000(2)", "--m2", "3+/-0.01", "--M", "10"]
 
 
@@ -73,7 +72,7 @@ def test_angles_stay_in_their_unit() -> None:
     assert radians.value != Fraction("3.14")
 
 
-FORMS = "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+/-0.002 or 1.000(2), and a unit after that"
+FORMS = "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+-0.002 or 1.000(2), and a unit after that"
 # fmt: off
 NO_NUMBERS = [
     "1.0(0.2)", "1.0()", "(1.0)", "1±", "±1", "1±-1", "1±1±1", "1.0(2)(3)", "1 (2)", "1.0(2", "1g±1", "1kg±1g",
@@ -85,7 +84,7 @@ REFUSED = {
     "g moon±0.1": FORMS,
     "m1 -1.0(2)": "must be 0 or more, and finite",
     "g 0±1": "must be above 0, and finite",
-    "m1 1.0(2)kgg": "has the unknown unit 'kgg'; did you mean kg?",
+    "m1 1.0(2)kgg": "has the unit 'kgg'; it takes kg, g, mg, ug, t, lb, lbs, oz, st, slug",
     "mu 0.30(1)kg": "must be a plain number, without the 'kg'",
     "m1 1±1e501": "has an exponent beyond 500 in magnitude",
     "mu_k 0.40(1)": "must not be above mu; exactly, 0.4 > 0.3",
@@ -113,164 +112,135 @@ def test_only_solve_takes_them(arguments: str, atwood: Atwood) -> None:
     assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: --m1 {rule}\n")
 
 
-# Against derivatives by hand, by mpmath and by SymPy where doubles have nothing left
+# Against steps by hand, by `solve`, by another library and by chance
 
 
 def test_a_wrap_in_radians_has_its_uncertainty_in_radians() -> None:
-    """l e^{μφ} has the slopes μ and φ times itself."""
+    """The least heavier mass is l e^{μφ}."""
     found = uncertain(inputs("m1=2 m2=30 mu=0.3±0.01 wrap=3±0.05rad"))
-    u = 2 * exp(0.9) * hypot(0.3 * 0.05, 3 * 0.01)
-    assert found.uncertainty("least_heavier_mass") == pytest.approx(u, rel=1e-15)
-    assert found.budget("least_heavier_mass") == {"mu": pytest.approx(80), "wrap": pytest.approx(20)}
+    steps = [exp(0.31 * 3) - exp(0.29 * 3), exp(0.3 * 3.05) - exp(0.3 * 2.95)]
+    assert found.uncertainty("least_heavier_mass") == pytest.approx(hypot(*steps), rel=1e-14)
+    share = 100 * steps[0] ** 2 / (steps[0] ** 2 + steps[1] ** 2)
+    assert found.budget("least_heavier_mass") == {
+        "mu": pytest.approx(share, rel=1e-14),
+        "wrap": pytest.approx(100 - share, rel=1e-14),
+    }
 
 
 def test_kinetic_friction_that_is_not_given_follows_the_static() -> None:
     slipping = {"m1": "1", "m2": "3", "M": "100", "mu": "0.25(2)"}
     alone = uncertain(slipping, 50).uncertainty("acceleration")
-    twin = uncertain(slipping | {"mu": "0.25", "mu_k": "0.25(2)"}, 50).uncertainty("acceleration")
+    twin = uncertain(slipping | {"mu": "0.27", "mu_k": "0.25(2)"}, 50).uncertainty("acceleration")
     assert alone == twin != 0
-    assert uncertain(slipping | {"mu_k": "0.25"}, 50).uncertainty("acceleration") == 0
+    assert uncertain(slipping | {"mu_k": "0.2"}, 50).uncertainty("acceleration") == 0
 
 
-def test_the_least_friction_force_against_mpmath() -> None:
-    """The least over s of |T_l e^{(μ+i)s} (1 - e^{iδ}) + T_h e^{iφ} - T_l|, differentiated numerically."""
-    with mpmath.workdps(60):
-
-        def least(m1: Any, M: Any, mu: Any) -> Any:
-            g, m2, phi = mpmath.mpf("9.80665"), mpmath.mpf(3), mpmath.mpf(150) / 180 * mpmath.pi
-            a = g * (m2 - m1) / (m1 + m2 + M / 2)
-            light, heavy = m1 * (g + a), m2 * (g - a)
-            alpha = mpmath.log(heavy / light) / mu
-            stuck = 1 - mpmath.expj(phi - alpha)
-
-            def force(s: Any) -> Any:
-                return abs(light * mpmath.exp((mu + 1j) * s) * stuck + heavy * mpmath.expj(phi) - light)
-
-            s = mpmath.findroot(lambda s: mpmath.diff(force, s), alpha / 2)
-            return mu / mpmath.sqrt(1 + mu**2) * force(s)
-
-        at, us = (mpmath.mpf(1), mpmath.mpf(10), mpmath.mpf("0.3")), ("0.002", "0.1", "0.01")
-        gradient = [mpmath.diff(least, at, n=tuple(int(i == j) for j in range(3))) for i in range(3)]
-        u = mpmath.sqrt(sum((d * mpmath.mpf(u)) ** 2 for d, u in zip(gradient, us, strict=True)))
-    solution = solve(m1="1±0.002", m2="3", M="10±0.1", mu="0.3±0.01", wrap="150")
-    assert solution.uncertainty["friction_force_min"] == pytest.approx(float(u), rel=1e-14)
+def drawn(rng: Random) -> dict[str, str]:
+    """A scene of any kind, with uncertainties from tiny to those that change the regime."""
+    exact = rng.choice([with_friction, lambda rng: next(of_all_kinds(1, rng.randrange(10**6)))])(rng)
+    typed = dict(exact)
+    for x, value in exact.items():
+        number = re.fullmatch(r"([\d.e+-]+)( ?Nm?)?", value)
+        if number and float(number[1]) and rng.random() < 0.6:
+            u = float(number[1]) * 10 ** rng.choice([rng.uniform(-9, -2), rng.uniform(-1.5, -0.1)])
+            typed[x] = f"{number[1]}±{u:.2g}{number[2] or ''}"
+    return typed
 
 
-l, h, M, mu, g = sp.symbols("l h M mu g", positive=True)
-GRIP = g * (h - l) / (l + h + M / 2)
-SLIP = g * (h - l * sp.exp(mu * sp.pi)) / (h + l * sp.exp(mu * sp.pi))
-VERGE = sp.log(h * (g - GRIP) / (l * (g + GRIP))) / sp.pi
-CRITICAL = 4 * l * h * (sp.exp(mu * sp.pi) - 1) / (h - l * sp.exp(mu * sp.pi))
-SYMBOLS = {"m1": l, "m2": h, "M": M, "mu": mu, "g": g}
+def ends_of(x: str, given: Mapping[str, Any], step: Fraction) -> dict[str, Any]:
+    """What is given, with an input as much more as it may be."""
+    value = given[x]
+    number = max(getattr(value, "number", value) + step, Fraction(given.get("mu_k") or 0) if x == "mu" else 0)
+    if x == "mu_k":
+        number = min(number, given["mu"])
+    return {**given, x: type(value)(number, value.unit) if hasattr(value, "unit") else number}
 
 
-def by_sympy(formula: sp.Expr, values: dict[str, str], us: dict[str, str]) -> float:
-    at = {SYMBOLS[name]: sp.Rational(Fraction(v)) for name, v in {"g": "9.80665", **values}.items()}
-    parts = [formula.diff(SYMBOLS[name]).subs(at) * sp.Rational(Fraction(u)) for name, u in us.items()]
-    with mpmath.workdps(30):
-        return float(mpmath.sqrt(sum(mpmath.mpf(sp.N(part, 30, maxn=5000)) ** 2 for part in parts)))
+def test_an_uncertainty_is_made_of_steps_that_solve_makes() -> None:
+    """To the last digit: half the range of three values for each input, and the root of their squares."""
+    rng, compared, regimes = Random(7), 0, 0
+    with localcontext() as context:
+        context.prec = 100
+        for _ in range(many(160)):
+            typed = drawn(rng)
+            read = {x: read_input(x, value) for x, value in typed.items()}
+            given = {x: one.value for x, one in read.items()}
+            here, found = solve(**given, digits=70), solve(**typed, digits=15)
+            ends = {}
+            for x, one in read.items():
+                if one.uncertainty:
+                    ends[x] = [
+                        at_end(ends_of(x, given, step)) for step in (-one.uncertainty, one.uncertainty)
+                    ]
+            regimes += any(end and end.regime != here.regime for pair in ends.values() for end in pair)
+            for name, u in found.uncertainty.items():
+                values: list[list[Any]] = [
+                    [getattr(end, name, None) for end in pair] for pair in ends.values()
+                ]
+                value: Any = getattr(here, name)
+                if value is None or None in chain(*values) or value.is_infinite():
+                    assert u is None, (typed, name)
+                elif any(one.is_infinite() for one in chain(*values)):
+                    assert u is not None
+                    assert u.is_infinite()
+                else:
+                    assert u is not None
+                    steps = [(max(value, *pair) - min(value, *pair)) / 2 for pair in values]
+                    want = sum((step * step for step in steps), Decimal(0)).sqrt()
+                    assert abs(u - want) <= abs(want) * Decimal("1e-14"), (typed, name)
+                    compared += 1
+    assert compared > many(500)
+    assert regimes > 0
 
 
-def critical_mass(digits: int) -> str:
-    return str(solve(m1="1", m2="3", mu="0.3", digits=digits).critical_pulley_mass)
+def at_end(given: Mapping[str, Any]) -> Any:
+    try:
+        return solve(**given, digits=70)
+    except SceneError:
+        return None
 
 
-K = str(solve(m1="1", m2="3", mu="0.3", digits=60).least_heavier_mass)
-BEYOND_K = f"{K[:40]}{int(K[40]) + 1}"  # about 1e-40 above, and not 9 there
+def test_small_steps_are_those_of_the_first_order() -> None:
+    """By `uncertainties`, which takes derivatives; inputs to 0.1 to 1 %, and no regime near."""
+    m1, m2, M, g = (unc.ufloat(*pair) for pair in ((1, 0.004), (3, 0.01), (10, 0.1), (9.81, 0.02)))
+    a = g * (m2 - m1) / (m1 + m2 + M / 2)
+    t1, t2 = m1 * (g + a), m2 * (g - a)
+    wanted = {"acceleration": a, "tension_1": t1, "tension_2": t2, "mu_verge": umath.log(t2 / t1) / pi}
+    s = solve(m1="1.000(4)", m2="3.00(1)", M="10.0(1)", g="9.81(2)")
+    for name, quantity in wanted.items():
+        assert s.uncertainty[name] == pytest.approx(quantity.std_dev, rel=1e-3), name
 
 
-EXTREMES: list[tuple[str, sp.Expr, str, str]] = [
-    # Nearly equal masses: the kink is 1e-30, 1e-90 and 1e-300 away.
-    *(("mu_verge", VERGE, f"m1=1 m2=1.{'0' * zeros}1 M=10", "m1=0.002 M=1") for zeros in (29, 89, 299)),
-    ("acceleration", GRIP, f"m1=1 m2=1.{'0' * 99}1 M=10", "M=1"),
-    # Nearly critical: the drive is 1e-40 of the masses, and the verge 1e-60 and 1e-150 away.
-    ("critical_pulley_mass", CRITICAL, f"m1=1 m2={BEYOND_K} mu=0.3", "mu=0.01 m2=0.1"),
-    *(
-        ("acceleration", formula, f"m1=1 m2=3 mu=0.3 M={critical_mass(digits)[:-2]}{more}", "M=1 mu=0.01")
-        for digits in (60, 150)
-        for formula, more in ((GRIP, ""), (SLIP, "99"))
-    ),
-    # Of scales far apart, and uncertainties far above and below what they are of.
-    ("mu_verge", VERGE, "m1=1 m2=3 M=1e-200", "m1=0.01 M=1e-3"),
-    ("mu_verge", VERGE, "m1=1 m2=3 M=10", "M=1e-300"),
-    ("acceleration", SLIP, "m1=1 m2=3 M=10 mu=1e-100", "mu=1e-101"),
-    ("acceleration", GRIP, "m1=1e-200 m2=3e-200 M=1", "m1=1e-202"),
-]
+def test_near_the_verge_and_at_equal_masses_against_chance() -> None:
+    """20,000 draws of a normal distribution. First order is off by a third in most of these scenes."""
+    rng, off = Random(3), 0
+    draw = np.random.default_rng(3)
+    for _ in range(40):
+        M, near = rng.uniform(2, 40), rng.choice(["verge", "equal"])
+        m2 = 1 + rng.uniform(0.2, 3) * (near == "verge")
+        verge = solve(m1=1, m2=m2, M=M).mu_verge or 0.1
+        mu, u = verge * rng.uniform(0.9, 1.1), verge * rng.uniform(0.05, 0.2)
+        u_m = rng.uniform(0.002, 0.02)
+        s = solve(m1=f"1±{u_m}", m2=str(m2), M=str(M), mu=f"{mu}±{u}")
+        masses, mus = 1 + u_m * draw.standard_normal(20_000), mu + u * draw.standard_normal(20_000)
+        a = solve_arrays(masses, m2, M, np.maximum(mus, 0))["acceleration"]
+        off += abs((s.uncertainty["acceleration"] or 0) / np.std(a) - 1) > 1 / 3
+    assert off <= 0.28 * 40
 
 
-@pytest.mark.parametrize(("name", "formula", "values", "us"), EXTREMES)
-def test_extremes_against_sympy(name: str, formula: sp.Expr, values: str, us: str) -> None:
-    given, u = inputs(values), inputs(us)
-    found = uncertain(given | {x: f"{given[x]}±{u[x]}" for x in u}).uncertainty(name)
-    assert found == pytest.approx(by_sympy(formula, given, u), rel=1e-15)
+# Ends
 
 
-@pytest.mark.parametrize("family", FAMILIES)
-def test_every_family_against_flint(family: str) -> None:
-    """The oracle's own formulas, stepped by 10^-500 with 2,000 digits; every input to 1 %."""
-    compared = 0
-    for given in scenes(family, many(30)):
-        scene = Scene.read(given)
-        numbers = scene._asdict() | {"wrap": scene.wrap.number}
-        moving = {x: numbers[x] for x in given if numbers[x] != inf}
-        found = Answers(scene, 25, uncertain={x: v / 100 for x, v in moving.items()})
-        variances: dict[str, Any] = {}
-        squares: dict[tuple[str, str], Any] = {}
-        for x, v in moving.items():
-            moved = (v + v * step for step in (TINY, -TINY))
-            stepped: list[Any] = [Angle(number) if x == "wrap" else number for number in moved]
-            right, left = (oracle.expected(scene._replace(**{x: number})) for number in stepped)
-            flint.ctx.prec = 7000
-            for name in CLOSED:
-                if right[name] is None or left[name] is None:
-                    variances[name] = None
-                elif variances.get(name, 0) is not None:
-                    slope = (as_ball(right[name]) - as_ball(left[name])) / oracle.ball(TINY) / 200
-                    squares[name, x] = slope * slope
-                    variances[name] = variances.get(name, 0) + slope * slope
-        for name, variance in variances.items():
-            u = found.uncertainty(name)
-            if (
-                u is None or variance is None
-            ):  # of what has no value there or beside, or one too large or too small to be written
-                assert u is None, (given, name)
-                huge = flint.arb(10) ** 10**7
-                assert variance is None or not (1 / huge < variance < huge), (given, name)
-            else:
-                want = abs(variance).sqrt()
-                assert abs(flint.arb(str(u)) - want) <= want / 10**18 + oracle.ball(TINY), (given, name)
-                for x, share in found.budget(name).items():
-                    part = flint.arb(str(share)) / 100 - squares[name, x] / variance
-                    assert abs(part) < 1e-18, (given, name, x)
-                compared += 1
-    assert compared > many(200)
-
-
-def as_ball(value: oracle.Value) -> flint.arb:
-    return oracle.ball(value) if isinstance(value, Fraction) else value()
-
-
-TINY = Fraction(1, 10**500)
-CLOSED = [name for name in NAMES[1:] if name not in ("friction_force_min", "friction_force_max")]
-
-
-# Ends of domains, kinks, and values that are not there nearby
-
-
-def test_at_the_end_of_a_domain_the_slope_is_that_inside() -> None:
-    solution = solve(m1="1", m2="3", M="0±0.1")
-    # c = M/2: a = 2 g/(4 + c), and ln(T2/T1) grows by c (h - l)/(2 l h).
-    assert solution.uncertainty["acceleration"] == pytest.approx(9.80665 * 2 / 16 * 0.05, rel=1e-15)
-    assert solution.uncertainty["mu_verge"] == pytest.approx(0.05 / 3 / pi, rel=1e-15)
-    frictionless = solve(m1="1", m2="3", M="10", mu="0±0.01")
-    # a = g (3 - k)/(3 + k) at k = 1.
-    assert frictionless.uncertainty["acceleration"] == pytest.approx(9.80665 * 6 / 16 * pi * 0.01, rel=1e-15)
-
-
-def test_a_slope_that_vanishes_is_zero() -> None:
-    assert solve(m1="1", m2="3", M="0±0.1").uncertainty["friction_force_y"] == 0  # as mu_verge squared
-    assert solve(m1="1", m2="3", M="10±1").uncertainty["critical_pulley_mass"] is None
-    assert solve(m1="1", m2="3", M="10±1", mu="0.3").uncertainty["critical_pulley_mass"] == 0
+def test_a_given_mass_and_friction_stop_at_0_and_what_is_found_goes_on() -> None:
+    s = solve(m1="1", m2="3", M="1±3", digits=20)
+    least, most = (solve(m1="1", m2="3", M=M, digits=40).acceleration or Decimal(0) for M in ("0", "4"))
+    assert s.uncertainty["acceleration"] == to_digits(20)((least - most) / 2)
+    found = solve(m1="55g", m2="60g", a="0.42±0.02")  # of a pulley of 2 g, or of none
+    assert found.pulley_mass is not None
+    u = found.uncertainty["pulley_mass"] or 0
+    # c = g d/a - l - h, with M = 2c.
+    assert u == pytest.approx(9.80665 * 0.005 * (1 / 0.40 - 1 / 0.44), rel=1e-13)
+    assert u > found.pulley_mass
 
 
 MOVABLE = {
@@ -292,116 +262,47 @@ MOVABLE = {
 
 @pytest.mark.parametrize("wrap", ["180", "175"])
 @pytest.mark.parametrize("name", MOVABLE)
-def test_what_does_not_depend_on_an_input_is_certain_at_once(
-    name: str, wrap: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_does_not_depend_on_an_input_is_certain(name: str, wrap: str) -> None:
     """Was searched for in ever more digits: friction_force_max does not depend on the wrap."""
-    precisions = []
-
-    def enclosures(digits: int) -> interval.Enclosures:
-        precisions.append(digits)
-        return interval.enclosures(digits)
-
-    monkeypatch.setattr(rounding, "enclosures", enclosures)
     given = inputs(f"{MOVABLE[name]} wrap={wrap}")
     for x in given.keys() - ({"M"} if given.get("M") == "inf" else set()):
         answers = uncertain({**given, x: f"{given[x]}±0.0001"})
         found = {one: answers.uncertainty(one) for one in answers.names[1:]}
-        here, beside = (
-            uncertain(given, 30),
-            uncertain({**given, x: f"{Decimal(given[x]) + Decimal('1e-9')}"}, 30),
-        )
+        beside = {**given, x: str(Decimal(given[x]) + Decimal("1e-4"))}
+        ends = [uncertain(one, 30) for one in (given, beside)]
         for one, u in found.items():
             if u is not None:
-                assert (u > 0) == (here[one] != beside[one]), (x, one)
-    assert 17 < max(precisions) <= 6050
+                assert (u > 0) == (ends[0][one] != ends[1][one]), (x, one)
 
 
-def test_equal_masses_have_slopes_where_no_friction_is_needed() -> None:
-    found = solve(m1="1.00(2)", m2="1", M="10").uncertainty
-    assert found["acceleration"] == pytest.approx(9.80665 / 7 * 0.02, rel=1e-15)
-    assert found["friction_force_y"] == 0
-
-
-OTHER_WRAP = "unknown, as with another wrap it may have no value:"
 NOT_SHOWN = {
-    "m1=1.00(2) m2=1 M=10": "u_mu_verge, u_tension_ratio, u_friction_force: unknown where the masses are equal, as there it has a kink.",
-    # A massless rim moves with the string; one of any mass rests, without friction.
-    "M=0±0.1 mu=0±0.01": "u_rim_acceleration, u_critical_lighter_mass: unknown, as with another M it may jump.",
-    "M=10 wrap=180±2": f"u_axle_force: {OTHER_WRAP} defined for half a turn of wrap (and whole turns more), where both ends pull downwards.",
-    "M=10 mu=0.3 wrap=180±2": f"u_friction_force_min, u_friction_force_max: {OTHER_WRAP} bounds are known for up to half a turn of wrap (180 degrees).",
     "m2=1 M=10±1e-400 g=1e-300": "u_axle_force: not 0 but below the range of doubles; ask for digits (--digits 17) to see it.",
-    "M=10 R=1±1e400": "u_torque, u_angular_acceleration: beyond the range of doubles; ask for digits (--digits 17) to see it.",
+    "M=10 R=0.5±1e400": "acceleration is 2.17926 m/s²; tension_1 is 11.9859 N; tension_2 is 22.8822 N, and so on for 9 more: at R = 0 m there is no such scene.",
+    "mu=0.34(2)": "critical_pulley_mass is 254.567 kg, 77.8 kg or more: at mu = 0.36 it does not exist, as the string holds on any pulley, however heavy.",
+    "M=10 wrap=180±2": "axle_force is 132.935 N: at wrap = 178° defined for half a turn of wrap (and whole turns more), where both ends pull downwards.",
+    "M=10 mu=0.3 wrap=180±2": "friction_force_min is 5.40569 N, 5.56 N or less; friction_force_max is 8.94932 N: at wrap = 182° bounds are known for up to half a turn of wrap (180 degrees).",
+    "m1=55g m2=60g a=0.4±0.5": "acceleration is 0.4 m/s², 0.900 m/s² or less; tension_1 is 0.561366 N, 0.589 N or less; tension_2 is 0.564399 N, 0.534 N or more, and so on for 8 more: at a = -0.1 m/s² nothing fits what was measured.",
 }
 
 
 @pytest.mark.parametrize("given", NOT_SHOWN)
 def test_why_no_uncertainty_is_shown(given: str) -> None:
     solution = solve(**{"m1": "1", "m2": "3", **inputs(given)})
-    names = re.findall(r"u_(\w+)", NOT_SHOWN[given].partition(":")[0])
+    names = re.findall(r"(?:^u_|; |^)(\w+)(?: is|$)", NOT_SHOWN[given].partition(": ")[0])
+    assert names
     assert NOT_SHOWN[given] in solution.notes
     assert None not in [getattr(solution, name) for name in names]
-    assert all(solution.uncertainty[name] in (None, 0, inf) for name in names)
-
-
-def test_no_bend_is_too_near() -> None:
-    mass = critical_mass(900)
-    found = uncertain({"m1": "1", "m2": "3", "mu": "0.3", "M": f"{mass}±1"}).uncertainty("acceleration")
-    slips = solve(m1="1", m2="3", mu="0.3", M=mass).regime == "slip"
-    want = 0.0 if slips else by_sympy(GRIP, {"m1": "1", "m2": "3", "M": mass}, {"M": "1"})
-    assert found == pytest.approx(want, rel=1e-15)
-
-
-@pytest.mark.parametrize("wrap", ["180", "120", "90", "17.5"])
-def test_friction_beside_a_pulley_without_mass_is_one_sided(wrap: str) -> None:
-    """By a pulley of 1e-30 kg, whose greatest friction is μTα with little in the second order."""
-    greatest = {"m1": "1", "m2": "3", "mu": "0.3", "wrap": wrap}
-    light = solve(**greatest, M="1e-30", digits=25)
-    beside = solve(**greatest, M="0±1e-30", digits=25)
-    assert light.friction_force_max is not None
-    assert light.friction_force_min is not None
-    for name in ("friction_force_max", "friction_force_min"):
-        here = float(getattr(light, name))
-        assert float(beside.uncertainty[name] or 0) == pytest.approx(here, rel=1e-14, abs=1e-50), name
-
-
-# What only exact slopes tell
+    assert all(solution.uncertainty[name] in (None, 0) for name in names)
 
 
 def test_as_many_digits_as_are_asked_for() -> None:
     """Was padded with zeros after 60 digits."""
     given = {"m1": "1.0(1)", "m2": "3", "M": "10", "mu": "0.3"}
     u = solve(**given, digits=90).uncertainty["acceleration"]
-    # a = g (m2 - m1)/(m1 + m2 + 5), so its slope with m1 is -g (2 m2 + 5)/81.
-    assert u == to_digits(90)(Fraction("9.80665") * 11 / 81 / 10)
-
-
-def test_digits_near_a_pole() -> None:
-    """Was wrong from the 21st digit on."""
-    near = "2.56633239520813532093526000909794720888329416"
-    u = solve(m1="1", mu="0.3", m2=f"{near}±1e-33", digits=30).uncertainty["critical_pulley_mass"]
-    at = {l: 1, mu: sp.Rational(3, 10), h: sp.Rational(Fraction(near))}
-    slope = -sp.N(CRITICAL.diff(h).subs(at), 45, maxn=5000)
-    assert u == Decimal(str(sp.N(slope * sp.Rational(1, 10**33), 30)))
-
-
-def test_a_slope_however_small_is_not_zero() -> None:
-    """Was 0: friction needs so little of the string that its limit hardly matters."""
-    given = {"m1": "0.04434406290011144", "m2": "0.0289", "M": "3.3544806468431964e-84"}
-    found = solve(**given, mu="0.23315545203923707(2)", digits=20)
-    u = found.uncertainty["friction_force_max"]
-    # The greatest is μ/√(1+μ²) |T_h e^{iα} - T_l|, with α = ln(T_h/T_l)/μ.
-    with mpmath.workdps(700):
-        one, two, M = (mpmath.mpf(text) for text in given.values())
-        a = mpmath.mpf("9.80665") * (one - two) / (one + two + M / 2)
-        light, heavy = two * (mpmath.mpf("9.80665") + a), one * (mpmath.mpf("9.80665") - a)
-
-        def greatest(mu: Any) -> Any:
-            alpha = mpmath.log(heavy / light) / mu
-            return mu / mpmath.sqrt(1 + mu**2) * abs(heavy * mpmath.expj(alpha) - light)
-
-        slope = mpmath.diff(greatest, mpmath.mpf("0.23315545203923707"), h=mpmath.mpf(10) ** -100)
-        assert float(u or 0) == pytest.approx(float(abs(slope) * mpmath.mpf("2e-17")), rel=1e-15)
+    # a = g (3 - m1)/(m1 + 8)
+    assert u == to_digits(90)(
+        Fraction("9.80665") * (Fraction("2.1") / Fraction("8.9") - Fraction("1.9") / Fraction("9.1")) / 2
+    )
 
 
 HOSTILE = {"m1": "1e500", "m2": "3e500", "M": "1e-500", "mu": "1e-500", "R": "1e500", "g": "1e500"}
@@ -414,143 +315,73 @@ HOSTILE = {"m1": "1e500", "m2": "3e500", "M": "1e-500", "mu": "1e-500", "R": "1e
         {"m1": "0.115", "m2": "9.9766", "mu": "0.104438", "M": "0±0.00508", "mu_k": "0±0.0048"},
         {x: f"{v}±1e-500" for x, v in {**HOSTILE, "inertia": "1e-500", "wrap": "1e-500"}.items()},
         {x: f"{v}±1e500" for x, v in {**HOSTILE, "inertia": "1e500", "wrap": "1e500"}.items()},
+        {"m1": "0.04434406290011144", "m2": "0.0289", "M": "3.35448e-84", "mu": "0.23315545203923707(2)"},
     ],
 )
 def test_hostile_uncertainties_come_to_an_end(given: dict[str, str]) -> None:
     """Took up to 53 s."""
     solution = solve(**given, digits=17)
     assert all(value is None or not value < 0 for value in solution.uncertainty.values())
-    assert solution.uncertainty["acceleration"] is not None
+    assert len(solution.notes) > 0
 
 
 def test_shares_that_are_rational() -> None:
-    """k = e^{μφ} grows alike with the relative errors of both, whatever it is."""
+    """μ and φ are alike in e^{μφ}, so that their shares are 50 %, whatever it is."""
     both = {"m1": "1", "m2": "3", "mu": "0.30±0.03", "wrap": "180±18"}
     assert uncertain(both, 1).budget("least_heavier_mass") == {"mu": 50, "wrap": 50}
     assert uncertain(both | {"wrap": "180"}).budget("least_heavier_mass") == {"mu": 100}
 
 
-SLIPS, CRITICAL_PULLEY = "Whether the string slips", "Whether there is a critical_pulley_mass"
+# In sentences
+
+SLIPS = "Whether the string slips"
 DOUBTS = {
-    "m1=1.00(1) m2=1.02(1)": "Which mass is heavier is in doubt: m2 - m1 = 0.020 ± 0.014 kg",
+    "m1=1.00(1) m2=1.02(1)": "Which mass is heavier is in doubt: it is otherwise at m1 = 1.02 kg",
     "m1=1.00(1) m2=1.03(1)": "",
-    "M=10 mu=0.21(1)": f"{SLIPS} is in doubt: mu - mu_verge = 0.004 ± 0.010",
-    "M=10 mu=0.20(1)": f"{SLIPS} is in doubt: mu - mu_verge = -0.006 ± 0.010",
+    "M=10 mu=0.21(1)": f"{SLIPS} is in doubt: it is otherwise at mu = 0.19",
+    "M=10 mu=0.20(1)": f"{SLIPS} is in doubt: it is otherwise at mu = 0.22",
     "M=10 mu=0.23(1)": "",
-    "M=10(1) mu=0.22": f"{SLIPS} is in doubt: mu - mu_verge = 0.0142 ± 0.0083",
+    "M=10(1) mu=0.22": f"{SLIPS} is in doubt: it is otherwise at M = 12 kg",
     "M=10(1) mu=0.25": "",
     "M=10(1)": "",
-    "mu=0.35(1)": "Whether any pulley can make the string slip is in doubt: mu - mu_verge of a locked pulley = 0.000 ± 0.010",
-    "m1=1.0(5) m2=1 M=10 mu=0.1": f"{SLIPS} is in doubt: mu - mu_verge = 0.10 ± 0.11",
-    "mu=0.30(1) m1=1(1)e-40 m2=1": "",
-    # Equal masses rest on any axle: this one was taken to move, and nothing was settled.
-    "m2=1.00(1) M=1 mu=0.2 axle=30": "Which mass is heavier is in doubt: m2 - m1 = 0.000 ± 0.010 kg",
-    # What exists only if something can make the string slip: the first mass is 2.57 ± 0.13 away.
-    "m1=1.00(5) m2=2.5 M=10 mu=0.3": f"{CRITICAL_PULLEY} is in doubt: mu - mu_verge of a locked pulley = 0.008 ± 0.016",
-    "m1=1.00(5) m2=2.6 M=10 mu=0.3": f"{CRITICAL_PULLEY} is in doubt: mu - mu_verge of a locked pulley = -0.004 ± 0.016",
-    "m1=1.00(1) M=6.3(1) mu=0.3": "Whether there is a critical_heavier_mass is in doubt: mu - mu_verge under a heavier mass beyond all bounds = -0.0011 ± 0.0037",
+    "mu=0.35(1)": f"{SLIPS} is in doubt: it is otherwise at mu = 0.33",
+    "m2=1.00(1) M=1 mu=0.2 axle=30": "Which mass is heavier is in doubt: it is otherwise at m2 = 0.98 kg",
+    "m2=3.0(1) axle=19": "Whether the axle holds the difference is in doubt: it is otherwise at m2 = 2.8 kg",
 }
 
 
 @pytest.mark.parametrize("given", DOUBTS)
 def test_what_is_in_doubt_is_said(given: str) -> None:
     notes = [note for note in solve(**{"m1": "1", "m2": "3", **inputs(given)}).notes if "in doubt" in note]
-    within = " is within 2 standard uncertainties of 0 (95 % of a normal distribution). The results are for the inputs as given."
-    assert all(note.endswith(within) for note in notes)
-    if words := DOUBTS[given]:
-        assert f"{words}{within}" in notes
-    else:
-        assert not notes
+    off = ", 2 standard uncertainties off. The results are for the inputs as given."
+    assert notes == [f"{DOUBTS[given]}{off}"] * bool(DOUBTS[given])
 
 
-MISLED = {
-    "M=20(15)": "M is too uncertain for first order: as it goes from 5 kg to 35 kg, acceleration goes from 3.02 m/s² to 0.91 m/s², tension_1 from 12.82 N to 10.72 N, tension_2 from 20.4 N to 26.7 N, and so on for 6 more.",
+LOPSIDED = {
     "M=20(2)": "",
     "m1=1.00(1) m2=3.00(1) M=10.0(1) g=9.81(1) R=0.100(1)": "",
-    # below 0, which no mass is
-    "M=2(3)": "M is too uncertain for first order: as it goes from 0 kg to 5 kg, acceleration goes from 4.9 m/s² to 3.0 m/s², tension_1 from 14.7 N to 12.8 N, tension_2 from 14.7 N to 20.4 N, and so on for 7 more.",
-    # the string slips at one end
-    "M=10 mu=0.21(2) R=1": "mu is too uncertain for first order: as it goes from 0.19 to 0.23, acceleration goes from 2.40971 m/s² to 2.17926 m/s², tension_1 from 12.2164 N to 11.9859 N, tension_2 from 22.1908 N to 22.8822 N, and so on for 7 more.",
-    # no pulley makes it slip at the other
-    "mu=0.34(2)": "mu is too uncertain for first order: as it goes from 0.32 to 0.36, acceleration goes from 0.46 m/s² to no value, tension_1 from 10.26 N to no value, tension_2 from 28.05 N to no value, and so on for 10 more.",
-    "M=3 wrap=2.0(9)rad": "wrap is too uncertain for first order: as it goes from 1.1 rad to 2.9 rad, mu_verge goes from 0.306 to 0.116, friction_force_x from -2.79 N to -3.67 N.",
-    "m1=55g m2=60g R=5cm a=0.40+/-0.04": "a is too uncertain for first order: not every value from 0.36 m/s² to 0.44 m/s² is possible.",
+    # The string slips at one end.
+    "M=10 mu=0.21(2)": "acceleration is 2.18 ± 0.12 m/s², from 2.18 (holds) to 2.41 (slips); tension_1 is 11.99 ± 0.12 N, from 11.99 (holds) to 12.22 (slips); tension_2 is 22.88 ± 0.35 N, from 22.19 (slips) to 22.88 (holds), and so on for 11 more, as mu is uncertain.",
+    # More to one side, across 0, and both.
+    "mu=0.31(2)": "axle_force is 590 ± 420 N, from 380 to 1230; critical_pulley_mass is 56 ± 43 kg, from 35 to 121, as mu is uncertain.",
+    "m1=1.00(2) m2=1": "acceleration is 0.000 ± 0.098 m/s², from -0.097 to 0.099; tension_1 is 9.807 ± 0.098 N, from 9.708 to 9.904; tension_2 is 9.807 ± 0.098 N, from 9.708 to 9.904, and so on for 2 more, as m1 is uncertain.",
+    "m1=1.0(1) m2=1.2 M=10": "friction_force_y is -0.035 ± 0.039 N, from -0.085 to -0.008, as m1 is uncertain.",
 }
 
 
-@pytest.mark.parametrize("given", MISLED)
-def test_where_first_order_misleads_the_values_are_said(given: str) -> None:
+@pytest.mark.parametrize("given", LOPSIDED)
+def test_what_changes_by_more_to_one_side_is_said(given: str) -> None:
     notes = solve(**{"m1": "1", "m2": "3", **inputs(given)}).notes
-    assert [note for note in notes if "first order" in note] == [MISLED[given]] * bool(MISLED[given])
-
-
-def test_where_first_order_misleads_is_where_solve_says_otherwise_an_uncertainty_off() -> None:
-    """Tried on scenes of all kinds, each input an uncertainty more and less, with no help but `solve`."""
-    rng, seen = Random(5), Counter[int]()
-    for exact in of_all_kinds(many(60)):
-        given = {
-            x: value
-            for x, value in exact.items()
-            if value not in ("hoop", "shell", "moon", "inf", "1.6e-300")
-        }
-        for x in {*given} - {"wrap", "axle"}:
-            u = Fraction(given[x]) * Fraction(10 ** rng.uniform(-2, -0.1)).limit_denominator(100)
-            if not u:
-                continue
-            here = solve(**{**exact, x: f"{exact[x]}±{float(u)!r}"}, digits=30)
-            u = read_input(x, f"1±{float(u)!r}").uncertainty
-            numbers = [clamped(exact, x, Fraction(exact[x]) + side) for side in (-u, u)]
-            off: list[dict[str, Any]] = [{**exact, x: number} for number in numbers]
-            ends = [solve(**given_, digits=30) for given_ in off]
-            far = [name for name in NAMES[1:] if is_far(here, ends, name)]
-            notes = [note for note in here.notes if "first order" in note]
-            assert len(notes) == bool(far), (exact, x, u, far)
-            named = re.findall(r"(\w+) (?:goes )?from [^,]* to", notes[0].partition(", ")[2]) if notes else []
-            assert named == far[:3], (exact, x, u)
-            assert not notes or ("and so on for" in notes[0]) == (len(far) > 3)
-            seen[len(far)] += 1
-    assert seen[0] > many(50)
-    assert sum(seen.values()) > seen[0] + many(50)
-
-
-def clamped(given: Mapping[str, str], x: str, value: Fraction) -> Fraction:
-    """The nearest to a value that an input may be."""
-    most = Fraction(given["mu"]) if x == "mu_k" else value
-    least = Fraction(given.get("mu_k", 0)) if x == "mu" else Fraction(0)
-    return max(least, min(value, most))
-
-
-def is_far(here: Any, ends: list[Any], name: str) -> bool:
-    """Whether a quantity is a fifth of its uncertainty off the line, or has no value an uncertainty off."""
-    u, (low, value, high) = here.uncertainty[name], (getattr(at, name) for at in (ends[0], here, ends[1]))
-    if u is None or None in (low, high):
-        return u is not None
-    u = u.copy_sign(high - low)
-    return bool(5 * max(abs(high - value - u), abs(value - low - u)) > abs(u) + abs(value) / 10**25)
-
-
-def test_what_is_in_doubt_beside_what_was_measured() -> None:
-    """A pulley without mass was followed to scenes beside it, which none fits, and solve ended in an error."""
-    notes = solve(m1="1.0(1)", m2=3, g=10, axle=10, a="2.5").notes
-    assert notes[-1].endswith("u_pulley_mass: unknown, as inputs a little different fit no pulley.")
-    found = solve(m1="1.0(5)", M=5, g=10, a="0.01(1)").notes  # m2, which is as uncertain as m1
-    assert any("m2 - m1 = 0.0045 ± 0.0046 kg is within" in note for note in found)
-
-
-def test_existence_is_in_doubt_only_of_what_is_asked_for(atwood: Atwood) -> None:
-    given = ["solve", "--m1", "1.00(5)", "--m2", "2.6", "--M", "10", "--mu", "0.3"]
-    assert "in doubt" not in atwood(*given, "--only", "acceleration").err
-    ran = atwood(*given, "--only", "critical_pulley_mass")
-    assert ran.err.startswith(
-        "atwood: critical_pulley_mass = 500 ± 1900 kg\natwood: Whether there is a critical_pulley_mass is in doubt:"
+    assert [note for note in notes if note.endswith("is uncertain.")] == [LOPSIDED[given]] * bool(
+        LOPSIDED[given]
     )
 
 
-@pytest.mark.parametrize("typed", ["0.3±0.0125", "0.3±0.125", "0.3±345"])
-def test_an_uncertainty_between_two_of_two_digits(typed: str) -> None:
-    """Of the margin to the verge it is that of mu, a tie, though the margin is irrational."""
-    notes = solve(m1="1", m2="3", M="50", mu=typed).notes
-    assert any("Whether the string slips is in doubt" in note for note in notes)
+def test_only_what_is_asked_for_is_said(atwood: Atwood) -> None:
+    given = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.34(2)"]
+    ran = atwood(*given, "--only", "critical_pulley_mass")
+    assert "acceleration" not in ran.err
+    assert "critical_pulley_mass is 254.567 kg, 77.8 kg or more" in ran.err
 
 
 # How they are shown
@@ -598,27 +429,12 @@ def test_the_scene_shows_radians_as_they_are(atwood: Atwood) -> None:
     assert "wrap = 180 ± 2°\n" in atwood("solve", "--m1", "1", "--m2", "3", "--wrap", "180(2)").out
 
 
-def test_ascii_has_plus_minus_too() -> None:
-    ran = process(*UNCERTAIN, PYTHONIOENCODING="ascii")
-    assert (ran.status, ran.err) == (0, "")
-    assert ran.out.isascii()
-    assert "m1 = 1.000 +/- 0.002 kg" in ran.out
-    assert re.search(r"2\.1793 \+/- 0\.0089 ", ran.out)
-
-
-def test_a_narrow_terminal_has_it_as_lines() -> None:
-    seen = plain(on_terminal(*UNCERTAIN, columns=30))
-    assert "acceleration = 2.1793 ± 0.0089" in seen.replace("\n", " ")
-
-
 def test_json_has_an_object_of_them(atwood: Atwood) -> None:
     result = json.loads(atwood(*UNCERTAIN, "--json").out)
     exact = json.loads(atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", "--json").out)
     assert {**result, "uncertainty": None} == exact
     assert list(result["uncertainty"]) == [*NAMES[1:], *MEASURED_NAMES]
-    # a = g (m2 - m1)/(m1 + m2 + 5): by m1, -g (2 m2 + 5)/81, by m2, g (2 m1 + 5)/81.
-    expected = 9.80665 / 81 * sqrt((11 * 0.002) ** 2 + (7 * 0.01) ** 2)
-    assert result["uncertainty"]["acceleration"] == pytest.approx(expected, rel=1e-15)
+    assert result["uncertainty"]["acceleration"] == pytest.approx(hypot(*A_STEPS), rel=1e-13)
     assert result["uncertainty"]["torque"] is None
     only = json.loads(atwood(*UNCERTAIN, "--json", "--only", "regime", "--only", "torque").out)
     assert only == {"regime": "no-slip", "torque": None, "uncertainty": {"torque": None}}
@@ -632,8 +448,9 @@ def test_csv_has_columns_after(atwood: Atwood) -> None:
     names, values = csv.reader(io.StringIO(ran.out))
     assert names == ["regime", "acceleration", "torque", "u_acceleration", "u_torque"]
     assert [*values[:3], values[4]] == ["no-slip", "2.1792555555555557", "", ""]
-    assert float(values[3]) == pytest.approx(9.80665 / 324 * sqrt(22**2 + 70**2) / 250, rel=1e-15)
-    assert ran.err == "atwood: torque: give R, the pulley's radius.\n"
+    assert float(values[3]) == pytest.approx(hypot(*A_STEPS), rel=1e-13)
+    assumed = "atwood: regime: assumed, as mu is not given.\n"
+    assert ran.err == f"{assumed}atwood: torque: give R, the pulley's radius.\n"
     every = next(csv.reader(io.StringIO(atwood(*UNCERTAIN, "--csv").out)))
     assert every == [*NAMES, *(f"u_{name}" for name in NAMES[1:])]
 
@@ -641,44 +458,47 @@ def test_csv_has_columns_after(atwood: Atwood) -> None:
 def test_only_gives_scripts_the_value_and_people_the_doubt(atwood: Atwood) -> None:
     ran = atwood(*UNCERTAIN, "--only", "acceleration", "--only", "mu_verge", "--only", "regime")
     assert (ran.status, ran.out) == (0, "2.1792555555555557\n0.20582781927064067\nno-slip\n")
-    assert ran.err == "atwood: acceleration = 2.1793 ± 0.0089 m/s²\natwood: mu_verge = 0.20583 ± 0.00066\n"
+    said = "acceleration = 2.1793 ± 0.0089 m/s²\natwood: mu_verge = 0.20583 ± 0.00066\n"
+    assert ran.err == f"atwood: regime: assumed, as mu is not given.\natwood: {said}"
     doubtful = atwood(*UNCERTAIN, "--mu", "0.21(1)", "--only", "regime")
     assert (doubtful.status, doubtful.out) == (0, "no-slip\n")
-    assert doubtful.err.startswith("atwood: Whether the string slips is in doubt: mu - mu_verge = ")
+    assert doubtful.err.startswith(
+        "atwood: Whether the string slips is in doubt: it is otherwise at mu = 0.19, 2"
+    )
 
 
 def test_the_budget_in_a_table_and_in_json(atwood: Atwood) -> None:
     out = atwood(*UNCERTAIN, "--budget").out
     assert "Each input's share of the variance, in percent:" in out
-    # (11 · 2)² of (11 · 2)² + (7 · 10)²
     assert re.search(r"│ acceleration +│ +9\.0 │ +91\.0 │", out)
     result = json.loads(
         atwood(*UNCERTAIN, "--budget", "--json", "--only", "acceleration", "--only", "torque").out
     )
     shares = result["budget"]["acceleration"]
     assert shares == {
-        "m1": pytest.approx(48400 / 5384, rel=1e-14),
-        "m2": pytest.approx(490000 / 5384, rel=1e-14),
+        "m1": pytest.approx(100 * A_STEPS[0] ** 2 / hypot(*A_STEPS) ** 2, rel=1e-12),
+        "m2": pytest.approx(100 * A_STEPS[1] ** 2 / hypot(*A_STEPS) ** 2, rel=1e-12),
     }
     assert result["budget"]["torque"] is None
 
 
-BUDGETS = {
-    "solve --m1 1 --m2 3 --budget": "needs an input with its uncertainty, like --m1 '1.000(2)'",
-    f"{' '.join(UNCERTAIN)} --budget --csv": "has no effect with --csv; leave one of them out",
-    f"{' '.join(UNCERTAIN)} --budget --only acceleration": "has no place in bare values; take --json",
-}
+def test_a_budget_needs_an_uncertain_input(atwood: Atwood) -> None:
+    ran = atwood("solve", "--m1", "1", "--m2", "3", "--budget")
+    why = "atwood: --budget needs an input with its uncertainty, like --m1 '1.000(2)'\n"
+    assert (ran.status, ran.out, ran.err) == (2, "", why)
 
 
-@pytest.mark.parametrize("words", BUDGETS)
-def test_a_budget_that_cannot_be(words: str, atwood: Atwood) -> None:
-    ran = atwood(*words.split())
-    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: --budget {BUDGETS[words]}\n")
-
-
-def test_help_says_how_to_type_it(atwood: Atwood) -> None:
-    words = " ".join(atwood("solve", "-h").out.split())
-    assert "in quotes for the shell, '1.000(2)'" in words
+def test_the_budget_beside_bare_values_and_in_csv(atwood: Atwood) -> None:
+    ran = atwood(*UNCERTAIN, "--budget", "--only", "acceleration")
+    value, *budget = ran.out.splitlines()
+    assert (ran.status, value) == (0, "2.1792555555555557")
+    assert re.search(r"│ acceleration +│ +9\.0 │ +91\.0 │", "".join(budget))
+    (row,) = csv.DictReader(io.StringIO(atwood(*UNCERTAIN, "--budget", "--csv", "--only", "a,torque").out))
+    assert list(row)[-4:] == [
+        f"budget_{name}_{x}" for name in ("acceleration", "torque") for x in ("m1", "m2")
+    ]
+    assert float(row["budget_acceleration_m1"]) == pytest.approx(100 * A_STEPS[0] ** 2 / hypot(*A_STEPS) ** 2)
+    assert row["budget_torque_m1"] == ""
 
 
 def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:

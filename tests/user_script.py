@@ -10,7 +10,7 @@ from typing import Any, assert_type
 
 import numpy as np
 
-from atwood_cli import REGIMES, STATUSES, Fit, MeasuredSolution, Solution, fit, solve, solve_arrays
+from atwood_cli import REGIMES, STATUSES, Fit, Solution, fit, solve, solve_arrays
 
 
 def of_a_form(a: str | None, digits: int | None) -> Solution[float] | Solution[Decimal]:
@@ -21,14 +21,14 @@ plain = solve(m1="250g", m2=np.int64(3), M=np.float32(10), mu=Fraction(1, 3), g=
 assert_type(plain, Solution[float])
 assert_type(plain.acceleration, float | None)
 assert_type(plain.uncertainty, Mapping[str, float | None])
-assert_type(solve(m1=1, m2=3, mu=None, digits=20), Solution[Decimal])
+assert_type(solve(1, 3, mu=None, digits=20), Solution[Decimal])
 
 found = solve(m1=1, m2=3, a="1.0(1)")
-assert_type(found, MeasuredSolution[float])
+assert_type(found, Solution[float])
 assert_type(found.pulley_mass, float | None)
 assert_type(solve(m1=1, m2=3, a=1, digits=9).moment_of_inertia, Decimal | None)
 assert_type(solve(m1=1, m2=3, drop="1m", time=2, digits="20").fall_time, Decimal | None)
-assert_type(solve(m1=1, m2=3, M=10, a=None, drop=1, time=None), MeasuredSolution[float])
+assert_type(solve(m1=1, m2=3, M=10, a=None, drop=1, time=None), Solution[float])
 
 arrays = solve_arrays(1, [3, 4], M=[10.0, None], mu=np.array([1, 2]), g=np.float64(10))
 assert_type([REGIMES[int(code)] for code in arrays["regime"]], list[str])

@@ -24,7 +24,7 @@ from .rational import EXACT, Irrational
 LARGEST_EXPONENT = 10**8
 LARGEST_ARGUMENT = LARGEST_EXPONENT * 2_302_585_092 // 10**9  # of an exponential: times ln 10
 ZERO, ONE, TWO, INFINITY = Decimal(0), Decimal(1), Decimal(2), Decimal("inf")
-KEPT = 256  # values of a function: a quantity and its slopes ask for the same ones
+KEPT = 256  # values of a function: quantities ask for the same ones
 DOUBLES = 300  # the largest exponent of a number that is taken for a double
 LOG10_E = Decimal("0.434294481903")  # rounded down, so that the rest of an argument is not negative
 
@@ -117,6 +117,9 @@ class Enclosures:
 
     def is_zero(self, x: Enclosure) -> bool:
         return x.lo == x.hi == 0
+
+    def not_negative(self, x: Enclosure) -> Enclosure:
+        return x
 
     def _fixed(self, value: int, error: int, bits: int) -> Enclosure:
         """The enclosure value ± error, both in units of 2^-bits."""
@@ -271,7 +274,9 @@ class Enclosures:
         return Enclosure(self, self.down.scaleb(k.lo, tens), self.up.scaleb(k.hi, tens)) - 1
 
     def log1p(self, x: Enclosure) -> Enclosure:
-        """ln(1 + x) for x >= 0."""
+        """ln(1 + x) for x > -1; one that may be 0 is taken not to be negative."""
+        if x.hi < 0:
+            return -1 * self.log1p(-1 * x / (x + 1))
         x = self._from_zero(x)
         at_lo = self._log1p(x.lo)
         return Enclosure(self, at_lo.lo, (at_lo + self._width(x)).hi)

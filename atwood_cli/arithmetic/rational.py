@@ -1,10 +1,56 @@
-"""Exact fractions. Every input is one, and every quantity that is rational is computed in them."""
+"""What equations ask of a number and of its arithmetic; and exact fractions, which every input is.
+
+The protocols exist only for the type checker, as creating them would slow every start of the program.
+Modules that name them in annotations leave those unevaluated (`from __future__ import annotations`).
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from fractions import Fraction
 from math import isqrt
+from typing import TYPE_CHECKING, TypeVar
+
+N = TypeVar("N", bound="Field")
+
+if TYPE_CHECKING:
+    from typing import Any, Protocol, Self
+
+    class Field(Protocol):
+        """A number with + - * and /. Ints may stand on either side of an operation."""
+
+        def __add__(self, other: Any, /) -> Self: ...
+        def __radd__(self, other: Any, /) -> Self: ...
+        def __sub__(self, other: Any, /) -> Self: ...
+        def __mul__(self, other: Any, /) -> Self: ...
+        def __rmul__(self, other: Any, /) -> Self: ...
+        def __truediv__(self, other: Any, /) -> Self: ...
+        def __rtruediv__(self, other: Any, /) -> Self: ...
+
+    class Arithmetic(Protocol[N]):
+        """A number type with its transcendental functions; angles are in radians unless named degrees."""
+
+        def number(self, q: Fraction | int) -> N: ...
+        def is_zero(self, x: N) -> bool: ...
+        def not_negative(self, x: N) -> N:
+            """x itself, stated not to be negative, which saves work in columns."""
+            ...
+
+        @property
+        def pi(self) -> N: ...
+        def exp(self, x: N) -> N: ...
+        def expm1(self, x: N) -> N: ...
+        def log1p(self, x: N) -> N: ...
+        def sqrt(self, x: N) -> N: ...
+        def hypot(self, x: N, y: N | int) -> N: ...
+        def cos_sin(self, x: N) -> tuple[N, N]: ...
+        def cos_sin_of_degrees(self, x: Fraction) -> tuple[N, N]: ...
+        def root(self, f: Callable[[N], N], end: N) -> N: ...
+
+    class Quantity(Protocol):
+        """A number that can be computed in any arithmetic."""
+
+        def __call__(self, arithmetic: Arithmetic[N], /) -> N: ...
 
 
 class Irrational(ArithmeticError):
@@ -28,6 +74,9 @@ class Rationals:
 
     def is_zero(self, x: Fraction) -> bool:
         return x == 0
+
+    def not_negative(self, x: Fraction) -> Fraction:
+        return x
 
     @property
     def pi(self) -> Fraction:

@@ -27,7 +27,7 @@ from .interval import ZERO, Enclosure, Unsettled, decimal_context, enclosures
 from .rational import EXACT, Irrational, OfFloat
 
 if TYPE_CHECKING:
-    from .protocol import Quantity
+    from .rational import Quantity
 
 A = TypeVar("A")
 T = TypeVar("T", bound=float | Decimal)

@@ -36,28 +36,35 @@ class Formula:
         self.op, self.parts = op, parts
 
     def __add__(self, other: Term) -> Formula:
+        if is_number(self, 0) or is_number(other, 0):
+            return formula(other) if is_number(self, 0) else self
         return Formula("+", self, formula(other))
 
     def __radd__(self, other: float) -> Formula:
-        return Formula("+", formula(other), self)
+        return formula(other) + self
 
     def __sub__(self, other: Term) -> Formula:
-        return Formula("-", self, formula(other))
+        return self if is_number(other, 0) else Formula("-", self, formula(other))
 
     def __rsub__(self, other: float) -> Formula:
-        return Formula("-", formula(other), self)
+        return formula(other) - self
 
     def __mul__(self, other: Term) -> Formula:
+        for one, factor in ((self, other), (other, self)):
+            if is_number(one, 0) or is_number(factor, 1):
+                return formula(one)
         return self if other == 1 else Formula("*", self, formula(other))
 
     def __rmul__(self, other: float) -> Formula:
-        return self if other == 1 else Formula("*", formula(other), self)
+        return self if other == 1 else formula(other) * self
 
     def __truediv__(self, other: Term) -> Formula:
-        return self if other == 1 else Formula("/", self, formula(other))
+        if is_number(self, 0) or is_number(other, 1) or other == 1:
+            return self
+        return Formula("/", self, formula(other))
 
     def __rtruediv__(self, other: float) -> Formula:
-        return Formula("/", formula(other), self)
+        return formula(other) / self
 
     def symbols(self) -> set[Symbol]:
         """The symbols in the formula."""
@@ -90,6 +97,11 @@ def formula(part: Term | Fraction) -> Formula:
     return Formula("number", float(part) if isinstance(part, Fraction) else part)
 
 
+def is_number(part: Term, number: int) -> bool:
+    """Whether a formula is that number, which stands for a limit: a 0 that is added is not written."""
+    return isinstance(part, Formula) and part.op == "number" and bool(part.parts[0] == number)
+
+
 def factors(f: Formula) -> tuple[list[Formula], list[Formula]]:
     """The factors of a product or quotient, whole numbers first, and those that divide it."""
     if f.op not in ("*", "/"):
@@ -105,6 +117,9 @@ def _recorded(function: str) -> Callable[[Any, Formula], Formula]:
 
 class Formulas:
     """The arithmetic of formulas: each function is recorded under its name."""
+
+    def not_negative(self, x: Formula) -> Formula:
+        return x
 
     exp, expm1, log1p, sqrt = map(_recorded, ("exp", "expm1", "log1p", "sqrt"))
 
@@ -122,11 +137,12 @@ class Symbols(Formulas):
         self.inputs = inputs
 
     def number(self, q: Fraction | int) -> Formula:
-        """The symbol of an input, found by identity, as two inputs may be equal. Raises LookupError."""
+        """The symbol of an input, found by identity, as two inputs may be equal; or 0 or 1, of a limit."""
         for symbol in self.inputs:
             if symbol.of is q:
                 return Formula("symbol", symbol)
-        raise LookupError(f"{q} is no input with a symbol")
+        assert q in (0, 1), f"{q} is no input with a symbol"
+        return formula(int(q))
 
     def is_zero(self, x: Formula) -> bool:
-        return bool(x.op == "symbol" and x.parts[0].of == 0)
+        return is_number(x, 0) or bool(x.op == "symbol" and x.parts[0].of == 0)

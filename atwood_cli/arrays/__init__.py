@@ -17,16 +17,18 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.quantities import ACCURACIES, STANDARD, Accuracy, read_names
+from ..model.quantities import STANDARD, Accuracy, read_accuracy, read_names
 from ..model.scene import INPUTS, MASSES, MISSING_MASS, SceneError
 from .inputs import DEFAULTS, GivenColumn, Numbers, groups, input_columns, read_column
 from .inputs import STATUSES as STATUSES
-from .plan import LEVELS, Task
+from .pattern import Index, Task
+from .plan import LEVELS
 from .program import Room
-from .rows import Index, Rows
+from .rows import Rows
 
 BLOCK = 131_072  # rows, as measured
 THREADS = 4  # more would wait for the interpreter's lock
+CODES = {"regime": np.int8, "status": np.int8}
 
 
 def solve_arrays(
@@ -50,14 +52,12 @@ def solve_arrays(
     Masses are in kg, g in m/s², I in kg m², R in m, wrap in degrees, and axle in N, as a force at the rim.
     M = inf locks the pulley. ``inertia`` is 0.5, a disk's, in rows where neither it nor I is given.
 
-    An input is not given in rows where it is masked (`numpy.ma`), None, or a missing value in a column of
-    polars, pandas or Arrow. A NaN is an error of its row. That holds in pandas columns of NumPy's float64
-    too, which have NaN for missing values: ``column.astype("Float64")`` tells that these are missing.
+    An input is not given in rows where it is masked (`numpy.ma`), None, or a null in a polars column. A NaN
+    is an error of its row.
 
-    ``accuracy`` is "fast" (plain doubles), "certified" (every value within 4 units in the last place of the
-    exact one, or 4.5 just below a power of two; every regime right), or "exact" (the nearest double). Exact
-    results are the same everywhere. The last place of others may depend on NumPy's build and on the other
-    rows.
+    ``accuracy`` is "certified" (every regime right, and every value proven within 2e-14 of itself) or "exact"
+    (the nearest double). Exact results are the same everywhere. The last places of certified ones may depend
+    on NumPy's build and on the other rows.
 
     Returns arrays by name, of the inputs' common shape. There is one for each of the ``quantities``, or of
     `quantities.STANDARD` if None: NaN where undetermined, ±inf beyond the doubles. A quantity may be asked
@@ -76,16 +76,10 @@ def solve_and_count(
 ) -> tuple[dict[str, NDArray[Any]], Counter[tuple[str, str]]]:
     """As `solve_arrays`; and the number of valid rows without a value, by quantity and reason."""
     words = [quantities] if isinstance(quantities, str) else STANDARD if quantities is None else quantities
-    names = list(dict.fromkeys(read_names("quantities", map(str, words))))
-    if accuracy not in ACCURACIES:
-        raise SceneError("accuracy", accuracy, f"must be one of {', '.join(ACCURACIES)}")
-    for mass in MASSES:
-        if given.get(mass) is None:
-            raise SceneError(mass, None, MISSING_MASS)
-    inputs = {name: read_column(name, given.get(name)) for name in INPUTS}
-    shape = _common_shape(inputs)
-    kinds = {"regime": np.int8, "status": np.int8}
-    results = {name: np.empty(shape, kinds.get(name, np.float64)) for name in (*names, "status")}
+    names = tuple(dict.fromkeys(read_names("quantities", map(str, words))))
+    accuracy = read_accuracy(accuracy)
+    inputs, shape = _read(given)
+    results = {name: np.empty(shape, CODES.get(name, np.float64)) for name in (*names, "status")}
     flat = {name: column.reshape(-1) for name, column in results.items()}
     left: dict[Task, list[NDArray[np.intp]]] = {}
     counted: list[Counter[tuple[str, str]]] = []
@@ -101,7 +95,7 @@ def solve_and_count(
         """Solve all rows of a block, but for the tasks that are left for the end."""
         rows, given = rows_at(block, room)
         rows.left = {} if len(blocks) > 1 else None
-        _solve(rows, given, tuple(names))
+        _solve(rows, given, names)
         for task, some in (rows.left or {}).items():
             left.setdefault(task, []).extend(index + block.start for index in some)
 
@@ -121,20 +115,22 @@ def solve_and_count(
     return results, sum(counted, Counter())
 
 
-def _common_shape(inputs: Mapping[str, GivenColumn]) -> tuple[int, ...]:
-    """The shape that the columns are broadcast to. Raises SceneError."""
+def _read(given: Mapping[str, Numbers | None]) -> tuple[dict[str, GivenColumn], tuple[int, ...]]:
+    """The inputs as columns, and the shape that they are broadcast to. Raises SceneError."""
+    for mass in MASSES:
+        if given.get(mass) is None:
+            raise SceneError(mass, None, MISSING_MASS)
+    inputs = {name: read_column(name, given.get(name)) for name in INPUTS}
     shape: tuple[int, ...] = ()
     for name, (column, _) in inputs.items():
-        if column.shape in ((), shape):
-            continue
         try:
             shape = np.broadcast_shapes(shape, column.shape)
         except ValueError:
-            rule = (
-                f"of shape {column.shape} does not broadcast with {shape}, the shape of what comes before it"
-            )
-            raise SceneError(name, None, rule) from None
-    return shape
+            before = f"{shape}, the shape of what comes before it"
+            raise SceneError(
+                name, None, f"of shape {column.shape} does not broadcast with {before}"
+            ) from None
+    return inputs, shape
 
 
 def _blocks(size: int, most: int, multiple_of: int = 1) -> list[slice]:
@@ -181,10 +177,10 @@ def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> 
 def _solve(rows: Rows, given: Mapping[str, GivenColumn], names: tuple[str, ...]) -> None:
     """Write the status of all rows, and the quantities: those of invalid rows have no value."""
     size = len(rows.results["status"])
-    for index, status, pattern, far in groups(input_columns(given, rows.accuracy), size):
+    for index, status, pattern, far in groups(input_columns(given), size):
         rows.results["status"][index] = status
         if pattern:
-            level = len(LEVELS[rows.accuracy]) - 1 if far else 0
+            level = len(LEVELS[rows.accuracy]) if far else 0
             rows.solve(index, Task(pattern, frozenset(), names, level))
             continue
         for name in names:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
@@ -12,23 +11,19 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..model.quantities import Accuracy
 from ..model.scene import INPUTS, MASSES, SceneError
-from .double_double import WINDOW
-from .plan import COLUMN, Pattern
-from .rows import Index
-from .tables import Column
+from .doubles import WINDOW
+from .pattern import COLUMN, Column, Index, Pattern
 
 Numbers = ArrayLike | Sequence[str | float | Decimal | Fraction | None]
-"""What a column may be: whatever NumPy makes an array of. A data frame's column is one too."""
+"""What a column may be: whatever NumPy makes an array of. A polars column is one too."""
 DEFAULTS = {"g": 9.80665, "inertia": 0.5, "wrap": 180.0}
 """Inputs that always have a value."""
 WHERE_ABSENT = DEFAULTS | {"axle": 0.0}
 """What stands for an input in rows where it is not given; NaN for the others."""
-FAST_WINDOW = 2.0**-250, 2.0**250  # beyond it, intermediate values may overflow though results do not
 SHAPES = ("inertia", "wrap")
 """Inputs whose common value is built into a program: with 1/2 and π it is simpler than with a column."""
-REAL = "biufOSU"
+REAL = "iufOSU"
 """NumPy's kinds of arrays that may hold real numbers. It would convert some others to numbers too."""
 STATUSES = (
     *("valid", "m1", "m2", "M", "mu", "mu_k", "g", "inertia", "R", "wrap"),
@@ -79,8 +74,10 @@ def read_column(name: str, value: Numbers | None) -> GivenColumn:
             column: Any = plain.astype(np.float64, copy=False) if array.dtype.kind in REAL else None
     except (TypeError, ValueError, OverflowError) as error:
         raise SceneError(name, None, f"must be real numbers: {error}") from None
-    if column is None:
-        raise SceneError(name, None, f"must be real numbers, not {array.dtype}")
+    items = value if isinstance(value, list | tuple) else plain.flat if plain.dtype == object else ()
+    if column is None or any(isinstance(one, bool | np.bool_) for one in items):
+        kind = array.dtype if column is None else "bool"
+        raise SceneError(name, None, f"must be real numbers, not {kind}")
     if absent is not None:
         column = np.where(absent, default, column)
     if not np.can_cast(array.dtype, np.float64):
@@ -94,21 +91,14 @@ def read_column(name: str, value: Numbers | None) -> GivenColumn:
 
 
 def _absent(value: Any, array: NDArray[Any]) -> NDArray[np.bool_] | None:
-    """Where nothing is given: what is masked, None, and a missing value of a data frame's column.
-
-    A NaN is none of these, nor in a pandas column of NumPy's own type, where it may be meant as one.
-    """
+    """Where nothing is given: what is masked, None, and a null of a polars column. A NaN is none of these."""
     absent: Any = None
     if isinstance(value, np.ma.MaskedArray):
         absent = np.ma.getmaskarray(value)
-    elif hasattr(value, "is_null"):  # polars and Arrow
+    elif hasattr(value, "is_null"):  # polars
         absent = np.asarray(value.is_null(), np.bool_)
-    elif hasattr(value, "isna") and not isinstance(value.dtype, np.dtype):  # pandas
-        absent = np.asarray(value.isna(), np.bool_)
     if array.dtype == object:
-        missing = getattr(sys.modules.get("pandas"), "NA", None)
-        is_missing = np.frompyfunc(lambda one: one is None or one is missing, 1, 1)
-        nothing = np.asarray(is_missing(array), np.bool_)
+        nothing = np.asarray(np.frompyfunc(lambda one: one is None, 1, 1)(array), np.bool_)
         absent = nothing if absent is None else absent | nothing
     return None if absent is None or not absent.any() else absent
 
@@ -135,21 +125,18 @@ class InputColumn(NamedTuple):
         return self.kinds if isinstance(self.kinds, int) else int(self.kinds[row])
 
 
-def input_columns(given: Mapping[str, GivenColumn], accuracy: Accuracy) -> dict[str, InputColumn]:
+def input_columns(given: Mapping[str, GivenColumn]) -> dict[str, InputColumn]:
     """The inputs of a block, with the kinds of their numbers."""
-    window = FAST_WINDOW if accuracy == "fast" else WINDOW
-    return {name: InputColumn(one.column, _kinds(name, given, window)) for name, one in given.items()}
+    return {name: InputColumn(one.column, _kinds(name, given)) for name, one in given.items()}
 
 
-def _kinds(
-    name: str, given: Mapping[str, GivenColumn], window: tuple[float, float]
-) -> int | NDArray[np.int_]:
+def _kinds(name: str, given: Mapping[str, GivenColumn]) -> int | NDArray[np.int_]:
     """The kind of each number of an input, or the one kind of all.
 
     The equations take I as the mass I/R² and the axle's friction as the mass f/g. So these must be within the
     window too.
     """
-    (column, absent), (low, high) = given[name], window
+    (column, absent), (low, high) = given[name], WINDOW
     if absent is not None and absent.all():
         return ABSENT
     sizes = [column]

@@ -6,17 +6,18 @@ a temporary column is reused after its last use.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.symbolic import Formula, Term, formula
-from .expansion import NOTHING
-from .tables import HEAD, Column
+from .constants import cos_sin_in_doubles
+from .pattern import Column
 
 Operation = Callable[..., Any]
+HEAD = -1 << 27  # masks the last 27 of the 53 bits of a double
 
 
 def _head(x: Column, out: Column) -> None:
@@ -48,21 +49,18 @@ def _minimum(x: Column, y: Column, out: Column) -> None:
     np.minimum(x, y, out=out)
 
 
-def _mantissa(x: Column, out: Column) -> None:
-    out[:] = np.frexp(x)[0]
+def _power(exponent: NDArray[np.intp], out: Column) -> None:
+    np.ldexp(1.0, exponent.astype(np.intc), out=out)
 
 
-def _exponent(x: Column, out: Column) -> None:
-    out[:] = np.frexp(x)[1]
-    np.copyto(out, NOTHING, where=x == 0)
+def _of_degrees(part: int) -> Operation:
+    """One of the doubles of `cos_sin_in_doubles`: each angle that occurs is computed once, to 70 digits."""
 
+    def operation(degrees: Column, out: Column) -> None:
+        angles, places = np.unique(degrees, return_inverse=True)
+        out[:] = np.array([cos_sin_in_doubles(angle)[part] for angle in angles.tolist()])[places]
 
-def _power(exponent: Column, out: Column) -> None:
-    POWERS.take((exponent + 1075.0).astype(np.intp), out=out, mode="clip")
-
-
-POWERS = np.array([0.0, *(2.0**e for e in range(-1074, 1024))])
-"""2^e from e = -1075, where it is 0 as no double is so small, to e = 1023."""
+    return operation
 
 
 OPERATIONS: dict[str, Operation] = {
@@ -71,9 +69,7 @@ OPERATIONS: dict[str, Operation] = {
     "*": np.multiply,
     "/": np.divide,
     "sqrt": np.sqrt,
-    "exp": np.exp,
     "expm1": np.expm1,
-    "log": np.log,
     "log1p": np.log1p,
     "cos": np.cos,
     "sin": np.sin,
@@ -86,7 +82,6 @@ OPERATIONS: dict[str, Operation] = {
     "==": np.equal,
     "and": np.logical_and,
     "or": np.logical_or,
-    "finite": np.isfinite,
     "bits": np.bitwise_and,
     ">>": np.right_shift,
     "maximum": _maximum,
@@ -95,15 +90,17 @@ OPERATIONS: dict[str, Operation] = {
     "take": _take,
     "int": _integer,
     "head": _head,
-    "mantissa": _mantissa,
-    "exponent": _exponent,
     "power": _power,
+    "cos°": _of_degrees(0),
+    "rest of cos°": _of_degrees(1),
+    "sin°": _of_degrees(2),
+    "rest of sin°": _of_degrees(3),
 }
-KINDS: dict[str, type[Any]] = dict.fromkeys(
-    ("<", "<=", "==", "and", "or", "finite"), np.bool_
-) | dict.fromkeys(("int", "bits", ">>"), np.intp)
+KINDS: dict[str, type[Any]] = dict.fromkeys(("<", "<=", "==", "and", "or"), np.bool_) | dict.fromkeys(
+    ("int", "bits", ">>"), np.intp
+)
 """The type of an operation's results, if they are not doubles."""
-NOT_IN_PLACE = ("where", "take", "exponent")
+NOT_IN_PLACE = ("where", "take")
 """Operations that write results before they have read all operands."""
 
 
@@ -127,59 +124,63 @@ class Room:
 
 
 class Program:
-    """The operations that compute ``results`` from ``inputs``, which are names of columns.
+    """The operations that compute ``results``, by their names, from ``inputs``, the names of columns.
 
     Operations read and write numbered slots. The slots of inputs, constants and results come first, then
     those of intermediate values, whose types are ``between``.
     """
 
-    def __init__(self, results: Sequence[Term]) -> None:
+    def __init__(self, results: Mapping[str, Term]) -> None:
         values = _Values()
-        wanted = [values.number(formula(result)) for result in results]
+        wanted = [values.number(formula(result)) for result in results.values()]
+        self.results = tuple(results)
         inputs, constants = (
             [n for n, (op, _) in enumerate(values.all) if op == kind] for kind in ("symbol", "number")
         )
-        self.inputs = [values.all[n][1][0] for n in inputs]
+        self.inputs: list[str] = [values.all[n][1][0] for n in inputs]
         self.constants = [values.all[n][1][0] for n in constants]
         slots = {n: slot for slot, n in enumerate([*inputs, *constants])}
-        leaves = set(slots)
-        copies = []
+        leaves, copies = set(slots), []
         for slot, n in enumerate(wanted, len(leaves)):
             if n in slots:
                 copies.append((_copy, (slots[n], slot)))
             else:
                 slots[n] = slot
         self.between: list[type[Any]] = []
-        self.operations: list[tuple[Operation, tuple[int, ...]]] = []
-        fixed, first = set(slots), len(leaves) + len(wanted)
-        free: dict[type[Any], list[int]] = {}
+        self.operations = [*self._operations(values, leaves, slots, len(leaves) + len(wanted)), *copies]
+
+    def _operations(
+        self, values: _Values, leaves: set[int], slots: dict[int, int], first: int
+    ) -> Iterator[tuple[Operation, tuple[int, ...]]]:
+        """The operations with their slots. A slot is free after the last use of its value."""
+        fixed, free = set(slots), dict[type[Any], list[int]]()
         last_use = {part: n for n, (_, parts) in enumerate(values.all) if n not in leaves for part in parts}
         kinds = [KINDS.get(op, np.float64) for op, _ in values.all]
         for n, (op, parts) in enumerate(values.all):
             if n in leaves:
                 continue
-            done = [part for part in parts if last_use[part] == n and part not in fixed]
-            if len(done) > 1:
-                done = list(dict.fromkeys(done))
+            done = dict.fromkeys(part for part in parts if last_use[part] == n and part not in fixed)
             in_place = op not in NOT_IN_PLACE
             for part in done if in_place else ():
                 free.setdefault(kinds[part], []).append(slots[part])
             if n not in slots:
-                kind = kinds[n]
-                if not free.get(kind):
-                    free[kind] = [first + len(self.between)]
-                    self.between.append(kind)
-                slots[n] = free[kind].pop()
+                if not free.get(kinds[n]):
+                    free[kinds[n]] = [first + len(self.between)]
+                    self.between.append(kinds[n])
+                slots[n] = free[kinds[n]].pop()
             for part in () if in_place else done:
                 free.setdefault(kinds[part], []).append(slots[part])
-            self.operations.append((OPERATIONS[op], (*[slots[part] for part in parts], slots[n])))
-        self.operations += copies
+            yield OPERATIONS[op], (*[slots[part] for part in parts], slots[n])
 
     def run(
-        self, inputs: Sequence[Column], results: Sequence[NDArray[Any]], between: Sequence[NDArray[Any]]
+        self,
+        inputs: Mapping[str, Column],
+        results: Mapping[str, NDArray[Any]],
+        between: Iterable[NDArray[Any]],
     ) -> None:
         """Write the results of these inputs; ``between`` are columns for intermediate values."""
-        at = [*inputs, *self.constants, *results, *between]
+        given, found = [inputs[name] for name in self.inputs], [results[name] for name in self.results]
+        at = [*given, *self.constants, *found, *between]
         # Look up operands first: Python code between two operations would keep other threads waiting.
         bound = [(operation, [at[slot] for slot in slots]) for operation, slots in self.operations]
         for operation, columns in bound:

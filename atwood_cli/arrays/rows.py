@@ -6,10 +6,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from fractions import Fraction
 from math import nan
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,23 +17,51 @@ from numpy.typing import NDArray
 from ..arithmetic.rational import Irrational
 from ..model.case import Case
 from ..model.quantities import REGIMES, Accuracy
-from ..model.scene import Scene
 from ..solver.answers import Answers
-from .expansion import PAIRS, TRIPLES
-from .gap import gap, ratio
-from .plan import LEVELS, Pattern, Plan, Task, in_pairs, levels_of, plan, questioning
+from .certified import ties
+from .pairs import PAIRS
+from .pattern import Column, Index, Task, select, size_of
+from .plan import LEVELS, Plan, answering, condition_of, in_pairs, nearest_double, plan
 from .program import Program, Room
-from .tables import Column
 
-ROOM = 10_000_000  # bytes for the columns of a tile
-SMALLEST, LARGEST = 8_192, 65_536  # rows of a tile
-FEW = 24  # rows that are solved sooner one by one than by a long program
+ROOM = 2_000_000  # bytes for the columns of a tile
+SMALLEST, LARGEST = 8_192, 32_768  # rows of a tile
+FEW = 24  # rows that are solved sooner one by one than by a program that is yet to be made
 LEAVE = 2_000  # rows of one block that are solved sooner together with rows of other blocks
 
-Index = slice | NDArray[np.intp]
-"""A selection of rows."""
-Waiting = tuple[Index, Task, Index]
-"""Rows, their task, and the rows that its program runs on."""
+Flags = NDArray[np.bool_]
+
+
+class Group(NamedTuple):
+    """A task, the rows that its program runs on, and which of these are wanted; None for all.
+
+    To select rows costs more than to compute some in vain. So a group that has most of some rows that follow
+    each other runs on all of them, and the results of the others are overwritten when their turn comes.
+    """
+
+    task: Task
+    rows: Index
+    wanted: Flags | None = None
+
+    @property
+    def number(self) -> int:
+        """The number of rows that are wanted."""
+        return size_of(self.rows) if self.wanted is None else int(np.count_nonzero(self.wanted))
+
+    def wanted_and(self, flags: Flags) -> Flags:
+        """Whether a row is wanted and has a flag."""
+        return flags if self.wanted is None else flags & self.wanted
+
+    def places(self, flags: Flags) -> NDArray[np.intp]:
+        """The places of the rows that are wanted and have a flag."""
+        return np.flatnonzero(self.wanted_and(flags))
+
+    def part(self, task: Task, flags: Flags) -> Group:
+        """The group of the rows that are wanted and have a flag."""
+        wanted = self.wanted_and(flags)
+        if isinstance(self.rows, slice) and 2 * np.count_nonzero(wanted) > wanted.size:
+            return Group(task, self.rows, wanted)
+        return Group(task, select(self.rows, np.flatnonzero(wanted)))
 
 
 class Rows:
@@ -47,204 +75,170 @@ class Rows:
         room: Room,
     ) -> None:
         self.inputs, self.results, self.accuracy, self.room = inputs, results, accuracy, room
+        self.levels = LEVELS[accuracy]
         self.left: dict[Task, list[NDArray[np.intp]]] | None = None
         """Tasks with few rows, kept for the end of all blocks; None where they are solved at once."""
         self.reasons: Counter[tuple[str, str]] = Counter()
         """In how many rows a quantity has no value, by its name and the reason."""
 
-    def solve(self, index: Index, task: Task) -> None:
+    def solve(self, rows: Index, task: Task) -> None:
         """Write the results of a task for rows of its pattern and decisions."""
-        waiting: list[Waiting] = [(index, task, index)]
+        waiting = [Group(task, rows)]
         while waiting:
-            waiting += self._solved_but_for(*waiting.pop())
+            group = waiting.pop()
+            level = group.task.level
+            if level == len(self.levels) or (level and size_of(group.rows) <= FEW):
+                self._solve_one_by_one(group.rows, group.task)
+            else:
+                waiting += self._solved_but_for(group)
 
-    def _solved_but_for(self, index: Index, task: Task, rows: Index) -> list[Waiting]:
-        """Solve what a task's level of precision can; returns what is left to do, and for which rows.
+    def _solved_but_for(self, group: Group) -> list[Group]:
+        """Do what the plan of a group says; returns what is left to do.
 
-        The `Plan` divides the task's quantities. Some are computed by its program: where one is not
-        certified, it is left to the next level. Some cannot be computed at this level and are left to the
-        next one in all rows. Some need an answer first: the rows of either answer become a new task.
-
-        The program runs on ``rows``, which may be more than those of ``index``, but not twice as many, where
-        that is cheaper than to select them. The results of the other rows are overwritten afterwards.
+        A row and quantity that is not certified is left to the next level. The last group is solved first: it
+        has most of the rows, and may run on all of them.
         """
-        levels = LEVELS[self.accuracy]
-        if task.level == len(levels) or (levels[task.level] is TRIPLES and size_of(index) <= FEW):
-            self._solve_one_by_one(index, task)
-            return []
+        task, rows = group.task, group.rows
         how = plan(task, self.accuracy)
-        for name, constant in how.constants:
+        for name, constant in how.constants.items():
             self.results[name][rows] = constant
-        for name, reason in how.missing:
+        for name, reason in how.missing.items():
             self.results[name][rows] = nan
-            self.reasons[name, reason] += size_of(index)
-        left: list[Waiting] = []
-        if how.later:
-            left.append((index, task._replace(names=how.later, level=task.level + 1), index))
-        yes, all_failed = self._run_plan(how, rows)
-        for name, failed in all_failed.items():
-            if rows is not index and not isinstance(index, slice):
-                failed = np.intersect1d(failed, index, assume_unique=True)
-            if name == how.question:
-                yes[_places(rows, failed)] = self._ask(failed, task, name)
-                continue
-            one = task._replace(names=(name,), level=task.level + 1)
-            if self.accuracy == "exact" and levels[task.level] is PAIRS and failed.size > FEW:
-                failed = self._settle_ties(failed, one)
-            if self.left is not None and failed.size <= LEAVE:
-                self.left.setdefault(one, []).append(failed)
-            elif failed.size:
-                left.append((failed, one, failed))
-        if how.asking:
-            if rows is not index and not isinstance(index, slice):
-                yes = yes[_places(rows, index)]
-            most = bool(2 * np.count_nonzero(yes) > yes.size)
-            for answer in (not most, most):  # the larger group is solved first, the other one overwrites
-                members = np.flatnonzero(yes == answer)
-                if members.size:
-                    own = index if members.size == yes.size else _select(index, members)
-                    part = task._replace(
-                        decisions=task.decisions | {(how.question, answer)}, names=how.asking
-                    )
-                    wide = answer == most and isinstance(rows, slice) and 2 * members.size > size_of(rows)
-                    left.append((own, part, rows if wide else own))
+            self.reasons[name, reason] += group.number
+        found = self._run_plan(how, rows)
+        left = [
+            Group(task._replace(names=(name,), level=task.level + 1), failed)
+            for name in how.conditional
+            if (failed := self._uncertified(group, name, found[condition_of(name)])).size
+        ]
+        if how.alone:
+            places = group.places(np.ones(size_of(rows), np.bool_))
+            left.append(Group(task._replace(names=how.alone, level=len(self.levels)), select(rows, places)))
+        if how.question:
+            yes = found["yes"]
+            if not found["sure"].all():
+                places = group.places(~found["sure"])
+                yes[places] = self._ask(select(rows, places), task, how.question)
+            answers = [
+                group.part(
+                    task._replace(decisions=task.decisions | {(how.question, answer)}, names=how.asking),
+                    yes == answer,
+                )
+                for answer in (False, True)
+            ]
+            left += sorted((part for part in answers if part.number), key=lambda part: part.number)
         return left
 
-    def _run_plan(self, how: Plan, index: Index) -> tuple[NDArray[np.bool_], dict[str, NDArray[np.intp]]]:
-        """Run a plan's program.
+    def _uncertified(self, group: Group, name: str, certified: Flags) -> NDArray[np.intp]:
+        """The rows in which a quantity is left to the next level at once."""
+        if certified.all():
+            return np.empty(0, np.intp)
+        task = group.task
+        failed: NDArray[np.intp] = select(group.rows, group.places(~certified))
+        if self.accuracy == "exact" and failed.size > FEW:
+            failed = self._settle_ties(failed, task._replace(names=(name,)))
+        if self.left is not None and failed.size <= LEAVE:
+            later = task._replace(names=(name,), level=task.level + 1)
+            self.left.setdefault(later, []).append(failed)
+            return failed[:0]
+        return failed
 
-        Returns the rows' answers to the plan's question, and the rows in which the answer, or a quantity, is
-        not certified, by the question or the name.
-        """
-        asked = [how.question] if how.question else []
-        yes = np.empty(size_of(index) if asked else 0, np.bool_)
-        names = (*how.conditional, *asked)
-        failed: dict[str, list[NDArray[np.intp]]] = {name: [] for name in names}
-        if how.program:
-            for start, *columns in self._run(how.program, index, how.quantities, len(names) + len(asked)):
-                for name, sure in zip(names, columns, strict=False):
-                    if np.count_nonzero(sure) < sure.size:
-                        failed[name].append(np.flatnonzero(~sure) + start)
-                if asked:
-                    yes[start : start + columns[-1].size] = columns[-1]
-        return yes, {name: _select(index, np.concatenate(some)) for name, some in failed.items() if some}
+    def _run_plan(self, how: Plan, rows: Index) -> dict[str, Flags]:
+        """Run a plan's program; returns what it says beside the quantities, by name."""
+        if how.program is None:
+            return {}
+        flags = [name for name in how.program.results if name not in how.computed]
+        found = {name: np.empty(size_of(rows), np.bool_) for name in flags}
+        self._run(how.program, rows, how.computed, found)
+        return found
 
     def _run(
-        self, program: Program, index: Index, names: Sequence[str], more: int
-    ) -> Iterator[tuple[Any, ...]]:
-        """Run a program tile by tile; yields the start of each tile and its ``more`` columns of booleans.
+        self, program: Program, rows: Index, quantities: tuple[str, ...], others: Mapping[str, NDArray[Any]]
+    ) -> None:
+        """Run a program tile by tile. ``others`` are columns for those results that are no quantities.
 
-        In rows that follow each other, results are written where they belong. Others are gathered first.
+        In rows that follow each other, quantities are written where they belong. Others are gathered first.
         """
-        size, columns = size_of(index), len(program.between) + len(program.inputs) + len(names)
+        size, columns = size_of(rows), len(program.between) + len(program.inputs) + len(quantities)
         most = min(max(SMALLEST, ROOM // (8 * columns)), LARGEST)
         for start in range(0, size, most):
-            tile = _select(index, slice(start, min(start + most, size)))
-            direct = isinstance(tile, slice)
-            inputs = [self.inputs[name] for name in program.inputs]
-            floats = 0 if direct else len(inputs) + len(names)
-            kinds: list[Any] = [*[np.bool_] * more, *[np.float64] * floats, *program.between]
-            room = iter(self.room.columns(kinds, size_of(tile)))
-            answers = [next(room) for _ in range(more)]
-            if direct:
-                inputs = [column[tile] if column.ndim else column for column in inputs]
-                results = [self.results[name][tile] for name in names]
+            part = slice(start, min(start + most, size))
+            tile = select(rows, part)
+            results = {name: column[part] for name, column in others.items()}
+            if isinstance(tile, slice):
+                room = iter(self.room.columns(program.between, size_of(tile)))
+                inputs = {
+                    name: self.inputs[name][tile] if self.inputs[name].ndim else self.inputs[name]
+                    for name in program.inputs
+                }
+                results |= {name: self.results[name][tile] for name in quantities}
             else:
-                inputs = [
-                    column.take(tile, out=here, mode="clip") if column.ndim else column
-                    for column, here in zip(inputs, room, strict=False)
+                kinds: list[type[Any]] = [
+                    *[np.float64] * (len(program.inputs) + len(quantities)),
+                    *program.between,
                 ]
-                results = [next(room) for _ in names]
-            program.run(inputs, [*results, *answers], list(room))
-            if not direct:
-                for name, column in zip(names, results, strict=True):
-                    self.results[name][tile] = column
-            yield start, *answers
+                room = iter(self.room.columns(kinds, tile.size))
+                inputs = {name: _gathered(self.inputs[name], tile, next(room)) for name in program.inputs}
+                results |= {name: next(room) for name in quantities}
+            program.run(inputs, results, room)
+            if not isinstance(tile, slice):
+                for name in quantities:
+                    self.results[name][tile] = results[name]
 
-    def _ask(self, index: NDArray[np.intp], task: Task, question: str) -> NDArray[np.bool_]:
-        """Each row's answer to a question that the task's plan leaves open."""
-        yes = np.empty(index.size, np.bool_)
-        open_ = np.arange(index.size)
-        for ar in levels_of(question, task.level, self.accuracy)[1:]:
-            if open_.size <= FEW:
-                break
-            program = questioning(task, question, self.accuracy, ar)
-            unsure = []
-            for start, sure, says in self._run(program, index[open_], (), 2):
-                tile = open_[start : start + says.size]
-                yes[tile] = says
-                unsure.append(tile[~sure])
-            open_ = np.concatenate(unsure)
-        for row in open_.tolist():
+    def _ask(self, rows: NDArray[np.intp], task: Task, question: str) -> Flags:
+        """Each row's answer to a question that doubles leave open."""
+        yes, sure = np.empty((2, rows.size), np.bool_)
+        sure[:] = False
+        if rows.size > FEW:
+            self._run(answering(task, question, PAIRS), rows, (), {"yes": yes, "sure": sure})
+        for place in np.flatnonzero(~sure).tolist():
             method, which = question.split()
-            yes[row] = getattr(Case(self._scene(index, row, task.pattern)), method)(which)
+            case = Case(task.pattern.scene(self._number(rows[place])))
+            yes[place] = getattr(case, method)(which)
         return yes
 
-    def _settle_ties(self, index: NDArray[np.intp], task: Task) -> NDArray[np.intp]:
-        """Write the task's quantity where it is a tie, half-way between two doubles; returns the other rows.
+    def _settle_ties(self, rows: NDArray[np.intp], task: Task) -> NDArray[np.intp]:
+        """Write the task's quantity where it is a tie between two doubles; returns the other rows."""
+        program, plain = in_pairs(task)
+        found = {name: np.empty(rows.size) for name in program.results}
+        self._run(program, rows, (), found)
+        inputs = {name: column[rows] if column.ndim else column for name, column in self.inputs.items()}
+        try:
+            values, tied = ties(**found, plain=plain, inputs=inputs)
+        except Irrational:
+            return rows
+        self.results[task.names[0]][rows[tied]] = values[tied]
+        return rows[~tied]
 
-        No error bound shows that a value is a tie, but the `gap` does.
-        """
-        (name,) = task.names
-        program, plain = in_pairs(task.pattern, task.decisions, name)
-        open_ = np.ones(index.size, np.bool_)
-        for start in range(0, index.size, SMALLEST):
-            tile = index[start : start + SMALLEST]
-            inputs = {name: column[tile] if column.ndim else column for name, column in self.inputs.items()}
-            try:
-                bits = ratio(plain, inputs)
-            except Irrational:
-                return index
-            first, second, error = np.empty((3, tile.size))
-            between = self.room.columns(program.between, tile.size)
-            program.run([inputs[name] for name in program.inputs], [first, second, error], between)
-            half = np.copysign(np.spacing(np.abs(first)) / 2, second)
-            tied = np.abs(second - half) + error < gap(bits, half)
-            self.results[name][tile[tied]] = (first + half)[tied]
-            open_[start : start + SMALLEST] = ~tied
-        return index[open_]
-
-    def _solve_one_by_one(self, index: Index, task: Task) -> None:
+    def _solve_one_by_one(self, rows: Index, task: Task) -> None:
         """Solve each row as a scene of its own, exactly."""
-        for row in range(size_of(index)):
-            answers = Answers(self._scene(index, row, task.pattern))
-            place = _select(index, row)
+        for place in range(size_of(rows)):
+            row = select(rows, place)
+            if len(task.names) == 1 and task.decisions:
+                value = nearest_double(task, task.names[0], self._number(row))
+                if value is not None:
+                    self.results[task.names[0]][row] = value
+                    continue
+            answers = Answers(task.pattern.scene(self._number(row)))
             for name in task.names:
                 if name == "regime":
-                    self.results[name][place] = REGIMES.index(answers.case.regime)
+                    self.results[name][row] = REGIMES.index(answers.case.regime)
                 else:
                     value = answers[name]
-                    self.results[name][place] = nan if value is None else float(value)
+                    self.results[name][row] = nan if value is None else float(value)
                     if value is None:
                         self.reasons[name, answers.reasons[name]] += 1
 
-    def _scene(self, index: Index, row: int, pattern: Pattern) -> Scene:
-        """One row as a scene of its own."""
-        place = _select(index, row)
+    def _number(self, row: int) -> Callable[[str], Fraction]:
+        """The inputs of a row, exactly, by their names."""
 
-        def exactly(name: str) -> Fraction:
+        def number(name: str) -> Fraction:
             column = self.inputs[name]
-            return Fraction(float(column[place] if column.ndim else column))
+            return Fraction(float(column[row] if column.ndim else column))
 
-        return pattern.scene(exactly)
-
-
-def size_of(index: Index) -> int:
-    """The number of rows of a selection."""
-    return index.stop - index.start if isinstance(index, slice) else index.size
+        return number
 
 
-def _select(index: Any, some: Any) -> Any:
-    """The rows at some places of a selection, or the row at one place: two selections made one."""
-    if not isinstance(index, slice):
-        return index[some]
-    if isinstance(some, slice):
-        return slice(index.start + some.start, min(index.start + some.stop, index.stop))
-    return some + index.start if index.start else some
-
-
-def _places(index: Index, rows: NDArray[np.intp]) -> NDArray[np.intp]:
-    """The places of some rows in a selection, which is in ascending order: the reverse of `_select`."""
-    if not isinstance(index, slice):
-        return np.searchsorted(index, rows)
-    return rows - index.start if index.start else rows
+def _gathered(column: Column, rows: NDArray[np.intp], room: Column) -> Column:
+    """The rows of a column, in the room for them; a single number stays single."""
+    return column.take(rows, out=room, mode="clip") if column.ndim else column

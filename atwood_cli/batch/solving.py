@@ -1,93 +1,146 @@
-"""Solves a data frame of scenes: its results, and for a row that is no scene an error."""
+"""Rows of scenes: what columns hold, cells as doubles, the results, and the error of each bad row."""
 
+import re
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cache, partial
-from math import inf, nan
-from typing import TYPE_CHECKING, Any, TypeVar
+from math import inf, isfinite
+from typing import TYPE_CHECKING, Any, NamedTuple
+from unicodedata import normalize
 
+from ..arithmetic.rounding import to_double
 from ..files import Unreadable
-from ..model.quantities import NAMES, REGIMES, STANDARD, Accuracy
-from ..model.scene import Given, Scene, SceneError
-from ..model.units import STANDARD_GRAVITY, counted, in_quotes, shortened
-from ..solver.answers import Answers
+from ..model.quantities import NAMES, REGIMES, Accuracy
+from ..model.scene import (
+    INPUTS,
+    MASSES,
+    MEASURED,
+    Given,
+    Scene,
+    SceneError,
+    parameter_of,
+    read_plain,
+    read_value,
+)
+from ..model.units import Malformed, counted, in_quotes, read_unit, shortened
 from ..solver.messages import reasons_at
-from .formats import Piece
-from .layout import NOT_GIVEN, Layout, inputs_among, read_layout
+from ..tables.headings import (
+    EMPTY,
+    Heading,
+    Vocabulary,
+    divisions,
+    listed,
+    pointed,
+    read_headings,
+    refused,
+)
 
 if TYPE_CHECKING:
     import polars as pl
 
 ERROR = "error"
-Table = TypeVar("Table")
+VOCABULARY = Vocabulary({name.replace("_", ""): name for name in INPUTS})
+
+# fmt: off
+OTHER_NAMES = {
+    **{"mass1": "m1", "mass_1": "m1", "mass2": "m2", "mass_2": "m2"},
+    **dict.fromkeys(("m", "mp", "m_p", "m_pulley", "pulley", "pulley_mass", "mass_pulley"), "M"),
+    **dict.fromkeys(("mu_s", "mus", "mu_static", "friction", "static_friction"), "mu"),
+    **dict.fromkeys(("friction_coefficient", "coefficient_of_friction"), "mu"),
+    **dict.fromkeys(("muk", "mu_kinetic", "kinetic_friction"), "mu_k"),
+    **{"gravity": "g", "beta": "inertia", "inertia_factor": "inertia", "moment_of_inertia": "I"},
+    **dict.fromkeys(("axle_friction", "bearing_friction"), "axle"),
+    **{"r": "R", "radius": "R", "pulley_radius": "R", "wrap_angle": "wrap", "angle": "wrap", "phi": "wrap"},
+    **{name.lower(): name for name in (*reversed(INPUTS), *MEASURED) if name != "I"},  # i may count rows
+}
+# fmt: on
+"""What headings could be meant for, in small ASCII letters."""
+GREEK = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
+LARGEST_POWER = 22
+"""The largest power of ten that is a double."""
+LONG = 100
+"""Characters: a shorter text that is a nonzero double is within the limits of digits and exponents."""
 
 
-def solve_table(
-    table: Table, quantities: Sequence[str] | None = None, accuracy: Accuracy = "certified"
-) -> Table:
-    """A table of scenes with results appended, and the error of each bad row: what `atwood batch` makes.
+class Question(NamedTuple):
+    """What is asked of a table: the results and their accuracy, and what the user says of its columns.
 
-    ``table`` is a data frame of polars (lazy too) or pandas, or an Arrow table, and so is what comes back.
-    Its columns m1, m2, M, mu and so on are inputs, in SI units or in those of the heading, as "m1 (g)"; other
-    columns stay as they are. An input is not given where a value is missing. A NaN is an error of its row, in
-    pandas too: where it stands for a missing value, pass ``table.convert_dtypes()``.
-
-    For ``quantities`` and ``accuracy`` see `solve_arrays`. Raises SceneError for one that is not known,
-    ValueError for a table that lacks a mass or has a column that could be meant for an input.
+    ``labels`` are columns that hold no input, whatever they look like, ``named`` maps headings to inputs.
     """
-    import polars as pl
 
-    names = list(dict.fromkeys(STANDARD if quantities is None else quantities))
-    solved = partial(_results, names=names, accuracy=accuracy)
-    whole: Any = table
-    match type(table).__module__.split(".")[0]:
-        case "polars" if isinstance(whole, pl.LazyFrame):
-            kinds = {name: pl.String if name == "regime" else pl.Float64 for name in names}
-            schema = {**whole.collect_schema(), **kinds, ERROR: pl.String}
-            solve = partial(solve_table, quantities=names, accuracy=accuracy)
-            whole = whole.map_batches(solve, schema=schema, streamable=True)
-        case "polars" if isinstance(whole, pl.DataFrame):
-            whole = whole.hstack(solved(whole.columns, whole.get_column))
-        case "pandas" if hasattr(whole, "columns"):
-            import pandas as pd
-
-            columns = [name for name in whole.columns if isinstance(name, str)]
-            results = solved(columns, lambda name: pl.from_pandas(whole[name], nan_to_null=False)).to_pandas()
-            whole = pd.concat([whole, results.set_index(whole.index)], axis=1)
-        case "pyarrow" if hasattr(whole, "append_column"):
-            results = solved(whole.column_names, lambda name: pl.from_arrow(whole.column(name)))
-            for name in results.columns:
-                whole = whole.append_column(name, results[name].to_arrow())
-        case _:
-            raise ValueError(
-                f"a table is a data frame of polars or pandas, or an Arrow table, not {type(table).__name__}"
-            )
-    solution: Table = whole
-    return solution
+    names: Sequence[str]
+    accuracy: Accuracy
+    labels: Collection[str] = ()
+    named: Mapping[str, str] = {}
 
 
-def _results(
-    columns: Sequence[str], column: Callable[[str], Any], names: Sequence[str], accuracy: Accuracy
-) -> "pl.DataFrame":
-    """The columns to append to a table with those columns. Raises ValueError, SceneError."""
-    import polars as pl
+class Layout(NamedTuple):
+    """The columns of inputs, and whether commas in their cells are decimal."""
 
+    headings: Sequence[Heading]
+    comma: bool = False
+
+
+# Columns
+
+
+def read_inputs(columns: Sequence[str], asked: Question, whole: bool = True) -> list[Heading]:
+    """The columns of inputs. Without both masses a table is no ``whole`` one: their cells are empty.
+
+    Raises Unreadable for a column that could be meant for an input and is none, if it is no label, and for
+    one that is named as a result.
+    """
+    if clash := [column for column in columns if column in (*asked.names, ERROR)]:
+        how = "as a result is named so; rename it"
+        raise Unreadable(f"column {in_quotes(clash[0])} would be there twice, {how}")
+    headings = read_headings(columns, VOCABULARY, asked.labels, asked.named)
+    found = {one.name for one in headings}
+    passed = {*asked.labels, *(one.column for one in headings)}
+    others = {column: name for column in columns if column not in passed and (name := _meant(column))}
+    for column, name in others.items():
+        if name in INPUTS and name not in found:
+            how = f"say so by --column {name}={in_quotes(column)}"
+            raise refused(column, f"could be meant for {name}; rename it, or {how}")
+    missing = [mass for mass in MASSES if mass not in found]
+    if missing and whole:
+        how = f"there are {listed(columns)}; or name one by --column {missing[0]}=HEADING"
+        raise Unreadable(f"column {missing[0]} is missing; {how}")
+    for column, name in others.items():
+        if name in MEASURED:
+            raise refused(column, "tells of a motion, which only solve takes")
+    return [*headings, *(Heading(-1, mass, mass) for mass in missing)]
+
+
+def _meant(column: str) -> str | None:
+    """What a heading could be meant for: with other letters, another name, or a unit after it."""
+    *_, (name, _) = divisions(column)
+    letters = normalize("NFKC", name).casefold().translate(GREEK)
+    words = [word for word in re.split("[^0-9a-z]+", letters) if word]
+    if meant := OTHER_NAMES.get("_".join(words)):
+        return meant
+    meant = OTHER_NAMES.get("_".join(words[:-1]))
+    return meant if meant and _is_unit(re.split(r"[\W_]+", name)[-1], meant) else None
+
+
+def _is_unit(word: str, name: str) -> bool:
+    """Whether an input may be given in that unit."""
+    dimension = parameter_of(name).dimension
     try:
-        check_clash(columns, names, "quantities")
-        frame = pl.DataFrame([column(name).alias(name) for name in inputs_among(columns)])
-        return solve_frame(frame, read_layout(Piece(columns, frame, 0)), names, accuracy, Tally(set(names)))
-    except Unreadable as error:
-        why, _, _ = str(error).partition("; or let it pass by --label")
-        raise ValueError(f"cannot read the table: {why}") from None
+        return dimension is not None and bool(read_unit(word, dimension))
+    except Malformed:
+        return False
+
+
+# Rows
 
 
 @dataclass
 class Tally:
-    """The counts of a run, and how its tables were read.
+    """The counts of a run, and what its rows lack.
 
-    ``missing`` are the results that no row has, and ``not_given`` the words that stand for an empty cell of
-    the table that is read now.
+    ``missing`` are the results that no row has, and ``not_given`` the words that stand for an empty cell.
     """
 
     missing: set[str]
@@ -98,10 +151,19 @@ class Tally:
     beyond: int = 0
     reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
     not_given: set[str] = field(default_factory=set)
-    remarks: list[str] = field(default_factory=list)
+
+    def add(self, results: "pl.DataFrame", regimes: "pl.Series") -> None:
+        """Count the next rows by their results."""
+        self.missing -= {name for name in self.missing if results[name].null_count() < results.height}
+        self.regimes.update({regime: count for regime, count in regimes.value_counts().iter_rows() if regime})
+        if bad := results.height - results[ERROR].null_count():
+            row = results[ERROR].is_not_null().arg_max() or 0
+            self.first_error = self.first_error or f"row {self.rows + row + 1}: {results[ERROR][row]}"
+            self.errors += bad
+        self.rows += results.height
 
     def lines(self) -> list[str]:
-        """The messages: remarks, the summary, why valid rows lack results, the first error."""
+        """The messages: the summary, why valid rows lack results, the first error."""
         parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
         counts = [", ".join(parts)] if parts else []
         counts.append(counted(self.errors, "error") if self.errors else "no errors")
@@ -111,143 +173,98 @@ class Tally:
         first = [f"first error, in {self.first_error}"] if self.errors else []
         # Threads count in any order: the most frequent reason first.
         reasons = sorted(self.reasons.items(), key=lambda one: (-one[1], NAMES.index(one[0][0]), one[0][1]))
-        missing = reasons_at(dict(reasons), self.rows, "in {} of {} rows")
-        return [*dict.fromkeys(self.remarks), summary, *missing, *first]
+        return [summary, *reasons_at(dict(reasons), self.rows, "in {} of {} rows"), *first]
 
 
-def check_clash(columns: Sequence[str], names: Sequence[str], option: str) -> None:
-    """Refuse a table with a column that is named as a result. Raises Unreadable."""
-    if clash := [name for name in columns if name in (*names, ERROR)]:
-        how = f"as a result is named so; rename it, or name other results by {option}"
-        raise Unreadable(f"column {in_quotes(clash[0])} would be there twice, {how}")
-
-
-def solve_frame(
-    frame: "pl.DataFrame",
+def solve_cells(
+    cells: "pl.DataFrame",
     layout: Layout,
-    names: Sequence[str],
-    accuracy: Accuracy,
+    asked: Question,
     tally: Tally,
     others: Mapping[int, str] = {},
-    few: bool = False,
 ) -> "pl.DataFrame":
-    """The columns to append: the results, which are empty in rows that failed, and the errors.
+    """The columns to append to rows whose inputs have those cells: the results, and the errors of bad rows.
 
-    ``others`` are errors of rows that could not be read. A ``few`` rows are solved without NumPy.
-    """
-    import polars as pl
-
-    doubles, errors, words = _doubles(frame, layout)
-    errors |= others
-    doubles["m1"].scatter(list(errors), None)  # such a row has no results
-    tally.not_given |= {*NOT_GIVEN} & words
-    solve = _one_by_one if few else _at_once
-    columns, reasons = solve(doubles, list(dict.fromkeys(["regime", *names])), accuracy)
-    regimes = columns["regime"]
-    bad = [row for row in regimes.is_null().arg_true() if row not in errors]
-    inputs = _inputs(frame, layout)[bad]
-
-    @cache  # as many rows may be alike
-    def why(*cells: Any) -> str:
-        return _why(dict(zip(inputs.columns, cells, strict=True)), layout)
-
-    errors |= {row: why(*cells) for row, cells in zip(bad, inputs.iter_rows(), strict=True)}
-    error = pl.repeat(None, frame.height, dtype=pl.String, eager=True)
-    error = error.scatter(list(errors), list(errors.values()))
-    values = pl.selectors.float()
-    tally.beyond += sum(map(sum, columns.select(values.is_infinite().sum()).iter_rows()))
-    results = columns.select(pl.when(values.is_finite()).then(values).name.keep(), "regime")
-    tally.missing -= {name for name in names if results[name].null_count() < frame.height}
-    tally.regimes.update({regime: count for regime, count in regimes.value_counts().iter_rows() if regime})
-    tally.reasons += reasons
-    tally.errors += len(errors)
-    tally.rows += frame.height
-    return results.select(*names, error.alias(ERROR))
-
-
-def _at_once(
-    doubles: Mapping[str, "pl.Series"], names: Sequence[str], accuracy: Accuracy
-) -> "tuple[pl.DataFrame, Counter[tuple[str, str]]]":
-    """The results of all rows, where that of a bad row has no regime; in how many others one is missing, by
-    its name and the reason.
+    ``others`` are errors of rows that could not be read. Raises Unreadable for a column without numbers.
     """
     import polars as pl
 
     from ..arrays import solve_and_count
 
-    columns: Any = doubles
-    results, reasons = solve_and_count(columns, accuracy, names)
-    regimes = pl.Series([*REGIMES, None]).gather(results["regime"])
-    return pl.DataFrame({**results, "regime": regimes}), reasons
-
-
-def _one_by_one(
-    doubles: Mapping[str, "pl.Series"], names: Sequence[str], accuracy: Accuracy
-) -> "tuple[pl.DataFrame, Counter[tuple[str, str]]]":
-    """As `_at_once`, but without NumPy, and exact whatever the accuracy."""
-    import polars as pl
-
-    rows: list[dict[str, Any]] = []
-    reasons: Counter[tuple[str, str]] = Counter()
-    for row in pl.DataFrame(doubles).iter_rows(named=True):
-        row["g"] = float(STANDARD_GRAVITY) if row.get("g") is None else row["g"]
-        try:
-            answers = Answers(Scene.read(row))
-        except SceneError:
-            rows.append({})
-            continue
-        rows.append({name: answers[name] for name in names})
-        reasons.update((name, answers.reasons[name]) for name in names if answers[name] is None)
-    kinds = {name: pl.String if name == "regime" else pl.Float64 for name in names}
-    return pl.DataFrame(rows, kinds), reasons
-
-
-def _inputs(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
-    """The columns of inputs, renamed to the inputs."""
-    import polars as pl
-
-    return frame.select(pl.col(heading.column).alias(name) for name, heading in layout.headings.items())
-
-
-def with_numbers(frame: "pl.DataFrame", layout: Layout) -> "pl.DataFrame":
-    """A frame of texts with its inputs as numbers in the units of the headings, null where a cell is none."""
-    doubles, _, _ = _doubles(frame, layout.as_it_stands())
-    return frame.with_columns(
-        doubles[name].alias(heading.column) for name, heading in layout.headings.items()
-    )
+    doubles: Any
+    doubles, errors, not_given = _doubles(cells, layout)
+    errors |= others
+    doubles["m1"].scatter(list(errors), None)  # such a row has no results
+    solved, reasons = solve_and_count(doubles, asked.accuracy, ["regime", *asked.names])
+    regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
+    bad = [row for row in regimes.is_null().arg_true() if row not in errors]
+    errors |= dict(zip(bad, _reasons(cells[bad], layout), strict=True))
+    error = pl.repeat(None, cells.height, dtype=pl.String, eager=True)
+    error = error.scatter(list(errors), list(errors.values()))
+    columns = pl.DataFrame({**solved, "regime": regimes})
+    values = pl.selectors.float()
+    beyond = sum(map(sum, columns.select(values.is_infinite().sum()).iter_rows()))
+    columns = columns.select(pl.when(values.is_finite()).then(values).name.keep(), "regime")
+    results = columns.select(*asked.names, error.alias(ERROR))
+    tally.beyond += beyond
+    tally.reasons += reasons
+    tally.not_given |= not_given
+    tally.add(results, regimes)
+    return results
 
 
 def _doubles(
-    frame: "pl.DataFrame", layout: Layout
+    cells: "pl.DataFrame", layout: Layout
 ) -> "tuple[dict[str, pl.Series], dict[int, str], set[str]]":
     """The inputs by name, null where a cell is empty or wrong; the first error of each row that has one; and
-    cells that are no numbers.
+    the words that stand for an empty cell.
     """
     import polars as pl
 
     columns: dict[str, pl.Series] = {}
     errors: dict[int, str] = {}
-    words: set[str] = set()
-    for name, cells in zip(layout.headings, _inputs(frame, layout), strict=True):
-        if not (cells.dtype.is_numeric() or cells.dtype in (pl.String, pl.Null)):
-            raise Unreadable(f"column {name} holds {shortened(str(cells.dtype))}, not numbers")
-        columns[name] = layout.as_doubles(name, cells)
-        odd = _odd_cells(cells, columns[name])
+    not_given: set[str] = set()
+    for heading, column in zip(layout.headings, cells, strict=True):
+        if column.dtype in (pl.Categorical, pl.Enum):
+            column = column.cast(pl.String)
+        if not (column.dtype.is_numeric() or column.dtype in (pl.String, pl.Null)):
+            raise Unreadable(f"column {heading.name} holds {shortened(str(column.dtype))}, not numbers")
+        doubles = _in_bulk(column, heading, layout.comma)
+        if column.dtype == pl.String and doubles.null_count():
+            column = column.str.strip_chars()
+            empty = column.is_in(EMPTY)
+            not_given |= {*column.filter(empty).unique()} - {""}
+            column = column.set(empty, None)
+            doubles = _in_bulk(column, heading, layout.comma)
+        odd = _odd_cells(column, doubles)
         for row, cell in odd.items():
             try:
-                odd[row] = layout.double(name, cell)
+                odd[row] = _double(heading, cell, layout.comma)
             except SceneError as error:
-                odd[row] = nan
-                errors.setdefault(row, str(error))
-            if odd[row] != odd[row]:
                 odd[row] = None
-                words.add(str(cell).strip())
-        columns[name].scatter(list(odd), pl.Series(odd.values(), dtype=pl.Float64))
-    return columns, errors, words
+                errors.setdefault(row, str(error))
+        columns[heading.name] = doubles.scatter(list(odd), pl.Series(odd.values(), dtype=pl.Float64))
+    return columns, errors, not_given
 
 
-LONG = 100
-"""Characters: a shorter text that is a nonzero double is within the limits of digits and exponents."""
+def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
+    """The double nearest to each cell of a column in the SI, null where only `_double` can tell."""
+    import polars as pl
+
+    factor = heading.factor
+    power = len(str(max(factor, 1 / factor))) - 1
+    if power > LARGEST_POWER or max(factor, 1 / factor) != 10**power:
+        return pl.repeat(None, len(cells), dtype=pl.Float64, eager=True)
+    if cells.dtype != pl.String:
+        doubles = cells.cast(pl.Float64, strict=False)
+        # A column, as polars would divide by a single number in two steps, and round twice.
+        powers = pl.repeat(float(10**power), len(cells), eager=True)
+        return doubles * powers if factor > 1 else doubles / powers
+    if comma:
+        cells = cells.set(cells.str.contains(".", literal=True), None)
+        cells = cells.str.replace(",", ".", literal=True)
+    exact = cells + f"e{power if factor > 1 else -power}" if power else cells
+    return exact.cast(pl.Float64, strict=False)
 
 
 def _odd_cells(cells: "pl.Series", doubles: "pl.Series") -> dict[int, Any]:
@@ -264,18 +281,40 @@ def _odd_cells(cells: "pl.Series", doubles: "pl.Series") -> dict[int, Any]:
     return dict(zip(rows, cells[rows], strict=True))
 
 
-def _why(row: Mapping[str, Any], layout: Layout) -> str:
+def _double(heading: Heading, cell: str | float, comma: bool) -> float:
+    """A cell as the double nearest to it in the SI. Raises SceneError."""
+    name = heading.name
+    if isinstance(cell, str):
+        exact = read_plain(name, cell, pointed(name, cell, comma))
+    else:
+        read_value(name, cell)  # raises where it is NaN, or infinite and must not be
+        exact = Fraction(cell) if isfinite(cell) else inf
+    if exact == inf and parameter_of(name).inf:
+        return inf
+    value = to_double(Fraction(exact) * heading.factor)
+    if abs(value) == inf or (exact and not value):
+        raise SceneError(name, cell, "is beyond the range of doubles, 4.9e-324 to 1.8e308")
+    return value
+
+
+def _reasons(cells: "pl.DataFrame", layout: Layout) -> list[str]:
+    """Why each row is no scene."""
+    why = cache(partial(_why, layout))  # as many rows may be alike
+    return [why(row) for row in cells.iter_rows()]
+
+
+def _why(layout: Layout, row: Sequence[Any]) -> str:
     """The error of a row, in the words of `solve`; cells that are numbers are quoted as typed."""
     cells: dict[str, Given | None] = {}
-    for name, cell in row.items():
-        unit = layout.headings[name].unit
-        text = layout.pointed(cell).strip() if isinstance(cell, str) else cell
-        if text is None or text in ("", *NOT_GIVEN):
+    for heading, cell in zip(layout.headings, row, strict=True):
+        text = pointed(heading.name, cell, layout.comma) if isinstance(cell, str) else cell
+        if text is None or text in EMPTY:
             continue
-        if (layout.double(name, cell) if isinstance(cell, str) else cell) == inf:
-            cells[name] = inf
+        if (_double(heading, cell, layout.comma) if isinstance(cell, str) else cell) == inf:
+            cells[heading.name] = inf
         else:
-            cells[name] = f"{text}{unit}" if unit or isinstance(text, str) else float(text)
+            typed = f"{text}{heading.unit}" if heading.unit or isinstance(text, str) else float(text)
+            cells[heading.name] = typed
     try:
         Scene.read(cells)
     except SceneError as error:

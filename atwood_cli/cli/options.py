@@ -1,18 +1,18 @@
-"""Options: those of a scene, those that several commands share, and which exclude or need which."""
+"""Options: those of a scene, and those that several commands share."""
 
 import inspect
 import os
 from collections.abc import Callable, Mapping
-from importlib import import_module
-from typing import Annotated, Any
+from pathlib import Path
+from typing import Annotated, Any, NamedTuple, get_args
 
 import typer
 
-from ..files import STREAM
+from ..files import STREAM, check_free
 from ..model.quantities import NAMES, QUANTITIES
 from ..model.scene import INPUTS, SceneError, parameter_of
 from ..model.units import read_number, shortened
-from ..output.text import say
+from ..output.text import FORMS, Target, say
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """The environment variable by which a shell asks how a word could go on."""
@@ -21,17 +21,16 @@ DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 
 ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
 REMARKS = {
-    "m1": ', as 1.5, 1/3, 250g or "2 lb"',
+    "m1": ', 250g or "2 lb"',
     "M": "; inf locks it",
     "mu_k": "; mu if not given",
-    "g": " by NASA's fact sheets, giants at 1 bar; 9.80665 if not given",
-    "inertia": " (a hollow sphere); 0.5 if not given",
+    "g": ", or a planet, moon or pluto; 9.80665 if not given",
+    "inertia": ", or disk, hoop, ring, sphere, shell; 0.5 if not given",
     "I": ", in place of inertia; needs R",
-    "R": ", as 0.1 or 5cm",
-    "wrap": ", in degrees, or as 1.5turn, 3rad or pi/2; 180 if not given",
+    "wrap": ": degrees, 1.5turn, 3rad, pi/2; 180 if not given",
     "axle": ", as 15mN or 0.4mNm",
-    "a": ": finds M; beside M, a mass or gravity; of a string that slips, mu_k",
-    "drop": ": gives the time and the speed",
+    "a": ": finds M, or a mass, g, mu_k",
+    "drop": ": finds time and speed",
     "time": ", with drop in place of a",
 }
 
@@ -67,36 +66,91 @@ def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> 
     parameter = parameter_of(name)
     flags = [flag(name), *ALIASES.get(name, [])]
     unit = f" ({parameter.unit})" if parameter.unit not in ("", "°") else ""
-    names = f", or {', '.join(parameter.names)}" if parameter.names else ""
     meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
-    text = f"{meaning}{unit}{names}{REMARKS.get(name, '') if remark is None else remark}."
+    text = f"{meaning}{unit}{REMARKS.get(name, '') if remark is None else remark}."
     metavar = (parameter.dimension or "number").split()[-1].upper()
     words = {**parameter.names, **({"inf": "a locked pulley"} if parameter.inf else {})}
     return option(group, *flags, help=text, metavar=metavar, words=(lambda: words) if words else None)
 
 
-def takes_scene(command: Callable[..., int]) -> Callable[..., int]:
-    """Give a command an option for every parameter of a scene, handed to it as ``given``."""
+Command = Callable[..., int]
+Rules = Mapping[str, str]
+"""By the name of an option, the names of others."""
+NONE: Rules = {}
 
-    def with_scene(**options: Any) -> int:
-        given = {name: options.pop(name) for name in INPUTS}
-        status = command(given=given, **options)
-        if (wrap := given["wrap"]) and _may_be_radians(wrap):
-            typed = f"--wrap {shortened(wrap)}"
-            say(f"{typed} was taken for degrees; if it is in radians, write rad behind it, as 3.14rad")
-        return status
 
-    kind = inspect.Parameter.KEYWORD_ONLY
-    scene = [
-        inspect.Parameter(n, kind, default=None, annotation=Annotated[str | None, scene_option(n)])
-        for n in INPUTS
-    ]
-    _, *own = inspect.signature(command).parameters.values()
-    signature = inspect.Signature([*scene, *own])
-    with_scene.__dict__["__signature__"] = signature
-    with_scene.__annotations__ = {p.name: p.annotation for p in signature.parameters.values()}
-    with_scene.__name__ = command.__name__
-    return with_scene
+class Shared(NamedTuple):
+    """Options that several commands have, and what a command gets in their place, by its name.
+
+    ``then`` is called when the command is done.
+    """
+
+    gives: str
+    options: Mapping[str, Any]
+    read: Callable[[Mapping[str, Any]], Any]
+    then: Callable[[Mapping[str, Any]], None] = lambda options: None
+
+
+def takes(*shared: Shared, no_effect: Rules = NONE, needs: Rules = NONE) -> Callable[[Command], Command]:
+    """Give a command shared options: typer sees each of them, the command what they are read as.
+
+    An option of ``no_effect`` has none beside those named there; one of ``needs`` needs one of those.
+    """
+
+    def taking(command: Command) -> Command:
+        gives = [group.gives for group in shared]
+        own = [one for one in inspect.signature(command).parameters.values() if one.name not in gives]
+
+        def run(**options: Any) -> int:
+            _check(options, no_effect, needs)
+            read = {group.gives: group.read(options) for group in shared}
+            status = command(**{one.name: options[one.name] for one in own}, **read)
+            for group in shared:
+                group.then(options)
+            return status
+
+        first, *rest = ([_parameter(*each) for each in group.options.items()] for group in shared)
+        parameters = sorted(
+            [*first, *own, *(one for group in rest for one in group)], key=lambda one: one.kind
+        )
+        run.__dict__["__signature__"] = inspect.Signature(parameters)
+        run.__annotations__ = {one.name: one.annotation for one in parameters}
+        run.__name__ = command.__name__
+        return run
+
+    return taking
+
+
+def _parameter(name: str, annotation: Any) -> inspect.Parameter:
+    default = False if get_args(annotation)[0] is bool else None
+    return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
+
+
+def _check(options: Mapping[str, Any], no_effect: Rules, needs: Rules) -> None:
+    """Raises SceneError where an option that is given excludes another, or lacks one that it needs."""
+    given = {name: value for name, value in options.items() if value not in (None, False, [], ())}
+    for name, value in given.items():
+        shown = value[0] if isinstance(value, list | tuple) else None if value is True else value
+        for other in no_effect.get(name, "").split():
+            if other in given:
+                raise SceneError(name, shown, f"has no effect with {flag(other)}; leave one of them out")
+        needed = needs.get(name, "").split()
+        if needed and not given.keys() & set(needed):
+            raise SceneError(name, shown, f"needs {' or '.join(map(flag, needed))}")
+
+
+# A scene
+
+
+def _read_scene(options: Mapping[str, Any]) -> dict[str, str | None]:
+    """The inputs as they were typed."""
+    return {name: options[name] for name in INPUTS}
+
+
+def _ask_about_radians(options: Mapping[str, Any]) -> None:
+    if (wrap := options["wrap"]) and _may_be_radians(wrap):
+        typed = f"--wrap {shortened(wrap)}"
+        say(f"{typed} was taken for degrees; if it is in radians, write rad behind it, as 3.14rad")
 
 
 LIKE_RADIANS = (0.3, 12.6)
@@ -111,6 +165,10 @@ def _may_be_radians(typed: str) -> bool:
     return not any(angle.unit for angle in angles) and least < max(angle.value for angle in angles) < most
 
 
+SCENE_OPTIONS = {name: Annotated[str | None, scene_option(name)] for name in INPUTS}
+SCENE = Shared("given", SCENE_OPTIONS, _read_scene, _ask_about_radians)
+
+
 def quantities() -> Mapping[str, str]:
     """The quantities that every scene has, with what they mean."""
     return {"regime": "no-slip, verge or slip", **{name: QUANTITIES[name].meaning for name in NAMES[1:]}}
@@ -123,11 +181,9 @@ Digits = Annotated[
     option(
         "Output",
         metavar="N",
-        help="Significant digits, 1 to 1000; if not given, 6 in tables, all of a double elsewhere.",
+        help="Significant digits; 6 in tables, a double's elsewhere.",
     ),
 ]
-AsJson = Annotated[bool, option("Output", "--json", help="Print JSON: results, scene and notes.")]
-AsCsv = Annotated[bool, option("Output", "--csv", help="Print CSV, with a line of names first.")]
 Columns = Annotated[
     list[str] | None,
     option(
@@ -135,39 +191,14 @@ Columns = Annotated[
         "--only",
         metavar="NAME",
         words=quantities,
-        help="A column for this quantity, not for the usual seven; repeatable, or a,b; see solve -h.",
+        help="A column for this quantity, not for the usual seven; repeatable, or a,b.",
     ),
-]
-Markdown = Annotated[
-    bool,
-    option("Output", "--markdown", help="With --explain: a page of Markdown, its mathematics in LaTeX."),
-]
-Plot = Annotated[
-    bool, option("Output", "--plot", help="Draw it in the terminal, in place of tables (extra: plot).")
 ]
 FigureFile = Annotated[
     str | None,
     option("Files", metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure)."),
 ]
-Bare = Annotated[
-    bool, option("Files", "--bare", help="With --figure: draw without sentences, as for a report.")
-]
-M1Side = Annotated[
-    str | None,
-    option("Files", metavar="left|right", help="On which side the figure has m1; right if not given."),
-]
-OutputFile = Annotated[
-    str | None,
-    option(
-        "Files",
-        "--output",
-        "-o",
-        metavar="FILE",
-        help="Write to FILE, whole or not at all: as CSV (.csv), JSON (.json) or as shown (.txt).",
-    ),
-]
-SUFFIXES = ("", ".txt", ".csv", ".json")
-Force = Annotated[bool, option("Files", "--force", help="Replace a file that is there.")]
+Bare = Annotated[bool, option("Files", "--bare", help="With --figure: no sentences, as for a report.")]
 Labels = Annotated[
     list[str] | None,
     option(
@@ -179,68 +210,71 @@ Labels = Annotated[
 ]
 
 
-def form_of(options: Mapping[str, Any]) -> tuple[bool, bool]:
-    """Whether to print JSON or CSV, by the options or else by the suffix of --output. Raises SceneError."""
-    output, json, csv = options["output"], options["json"], options["csv"]
-    if output in (None, STREAM):
-        return json, csv
-    figure = options["figure"]
-    if figure is not None and os.path.realpath(figure) == os.path.realpath(output):
+# Where results go, and in which form
+
+
+Force = Annotated[bool, option("Files", "--force", help="Replace a file that is there.")]
+
+
+def results(*forms: str) -> Shared:
+    """The options that say in which of these forms a result goes where."""
+    suffixes = ", ".join(f"{FORMS[form].suffix}" for form in forms)
+    options = {
+        **{form: Annotated[bool, option("Output", flag(form), help=FORMS[form].help)] for form in forms},
+        "output": Annotated[
+            str | None,
+            option(
+                "Files",
+                "--output",
+                "-o",
+                metavar="FILE",
+                help=f"Write to FILE, as its suffix says: {suffixes}, .txt.",
+            ),
+        ],
+        "force": Force,
+    }
+    return Shared("target", options, _read_target)
+
+
+def _read_target(options: Mapping[str, Any]) -> Target:
+    """In which form a result goes where. Raises SceneError, FileExistsError."""
+    asked = [form for form in FORMS if options.get(form)]
+    if asked[1:]:
+        raise SceneError(asked[0], None, f"has no effect with {flag(asked[1])}; leave one of them out")
+    form, file, force = "".join(asked), options["output"], options["force"]
+    if force and not (file or options.get("figure")):
+        raise SceneError("force", None, f"needs --output{' or --figure' * ('figure' in options)}")
+    if file in (None, STREAM):
+        return Target(form, None, force)
+    if (figure := options.get("figure")) and os.path.realpath(figure) == os.path.realpath(file):
         raise SceneError("figure", figure, "is the file of --output; name another")
-    if json or csv or options.get("markdown"):
-        return json, csv
-    suffix = os.path.splitext(output)[1].lower()
-    if suffix not in SUFFIXES:
-        rule = f"must end in one of {', '.join(filter(None, SUFFIXES))}, or name --json or --csv"
-        raise SceneError("output", output, rule)
-    return suffix == ".json", suffix == ".csv"
+    form = _form_of_file(file, form, options)
+    check_free(Path(file), force)
+    return Target(form, file, force)
 
 
-# Which options exclude or need which
-
-NO_EFFECT = {
-    "json": "csv",
-    "plot": "json csv",
-    "explain": "json csv only plot budget",
-    "all": "json csv only explain",
-    "budget": "csv",
-    "points": "elements",
-    "profile": "elements",
-    "figure": "elements",
-    **dict.fromkeys(("family", "scenes", "seed"), "m1 m2"),
-}
-"""Of all commands: an option, and those with which it has no effect."""
-NEEDS = {
-    "markdown": "explain",
-    "extrapolate": "elements",
-    "m1_side": "figure",
-    "bare": "figure",
-    "force": "output figure",
-}
-"""Of all commands: an option, and those of which it needs one."""
+def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
+    """The form of a file: what was asked for, or by its suffix. Raises SceneError where the two disagree."""
+    name, suffix = os.path.splitext(file)
+    page = ".md" if options.get("markdown") else ".txt"
+    known = [] if options.get("explain") else [form for form in FORMS if form in options]
+    forms = {page: "", **{FORMS[form].suffix: form for form in known}}
+    if not suffix or (form := forms.get(suffix.lower())) == asked:
+        return asked
+    if form and not asked:
+        return form
+    if not asked and page == ".txt":
+        raise SceneError("output", file, f"must end in one of {', '.join(forms)}")
+    right = name + (FORMS[asked].suffix if asked else page)
+    then = "" if asked else f"; then pandoc {right} -o {file} makes the other"
+    raise SceneError("output", file, f"would hold {asked.upper() or 'Markdown'}; name it {right}{then}")
 
 
-def check(options: Mapping[str, Any], **more: str) -> None:
-    """Raises SceneError where an option that is given excludes another, or lacks one that it needs.
-
-    ``more``: by option, others with which it has no effect in this command.
-    """
-    no_effect = NO_EFFECT | {name: f"{NO_EFFECT.get(name, '')} {others}" for name, others in more.items()}
-    given = {name: value for name, value in options.items() if value not in (None, False, [], ())}
-    for name, value in given.items():
-        shown = value[0] if isinstance(value, list | tuple) else None if value is True else value
-        for other in no_effect.get(name, "").split():
-            if other in given:
-                raise SceneError(name, shown, f"has no effect with {flag(other)}; leave one of them out")
-        needed = [other for other in NEEDS.get(name, "").split() if other in options]
-        if needed and not given.keys() & set(needed):
-            raise SceneError(name, shown, f"needs {' or '.join(map(flag, needed))}")
+RESULTS = results(*FORMS)
 
 
-def check_extras(plot: bool, figure: str | None, force: bool) -> None:
+def check_figure(figure: str | None, force: bool) -> None:
     """Raise, before anything is solved, what a picture will run into: SceneError, OSError, ImportError."""
-    if plot:
-        import_module("plotille")
     if figure is not None:
         from ..output.figure import check_file
 

@@ -1,8 +1,8 @@
-"""The statistics of a fit: a line by weighted least squares, a variance between runs, and outliers.
+"""The statistics of a fit, as in textbooks: weighted least squares, a variance between runs, outliers.
 
 R. C. Paule and J. Mandel, "Consensus values and weighting factors", J. Res. NBS 87 (1982) 377, find the
 variance between runs; G. Knapp and J. Hartung, "Improved tests for a random effects meta-regression with a
-single covariate", Stat. Med. 22 (2003) 2693, the scale of the covariance and Student's t with n - p degrees
+single covariate", Stat. Med. 22 (2003) 2693, the scale of the covariance, and Student's t with n - p degrees
 of freedom; B. Rosner, "Percentage points for a generalized ESD many-outlier procedure", Technometrics 25
 (1983) 165, the number of outliers, though they hide each other.
 """
@@ -13,71 +13,70 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.special import stdtr, stdtrit
 
-from ..arrays.tables import Column
-from .probability import student_beyond
-
-MOST_STEPS = 100
+Column = NDArray[np.float64]
+NORMAL = 1e8
+"""Degrees of freedom with which Student's t is the normal distribution."""
 ALIKE = 1e-7
 """Below this ratio of singular values the runs cannot separate the fitted quantities."""
+ROUNDING = 1e-12
+"""The least standard uncertainty of a measured number, as a share of it."""
+
+
 TINY = 1e-300
 MOST_STRAYS = 20
-"""Outliers that are looked for; there is at most one for eight degrees of freedom."""
+"""Outliers that are looked for; there is at most one for three degrees of freedom."""
 
 
 class Alike(ArithmeticError):
     """The runs cannot separate the quantities to be fitted."""
 
 
-class LinearFit(NamedTuple):
+class Line(NamedTuple):
     """A linear fit of n values: p coefficients, their covariance, and the variance of each value.
 
-    Covariance and variances are still to be multiplied by the square of ``scale``. ``chi2`` is by the known
-    variances alone, and ``between`` the variance estimated beside them; both are None if none is known.
+    Covariance and variances are still to be multiplied by ``scale``. ``between`` is the estimated part of the
+    variance, and ``chi2`` is by the known part alone, None if there is none.
     """
 
-    step: Column
+    coefficients: Column
     covariance: Any
     variance: Column
     scale: float
     chi2: float | None
-    between: float | None
+    between: float
 
 
-def fit_line(J: Any, y: Column, known: Column, shape: Column) -> LinearFit:
+def fit_line(J: Any, y: Column, known: Column, shape: Column, least: Column) -> Line:
     """The coefficients b by which J b (n, p) agrees best with y (n); raises Alike.
 
-    The variance of y is ``known`` + v ``shape``. If any is known, v is Paule and Mandel's: the least at which
-    χ² does not exceed what it is by chance. That is its median for n - p degrees of freedom (E. B. Wilson and
-    M. M. Hilferty), not its mean, by which v is too small more often than not: intervals of 95 % then covered
-    89 %. Knapp and Hartung's scale, max(1, χ²/(n - p)), is 1. If no variance is known, v is χ²/(n - p) of
-    weights 1/``shape``, which is ordinary least squares.
+    The variance of y is ``known`` + v ``shape``. Paule and Mandel's v is that at which χ² is n - p, or 0 if
+    χ² is no more than that without it. Knapp and Hartung's scale is χ²/(n - p). Without known variances the
+    shape alone is scaled, which is ordinary least squares. No variance comes out below the ``least``.
     """
-    dof = len(y) - J.shape[1]
-    if not known.any():
-        step, half, chi2 = _solved(J, y, shape)
-        return LinearFit(step, half @ half.T, shape, sqrt(chi2 / dof) if dof else inf, None, None)
-    known = np.maximum(known, 1e-12 * known.max())  # a weight without bound would be no weight for others
-    usual = dof * (1 - 2 / (9 * dof)) ** 3 if dof else 0.0
-    v, before, first, steps = 0.0, -1.0, None, 0
-    while True:
-        steps += 1
-        variance = known + v * shape
-        step, half, chi2 = _solved(J, y, variance)
-        first = chi2 if first is None else first
-        near = abs(chi2 - usual) < 1e-12 * usual or abs(v - before) <= 1e-15 * v or steps > MOST_STEPS
-        if dof < 1 or near or (not v and chi2 <= usual):
-            return LinearFit(step, half @ half.T, variance, 1.0, first, v)
-        slope = sum_of_squares((y - J @ step) / variance * np.sqrt(shape))
-        before, v = v, max(v + (chi2 - usual) * chi2 / (usual * slope), 0.0)  # Newton's step of 1/χ²
+    dof, between, chi2, variance = len(y) - int(J.shape[1]), 0.0, None, shape
+    if known.any():
+        floor: Column = np.maximum(known, ROUNDING * known.max())  # no weight is without bound
 
+        def excess(v: float) -> float:
+            return _solved(J, y, floor + v * shape)[2] - dof
 
-def sum_of_squares(column: Any) -> float:
-    return float(np.square(column).sum())  # by NumPy alone, whose sums are the same on any number of cores
+        chi2 = excess(0.0) + dof
+        if dof and chi2 > dof:
+            most = float((floor / shape).min())
+            while excess(most) > 0:
+                most *= 10
+            between = float(brentq(excess, 0, most, xtol=1e-15 * most))
+        variance = floor + between * shape
+    coefficients, covariance, rest = _solved(J, y, variance)
+    scale = max(rest / dof if dof else 1.0, float((least / variance).max()))
+    return Line(coefficients, covariance, variance, scale, chi2, between)
 
 
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
-    """The weighted solution, a root of its covariance, and χ²; raises Alike."""
+    """The weighted solution, its covariance, and χ²; raises Alike."""
     sigma = np.sqrt(variance)
     A, b = J / sigma[:, None], y / sigma
     lengths = np.linalg.norm(A, axis=0)
@@ -87,35 +86,46 @@ def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
     if len(singular) < J.shape[1] or (singular < ALIKE * singular.max(initial=0)).any():
         raise Alike
     half = rows.T / singular / lengths[:, None]
-    step = half @ (U.T @ b)
-    return step, half, sum_of_squares(b - A @ step)
+    solution = half @ (U.T @ b)
+    return solution, half @ half.T, sum_of_squares(b - A @ solution)
+
+
+def student(dof: float) -> float:
+    """The standard uncertainties on either side of a value that hold the true one with 95 %."""
+    return float(stdtrit(min(dof, NORMAL), 0.975))
+
+
+def sum_of_squares(column: Any) -> float:
+    return float(np.square(column).sum())
 
 
 def stray_rows(
-    J: Any, y: Column, known: Column, shape: Column, within: float, level: float
+    J: Any, y: Column, known: Column, shape: Column, least: Column, within: float, level: float
 ) -> Mapping[int, float]:
     """The values far from what the others say, and the distances in standard uncertainties.
 
-    Residuals and leverages show the furthest, without a fit for each; the line of the others judges it.
-    The known variance has ``within`` degrees of freedom, 0 if the scatter of repeats is no part of it. The
-    estimated one has those of the other values, their sum those of B. L. Welch and F. E. Satterthwaite.
+    Residuals and leverages show the furthest, without a fit for each; the line of the others judges it. The
+    known variance has ``within`` degrees of freedom and is not scaled. The estimated one has those of the
+    other values, their sum those of B. L. Welch and F. E. Satterthwaite.
     """
 
     def furthest(kept: NDArray[np.bool_]) -> tuple[int, float, float]:
         at = np.flatnonzero(kept)
-        line = fit_line(J[at], y[at], known[at], shape[at])
-        rest = y[at] - J[at] @ line.step
+        line = fit_line(J[at], y[at], known[at], shape[at], least[at])
+        rest = y[at] - J[at] @ line.coefficients
         of_line = np.einsum("ij,jk,ik->i", J[at], line.covariance, J[at])  # the leverage, times the variance
         i = int(at[np.argmax(rest**2 / np.maximum(line.variance - of_line, 1e-9 * line.variance))])
         others = at[at != i]
-        line = fit_line(J[others], y[others], known[others], shape[others])
-        own = shape[i] if line.between is None else known[i] + line.between * shape[i]
-        sigma = line.scale * sqrt(own + float(J[i] @ line.covariance @ J[i]))
-        away = float(y[i] - J[i] @ line.step)
+        line = fit_line(J[others], y[others], known[others], shape[others], least[others])
         free = len(others) - J.shape[1]
-        share = line.between * shape[i] / own if within and own and line.between is not None else 1.0
-        inverse = share**2 / free + ((1 - share) ** 2 / within if within else 0)
-        return i, away / sigma if sigma else inf * np.sign(away), 1 / inverse if inverse else inf
+        if line.chi2 is None:
+            own, share, scale = float(shape[i]), 1.0, line.scale
+        else:
+            own = float(known[i] + line.between * shape[i])
+            share, scale = line.between * float(shape[i]) / own, 1.0
+        variance = max(scale * (own + float(J[i] @ line.covariance @ J[i])), float(least[i]))
+        inverse = share**2 / free + (1 - share) ** 2 / within
+        return i, float(y[i] - J[i] @ line.coefficients) / sqrt(variance), 1 / inverse if inverse else inf
 
     return _strays(len(y), J.shape[1], level / max(len(y), 1), furthest)
 
@@ -140,8 +150,7 @@ def stray_repeats(values: Column, u: Column, run: NDArray[np.intp], level: float
         i = int(np.argmax(judged))
         dof = int(kept.sum() - np.count_nonzero(total)) - 1
         variance = max(sum_of_squares(rest) - judged[i], 0.0) / max(dof, 1) + (finest / u[i]) ** 2 / 12
-        away = np.sign(rest[i]) * sqrt(judged[i])
-        return i, away / sqrt(variance) if variance else inf * away, dof
+        return i, float(np.sign(rest[i])) * sqrt(judged[i] / variance), dof
 
     if finest == inf:
         return {}
@@ -158,12 +167,12 @@ def _strays(
     """
     kept, found, strays = np.ones(count, dtype=bool), dict[int, float](), 0
     free = count - taken
-    for number in range(1, min(MOST_STRAYS, max(1, free // 8), free - 1) + 1):
+    for number in range(1, min(MOST_STRAYS, max(1, free // 3), free - 1) + 1):
         try:
             i, away, dof = furthest(kept)
         except Alike:
             break
         kept[i], found[i] = False, away
-        if student_beyond(away, dof) < chance:
+        if 2 * stdtr(min(dof, NORMAL), -abs(away)) < chance:
             strays = number
     return dict(list(found.items())[:strays])

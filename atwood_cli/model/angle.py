@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from ..arithmetic.rounding import is_positive
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic, N
+    from ..arithmetic.rational import Arithmetic, N
 
 
 class Angle:

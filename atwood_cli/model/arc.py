@@ -18,11 +18,11 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Generic, Literal, NamedTuple
 
-from ..arithmetic.protocol import N
+from ..arithmetic.rational import N
 from . import physics
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic
+    from ..arithmetic.rational import Arithmetic
 
 Kind = Literal["exponential", "creep", "least"]
 STUCK = {"exponential": (False,), "creep": (True, False), "least": (False, True, False)}

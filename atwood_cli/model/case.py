@@ -12,17 +12,10 @@ from . import physics
 from .scene import UNMEASURED, Motion, Scene
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic, N, Quantity
+    from ..arithmetic.rational import Arithmetic, N, Quantity
 
-Excess = Literal[
-    "excess_ratio",
-    "locked_excess",
-    "heaviest_excess",
-    "slide_excess",
-    "massless_excess",
-    "held_excess",
-    "lightest_held_excess",
-]
+ZERO, ONE = Fraction(0), Fraction(1)
+Place = Literal["scene", "locked", "massless", "heaviest", "most_held", "lightest_held"]
 
 
 def is_zero(value: object) -> bool:
@@ -35,7 +28,7 @@ class Case:
 
     def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
         self.scene, self.motion = scene, motion
-        self._excess_ratios: dict[Arithmetic[Any], Any] = {}
+        self._excesses: dict[tuple[Place, Arithmetic[Any]], Any] = {}
 
     @lazy
     def sign(self) -> int:
@@ -51,6 +44,11 @@ class Case:
     def heavy(self) -> Fraction:
         """The heavier mass (kg)."""
         return self.by_side(self.scene.m1, self.scene.m2)[1]
+
+    @property
+    def free_end(self) -> bool:
+        """Whether nothing hangs from one end, or where an uncertain motion finds a mass, less than that."""
+        return hasattr(self.light, "numerator") and self.light <= 0
 
     @lazy
     def locked(self) -> bool:
@@ -83,24 +81,28 @@ class Case:
         return self.rim_mass / self.pulley_mass if self.rim_mass and self.pulley_mass else None
 
     @lazy
-    def axle_friction(self) -> Fraction | None:
-        """The axle's friction as a force at the rim (N), f; none where there is none."""
+    def axle_friction(self) -> Fraction:
+        """The axle's friction as a force at the rim (N), f."""
         axle = self.scene.axle
-        if axle is None or is_zero(axle.number):
-            return None
+        if axle is None:
+            return ZERO
         force: Fraction = axle.force(self.scene.R)
         return force
 
+    @property
+    def rubs(self) -> bool:
+        """Whether the axle has friction."""
+        return not is_zero(self.axle_friction)
+
     @lazy
-    def axle_mass(self) -> Fraction | None:
+    def axle_mass(self) -> Fraction:
         """That friction as a mass, b = f/g."""
-        f = self.axle_friction
-        return None if f is None else physics.axle_mass(f, self.scene.g)
+        return physics.axle_mass(self.axle_friction, self.scene.g) if self.rubs else ZERO
 
     @lazy
     def axle_holds(self) -> bool:
         """Whether the axle holds the difference of unequal masses, and so the pulley at rest."""
-        return self.axle_friction is not None and self.sign != 0 and not self.moves_axle("difference")
+        return self.rubs and self.sign != 0 and not self.moves_axle("difference")
 
     @property
     def difference(self) -> Fraction:
@@ -109,7 +111,6 @@ class Case:
 
     def moves_axle(self, which: Literal["difference", "heavy"]) -> bool:
         """Whether the difference, or the heavier mass alone, is more than the axle holds."""
-        assert self.axle_friction is not None
         mass: Fraction = getattr(self, which)
         return mass * self.scene.g > self.axle_friction
 
@@ -128,9 +129,14 @@ class Case:
         return self.stands or self.rim_mass is not None
 
     @property
+    def turns_freely(self) -> bool:
+        """Whether the pulley turns without friction: it has no mass, and its axle does not rub."""
+        return is_zero(self.rim_mass) and not self.rubs
+
+    @property
     def tensions_equal(self) -> bool:
         """Whether a string that grips needs no friction."""
-        return self.sign == 0 or (is_zero(self.rim_mass) and self.axle_friction is None)
+        return self.sign == 0 or self.turns_freely
 
     @lazy
     def regime(self) -> Literal["no-slip", "verge", "slip"]:
@@ -148,7 +154,7 @@ class Case:
     @lazy
     def slips(self) -> bool:
         """Whether the string slips on a pulley that is known and friction that is given."""
-        return self.can_slip if self.stands else self.beats_friction("excess_ratio")
+        return not self.tensions_equal and self.slips_at("locked" if self.stands else "scene")
 
     @property
     def limiting_mu(self) -> Fraction:
@@ -194,51 +200,49 @@ class Case:
         """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
         if self.sign == 0:
             return False
-        # Whatever slips on a pulley slips on a heavier one. If that is not known, the pulley does not matter.
-        return vars(self).get("slips", False) or self.beats_friction("locked_excess")
+        # Whatever slips on a pulley slips on a heavier one. If that is not known, the pulley is not read.
+        return vars(self).get("slips", False) or self.slips_at("locked")
 
     @lazy
     def always_slips(self) -> bool:
         """Whether the string slips on any pulley, however light, for the friction of its axle."""
-        if self.axle_friction is None or self.sign == 0:
-            return False
-        return self.beats_friction("locked_excess" if self.axle_holds else "massless_excess")
+        return self.rubs and self.sign != 0 and self.slips_at("locked" if self.axle_holds else "massless")
 
     @lazy
     def slips_once_it_moves(self) -> bool:
-        """Whether the string slips under the least mass that the axle does not hold, on any pulley."""
-        return self.axle_friction is not None and self.beats_friction("held_excess")
+        """Whether the string slips under the greatest difference that the axle holds, on any pulley."""
+        return self.rubs and self.slips_at("most_held")
 
     @property
     def stands_until_it_slips(self) -> bool:
         """Whether the pulley stands under the lightest mass that the string holds against the heavier."""
-        if self.locked or self.axle_friction is None:
+        if self.locked or not self.rubs:
             return self.locked
-        return not self.moves_axle("heavy") or self.beats_friction("lightest_held_excess")
+        return not self.moves_axle("heavy") or self.slips_at("lightest_held")
 
     @lazy
     def can_be_made_slip(self) -> bool:
         """Whether the string slips under some heavier mass: second condition of (36)."""
-        return self.rim_mass is None or self.slips_once_it_moves or self.beats_friction("heaviest_excess")
+        if self.rim_mass is None or self.turns_freely:
+            return self.rim_mass is None
+        return self.slips_once_it_moves or self.slips_at("heaviest")
 
     @lazy
     def holds_again(self) -> bool:
         """Whether it slips under such a mass, but holds under much heavier ones: the axle outweighs c."""
-        if self.rim_mass is None or self.axle_mass is None or not self.slips_once_it_moves:
-            return False
-        return self.rim_mass < self.axle_mass and not self.beats_friction("heaviest_excess")
+        return self.rim_mass is not None and self.slips_once_it_moves and not self.slips_at("heaviest")
 
     @lazy
     def rim_stands(self) -> bool:
         """Whether the pulley stands still while the string slips over it."""
         if self.stands or self.rim_mass is None:
             return True
-        if self.axle_friction is None:
+        if not self.rubs:
             return False
         # On a pulley without mass the axle takes all that friction makes up.
         if self.slide_measured:
-            return not self.slide_excess(EXACT) > self.massless_excess(EXACT)
-        return self.beats_limit("massless_excess")
+            return not self.slide_excess(EXACT) > self.excess("massless", EXACT)
+        return self.slides_at("massless")
 
     @lazy
     def long_wrap(self) -> bool:
@@ -250,66 +254,53 @@ class Case:
         """Whether both ends of the string leave the pulley downwards."""
         return self.scene.wrap.ends_hang_down
 
-    def excess_ratio(self, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 of a string that grips, kept: decisions and quantities ask for it."""
-        if ar not in self._excess_ratios:
-            self._excess_ratios[ar] = self._excess_ratio(ar)
-        ratio: N = self._excess_ratios[ar]
-        return ratio
+    # Where the string slips
 
-    def _excess_ratio(self, ar: Arithmetic[N]) -> N:
-        if self.stands or self.rim_mass is None:
-            return self.locked_excess(ar)
-        given = [self.light, self.heavy, self.rim_mass]
-        if self.axle_mass is not None and self.sign:  # equal masses rest, whatever the axle
-            given.append(self.axle_mass)
-        return physics.excess_ratio(*map(ar.number, given))
+    def excess(self, place: Place, ar: Arithmetic[N]) -> N:
+        """T_h/T_l - 1 of a string that grips, kept: decisions and quantities ask for it.
 
-    def massless_excess(self, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 on a pulley without mass that turns an axle that rubs."""
-        assert self.axle_mass is not None
-        return physics.massless_excess(*map(ar.number, (self.light, self.heavy, self.axle_mass)))
+        The place is the scene, or what differs from it in the pulley ("locked", "massless"), in the heavier
+        mass (the "heaviest", the "most_held" by the axle) or in the lighter one (the "lightest_held").
+        """
+        if (place, ar) not in self._excesses:
+            self._excesses[place, ar] = self._excess(place, ar)
+        excess: N = self._excesses[place, ar]
+        return excess
 
-    def held_excess(self, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 under the greatest difference that the axle holds."""
-        assert self.axle_mass is not None
-        return physics.held_excess(ar.number(self.light), ar.number(self.axle_mass))
+    def _excess(self, place: Place, ar: Arithmetic[N]) -> N:
+        l, h, b = self.light, self.heavy, self.axle_mass
+        # A limit does not read the pulley's mass: so a sweep of it computes the limit once.
+        c = self.rim_mass if place in ("scene", "heaviest") else ZERO
+        if place == "heaviest":
+            assert c is not None
+            return physics.heaviest_excess(*map(ar.number, (l, c, b)))
+        if c is None or place == "locked" or (place == "scene" and (self.stands or not self.sign)):
+            return physics.excess_ratio(*map(ar.number, (l, h, ONE, b, ZERO)))
+        if place == "lightest_held":
+            l = h - b
+        elif place == "most_held":
+            h = l + b
+        return physics.excess_ratio(*map(ar.number, (l, h, c, b, ONE)))
 
-    def lightest_held_excess(self, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 with the lightest mass on the other side that the axle holds."""
-        assert self.axle_mass is not None
-        return physics.held_excess(ar.number(self.heavy - self.axle_mass), ar.number(self.axle_mass))
+    def slips_at(self, place: Place) -> bool:
+        """Whether static friction holds no string there."""
+        return self.exceeds(lambda ar: self.excess(place, ar), self.scene.mu)
 
-    def locked_excess(self, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 on a locked pulley."""
-        return physics.locked_excess(ar.number(self.light), ar.number(self.heavy))
-
-    def heaviest_excess(self, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 under a heavier mass beyond all bounds, on a pulley that is not locked."""
-        assert self.rim_mass is not None
-        c = self.rim_mass if self.axle_mass is None else self.rim_mass + self.axle_mass
-        return physics.heaviest_excess(ar.number(self.light), ar.number(c))
-
-    def slide_excess(self, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 of a string that slides with the measured acceleration."""
-        a = self.measured_acceleration
-        return physics.slide_excess(*map(ar.number, (self.light, self.heavy, a, self.scene.g)))
-
-    def beats_friction(self, which: Excess) -> bool:
-        """Whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed."""
-        return self._exceeds(which, self.scene.mu)
-
-    def beats_limit(self, which: Excess) -> bool:
+    def slides_at(self, place: Place) -> bool:
         """The same of the friction that acts, where it is at its limit: kinetic in slip."""
-        return self._exceeds(which, self.limiting_mu)
+        return self.exceeds(lambda ar: self.excess(place, ar), self.limiting_mu)
 
-    def _exceeds(self, which: Excess, mu: Fraction | None) -> bool:
-        excess: Quantity = getattr(self, which)
-        exactly = excess(EXACT)
-        if not mu or not exactly:
-            return exactly > 0
+    def exceeds(self, excess: Quantity, mu: Fraction | None) -> bool:
+        """Whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed."""
+        if not mu:
+            return excess(EXACT) > 0
 
         def margin(ar: Arithmetic[N]) -> N:
             return ar.log1p(excess(ar)) - ar.number(mu) * self.scene.wrap.radians(ar)
 
         return is_positive(margin)
+
+    def slide_excess(self, ar: Arithmetic[N]) -> N:
+        """T_h/T_l - 1 of a string that slides with the measured acceleration."""
+        a = self.measured_acceleration
+        return physics.slide_excess(*map(ar.number, (self.light, self.heavy, a, self.scene.g)))

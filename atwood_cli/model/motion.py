@@ -9,31 +9,13 @@ from fractions import Fraction
 from math import inf
 from typing import Any
 
-from ..arithmetic.dual import Dual
-from ..arithmetic.rounding import (
-    SHOWN_DIGITS,
-    as_typed,
-    settle,
-    text,
-    tidy,
-    to_digits,
-    to_double,
-    to_side_of,
-    to_threshold,
-)
+from ..arithmetic.rational import EXACT
+from ..arithmetic.rounding import SHOWN_DIGITS, as_typed, text, tidy, to_digits, to_double, to_threshold
 from . import physics
 from .angle import Angle
-from .axle import Axle
 from .case import Case
-from .machine import Undetermined
-from .scene import MASSES, MEASURED, Input, Motion, Scene, SceneError
-
-AGREES = 3
-"""An acceleration that is too large by more standard uncertainties is refused (99.7 % of a normal
-distribution are within)."""
-
-NO_PULLEY = "unknown, as inputs a little different fit no pulley"
-NO_MASS = "unknown, as inputs a little different fit no mass"
+from .mechanics import Undetermined
+from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError
 
 
 def read(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
@@ -56,11 +38,7 @@ def read(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
         return scene, motion
     motion = motion._replace(finds=motion.finds or _what_follows(scene))
     rule = _contradiction(scene, motion, inputs["g"].given is not None)
-    if not rule and (rule := impossible(Case(scene, motion), name)):
-        uncertain = {x: one.uncertainty for x, one in inputs.items() if one.uncertainty}
-        if beyond := _beyond(scene, motion, uncertain):
-            return scene, motion._replace(beyond=beyond)
-    if rule:
+    if rule := rule or _refused(scene, motion):
         raise SceneError(name, inputs[name].given, rule)
     return scene, motion
 
@@ -91,7 +69,8 @@ def _contradiction(scene: Scene, motion: Motion, g_given: bool) -> str:
             return f"tells nothing of {finds}, as the axle holds a difference at rest; leave one of them out"
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a in its place, positive when m2 descends"
-        if not _known_mass(scene, finds) and not Case(scene).rim_mass:
+        known = scene.m1 if finds == "m2" else scene.m2
+        if not known and not Case(scene).rim_mass:
             return f"tells nothing of {finds}, which falls freely; give the other mass or M above 0"
         return ""
     if finds == "M" and Case(scene).axle_holds:
@@ -110,109 +89,40 @@ def _contradiction(scene: Scene, motion: Motion, g_given: bool) -> str:
     return ""
 
 
-def _known_mass(scene: Scene, unknown: str) -> Fraction:
-    """The other mass than the one to be found."""
-    return scene.m1 if unknown == "m2" else scene.m2
-
-
-def impossible(case: Case, name: str) -> str:
-    """Why no value of the unknown parameter gives the acceleration; empty if one does."""
-    motion = case.motion
-    if motion.finds in MASSES:
-        return _impossible_for_a_mass(case, motion.finds)
-    a, most = case.measured_acceleration, _most(case)
-    if a > 0 and (motion.finds == "g" or a <= most):
-        if motion.finds == "mu_k" and case.scene.mu is not None and case.beats_friction("slide_excess"):
+def _refused(scene: Scene, motion: Motion) -> str:
+    """Why what follows from the motion makes no scene; empty if it does."""
+    finds, case = str(motion.finds), Case(scene, motion)
+    try:
+        found = completed(scene, motion)
+    except Undetermined as undetermined:
+        return str(undetermined)
+    if finds == "mu_k":
+        if case.slide_excess(EXACT) < 0:
+            return "is too large for any friction: without it the acceleration is " + _free_slide(case)
+        if scene.mu is not None and case.exceeds(case.slide_excess, scene.mu):
             return "is that of a string with more kinetic friction than mu; check both"
         return ""
-    implied = f"implies a = {_beside(case.sign * a, case.sign * most)} m/s², which " * (name == "time")
-    heavier = f"as {'m2' if case.sign > 0 else 'm1'} is the heavier mass"
-    if motion.finds == "g":
-        return f"{implied}must be {'above' if case.sign > 0 else 'below'} 0, {heavier}"
-    limit = text(to_threshold(up=case.sign < 0)(case.sign * most))  # so that the limit itself is taken
-    least, greatest = ENDS[motion.finds]
-    return f"{implied}must be between 0 ({least}) and {limit} m/s² ({greatest}), {heavier}"
-
-
-ENDS: Mapping[str | None, tuple[str, str]] = {
-    "M": ("a locked pulley: M = inf", "a massless one"),
-    "mu_k": ("a string that holds", "no friction"),
-}
-"""The scenes of the least and the greatest possible acceleration, by the parameter that is found."""
-
-
-def _impossible_for_a_mass(case: Case, unknown: str) -> str:
-    """Why no value of the unknown mass gives the acceleration; empty if one does."""
-    scene, known = case.scene, _known_mass(case.scene, unknown)
-    found = _mass(case, unknown)
-    if found is not None and (found > 0 or (found == 0 and known)):
+    if found.m1 == found.m2 == 0:
+        return "implies that both masses are 0"
+    value, domain = getattr(found, finds), INPUTS[finds]
+    if value > 0 or (value == 0 and domain.zero):
         return ""
-    assert case.rim_mass is not None
-    lifted = 1 if unknown == "m2" else -1
-    drive = known if case.axle_mass is None else max(known - case.axle_mass, Fraction(0))
-    least = physics.acceleration(drive, physics.load(known, Fraction(0), case.rim_mass), scene.g)
-    ends = [
-        f"{text(to_threshold(up=lifted > 0)(-lifted * least))} (no {unknown} at all)",
-        f"{text(to_double(lifted * scene.g))} m/s² ({unknown} in free fall)",
-    ]
-    return f"must be between {ends[0]} and {ends[1]}"
+    shown = text(tidy(to_digits(SHOWN_DIGITS)(value)))
+    return f"implies {finds} = {shown} {domain.unit}, which {domain.domain}"
 
 
-def _mass(case: Case, unknown: str) -> Fraction | None:
-    """The mass that moves with the measured acceleration; None beyond its free fall."""
-    scene, known, a = case.scene, _known_mass(case.scene, unknown), case.motion.a
-    assert a is not None
-    assert case.rim_mass is not None
-    down = a if unknown == "m2" else -1 * a
-    if not scene.g > down:
-        return None
-    if down > 0:
-        return physics.heavier_mass(known, case.rim_mass, down, scene.g, case.axle_friction)
-    return physics.lighter_mass(known, case.rim_mass, -1 * down, scene.g, case.axle_friction)
-
-
-def _most(case: Case) -> Fraction:
-    """The magnitude of the acceleration on a massless pulley, or of a slide without friction."""
+def _free_slide(case: Case) -> str:
+    """The acceleration of a slide without friction, in a sentence."""
     l, h = case.light, case.heavy
-    drive = physics.drive(l, h, None if case.slide_measured else case.axle_mass)
-    return physics.acceleration(drive, physics.load(l, h, Fraction(0)), case.scene.g)
-
-
-def _beyond(scene: Scene, motion: Motion, uncertain: Mapping[str, Fraction]) -> str:
-    """Why there is no pulley mass, if the acceleration is too large by its uncertainty only; else empty."""
-    case = Case(scene, motion)
-    over, variance = case.measured_acceleration - _most(case), Fraction(0)
-    if motion.finds != "M" or over <= 0:
-        return ""
-    for x, u in uncertain.items():
-        near = Case(*moved(scene, motion, x, 1))
-        slope = getattr(near.measured_acceleration - _most(near), "slope", None)
-        variance += (u * (slope or 0)) ** 2
-    if over**2 > AGREES**2 * variance:
-        return ""
-    times = settle(lambda ar: ar.sqrt(ar.number(over**2 / variance)), to_digits(2), 2)
-    found, limit = (case.sign * one for one in (case.measured_acceleration, _most(case)))
-    a, most = _beside(found, limit), _beside(limit, found)
-    return (
-        f"none, as a = {a} m/s² is beyond the {most} m/s² of a massless pulley; it agrees with M = 0, which"
-        f" the other results are for, within {text(times)} standard uncertainties"
-    )
-
-
-def _beside(value: Fraction, other: Fraction) -> str:
-    """A number in a sentence, with so many digits that it lies on its side of another."""
-    return text(tidy(to_side_of(other, SHOWN_DIGITS)(value)))
+    none = Fraction(0)
+    most = physics.acceleration(physics.drive(l, h, none), physics.load(l, h, none), case.scene.g)
+    return f"{text(to_threshold(up=case.sign < 0)(case.sign * most))} m/s²"
 
 
 def number_of(scene: Scene, motion: Motion, x: str) -> Any:
     """The number given for an input, in the unit that it was given in."""
     value = getattr(scene if x in Scene._fields else motion, x)
     return getattr(value, "number", value)
-
-
-def moved(scene: Scene, motion: Motion, x: str, side: int) -> tuple[Scene, Motion]:
-    """The scene, and what was measured, with one input changed infinitesimally, up or down."""
-    return with_number(scene, motion, x, Dual(number_of(scene, motion, x), Fraction(side)))
 
 
 def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scene, Motion]:
@@ -227,23 +137,35 @@ def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scen
 
 
 def completed(scene: Scene, motion: Motion) -> Scene:
-    """The scene with what follows from the motion in it. Raises Undetermined."""
-    if motion.finds in (None, "mu_k"):
+    """The scene with what follows from the motion in it, which may be below 0. Raises Undetermined."""
+    if motion.finds is None:
         return scene
-    if motion.beyond:
-        return scene._replace(M=Fraction(0))
     case = Case(scene, motion)
     if motion.finds in MASSES:
         mass = _mass(case, motion.finds)
-        if mass is None or mass < 0:
-            raise Undetermined(NO_MASS)
         return scene._replace(m1=mass) if motion.finds == "m1" else scene._replace(m2=mass)
     l, h, a = case.light, case.heavy, case.measured_acceleration
+    if a <= 0:
+        heavier, side = ("m2", "above") if case.sign > 0 else ("m1", "below")
+        raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass")
     if motion.finds == "g":
         assert case.rim_mass is not None
         return scene._replace(g=physics.gravity(l, h, case.rim_mass, a, case.axle_friction))
-    c = physics.rim_mass(l, h, a, scene.g, case.axle_mass)
-    if c < 0:
-        raise Undetermined(NO_PULLEY)
+    if motion.finds == "mu_k":
+        return scene
     assert scene.inertia is not None
-    return scene._replace(M=c / scene.inertia)
+    return scene._replace(M=physics.rim_mass(l, h, a, scene.g, case.axle_mass) / scene.inertia)
+
+
+def _mass(case: Case, unknown: str) -> Fraction:
+    """The mass that moves with the measured acceleration. Raises Undetermined beyond its free fall."""
+    known, g, a = case.scene.m1 if unknown == "m2" else case.scene.m2, case.scene.g, case.motion.a
+    assert a is not None
+    assert case.rim_mass is not None
+    down = a if unknown == "m2" else -a
+    if down >= g:
+        side, limit = ("below", g) if unknown == "m2" else ("above", -g)
+        raise Undetermined(f"must be {side} {text(to_double(limit))} m/s², that of free fall")
+    if down > 0:
+        return physics.heavier_mass(known, case.rim_mass, down, g, case.axle_friction)
+    return physics.lighter_mass(known, case.rim_mass, -down, g, case.axle_friction)

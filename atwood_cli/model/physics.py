@@ -19,8 +19,7 @@ side's tension and what friction makes up. What differs between regimes is only 
 
 An axle that rubs takes a constant force f at the rim from what turns the pulley, so (3) becomes
 T_h - T_l = c a + f. As a mass it is ``b`` = f/g: without slip d = h - l - b, and for h - l <= b all rests.
-Equations that f or b changes take it as their last argument: None is an axle without friction, for which
-the paper's own equation is run. It is the limit b = 0.
+With f = b = 0, no friction in the axle, the equations are the paper's.
 
 Divisions come before products where a product could leave the range of doubles and the result not.
 
@@ -29,7 +28,7 @@ Most examples are of l = 1, h = 3, c = 5 and g = 9, where a = 2, T_l = 11 and T_
 
 from collections.abc import Callable
 
-from ..arithmetic.protocol import N
+from ..arithmetic.rational import N
 
 Function = Callable[[N], N]
 Hypot = Callable[[N, N | int], N]
@@ -44,15 +43,15 @@ def transfer_at_limit(l: N, k1: N) -> N:
     return l * k1
 
 
-def drive(l: N, h: N, taken: N | None = None) -> N:
+def drive(l: N, h: N, taken: N) -> N:
     """Drive d = h - l (kg), less what friction takes of it: the transfer at its limit, b in an axle.
 
     At the limit of friction, d = h - l k is positive where a heavy enough pulley makes the string slip.
 
-    >>> drive(1, 3), drive(1, 3, 1)
+    >>> drive(1, 3, 0), drive(1, 3, 1)
     (2, 1)
     """
-    return h - l if taken is None else h - l - taken
+    return h - l - taken
 
 
 def axle_mass(f: N, g: N) -> N:
@@ -82,38 +81,37 @@ def acceleration(drive: N, load: N, g: N) -> N:
     return g * (drive / load)
 
 
-def rim_mass(l: N, h: N, a: N, g: N, b: N | None = None) -> N:
+def rim_mass(l: N, h: N, a: N, g: N, b: N) -> N:
     """c (kg) of the pulley on which the masses have a measured acceleration a; (4) solved for it.
 
-    >>> rim_mass(1, 3, 2, 9), rim_mass(1, 3, 1, 9, 1)
+    >>> rim_mass(1, 3, 2, 9, 0), rim_mass(1, 3, 1, 9, 1)
     (5.0, 5.0)
     """
     return g * (drive(l, h, b) / a) - l - h
 
 
-def gravity(l: N, h: N, c: N, a: N, f: N | None = None) -> N:
+def gravity(l: N, h: N, c: N, a: N, f: N) -> N:
     """Gravity (m/s²) under which the masses have a measured acceleration a; (4) solved for it.
 
-    >>> gravity(1, 3, 5, 2), gravity(1, 3, 5, 1, 9)
+    >>> gravity(1, 3, 5, 2, 0), gravity(1, 3, 5, 1, 9)
     (9.0, 9.0)
     """
-    weights = a * load(l, h, c)
-    return (weights if f is None else weights + f) / (h - l)
+    return (a * load(l, h, c) + f) / (h - l)
 
 
-def heavier_mass(l: N, c: N, a: N, g: N, f: N | None = None) -> N:
+def heavier_mass(l: N, c: N, a: N, g: N, f: N) -> N:
     """Mass (kg) that descends with a measured acceleration a against a lighter one; from (1) with (3).
 
-    >>> heavier_mass(1, 5, 2, 9), heavier_mass(1, 5, 1, 9, 9)
+    >>> heavier_mass(1, 5, 2, 9, 0), heavier_mass(1, 5, 1, 9, 9)
     (3.0, 3.0)
     """
     return (light_tension(l, a, g) + difference_of_a_pulley(c, a, f)) / (g - a)
 
 
-def lighter_mass(h: N, c: N, a: N, g: N, f: N | None = None) -> N:
+def lighter_mass(h: N, c: N, a: N, g: N, f: N) -> N:
     """Mass (kg) that rises with a measured acceleration a against a heavier one; from (1) with (3).
 
-    >>> lighter_mass(3, 5, 2, 9), lighter_mass(3, 5, 1, 9, 9)
+    >>> lighter_mass(3, 5, 2, 9, 0), lighter_mass(3, 5, 1, 9, 9)
     (1.0, 1.0)
     """
     return (h * (g - a) - difference_of_a_pulley(c, a, f)) / (g + a)
@@ -175,22 +173,22 @@ def light_tension(l: N, a: N, g: N) -> N:
     return l * (g + a)
 
 
-def difference_of_a_pulley(c: N, a: N, f: N | None = None) -> N:
+def difference_of_a_pulley(c: N, a: N, f: N) -> N:
     """T_h - T_l (N) that turns a pulley whose rim has the acceleration a, against the axle's f (N) (3).
 
-    >>> difference_of_a_pulley(5, 2), difference_of_a_pulley(5, 1, 9)
+    >>> difference_of_a_pulley(5, 2, 0), difference_of_a_pulley(5, 1, 9)
     (10, 14)
     """
-    return c * a if f is None else c * a + f
+    return c * a + f
 
 
-def rim_acceleration(difference: N, c: N, f: N | None = None) -> N:
+def rim_acceleration(difference: N, c: N, f: N) -> N:
     """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns, against the axle's f (N) (3).
 
-    >>> rim_acceleration(10, 5), rim_acceleration(14, 5, 9)
+    >>> rim_acceleration(10, 5, 0), rim_acceleration(14, 5, 9)
     (2.0, 1.0)
     """
-    return (difference if f is None else difference - f) / c
+    return (difference - f) / c
 
 
 def difference_of_a_locked_pulley(l: N, h: N, g: N) -> N:
@@ -220,51 +218,27 @@ def difference_of_friction(light: N, k1: N) -> N:
     return light * k1
 
 
-def excess_ratio(l: N, h: N, c: N, b: N | None = None) -> N:
-    """T_h/T_l - 1 of a string that grips, by (33), without cancellation; beside an axle, h - l > b.
+def excess_ratio(l: N, h: N, c: N, b: N, D: N) -> N:
+    """T_h/T_l - 1 of a string that grips, by (33), without cancellation.
 
-    >>> excess_ratio(1, 3, 6), excess_ratio(1, 3, 5, 1)
+    The pulley's inertia is c/D, so that limits are points like others: D = 0 is a pulley that stands, as it
+    is locked or its axle holds it (h - l <= b), and c = 0 is one without mass.
+
+    >>> excess_ratio(1, 3, 6, 0, 1), excess_ratio(1, 3, 5, 1, 1)
     (1.0, 1.4)
+    >>> excess_ratio(1, 3, 1, 1, 0), excess_ratio(1, 3, 0, 1, 1)
+    (2.0, 0.8)
     """
-    if b is None:
-        return locked_excess(l, h) * (c / (2 * h + c))
-    return (c * (h - l) + b * (h + l)) / (l * (2 * h - b + c))
+    return (c * (h - l) + b * D * (h + l)) / (l * (D * (2 * h - b) + c))
 
 
-def massless_excess(l: N, h: N, b: N) -> N:
-    """T_h/T_l - 1 of a string that grips and turns an axle that rubs, but no mass, c = 0; h - l > b.
+def heaviest_excess(l: N, c: N, b: N) -> N:
+    """The same under a heavier mass beyond all bounds, the limit h = ∞ of a pulley that turns.
 
-    >>> massless_excess(1, 3, 1)
-    0.8
+    >>> heaviest_excess(1, 5, 1)
+    3.0
     """
-    return b * (h + l) / (l * (2 * h - b))
-
-
-def held_excess(l: N, b: N) -> N:
-    """T_h/T_l - 1 where the axle just holds the difference, h = l + b.
-
-    >>> held_excess(1, 2)
-    2.0
-    """
-    return b / l
-
-
-def locked_excess(l: N, h: N) -> N:
-    """T_h/T_l - 1 of a string that grips a locked pulley, c = ∞.
-
-    >>> locked_excess(1, 3)
-    2.0
-    """
-    return (h - l) / l
-
-
-def heaviest_excess(l: N, c: N) -> N:
-    """T_h/T_l - 1 of a string that grips under a heavier mass beyond all bounds, h = ∞; c + b for c.
-
-    >>> heaviest_excess(1, 5)
-    2.5
-    """
-    return c / (2 * l)
+    return (c + b) / (2 * l)
 
 
 def verge_coefficient(log_ratio: N, phi: N) -> N:
@@ -276,40 +250,33 @@ def verge_coefficient(log_ratio: N, phi: N) -> N:
     return log_ratio / phi
 
 
-def critical_pulley_mass(l: N, h: N, transfer: N, drive: N, beta: N, b: N | None = None) -> N:
+def critical_pulley_mass(l: N, h: N, transfer: N, drive: N, beta: N, b: N) -> N:
     """Pulley mass (kg) above which the string slips (34); transfer and drive at the limit of friction.
 
     >>> z = 1.56633  # e^{0.3 π} - 1, the paper's example
-    >>> round(critical_pulley_mass(1, 3, z, drive(1, 3, z), 0.5))
+    >>> round(critical_pulley_mass(1, 3, z, drive(1, 3, z), 0.5, 0))
     43
     >>> critical_pulley_mass(1, 3, 1, 1, 0.5, 1)
     2.0
     """
-    if b is None:
-        return transfer / drive * (2 * h / beta)
-    return (2 * h * transfer - b * (h + l + transfer)) / (drive * beta)
+    return (2 * transfer * h - b * (h + l + transfer)) / (drive * beta)
 
 
-def critical_heavier_mass(l: N, c: N, transfer: N, b: N | None = None) -> N:
-    """Heavier mass (kg) above which the string slips (35); needs c > 2 l (k - 1), beside an axle c > b too.
+def critical_heavier_mass(l: N, c: N, transfer: N, b: N) -> N:
+    """Heavier mass (kg) above which the string slips (35); needs c > b and c + b > 2 l (k - 1).
 
-    >>> critical_heavier_mass(1, 4, 1), critical_heavier_mass(1, 6, 2, 1)
+    >>> critical_heavier_mass(1, 4, 1, 0), critical_heavier_mass(1, 6, 2, 1)
     (4.0, 5.0)
     """
-    least = least_heavier_mass(l, transfer)
-    if b is None:
-        return c / (c - 2 * transfer) * least
-    return (c - b) / (c + b - 2 * transfer) * least
+    return (c - b) / (c + b - 2 * transfer) * least_heavier_mass(l, transfer)
 
 
-def critical_lighter_mass(h: N, c: N, k1: N, b: N | None = None) -> N:
+def critical_lighter_mass(h: N, c: N, k1: N, b: N) -> N:
     """Lighter mass (kg) below which the string slips: (33) solved for it, as (34) and (35) are for theirs.
 
-    >>> critical_lighter_mass(3, 6, 1), critical_lighter_mass(3, 6, 1, 3)
+    >>> critical_lighter_mass(3, 6, 1, 0), critical_lighter_mass(3, 6, 1, 3)
     (1.0, 2.25)
     """
-    if b is None:
-        return h * (c / (c + k1 * (2 * h + c)))
     return h * ((c + b) / (c - b + k1 * (2 * h + c - b)))
 
 
@@ -358,13 +325,13 @@ def least_heavier_mass(l: N, transfer: N) -> N:
     return l + transfer
 
 
-def least_pulley_mass(transfer: N, beta: N, b: N | None = None) -> N:
+def least_pulley_mass(transfer: N, beta: N, b: N) -> N:
     """What the pulley's mass (kg) must exceed for any mass to slip: second condition of (36); z >= b.
 
-    >>> least_pulley_mass(1, 0.5), least_pulley_mass(2, 0.5, 1)
+    >>> least_pulley_mass(1, 0.5, 0), least_pulley_mass(2, 0.5, 1)
     (4.0, 6.0)
     """
-    return (2 * transfer if b is None else 2 * transfer - b) / beta
+    return (2 * transfer - b) / beta
 
 
 def half_turn_resultant(t1: N, t2: N) -> N:

@@ -9,7 +9,7 @@ from .scene import INPUTS, SceneError
 from .units import nearest
 
 REGIMES = ("no-slip", "verge", "slip")
-Accuracy = Literal["fast", "certified", "exact"]
+Accuracy = Literal["certified", "exact"]
 ACCURACIES: tuple[Accuracy, ...] = get_args(Accuracy)
 """How accurate the quantities of many scenes are."""
 
@@ -31,7 +31,7 @@ QUANTITIES = {
     "tension_1": About("motion", "T₁", "N", "(4)", "tension of the string at m1", "(1), (26)"),
     "tension_2": About("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)"),
     "mu_verge": About("friction", "μ*", "", "(27)", "friction coefficient below which the string slips"),
-    "safety_factor": About("friction", "μ/μ*", "", "", "times the friction that is needed; below 1 the string slips"),
+    "safety_factor": About("friction", "μ/μ*", "", "", "how many times the needed friction (not load) there is; below 1 it slips"),
     "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser", "(26)"),
     "capstan_ratio": About("friction", "k", "", "(26)", "greatest ratio of tensions that friction holds"),
     "friction_force": About("friction", "F", "N", "(32)", "net friction force on the pulley"),
@@ -105,7 +105,7 @@ STANDARD = (
 
 SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
 ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
-"""How symbols are written where they cannot be."""
+"""How symbols are typed."""
 
 
 def _plain(symbol: str) -> str:
@@ -139,12 +139,21 @@ def read_name(
         return word
     if (name := symbols.get(_plain(word), "")) in known:
         return name
+    there_are = "atwood quantities lists them" if kind == "quantity" else f"there are {', '.join(known)}"
     if word in INPUTS:
-        raise SceneError(parameter, word, f"is an input, no {kind}; there are {', '.join(known)}")
+        raise SceneError(parameter, word, f"is an input, no {kind}; {there_are}")
     small = _plain(word).lower()
     alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
-    hint = f"did you mean {alike[0]}?" if len(alike) == 1 else f"there are {', '.join(known)}"
+    hint = f"did you mean {alike[0]}?" if len(alike) == 1 else there_are
     raise SceneError(parameter, word, f"is no {kind}{nearest(word, known) or f'; {hint}'}")
+
+
+def read_accuracy(word: object) -> Accuracy:
+    """The accuracy of that name. Raises SceneError."""
+    if word == "fast":
+        raise SceneError("accuracy", word, "is no longer there, as certified takes hardly longer; take that")
+    known = read_name("accuracy", str(word), ACCURACIES, "accuracy")
+    return next(accuracy for accuracy in ACCURACIES if accuracy == known)
 
 
 def divided(typed: Iterable[str]) -> list[str]:

@@ -7,12 +7,11 @@ from fractions import Fraction
 from functools import cache
 from math import inf
 from numbers import Rational, Real
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from ..arithmetic.rational import OfFloat
 from ..arithmetic.rounding import as_typed, to_double
 from .angle import Angle
-from .axle import Axle
 from .units import (
     MAX_DIGITS,
     MAX_MAGNITUDE,
@@ -20,10 +19,10 @@ from .units import (
     NUMBER,
     STANDARD_GRAVITY,
     TOO_LONG,
+    UNITS,
     Malformed,
     NotANumber,
     Number,
-    dimension_of,
     in_quotes,
     is_uncertain,
     limited,
@@ -32,6 +31,18 @@ from .units import (
     shortened,
     without_blanks,
 )
+
+
+class Axle(NamedTuple):
+    """The friction of an axle: a force at the rim (N), or a torque (N m); kept so, as R may be uncertain."""
+
+    number: Any
+    unit: Literal["N", "N m"] = "N"
+
+    def force(self, R: Any) -> Any:
+        """The friction as a force at the rim (N) of a pulley of radius R (m)."""
+        return self.number / R if self.unit == "N m" else self.number
+
 
 if TYPE_CHECKING:
     from numpy import floating, integer
@@ -226,15 +237,13 @@ class Scene(NamedTuple):
 class Motion(NamedTuple):
     """What was measured of the motion, in SI units, exact; None where not given.
 
-    ``finds`` is the parameter of the scene, "M" or "g", that follows from it and was not given. ``beyond``
-    says that no pulley is light enough, where the uncertainties leave room for one without mass.
+    ``finds`` is the parameter, such as "M" or "g", that follows from it and was not given.
     """
 
     a: Fraction | None = None
     drop: Fraction | None = None
     time: Fraction | None = None
     finds: str | None = None
-    beyond: str = ""
 
 
 UNMEASURED = Motion()
@@ -306,7 +315,7 @@ def _checked(name: str, given: Given, number: Number) -> Any:
     if parameter.dimension == "angle":
         return Angle(value, "rad" if unit == "rad" else "°")
     if name == "axle":
-        return Axle(value, "N m" if unit and dimension_of(unit) == "torque" else "N")
+        return Axle(value, "N m" if unit in UNITS["torque"] else "N")
     return value
 
 

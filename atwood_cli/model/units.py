@@ -11,68 +11,45 @@ from ..arithmetic.rounding import as_typed, to_digits
 
 STANDARD_GRAVITY = "9.80665"
 """m/s², exact by definition: 3rd General Conference on Weights and Measures, 1901."""
-FOOT, POUND_FORCE = "0.3048", "4.4482216152605"
-"""m and N, exact: the pound-force is the weight of a pound, 0.45359237 kg, in standard gravity."""
-SLUG = str(Fraction(POUND_FORCE) / Fraction(FOOT))
-"""kg: the mass that a pound-force accelerates by 1 ft/s²."""
+FOOT, INCH, POUND = Fraction("0.3048"), Fraction("0.0254"), Fraction("0.45359237")
+POUND_FORCE = POUND * Fraction(STANDARD_GRAVITY)
 
 # fmt: off
-MASS = {
-    "kg": "1", "g": "1e-3", "mg": "1e-6", "ug": "1e-9", "t": "1e3",
-    "lb": "0.45359237", "lbs": "0.45359237", "oz": "0.028349523125", "st": "6.35029318", "slug": SLUG,
-}
-LENGTH = {
-    "m": "1", "km": "1e3", "dm": "1e-1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6",
-    "in": "0.0254", "ft": FOOT, "yd": "0.9144",
-}
-# fmt: on
-ANGLE = {"deg": "1", "°": "1", "turn": "360", "rad": "1"}
-"""In degrees; radians stay radians."""
-TIME = {"s": "1", "ms": "1e-3", "min": "60", "h": "3600"}
-FORCE = {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY}
-TORQUE = {"Nm": "1", "mNm": "1e-3"}
-COMPOUND = {
-    "acceleration": ("m/s2", "cm/s2", "ft/s2", "N/kg"),
-    "moment of inertia": ("kg m2", "g cm2", "lb ft2"),
-}
-SIMPLE = {"mass": MASS, "length": LENGTH, "angle": ANGLE, "time": TIME, "force": FORCE, "torque": TORQUE}
-DIMENSIONS: Mapping[str, Iterable[str]] = {**SIMPLE, **COMPOUND}
-"""The dimensions, and the units of each that a message names. Others are made of those, as km/h2."""
-POWERS = {
-    **{"mass": [1, 0, 0, 0], "length": [0, 1, 0, 0], "time": [0, 0, 1, 0], "angle": [0, 0, 0, 1]},
-    **{"force": [1, 1, -2, 0], "torque": [1, 2, -2, 0]},
-    **{"acceleration": [0, 1, -2, 0], "moment of inertia": [1, 2, 0, 0]},
-}
-"""By dimension, the powers of mass, length, time and angle in it."""
-SYMBOLS = {
-    symbol: (Fraction(factor), POWERS[dimension])
-    for dimension, factors in SIMPLE.items()
-    for symbol, factor in factors.items()
-}
-# fmt: off
-WORDS = {
-    "kilogram": "kg", "kilogramme": "kg", "kilo": "kg", "gram": "g", "gramme": "g", "milligram": "mg",
-    "microgram": "ug", "tonne": "t", "pound": "lb", "lbm": "lb", "ounce": "oz", "stone": "st",
-    "metre": "m", "meter": "m", "kilometre": "km", "kilometer": "km", "decimetre": "dm", "decimeter": "dm",
-    "centimetre": "cm", "centimeter": "cm", "millimetre": "mm", "millimeter": "mm", "micrometre": "um",
-    "micrometer": "um", "micron": "um", "inch": "in", "inche": "in", "foot": "ft", "feet": "ft", "yard": "yd",
-    "degree": "deg", "revolution": "turn", "rev": "turn", "radian": "rad", "newton": "N",
-    "second": "s", "sec": "s", "millisecond": "ms", "minute": "min", "hour": "h", "hr": "h",
+UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
+    "mass": {
+        "kg": "1", "g": "1e-3", "mg": "1e-6", "ug": "1e-9", "t": "1e3",
+        "lb": POUND, "lbs": POUND, "oz": POUND / 16, "st": POUND * 14, "slug": POUND_FORCE / FOOT,
+    },
+    "length": {
+        "m": "1", "km": "1e3", "dm": "1e-1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6",
+        "in": INCH, "ft": FOOT, "yd": FOOT * 3,
+    },
+    "angle": {"deg": "1", "°": "1", "turn": "360", "rad": "1"},
+    "time": {"s": "1", "ms": "1e-3", "min": "60", "h": "3600"},
+    "force": {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY},
+    "torque": {
+        "N m": "1", "mN m": "1e-3", "N cm": "1e-2",
+        "lbf ft": POUND_FORCE * FOOT, "lbf in": POUND_FORCE * INCH,
+    },
+    "acceleration": {"m/s2": "1", "m s-2": "1", "cm/s2": "1e-2", "ft/s2": FOOT, "N/kg": "1"},
+    "moment of inertia": {
+        "kg m2": "1", "kg cm2": "1e-4", "g cm2": "1e-7", "lb ft2": POUND * FOOT**2, "lb in2": POUND * INCH**2,
+    },
 }
 # fmt: on
-"""Units written out, in small letters and without the s of a plural."""
+"""By dimension, its units in those of the SI, angles in degrees; radians stay radians.
+
+A unit may also have no blank, or a dot, a star, ^2 or ².
+"""
 
 MAX_DIGITS, MAX_EXPONENT = 1000, 500
 """Of a number as it is typed, and of the number that it is in SI units."""
-MAX_UNIT = 60
-"""Characters of a unit."""
 # No text within those limits is longer as a numerator or denominator.
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 _LARGEST = 10**MAX_MAGNITUDE
 TOO_LONG = f"is too long; numerator and denominator may have {MAX_MAGNITUDE} digits"
 
-_TERM = r"[A-Za-zµμ]+(?:\^?-?[1-9]|⁻?[¹²³])?"
-_UNIT = rf"(?:{_TERM}(?: ?[*·/ ] ?{_TERM})*|°)"
+_UNIT = r"[A-Za-zµμ°](?:[A-Za-zµμ/*·^ 2²⁻-]{0,10}[A-Za-z2²])?"
 _DIGITS, _POWER, _TAIL = r"(?:\d+(?:\.\d*)?|\.\d+)", r"(?:[eE][+-]?\d+)?", rf"(?: ?{_UNIT})?"
 _DECIMAL = rf"[+-]?{_DIGITS}{_POWER}"
 _QUOTIENT = rf"{_DECIMAL}(?: ?/ ?{_DECIMAL})?"
@@ -83,21 +60,19 @@ MULTIPLES = {
     "acceleration": (_MULTIPLE % "g", "g", Fraction(STANDARD_GRAVITY)),
 }
 """By dimension, the constant of which a number may be a multiple, as in 3pi/2, and what that is."""
-MEGA = re.compile("M[a-z]|MN.*")
-"""Megagrams, megametres and meganewtons are no thousandths in capitals."""
-_FACTOR = re.compile(r"([*·/ ]*)([A-Za-z]+|°)\^?(-?[1-9])?")
-_PLAIN = str.maketrans("µμ⁻¹²³", "uu-123")
+_PLAIN = str.maketrans("µμ⁻²", "uu-2", "*·^ ")
+_SYMBOLS = {symbol.translate(_PLAIN): symbol for symbols in UNITS.values() for symbol in symbols}
 
 # An uncertainty: in units of the last digit, 1.000(2), or written out, 1.000±0.002, (1.000±0.002)g, 1g±2%.
-_SIGN = r" ?(?:±|\+/-) ?"
+_SIGN = r" ?(?:±|\+/?-) ?"
 IN_LAST_DIGITS = rf"([+-]?{_DIGITS})\((\d+)\)({_POWER}{_TAIL})"
 IN_BRACKETS = rf"\(([+-]?{_DIGITS}){_SIGN}({_DIGITS})( ?%)?\)({_POWER}{_TAIL})"
 WRITTEN_OUT = rf"({_QUOTIENT})({_TAIL}){_SIGN}(?![+-])({_QUOTIENT})({_TAIL}| ?%)"
-UNCERTAIN = ("(", "±", "+/-")
+UNCERTAIN = ("(", "±", "+/-", "+-")
 PERCENT = "%"
-NOT_A_NUMBER = "is not a number; write it like 2, 0.5 or 1.5e-3"
+NOT_A_NUMBER = "is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1)"
 NOT_UNCERTAIN = (
-    "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+/-0.002 or 1.000(2),"
+    "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+-0.002 or 1.000(2),"
     " and a unit after that"
 )
 
@@ -113,7 +88,7 @@ class NotANumber(Malformed):
 class Number(NamedTuple):
     """A number as it was typed: exact, with its standard uncertainty, in SI units, degrees or radians.
 
-    ``unit`` is the symbol of the unit, or its text if it is made of several, and is empty if there is none.
+    ``unit`` is the symbol of the unit, and is empty if there is none.
     The value is a float only where it is infinite.
     """
 
@@ -150,7 +125,7 @@ def is_uncertain(text: str) -> bool:
 def read_number(text: str, dimension: str | None) -> Number:
     """The number that a text is, with its unit and its uncertainty if it has them.
 
-    ``dimension`` is one of `DIMENSIONS`, or two with an "or" between, or None for a number that takes no
+    ``dimension`` is one of `UNITS`, or two with an "or" between, or None for a number that takes no
     unit. Raises Malformed.
     """
     text = without_blanks(text)
@@ -207,7 +182,7 @@ def _read_exactly(text: str, dimension: str | None) -> tuple[Fraction, str]:
         digits = re.sub("[^0-9]", "", as_typed(value, inf).partition("e")[0]).lstrip("0")
         exponent = _power(number) + to_digits(1, ROUND_FLOOR)(factor).adjusted()
         _check_size(len(digits), exponent, ", its unit included")
-    return value, symbol_of(unit) or unit
+    return value, symbol_of(unit)
 
 
 def _quotient(text: str) -> Fraction:
@@ -249,68 +224,16 @@ def limited(value: Fraction) -> Fraction:
 
 
 def read_unit(unit: str, wanted: str) -> Fraction:
-    """The factor from a unit to the SI, or to degrees. Raises Malformed if it is of another dimension."""
-    if len(unit) > MAX_UNIT:
-        raise Malformed(f"has a unit of {len(unit)} characters; at most {MAX_UNIT} are taken")
-    if not re.fullmatch(_UNIT, unit):
-        raise Malformed(f"has the unknown unit {unit!r}; there are {_names(wanted)}")
-    factor, powers = _measure(unit, wanted)
-    # Radians are no rational multiple of degrees, so an angle takes a single unit.
-    several = wanted == "angle" and not symbol_of(unit)
-    if powers in [POWERS[one] for one in wanted.split(" or ")] and not several:
-        return factor
-    kind = "several parts" if several else _dimension(powers)
-    raise Malformed(f"has a unit of {kind}; it takes one of {wanted} ({_names(wanted)})")
+    """The factor from a unit to the SI, or to degrees. Raises Malformed if there is no such unit."""
+    units = {symbol: factor for one in wanted.split(" or ") for symbol, factor in UNITS[one].items()}
+    if (symbol := symbol_of(unit)) not in units:
+        raise Malformed(f"has the unit {in_quotes(unit)}; it takes {', '.join(units)}")
+    return Fraction(units[symbol])
 
 
-def dimension_of(unit: str) -> str:
-    """The dimension of a unit that `read_number` took."""
-    return _dimension(_measure(unit, "")[1])
-
-
-def _dimension(powers: list[int]) -> str:
-    return next((name for name in DIMENSIONS if POWERS[name] == powers), "another dimension")
-
-
-def _names(wanted: str) -> str:
-    """The units that a sentence names."""
-    return ", ".join(unit for one in wanted.split(" or ") for unit in DIMENSIONS[one])
-
-
-def _measure(unit: str, wanted: str) -> tuple[Fraction, list[int]]:
-    """The factor from a unit to the SI, or to degrees, and its powers. Raises Malformed if it is unknown."""
-    factor, powers = Fraction(1), [0, 0, 0, 0]
-    for operator, word, power in _FACTOR.findall(unit.translate(_PLAIN)):
-        symbol = symbol_of(word)
-        if symbol is None:
-            raise Malformed(f"has the unknown unit {word!r}{_near_units(word, wanted)}")
-        times = int(power or 1) * (-1 if "/" in operator else 1)
-        one, its_powers = SYMBOLS[symbol]
-        factor *= one**times
-        powers = [p + times * q for p, q in zip(powers, its_powers, strict=True)]
-    return factor, powers
-
-
-def symbol_of(word: str) -> str | None:
-    """The symbol of a unit that may be written out, in the plural or in capitals; None if there is none."""
-    if word in SYMBOLS:
-        return word
-    if MEGA.fullmatch(word):
-        return None
-    small = word.lower()
-    for name in (small, small.removesuffix("s"), small.removesuffix("es")):
-        if symbol := WORDS.get(name) or next((one for one in SYMBOLS if one.lower() == name), None):
-            return symbol
-    return None
-
-
-def _near_units(word: str, wanted: str) -> str:
-    """The hint at a unit of the dimension that begins alike, or else at those there are."""
-    accepted = [POWERS[one] for one in wanted.split(" or ")]
-    of_it = [name for name, (_, powers) in SYMBOLS.items() if powers in accepted]
-    names = [*of_it, *(name for name, symbol in WORDS.items() if symbol in of_it)]
-    alike = [name for name in names if name[0].lower() == word[0].lower() and not MEGA.fullmatch(word)]
-    return nearest(word, alike) or f"; there are {_names(wanted)}"
+def symbol_of(unit: str) -> str:
+    """The unit as the table has it, empty if it is none of them."""
+    return _SYMBOLS.get(unit.translate(_PLAIN), "")
 
 
 def near(word: str, words: Iterable[str]) -> str:

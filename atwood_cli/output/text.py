@@ -3,7 +3,7 @@
 import json
 import os
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
@@ -11,33 +11,15 @@ from math import inf
 from typing import Any, NamedTuple, TextIO
 
 from ..arithmetic.rounding import Rounding, as_typed, exact_or_rounded, is_infinite, text, to_double
-from ..files import Stdout, printable
+from ..files import Stdout, printable, stdout_into
 from ..model.angle import Angle
-from ..model.axle import Axle
-from ..model.quantities import ASCII
-from ..model.scene import MEASURED, UNMEASURED, Motion, Scene, stated
-
-
-def for_stream(words: str, stream: TextIO | None) -> str:
-    """The words as the stream can take them, without anything that would steer a terminal."""
-    return spelled(printable(words), stream)
-
-
-def spelled(words: str, stream: TextIO | None) -> str:
-    """The words with their symbols spelled out where the stream is not Unicode."""
-    return words if takes_unicode(stream) else words.translate(ASCII).encode("ascii", "replace").decode()
-
-
-def takes_unicode(stream: TextIO | None) -> bool:
-    """Whether symbols can be written to the stream."""
-    encoding = getattr(stream, "encoding", None) or "ascii"
-    return encoding.lower().startswith("utf")
+from ..model.scene import MEASURED, UNMEASURED, Axle, Motion, Scene, stated
 
 
 def say(*messages: str) -> None:
     """Each message on stderr, as the program's, a line."""
     for message in messages:
-        line = for_stream(f"atwood: {printable(message, keep='')}", sys.stderr)
+        line = f"atwood: {printable(message, keep='')}"
         if sys.stderr.isatty():
             from shutil import get_terminal_size
 
@@ -80,7 +62,8 @@ def drop(stream: TextIO) -> None:
         os.close(nowhere)
 
 
-VERSION = 1
+DISK = Fraction(1, 2)
+VERSION = 2
 """Of the keys of JSON, which `examples/json.md` lists; it grows when one goes, or changes its meaning."""
 
 
@@ -88,33 +71,68 @@ class Forms(NamedTuple):
     """A result in the forms in which it may be asked for, each of which is made only if it is.
 
     ``json`` and ``records``, the lines of CSV, return what is to be printed; ``page`` prints. ``bare``
-    are the values that --only names.
+    are the values that --only names, and ``below`` prints what comes after them.
     """
 
     json: Callable[[], Mapping[str, object]]
     records: Callable[[], Iterable[Mapping[str, object]]]
     page: Callable[[], None]
-    notes: Callable[[], Sequence[str]]
+    notes: Callable[[], Sequence[str]] = list
     bare: Sequence[str] = ()
+    below: Callable[[], None] = lambda: None
 
 
-def show(forms: Forms, json: bool, csv: bool) -> Sequence[str]:
-    """Print a result as JSON, as CSV, as bare values or as a page. Raises OSError.
+class Form(NamedTuple):
+    """A form for programs: the suffix of its files, the help of its option, and what prints it."""
+
+    suffix: str
+    help: str
+    write: Callable[[Forms], None]
+    has_notes: bool
+
+
+def _write_json(forms: Forms) -> None:
+    sys.stdout.writelines(as_json(forms.json()))
+    print()
+
+
+def _write_csv(forms: Forms) -> None:
+    print_csv(forms.records())
+
+
+FORMS = {
+    "json": Form(".json", "Print JSON: results, scene and notes.", _write_json, True),
+    "csv": Form(".csv", "Print CSV, with a line of names first.", _write_csv, False),
+}
+"""By the name of their option. Without one of these, a page is printed, or bare values."""
+
+
+class Target(NamedTuple):
+    """In which form a result goes where: the name of a form, empty for a page; a file, None for stdout."""
+
+    form: str = ""
+    file: str | None = None
+    force: bool = False
+
+
+def show(forms: Forms, target: Target) -> Sequence[str]:
+    """Print a result in a form, as bare values or as a page, whole or not at all. Raises OSError.
 
     Returns the notes if the form has no place for them: CSV and bare values. They are to be said on
     stderr, after the result, which is flushed by then.
     """
-    if json:
-        sys.stdout.writelines(as_json(forms.json()))
-        print()
-    elif csv:
-        print_csv(forms.records())
-    elif not forms.bare:
-        forms.page()
-    elif any(forms.bare):  # an empty line for each value that does not exist
-        print(*forms.bare, sep="\n")
-    sys.stdout.flush()
-    return forms.notes() if csv or forms.bare else ()
+    form = FORMS.get(target.form)
+    with stdout_into(target.file, target.force):
+        if form:
+            form.write(forms)
+        elif forms.bare:
+            if any(forms.bare):  # an empty line for each value that does not exist
+                print(*forms.bare, sep="\n")
+            forms.below()
+        else:
+            forms.page()
+        sys.stdout.flush()
+    return forms.notes() if forms.bare or (form and not form.has_notes) else ()
 
 
 def as_json(value: object, indent: str = "\n") -> Iterator[str]:
@@ -214,7 +232,28 @@ def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
 
 def describe(scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}) -> str:
     """The scene in one line, as understood, with uncertainties."""
-    return ", ".join(inputs_in_words(scene, motion, uncertain).values())
+    return ", ".join(said_of_scene(scene, motion, uncertain).values())
+
+
+def said_of_scene(
+    scene: Scene,
+    motion: Motion = UNMEASURED,
+    uncertain: Mapping[str, Fraction] = {},
+    varied: Container[str] = (),
+) -> dict[str, str]:
+    """Each input in words, but for defaults on which nothing depends that is shown.
+
+    These are a disk where the pulley has no mass or stands, and half a turn where nothing rubs.
+    """
+    rubs = scene.mu is not None or "mu" in varied or motion.finds is not None
+    heavy = scene.M not in (None, 0) or scene.I is not None or "M" in varied or "I" in varied
+    words = inputs_in_words(scene, motion, uncertain)
+    idle = set()
+    if scene.inertia == DISK and not rubs and (not heavy or scene.M == inf):
+        idle.add("inertia")
+    if scene.wrap == 180 and not (rubs or heavy or scene.axle is not None or "axle" in varied):
+        idle.add("wrap")
+    return {name: said for name, said in words.items() if name not in idle or name in uncertain}
 
 
 def inputs_in_words(

@@ -16,12 +16,24 @@ from ..arithmetic.rounding import DOUBLE_DIGITS as DOUBLE_DIGITS  # others have 
 from ..arithmetic.rounding import SHOWN_DIGITS as SHOWN_DIGITS
 from ..arithmetic.rounding import Rounding, is_infinite, is_positive, settle, to_digits, to_double
 from ..model.case import Case
-from ..model.machine import Machine, Undetermined
+from ..model.machine import Machine
+from ..model.mechanics import Undetermined
 from ..model.quantities import FROM_MOTION, MAIN, NAMES
-from ..model.scene import UNMEASURED, Motion, Scene
+from ..model.scene import (
+    INPUTS,
+    MEASURED,
+    UNMEASURED,
+    Given,
+    Input,
+    Motion,
+    Scene,
+    SceneError,
+    read_input,
+)
+from ..model.units import STANDARD_GRAVITY, read_number
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic, N, Quantity
+    from ..arithmetic.rational import Arithmetic, N, Quantity
     from .uncertainty import OnMachine, Uncertainties
 
 TOO_LARGE = f"beyond 10^{LARGEST_EXPONENT}, the largest number written out"
@@ -34,8 +46,8 @@ class Answers:
     """The quantities of a scene, settled when asked for: to doubles or to ``digits`` digits.
 
     ``uncertain`` has the standard uncertainties of the inputs that have one. Of the quantities asked for,
-    ``reasons`` says by name why one shows no value, ``unsure`` why one shows no uncertainty, and ``spread``
-    has the uncertainties.
+    ``reasons`` says by name why one shows no value, ``unsure`` why one shows no uncertainty, ``open_ended``
+    names those without a value at an end of an input, and ``spread`` has the uncertainties.
     """
 
     def __init__(
@@ -65,6 +77,7 @@ class Answers:
         self.reasons: dict[str, str] = {}
         self.unsure: dict[str, str] = {}
         self.spread: dict[str, Any] = {}
+        self.open_ended: dict[str, None] = {}
 
     def to(self, digits: int | None) -> Answers:
         """The same quantities to so many digits; they share the machines, and so what these computed."""
@@ -107,7 +120,7 @@ class Answers:
         also = {
             "friction_force_min": bounded,
             "friction_force_max": bounded,
-            "axle_force": case.axle_friction is not None and case.ends_hang_down,
+            "axle_force": case.rubs and case.ends_hang_down,
             "torque": scene.R is not None,
             "rim_acceleration": case.regime == "slip",
             "angular_acceleration": scene.R is not None,
@@ -154,6 +167,9 @@ class Answers:
         if known is None or value is None or self.reasons.get(name) == TOO_SMALL:
             return None
         if is_infinite(value) and is_infinite(self.settle(quantity, to_digits(1))):
+            return None
+        if not known.exists(quantity):
+            self.open_ended[name] = None
             return None
         u, reason = self._settled(known.of(quantity), round_ or self.round, self.digits or DOUBLE_DIGITS)
         if u is not None:
@@ -210,3 +226,28 @@ class Answers:
     def with_pulley(self, mass: Fraction | float) -> Answers:
         """The answers to this scene on a pulley of that mass (inf: locked), with a string that grips."""
         return Answers(self.case.scene._replace(M=mass, mu=None, mu_k=None), self.digits)
+
+
+def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answers:
+    """The answers to what is given, with uncertainties where an input has one. Raises SceneError."""
+    inputs = {name: read_input(name, given.get(name)) for name in (*INPUTS, *MEASURED)}
+    inputs["a"] = _of_gravity(inputs["a"], inputs["g"])
+    if all(inputs[name].given is None for name in MEASURED):
+        scene, motion = Scene.of(inputs), UNMEASURED
+    else:
+        from ..model import motion as motions
+
+        scene, motion = motions.read(inputs)
+        scene = motions.completed(scene, motion)
+    uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
+    return Answers(scene, digits, motion, uncertain)
+
+
+def _of_gravity(a: Input, g: Input) -> Input:
+    """An acceleration; if it was typed as a multiple of g, that of the scene. Raises SceneError."""
+    if not isinstance(a.given, str) or read_number(a.given, "acceleration").unit != "g":
+        return a
+    if g.uncertainty:
+        raise SceneError("a", a.given, "is a multiple of g, which is uncertain; give it in m/s2")
+    factor = g.value / Fraction(STANDARD_GRAVITY)
+    return a._replace(value=a.value * factor, uncertainty=a.uncertainty * factor)

@@ -1,7 +1,7 @@
 """A solved scene in words: what the string does and why, and what is missing and why.
 
 In sentences, as in the reasons of `Undetermined`, names of inputs and quantities stand between backticks.
-`unmarked` takes these out, for the program's own output, where a name is what is typed. `derivation.typeset`
+`unmarked` takes these out, for the program's own output, where a name is what is typed. `output.typeset`
 puts symbols for the names, for a page of mathematics.
 """
 
@@ -22,8 +22,8 @@ def unmarked(words: str) -> str:
 
 
 def notes(answers: Answers) -> list[str]:
-    """Sentences on the regime and why, on conditions (36), on what is missing and what is in doubt."""
-    said = [verdict(answers), *remarks(answers.shown), *conditions(answers.shown)]
+    """Sentences on the regime and why, on what is missing and what is in doubt."""
+    said = [verdict(answers), *remarks(answers.shown)]
     return [*map(unmarked, said), *reasons(answers)]
 
 
@@ -35,8 +35,9 @@ def reasons(answers: Answers) -> list[str]:
         return said
     unsure = {(f"u_{name}", reason): 1 for name, reason in answers.unsure.items()}
     shown = {name: u for name, u in answers.spread.items() if name not in answers.unsure}
-    misled = uncertainties.misled(shown, answers.digits or DOUBLE_DIGITS)
-    return [*said, *uncertainties.doubts(answers.asked), *misled, *reasons_at(unsure, 1)]
+    lopsided = uncertainties.lopsided(shown, answers.digits or DOUBLE_DIGITS)
+    open_ended = map(unmarked, uncertainties.open_ended(answers.open_ended))
+    return [*said, *uncertainties.doubts(), *lopsided, *open_ended, *reasons_at(unsure, 1)]
 
 
 def reasons_at(
@@ -117,7 +118,7 @@ def verdict(answers: Answers) -> str:
 
 def _held(case: Case) -> str:
     """The difference that the axle just holds, rounded down, but not below what it does hold."""
-    b, difference = case.axle_mass or Fraction(0), case.heavy - case.light
+    b, difference = case.axle_mass, case.heavy - case.light
     times, unit = (1000, "g") if b < 1 else (1, "kg")
     return f"{text(to_threshold(up=False, given=times * difference)(times * b))} {unit}"
 
@@ -190,34 +191,6 @@ def _sliding(answers: Answers) -> Answers | None:
         return None
     sliding = Answers(scene._replace(mu=scene.mu_k), answers.digits)
     return sliding if sliding.case.regime == "slip" else None
-
-
-def conditions(answers: Answers) -> list[str]:
-    """Both conditions of (36), necessary for the verge: threshold, and whether it is met."""
-    if answers.case.scene.mu is None or answers["least_heavier_mass"] is None:
-        return []
-    case, mass = answers.case, answers.case.scene.M
-    met = {True: "met", False: "not met"}
-    least = _least(answers, "least_heavier_mass", case.heavy)
-    parts = [f"the heavier mass, {as_typed(case.heavy)} kg, must exceed {least} ({met[case.can_slip]})"]
-    if answers["least_pulley_mass"] is not None:  # the pulley's shape is known
-        given, of_given = None, ""
-        if mass is None:
-            answer = "met by the critical one" if case.can_slip else "open without `M`"
-        elif isinstance(mass, Fraction):
-            given, of_given = mass, f", {as_typed(mass)} kg,"
-            answer = met[case.can_be_made_slip]
-        else:
-            of_given, answer = ", infinite,", "met"
-        least = _least(answers, "least_pulley_mass", given)
-        parts.append(f"the pulley's mass{of_given} must exceed {least} ({answer})")
-    return [f"Conditions (36) for the verge: {'; '.join(parts)}."]
-
-
-def _least(answers: Answers, name: str, given: Fraction | None = None) -> str:
-    """A mass of (36) as the table shows it, and on its side of the mass given."""
-    least = answers.rounded(name, to_side_of(given, answers.digits or SHOWN_DIGITS))
-    return "a mass too large to be written out" if is_infinite(least) else f"{text(least)} kg"
 
 
 def _threshold(answers: Answers, name: str, up: bool, given: Fraction | None = None) -> str:

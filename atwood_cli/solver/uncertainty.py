@@ -1,85 +1,67 @@
-"""Standard uncertainties: from those of the inputs to those of the quantities, to first order.
+"""How uncertain results are, by solving the scene again with each input an uncertainty less, and more.
 
-For inputs x that are known to u(x), independently of each other, u(q)² = Σ (∂q/∂x · u(x))²; this is
-(10) in 5.1.2 of the GUM (JCGM 100:2008). The slopes are exact: the equations that give a quantity, run on
-duals (see `arithmetic.dual`), differentiate themselves. So an uncertainty is a quantity like any other,
-one that can be computed in every arithmetic, and its digits are settled like those of a value.
-
-A slope is that towards a scene an infinitesimal step beside the given one, to the right and to the left.
-Mostly both are the same, and only the right one is computed. They differ at a kink: the friction needed goes
-with |m2 - m1|, so at equal masses it rises to both sides, and has no uncertainty. An input of 0, which must
-not be negative, has a right side only. A quantity without a value on one side has no slope there.
-
-First order takes a quantity for linear over ± u(x). That is tried, too: where the quantity at x - u(x) or
-x + u(x) is far from where its slope puts it, a sentence gives both values.
+The step of a quantity q with an input x is half the range of q(x - u), q(x) and q(x + u): where q is
+monotonic, that is Kragten's step (GUM, 5.1.3, note 2; J. Kragten, Analyst 119, 1994). The standard
+uncertainty of q is the root of the sum of the squared steps. Anybody can redo it with `solve`, and it sees
+that a string slips at one end, which no derivative does.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
-from functools import cache, partial
+from functools import cache
 from itertools import islice
 from operator import attrgetter, itemgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.dual import Dual, Duals
-from ..arithmetic.interval import ZERO, Enclosure, Unsettled, enclosures
-from ..arithmetic.lazy import lazy
-from ..arithmetic.protocol import N
+from ..arithmetic.fingerprint import FINGERPRINTS
+from ..arithmetic.interval import Enclosure, Unsettled, enclosures
+from ..arithmetic.rational import N
 from ..arithmetic.rounding import (
     GUARD,
     SHOWN_DIGITS,
     as_typed,
+    is_infinite,
     settle,
     text,
+    tidy,
     to_digits,
     to_place,
-    with_uncertainty,
+    to_threshold,
 )
-from ..model import physics
-from ..model.case import Case, Excess
-from ..model.machine import Machine, Undetermined
-from ..model.motion import completed, impossible, moved, number_of, with_number
+from ..arithmetic.rounding import with_uncertainty as with_both
+from ..model.case import Case
+from ..model.machine import Machine
+from ..model.mechanics import Undetermined
+from ..model.motion import completed, number_of, with_number
 from ..model.quantities import QUANTITIES
-from ..model.scene import Scene, parameter_of
+from ..model.scene import INPUTS, MEASURED, Scene, parameter_of
 
 if TYPE_CHECKING:
-    from ..arithmetic.protocol import Arithmetic, Quantity
+    from ..arithmetic.rational import Arithmetic, Quantity
 
 OnMachine = Callable[[Machine[Any]], Any]
 """Anything that a machine has, as a function of the machine."""
 
 SURE = 20
-"""Digits of the numbers that tell whether a case is in doubt."""
-FAR = 5
-"""A quantity is far from linear where it is off by more than a fifth of its uncertainty."""
+"""Digits of the numbers in sentences before they are rounded."""
+LOPSIDED = 5
+"""A sentence says so where the steps to both sides differ by more than this part of the uncertainty."""
 NAMED = 3
 """How many quantities a sentence names."""
 COVERAGE = 2
-"""A case is in doubt within so many standard uncertainties of the line to another case."""
-
-KINK = "unknown where the masses are equal, as there it has a kink"
-KINK_OF_AXLE = "unknown where the axle just holds the difference, as there it has a kink"
-JUMP = "unknown, as with another {} it may jump"
+"""The regime is in doubt where it differs within so many standard uncertainties of an input."""
+REGIME = {"no-slip": "holds", "verge": "on the verge", "slip": "slips"}
 
 
-class MachineBeside(Machine[Dual[N]]):
-    """The model of a case that is infinitesimally beside a scene."""
+class End(NamedTuple):
+    """What an input may be in place of its value, and the case of that scene; or why there is none."""
 
-    ar: Duals[N]
-
-    @lazy
-    def friction_force_min(self) -> Dual[N]:
-        """Least net friction force (N).
-
-        Where tensions are equal but for that, the arcs at the limit are as little as their difference: one
-        of length α pulls with μTα, the greatest force, and halves of it at both ends with cos φ/2 of that.
-        """
-        if self._bounded() and self.ar.base.is_zero(self.alpha.value):
-            return self.friction_force_max * self.scene.wrap.cos_sin(self.ar, 2)[0]
-        return super().friction_force_min
+    number: Fraction
+    case: Case | None
+    reason: str = ""
 
 
 class Uncertainties:
@@ -87,255 +69,225 @@ class Uncertainties:
 
     def __init__(self, case: Case, given: Mapping[str, Fraction]) -> None:
         self.case, self.given = case, given
-        self._beside = cache(partial(beside, case))
-        self._machine_beside: Callable[..., Machine[Any]] = cache(
-            lambda case, ar: MachineBeside(case, Duals(ar))
-        )
         self._machine: Callable[..., Machine[Any]] = cache(Machine)
+        self.ends = {x: [end_of(case, x, -u), end_of(case, x, u)] for x, u in given.items()}
 
     def of(self, quantity: OnMachine) -> Quantity:
-        """The standard uncertainty of a quantity that has a value. It raises Undetermined."""
-        return lambda ar: _length(ar, self._parts(quantity, ar).values())
+        """The standard uncertainty of a quantity that has a value at all ends."""
+        return lambda ar: ar.sqrt(_sum_of_squares(ar, self._steps(quantity, ar).values()))
 
     def percent(self, quantity: OnMachine, x: str) -> Quantity:
         """The share of an input in the variance of a quantity, which must not be 0, in percent."""
 
         def percent(ar: Arithmetic[N]) -> N:
-            parts = self._parts(quantity, ar)
-            if x not in parts or len(parts) == 1:
-                return ar.number(100 * (x in parts))
-            return 100 * _sum_of_squares(ar, [parts[x]]) / _sum_of_squares(ar, parts.values())
+            steps = self._steps(quantity, ar)
+            if x not in steps or len(steps) == 1:
+                return ar.number(100 * (x in steps))
+            return 100 * _sum_of_squares(ar, [steps[x]]) / _sum_of_squares(ar, steps.values())
 
         return percent
 
-    def _parts(
-        self, quantity: OnMachine, ar: Arithmetic[N], choose: Callable[[list[N]], N] | None = None
-    ) -> dict[str, N]:
-        """By input x on which the quantity depends, its slope times u(x).
+    def _steps(self, quantity: OnMachine, ar: Arithmetic[N]) -> dict[str, N]:
+        """By input x on which the quantity depends: half the range of its values at x and at both ends."""
+        return {
+            x: _range([self._value(quantity, case, ar) for case in self._cases(x)]) / 2
+            for x in self.given
+            if len({self._value(quantity, case, FINGERPRINTS) for case in self._cases(x)}) > 1
+        }
 
-        ``choose`` picks one of the slopes to both sides. Without it a kink raises Undetermined.
-        """
-        parts = {}
-        for x, u in self.given.items():
-            slopes = list(self._slopes(quantity, x, ar))
-            if any(slope is not None for slope in slopes):
-                known = [ar.number(0) if slope is None else slope for slope in slopes]
-                if choose is None and any(_size(slope - known[0], least=True) for slope in known):
-                    raise Undetermined(KINK_OF_AXLE if self.case.axle_holds else KINK)
-                parts[x] = (choose or itemgetter(0))(known) * ar.number(u)
-        return parts
+    def _cases(self, x: str) -> list[Case]:
+        """The case of the scene, and those at the ends of an input."""
+        return [self.case, *(end.case for end in self.ends[x] if end.case)]
 
-    def _slopes(self, quantity: OnMachine, x: str, ar: Arithmetic[N]) -> Iterator[N | None]:
-        """The slope of the quantity with an input to its right, and to its left where it may be another."""
-        for side, case in self._beside(x):
-            try:
-                slope: N | None = quantity(self._machine_beside(case, ar)).slope
-            except Undetermined as reason:
-                raise Undetermined(f"unknown, as with another {x} it may have no value: {reason}") from None
-            except ZeroDivisionError:
-                raise Undetermined(JUMP.format(x)) from None
-            yield None if slope is None else side * slope
+    def _value(self, quantity: OnMachine, case: Case, ar: Arithmetic[N]) -> N:
+        value: N = quantity(self._machine(case, ar))
+        return value
 
-    # What may be otherwise
-
-    def doubts(self, asked: Container[str]) -> list[str]:
-        """Sentences on what may be otherwise: which mass is heavier, whether the string slips.
-
-        And whether it can, where a quantity is asked for that exists only then. Each is decided by the sign
-        of a margin, so it is in doubt where the margin is within its own uncertainty of 0.
-        """
-        case, difference = self.case, "m1 - m2" if self.case.sign < 0 else "m2 - m1"
-        margins: list[tuple[str, str, OnMachine, str]] = [
-            ("Which mass is heavier", "m2 - m1", lambda m: m.ar.number(m.scene.m2 - m.scene.m1), " kg")
-        ]
-        if case.axle_mass is not None:
-            what = "Whether the axle holds the difference"
-            margins.append((what, f"{difference} - axle/g", lambda m: physics.drive(m.l, m.h, m.b), " kg"))
-        if case.scene.mu is not None:
-            for excess, what, where in self._ways_to_slip(asked):
-                margins.append((what, f"mu - mu_verge{where}", _friction_to_spare(excess), ""))
-        return [sentence for margin in margins if (sentence := self._doubt(*margin))]
-
-    def _doubt(self, what: str, name: str, margin: OnMachine, unit: str) -> str:
-        """The sentence that what the sign of a margin decides is in doubt; empty if it is not."""
-
-        def value(ar: Arithmetic[N]) -> N:
-            here: N = margin(self._machine(self.case, ar))
-            return here
-
-        def u(ar: Arithmetic[N]) -> N:
-            return _length(ar, self._parts(margin, ar, choose=_steepest).values())
-
+    def _missing(self, quantity: OnMachine, end: End) -> str:
+        """Why a quantity has no value at an end; empty if it has one."""
+        if end.case is None:
+            return end.reason
         try:
-            shift, spread = (Fraction(settle(one, to_digits(SURE), SURE)) for one in (value, u))
-        except Undetermined:  # with inputs beside these there is no such scene
-            return ""
-        if not spread or abs(shift) > COVERAGE * spread:
-            return ""
-        shown = with_uncertainty(
-            lambda place: settle(value, to_place(place), SURE), settle(u, to_digits(2), 2)
-        )
-        return (
-            f"{what} is in doubt: {name} = {shown}{unit} is within {COVERAGE} standard uncertainties of 0"
-            " (95 % of a normal distribution). The results are for the inputs as given."
-        )
+            self._value(quantity, end.case, FINGERPRINTS)
+        except Undetermined as undetermined:
+            return str(undetermined)
+        except ZeroDivisionError:
+            return "unknown"
+        return ""
 
-    def _ways_to_slip(self, asked: Container[str]) -> Iterator[tuple[Excess, str, str]]:
-        """By the excess of the tension ratio it depends on: what is in question, and where it slips."""
-        case = self.case
-        locked, heaviest = " of a locked pulley", " under a heavier mass beyond all bounds"
-        if case.pulley_known:
-            yield "excess_ratio", "Whether the string slips", ""
-        else:
-            yield "locked_excess", "Whether any pulley can make the string slip", locked
-        if case.pulley_known and not case.stands and "critical_pulley_mass" in asked:
-            yield "locked_excess", "Whether there is a critical_pulley_mass", locked
-        if case.axle_friction is not None and case.sign and not case.axle_holds:
-            yield "massless_excess", "Whether the string slips on any pulley", " of a massless pulley"
-        if case.rim_mass is not None and "critical_heavier_mass" in asked:
-            yield "heaviest_excess", "Whether there is a critical_heavier_mass", heaviest
+    def exists(self, quantity: OnMachine) -> bool:
+        """Whether a quantity has a value at all ends."""
+        return not any(self._missing(quantity, end) for ends in self.ends.values() for end in ends)
 
-    # Where first order misleads
+    # In sentences
 
-    def misled(self, spread: Mapping[str, float | Decimal], digits: int) -> list[str]:
-        """Sentences, by uncertain input, on where first order misleads: the values an uncertainty off.
+    def doubts(self) -> list[str]:
+        """Which mass is heavier, and what the string does, where that is otherwise two uncertainties off."""
+        said: dict[str, str] = {}
+        for x, u in self.given.items():
+            for side in (-COVERAGE, COVERAGE):
+                end = end_of(self.case, x, side * u)
+                if end.case and (what := _otherwise(self.case, end.case)) and what not in said:
+                    said[what] = (
+                        f"{what} is in doubt: it is otherwise at {_at(self.case, x, end)},"
+                        f" {COVERAGE} standard uncertainties off. The results are for the inputs as given."
+                    )
+        return [*said.values()]
+
+    def open_ended(self, names: Iterable[str]) -> list[str]:
+        """Sentences on quantities that have no value at an end, and on what they are at the other one."""
+        found: dict[tuple[str, str], list[str]] = {}
+        for name in names:
+            for x, ends in self.ends.items():
+                for end, other in zip(ends, reversed(ends), strict=True):
+                    if why := self._missing(attrgetter(name), end):
+                        at = found.setdefault((_at(self.case, x, end), why), [])
+                        at.append(self._one_sided(name, other))
+                        break
+        return [
+            f"{_listed(said)}: at {at} {'it ' * why.startswith('does')}{why}."
+            for (at, why), said in found.items()
+        ]
+
+    def _one_sided(self, name: str, other: End) -> str:
+        """A value without an uncertainty, and the one at the only end where it has one."""
+        here = self._settled(name, self.case)
+        said = f"{name} is {_with_unit(name, tidy(to_digits(SHOWN_DIGITS)(here)))}"
+        if self._missing(attrgetter(name), other) or other.case is None:
+            return said
+        there = self._settled(name, other.case)
+        if there == here:
+            return said
+        bound = to_threshold(up=there > here)(there)
+        return f"{said}, {_with_unit(name, bound)} or {'more' if there < here else 'less'}"
+
+    def lopsided(self, spread: Mapping[str, float | Decimal], digits: int) -> list[str]:
+        """Sentences on quantities that change by more to one side, or in which the regime or a sign changes.
 
         ``spread`` has the uncertainties shown, by name of the quantity, settled to so many digits.
         """
-        ar = enclosures(digits + GUARD)  # in which the uncertainties were settled
+        ar = enclosures(digits + GUARD)
+        finite = [name for name, u in spread.items() if u and not is_infinite(u)]
         sentences = []
-        for x, u in self.given.items():
-            numbers = [_one_off(self.case, x, u * side) for side in (-1, 1)]
-            cases = [case for number in numbers if (case := _case_at(self.case, x, number))]
-            far = {n: u for n, u in spread.items() if self._is_far(attrgetter(n), x, cases, ar)}
-            if far:
-                start, end = (_with_unit(self.case, x, number) for number in numbers)
-                said = f"as it goes from {start} to {end}, {self._from_end_to_end(far, cases)}"
-                if len(cases) < len(numbers):
-                    said = f"not every value from {start} to {end} is possible"
-                sentences.append(f"{x} is too uncertain for first order: {said}.")
+        for x in self.given:
+            names = [name for name in finite if self._is_lopsided(attrgetter(name), x, ar)]
+            said = [self._from_end_to_end(name, x) for name in islice(names, NAMED)]
+            if said:
+                more = f", and so on for {len(names) - NAMED} more" * (len(names) > NAMED)
+                sentences.append(f"{'; '.join(said)}{more}, as {x} is uncertain.")
         return sentences
 
-    def _is_far(self, quantity: OnMachine, x: str, cases: Sequence[Case], ar: Arithmetic[Enclosure]) -> bool:
-        """Whether first order misleads on the quantity, over the cases an uncertainty of x off.
-
-        It does where the quantity has no value there, or is certainly more than a fifth of its uncertainty
-        away from the line q(x) ± q'(x) u(x). Where x has no such case, it does on all that depends on x.
-        """
+    def _is_lopsided(self, quantity: OnMachine, x: str, ar: Arithmetic[Enclosure]) -> bool:
+        """Whether one step differs from half the range by more than a fifth of the uncertainty, or worse."""
+        cases = self._cases(x)
         try:
-            parts = self._parts(quantity, ar, choose=itemgetter(0))
-            if len(cases) < 2:
-                return x in parts
-            part, most = parts.get(x, ar.number(0)), _size(_length(ar, parts.values()))
-            low, here, high = (quantity(self._machine(case, ar)) for case in (cases[0], self.case, cases[1]))
-            return any(_size(FAR * off, least=True) > most for off in (here - low - part, high - here - part))
-        except Unsettled:  # nearer to a pole than anything that is measured
+            steps = self._steps(quantity, ar)
+            if x not in steps:
+                return False
+            if any(_kind(case) != _kind(self.case) for case in cases):
+                return True
+            here, *there = (self._value(quantity, case, ar) for case in cases)
+            u = ar.sqrt(_sum_of_squares(ar, steps.values()))
+        except (Unsettled, ZeroDivisionError, OverflowError):  # nearer to a pole than anything measured
             return False
-        except (Undetermined, ZeroDivisionError, OverflowError):
+        if any((one.lo > 0 and here.hi < 0) or (one.hi < 0 and here.lo > 0) for one in there):
             return True
+        one_sided = [_range([here, one]) - steps[x] for one in there]
+        return any(_least_size(LOPSIDED * off) > u.hi for off in one_sided)
 
-    def _from_end_to_end(self, spread: Mapping[str, float | Decimal], cases: Sequence[Case]) -> str:
-        """The values in the cases, of the first few quantities, as a table cuts them in the middle."""
-        words: list[str] = []
-        for name, u in islice(spread.items(), NAMED):
-            exact = Fraction(u) if isinstance(u, float) else u
-            round_ = to_place(to_digits(2)(exact).adjusted() - 1) if u else to_digits(SHOWN_DIGITS)
-            values = " to ".join(self._in_words(name, case, round_) for case in cases)
-            words.append(f"{name} {'goes ' * (not words)}from {values}")
-        return ", ".join(words) + f", and so on for {len(spread) - NAMED} more" * (len(spread) > NAMED)
-
-    def _in_words(self, name: str, case: Case, round_: Callable[[Any], Decimal]) -> str:
-        """The value of a quantity in a case, with its unit."""
-
-        def value(ar: Arithmetic[N]) -> N:
-            there: N = getattr(self._machine(case, ar), name)
-            return there
-
-        try:
-            shown = settle(value, round_, SURE)
-        except (Undetermined, ZeroDivisionError):
-            return "no value"
-        except OverflowError:  # of a denominator
-            shown = Decimal(0)
-        number = f"{shown:f}" if -4 <= shown.adjusted() < 16 else text(shown)
-        return f"{number} {QUANTITIES[name].unit}".rstrip()
-
-
-def _friction_to_spare(excess: Excess) -> OnMachine:
-    """The friction there is above what is needed at that excess of the tension ratio."""
-
-    def margin(machine: Machine[N]) -> N:
-        needed = physics.verge_coefficient(
-            machine.ar.log1p(getattr(machine.case, excess)(machine.ar)), machine.phi
+    def _from_end_to_end(self, name: str, x: str) -> str:
+        """A quantity with its uncertainty, and from where to where it goes with an input."""
+        values = sorted(((self._settled(name, case), case) for case in self._cases(x)), key=itemgetter(0))
+        short = settle(self.of(attrgetter(name)), to_digits(2), 2)
+        here, unit = self._settled(name, self.case), QUANTITIES[name].unit
+        both = with_both(lambda place: to_place(place)(here), short)
+        round_ = to_place(short.adjusted() - 1)
+        changes = any(case.regime != self.case.regime for _, case in values)
+        low, high = (
+            f"{text(tidy(round_(value)))}{f' ({REGIME[case.regime]})' * changes}"
+            for value, case in (values[0], values[-1])
         )
-        return machine.reference_mu - needed
+        return f"{name} is {both}{f' {unit}' * bool(unit)}, from {low} to {high}"
 
-    return margin
+    def _settled(self, name: str, case: Case) -> Decimal:
+        """A value to many digits."""
+        quantity = attrgetter(name)
+        return settle(lambda ar: self._value(quantity, case, ar), to_digits(SURE), SURE)
 
 
-def _sum_of_squares(ar: Arithmetic[N], parts: Iterable[N]) -> N:
+def end_of(case: Case, x: str, step: Fraction) -> End:
+    """The scene with an input so much more: as far as it may be, and with what was found going on below 0."""
+    scene, motion = case.scene, case.motion
+    number: Fraction = number_of(scene, motion, x) + step
+    limits = INPUTS | MEASURED
+    if x == "mu_k" and scene.mu is not None:
+        number = min(number, scene.mu)
+    if x != "a":
+        number = max(number, (x == "mu" and scene.mu_k) or Fraction(0))
+    if not number and x != "a" and not limits[x].zero:
+        return End(number, None, "there is no such scene")
+    there, measured = with_number(scene, motion, x, number)
+    try:
+        there = completed(there, measured)
+        if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
+            return End(number, None, "there is no such scene")
+        found = Case(there, measured)
+        _ = found.axle_mass, found.rim_mass
+    except (Undetermined, ZeroDivisionError):
+        return End(number, None, "nothing fits what was measured")
+    return End(number, found)
+
+
+def _kind(case: Case) -> tuple[Any, ...]:
+    """What may change from one end of an input to the other."""
+    return case.regime, case.sign, case.axle_holds
+
+
+def _otherwise(case: Case, other: Case) -> str:
+    """What is otherwise in another case; empty if nothing is."""
+    if case.sign != other.sign:
+        return "Which mass is heavier"
+    if case.axle_holds != other.axle_holds:
+        return "Whether the axle holds the difference"
+    return "" if case.regime == other.regime else "Whether the string slips"
+
+
+def _at(case: Case, x: str, end: End) -> str:
+    """An input at an end, with its unit: "mu = 0.35"."""
+    given = getattr(case.scene if x in Scene._fields else case.motion, x)
+    unit = getattr(given, "unit", parameter_of(x).unit)
+    return f"{x} = {as_typed(end.number)}{' ' * (unit not in ('', '°'))}{unit}"
+
+
+def _with_unit(name: str, value: Decimal) -> str:
+    """A value in a sentence, with its unit."""
+    return f"{text(value)} {QUANTITIES[name].unit}".rstrip()
+
+
+def _listed(said: list[str]) -> str:
+    more = f", and so on for {len(said) - NAMED} more" * (len(said) > NAMED)
+    return "; ".join(said[:NAMED]) + more
+
+
+def _sum_of_squares(ar: Arithmetic[N], steps: Iterable[N]) -> N:
     total = ar.number(0)
-    for part in parts:
-        total += part * part
+    for step in steps:
+        total += step * step
     return total
 
 
-def _length(ar: Arithmetic[N], parts: Iterable[N]) -> N:
-    return ar.sqrt(_sum_of_squares(ar, parts))
+def _range(values: list[Any]) -> Any:
+    """The greatest of some numbers less the least."""
+    if not isinstance(values[0], Enclosure):
+        return max(values) - min(values)
+    ar = values[0].arithmetic
+    most, least = (
+        Enclosure(ar, pick(value.lo for value in values), pick(value.hi for value in values))
+        for pick in (max, min)
+    )
+    return most - least
 
 
-def _steepest(slopes: list[N]) -> N:
-    return max(slopes, key=_size)
-
-
-def _size(x: Any, least: bool = False) -> Fraction | Decimal:
-    """How far from 0 a number may be; or is, at least."""
-    if not isinstance(x, Enclosure):
-        return Fraction(abs(x))
-    if least and x.lo <= 0 <= x.hi:
-        return ZERO
-    return (min if least else max)(x.lo.copy_abs(), x.hi.copy_abs())
-
-
-def _one_off(case: Case, x: str, u: Fraction) -> Fraction:
-    """The number given for an input, with u added, or the nearest to that which an input may be."""
-    scene = case.scene
-    number: Fraction = number_of(scene, case.motion, x) + u
-    least = (x == "mu" and scene.mu_k) or Fraction(0)
-    if x == "mu_k" and scene.mu is not None:
-        number = min(number, scene.mu)
-    return number if x == "a" else max(number, least)
-
-
-def _case_at(case: Case, x: str, number: Fraction) -> Case | None:
-    """The case with that number for an input; None where nothing gives what was measured."""
-    scene, motion = with_number(case.scene, case.motion, x, number)
-    try:
-        if motion.finds and not motion.beyond and impossible(Case(scene, motion), ""):
-            return None
-        return Case(completed(scene, motion), motion)
-    except (Undetermined, ZeroDivisionError):
-        return None
-
-
-def _with_unit(case: Case, x: str, number: Fraction) -> str:
-    """An input's number with the unit that it was given in."""
-    given = getattr(case.scene if x in Scene._fields else case.motion, x)
-    unit = getattr(given, "unit", parameter_of(x).unit)
-    return f"{as_typed(number)}{' ' * (unit not in ('', '°'))}{unit}"
-
-
-def beside(case: Case, x: str) -> list[tuple[int, Case]]:
-    """The cases of scenes in which an input is infinitesimally more, and less where that may differ.
-
-    Raises Undetermined where no pulley fits what was measured.
-    """
-    scene, motion = case.scene, case.motion
-    just_held = case.axle_mass is not None and case.heavy - case.light == case.axle_mass
-    bends = scene.m1 == scene.m2 or scene.M == 0 or x == "wrap" or just_held
-    ends = number_of(scene, motion, x) == 0 and x != "a"
-    cases = []
-    for side in (1, -1) if bends and not ends else (1,):
-        near, measured = moved(scene, motion, x, side)
-        cases.append((side, Case(completed(near, measured), measured)))
-    return cases
+def _least_size(x: Enclosure) -> Decimal:
+    """How far from 0 a number is at least."""
+    return Decimal(0) if x.lo <= 0 <= x.hi else min(x.lo.copy_abs(), x.hi.copy_abs())

@@ -1,0 +1,202 @@
+"""Sums of two doubles with a proven error bound, in columns: to about 2^-100.
+
+A `Number` stands for the sum of its parts, of which the second is at most u = 2^-53 of the first. What the
+operations lose is counted in u² of the result, or of both terms in a difference:
+
+- a constant, 1: its second part is rounded;
+- a sum, 4: it is exact, but for the second parts, which are added in doubles to what the first parts lose:
+  twice 2 u is rounded;
+- a product of two doubles comes with its rounding error, off by 4 (see `two_product`). To that the products
+  of a first and a second part are added, so a product of pairs loses 8 more: 2 for forming them, 2 and 3 for
+  adding them, and 1 for the product of the second parts, which is left out;
+- a quotient, 17: it is the rounded quotient q of the first parts, and the remainder x - q y over y. The
+  remainder is off by 11 (of x) and at most 3 u of x; divided by the first part of y, rounded, it loses 6
+  more;
+- a root, 8: it is found in the same way, by a step of Newton's method.
+
+The rest of the proof is that of `doubles`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from fractions import Fraction
+from math import frexp, inf, ldexp, log
+from operator import add, sub
+from typing import Any
+
+from ..arithmetic.symbolic import Formula, Term, formula
+from .constants import STEPS, in_parts, ln2, powers
+from .doubles import UNIT, Doubles, Number, Parts, less, looked_up, maximum, minimum, where
+
+SQUARE = UNIT**2
+LARGEST = 180.0  # argument of an exponential: neither e^x nor its square leaves the doubles behind it
+
+
+# Error-free transformations: sums and products of doubles with their rounding errors
+
+
+def two_sum(x: Term, y: Term) -> tuple[Any, Any]:
+    """x + y, rounded, and its exact error, whichever of the two is larger (D. E. Knuth)."""
+    total = x + y
+    added = total - x
+    return total, (x - (total - added)) + (y - added)
+
+
+def fast_two_sum(x: Term, y: Term) -> tuple[Any, Any]:
+    """x + y, rounded, and its exact error, where |y| <= |x| in every row (T. J. Dekker)."""
+    total = x + y
+    return total, (x - total) + y
+
+
+def two_product(x: Term, y: Term) -> tuple[Any, Any]:
+    """x y, rounded, and its error, from the products of heads and tails (T. J. Dekker).
+
+    A head is the first 26 bits of a double, a tail its other 27. Of the four products only that of the tails
+    is rounded, as it may have 54 bits; it is below 2^-50 of x y, so that loses at most 2^-104. All the sums
+    are exact.
+    """
+    product = x * y
+    a, c = head_of(x), head_of(y)
+    b, d = x - a, y - c
+    return product, ((a * c - product) + b * c + a * d) + b * d
+
+
+def head_of(x: Term) -> Any:
+    """Each double cut off after its first 26 bits."""
+    if isinstance(x, Formula):
+        return Formula("head", x)
+    mantissa, exponent = frexp(x)
+    return ldexp(int(ldexp(mantissa, 26)), exponent - 26)
+
+
+class Pairs(Doubles):
+    """The arithmetic of numbers that are the sum of two doubles."""
+
+    loss_of_constant, loss_of_sum, loss_of_product = SQUARE, 4 * SQUARE, 12 * SQUARE
+    loss_of_quotient, loss_of_root, loss_of_doubles = 17 * SQUARE, 8 * SQUARE, 0.0
+    loss_of_series = 256 * SQUARE
+    roughly = False
+
+    def error(self, x: Number) -> Any:
+        return x.size * (x.bound + self.loss_of_sum)
+
+    # Parts, without bounds
+
+    def sum(self, x: Parts, y: Parts, sign: float, positive: bool) -> Parts:
+        (a, *low), (b, *more) = x, y
+        plus = add if sign > 0 else sub
+        if positive:
+            high, rest = fast_two_sum(maximum(a, b), minimum(a, b))
+        else:
+            high, rest = two_sum(a, b * sign)
+        for part in low:
+            rest = rest + part
+        for part in more:
+            rest = plus(rest, part)
+        if positive or not (low or more):
+            return fast_two_sum(high, rest) if low or more else (high, rest)
+        return two_sum(high, rest)
+
+    def multiply(self, x: Parts, y: Parts) -> Parts:
+        product, rest = two_product(x[0], y[0])
+        for part in y[1:]:
+            rest = rest + x[0] * part
+        for part in x[1:]:
+            rest = rest + part * y[0]
+        return fast_two_sum(product, rest)
+
+    def divide(self, x: Parts, y: Parts) -> Parts:
+        """The rounded quotient, and the quotient of the remainder that it leaves."""
+        quotient = x[0] / y[0]
+        left = _remainder(x, quotient, y[0])
+        for part in y[1:]:
+            left = left - quotient * part
+        return fast_two_sum(quotient, left / y[0])
+
+    def root_of(self, x: Parts) -> Parts:
+        """The rounded root, and a step of Newton's from the remainder that its square leaves."""
+        root = Formula("sqrt", formula(x[0]))
+        return fast_two_sum(root, _remainder(x, root, root) / (2.0 * root))
+
+    def constant(self, q: Fraction) -> Parts:
+        first = float(q)
+        rest = float(q - Fraction(first))
+        return (first, rest) if rest else (first,)
+
+    # Functions
+
+    def expm1(self, x: Number) -> Number:
+        """k = e^x - 1 for x >= 0, without a bound beyond x = 180 (`LARGEST`).
+
+        The largest multiple of ln 2/16384 that is not above x is split into m ln 2 and steps of a table of a
+        = 2^(i/16384) - 1. The rest r < 4.3e-5 of x loses 8 u² of x, less than a product. It gives s = e^r - 1
+        by its Taylor series, in which terms from r⁴ on are computed in doubles and those from r⁷ on are left
+        out: that loses 256 u² of s. Then 1 + k = 2^m (1 + a)(1 + s). The factors are joined as a + s + a s,
+        where nothing cancels.
+        """
+        first, *others = x.parts
+        high = minimum(first, LARGEST)
+        count = Formula("floor", high * (STEPS / log(2)))
+        number = Formula("int", count)
+        s = self._small_expm1(_rest(high, others, count))
+        step = Formula("bits", number, STEPS - 1)
+        a = Number(self, [looked_up(column, step) for column in powers()], self.loss_of_constant)
+        k = a + s + a * s
+        power = Formula("power", Formula(">>", number, STEPS.bit_length() - 1))
+        k = Number(self, [part * power for part in k.parts], k.loss)
+        k = k + Number(self, fast_two_sum(power, -1.0))
+        doubt = (1.0 + high) * (x.bound + self.loss_of_product)
+        doubt = doubt + s.parts[0] * (1.0 + 1.0 / k.parts[0]) * self.loss_of_series
+        return Number(self, k.parts, k.loss, where(less(first, LARGEST), doubt, inf))
+
+    def _small_expm1(self, r: Parts) -> Number:
+        """e^r - 1 = r + r² (1/2 + r (1/6 + ...)) for a small r."""
+        x, tail = Number(self, r), ((r[0] * (1 / 720) + 1 / 120) * r[0] + 1 / 24) * r[0]
+        factor = self.number(Fraction(1, 6)) + Number(self, (tail,))
+        return Number(self, (x + x * x * (factor * x + self.number(Fraction(1, 2)))).parts)
+
+    def log1p(self, x: Number) -> Number:
+        """ln(1 + x) for x >= 0, as a double y and a correction.
+
+        The correction is ln(1 + δ) for δ = (1 + x)/e^y - 1, by two terms of its series. As y is below 180 and
+        off by a few u of it, δ is below 2^-43.
+        """
+        y = Number(self, (Formula("log1p", formula(x.parts[0])),))
+        guess = self.expm1(y)
+        off = (x - guess) / (guess + 1)
+        result = y + off - off * off / 2
+        result.positive = True
+        return result
+
+    def cos_sin_of_column(self, degrees: Formula) -> tuple[Number, Number]:
+        """Each angle that occurs is computed once, to 70 digits."""
+        columns = [Formula(op, degrees) for op in ("cos°", "rest of cos°", "sin°", "rest of sin°")]
+        x, y = (
+            Number(self, parts, self.loss_of_constant, positive=False) for parts in (columns[:2], columns[2:])
+        )
+        return x, y
+
+
+def _remainder(x: Parts, q: Term, y: Term) -> Any:
+    """x - q y for a rounded quotient q, as a double: q y is so close to x that their difference is exact."""
+    product, error = two_product(q, y)
+    left = (x[0] - product) - error
+    return left + x[1] if len(x) == 2 else left
+
+
+def _rest(first: Term, others: Sequence[Term], count: Formula) -> Parts:
+    """x minus a multiple of ln 2/16384 that is near it (argument reduction).
+
+    The constant is split into parts of 24 bits, whose multiples are exact, and the rest.
+    """
+    near, middle, last, rest = in_parts(ln2() / STEPS, 24, 3)
+    high, error = two_sum(first - count * near, count * -middle)
+    high, more = two_sum(high, count * -last)
+    low = error + more + count * -rest
+    for part in others:
+        low = low + part
+    return two_sum(high, low)
+
+
+PAIRS = Pairs()

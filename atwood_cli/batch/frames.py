@@ -1,0 +1,155 @@
+"""Frames of scenes: `solve_table`, for those of polars, eager and lazy; and Parquet, which is a lazy one."""
+
+import os
+import re
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
+from functools import partial
+from io import TextIOWrapper
+from queue import SimpleQueue
+from typing import IO, TYPE_CHECKING, Any, TypeVar
+
+from ..files import Unreadable
+from ..model.quantities import STANDARD, Accuracy, read_names
+from .solving import Layout, Question, Tally, read_inputs, solve_cells
+
+if TYPE_CHECKING:
+    import polars as pl
+
+Table = TypeVar("Table", "pl.DataFrame", "pl.LazyFrame")
+Watch = Callable[[Iterator[Any], int | None, Callable[[Any], int]], Iterator[Any]]
+"""Passes parts on, and may show progress: its arguments are the parts, the size of all, and of one."""
+GROUP_ROWS, GROUP_CELLS = 1 << 16, 1 << 20
+"""The most rows and cells of a row group that is written."""
+
+
+def solve_table(table: Table, quantities: Sequence[str] | None = None, accuracy: Accuracy = "exact") -> Table:
+    """A table of scenes with results appended, and the error of each bad row: what `atwood batch` makes.
+
+    ``table`` is a data frame of polars, eager or lazy, and so is what comes back. Its columns m1, m2, M, mu
+    and so on are inputs, in SI units or in those of the heading, as "m1 (g)"; other columns stay as they are.
+    An input is not given where a value is missing. A NaN is an error of its row, and so is a text that is no
+    number.
+
+    For ``quantities`` and ``accuracy`` see `solve_arrays`. Raises SceneError for one that is not known,
+    ValueError for a table that lacks a mass or has a column that could be meant for an input.
+    """
+    import polars as pl
+
+    if not isinstance(table, pl.DataFrame | pl.LazyFrame):
+        raise ValueError(f"a table is a data frame of polars, eager or lazy, not {type(table).__name__}")
+    words = [quantities] if isinstance(quantities, str) else STANDARD if quantities is None else quantities
+    asked = Question(list(dict.fromkeys(read_names("quantities", map(str, words)))), accuracy)
+    schema = table.collect_schema()
+    try:
+        solve = partial(with_results, layout=Layout(read_inputs(schema.names(), asked)), asked=asked)
+        if isinstance(table, pl.DataFrame):
+            return solve(table)
+        return table.map_batches(solve, schema=solve(pl.DataFrame(schema=schema)).schema, streamable=True)
+    except Unreadable as error:
+        why = re.sub("[;,] or [a-z ]+ --.*", "", str(error))  # the options of the command
+        raise ValueError(f"cannot read the table: {why}") from None
+
+
+def with_results(
+    frame: "pl.DataFrame", layout: Layout, asked: Question, tally: Tally | None = None
+) -> "pl.DataFrame":
+    """A frame of scenes with their results. Raises Unreadable for a column that holds no numbers."""
+    cells = frame.select(frame[one.column].alias(one.name) for one in layout.headings)
+    return frame.hstack(solve_cells(cells, layout, asked, tally or Tally(set())))
+
+
+def solve_parquet(
+    source: IO[bytes], target: IO[bytes], asked: Question, tally: Tally, watch: Watch
+) -> Layout:
+    """Write a file of scenes with their results, in the same order, in row groups of a fixed size.
+
+    Raises Unreadable for what is no Parquet, or damaged.
+    """
+    import polars as pl
+
+    with _reading():
+        table = pl.scan_parquet(source)
+        schema = table.collect_schema()
+        total = int(table.select(pl.len()).collect().item())
+        layout = Layout(read_inputs(schema.names(), asked))
+        head = with_results(pl.DataFrame(schema=schema), layout, asked)
+        rows = max(1, min(GROUP_ROWS, GROUP_CELLS // head.width))
+        groups = table.collect_batches(maintain_order=True)
+        frames = (
+            with_results(frame, layout, asked, tally) for group in groups for frame in group.iter_slices(rows)
+        )
+        written = _write(frames, head.schema, target, rows, lambda counts: watch(counts, total, int))
+    if written != total:
+        raise Unreadable(f"it is damaged: it should have {total} rows, and has {written}")
+    return layout
+
+
+def _write(
+    frames: "Iterator[pl.DataFrame]",
+    schema: "pl.Schema",
+    target: IO[bytes],
+    rows: int,
+    watch: Callable[[Iterator[int]], Iterator[int]],
+) -> int:
+    """Write frames as Parquet in groups of so many rows, and return how many there are.
+
+    A thread does it, and this one waits, as polars would not hear Ctrl-C. What fails ends the frames, since
+    polars would panic over an exception, and is raised here.
+    """
+    from polars.io.plugins import register_io_source
+
+    done: SimpleQueue[int | None] = SimpleQueue()
+    failed: list[BaseException] = []
+
+    def source(*_: object) -> "Iterator[pl.DataFrame]":
+        try:
+            while not failed and (frame := next(frames, None)) is not None:
+                done.put(frame.height)
+                yield frame
+        except GeneratorExit:
+            raise
+        except BaseException as error:
+            failed.append(error)
+
+    sink = register_io_source(source, schema=schema).sink_parquet
+    with ThreadPoolExecutor(1) as writer:
+        writing = writer.submit(sink, target, compression="snappy", row_group_size=rows)
+        writing.add_done_callback(lambda _: done.put(None))
+        try:
+            written = sum(watch(iter(done.get, None)))
+        except BaseException as error:
+            failed.append(error)
+            raise
+    if failed:
+        raise failed[0]
+    writing.result()
+    return written
+
+
+@contextmanager
+def _reading() -> Iterator[None]:
+    """Raises Unreadable for whatever polars makes of damaged Parquet.
+
+    Its threads that panic write to the descriptor of stderr, which meanwhile leads nowhere. `sys.stderr`
+    still leads where it did.
+    """
+    import polars as pl
+
+    with ExitStack() as stack:
+        with suppress(OSError):  # stderr may be closed
+            kept = os.dup(2)
+            stack.callback(os.close, kept)
+            stack.callback(os.dup2, kept, 2)
+            if isinstance(sys.stderr, TextIOWrapper) and sys.stderr is sys.__stderr__:
+                encoding = sys.stderr.encoding
+                visible = stack.enter_context(open(kept, "w", encoding=encoding, closefd=False))
+                stack.enter_context(redirect_stderr(visible))
+            os.dup2(stack.enter_context(open(os.devnull, "w")).fileno(), 2)
+        try:
+            yield
+        except (pl.exceptions.PolarsError, pl.exceptions.PanicException, MemoryError) as error:
+            why = str(error).splitlines() or ["it does not fit into memory"]
+            raise Unreadable(f"it is not Parquet that polars can read: {why[0]}") from None

@@ -1,0 +1,43 @@
+"""`atwood quantities`: what can be asked for by its name."""
+
+from collections.abc import Sequence
+
+from ..model.quantities import QUANTITIES, REGIMES
+from ..output.text import VERSION, Forms, Target, show
+from .options import DONE, RESULTS, takes
+
+HELP = """List the quantities: symbols, units, meanings, equations.
+
+\b
+Examples:
+  atwood quantities
+  atwood quantities --json
+"""
+WHEN = (
+    "While a string grips with friction to spare, the tension along its arc is not unique. friction_force is"
+    " then between friction_force_min and friction_force_max, if friction nowhere opposes the rest; tension"
+    " locked in on laying the string widens that range. Without mu, friction_force is that at mu_verge."
+)
+
+
+@takes(RESULTS)
+def quantities(target: Target) -> int:
+    columns = ("name", "symbol", "unit", "meaning", "equation")
+    rows = [
+        ("regime", "", "", f"what the string does: {', '.join(REGIMES)}", ""),
+        *((name, one.symbol, one.unit, one.meaning, one.equation) for name, one in QUANTITIES.items()),
+    ]
+    records = [dict(zip(columns, row, strict=True)) for row in rows]
+    show(
+        Forms(lambda: {"version": VERSION, "quantities": records}, lambda: records, lambda: _print(rows)),
+        target,
+    )
+    return DONE
+
+
+def _print(rows: Sequence[Sequence[str]]) -> None:
+    from ..output.page import Page
+
+    page = Page()
+    page.table(["Name", "Symbol", "Unit", "Meaning", "Equation"], [rows])
+    page.say(WHEN)

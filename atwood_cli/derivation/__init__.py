@@ -1,1 +1,0 @@
-"""The equations of a scene, written out with the numbers put in."""

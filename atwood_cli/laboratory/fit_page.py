@@ -1,0 +1,168 @@
+"""A fit as tables with sentences, JSON and CSV."""
+
+from collections.abc import Collection, Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from ..arithmetic.rounding import DOUBLE_DIGITS, text, to_digits
+from ..model.scene import UNMEASURED, parameter_of
+from ..output.page import Page, aligned
+from ..output.text import VERSION, Forms, cell, inputs_in_words
+from .judgement import Fitted
+from .published import COLUMNS, QUANTITIES, Fit, cut, few, rows_of, shown
+from .runs import TAKEN
+from .sentences import head, notes, odd_cells
+
+NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
+WITHOUT = {
+    "chi2": "needs uncertainties, or repeats",
+    "between_runs": "needs uncertainties, or repeats, and more runs than results",
+    "correlation": "needs two results",
+    "moment_of_inertia": "needs the rim mass to be fitted, and R",
+    "pulley_mass": "needs the rim mass to be fitted, and the pulley's shape, --inertia",
+}
+
+
+def forms_of(fit: Fitted, only: Sequence[str], digits: int | None) -> Forms:
+    """A fit in the forms in which it may be asked for; ``only`` names results."""
+    digits = digits and min(digits, DOUBLE_DIGITS)
+    record: dict[str, Any] = _rounded(results_of(fit)._asdict(), digits)
+    said, above = notes(fit), head(fit)
+    odd = odd_cells(fit)
+    if odd and not any("," in word for word in odd):  # whole rows
+        rows = ",".join(word.removeprefix("row ") for word in odd)
+        above.append(f"--without {rows} leaves {'them' if odd[1:] else 'it'} out.")
+
+    def json() -> Any:
+        if only:
+            return {name: record[name] for name in only}
+        absent = dict.fromkeys(QUANTITIES)
+        by_name = {name: absent | record[name] for name in ("uncertainty", "interval")}
+        runs = [dict.fromkeys(line) | line | {x: line.get(x) for x in TAKEN} for line in record["runs"]]
+        return {"version": VERSION, **record, **by_name, "runs": runs}
+
+    def beside() -> Sequence[str]:
+        """The sentences that CSV and bare values have no place for."""
+        results = fit.whole.results.items()
+        values = {x: f"{x} = {shown(*one[:2])} {QUANTITIES[x].unit}" for x, one in results}
+        if not only:
+            return [*above, *values.values(), *said]
+        absent = (f"{x}: {WITHOUT.get(x, NOT_FITTED)}." for x in only if record[x] is None)
+        return [*(values[x] for x in only if x in values), *absent, *above[1:]]
+
+    def page() -> None:
+        _print_page(fit, record["runs"], above, said, digits)
+
+    records = json if only else None
+    values = [cell(record[name]) for name in only]
+    return Forms(json, lambda: [records()] if records else record["runs"], page, beside, values)
+
+
+def _rounded(value: Any, digits: int | None) -> Any:
+    """Results rounded to the digits asked for, in lists and mappings too; inputs stay as they are."""
+    if isinstance(value, dict):
+        return {name: one if name in TAKEN else _rounded(one, digits) for name, one in value.items()}
+    if isinstance(value, list):
+        return [_rounded(one, digits) for one in value]
+    return to_digits(digits)(Fraction(value)) if isinstance(value, float) and digits else value
+
+
+def results_of(fit: Fitted) -> Fit:
+    """All of a fit by name, with its sentences."""
+    whole, correlation = fit.whole, fit.whole.correlation
+    return Fit(
+        **{name: whole.results[name].value if name in whole.results else None for name in QUANTITIES},
+        uncertainty={name: one.uncertainty for name, one in whole.results.items()},
+        interval={name: list(one.interval) for name, one in whole.results.items()},
+        correlation=correlation and correlation[2],
+        chi2=whole.chi2,
+        dof=whole.best.dof,
+        between_runs=whole.between_runs,
+        runs=_lines(fit),
+        notes=[*head(fit), *notes(fit)],
+    )
+
+
+def _lines(fit: Fitted) -> list[dict[str, Any]]:
+    """The runs, as JSON and CSV have them; the residual is in standard uncertainties."""
+    columns = (fit.whole.best.data.measured, fit.whole.best.expected, fit.whole.best.sigma)
+    used = {run.rows: one for run, *one in zip(fit.used, *(c.tolist() for c in columns), strict=True)}
+    lines = []
+    for run in fit.runs.runs:
+        sign = -1 if run.mean < 0 else 1
+        measured, expected, u = used.get(run.rows, (abs(run.mean), None, None))
+        moves = expected is not None and expected == expected  # NaN where nothing would move
+        lines.append(
+            {
+                "rows": " ".join(map(str, run.rows)),
+                **run.labels,
+                "m1": float(run.m1.value),
+                "m2": float(run.m2.value),
+                **({} if run.drop is None else {"drop": float(run.drop.value)}),
+                fit.runs.kind: sign * measured,
+                "u": u,
+                "expected": sign * expected if moves else None,
+                "residual": sign * (measured - expected) / u if moves else None,
+            }
+        )
+    return lines
+
+
+def _print_page(
+    fit: Fitted,
+    lines: Sequence[Mapping[str, Any]],
+    above: Sequence[str],
+    said: Sequence[str],
+    digits: int | None,
+) -> None:
+    """The conditions, the results, the runs, and what there is to say."""
+    page = Page()
+    page.say(", ".join(conditions(fit)))
+    page.say(*above, style="bold")
+    if fit.whole.results:
+        columns = zip(*rows_of(fit.whole.results, digits), strict=True)
+        _print_table(page, dict(zip(COLUMNS, columns, strict=True)), ("Quantity", "Unit", "Symbol"))
+    _print_table(page, _columns(fit, lines), fit.runs.labels)
+    u = "u is the standard uncertainty of a run, by all that varies from run to run"
+    if (pair := fit.whole.correlation) is not None:
+        u += f"; correlation of {pair[0]} and {pair[1]}: {few(pair[2], 2)}"
+    page.say(f"{u}.", *said)
+
+
+def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, Sequence[str]]:
+    """Run by run: the measurement, what is expected, and the residual."""
+    kind, data = fit.runs.kind, fit.whole.best.data
+    odd = {" ".join(map(str, fit.used[i].rows)) for i in fit.odd}
+    unit = parameter_of(kind).unit
+    finest = min((line["u"] for line in lines if line["u"]), default=None)
+    if data.spread.any() and finest:  # the mean has the digits of its own scatter
+        finest = min(finest, float((data.spread / data.times**0.5).min()))
+
+    def column(name: str) -> list[str]:
+        return ["" if line[name] is None else cut(line[name], finest) for line in lines]
+
+    return {
+        "row": [line["rows"].replace(" ", ",") + " !" * (line["rows"] in odd) for line in lines],
+        **{name: [line[name] for line in lines] for name in fit.runs.labels},
+        **{f"{name} (kg)": [text(line[name]) for line in lines] for name in ("m1", "m2")},
+        f"{kind} ({unit})": column(kind),
+        f"expected ({unit})": column("expected"),
+        f"u ({unit})": ["" if line["u"] is None else cut(line["u"], line["u"]) for line in lines],
+        "residual/u": ["" if line["residual"] is None else f"{line['residual']:.2f}" for line in lines],
+    }
+
+
+def _print_table(page: Page, columns: Mapping[str, Sequence[str]], words: Collection[str]) -> None:
+    """A table whose numbers have their points below each other; columns of words are as they are."""
+    cells = (column if name in words else aligned(column) for name, column in columns.items())
+    page.table(list(columns), [list(zip(*cells, strict=True))])
+
+
+def conditions(fit: Fitted) -> list[str]:
+    """What is the same in all runs, in words."""
+    inputs = fit.given.inputs
+    motion = UNMEASURED._replace(drop=inputs["drop"].value) if "drop" in inputs else UNMEASURED
+    uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
+    words = inputs_in_words(fit.given.scene, motion, uncertain)
+    g = "" if "gravity" in fit.whole.best.names else "g"
+    return [words[x] for x, one in inputs.items() if one.given is not None or x in (g, "drop")]

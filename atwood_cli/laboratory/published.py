@@ -1,0 +1,148 @@
+"""The quantities that a fit gives, and their numbers as published: cut where their uncertainty begins."""
+
+from collections.abc import Mapping, Sequence
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from ..arithmetic.rounding import DOUBLE_DIGITS, text, tidy, to_digits, to_place, with_one_power
+from ..output.text import wrapped
+
+
+class Quantity(NamedTuple):
+    """What a quantity is called; with a letter it can be fitted, unless the inputs ``given_by`` give it."""
+
+    symbol: str
+    unit: str
+    words: str
+    letter: str = ""
+    small_unit: str = ""
+    given_by: tuple[str, ...] = ()
+
+
+QUANTITIES = {
+    "rim_mass": Quantity("c=I/R²", "kg", "the pulley's inertia", "c", "g", ("M", "I")),
+    "axle": Quantity("f", "N", "axle friction", "f", "mN", ("axle",)),
+    "gravity": Quantity("g", "m/s²", "gravity", "g", "mm/s²", ("g",)),
+    "pulley_mass": Quantity("M", "kg", "the pulley's mass, if its shape is given"),
+    "moment_of_inertia": Quantity("I", "kg m²", "the moment of inertia, if R is given"),
+}
+FITTED = [name for name, one in QUANTITIES.items() if one.letter]
+USUAL = FITTED[:2]
+"""Those that are fitted unless the user asks for others."""
+SYMBOLS = {one.letter or one.symbol: name for name, one in QUANTITIES.items()}
+RESULTS = {
+    **{name: one.words for name, one in QUANTITIES.items()},
+    "correlation": "the correlation of two results",
+    "chi2": "χ² of the runs by the uncertainties given, or the scatter of repeats",
+    "dof": "degrees of freedom: the runs less what is fitted",
+    "between_runs": "the standard deviation between runs beyond that, as a mass",
+}
+SMALL = 1e-3
+"""A small unit in units."""
+MOST_DIGITS = 11
+"""Digits that doubles leave right."""
+WIDTH = 80
+"""Characters of a line of text, at most."""
+COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "95 % interval")
+
+
+class Result(NamedTuple):
+    """A value, its standard uncertainty, and its interval of 95 %."""
+
+    value: float
+    uncertainty: float
+    interval: tuple[float, float]
+
+    @property
+    def sign(self) -> int:
+        """The sign of the whole interval, 0 if it holds 0."""
+        low, high = self.interval
+        return (low > 0) - (high < 0)
+
+
+def rows_of(results: Mapping[str, Result], digits: int | None = None) -> list[tuple[str, ...]]:
+    """A table of results, with `COLUMNS`, a row a quantity."""
+    written = {name: published(*one, digits) for name, one in results.items()}
+    return [
+        (name, value, QUANTITIES[name].unit, QUANTITIES[name].symbol, ends)
+        for name, (value, ends) in written.items()
+    ]
+
+
+def published(
+    value: float, uncertainty: float, interval: tuple[float, float] = (0, 0), digits: int | None = None
+) -> tuple[str, str]:
+    """A value ± its uncertainty, and its interval: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.
+
+    All are cut at the second digit of the uncertainty, or at as many ``digits`` of the value as leave the
+    uncertainty one. A value without uncertainty has six digits, and no interval. No number has more digits
+    than a double.
+    """
+    largest = max(map(abs, (value, uncertainty, *interval)))
+    place = max(_place(value, uncertainty, digits), _place(largest, largest, DOUBLE_DIGITS))
+    numbers = [to_place(place)(Fraction(x)) for x in (value, uncertainty, *interval)]
+    if not numbers[1]:
+        most = MOST_DIGITS if uncertainty else 6
+        return text(to_digits(digits or most)(Fraction(value))), ""
+    power = max(number.adjusted() for number in numbers[:2] if number)
+    both = with_one_power("{:f} ± {:f}", numbers[:2], power)
+    return both, with_one_power("{:f} to {:f}", numbers[2:], power)
+
+
+def shown(value: float, uncertainty: float | None) -> str:
+    """A value ± its uncertainty, if it has one."""
+    return published(value, uncertainty or 0)[0]
+
+
+def cut(value: float, uncertainty: float | None) -> str:
+    """A value cut at the second digit of an uncertainty; to six digits if there is none."""
+    if not uncertainty:
+        return text(to_digits(6)(Fraction(value)))
+    return f"{to_place(_place(value, uncertainty))(Fraction(value)):f}"
+
+
+def _place(value: float, uncertainty: float, digits: int | None = None) -> int:
+    """The place of the last digit, as a power of ten."""
+    first, of_u = (to_digits(2)(Fraction(x)).adjusted() if x else -(10**3) for x in (value, uncertainty))
+    if digits is not None and value:
+        return min(first - digits + 1, of_u)
+    return max(of_u - 1, first - MOST_DIGITS + 1)
+
+
+def few(value: float, digits: int = 2) -> str:
+    """A value to a few digits, as people write it."""
+    return text(tidy(to_digits(digits)(Fraction(value))))
+
+
+class Fit(NamedTuple):
+    """All of a fit by name; None where the runs do not determine it.
+
+    ``rim_mass`` (kg) is the pulley's inertia as a mass at its rim, c = I/R², and ``axle`` (N) the friction
+    of its axle as a force there; ``gravity`` (m/s²) is fitted only if asked for. ``pulley_mass`` (kg) needs
+    the pulley's shape, ``moment_of_inertia`` (kg m²) its radius. ``uncertainty`` and ``interval`` (95 %) are
+    those of these values, by name; ``between_runs`` (kg) is the standard deviation between runs that their
+    own uncertainties do not explain, as a mass; ``chi2`` is χ² by these uncertainties, ``dof`` the number of
+    degrees of freedom. ``runs`` are the rows of ``--csv``. As text it is the table, with the notes below.
+    """
+
+    rim_mass: float | None
+    axle: float | None
+    gravity: float | None
+    pulley_mass: float | None
+    moment_of_inertia: float | None
+    uncertainty: Mapping[str, float]
+    interval: Mapping[str, Sequence[float]]
+    correlation: float | None
+    chi2: float | None
+    dof: int
+    between_runs: float | None
+    runs: Sequence[Mapping[str, Any]]
+    notes: Sequence[str]
+
+    def __str__(self) -> str:
+        ends = {name: (low, high) for name, (low, high) in self.interval.items()}
+        values = {x: Result(getattr(self, x), u, ends[x]) for x, u in self.uncertainty.items()}
+        table = [COLUMNS, *rows_of(values)] if values else []
+        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+        lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in table]
+        return "\n".join([*lines, *(line for note in self.notes for line in wrapped(note, WIDTH))])

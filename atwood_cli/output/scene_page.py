@@ -1,0 +1,146 @@
+"""A solved scene as tables and JSON show it."""
+
+import sys
+from collections.abc import Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
+from ..model.quantities import MEASURED_NAMES, QUANTITIES, cited
+from ..solver.answers import Answers
+from ..solver.expected import is_assumed
+from ..solver.messages import notes, reasons, remarks, unmarked
+from .text import VERSION, cell, scene_record
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from .page import Page
+
+
+def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> dict[str, object]:
+    """The record for JSON: all quantities with scene and notes, or only those named."""
+    names = only or answers.names
+    results: dict[str, object] = {name: answers[name] for name in names}
+    uncertainty = answers.standard_uncertainties(names) or None
+    shares = {name: answers.budget(name) or None for name in names if name != "regime"} if budget else None
+    beside = {"uncertainty": uncertainty, "budget": shares}
+    if only:
+        return results | {name: one for name, one in beside.items() if one is not None}
+    absent = dict.fromkeys(QUANTITIES)
+    return {
+        "version": VERSION,
+        "scene": scene_record(answers.case.scene, answers.case.motion, answers.round),
+        "regime": answers.case.regime,
+        **absent,
+        **results,
+        **{name: one and absent | one for name, one in beside.items()},
+        "notes": notes(answers),
+    }
+
+
+def csv_record(answers: Answers, names: Sequence[str], budget: bool = False) -> dict[str, object]:
+    """The record for CSV: values, then uncertainties, then each input's share of the variances."""
+    values = {name: answers[name] for name in names}
+    uncertain = {f"u_{name}": u for name, u in answers.standard_uncertainties(names).items()}
+    inputs = answers.uncertainties.given if budget and answers.uncertainties else ()
+    shares = {
+        f"budget_{name}_{one}": answers.budget(name).get(one)
+        for name in names
+        if name != "regime"
+        for one in inputs
+    }
+    return values | uncertain | shares
+
+
+def beside_bare(answers: Answers, only: Sequence[str], values: bool) -> list[str]:
+    """What CSV and bare values leave out: what is assumed, reasons, and uncertain values if asked for."""
+    assumed = ["regime: assumed, as mu is not given."] if "regime" in only and is_assumed(answers) else []
+    uncertain = [name for name in only if values and answers.standard_uncertainties([name]).get(name)]
+    return [*assumed, *(_stated(answers, name) for name in uncertain), *reasons(answers)]
+
+
+COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
+AT_LIMIT = ("friction_force", "friction_force_x", "friction_force_y")
+"""What is one number only where friction is at its limit."""
+
+
+def print_table(
+    answers: Answers, whole: bool = False, budget: bool = False, console: "Console | None" = None
+) -> None:
+    """Print the scene, what was found, the verdict, quantities, main or ``whole``, notes, and the budget."""
+    from .page import Page
+
+    answers, page = answers.shown, Page(console)
+    names = answers.names[1:] if whole else answers.main
+    found, groups, said = _parts(answers, names)
+    page.head(answers, found)
+    if groups:
+        page.table(COLUMNS, groups)
+    page.say(*said)
+    if budget:
+        print_budget(answers, names, page)
+
+
+def _parts(answers: Answers, names: Sequence[str]) -> tuple[list[str], list[list[list[str]]], list[str]]:
+    """What was found, in sentences; the rows of the table, by group; and the sentences below it."""
+    groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *answers.found)])
+    found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
+    said = [*map(unmarked, remarks(answers)), *reasons(answers)]
+    return [f"Found: {', '.join(found)}."] * bool(found), groups, said
+
+
+def as_text(answers: Answers) -> str:
+    """The same page as text, in the characters and the width of where the program prints, without colours."""
+    from shutil import get_terminal_size
+
+    from rich.console import Console
+
+    width, height = get_terminal_size()
+    console = Console(highlight=False, color_system=None, width=width, height=height)
+    with console.capture() as captured:
+        print_table(answers, console=console)
+    encoding = sys.stdout.encoding or "ascii"
+    return captured.get().rstrip("\n").encode(encoding, "replace").decode(encoding)
+
+
+def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
+    """The cells of the table: a row for each quantity that exists, by group."""
+    from .page import aligned
+
+    values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
+    if values.get("least_heavier_mass") == values.get("critical_heavier_mass"):
+        values.pop("least_heavier_mass", None)  # on a locked pulley they are one
+    groups: dict[str, list[list[str]]] = {}
+    for name, value in zip(values, aligned(values.values()), strict=True):
+        about, case = QUANTITIES[name], answers.case
+        equation = cited(name, case.regime == "slip", case.rubs)
+        at = " at mu_verge" * (name in AT_LIMIT and case.mu_assumed)
+        groups.setdefault(about.group, []).append([f"{name}{at}", value, about.unit, about.symbol, equation])
+    return list(groups.values())
+
+
+def _stated(answers: Answers, name: str) -> str:
+    """A quantity with its value, uncertainty and unit."""
+    return f"{name} = {_with_uncertainty(answers, name)} {QUANTITIES[name].unit}".rstrip()
+
+
+def _with_uncertainty(answers: Answers, name: str) -> str:
+    """A value, and its uncertainty if it has one; empty if it does not exist."""
+    shown = cell(answers[name])
+    u = answers.uncertainty(name, to_digits(2)) if shown else None
+    return with_uncertainty(lambda place: answers.rounded(name, to_place(place)), u) if u else shown
+
+
+def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = None) -> None:
+    """Each uncertain input's share of the variance of each quantity."""
+    from .page import Page, aligned
+
+    page, names = page or Page(), [name for name in names if name != "regime"]
+    page.say("Each input's share of the variance, in percent:")
+    shares = {name: one for name in names if (one := answers.budget(name, to_place(-1)))}
+    inputs = list(answers.uncertainties.given) if answers.uncertainties else []
+    columns = [aligned(str(one[x]) for one in shares.values()) for x in inputs]
+    rows = ([name, *cells] for name, *cells in zip(shares, *columns, strict=True))
+    by_group = groupby(rows, lambda row: QUANTITIES[row[0]].group)
+    page.table(["Quantity", *inputs], [list(group) for _, group in by_group])

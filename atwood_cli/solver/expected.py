@@ -1,0 +1,105 @@
+"""What a script expects of a scene, decided exactly: a regime, or a quantity compared with a number."""
+
+import operator
+import re
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any, NamedTuple
+
+from ..arithmetic.rounding import as_typed, is_infinite, text, to_digits, to_side_of
+from ..model.angle import Angle
+from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, REGIMES, read_name
+from ..model.scene import SceneError
+from ..model.units import STANDARD_GRAVITY, Malformed, Number, in_quotes, read_number
+from .answers import SHOWN_DIGITS, TOO_SMALL, Answers
+from .messages import unmarked
+
+COMPARISON = re.compile(r"\s*([^<>=]*?)\s*(<=|>=|==|<|>)\s*([^<>=]*)")
+OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+    "==": operator.eq,
+}
+FORMS = (
+    "no-slip, slip, verge, or a quantity and a number with < <= > >= or == between, as 'safety_factor >= 1.5'"
+)
+DIMENSIONS = {
+    "kg": "mass",
+    "m/s²": "acceleration",
+    "N": "force",
+    "N m": "torque",
+    "kg m²": "moment of inertia",
+    "°": "angle",
+    "s": "time",
+}
+"""Of what a quantity is, by its unit."""
+
+
+class Condition(NamedTuple):
+    """What is expected, as it was typed; a regime has no number."""
+
+    typed: str
+    name: str
+    sign: str = ""
+    number: Number = Number(Fraction(0))
+
+
+def read_condition(typed: str) -> Condition:
+    """The condition that a text is. Raises SceneError."""
+    if typed.strip() in REGIMES:
+        return Condition(typed, typed.strip())
+    if not (match := COMPARISON.fullmatch(typed)):
+        raise SceneError("expect", typed, f"must be {FORMS}")
+    word, sign, number = match.groups()
+    name = read_name("expect", word, (*NAMES[1:], *MEASURED_NAMES))
+    try:
+        value = read_number(number, DIMENSIONS.get(QUANTITIES[name].unit))
+    except Malformed as error:
+        raise SceneError("expect", typed, f"compares with {in_quotes(number)}, which {error}") from None
+    if value.uncertainty:
+        raise SceneError("expect", typed, "compares with an uncertain number; leave its uncertainty out")
+    return Condition(typed.strip(), name, sign, value)
+
+
+def failure(answers: Answers, expected: Condition) -> str:
+    """What is so in place of what is expected; empty if that holds."""
+    case = answers.case
+    if expected.name in REGIMES:
+        if expected.name != case.regime:
+            return f"expected {expected.typed}; it is {case.regime}"
+        return f"expected {expected.typed}; it is assumed, as mu is not given" * is_assumed(answers)
+    value, reason = answers[expected.name], answers.reasons.get(expected.name, "")
+    if value is None or reason == TOO_SMALL:
+        return unmarked(f"expected {expected.typed}; {expected.name} has no value: {reason}")
+    side = answers.settle(
+        lambda machine: getattr(machine, expected.name) - _bound(machine, expected.number), to_digits(1)
+    )
+    if OPERATORS[expected.sign](side, 0):
+        return ""
+    given = None if expected.number.unit == "rad" else _in_scene(answers.case.scene, expected.number)
+    if given is not None and not side:  # digits would not show that the two are equal
+        shown = as_typed(given)
+    else:
+        value = answers.rounded(expected.name, to_side_of(given, answers.digits or SHOWN_DIGITS))
+        shown = "too large to be written out" if is_infinite(value) else text(value)
+    unit = QUANTITIES[expected.name].unit
+    return f"expected {expected.typed}; it is {shown}{' ' * (unit != '°')}{unit}".rstrip()
+
+
+def is_assumed(answers: Answers) -> bool:
+    """Whether the string is only assumed to hold, as there is no coefficient of friction."""
+    return answers.case.mu_assumed and bool(answers.case.light)
+
+
+def _in_scene(scene: Any, number: Number) -> Fraction:
+    """The number in SI units; a multiple of g is one of the scene's."""
+    return Fraction(number.value) * (scene.g / Fraction(STANDARD_GRAVITY) if number.unit == "g" else 1)
+
+
+def _bound(machine: Any, number: Number) -> Any:
+    """The number in the arithmetic of a machine; an angle in degrees."""
+    if number.unit == "rad":
+        return Angle(number.value, "rad").degrees(machine.ar)
+    return machine.ar.number(_in_scene(machine.scene, number))

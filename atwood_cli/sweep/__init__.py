@@ -1,0 +1,1 @@
+"""Scenes along a range or a list: `atwood sweep`."""

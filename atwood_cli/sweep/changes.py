@@ -1,0 +1,150 @@
+"""Where along a range the regime changes: the exact place, not the two points beside it.
+
+The regime is asked for at few values, between which each condition that it depends on changes at most once.
+Where it differs between two of them, it changes at one of these, or is asked between them, by the decision of
+`Case`, which is exact, until it changes between two neighbouring decimals.
+
+**Why no change is missed.** With friction given, the string slips where ln r > μφ. By (1), and (3) with the
+friction of the axle, the tension ratio of a string that grips is
+
+    r = (h/l) q,  q = (2l + c + b)/(2h + c - b) where the axle lets go, h - l > b, and q = 1 where it holds.
+
+Both agree at h = l + b. On a locked pulley q = 1. If c is not known, the regime depends on the ratios for
+c = 0 and for c = ∞. Along one parameter ln r - μφ is monotone, but for a swept mass:
+
+- It falls, or stays, with μ and with φ (the wrap), on which r does not depend.
+- It rises, or stays, with c: dq/dc has the sign of h - l - b. So it does along M, β (the inertia) and I.
+- It rises, or stays, with b = f/g: q rises to 1. So it rises along f (the axle) and falls along g.
+- It falls, or stays, along R: so do c = I/R², where I is given, and b, where the axle's friction is a torque.
+- It does not depend on μ_k.
+- It falls with l: so do h/l and, where the axle lets go, (2l + c + b)/l = 2 + (c + b)/l.
+- It rises with h up to l + b, as h/l does. Beyond, r goes with h/(2h + c - b): it rises for c >= b and falls
+  for c < b.
+
+So it turns only where a swept mass equals the other mass m, as it becomes the heavier one there, and where
+it equals m + b. These are asked. Between them the sign of m2 - m1, and whether h - l <= b, change at most
+once, too. A condition that changes at most once, and is the same at both ends, is the same between them.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from decimal import ROUND_CEILING, ROUND_FLOOR
+from fractions import Fraction
+from itertools import pairwise
+from math import inf
+from operator import attrgetter
+from typing import Any, NamedTuple
+
+from ..arithmetic.rounding import text, tidy, to_digits
+from ..model.case import Case
+from ..model.scene import MASSES, Scene
+from ..model.units import MAX_MAGNITUDE
+from ..solver.answers import SHOWN_DIGITS
+from .ranges import LOCKED, Point, Range, about_power, exact_point, with_value
+
+BESIDE = Fraction(1, 10**60)
+"""A number is asked for so far from a value, in proportion, to see whether the regime changes there."""
+SMALLEST = Fraction(1, 10**MAX_MAGNITUDE)
+"""No input but 0 is smaller."""
+
+
+class Change(NamedTuple):
+    """A change along a range: ``at`` is the value itself, or the greatest decimal before the change.
+
+    At ``last`` is still what was ``before``, at ``first`` what is ``after``.
+    """
+
+    at: Point
+    before: Any
+    after: Any
+    last: Fraction
+    first: Fraction
+
+
+def changes(
+    scene: Scene,
+    along: Range,
+    digits: int | None = None,
+    known: Mapping[Fraction, str] = {},
+    what: Callable[[Case], Any] = attrgetter("regime"),
+) -> Iterator[Change]:
+    """The changes of regime along a range, from its least value on, or of anything else about its cases.
+
+    ``known`` is what it is at some values, which a place of a change must not contradict.
+    """
+
+    def state(value: Fraction) -> Any:
+        return what(Case(with_value(scene, along.name, value)))
+
+    start, stop = along.ends
+    asked = [start, *(value for value in _turns(scene, along.name) if start < value < stop), stop]
+    states = {value: state(value) for value in asked if value not in known} | dict(known)
+    for last, other in pairwise(sorted(states)):
+        while states[last] != states[other]:
+            before = states[last]
+            at, last, first = _between(state, before, last, other, digits or SHOWN_DIGITS, along.suffix)
+            states.setdefault(first, state(first))
+            yield Change(at, before, states[first], last, first)
+            last = first
+
+
+def regimes(along: Range, found: Sequence[Change], scene: Scene) -> list[str]:
+    """Each regime along a range, and up to where it holds."""
+    parts = []
+    for before, one in zip([None, *found], found, strict=False):
+        place = along.in_units(one.at)
+        where = "at" if one.at.exact == (before.at.exact if before else along.ends[0]) else "up to"
+        parts.append(f"{one.before} {where} {f'{along.name} = ' * (before is None)}{place}")
+    last = found[-1].after if found else Case(with_value(scene, along.name, along.ends[0])).regime
+    parts.append(f"{last} beyond" if found else last)
+    if along.locks and (locked := Case(scene._replace(M=inf)).regime) != last:
+        parts.append(f"{locked} at {along.stated(LOCKED)}")
+    return parts
+
+
+def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
+    """Values of a parameter at which the tension ratio turns."""
+    if name in MASSES:
+        other = scene.m1 if name == "m2" else scene.m2
+        yield other
+        yield other + Case(scene).axle_mass
+
+
+def _between(
+    state: Callable[[Fraction], Any],
+    before: Any,
+    last: Fraction,
+    first: Fraction,
+    digits: int,
+    suffix: str,
+) -> tuple[Point, Fraction, Fraction]:
+    """A change between two values: its place, and both sides of it.
+
+    The state is the one ``before`` at ``last``, and not at ``first``.
+    """
+    gap = (first - last) / 2
+    above, below = last + min(gap, last * BESIDE or SMALLEST), first - min(gap, first * BESIDE)
+    if state(above) != before:
+        return exact_point(last, suffix), last, above
+    if state(below) == before:
+        return exact_point(first, suffix), below, first
+    start = last
+    while True:
+        down, up = (to_digits(digits, way) for way in (ROUND_FLOOR, ROUND_CEILING))
+        middle = _middle(last, first)
+        at = next((x for x in map(Fraction, (down(middle), up(middle))) if last < x < first), None)
+        if at is not None:
+            last, first = (at, first) if state(at) == before else (last, at)
+        elif down(last) == last:
+            break
+        else:
+            digits += 1
+    place = tidy(down(last)) if last == start else down(last)
+    return Point(last, f"{text(place)}{suffix}" if suffix else place), last, first
+
+
+def _middle(one: Fraction, other: Fraction) -> Fraction:
+    """A value between two; where their sizes differ much, between their logarithms."""
+    low, high = sorted((one, other))
+    if low and high < 16 * low:
+        return (low + high) / 2
+    return high * about_power(low / high if low else Fraction(1, 2**128), Fraction(1, 2))

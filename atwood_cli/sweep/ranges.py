@@ -1,0 +1,396 @@
+"""Ranges and lists in place of values: the points of a sweep, and the answers there.
+
+A point is exactly the number that is printed, so that `solve` given that number prints the same row.
+Linear ranges step in exact fractions from one end to the other: steps of 0.1 are 0.1. Points that are no
+decimals (steps of a third), or at equal ratios, are rounded to as many digits as results are shown with, or
+to more if it takes more to tell them apart well. Ends that are decimals are hit exactly. The values of a list
+are all exact: a name such as disk is a point 0.5, a third is the text 1/3.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from decimal import ROUND_HALF_EVEN, Decimal
+from fractions import Fraction
+from itertools import product
+from math import inf, lcm
+from typing import Any, NamedTuple
+
+from ..arithmetic.interval import decimal_context
+from ..arithmetic.rounding import as_typed, exact_decimal, exact_or_rounded, text, tidy, to_digits
+from ..model.motion import with_number
+from ..model.scene import (
+    INPUTS,
+    UNMEASURED,
+    Input,
+    Scene,
+    SceneError,
+    in_units,
+    read_exactly,
+    read_value,
+    read_whole,
+)
+from ..model.units import MAX_DIGITS, in_quotes, read_number
+from ..output.text import said_of_scene
+from ..solver.answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
+
+UNUSUAL = {"rad": "rad", "N m": "Nm"}
+"""The units that points carry, as there are others for the same parameter."""
+MAX_POINTS, MAX_RANGES = 1_000_000, 2
+FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
+LONGEST_LIST = 6
+"""Values of a list that a sentence writes out."""
+
+
+class Point(NamedTuple):
+    """A value of a swept parameter, exactly (inf is a locked pulley), as it is printed, and as it was named.
+
+    It is printed as text where it has a unit (an angle in radians, a torque) or is no decimal (1/3, inf).
+    """
+
+    exact: Fraction | float
+    printed: Decimal | str
+    name: str = ""
+
+    @property
+    def text(self) -> str:
+        """As `solve` takes it."""
+        return self.printed if isinstance(self.printed, str) else text(self.printed)
+
+
+LOCKED = Point(inf, "inf")
+
+
+def exact_point(value: Fraction | float, suffix: str = "", name: str = "") -> Point:
+    """A number as a point: a decimal if it is one, else text."""
+    if isinstance(value, float):
+        return LOCKED
+    number, words = exact_decimal(value), as_typed(value)
+    if suffix or number is None:
+        return Point(Fraction(words), f"{words}{suffix}", name)
+    return Point(value, tidy(number), name)
+
+
+class Range(NamedTuple):
+    """A parameter that is swept, over a range or a list: as typed, its points, the unit that they carry."""
+
+    name: str
+    typed: str
+    points: list[Point]
+    log: bool
+    suffix: str
+
+    @property
+    def is_list(self) -> bool:
+        return "," in self.typed
+
+    @property
+    def words(self) -> str:
+        """What a sentence says of it: M from 0 to 50 kg, or M = 0 kg, 10 kg or inf."""
+        if not self.is_list:
+            start, stop = self.points[0], self.points[-1]
+            return f"{self.name} from {self.cell(start)} to {self.in_units(stop)}"
+        values = [self.in_units(point) for point in self.points]
+        said = [
+            f"{point.name} ({value})" if point.name else value
+            for point, value in zip(self.points, values, strict=True)
+        ]
+        first = said[:-1] if len(said) <= LONGEST_LIST else [*said[:2], "..."]
+        return f"{self.name} = {', '.join(first)} or {said[-1]}"
+
+    @property
+    def unit(self) -> str:
+        return self.suffix or INPUTS[self.name].unit
+
+    @property
+    def rank(self) -> int:
+        """Curves run along a range rather than along a list, and along numbers rather than names."""
+        return 2 * (not self.is_list) + (not any(point.name for point in self.points))
+
+    @property
+    def locks(self) -> bool:
+        """Whether one of its points is a locked pulley."""
+        return self.is_list and LOCKED in self.points
+
+    @property
+    def finite(self) -> list[Point]:
+        """The points that have a place on an axis, in the order in which they stand there."""
+        return sorted(point for point in self.points if point != LOCKED)
+
+    @property
+    def ends(self) -> tuple[Fraction, Fraction]:
+        """The least and the greatest of its finite values, in its unit."""
+        points = self.finite
+        return Fraction(points[0].exact), Fraction(points[-1].exact)
+
+    def steps(self, count: int) -> Iterator[Fraction]:
+        """So many equal steps from one end to the other, about, or equal ratios; with both ends."""
+        start, stop = self.ends
+        yield start
+        for i in range(1, count):
+            share = Fraction(i, count)
+            yield start * about_power(stop / start, share) if self.log else start + (stop - start) * share
+        yield stop
+
+    def cell(self, point: Point) -> str:
+        """A point as a table shows it, where a head has the unit."""
+        return point.name or point.text.removesuffix(self.suffix)
+
+    def in_units(self, point: Point) -> str:
+        """A point with the unit of its parameter."""
+        return point.text if self.suffix or point == LOCKED else in_units(self.name, point.text)
+
+    def stated(self, point: Point) -> str:
+        """What tells a point from others, in a sentence: M = 10 kg, or disk."""
+        return point.name or f"{self.name} = {self.in_units(point)}"
+
+
+class Sweep(NamedTuple):
+    """Ranges, the first of which varies slowest, and the scene at their first finite values."""
+
+    ranges: list[Range]
+    scene: Scene
+
+    @property
+    def total(self) -> int:
+        return len(self.ranges[0].points) * (len(self.ranges[1].points) if self.ranges[1:] else 1)
+
+    @property
+    def inputs(self) -> dict[str, str]:
+        """Each input in words, and the ranges."""
+        ranges = {range_.name: range_.words for range_ in self.ranges}
+        return said_of_scene(self.scene, varied=ranges) | ranges
+
+    def along(self, along: Range) -> Iterator[tuple[Scene, dict[str, Point]]]:
+        """The scene at each point of the other range, if there is one, and that point."""
+        others = [range_ for range_ in self.ranges if range_ is not along]
+        for points in product(*(range_.points for range_ in others)):
+            at = dict(zip((range_.name for range_ in others), points, strict=True))
+            yield self.at(at), at
+
+    def at(self, at: Mapping[str, Point]) -> Scene:
+        """The scene at a point, valid as those at the corners are. What is left out is as in ``scene``."""
+        scene = self.scene
+        for range_ in self.ranges:
+            if range_.name in at:
+                scene = with_value(scene, range_.name, at[range_.name].exact)
+        return scene
+
+    def stated(self, at: Mapping[str, Point]) -> str:
+        """What tells one place of a sweep from others, in a sentence."""
+        return ", ".join(range_.stated(at[range_.name]) for range_ in self.ranges if range_.name in at)
+
+
+class Row(NamedTuple):
+    """The answers at a point."""
+
+    at: dict[str, Point]
+    regime: str
+    values: dict[str, object]
+    reasons: dict[str, str]
+
+
+def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sweep:
+    """The sweep given: values, with one or two ranges or lists, for so many digits. Raises SceneError."""
+    typed = {name: words for name in INPUTS if re.search("[:,]", words := given.get(name) or "")}
+    if not typed:
+        rule = f"or another option of the scene must carry a list, as 0,1,10, or a range: {FORM}"
+        raise SceneError("M", None, rule)
+    names = list(typed)
+    if len(names) > MAX_RANGES:
+        third = names[MAX_RANGES]
+        rule = f"is a third range or list, after {' and '.join(names[:2])}; give two"
+        raise SceneError(third, typed[third], rule)
+    # What is wrong everywhere is not the first point's fault.
+    fixed = {name: read_exactly(name, given.get(name)) for name in INPUTS if name not in typed}
+    ranges = [
+        read_list(name, words) if "," in words else read_range(name, words, digits)
+        for name, words in typed.items()
+    ]
+    # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
+    corners = ([x.finite[0], x.finite[-1], *[LOCKED] * x.locks] for x in ranges)
+    scene, *_ = (scene_at(fixed, ranges, corner) for corner in product(*corners))
+    sweep = Sweep(ranges, scene)
+    if sweep.total > MAX_POINTS:
+        rule = f"makes {sweep.total} points with {names[0]}; at most {MAX_POINTS} are taken"
+        raise SceneError(names[1], typed[names[1]], rule)
+    return sweep
+
+
+class _Number(NamedTuple):
+    """A number of a range or a list, the unit that points carry for it, and whether it was typed with a unit.
+
+    A name is typed neither with a unit nor without: None.
+    """
+
+    value: Any
+    suffix: str
+    has_unit: bool | None
+
+
+def read_range(name: str, typed: str, digits: int | None = None) -> Range:
+    """A range of a parameter, its points to about so many digits. Raises SceneError."""
+    words = typed.split(":")
+    if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
+        raise SceneError(name, typed, f"is no range; write {FORM}")
+    for word in words[:2]:
+        if word.strip().lower() in (LOCKED.text, *INPUTS[name].names):
+            rule = f"has the end {in_quotes(word)}; a range runs between finite numbers"
+            raise SceneError(name, typed, rule)
+    numbers = [_read_number(name, word) for word in words[:2]]
+    suffix = _common_unit(name, typed, numbers)
+    start, stop, log = numbers[0].value, numbers[1].value, len(words) == 4
+    if start == stop:
+        raise SceneError(name, typed, "has equal ends; a range runs from one value to another")
+    if log and not (start > 0 and stop > 0):
+        raise SceneError(name, typed, "has no equal ratios from or to 0; both ends must be above 0")
+    try:
+        last = read_whole(name, words[2], 2, MAX_POINTS) - 1
+    except SceneError as error:
+        raise SceneError(name, typed, f"has the count {in_quotes(words[2])}, which {error.rule}") from None
+    kept = _digits_kept(start, stop, last, log, digits)
+    if kept > MAX_DIGITS:
+        rule = f"has points closer together than {MAX_DIGITS} digits can tell"
+        raise SceneError(name, typed, f"{rule}; take fewer points, or ends further apart")
+    ends = [tidy(exact_or_rounded(end, to_digits(kept))) for end in (start, stop)]
+    points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last, kept), ends[1]]
+    printed = [Point(Fraction(x), f"{text(x)}{suffix}" if suffix else x) for x in points]
+    return Range(name, typed, printed, log, suffix)
+
+
+def read_list(name: str, typed: str) -> Range:
+    """A list of values of a parameter. Raises SceneError."""
+    words = [word.strip() for word in typed.split(",")]
+    if ":" in typed:
+        raise SceneError(name, typed, "mixes a list with a range; give one of them")
+    if not all(words):
+        raise SceneError(name, typed, "has an empty place; write a list as 0,1,10")
+    if any(re.match(r"0\d", word) for word in words[1:]):
+        read_value(name, typed)  # refuses 1,05 and 1,000: numbers rather than lists
+    numbers = [_read_number(name, word) for word in words]
+    suffix = _common_unit(name, typed, numbers)
+    values = [number.value for number in numbers]
+    if len(set(values)) < len(values):
+        again = next(word for i, word in enumerate(words) if values[i] in values[:i])
+        raise SceneError(name, typed, f"has the value {in_quotes(again)} twice; give it once")
+    named = [word.lower() if word.lower() in INPUTS[name].names else "" for word in words]
+    points = [exact_point(value, suffix, word) for value, word in zip(values, named, strict=True)]
+    return Range(name, typed, points, False, suffix)
+
+
+def _read_number(name: str, word: str) -> _Number:
+    """A number of a range or a list. Raises SceneError."""
+    value = read_value(name, word)
+    named = word.strip().lower() in (LOCKED.text, *INPUTS[name].names)
+    has_unit = None if named else bool(read_number(word, INPUTS[name].dimension).unit)
+    if name in ("wrap", "axle"):
+        return _Number(value.number, UNUSUAL.get(value.unit, ""), has_unit)
+    return _Number(value, "", has_unit)
+
+
+def _common_unit(name: str, typed: str, numbers: Sequence[_Number]) -> str:
+    """The unit that points carry, if any. Raises SceneError."""
+    # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
+    numbers = [x for x in numbers if x.value and x.has_unit is not None]
+    if len({x.has_unit for x in numbers}) > 1:
+        raise SceneError(name, typed, "has a unit at some numbers only; write it at each")
+    if len({x.suffix for x in numbers}) > 1:
+        raise SceneError(name, typed, "has units of two kinds; write all numbers in the same unit")
+    return numbers[0].suffix if numbers else ""
+
+
+def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: int | None) -> int:
+    """The significant digits of points: all where ends and steps are decimals, unless fewer are wanted.
+
+    Else as many as are wanted, but three more than it takes to tell neighbours apart.
+    """
+    if log:  # neighbours differ by at least |ln ratio|/last of their size
+        apart = min(abs(1 - start / stop), abs(1 - stop / start)) / last
+    else:
+        step = (stop - start) / last
+        if not digits and None not in (exact_decimal(start), exact_decimal(step)):
+            return MAX_DIGITS
+        apart = abs(step) / max(abs(start), abs(stop))
+    return max(digits or SHOWN_DIGITS, len(str(int(1 / apart))) + 3)
+
+
+def _equal_steps(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
+    """The points between the ends, each of them from integers over one denominator, rounded once."""
+    step = (stop - start) / last
+    unit = lcm(start.denominator, step.denominator)
+    context = decimal_context(kept, ROUND_HALF_EVEN)
+    first, by, whole = int(start * unit), int(step * unit), Decimal(unit)
+    for i in range(1, last):
+        yield tidy(context.divide(Decimal(first + i * by), whole))
+
+
+def _equal_ratios(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
+    """The points between the ends, each the one before times the same factor, in 20 digits more."""
+    context, finer = (decimal_context(n, ROUND_HALF_EVEN) for n in (kept, max(kept, DOUBLE_DIGITS) + 20))
+    value, whole = (finer.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (start, stop / start))
+    by = finer.exp(finer.divide(finer.ln(whole), Decimal(last)))
+    for _ in range(1, last):  # a million factors cost half of the further digits
+        value = finer.multiply(value, by)
+        yield tidy(context.plus(value))
+
+
+def with_value(scene: Scene, name: str, value: Fraction | float) -> Scene:
+    """The scene with another value of a parameter, in the unit that it has there."""
+    return with_number(scene, UNMEASURED, name, value)[0]
+
+
+def about_power(ratio: Fraction, share: Fraction) -> Fraction:
+    """A ratio to a power between 0 and 1, to a few digits."""
+    context = decimal_context(DOUBLE_DIGITS, ROUND_HALF_EVEN)
+    number, exponent = (context.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (ratio, share))
+    return Fraction(context.power(number, exponent))
+
+
+def scene_at(fixed: Mapping[str, Input], ranges: Sequence[Range], points: Sequence[Point]) -> Scene:
+    """The scene of the fixed inputs and those at a point, which are read as `solve` reads them.
+
+    Raises SceneError.
+    """
+    at = list(zip(ranges, points, strict=True))
+    here = {range_.name: read_exactly(range_.name, point.text) for range_, point in at}
+    try:
+        return Scene.of({**fixed, **here})
+    except SceneError as error:
+        if error.parameter in here or error.value is None:
+            raise
+        where = ", ".join(f"{range_.name} = {range_.in_units(point)}" for range_, point in at)
+        raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
+
+
+class _Watched:
+    """A scene that notes what of it is read."""
+
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.read = scene, set[str]()
+
+    def __getattr__(self, name: str) -> Any:
+        self.read.add(name)
+        return getattr(self.scene, name)
+
+
+def _unchanged(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[tuple[str, Answers]]:
+    """The quantities that are found from the other inputs alone, and so are the same at all points."""
+    fixed = set(INPUTS) - {range_.name for range_ in sweep.ranges}
+    for name in names:
+        watched: Any = _Watched(sweep.scene)
+        answers = Answers(watched, digits)
+        _ = answers[name]
+        if watched.read <= fixed:
+            yield name, answers
+
+
+def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[Row]:
+    """The quantities named at every point, each point solved by itself."""
+    swept = [range_.name for range_ in sweep.ranges]
+    unchanged = dict(_unchanged(sweep, ["regime", *names], digits))
+    for points in product(*(range_.points for range_ in sweep.ranges)):
+        at = dict(zip(swept, points, strict=True))
+        answers = Answers(sweep.at(at), digits)
+        found = {name: unchanged.get(name, answers) for name in ["regime", *names]}
+        values = {name: found[name][name] for name in names}
+        reasons = {name: found[name].reasons[name] for name in names if name in found[name].reasons}
+        yield Row(at, found["regime"]["regime"], values, reasons)

@@ -1,0 +1,130 @@
+"""A sweep as a table with its regimes, as JSON and as CSV."""
+
+import sys
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
+from fractions import Fraction
+from itertools import groupby, pairwise
+from operator import attrgetter
+
+from ..arithmetic.rounding import to_digits, to_double
+from ..model.quantities import QUANTITIES, STANDARD
+from ..output.page import Page, aligned, watched
+from ..output.text import VERSION, cell, scene_record
+from ..solver.answers import SHOWN_DIGITS
+from ..solver.messages import reasons_at
+from .changes import changes, regimes
+from .ranges import Row, Sweep, solve_rows
+from .sweep_figure import MAX_CURVES
+
+
+class SweepPage:
+    """A sweep in the forms in which it may be asked for; rows of JSON and CSV are written as they come."""
+
+    def __init__(self, sweep: Sweep, names: Sequence[str], digits: int | None) -> None:
+        self.sweep, self.digits = sweep, digits
+        self.asked, self.missing = set(names), set(names)  # quantities, and those of them that no row has
+        self.names = names or STANDARD
+        # Where a sentence tells the regimes, a column of them must be asked for.
+        self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
+        self.reasons: Counter[tuple[str, str]] = Counter()
+
+    def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
+        """The rows, while it is counted why values are missing."""
+        rows = solve_rows(self.sweep, names, digits)
+        for row in watched(rows, self.sweep.total) if watch else rows:
+            self.reasons.update(row.reasons.items())
+            self.missing = {name for name in self.missing if not cell(row.values[name])}
+            yield row
+
+    def notes(self) -> list[str]:
+        """Why values that were asked for are missing, and at how many points, when all rows are out."""
+        asked = {key: points for key, points in self.reasons.items() if key[0] in self.asked}
+        return reasons_at(asked, self.sweep.total)
+
+    def _all_notes(self) -> Iterator[str]:
+        """Why any values are missing; begun when all rows are out."""
+        yield from reasons_at(self.reasons, self.sweep.total)
+
+    def json(self) -> Mapping[str, object]:
+        ranges = {range_.name: range_.typed for range_ in self.sweep.ranges}
+        rounding = to_double if self.digits is None else to_digits(self.digits)
+        return {
+            "version": VERSION,
+            "scene": scene_record(self.sweep.scene, round_=rounding) | ranges,
+            "rows": self.records(),
+            "notes": self._all_notes(),
+        }
+
+    def records(self) -> Iterator[dict[str, object]]:
+        # Where rows would run into the bar, there is none.
+        for row in self._rows(self.names, self.digits, watch=not sys.stdout.isatty()):
+            at = {name: point.printed for name, point in row.at.items()}
+            yield at | {name: row.values[name] for name in self.names}
+
+    def page(self) -> None:
+        """The scene, its regimes, what is the same in all rows, a row a point, and the notes.
+
+        Columns without a value are left out.
+        """
+        page, sweep, names = Page(), self.sweep, list(self.columns)
+        if sweep.scene.M is None and sweep.scene.mu is not None and PULLEY not in names:
+            names.append(PULLEY)
+        rows = list(self._rows(names, self.digits or SHOWN_DIGITS))
+        cells = {name: [cell(row.values[name]) for row in rows] for name in names}
+        shown = {name: column for name, column in cells.items() if any(column)}
+        same = {name: column[0] for name, column in shown.items() if len(set(column)) == 1}
+        above = [", ".join(sweep.inputs.values()), *_regimes(sweep, rows, self.digits)]
+        if PULLEY not in same and any(row.regime == "verge" for row in rows):
+            above.append(PULLEYS)
+        if once := [_stated(name, value) for name, value in same.items() if name != "regime"]:
+            above.append(f"In all rows: {', '.join(once)}.")
+        notes = self.notes()
+        page.say(*above)
+        if len(same) < len(shown) or not shown:
+            columns = {}
+            for range_ in sweep.ranges:
+                points = [range_.cell(row.at[range_.name]) for row in rows]
+                unit = _in_brackets(range_.unit)
+                named = any(point.name for point in range_.points)
+                columns[f"{range_.name}\n{unit}"] = points if named else aligned(points)
+            for name in [name for name in shown if name not in same]:
+                unit = _in_brackets(QUANTITIES[name].unit) if name in QUANTITIES else ""
+                columns[f"{name}\n{unit}"] = aligned(shown[name])
+            lines = zip(*columns.values(), strict=True)
+            slow = sweep.ranges[0].name  # groups are of its points, or of regimes
+            groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
+            table = [[next(lines) for _ in group] for _, group in groups]
+            page.table(list(columns), table)
+        page.say(*notes)
+
+
+PULLEY = "critical_pulley_mass"
+PULLEYS = "As M is not given, each row that is on the verge has a pulley of its own: the critical one."
+
+
+def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:
+    """The regimes along one range, that which varies fast if two come into question.
+
+    There is a sentence for each point of the other, if these are few.
+    """
+    along = max(reversed(sweep.ranges), key=attrgetter("rank"))
+    if len({row.regime for row in rows}) == 1 and sweep.ranges[1:]:
+        yield f"Regimes: {rows[0].regime}."
+    elif sweep.total // len(along.points) <= MAX_CURVES:
+        for scene, at in sweep.along(along):
+            part = [row for row in rows if at.items() <= row.at.items()]
+            if along.is_list:
+                part = [row for point in along.finite for row in part if row.at[along.name] == point]
+            beside = [two for two in pairwise(part) if two[0].regime != two[1].regime]
+            known = {Fraction(row.at[along.name].exact): row.regime for two in beside for row in two}
+            words = ", ".join(regimes(along, list(changes(scene, along, digits, known)), scene))
+            yield f"{sweep.stated(at) or 'Regimes'}: {words}."
+
+
+def _stated(name: str, value: str) -> str:
+    return f"{name} = {value} {QUANTITIES[name].unit}".rstrip()
+
+
+def _in_brackets(unit: str) -> str:
+    return f"({unit})" if unit else ""

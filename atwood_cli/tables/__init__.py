@@ -1,0 +1,1 @@
+"""Tables as people keep them, read: headings and cells of text."""

@@ -1,0 +1,278 @@
+"""Tables of text: each record stays as it came, and the cells of its quantities are read beside it.
+
+A record of CSV is a row, which may have several lines, and one of NDJSON is a line. Cells are texts too.
+"""
+
+import csv
+import json
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from io import StringIO
+from typing import TYPE_CHECKING, NamedTuple
+
+from ..files import Unreadable
+from ..model.units import counted, in_quotes
+from .headings import PARTED_BY, Heading
+from .sources import BLOCK, LONGEST_RECORD, decoded, too_long, whole_lines
+
+if TYPE_CHECKING:
+    import polars as pl
+
+MOST_COLUMNS = 1024
+BYTE_ORDER_MARK = "\ufeff"
+STRAY_MARK = 'has a quotation mark out of place; write it "like ""this"""'
+STRAY_RETURN = (
+    "has a carriage return without a line feed; save it with line feeds, or put its cell in quotation marks"
+)
+
+
+class Piece(NamedTuple):
+    """Some records of a table.
+
+    ``texts`` are the records without their line ends, ``cells`` those of the columns that hold a quantity, by
+    its name, ``errors`` say why a record cannot be read, and ``size`` is how much of the file it all is.
+    """
+
+    texts: "pl.Series"
+    cells: "pl.DataFrame"
+    errors: Mapping[int, str]
+    size: int
+
+
+class Csv:
+    """A table of cells parted by a separator, under a header.
+
+    Where no record has a quotation mark and all have as many cells as the header, they are taken apart at
+    the separators in bulk. Elsewhere Python's `csv` does it, and is strict about quotation marks.
+    """
+
+    def __init__(
+        self, blocks: Iterator[bytes], usual: str, known: Callable[[Sequence[str]], Collection[str]]
+    ):
+        """Read the header by the separator that makes most ``known`` columns, then most, or else is usual."""
+        csv.field_size_limit(LONGEST_RECORD)
+        self._texts = (decoded(*lines) for lines in whole_lines(blocks, cells=True))
+        self._text, self._at, self._line = next(self._texts, ""), 0, 1
+        self.mark = BYTE_ORDER_MARK * self._text.startswith(BYTE_ORDER_MARK)
+        self._text = self._text.removeprefix(BYTE_ORDER_MARK)
+        while self._text.count('"') % 2 and len(self._text) < LONGEST_RECORD:  # the header may have line ends
+            if not (more := next(self._texts, "")):
+                break
+            self._text += more
+
+        def score(separator: str) -> tuple[int, int]:
+            cells = _first_row(self._text, separator)
+            return len(known(cells)), len(cells)
+
+        self.separator = max((usual, *PARTED_BY), key=score)
+        header, self.columns = next(self._records(), ("", []))
+        if not header:
+            raise Unreadable("it is empty")
+        if len(self.columns) > MOST_COLUMNS:
+            raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
+        self.header = self.mark + header.rstrip("\r\n")
+        self.line_end = "\r\n" if header.endswith("\r\n") else "\n"
+        self._line += header.count("\n")
+
+    def pieces(self, headings: Sequence[Heading]) -> Iterator[Piece]:
+        """The records below the header. Raises Unreadable."""
+        while text := self._text[self._at :] or next(self._texts, ""):
+            self._text, self._at = text, 0
+            if piece := self._in_bulk(headings):
+                self._line += len(piece.texts)
+                self._at = len(text)
+                yield piece
+            else:
+                yield from self._by_csv(headings)
+
+    def _in_bulk(self, headings: Sequence[Heading]) -> Piece | None:
+        """The records of a text that are plain, one and all."""
+        import polars as pl
+
+        text = self._text
+        if '"' in text or ("\r" in text and text.count("\r") > text.count("\r\n")):
+            return None
+        lines = pl.Series([text.removesuffix("\n")]).str.split("\n").explode()
+        if "\r" in text:
+            lines = lines.str.strip_suffix("\r")
+        cells = lines.str.split(self.separator)
+        if not (cells.list.len() == len(self.columns)).all():
+            return None
+        frame = pl.DataFrame({one.name: cells.list.get(one.at) for one in headings})
+        return Piece(lines, frame, {}, len(text))
+
+    def _by_csv(self, headings: Sequence[Heading]) -> Iterator[Piece]:
+        """The records from here to one that ends where a text does."""
+        import polars as pl
+
+        width = len(self.columns)
+        texts: list[str] = []
+        rows: list[list[str]] = []
+        errors: dict[int, str] = {}
+        size = 0
+
+        def piece() -> Piece:
+            frame = pl.DataFrame(rows, dict.fromkeys((one.name for one in headings), pl.String), orient="row")
+            return Piece(pl.Series(texts, dtype=pl.String), frame, errors, size)
+
+        for record, cells in self._records():
+            lacking = width - len(cells)
+            if lacking < 0:
+                raise self._too_wide(len(cells))
+            if lacking:
+                errors[len(texts)] = f"the row has {counted(len(cells), 'cell')}, and the header {width}"
+            texts.append(record.rstrip("\r\n") + self.separator * lacking)
+            cells += [""] * lacking
+            rows.append([cells[one.at] for one in headings])
+            size += len(record)
+            if size > BLOCK:
+                yield piece()
+                texts, rows, errors, size = [], [], {}, 0
+        if texts:
+            yield piece()
+
+    def _records(self) -> Iterator[tuple[str, list[str]]]:
+        """The rows that are not blank, with their cells, up to one that ends where a text does."""
+        taken: list[str] = []
+
+        def lines() -> Iterator[str]:
+            while True:
+                while self._at < len(self._text):
+                    end = self._text.find("\n", self._at) + 1 or len(self._text)
+                    taken.append(self._text[self._at : end])
+                    self._at = end
+                    yield taken[-1]
+                if not taken or not (text := next(self._texts, "")):
+                    return
+                self._text, self._at = text, 0
+
+        try:
+            for cells in csv.reader(lines(), delimiter=self.separator, strict=True):
+                record = "".join(taken)
+                taken.clear()
+                if "\r\r" in record[-3:]:  # of which csv takes both for line ends
+                    raise csv.Error("new-line")
+                if record.strip() or len(cells) > 1:
+                    yield record, cells
+                self._line += record.count("\n")
+        except csv.Error as error:
+            raise self._refused(str(error)) from None
+
+    def _refused(self, error: str) -> Unreadable:
+        """What is wrong with the quotation marks of a row, by the error of `csv`."""
+        where = f"the row that begins in line {self._line}"
+        if "end of data" in error:
+            how = "it is truncated, or one is left open"
+            return Unreadable(f"it ends within quotation marks, in {where}: {how}")
+        if "limit" in error:
+            return Unreadable(f"{too_long(self._line)}; is a quotation mark left open?")
+        how = STRAY_RETURN if "new-line" in error else STRAY_MARK
+        return Unreadable(f"{where} {how}")
+
+    def _too_wide(self, cells: int) -> Unreadable:
+        """The error for a row of more cells than there are columns."""
+        how = "; is there a decimal comma (write a point), or one at its end?" * (self.separator == ",")
+        return Unreadable(f"line {self._line} has {cells} cells, and the header {len(self.columns)}{how}")
+
+
+def _first_row(text: str, separator: str) -> list[str]:
+    """The first row that is not blank, as it seems by that separator."""
+    rows = csv.reader(StringIO(text, newline="\n"), delimiter=separator)
+    try:
+        return next((cells for cells in rows if len(cells) > 1 or "".join(cells).strip()), [])
+    except csv.Error:
+        return []
+
+
+# NDJSON
+
+
+def read_ndjson(
+    blocks: Iterator[bytes], headings: Callable[[Sequence[str]], Sequence[Heading]]
+) -> Iterator[Piece]:
+    """The lines that are not blank. One that is no object is an error of its record. Raises Unreadable.
+
+    ``headings`` is asked what the keys hold, and again when there are more of them.
+    """
+    import polars as pl
+
+    keys: dict[str, object] = {}
+    known = -1
+    wanted: Sequence[Heading] = ()
+    for text, _ in whole_lines(blocks, cells=False):
+        lines: list[str] = []
+        objects: list[dict[str, object]] = []
+        errors: dict[int, str] = {}
+        for raw in text.split(b"\n"):
+            if not (line := raw.decode(errors="backslashreplace").strip(BYTE_ORDER_MARK + " \t\r")):
+                continue
+            try:
+                row = _object(raw, line)
+            except Unreadable as error:
+                errors[len(lines)] = str(error)
+                line, row = "{}", {}
+            lines.append(line)
+            objects.append(row)
+            keys.update(row)
+        if not lines:
+            continue
+        if len(keys) > MOST_COLUMNS:
+            raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
+        if len(keys) > known:
+            known = len(keys)
+            wanted = headings(list(keys))
+        cells = {one.name: _column([row.get(one.column) for row in objects]) for one in wanted}
+        yield Piece(pl.Series(lines), pl.DataFrame(cells), errors, len(text))
+    if known < 0:
+        raise Unreadable("it is empty")
+
+
+def _object(raw: bytes, line: str) -> dict[str, object]:
+    """The object of a line, with numbers as they are written. Raises Unreadable."""
+    why = "it is no object"
+    try:
+        raw.decode()
+        row = _DECODER.decode(line)
+        if isinstance(row, dict):
+            return row
+    except RecursionError:
+        why = "it is nested too deeply"
+    except UnicodeDecodeError as error:
+        why = f"it is not UTF-8: byte 0x{raw[error.start]:02x}"
+    except json.JSONDecodeError as error:
+        why = f"{error.msg.removesuffix(' at')} at character {error.colno}"
+    except ValueError as error:
+        why = str(error)
+    raise Unreadable(f"{in_quotes(line)} is not a line of NDJSON: {why}")
+
+
+def _members(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
+    row = dict(pairs)
+    if len(row) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"column {in_quotes(twice)} is there {names.count(twice)} times")
+    return row
+
+
+def _no_number(word: str) -> str:
+    raise ValueError(f"{word} is no number of JSON; write null where nothing is given")
+
+
+_DECODER = json.JSONDecoder(
+    object_pairs_hook=_members, parse_float=str, parse_int=str, parse_constant=_no_number
+)
+
+
+def _column(values: Sequence[object]) -> "pl.Series":
+    """Values as texts, as they are written in JSON where they are no texts, numbers or null."""
+    import polars as pl
+
+    try:
+        return pl.Series(values, dtype=pl.String, strict=True)
+    except (TypeError, UnicodeEncodeError):  # halves of surrogate pairs, which UTF-8 does not have
+        return pl.Series(map(_text, values), dtype=pl.String)
+
+
+def _text(value: object) -> str | None:
+    text = value if value is None or isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return text and text.encode(errors="backslashreplace").decode()

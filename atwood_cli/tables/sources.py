@@ -1,0 +1,153 @@
+"""Tables opened: files, unpacked if they are compressed, and pipes; what is none is called what it is."""
+
+import gzip
+import os
+import re
+import sys
+import zlib
+from collections.abc import Iterator
+from contextlib import ExitStack, suppress
+from functools import partial
+from itertools import chain
+from pathlib import Path
+from select import select
+from time import monotonic
+from typing import IO, Any
+
+from ..files import FORMATS, LONGEST_NAME, STREAM, Unreadable
+from ..model.scene import SceneError
+from ..model.units import in_quotes, shortened
+
+SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
+PACKED = ".gz"
+BLOCK = 2 << 20
+"""The bytes that are read at a time; a piece of a table takes several times as much memory."""
+MOMENT = 0.05  # seconds
+LONGEST_RECORD = 1 << 20
+"""Bytes. A quotation mark that is never closed must not make the whole file one record."""
+FOREIGN = {
+    rb"\x1f\x8b|BZh|\xfd7zXZ|\x28\xb5\x2f\xfd": "compressed; unpack it first",
+    rb"PK\x03\x04|\xd0\xcf\x11\xe0": "a workbook (.xlsx, .xls), or an archive; save the sheet as CSV",
+    rb"\xff\xfe|\xfe\xff|.?\0": "in UTF-16 or UTF-32; save it as UTF-8",
+    rb"PAR1": "Parquet; batch reads it with --from parquet, and fit reads CSV",
+    rb"\[[{\n]": "a JSON array; write an object a line, and give --from ndjson to batch",
+}
+"""How files of other kinds begin, what they are, and what to do."""
+JSON_FOR_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
+
+
+def read_format(given: str | None, path: str) -> str:
+    """The format named, or that of the suffix, before which a packed file has another; CSV for a stream, a
+    pipe or a device. Raises SceneError.
+    """
+    if given is not None:
+        if given not in FORMATS:
+            raise SceneError("from", given, f"is no format; there are {', '.join(FORMATS)}")
+        return given
+    name = Path(path).with_suffix("") if is_packed(path) else Path(path)
+    if suffix := SUFFIXES.get(name.suffix.lower()):
+        return suffix
+    if is_stream(path):
+        return "csv"
+    raise SceneError("from", None, f"is needed: {in_quotes(path)} ends in none of {', '.join(SUFFIXES)}")
+
+
+def check_format(path: str, kind: str) -> None:
+    """Refuse an output whose suffix is that of another format. Raises SceneError."""
+    suffix = Path(path).suffix.lower()
+    if suffix == PACKED or SUFFIXES.get(suffix, kind) != kind:
+        raise SceneError("output", path, f"ends in {suffix}; results are in the format of the table, {kind}")
+
+
+def is_stream(path: str) -> bool:
+    """Whether the path is that of stdin, stdout, a pipe or a device, not of a file."""
+    return path == STREAM or (os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path)))
+
+
+def is_packed(path: str) -> bool:
+    """Whether a file is compressed, by its suffix."""
+    return Path(path).suffix.lower() == PACKED
+
+
+def opened(source: str, stack: ExitStack) -> IO[bytes]:
+    """The file of that name, unpacked if it is compressed, or stdin. Raises Unreadable."""
+    if source == STREAM:
+        if sys.stdin is None:
+            raise Unreadable("it is closed")
+        return sys.stdin.buffer
+    try:
+        opener: Any = gzip.open if is_packed(source) else open
+        file: IO[bytes] = stack.enter_context(opener(source, "rb"))
+        return file
+    except OSError as error:
+        raise Unreadable(error.strerror) from None
+
+
+def cannot_read(source: str, why: Unreadable) -> OSError:
+    """The error for a file, or stdin, that is no table."""
+    return OSError(f"cannot read {'stdin' if source == STREAM else shortened(source, LONGEST_NAME)}: {why}")
+
+
+def blocks_of(file: IO[bytes]) -> Iterator[bytes]:
+    """The bytes of a file in blocks, of a pipe in blocks of what comes within a moment. Raises Unreadable."""
+    read = file.read if file.seekable() else partial(_what_comes, file)
+    while True:
+        try:
+            block = read(BLOCK)
+        except (OSError, EOFError, zlib.error) as error:
+            why = getattr(error, "strerror", None) or str(error)
+            raise Unreadable(why) from None
+        if not block:
+            return
+        yield block
+
+
+def _what_comes(pipe: Any, most: int) -> bytes:
+    """What a pipe brings within a moment, once it brings something; nothing at its end."""
+    block: bytes = pipe.read1(most)
+    end = monotonic() + MOMENT
+    with suppress(OSError):  # on Windows, only sockets can be asked
+        while block and len(block) < most and select([pipe], [], [], max(0, end - monotonic()))[0]:
+            if not (more := pipe.read1(most)):
+                break
+            block += more
+    return block
+
+
+def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[tuple[bytes, int]]:
+    """Blocks that end where a line does, but for the last, each with the number of its first line.
+
+    Raises Unreadable for what is neither a text of ``cells`` nor one of objects.
+    """
+    rest, line = b"", 1
+    for block in chain(blocks, [b""]):
+        if line == 1 and not rest:
+            start = block.removeprefix(b"\xef\xbb\xbf")
+            for pattern, kind in (FOREIGN | JSON_FOR_CSV if cells else FOREIGN).items():
+                if re.match(pattern, start, re.DOTALL):
+                    raise Unreadable(f"it is {kind}")
+        rest += block
+        end = rest.rfind(b"\n") + 1 if block else len(rest)
+        if end:
+            yield rest[:end], line
+            line += rest.count(b"\n", 0, end)
+            rest = rest[end:]
+        if len(rest) > LONGEST_RECORD:
+            raise too_long(line)
+
+
+def too_long(line: int) -> Unreadable:
+    """The error for a row that may as well be a whole file."""
+    return Unreadable(
+        f"the row that begins in line {line} is longer than {LONGEST_RECORD >> 20} MB, the most taken"
+    )
+
+
+def decoded(text: bytes, line: int) -> str:
+    """The text, which begins in that line of the file. Raises Unreadable."""
+    try:
+        return text.decode()
+    except UnicodeDecodeError as error:
+        line += text.count(b"\n", 0, error.start)
+        byte = text[error.start]
+        raise Unreadable(f"line {line} is not UTF-8: byte 0x{byte:02x}; save it as UTF-8") from None
