@@ -65,6 +65,11 @@ class Command(TyperCommand):
 
         write_options(self, ctx, formatter)
 
+    def collect_usage_pieces(self, ctx: Any) -> list[str]:
+        """`[OPTIONS] RUNS`, which versions of typer put differently."""
+        arguments = [param for param in self.params if param.param_type_name == "argument"]
+        return ["[OPTIONS]", *(str(param.metavar) for param in arguments)]
+
 
 def _print_version(wanted: bool) -> None:
     if wanted:

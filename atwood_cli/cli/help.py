@@ -13,6 +13,8 @@ def write_options(command: Any, context: Any, formatter: Any) -> None:
     groups: dict[str, list[tuple[str, str]]] = {}
     for param in command.get_params(context):
         record = param.get_help_record(context)
+        if param.param_type_name == "argument":
+            record = (param.metavar, record[1])  # typer 0.29 adds its type
         groups.setdefault(getattr(param, "rich_help_panel", None) or "Output", []).append(record)
     for panel in sorted(groups, key=lambda panel: LAST.index(panel) if panel in LAST else -1):
         with formatter.section(panel):
