@@ -4,10 +4,9 @@ Sums, products and quotients round lo down and hi up, which the standard library
 every platform. So the true value always lies in the enclosure; cancellation only makes it wider. `rounding`
 takes the digits from enclosures.
 
-Each function derives its own error bound. π, cosine and sine are summed in integers, in units of 2^-w;
-`decimal` rounds roots, exponentials and logarithms correctly. A function is evaluated only at the lower end
-of its argument. Over an argument's width δ <= 1, ln(1 + y), cosine and sine change by at most δ, and e^x
-by at most 2δ e^x.
+Each function derives its own error bound. Constants and series are summed in integers, in units of 2^-w. A
+function is evaluated only at the lower end of its argument. Over an argument's width δ <= 1, ln(1 + y),
+cosine and sine change by at most δ, and e^x by at most 2δ e^x.
 """
 
 from __future__ import annotations
@@ -26,6 +25,8 @@ LARGEST_EXPONENT = 10**8
 LARGEST_ARGUMENT = LARGEST_EXPONENT * 2_302_585_092 // 10**9  # of an exponential: times ln 10
 ZERO, ONE, TWO, INFINITY = Decimal(0), Decimal(1), Decimal(2), Decimal("inf")
 KEPT = 256  # values of a function: quantities ask for the same ones
+DOUBLES = 300  # the largest exponent of a number that is taken for a double
+LOG10_E = Decimal("0.434294481903")  # rounded down, so that the rest of an argument is not negative
 
 
 class Unsettled(ArithmeticError):
@@ -245,18 +246,32 @@ class Enclosures:
 
     @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _expm1(self, x: Decimal) -> Enclosure:
-        """e^x - 1 for a number x >= 0. `decimal` rounds e^x correctly, so one step outwards encloses it.
+        """e^x - 1 for a number x >= 0, to the relative precision of the result.
 
-        The more digits of e^x near 1 cancel, the more it is computed with.
+        All is computed in integers, in units of 2^-w. x - n ln 10 is in [0, 2.4), off by at most 2n + 2
+        units. It is divided by 2^s, which gives r, and e^r - 1 = r + r²/2 + ... is summed. Then s doublings
+        follow, each by e^{2r} - 1 = u (2 + u) with u = e^r - 1. A term inherits at most its predecessor's
+        error and is truncated twice by less than one unit, so t terms are off by at most 3t units. A doubling
+        multiplies the error by 2 (1 + u) and adds at most one unit; the product of the factors is 2^s e^{2.4}
+        < 12 · 2^s. So the result is off by fewer than 12 · 2^s (3t + s + 2n + 4) units, less than 2^(s + 8)
+        (w + n), as t and s are below w.
         """
         if x == 0:
             return Enclosure(self, ZERO, ZERO)
         if x > LARGEST_ARGUMENT:
             return Enclosure(self, INFINITY, INFINITY)
-        wide = enclosures(self.digits + max(0, -x.adjusted()) + 1).down
-        nearest = wide.exp(x)
-        lo, hi = wide.next_minus(nearest), wide.next_plus(nearest)
-        return Enclosure(self, self.down.subtract(lo, ONE), self.up.subtract(hi, ONE))
+        tens = int(self.down.multiply(x, LOG10_E)) if x > 2 else 0
+        bits = _bits(self.digits + max(0, -x.adjusted()))
+        halvings = math.isqrt(bits)
+        w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
+        n, d = x.as_integer_ratio()
+        rest = (n << w) // d - (tens * _ln10(w) if tens else 0)
+        u = _expm1_series(rest, halvings, w)
+        small = self._fixed(u, (w + tens) << (halvings + 8), w)
+        if not tens:
+            return small
+        k = small + 1
+        return Enclosure(self, self.down.scaleb(k.lo, tens), self.up.scaleb(k.hi, tens)) - 1
 
     def log1p(self, x: Enclosure) -> Enclosure:
         """ln(1 + x) for x > -1; one that may be 0 is taken not to be negative."""
@@ -268,14 +283,30 @@ class Enclosures:
 
     @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _log1p(self, y: Decimal) -> Enclosure:
-        """ln(1 + y) for a number y >= 0, enclosed as in `_expm1`; 1 + y is exact unless y is huge."""
+        """ln(1 + y) for a number y >= 0, from a guess y0, with no series.
+
+        ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
+        That encloses the value for any guess, and tightly for a good one.
+        """
         if y == 0:
             return Enclosure(self, ZERO, ZERO)
-        wide = enclosures(self.digits + max(0, -y.adjusted()) + 1)
-        lo, hi = wide.down.add(ONE, y), wide.up.add(ONE, y)
-        ln_lo = self.down.ln(lo)
-        ln_hi = ln_lo if hi == lo else self.down.ln(hi)
-        return Enclosure(self, self.down.next_minus(ln_lo), self.up.next_plus(ln_hi))
+        guess = self._log1p_guess(y)
+        at_guess, exactly = self._expm1(guess), Enclosure(self, y, y)
+        delta = (exactly - at_guess) / (at_guess + 1)
+        inner = delta / (delta + 1)
+        middle = Enclosure(self, guess, guess)
+        return Enclosure(self, (middle + inner).lo, (middle + delta).hi)
+
+    def _log1p_guess(self, y: Decimal) -> Decimal:
+        """ln(1 + y) to about half the digits: each step of `_log1p` doubles them."""
+        if self.digits > 28:
+            return enclosures(self.digits // 2 + 2)._log1p(y).lo
+        if -DOUBLES < y.adjusted() < DOUBLES:
+            return Decimal(math.log1p(float(y)))
+        at = self.down
+        if y.adjusted() < -9:
+            return at.multiply(y, at.subtract(ONE, at.divide(y, TWO)))
+        return decimal_context(self.digits // 2 + 12, ROUND_HALF_EVEN).ln(at.add(ONE, y))
 
 
 @lru_cache(maxsize=64)
@@ -287,6 +318,19 @@ def enclosures(digits: int) -> Enclosures:
 def _bits(digits: int) -> int:
     """The bits for so many digits, and a few more."""
     return digits * 10 // 3 + 8
+
+
+def _expm1_series(x: int, halvings: int, w: int) -> int:
+    """e^x - 1 by the series at x/2^halvings and as many doublings; x and the result in units of 2^-w."""
+    r = x >> halvings
+    total, term, n = 0, r, 1
+    while term:
+        total += term
+        n += 1
+        term = (term * r >> w) // n
+    for _ in range(halvings):
+        total = total * ((2 << w) + total) >> w
+    return total
 
 
 def _cos_sin_series(x: int, halvings: int, w: int) -> tuple[int, int]:
@@ -303,31 +347,42 @@ def _cos_sin_series(x: int, halvings: int, w: int) -> tuple[int, int]:
     return cos, sin
 
 
-GUARD = 40
-"""Bits beyond those of π: the series have fewer than w terms, each off by less than two units of 2^-w, and
-the factors add up to 20, so that they suffice up to w = 2^32."""
-LEAST_BITS = 256
-"""The bits that π is kept with are a power of two, at least twice this, so that precisions share it."""
-
-
-def _pi(bits: int) -> int:
-    """π in units of 2^-bits, right to two of them."""
-    wide = 1 << max(LEAST_BITS, bits).bit_length()
-    return _wide_pi(wide + GUARD) >> (wide + GUARD - bits)
-
-
-@lru_cache
-def _wide_pi(w: int) -> int:
-    """π = 16 atan(1/5) - 4 atan(1/239) in units of 2^-w (J. Machin, 1706)."""
-    return 16 * _atan_of_inverse(5, w) - 4 * _atan_of_inverse(239, w)
-
-
-def _atan_of_inverse(q: int, w: int) -> int:
-    """atan(1/q) in units of 2^-w."""
+def _inverse(q: int, sign: int, w: int) -> int:
+    """atan(1/q) for sign -1, atanh(1/q) for sign 1, in units of 2^-w."""
     power = (1 << w) // q
     total, n = power, 1
     while power:
-        power //= -q * q
+        power //= q * q
         n += 2
-        total += power // n
+        total += power // n if sign > 0 or n % 4 == 1 else -(power // n)
     return total
+
+
+GUARD = 40
+# The bits of cached constants are a power of two, at least twice this, so that precisions share them.
+LEAST_BITS = 256
+
+
+def _pi(bits: int) -> int:
+    """π in units of 2^-bits (J. Machin, 1706)."""
+    return _constant((16, 5, -1), (-4, 239, -1), bits=bits)
+
+
+def _ln10(bits: int) -> int:
+    """ln 10 in units of 2^-bits: 10 = (32/30)^23 (50/48)^17 (162/160)^10."""
+    return _constant((46, 31, 1), (34, 49, 1), (20, 161, 1), bits=bits)
+
+
+def _constant(*terms: tuple[int, int, int], bits: int) -> int:
+    """A sum of factor · `_inverse`(q, sign) for terms (factor, q, sign), right to two units of 2^-bits.
+
+    The series have fewer than w terms, each truncated by less than two units of 2^-w, and the factors add up
+    to at most 100. The 40 extra bits (`GUARD`) absorb that up to w = 2^32.
+    """
+    wide = 1 << max(LEAST_BITS, bits).bit_length()
+    return _wide_constant(terms, wide + GUARD) >> (wide + GUARD - bits)
+
+
+@lru_cache
+def _wide_constant(terms: tuple[tuple[int, int, int], ...], w: int) -> int:
+    return sum(factor * _inverse(q, sign, w) for factor, q, sign in terms)
