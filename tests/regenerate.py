@@ -2,25 +2,25 @@
 
 import re
 import shlex
-from collections.abc import Callable
-from contextlib import redirect_stderr, redirect_stdout
+from collections.abc import Callable, Iterator
+from contextlib import chdir
 from functools import partial
-from io import BytesIO, TextIOWrapper
+from importlib.util import find_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import NamedTuple
-from unittest.mock import patch
 
-from atwood_cli import cli
 from atwood_cli.cli import COMMANDS
 
-from .running import labels, process
+from .running import called, labels, process
 
 TOP = Path(__file__).parent.parent
 EXAMPLES = TOP / "examples"
 PAGES = [TOP / "README.md", *sorted(EXAMPLES.glob("*.md"))]
 SCRIPTS = sorted(EXAMPLES.glob("*.sh"))
-ENGINES = [EXAMPLES / f"{name}.py" for name in ("dask_tables", "polars_lazy")]
-CASES = Path(__file__).parent / "batch.txt"
+ENGINES = {EXAMPLES / "dask_tables.py": "distributed", EXAMPLES / "polars_lazy.py": "polars"}
+"""Examples that another package runs."""
+CASES = sorted((Path(__file__).parent / "cases").glob("*.md"))
 ESCAPES = {rb"\n": b"\n", rb"\r": b"\r", rb"\t": b"\t", b"\\\\": b"\\", b"%%": b"%"}
 """What stands for bytes in the words of printf, besides \\xHH."""
 UNSEEN = "[\0-\x09\x0b-\x1f\x7f\xa0\u2009\u2028\ufeff]"
@@ -34,11 +34,17 @@ PICTURES = {
 
 
 class Kept(NamedTuple):
-    """A text that is a part of a file or all of it, and what it is today."""
+    """A text that is a part of a file or all of it, what it is today, and the package that this needs."""
 
     file: Path
     text: str
     today: Callable[[], str]
+    needs: str = ""
+
+    @property
+    def lacks(self) -> str:
+        """The package that is needed and not installed."""
+        return "" if not self.needs or find_spec(self.needs) else self.needs
 
 
 def printed(line: str) -> str:
@@ -55,51 +61,56 @@ def transcript(block: str) -> str:
 
 
 def answered(block: str) -> str:
-    """The block as its command gives it, which runs here: stdout, stderr, and the status if it is not 0."""
+    """The block as its command gives it, called here: stdout, stderr, and the status if it is not 0."""
     line = block.splitlines()[0]
-    found = re.fullmatch(r"\$ printf '(.*)' \| atwood (.*)", line)
+    found = re.fullmatch(r"\$ (?:printf '(.*)' \| )?atwood ?(.*)", line)
     assert found, line
 
     def byte(escaped: re.Match[bytes]) -> bytes:
         return bytes([int(escaped[1], 16)]) if escaped[1] else ESCAPES[escaped[0]]
 
-    content = re.sub(rb"\\x(..)|\\.|%%", byte, found[1].encode())
-    out, err = (TextIOWrapper(BytesIO(), "utf-8", newline="") for _ in range(2))
-    with patch("sys.stdin", TextIOWrapper(BytesIO(content))), redirect_stdout(out), redirect_stderr(err):
-        status = cli.run(shlex.split(found[2]))
-    printed = "".join(stream.detach().getvalue().decode() for stream in (out, err))
-    shown = re.sub(UNSEEN, lambda one: "".join(f"\\x{unit:02x}" for unit in one[0].encode()), printed)
-    return f"{line}\n{shown}{f'[{status}]' if status else ''}\n".replace("\n\n", "\n")
+    content = re.sub(rb"\\x(..)|\\.|%%", byte, (found[1] or "").encode())
+    with TemporaryDirectory() as folder, chdir(folder):
+        ran = called(shlex.split(found[2]), content)
+    shown = re.sub(
+        UNSEEN, lambda unseen: "".join(f"\\x{unit:02x}" for unit in unseen[0].encode()), ran.out + ran.err
+    )
+    end = "" if not shown or shown.endswith("\n") else "\n"
+    return f"{line}\n{shown}{end}" + (f"[{ran.status}]\n" if ran.status else "")
 
 
-def whole(file: Path, line: str) -> Kept:
-    return Kept(file, file.read_text(encoding="utf-8") if file.exists() else "", partial(printed, line))
+def blocks(page: Path) -> Iterator[str]:
+    """The transcripts that a page shows."""
+    yield from re.findall(r"```console\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+
+
+def whole(file: Path, line: str, needs: str = "") -> Kept:
+    return Kept(
+        file, file.read_text(encoding="utf-8") if file.exists() else "", partial(printed, line), needs
+    )
 
 
 KEPT = [
+    whole(EXAMPLES / "help.txt", f"for of in '' {' '.join(COMMANDS)}; do {HELP}; done"),
     *(
-        Kept(page, block, partial(transcript, block))
-        for page in PAGES
-        for block in re.findall(r"```console\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+        Kept(page, command, partial(answered, command))
+        for page in CASES
+        for block in blocks(page)
+        for command in re.findall(r"^\$ .*\n(?:(?!\$ ).*\n)*", block, re.MULTILINE)
     ),
+    *(Kept(page, block, partial(transcript, block)) for page in PAGES for block in blocks(page)),
     # The scripts call `atwood` and `python3`; both are this interpreter here.
     *(
         whole(script.with_suffix(".txt"), f'python3() {{ "$PYTHON" "$@"; }}; . "{script}"')
         for script in SCRIPTS
     ),
-    *(whole(engine.with_suffix(".txt"), f'"$PYTHON" "{engine}"') for engine in ENGINES),
-    whole(EXAMPLES / "help.txt", f"for of in '' {' '.join(COMMANDS)}; do {HELP}; done"),
-    *(
-        Kept(CASES, block, partial(answered, block))
-        for block in re.findall(
-            r"^\$ .*\n(?:(?![$#] |\n).*\n)*", CASES.read_text(encoding="utf-8"), re.MULTILINE
-        )
-    ),
+    *(whole(engine.with_suffix(".txt"), f'"$PYTHON" "{engine}"', needs) for engine, needs in ENGINES.items()),
     whole(EXAMPLES / "handout.md", f"atwood solve {SCENE} --explain --markdown"),
     *(
         whole(
             EXAMPLES / name,
             f'cd $(mktemp -d); atwood {words} --figure {name} > table; cat {name}; rm -r "$PWD"',
+            "matplotlib",
         )
         for name, words in PICTURES.items()
     ),
@@ -108,12 +119,17 @@ KEPT = [
 
 def essence(text: str) -> object:
     """What must stay the same: of a picture its words, as each version of a library draws its own lines."""
-    return (labels(text), re.findall(r"<text[^>]*>([^<]*)</text>", text)) if "<svg" in text else text
+    if "<svg" in text:
+        return labels(text), re.findall(r"<text[^>]*>([^<]*)</text>", text)
+    return text.replace("argument(s)", "arguments")  # as typer words it, by its version
 
 
 if __name__ == "__main__":
-    for file, text, today in KEPT:
-        if essence(fresh := today()) != essence(text):
-            page = file.read_text(encoding="utf-8") if file.exists() else ""
-            file.write_text(page.replace(text, fresh, 1), encoding="utf-8", newline="\n")
-            print(file.relative_to(TOP))
+    for kept in KEPT:
+        name = kept.file.relative_to(TOP)
+        if kept.lacks:
+            print(f"{name}: left as it was, without {kept.lacks}")
+        elif essence(fresh := kept.today()) != essence(kept.text):
+            page = kept.file.read_text(encoding="utf-8") if kept.file.exists() else ""
+            kept.file.write_text(page.replace(kept.text, fresh, 1), encoding="utf-8", newline="\n")
+            print(name)

@@ -7,13 +7,17 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from functools import partial
+from io import BytesIO, TextIOWrapper
 from itertools import combinations
 from tempfile import TemporaryFile
 from typing import Any, NamedTuple
+from unittest.mock import patch
 
 import pytest
+
+from atwood_cli import cli
 
 from . import forks
 from .forks import HANGS as HANGS
@@ -39,6 +43,19 @@ class Ran(NamedTuple):
 
 
 Atwood = Callable[..., Ran]
+
+
+def called(words: Sequence[str], stdin: bytes = b"") -> Ran:
+    """Call the command line in this process, in which nothing tells how to print."""
+    out, err = (TextIOWrapper(BytesIO(), "utf-8", newline="") for _ in range(2))
+    with (
+        patch("sys.stdin", TextIOWrapper(BytesIO(stdin))),
+        patch.dict(os.environ, around({}), clear=True),
+        redirect_stdout(out),
+        redirect_stderr(err),
+    ):
+        status = cli.run(list(words))
+    return Ran(status, *(stream.detach().getvalue().decode() for stream in (out, err)))
 
 
 def around(asked: Mapping[str, str]) -> dict[str, str]:

@@ -9,6 +9,8 @@ import pytest
 
 import atwood_cli
 
+from .regenerate import CASES
+
 PACKAGE, TESTS = Path(atwood_cli.__file__).parent, Path(__file__).parent
 SENTENCES = ("SceneError", "Malformed", "Rule", "Unreadable", "OSError", "FileExistsError", "ArithmeticError")
 NOT_REACHED = {
@@ -47,7 +49,7 @@ EXPECTED = [
     for path in TESTS.glob("test_*.py")
     for text in fragments(ast.parse(path.read_text(encoding="utf-8")))
     if text not in NOT_REACHED
-] + [(TESTS / "batch.txt").read_text(encoding="utf-8")]
+] + [page.read_text(encoding="utf-8") for page in CASES]
 
 
 def test_errors_are_looked_for_in_every_folder() -> None:
