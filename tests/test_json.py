@@ -11,7 +11,7 @@ import pytest
 from atwood_cli import solve
 from atwood_cli.laboratory import published as laboratory
 from atwood_cli.model.quantities import QUANTITIES
-from atwood_cli.model.scene import parameter_of
+from atwood_cli.model.scene import INPUTS, MEASURED
 
 from .running import Atwood
 from .scenes import inputs
@@ -31,12 +31,24 @@ TYPES = {
     "object": (dict,),
     "list": (list,),
 }
+QUANTITY = f"({'|'.join(QUANTITIES)})"
+INPUT = f"({'|'.join([*INPUTS, *MEASURED])})"
 NAMED = {
-    "solve": {r"^(uncertainty|budget)\.\w+": r"\1.NAME", r"^(budget\.NAME)\.\w+": r"\1.INPUT"},
-    "sweep": {r"^(rows\[\])\.\w+": r"\1.NAME"},
-    "fit": {r"^(uncertainty|interval)\.\w+": r"\1.NAME", r"^runs\[\]\.shift$": "runs[].LABEL"},
+    "solve": {
+        rf"^{QUANTITY}$": "QUANTITY",
+        r"^(uncertainty|budget)\.\w+": r"\1.QUANTITY",
+        r"^(budget\.QUANTITY)\.\w+": r"\1.INPUT",
+    },
+    "sweep": {rf"^(rows\[\])\.{INPUT}$": r"\1.INPUT", r"^(rows\[\])\.[a-z]\w+": r"\1.QUANTITY"},
+    "contact": {r"^balance\.(friction|normal|sum|resultant|residual)": "balance.FORCE"},
+    "fit": {r"^(uncertainty|interval)\.\w+": r"\1.RESULT", r"^runs\[\]\.shift$": "runs[].LABEL"},
 }
 """Of a command, the keys that are names of quantities, of inputs, or of a file."""
+EVERYWHERE = {
+    "version": ["integer", "", "", ""],
+    "notes": ["list", "", "", ""],
+    "notes[]": ["text", "", "", ""],
+}
 PRINTED = {
     "solve": [
         "--m1 1 --m2 3 --mu 0.3",
@@ -48,8 +60,6 @@ PRINTED = {
     "sweep": ["--m1 1 --m2 3 --M 1,inf", "--m1 1 --m2 3 --mu 0.3 --wrap 1rad:2rad:2 --g 1:2:2 --only regime"],
     "contact": ["--m1 1 --m2 3 --mu 0.3", "--m1 1 --m2 3 --M inf --R 1 --axle 1N --points 2"],
     "fit": ["{rit} --drop 98cm", "{labelled} --R 1 --g 9.8"],
-    "quantities": [""],
-    "tradeoff": ["--family ordinary --scenes 5"],
 }
 
 
@@ -66,15 +76,10 @@ def keys(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 
 @pytest.mark.parametrize("command", PRINTED)
-def test_every_key_is_on_the_page_and_of_its_type(
-    atwood: Atwood, tmp_path: Path, command: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("atwood_cli.tradeoff.measure.REPEATS", 1)
+def test_every_key_is_on_the_page_and_of_its_type(atwood: Atwood, tmp_path: Path, command: str) -> None:
     labelled = tmp_path / "runs.csv"
     labelled.write_text("shift,m1,m2,a\nday,1,2,2.4\nday,1,3,3.9\nnight,2,3,1.6\nnight,1,4,4.9\n")
-    page = SECTIONS[command] | (
-        SECTIONS["The scene"] if command not in ("fit", "quantities", "tradeoff") else {}
-    )
+    page = EVERYWHERE | SECTIONS[command]
     top, found = [], set()
     for words in PRINTED[command]:
         words = f"{command} {words} --json".format(rit=TOP / "examples" / "rit.csv", labelled=labelled)
@@ -84,7 +89,8 @@ def test_every_key_is_on_the_page_and_of_its_type(
         assert result["version"] == 2
         top.append(list(result))
         for key, value in keys(result):
-            for named, name in NAMED.get(command, {}).items():
+            key = re.sub(r"^scene\.\w+", "scene.INPUT", key)
+            for named, name in NAMED[command].items():
                 key = re.sub(named, name, key)
             found.add(key)
             assert key in page, key
@@ -96,16 +102,30 @@ def test_every_key_is_on_the_page_and_of_its_type(
     assert all(one == top[0] for one in top)
 
 
-def test_units_and_meanings_are_those_of_tables_and_help() -> None:
-    solved = SECTIONS["solve"]
-    for name, about in QUANTITIES.items():
-        assert solved[name][1:3] == [about.unit, about.meaning]
+def test_scene_and_solution_have_every_name(atwood: Atwood) -> None:
+    solved = json.loads(atwood(*"solve --m1 1 --m2 3 --json".split()).out)
+    assert solved.keys() > QUANTITIES.keys()
+    assert solved["scene"].keys() == INPUTS.keys() | MEASURED.keys()
+
+
+def test_units_of_a_fit_are_those_of_its_table() -> None:
     for name, quantity in laboratory.QUANTITIES.items():
         assert SECTIONS["fit"][name][1] == quantity.unit
-    for key, (_, unit, meaning, _) in SECTIONS["The scene"].items():
-        if key != "scene":
-            parameter = parameter_of(key.removeprefix("scene."))
-            assert (unit, meaning) == (parameter.unit, parameter.meaning)
+
+
+@pytest.mark.parametrize(
+    ("command", "listed"),
+    [("quantities", "quantities"), ("tradeoff --family ordinary --scenes 5", "settings")],
+)
+def test_keys_of_the_short_lists(
+    atwood: Atwood, command: str, listed: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("atwood_cli.tradeoff.measure.REPEATS", 1)
+    result = json.loads(atwood(*command.split(), "--json").out)
+    section = re.search(rf"^## {command.split()[0]}\n\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL)
+    assert section
+    keys = {*result, *(key for item in result[listed] for key in item)}
+    assert keys == set(re.findall(r"`(\w+)`", section[1]))
 
 
 @pytest.mark.parametrize(
