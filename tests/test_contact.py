@@ -1,9 +1,5 @@
 """The arc of contact: identities, bounds against a linear programme, output, figure."""
 
-import csv
-import io
-import json
-import re
 import shlex
 import subprocess
 import sys
@@ -292,26 +288,6 @@ def test_turns_multiply_the_grip() -> None:
 # The command
 
 
-def test_contact_prints_points_balance_and_note(atwood: Atwood) -> None:
-    ran = atwood(*PAPER, "--points", "3", "--digits", "6", "--R", "10cm")
-    assert (ran.status, ran.err) == (0, "")
-    assert re.search(r"│ 180 +│ 27\.1279 +│ 27\.1279 +│ 8\.13836 +│ 271\.279 +│ 81\.3836 +│", ran.out)
-    assert re.search(r"│ resultant +│ +0 +│ -37\.6985 +│", ran.out)
-    assert re.search(r"│ friction along the arc +│ 1\.65572 │", ran.out)
-    assert "Friction is at its limit all along the arc." in ran.out
-
-
-def test_contact_json(atwood: Atwood) -> None:
-    ran = atwood("contact", "--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3", "--json")
-    result = json.loads(ran.out)
-    assert (result["regime"], result["profile"], len(result["points"])) == ("no-slip", "creep", 13)
-    assert result["points"][0]["normal_per_metre"] is None
-    friction = result["balance"]["friction"]
-    greatest = solve(m1=1, m2=3, M=10, mu="0.3").friction_force_max
-    assert np.hypot(friction["x"], friction["y"]) == pytest.approx(greatest)
-    assert any("not unique" in note for note in result["notes"])
-
-
 @pytest.mark.parametrize(
     "given",
     [
@@ -327,60 +303,6 @@ def test_contact_where_few_digits_overflow(given: dict[str, Any]) -> None:
     for digits in (None, 10):
         seen = arc(points=3, digits=digits, **{"m1": 1, "m2": 3, **given})
         assert seen.balance["torque"]["contact"] == seen.balance["torque"]["ends"]
-
-
-def test_what_limits_the_digits_is_said() -> None:
-    below, rounded = (
-        arc(points=2, m1="1e-400", m2="3e-400", M="1e-400", mu=4),
-        arc(digits=1, m1=1, m2=3, mu="0.3"),
-    )
-    assert any("tension_1: not 0 but below the range of doubles" in note for note in below.notes)
-    assert "Residuals are differences of the rounded numbers shown." in rounded.notes
-
-
-def test_contact_beyond_the_doubles_says_so(atwood: Atwood) -> None:
-    words = ["contact", "--m1", "1e400", "--m2", "3e400", "--mu", "0.3", "--points", "2", "--json"]
-    result = json.loads(atwood(*words).out, parse_constant=lambda word: pytest.fail(word))
-    assert result["points"][0]["tension"] is None
-    assert result["balance"]["residual"] == {"x": None, "y": None}
-    assert any("tension_1: beyond" in note and "--digits" in note for note in result["notes"])
-    result = json.loads(atwood(*words, "--digits", "6").out, parse_float=Decimal)
-    assert result["points"][0]["tension"] == Decimal("1.05707e401")
-
-
-def test_contact_csv(atwood: Atwood) -> None:
-    ran = atwood(*PAPER, "--csv", "--points", "5", "--R", "2")
-    names, *rows = csv.reader(io.StringIO(ran.out))
-    assert names[:2] == ["angle", "tension"]
-    assert names[-1] == "friction_per_metre"
-    assert [row[0] for row in rows] == ["0", "45", "90", "135", "180"]
-    assert ran.err == "atwood: Friction is at its limit all along the arc.\n"
-
-
-ERRORS = """
---m1 1 --m2 3 --mu 2 -> --M is missing: give M, the pulley's mass, which decides here
---m1 0 --m2 3 -> --m1 0 leaves no arc: not defined for a free end: the string is fixed to the pulley and no friction holds it
---m1 1 --m2 3 --M 1 --wrap 1e500 --figure x.svg -> --figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only
---m1 1 --m2 3 --M 1 --wrap 1e300turn --figure x.svg -> --figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only
---m1 1 --m2 3 --M 1 --wrap 1e300rad --figure x.svg -> --figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only
---m1 1 --m2 3 --M 1 --wrap 1e-400 --figure x.svg -> --figure 'x.svg' draws wraps between 1e-100 and 1e+09 degrees only
---m1 1 --m2 3 --points 1 -> --points '1' must be a whole number from 2 to 100000
---m1 1 --m2 3 --profile least -> No such option: --profile; atwood contact -h shows how
---m1 1 --m2 3 --mu 0.3 --elements 100 -> No such option: --elements; atwood contact -h shows how
---m1 1 --m2 3 --json --csv -> --json has no effect with --csv; leave one of them out
---m1 1 --m2 3 --m1-side left -> No such option: --m1-side (Possible options: --m1); atwood contact -h shows how
---m1 1 --m2 3 --figure x.gif -> --figure 'x.gif' must end in one of .svg, .png, .pdf
---m1 1e200 --m2 3e200 --figure x.svg -> --figure 'x.svg' draws forces between 1e-100 and 1e+100 N only
---m1 1 --m2 7e463 --mu 0 --figure x.svg -> --figure 'x.svg' draws forces between 1e-100 and 1e+100 N only
---m1 62.7 --m2 7e463 --mu 0 --wrap 3e460 --R 1e5 --figure x.svg -> --figure 'x.svg' draws forces between 1e-100 and 1e+100 N only
-"""
-
-
-@pytest.mark.parametrize("line", ERRORS.strip().splitlines())
-def test_contact_errors(atwood: Atwood, line: str) -> None:
-    arguments, message = line.split(" -> ")
-    ran = atwood("contact", *arguments.split())
-    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
 
 
 def test_solving_needs_no_numpy_for_the_arc() -> None:

@@ -9,7 +9,7 @@ import pytest
 
 import atwood_cli
 
-from .regenerate import CASES
+from .regenerate import CASES, KEPT
 
 PACKAGE, TESTS = Path(atwood_cli.__file__).parent, Path(__file__).parent
 SENTENCES = ("SceneError", "Malformed", "Rule", "Unreadable", "OSError", "FileExistsError", "ArithmeticError")
@@ -65,3 +65,11 @@ def test_every_error_text_is_expected_by_a_test(where: str, text: str) -> None:
     if text in NOT_REACHED:
         pytest.skip(NOT_REACHED[text])
     assert any(text in expected for expected in EXPECTED), f"{where} is tried by no test"
+
+
+def test_a_refusal_is_one_sentence_and_leaves_stdout_empty() -> None:
+    refused = [kept.text for kept in KEPT if kept.text.endswith("\n[2]\n")]
+    assert len(refused) > 100
+    for text in refused:
+        _, *printed, _ = text.splitlines()
+        assert [line.startswith("atwood: ") for line in printed] == [True], text

@@ -706,22 +706,6 @@ def test_the_handout_is_todays(atwood: Atwood) -> None:
 # What cannot be
 
 
-ERRORS = """
---markdown | --markdown needs --explain
---explain --json | --explain has no effect with --json; leave one of them out
---explain --csv | --explain has no effect with --csv; leave one of them out
---explain --only torque | --explain has no effect with --only; leave one of them out
---explain --a 1(1) | --explain shows exact numbers; leave their uncertainties out
---explain --M 2(1) | --explain shows exact numbers; leave their uncertainties out
-"""
-
-
-@pytest.mark.parametrize(("more", "message"), table(ERRORS))
-def test_errors(more: str, message: str, atwood: Atwood) -> None:
-    ran = atwood("solve", "--m1", "1", "--m2", "3", *more.split())
-    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
-
-
 def test_a_ratio_too_large_to_write_is_told() -> None:
     found = told(Scene.read({"m1": "1", "m2": "3", "M": "5", "mu": "1e9"}))
     tell = {equation.left: equation for equation in equations(found)}

@@ -2,7 +2,6 @@
 
 import csv
 import io
-import json
 import re
 from collections.abc import Iterator
 from decimal import Decimal
@@ -24,7 +23,6 @@ from atwood_cli.sweep.ranges import Row, Sweep, read_list, read_range, read_swee
 from atwood_cli.sweep.sweep_figure import Curve, axis_ends, picture, with_break
 
 from .running import Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
-from .scenes import table
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]
@@ -37,28 +35,6 @@ def points(typed_range: str, name: str = "M") -> list[str]:
 # Ranges
 
 
-POINTS = """
-0:1:11               | 0 0.1 0.2 0.3 0.4 0.5 0.6 0.7 0.8 0.9 1
-1:0:3                | 1 0.5 0
-0:1:4                | 0 0.333333 0.666667 1
-100g:500g:5          | 0.1 0.2 0.3 0.4 0.5
-0:500g:2             | 0 0.5
-1lb:2lb:2            | 0.45359237 0.90718474
-1e-400:3e-400:3      | 1e-400 2e-400 3e-400
-1:1000:4:log         | 1 10 100 1000
-1000:1:4:log         | 1000 100 10 1
-1e-500:1e500:3:log   | 1e-500 1 1e500
-2:512:5:log          | 2 8 32 128 512
-1:10:3:log           | 1 3.16228 10
-1:1.00000000000000000003:4 | 1 1.00000000000000000001 1.00000000000000000002 1.00000000000000000003
-"""
-
-
-@pytest.mark.parametrize(("range_", "expected"), table(POINTS))
-def test_points(range_: str, expected: str) -> None:
-    assert points(range_) == expected.split()
-
-
 @given(st.fractions("1/99", 100), st.fractions(1, 100), st.integers(2, 9), st.sampled_from(["", "rad"]))
 def test_a_point_is_exactly_what_is_printed(start: Fraction, stop: Fraction, count: int, unit: str) -> None:
     if start == stop:
@@ -66,31 +42,6 @@ def test_a_point_is_exactly_what_is_printed(start: Fraction, stop: Fraction, cou
     range_ = read_range("wrap", f"{start}{unit}:{stop}{unit}:{count}")
     for point in [*range_.points, *read_list("wrap", f"{start}{unit},{stop}{unit}").points]:
         assert Fraction(point.text.removesuffix("rad")) == point.exact
-
-
-def test_points_of_an_angle_keep_what_makes_them_exact() -> None:
-    assert points("90:360:4", "wrap") == ["90", "180", "270", "360"]
-    assert points("90deg:1turn:4", "wrap") == ["90", "180", "270", "360"]
-    assert points("1rad:2rad:3", "wrap") == ["1rad", "1.5rad", "2rad"]
-
-
-LISTS = """
-M       | 0,1, 10,inf   | 0 1 10 inf    | M = 0 kg, 1 kg, 10 kg or inf
-M       | 0,500g,inf    | 0 0.5 inf     | M = 0 kg, 0.5 kg or inf
-inertia | Disk,1/3,hoop | 0.5 1/3 1     | inertia = disk (0.5), 1/3 or hoop (1)
-m1      | 1/3,2         | 1/3 2         | m1 = 1/3 kg or 2 kg
-g       | moon,9.81     | 1.62 9.81     | g = moon (1.62 m/s²) or 9.81 m/s²
-wrap    | 450,180       | 450 180       | wrap = 450° or 180°
-wrap    | 1rad,1/3rad   | 1rad 1/3rad   | wrap = 1rad or 1/3rad
-mu      | 1,2,3,4,5,6,7 | 1 2 3 4 5 6 7 | mu = 1, 2, ... or 7
-"""
-
-
-@pytest.mark.parametrize(("name", "typed", "expected", "words"), table(LISTS))
-def test_points_of_a_list_are_exact(name: str, typed: str, expected: str, words: str) -> None:
-    swept = read_list(name, typed)
-    assert [point.text for point in swept.points] == expected.split()
-    assert swept.words == words
 
 
 decimals = st.decimals(min_value=0, max_value=10**6, allow_nan=False, places=6)
@@ -192,112 +143,6 @@ def test_only_what_is_asked_for_is_computed() -> None:
 # Output
 
 
-def test_the_table(atwood: Atwood) -> None:
-    ran = atwood(*SWEEP, "--M", "0:50:6", "--digits", "5", "--only", "regime", "--only", "acceleration")
-    assert (ran.status, ran.err) == (0, "")
-    assert ran.out.splitlines() == [
-        "m1 = 1 kg, m2 = 3 kg, M from 0 to 50 kg, mu = 0.3, g = 9.80665 m/s², inertia = 0.5, wrap = 180°",
-        "Regimes: no-slip up to M = 43.341 kg, slip beyond.",
-        "╭──────┬─────────┬──────────────╮",
-        "│ M    │ regime  │ acceleration │",
-        "│ (kg) │         │ (m/s²)       │",
-        "├──────┼─────────┼──────────────┤",
-        "│  0   │ no-slip │ 4.9033       │",
-        "│ 10   │ no-slip │ 2.1793       │",
-        "│ 20   │ no-slip │ 1.4010       │",
-        "│ 30   │ no-slip │ 1.0323       │",
-        "│ 40   │ no-slip │ 0.81722      │",
-        "├──────┼─────────┼──────────────┤",
-        "│ 50   │ slip    │ 0.76403      │",
-        "╰──────┴─────────┴──────────────╯",
-    ]
-
-
-def test_words_in_a_column_of_numbers_are_not_moved(atwood: Atwood) -> None:
-    ran = atwood(*"sweep --m1 1 --m2 3 --M 10,inf --inertia sphere,hoop --only a".split())
-    assert [line.split("│")[1:3] for line in ran.out.splitlines() if "sphere" in line][1:] == [
-        [" 10   ", " sphere  "],
-        [" inf  ", " sphere  "],
-    ]
-
-
-SHOWN = r"""
-# What is the same in all rows is said once.
---mu 0.3 --M 0:50:6 => beyond.\nIn all rows: critical_pulley_mass = 43.3419 kg.\n !! │ regime
---mu 0.3 --M 0:50:6 --only critical_pulley_mass => \nIn all rows: critical_pulley_mass = 43.3419 kg. !! │
---mu 0.3 --M 0:1:6 --only regime => \nRegimes: no-slip. !! │
---mu 0.3 --g 1:2:2 => mu_verge = 0.300000, critical_pulley_mass = 43.3419 kg.
-# Without M each row on the verge shows its own pulley.
---mu 0.1:0.4:4 --only acceleration => As M is not given, each row that is on the verge has a pulley of its own: the critical one. => │ 0.3 │ 0.764027     │ 43.3419              │ => Regimes: verge up to mu = 0.349699, no-slip beyond.
---mu 0.1:0.4:4 --only acceleration --csv => mu,acceleration\n !! critical
---mu 0.1:0.4:4 --only acceleration --M 5 => acceleration !! critical
-# A group for each value of the slow range.
---M 1:100:3:log --mu 0.2:0.3:2 --only regime => │  10  │ 0.2 │ slip    │\n│  10  │ 0.3 │ no-slip │ => \nM = 10 kg: slip up to mu = 0.205827, no-slip beyond.\n !! │ 10   │
---M 1:100:7 --mu 0.2:0.3:2 --only regime => │ slip !! up to mu
---M 0:50:6 --mu 0.1:0.3:9 => │ regime
-# Where the regime changes is told exactly; of a list too, in any order.
---mu 0.3 --M 0:20:3 => Regimes: no-slip.
---mu 0.3 --M 50:0:3 => Regimes: no-slip up to M = 43.3419 kg, slip beyond.
---m1 1:17:9 --m2 3 --mu 0.3 --M 100 => Regimes: slip up to m1 = 1.08920 kg, no-slip up to 9.48105 kg, slip beyond.
---mu 0.3 --M 50,0,inf,20 => Regimes: no-slip up to M = 43.3419 kg, slip beyond. !! at M = inf
---mu 0.3 --M 0,inf => Regimes: no-slip, slip at M = inf.
-# What a name stands for is said once.
---mu 0.3 --M 0:50:3 --inertia disk,hoop => inertia = disk (0.5) or hoop => \ndisk: no-slip up to M = 43.3419 kg, slip beyond.\nhoop: no-slip up to M = 21.6709 kg, !! │ 0.5
---mu 0.3 --M 1,40 --inertia hoop,0.5 --only a => │ 40   │ hoop    │ 0.764027 !! │ 1    │
---g earth,moon,2 --only a => \n│ earth  │ 4.9 => \n│ moon   │ 0.8
---mu 0.3 --M 1:40:2 --inertia hoop,0.5 --only mu_verge --csv => \n1,1,0. !! hoop
---M 0,1/3,inf --only regime --json => "M": "0,1/3,inf" => "M": "1/3",
---mu 0.3 --M inf,30 --inertia disk,hoop --only a => \ndisk: no-slip, slip at M = inf.\nhoop: slip.\n
-# A column without values is left out of the table only.
---m1 1:2:2 --m2 3 --M 1 --only torque --only tension_1 => torque: give R, the pulley's radius.\n !! torque\n
---m1 1:2:2 --m2 3 --M 1 --only torque --only tension_1 --csv => m1,torque,tension_1\n1,,
---m1 1:2:2 --m2 3 --M 1 --only torque --only tension_1 --json => "torque": null => "torque: give R, the pulley's radius."
-# An angle in radians is headed so.
---mu 0.3 --M 10 --wrap 1rad:4rad:4 --only regime => │ wrap  │ regime  │\n│ (rad) │         │ => │ 3     │ no-slip │ => Regimes: slip up to wrap = 2.15542rad, no-slip beyond.
---mu 0.3 --M 10 --wrap 1rad:4rad:4 --only regime --csv => 3rad,no-slip\n
-# Digits, order, columns: the first range varies slowest.
---M 1:2:2 --mu 0.3 --only tension_1 --digits 4 --json => "tension_1": 14.17
---M 0:50:7 --mu 0.3 --only tension_1 --digits 4 --csv => 0,14.71\n8.333,12.21\n
---M 1:2:2 --csv --only tension_2,regime,tension_2 => M,tension_2,regime\n
---mu 0.3 --M 0:50:6 --csv => M,regime,acceleration,
---M 1:2:2 --m2 3 --m1 1:2:2 --only regime --csv => m1,M,regime\n1,1,no-slip\n1,2,no-slip\n2,1,no-slip\n2,2,no-slip\n
---m1 1e400 --m2 3e400 --M 1:2:2 --only tension_1 --csv => M,tension_1\n1,\n2,\n
---m1 1e400 --m2 3e400 --M 1:2:2 --only tension_1 --csv --digits 3 => \n1,1.47e401\n2,1.47e401\n
-"""
-
-
-@pytest.mark.parametrize("line", [line for line in SHOWN.strip().splitlines() if not line.startswith("#")])
-def test_what_is_shown(atwood: Atwood, line: str) -> None:
-    """Of each line: words typed, => what is shown, !! what is not."""
-    words, *shown = line.replace(r"\n", "\n").split(" => ")
-    last, *absent = shown.pop().split(" !! ")
-    out = atwood(*(["sweep"] if "--m1" in words else HELD), *words.split()).out
-    assert all(one in out for one in [*shown, last])
-    assert not any(one in out for one in absent)
-
-
-def test_a_note_says_at_how_many_points(atwood: Atwood) -> None:
-    ran = atwood(*HELD, "--mu", "0.1:0.35:6", "--only", "critical_pulley_mass", "--csv")
-    assert ran.out.splitlines()[-1] == "0.35,"
-    assert ran.err == (
-        "atwood: critical_pulley_mass: does not exist, as the string holds on any pulley, however heavy"
-        " (at 1 of 6 points).\n"
-    )
-
-
-def test_json(atwood: Atwood) -> None:
-    ran = atwood(*SWEEP, "--M", "0:0.2:3", "--wrap", "1rad:2rad:2", "--only", "regime", "--json")
-    result = json.loads(ran.out, parse_constant=lambda word: pytest.fail(word))
-    assert {name: one for name, one in result["scene"].items() if one is not None} == {
-        **{"m1": 1, "m2": 3, "M": "0:0.2:3", "mu": 0.3, "g": 9.80665},
-        **{"inertia": 0.5, "wrap": "1rad:2rad:2"},
-    }
-    assert result["rows"][3] == {"M": 0.1, "wrap": "2rad", "regime": "no-slip"}
-    assert '"M": 0.1,' in ran.out
-    assert '"notes": []' in ran.out
-    assert ran.err == ""
-
-
 @pytest.mark.parametrize("environment", [{}, {"FORCE_COLOR": "1"}, {"COLUMNS": "40", "LINES": "5"}])
 def test_a_pipe_gets_every_row(environment: dict[str, str]) -> None:
     ran = process(*SWEEP, "--M", "0:100:101", "--only", "regime", **environment)
@@ -361,24 +206,6 @@ def test_a_file_gets_what_stdout_would(
     assert (ran.status, ran.out, ran.err) == (1, "", expected.err)  # as there is no torque
     assert (tmp_path / name).read_bytes().decode() == expected.out
     assert list(tmp_path.iterdir()) == [tmp_path / name]
-
-
-@pytest.mark.parametrize(
-    ("ends", "points"), [("2:log", "8.33333 11.1111"), ("4", "8.33333 9.25926 10.1852 11.1111")]
-)
-def test_ends_that_are_no_decimals_are_rounded_as_other_points_are(
-    atwood: Atwood, ends: str, points: str
-) -> None:
-    ends = f"25/3:100/9:{ends}"
-    ran = atwood("sweep", "--m1", "1", "--m2", "3", "--g", ends, "--only", "tension_1", "--csv")
-    assert [line.split(",")[0] for line in ran.out.splitlines()[1:]] == points.split()
-    for line in ran.out.splitlines()[1:]:
-        g, tension = line.split(",")
-        assert float(tension) == solve(m1=1, m2=3, g=g).tension_1
-    rows = json.loads(atwood("sweep", "--m1", "1", "--m2", "3", "--g", ends, "--digits", "9", "--json").out)[
-        "rows"
-    ]
-    assert [rows[0]["g"], rows[-1]["g"]] == [8.33333333, 11.1111111]
 
 
 def test_the_table_in_a_file_is_whole_and_uncoloured(tmp_path: Path) -> None:
@@ -641,88 +468,6 @@ def test_without_its_extra_it_names_the_pip_command() -> None:
 
 
 # Errors
-
-
-FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
-
-
-WRONG_USAGE = """
- => --M or another option of the scene must carry a list, as 0,1,10, or a range: {FORM}
---M 1 => --M or another option of the scene must carry a list, as 0,1,10, or a range: {FORM}
---M 1:2:3 --mu 1:2:3 --g 1:2:3 => --g '1:2:3' is a third range or list, after M and mu; give two
---M 1:2 => --M '1:2' is no range; write {FORM}
---M 1:2:3:ln => --M '1:2:3:ln' is no range; write {FORM}
---M 1:2:3:log:5 => --M '1:2:3:log:5' is no range; write {FORM}
---M 1:2:1 => --M '1:2:1' has the count '1', which must be a whole number from 2 to 1000000
---M 1:2:1000001 => --M '1:2:1000001' has the count '1000001', which must be a whole number from 2 to 1000000
---M 1:2:log => --M '1:2:log' has the count 'log', which must be a whole number from 2 to 1000000
---M 0:inf:3 => --M '0:inf:3' has the end 'inf'; a range runs between finite numbers
---inertia disk:hoop:3 => --inertia 'disk:hoop:3' has the end 'disk'; a range runs between finite numbers
---M 2:2000g:3 => --M '2:2000g:3' has a unit at some numbers only; write it at each
---M 2kg:2000g:3 => --M '2kg:2000g:3' has equal ends; a range runs from one value to another
---wrap 90deg:3rad:3 => --wrap '90deg:3rad:3' has units of two kinds; write all numbers in the same unit
---M 0:2:3:log => --M '0:2:3:log' has no equal ratios from or to 0; both ends must be above 0
---M 1:2x:3 => --M '2x' has the unit 'x'; it takes kg, g, mg, ug, t, lb, lbs, oz, st, slug
---M :2:3 => --M ':2:3' is no range; write {FORM}
---M -1:2:4 => --M '-1' must be 0 or more (inf locks the pulley)
---M 1:2:2000 --mu 1:2:2000 => --mu '1:2:2000' makes 4000000 points with M; at most 1000000 are taken
---M 0,1:2:3 => --M '0,1:2:3' mixes a list with a range; give one of them
---M 5, => --M '5,' has an empty place; write a list as 0,1,10
---M 1,2,1.0 => --M '1,2,1.0' has the value '1.0' twice; give it once
---M 1kg,500g,1000g => --M '1kg,500g,1000g' has the value '1000g' twice; give it once
---inertia disk,0.5 => --inertia 'disk,0.5' has the value '0.5' twice; give it once
---inertia disk,ball => --inertia 'ball' is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1), or one of disk, hoop, ring, sphere, shell
---M 0,100g,200,inf => --M '0,100g,200,inf' has a unit at some numbers only; write it at each
---axle 0,1N,1mNm => --axle '0,1N,1mNm' has units of two kinds; write all numbers in the same unit
---mu 0.1,inf => --mu 'inf' must be 0 or more, and finite
---M 1,05 => --M '1,05' is not a number; write it with a decimal point, 1.05
---M 1,000 => --M '1,000' is not a number; write 1000 or 1.000, whichever is meant
---M 1,2 --mu 0.1,0.2 --g 1:2:3 => --g '1:2:3' is a third range or list, after M and mu; give two
---mu 0.3 --mu-k 0.1,0.2,0.4 => --mu-k '0.4' must not be above mu; exactly, 0.4 > 0.3
---I 1 --R 1 --M 1,inf,0 => --I '1' contradicts M = 0; leave one of them out (at M = 0 kg)
---mu 0.3 --mu-k 0.2:0.4:3 => --mu-k '0.4' must not be above mu; exactly, 0.4 > 0.3
---mu 0.2:0.4:3 --mu-k 0.3 => --mu-k '0.3' must not be above mu; exactly, 0.3 > 0.2 (at mu = 0.2)
---I 1 --R 1 --M 0:1:3 => --I '1' contradicts M = 0; leave one of them out (at M = 0 kg)
---M 1:2:3 --g x => --g 'x' is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1), or one of mercury, venus, earth, moon, mars, jupiter, saturn, uranus, neptune, pluto
---M 1:2:3 --only accel => --only 'accel' is no quantity; did you mean acceleration?
---M 1:2:3 --plot => No such option: --plot; atwood sweep -h shows how
---M 1:2:3 --csv -o ./a.svg --figure a.svg => --figure 'a.svg' is the file of --output; name another
---M 1:2:3 --figure a.svg --only regime => --only 'regime' is no number to draw, the table shows it; name a quantity
---M 1:2:7 --g 1:2:7 --figure a.svg => --figure would draw 7 curves on one pair of axes, more than 6; give one of the ranges at most 6 points
---M 1:2:7 --g 1:2:4 --figure a.svg --only T1,T2 => --figure would draw 8 curves on one pair of axes, more than 6; name fewer quantities, or give fewer points
---M 1:2:9 --g 1:2:7 --figure a.svg --only T1,T2 => --figure would draw 14 curves on one pair of axes, more than 6; name fewer quantities, or give fewer points
---M 5,inf --figure a.svg => --M '5,inf' has one finite value, which makes no axis; give another
---M 1:2:3 --figure a.gif => --figure 'a.gif' must end in one of .svg, .png, .pdf
---M 1e200:2e200:3 --figure a.svg --mu 1 => --figure draws numbers between 1e-100 and 1e+100 in magnitude only, not such M
---M 1e400:2e400:3 --figure a.svg => --figure draws numbers between 1e-100 and 1e+100 in magnitude only, not such M
---M 1,1e400 --figure a.svg => --figure draws numbers between 1e-100 and 1e+100 in magnitude only, not such M
---M 1:2:3 --figure a.svg --only mu_verge,F --g 1e200 => --figure draws numbers between 1e-100 and 1e+100 in magnitude only, not such friction_force
---M 1e-200:2:3:log --figure a.svg => --figure draws numbers between 1e-100 and 1e+100 in magnitude only, not such M
---M 1:1.00000000000000000001:3 --figure a.svg => --M '1:1.00000000000000000001:3' has ends too close together to draw what is between them
---M 1:2:3 --bare => --bare needs --figure
---M 1:2:3 --json --csv => --json has no effect with --csv; leave one of them out
---M 1:2:3 --digits 0 => --digits '0' must be a whole number from 1 to 1000
---M 1:2:3 --force => --force needs --output or --figure
---M 1:2:3 -o a.tsv => --output 'a.tsv' must end in one of .txt, .json, .csv
---M 1:2:3 -o a.txt --json => --output 'a.txt' would hold JSON; name it a.json
---M 1:2:3 -o b.json --csv => --output 'b.json' would hold CSV; name it b.csv
-"""
-
-
-@pytest.mark.parametrize("line", WRONG_USAGE.strip("\n").splitlines())
-def test_wrong_usage(atwood: Atwood, line: str) -> None:
-    words, message = line.format(FORM=FORM).split(" => ")
-    ran = atwood(*HELD, *words.split())
-    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {message}\n")
-
-
-def test_a_curve_that_does_not_exist(atwood: Atwood) -> None:
-    pytest.importorskip("matplotlib")
-    ran = atwood(*HELD, "--M", "1:2:3", "--only", "torque", "--figure", "a.svg")
-    assert (ran.status, ran.out) == (1, "")
-    assert ran.err == (
-        "atwood: torque exists at no point, so there is nothing to draw: give R, the pulley's radius\n"
-    )
 
 
 def test_an_invalid_corner_is_found_wherever_it_is() -> None:
