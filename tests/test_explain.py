@@ -107,13 +107,23 @@ def sentences(found: Explanation) -> list[str]:
 # The equations, read as a person reads them and worked out with another library
 
 FUNCTIONS = {"ln": mp.log, "sqrt": mp.sqrt, "sin": mp.sin, "N": mp.mpf}
+OF_RANGES = {"ln": mp.iv.log, "sqrt": mp.iv.sqrt, "sin": mp.iv.sin}
 
 
-def work_out(words: str, **symbols: Any) -> Any:
-    """The value of an expression as printed; numbers are taken exactly."""
+def work_out(words: str, rounded: int = 0, ranges: bool = False, **symbols: Any) -> Any:
+    """The value of an expression as printed; or its range, where numbers of so many digits are rounded."""
+
+    def of_range(digits: str) -> Any:
+        x, half = Decimal(digits), Decimal(0)
+        if len(x.as_tuple().digits) >= rounded:
+            half = Decimal((0, (5,), x.adjusted() - rounded))
+        return mp.iv.mpf(digits) + mp.iv.mpf([f"-{half}", str(half)])
+
     words = words.replace("·", "*").replace("√", "sqrt").replace("e^", "E^")
     words = re.sub(r"(?<![\w.])(\d+(?:\.\d+)?(?:e-?\d+)?)", r"N('\1')", words)
     words = re.sub(r"(?<=[\w)]) (?=[\w(])", "*", words).replace("^", "**")
+    if ranges:
+        return eval(words, {**OF_RANGES, "N": of_range, "E": mp.iv.e})
     return eval(words, {**FUNCTIONS, "E": mp.e, **symbols})
 
 
@@ -138,21 +148,23 @@ def braced(words: str, start: int) -> tuple[str, int]:
 
 
 def check_numbers(equation: Equation, digits: int) -> None:
+    """The result is within the range of the numbers put in, those of all digits half a unit off either way."""
     if equation.numbers is None:
         return
     numbers = equation.numbers.values()
-    mp.mp.dps = 100 + sum(len(str(number)) + max(0, -2 * number.adjusted()) for number in numbers)
+    mp.mp.dps = mp.iv.dps = 100 + sum(len(str(number)) + max(0, -2 * number.adjusted()) for number in numbers)
     _, put_in, result = chain(equation)
-    value, shown = work_out(put_in[2:]), Decimal(equation.result)
+    shown = Decimal(equation.result)
     assert equation.result in result
-    last = Decimal((0, (1,), shown.adjusted() - digits + 1)) if shown else Decimal(0)
-    assert abs(value - mp.mpf(str(shown))) <= mp.mpf(str(last)) * mp.mpf("0.500001"), (put_in, result)
-    if equation.signs[1] == "=":
-        assert mp.almosteq(value, mp.mpf(str(shown)), rel_eps=mp.mpf(10) ** -90) or value == shown == 0
+    half = Decimal((0, (5,), shown.adjusted() - digits)) if shown and equation.signs[1] == "≈" else Decimal(0)
+    value = work_out(put_in[2:], digits + 2, ranges=True)
+    wanted = mp.iv.mpf(str(shown)) + mp.iv.mpf([f"-{half}", str(half)])
+    assert wanted.a <= value.b, (put_in, result)
+    assert value.a <= wanted.b, (put_in, result)
     latex = chain(equation, latex=True)[1]
     sign, _, words = latex.partition(" ")
     assert sign == {"=": "=", "≈": r"\approx"}[equation.signs[0]]
-    assert mp.almosteq(work_out(from_latex(words)), value, rel_eps=mp.mpf(10) ** -80)
+    assert mp.almosteq(work_out(from_latex(words)), work_out(put_in[2:]), rel_eps=mp.mpf(10) ** -80)
 
 
 @kinds
@@ -177,27 +189,6 @@ def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits
             check_numbers(equation, digits or 6)
     assert [*as_text([], found, 80)]
     check_markdown([*as_markdown([], found)])
-
-
-@pytest.mark.parametrize(
-    ("given_", "digits"),
-    [
-        ({"M": "15.24191", "mu": "0.5"}, None),
-        ({"M": "4.50179", "mu": "0.24"}, None),
-        ({"M": "6.5", "mu": "0.3"}, 1),
-        ({"M": "6.26534", "mu": "0.3"}, 2),
-    ],
-)
-def test_rounded_numbers_that_turn_a_difference_negative_take_more_digits(
-    given_: Given, digits: int | None
-) -> None:
-    """c - 2 z is positive, but not with z rounded up: this ran on for ever."""
-    explanation = told(Scene.read({"m1": "1", "m2": "3", **given_}), digits)
-    lines = [equation for equation in equations(explanation) if equation.left == "m*"]
-    assert len(lines) == 2  # as the model has it, and as the paper does
-    assert all(line.numbers is not None for line in lines)
-    for equation in equations(explanation):
-        check_numbers(equation, digits or 6)
 
 
 @kinds
@@ -408,7 +399,7 @@ def test_the_laws_hold(kind: str) -> None:
                 heavy: None if case.locked else symbols.get("m_crit"),
                 light: None if case.stands_until_it_slips else symbols.get("l_crit"),
             }
-            named = re.search(r"\w_crit", words)
+            named = re.search(r"\w_crit|^T\d/T\d = ", words)
             on_the_verge = [{}] if named else [{name: x} for name, x in replaced.items() if x is not None]
             assert on_the_verge
         else:
@@ -481,7 +472,8 @@ inertia alone | (27) | give M, the pulley's mass, beside I
 @pytest.mark.parametrize(("kind", "labels", "words"), table(SAID))
 def test_each_regime_has_its_equations_and_its_reason(kind: str, labels: str, words: str) -> None:
     found = told_of(kind)
-    shown = {equation.label.replace(", ", ",") for equation in equations(found)} | {"(24)"}
+    parts = [part for step in found.steps for part in step.body if not isinstance(part, str)]
+    shown = {part.label.replace(", ", ",") for part in parts}
     assert set(labels.split()) <= shown
     assert words in unmarked(" ".join(sentences(found))).replace(HELD, " ")
 

@@ -1,20 +1,14 @@
 """Formulas as an arithmetic: run on symbols, the equations of the model give expression trees.
 
 The same functions that give a number in fractions or enclosures give a `Formula` here, which records the
-operations. It can be written out, with symbols or with numbers, and evaluated to check the numbers.
+operations. It can be written out, with symbols or with numbers.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from decimal import Decimal
+from collections.abc import Callable, Sequence
 from fractions import Fraction
-from operator import add, mul, sub, truediv
-from typing import Any, NamedTuple, cast
-
-from .interval import Enclosure, Enclosures
-
-OPERATORS = {"+": add, "-": sub, "*": mul, "/": truediv}
+from typing import Any, NamedTuple
 
 
 class Symbol(NamedTuple):
@@ -71,19 +65,6 @@ class Formula:
         if self.op in ("symbol", "number"):
             return {self.parts[0]} if self.op == "symbol" else set()
         return set().union(*(part.symbols() for part in self.parts))
-
-    def worked_out(self, ar: Enclosures, values: Mapping[Symbol, Decimal]) -> Enclosure:
-        """The enclosure of the value for these exact values of the symbols. Raises Unsettled."""
-        if self.op == "symbol":
-            return Enclosure(ar, values[self.parts[0]], values[self.parts[0]])
-        if self.op == "number":
-            return ar.number(self.parts[0])
-        parts = [part.worked_out(ar, values) for part in self.parts]
-        if self.op == "square":
-            return cast(Enclosure, parts[0] * parts[0])
-        if self.op in OPERATORS:
-            return cast(Enclosure, OPERATORS[self.op](*parts))
-        return cast(Enclosure, ar.cos_sin(*parts)[1] if self.op == "sin" else getattr(ar, self.op)(*parts))
 
 
 Term = Formula | float

@@ -6,7 +6,7 @@ from functools import reduce
 from operator import mul, truediv
 from typing import Any
 
-from ..arithmetic.symbolic import Formula, Symbol, factors
+from ..arithmetic.symbolic import Formula, factors
 from ..model import physics
 from ..model.quantities import QUANTITIES
 from .equations import Derivation, Law, Part
@@ -33,7 +33,7 @@ def critical(derivation: Derivation, name: str) -> Iterator[Part]:
         yield from _on_the_verge(derivation)
     yield f"All terms with `{unknown}` on one side, this becomes"
     above, below = factors(derivation.formula(name, expanded="drive"))
-    yield Law("", (_product([*below, Formula("symbol", Symbol(symbol, name))]), _product(above)))
+    yield Law("", (_product([*below, derivation.letter(symbol)]), _product(above)))
     if name == "critical_pulley_mass":
         yield f"`m{h} - m{l} - z` is the drive `d`, what friction at its limit leaves to drive the masses."
         yield from derivation.lines("drive")
@@ -44,23 +44,23 @@ def critical(derivation: Derivation, name: str) -> Iterator[Part]:
 
 def _on_the_verge(derivation: Derivation) -> Iterator[Part]:
     """The ratio of the tensions where friction is at its limit, and the same without a denominator."""
-    l, letters = derivation.light, derivation.letters
+    l = derivation.light
     if _is_the_papers(derivation):
         yield "On the verge the ratio of the tensions is `k`. For a disk, as in the paper, that is"
         ratio = derivation.record(physics.ratio_in_the_paper, "l h M")
-        yield Law(QUANTITIES["tension_ratio"].equation, (ratio, letters["k"]))
+        yield Law(QUANTITIES["tension_ratio"].equation, (ratio, derivation.letter("k")))
         yield "Less 1 on both sides, and with `c` = `M/2`, this becomes"
     else:
         label = derivation.cite(QUANTITIES["tension_ratio"].equation)
         yield f"On the verge the ratio {label} of the tensions is `k`. Less 1 on both sides, that is"
     excess = derivation.record(physics.excess_ratio, "l h c b D")
-    yield Law("", (excess, letters["k - 1"]))
+    yield Law("", (excess, derivation.letter("k - 1")))
     if transfer := [*derivation.lines("k1", "transfer")]:
         yield f"Friction at its limit adds a mass `z` to `m{l}`:"
         yield from transfer
     yield f"Multiplied out, with `z` for `m{l} (k - 1)`, the ratio is"
     above, (_, *below) = factors(excess)  # what is left out is l
-    yield Law("", (_product(above), _product([letters["z"], *below])))
+    yield Law("", (_product(above), _product([derivation.letter("z"), *below])))
 
 
 def _product(factors: Iterable[Formula]) -> Formula:
@@ -80,9 +80,10 @@ def in_the_paper(derivation: Derivation, name: str) -> Iterator[Part]:
     if name not in IN_THE_PAPER or not _is_the_papers(derivation) or derivation.case.stands:
         return
     law, letters = IN_THE_PAPER[name]
-    if "M" in derivation.inputs or "M" not in letters:
+    if derivation.case.pulley_mass is not None or "M" not in letters:
         yield "or, as the paper has it, for a disk,"
-        yield derivation.by(name, law, letters, QUANTITIES[name].equation)
+        sides = derivation.letter(derivation.symbol(name)), derivation.record(law, letters)
+        yield Law(QUANTITIES[name].equation, sides)
 
 
 def _is_the_papers(derivation: Derivation) -> bool:
@@ -100,7 +101,7 @@ def found(derivation: Derivation) -> Iterator[Part]:
     l, h = derivation.light, derivation.heavy
     if case.motion.time is not None:
         yield "A height `s` fallen from rest in the time `t` gives the acceleration:"
-        yield derivation.by(derivation.names["magnitude"], physics.acceleration_of_fall, "s t")
+        yield derivation.by(derivation.symbol("magnitude"), physics.acceleration_of_fall, "s t")
     yield from derivation.motion()
     if finds == "M":
         yield f"The sum of (1) and {turning}, solved for `c`, and with that the mass of the pulley, are"

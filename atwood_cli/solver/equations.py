@@ -1,7 +1,7 @@
-"""The equations of a scene, each as the model has it, with numbers put in that give its result.
+"""The equations of a scene, each as the model has it, with numbers put in.
 
-No equation is written here, and nothing is computed but how many digits a line needs: an equation is what
-the model does with symbols (`symbolic`), and the numbers are the solver's.
+No equation is written here and nothing is computed: an equation is what the model does with symbols
+(`symbolic`), and the numbers are the solver's.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from fractions import Fraction
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.interval import LARGEST_EXPONENT, Unsettled, enclosures
+from ..arithmetic.interval import LARGEST_EXPONENT
 from ..arithmetic.rounding import as_typed, is_infinite, settle, text, to_digits
 from ..arithmetic.symbolic import Formula, Symbol, Symbols, formula
 from ..model.machine import Machine
@@ -26,8 +26,8 @@ DOUBT = 3
 """Significant digits of a relative error (%)."""
 TYPED = 17
 """Digits up to which an input is put in as it was typed."""
-LONGEST = 1000
-"""Most digits that a number put in may have beyond those of the result; a difference may take many."""
+GUARD = 2
+"""Digits that a number put in has beyond those of the result."""
 
 
 class Law(NamedTuple):
@@ -74,13 +74,29 @@ UNITS = {
 """Of what is not in the registry: of what the model computes by its name, of inputs by their symbols."""
 
 
+NAMED = {
+    "half_sine": "sin(φ/2)",
+    "excess": "x",
+    "massless_verge": "μ_0",
+    "k1": "k - 1",
+    "capstan_ratio": "k",
+    "transfer": "z",
+    "drive": "d",
+    "alpha": "φ_lim",
+    "critical_pulley_mass": "M*",
+}
+"""Symbols of what the model computes on the way, in every scene."""
+LIMITS = {"f": 0, "b": 0, "D": 1}
+"""What letters of `physics` stand for unless the axle rubs."""
+
+
 class Derivation:
     """The equations of a scene, each as the model has it, with the solver's numbers.
 
-    ``names`` are the symbols of what the model computes, ``inputs`` those of what is given, of which
-    ``found`` follow from a measured motion, ``letters`` all of these by what `physics` calls them.
-    ``light`` and ``heavy`` are the indices of the masses. ``shown`` are the equations written so far, by
-    name, ``explained`` the quantities whose absence has been explained.
+    ``symbols`` are by the names that the model or `physics` has for them; those of inputs hold their values.
+    ``found`` are those of inputs that follow from a measured motion. ``light`` and ``heavy`` are the
+    indices of the masses. ``shown`` are the equations written so far, by name, ``explained`` the quantities
+    whose absence has been explained.
     """
 
     def __init__(self, answers: Answers) -> None:
@@ -109,64 +125,62 @@ class Derivation:
             "t": motion.time,
             "τ_axle": scene.axle.number if scene.axle and scene.axle.unit == "N m" else None,
         }
-        self.inputs = {name: Symbol(name, value) for name, value in values.items() if value is not None}
+        self.inputs = [Symbol(name, value) for name, value in values.items() if value is not None]
         self.found = {"c", "M"} if motion.finds == "M" else {motion.finds}
         if motion.time is not None:
             self.found.add(magnitude)
-        names = {
+        self.computed = NAMED | {
             "phi": "π" if scene.wrap.is_half_turn else "φ",
-            "half_sine": "sin(φ/2)",
             "magnitude": magnitude,
             "light_tension": f"T{self.light}",
             "heavy_tension": f"T{self.heavy}",
             "difference": f"T{self.heavy} - T{self.light}",
-            "rim_acceleration": "a_rim" if case.regime == "slip" else "a",
-            "excess": "x",
-            "mu_verge": "μ*",
-            "massless_verge": "μ_0",
-            "k1": "k - 1",
-            "capstan_ratio": "k",
             "tension_ratio": f"T{self.heavy}/T{self.light}",
-            "transfer": "z",
-            "drive": "d",
-            "alpha": "φ_lim",
-            "critical_pulley_mass": "M*",
+            "rim_acceleration": "a_rim" if case.regime == "slip" else "a",
         }
-        if case.regime == "slip" and scene.mu_k is not None:
-            names |= {"limiting_k1": "k_kin - 1", "limiting_transfer": "z_kin", "limiting_drive": "d_kin"}
-        if case.regime == "verge":
-            del names["mu_verge"]  # it is the coefficient given
+        if case.regime != "verge":  # there it is the coefficient given
+            self.computed["mu_verge"] = "μ*"
         if case.slide_measured:
-            names |= {"limiting_k1": "x_kin", "mu_k": "μ_k"}
-        self.names = names
-        unknown = {"pulley_mass": "M", "rim_mass": "c"}  # unless they are given
-        symbols = {symbol: Symbol(symbol, name) for name, symbol in (unknown | names).items()} | self.inputs
-        called = {"l": f"m{self.light}", "h": f"m{self.heavy}", "a": magnitude, "f": "f_axle"}
-        symbols |= {letter: symbols[symbol] for letter, symbol in called.items() if symbol in symbols}
-        self.letters = {"f": formula(0), "b": formula(0), "D": formula(1)}  # unless the axle rubs
-        self.letters |= {letter: Formula("symbol", symbol) for letter, symbol in symbols.items()}
+            self.computed |= {"limiting_k1": "x_kin", "mu_k": "μ_k"}
+        elif case.regime == "slip" and scene.mu_k is not None:
+            kinetic = {"limiting_k1": "k_kin - 1", "limiting_transfer": "z_kin", "limiting_drive": "d_kin"}
+            self.computed |= kinetic
 
     def symbol(self, name: str) -> str:
         """What equations write for a quantity."""
-        return self.names.get(name) or plain(QUANTITIES[name].symbol)
+        return self.computed.get(name) or plain(QUANTITIES[name].symbol)
 
     def formula(self, name: str, expanded: str = "") -> Formula:
         """The model's formula for a quantity, in the symbols of the inputs and of what else has a name.
 
         What is ``expanded`` is put in by its own formula.
         """
-        arithmetic: Any = Symbols(list(self.inputs.values()))
+        arithmetic: Any = Symbols(self.inputs)
         known = {
             other: Formula("symbol", Symbol(symbol, other))
-            for other, symbol in self.names.items()
+            for other, symbol in self.computed.items()
             if other not in (name, expanded)
         }
         formula: Formula = getattr(Machine(self.case, arithmetic, known), name)
         return formula
 
+    def letter(self, letter: str) -> Formula:
+        """The symbol for a letter of `physics`, or the number that it is in the limit at hand."""
+        called = {
+            "l": f"m{self.light}",
+            "h": f"m{self.heavy}",
+            "a": self.computed["magnitude"],
+            "f": "f_axle",
+        }
+        name = called.get(letter, letter)
+        given = {symbol.name: symbol for symbol in self.inputs}
+        if letter in LIMITS and name not in given:
+            return formula(LIMITS[letter])
+        return Formula("symbol", given.get(name) or Symbol(name, name))
+
     def record(self, law: Callable[..., Any], letters: str) -> Formula:
         """The formula that an equation of `physics` gives on symbols."""
-        recorded: Formula = law(*(self.letters[one] for one in letters.split()))
+        recorded: Formula = law(*map(self.letter, letters.split()))
         return recorded
 
     def equation(self, name: str) -> Equation:
@@ -188,47 +202,29 @@ class Derivation:
 
     def by(self, name: str, law: Callable[..., Any], letters: str, label: str = "") -> Equation:
         """The equation of an input that follows from others, or of a quantity, as ``law`` gives it."""
-        result = self.inputs.get(name) or Symbol(self.symbol(name), name)
+        given = {symbol.name: symbol for symbol in self.inputs}
+        result = given.get(name) or Symbol(self.symbol(name), name)
         return self.worked_out(result, self.record(law, letters), label)
 
     def worked_out(self, result: Symbol, formula: Formula, label: str) -> Equation:
-        """The equation with numbers put in, each with as many digits as give the result shown.
+        """The equation with numbers put in, unless they would be too large to write.
 
-        No numbers where they would be too large to write, or longer than anybody reads. The paper's number
-        is marked where the friction of the axle enters its equation.
+        The paper's number is marked where the friction of the axle enters its equation.
         """
-        symbols, digits = sorted(formula.symbols()), self.digits
+        symbols = sorted(formula.symbols())
         if label and {"b", "f_axle"} & {symbol.name for symbol in symbols}:
             label = self.cite(label)
         left, unit = result.name, unit_of(result.of if isinstance(result.of, str) else result.name)
-        value, exact = self.number(result, digits)
+        value, exact = self.number(result, self.digits)
         if is_infinite(value):
             return Equation(label, left, formula, None, "=>", f"10^{LARGEST_EXPONENT}", unit)
-        while True:
-            rounded = {symbol: self.number(symbol, digits, TYPED) for symbol in symbols}
-            numbers = {symbol: number for symbol, (number, _) in rounded.items()}
-            if any(map(is_infinite, numbers.values())) or digits > self.digits + LONGEST:
-                return Equation(label, left, formula, None, "=≈", text(value), unit)
-            if self._gives(formula, numbers, value):
-                break
-            digits += 1 + digits // 16
+        rounded = {symbol: self.number(symbol, self.digits + GUARD, TYPED) for symbol in symbols}
+        numbers = {symbol: number for symbol, (number, _) in rounded.items()}
+        if any(map(is_infinite, numbers.values())):
+            return Equation(label, left, formula, None, "=≈", text(value), unit)
         put_in = "=" if all(is_exact for _, is_exact in rounded.values()) else "≈"
         signs = put_in + ("=" if exact and (put_in == "=" or not value) else "≈")
         return Equation(label, left, formula, numbers, signs, text(value), unit)
-
-    def _gives(self, formula: Formula, numbers: Mapping[Symbol, Decimal], result: Decimal) -> bool:
-        """Whether the formula of these numbers gives the printed result, to half a unit of its last digit."""
-        longest = max((len(number.as_tuple().digits) for number in numbers.values()), default=0)
-        precision = 2 * (longest + self.digits) + 20
-        try:
-            value = formula.worked_out(enclosures(precision), numbers)
-        except (Unsettled, ZeroDivisionError):  # rounded, c - 2z can be 0 or less, which it is not
-            return False
-        if not result:
-            return value.lo == value.hi == 0
-        at = enclosures(precision).up
-        half = at.multiply(Decimal("0.500001"), Decimal((0, (1,), result.adjusted() - self.digits + 1)))
-        return at.subtract(value.hi, result) <= half and at.subtract(result, value.lo) <= half
 
     def number(self, symbol: Symbol, digits: int, typed: int = 0) -> tuple[Decimal, bool]:
         """The number to put in for a symbol, and whether it is exact.

@@ -51,7 +51,7 @@ def explain(answers: Answers) -> Explanation:
         middle = [_grip, *motion, _friction]
     limits = [_limits] if case.scene.mu and case.sign else []
     first = [Step(TITLES[body], [*body(derivation)]) for body in (_masses, _pulley, *middle, *limits)]
-    model = Step("What is modelled and what is not", [*_model(derivation)])
+    model = Step("What is modelled", [*_model(derivation)])
     reasons = {one: 1 for one in answers.reasons.items() if one[0] not in derivation.explained}
     lacking: list[Part] = [*missing(reasons)]
 
@@ -62,15 +62,14 @@ def explain(answers: Answers) -> Explanation:
     return Explanation(
         [*[f"Found: {told}."] * bool(told), verdict(answers), *[f"{main}."] * bool(main)],
         "After = both sides are exactly equal, after ≈ the result is rounded to"
-        f" {derivation.digits} significant digits. Numbers put in have as many digits as it takes to give the"
-        " result. Numbers of equations are those of de Oliveira and Lemos, Force and torque of a string on a"
-        " pulley.",
+        f" {derivation.digits} significant digits; numbers put in have two more. Numbers of equations are"
+        " those of de Oliveira and Lemos, Force and torque of a string on a pulley, arXiv:1706.10139.",
         [*first, *_simpler(derivation), model, *[Step("What has no value", lacking)] * bool(lacking)],
     )
 
 
 def _masses(derivation: Derivation) -> Iterator[Part]:
-    l, h, a = derivation.light, derivation.heavy, derivation.names["magnitude"]
+    l, h, a = derivation.light, derivation.heavy, derivation.symbol("magnitude")
     yield (
         "Two forces act on each mass: its weight, downwards, and the tension of the string it hangs on,"
         " upwards. The string does not stretch, so both masses have the same acceleration."
@@ -86,7 +85,7 @@ def _masses(derivation: Derivation) -> Iterator[Part]:
 
 
 def _pulley(derivation: Derivation) -> Iterator[Part]:
-    case, difference = derivation.case, derivation.names["difference"]
+    case, difference = derivation.case, derivation.symbol("difference")
     yield (
         "`T1` and `T2` do not act on the pulley. They act on the string, at the two points where it"
         " leaves the pulley. What acts on the pulley is the contact force of the string, all along the"
@@ -128,7 +127,7 @@ def _pulley(derivation: Derivation) -> Iterator[Part]:
             " `c = I/R^2`, the pulley's inertia as a mass at the rim (`M/2` for the disk of the paper),"
         )
         friction = " + f_axle" * case.rubs
-        yield Law(derivation.cite("(3)"), f"{difference} = c {derivation.names['magnitude']}{friction}")
+        yield Law(derivation.cite("(3)"), f"{difference} = c {derivation.symbol('magnitude')}{friction}")
         if case.rim_mass is None:
             yield f"where `c = β M` and `β` = {as_typed(derivation.scene.inertia or Fraction(1))}."
         elif derivation.scene.I is not None:
@@ -140,7 +139,7 @@ def _pulley(derivation: Derivation) -> Iterator[Part]:
 
 def _turning(derivation: Derivation) -> Iterator[Part]:
     """What turns the pulley, (2), and what the friction of its axle takes of that."""
-    difference = derivation.names["difference"]
+    difference = derivation.symbol("difference")
     if not derivation.case.rubs:
         yield "The pulley's weight and the force of the axle act at the axle and do not turn it. So"
         yield Law("(2)", f"({difference}) R = I α")
@@ -153,7 +152,7 @@ def _turning(derivation: Derivation) -> Iterator[Part]:
     known = derivation.case.motion.finds != "g"
     words = "and it stands while the tensions differ by no more than `f_axle`, the weight of a mass `b`"
     yield f"{words}{':' if known else '.'}"
-    if "τ_axle" in derivation.inputs:
+    if derivation.scene.axle and derivation.scene.axle.unit == "N m":
         yield derivation.by("f_axle", truediv, "τ_axle R")
     if known:
         yield derivation.by("b", physics.axle_mass, "f g")
@@ -259,7 +258,7 @@ def _grip(derivation: Derivation) -> Iterator[Part]:
         value = "" if is_infinite(answers["capstan_ratio"]) else f": {derivation.say('capstan_ratio')}"
         called = f" This capstan ratio is called `k`{value}."
     yield (
-        f"so at the most, friction makes `T{h}` as large as `e^(μ {derivation.names['phi']})`"
+        f"so at the most, friction makes `T{h}` as large as `e^(μ {derivation.symbol('phi')})`"
         f" times `T{l}`{angle}.{called}"
     )
     if not scene.mu and scene.mu is not None:
@@ -394,10 +393,8 @@ def _model(derivation: Derivation) -> Iterator[Part]:
     sheaves = "" if case.ends_hang_down else ", guide sheaves without mass or friction"
     friction = ", Coulomb friction between the two" if derivation.scene.mu is not None else ""
     yield f"Modelled: a string without mass that does not stretch, {pulley}, {axle}{sheaves}{friction}."
-    yield (
-        f"Not modelled: the string's mass, stretch and stiffness,{' friction in the axle,' * (not rubs)} air."
-        " Nothing in these numbers says how much they matter."
-    )
+    rubbing = "" if rubs else " friction in the axle,"
+    yield f"Not modelled: the string's mass, stretch and stiffness,{rubbing} air."
 
 
 TITLES = {
