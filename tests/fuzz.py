@@ -55,12 +55,7 @@ MOST_SAID = 2000  # characters of a sentence
 STATUSES = (0, 1, 2, 130)
 COMMANDS: dict[str, Any] = cli.program().commands
 WEIGHTS = {"solve": 40, "contact": 20, "sweep": 20, "batch": 20, "fit": 20, "tradeoff": 1}
-RARE = {
-    "--figure": 0.02,
-    "--help": 0.01,
-    "--explain": 0.1,
-    "--digits": 0.3,
-}
+RARE = {"--figure": 0.02, "--help": 0.01, "--explain": 0.1, "--digits": 0.3}
 CLOSED = 0.005
 """How often stdout is closed, for which a process is needed."""
 OFTEN = {"--wrap": 0.2, "--m1": 0.97, "--m2": 0.97, "--M": 0.6, "--mu": 0.6}
@@ -294,10 +289,7 @@ def limited() -> Iterator[None]:
         taken = f"{BUSY} s of processor time" if number == signal.SIGPROF else f"{LIMIT} s"
         raise TimeoutError(f"it takes more than {taken}")
 
-    timers = (
-        (signal.ITIMER_REAL, signal.SIGALRM, LIMIT),
-        (signal.ITIMER_PROF, signal.SIGPROF, BUSY),
-    )
+    timers = ((signal.ITIMER_REAL, signal.SIGALRM, LIMIT), (signal.ITIMER_PROF, signal.SIGPROF, BUSY))
     before = [signal.signal(number, ring) for _, number, _ in timers]
     for timer, _, seconds in timers:
         signal.setitimer(timer, seconds)
@@ -405,9 +397,7 @@ def wrong_with_arguments(random: Dice) -> str:
 
     if random.random() < 0.5:
         return call(
-            solve,
-            random.choice([{}, {"digits": random.choice([3, 30, *ODD_VALUES])}]),
-            [*INPUTS, *MEASURED],
+            solve, random.choice([{}, {"digits": random.choice([3, 30, *ODD_VALUES])}]), [*INPUTS, *MEASURED]
         )
     accuracy = random.choice(["fast", "certified", "exact", "x", None])
     quantities = random.choice([None, random.sample(NAMES, 3), ["x"], []])

@@ -241,13 +241,7 @@ def test_not_given_nothing_of_it_shows(atwood: Atwood) -> None:
 
 def test_it_is_swept(atwood: Atwood) -> None:
     ran = atwood("sweep", "--m1", "1", "--m2", "3", "--axle", "0:30:4", "--only", "acceleration", "--csv")
-    assert ran.out.splitlines() == [
-        "axle,acceleration",
-        "0,4.903325",
-        "10,2.403325",
-        "20,0",
-        "30,0",
-    ]
+    assert ran.out.splitlines() == ["axle,acceleration", "0,4.903325", "10,2.403325", "20,0", "30,0"]
     ran = atwood(
         "sweep", "--m1", "1", "--m2", "3", "--R", "5cm", "--axle", "0:1Nm:3", "--only", "a", "--digits", "5"
     )

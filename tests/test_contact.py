@@ -433,11 +433,7 @@ STUCK = "over the rest the string is stuck."
             "guide",
         ),
         (f"{FIGURE} --wrap 270", "m₂'s guide is not drawn.", "turns"),
-        (
-            f"{FIGURE} --wrap 1441",
-            "Of 4.003 turns, the heavier mass's is drawn.",
-            "to scale",
-        ),
+        (f"{FIGURE} --wrap 1441", "Of 4.003 turns, the heavier mass's is drawn.", "to scale"),
         (f"{FIGURE} --wrap 1e9", "Of 2778000 turns, ", "to scale"),
         # Both weights are ties, which no double is: they are rounded to even, once.
         ("--m1 1 --m2 3 --g 1.2345 --M 10", "W₁ = 1.234 N|W₂ = 3.704 N", "1.235 N"),
@@ -458,11 +454,7 @@ ALONE = "θ|grey"
     ("scene", "there", "absent"),
     [
         (FIGURE, f"M = 10 kg|a = 2.179 m/s²|nR|fR|{STUCK.replace('grey part', 'rest')}", f"axle|{ALONE}"),
-        (
-            f"{FIGURE} --only a --bare",
-            "M = 10 kg|a = 2.179 m/s²",
-            f"M = 10 kg,|string|{ALONE}",
-        ),
+        (f"{FIGURE} --only a --bare", "M = 10 kg|a = 2.179 m/s²", f"M = 10 kg,|string|{ALONE}"),
         ("--m1 3 --m2 1 --mu 0.3 --explain", "M = 43.34 kg|T₁ = 27.13 N|a = 0.7640 m/s²", ALONE),
         ("--m1 1 --m2 3 --M inf --mu 0.3 --axle 2", "Slips|M = inf|a = 0.7640 m/s²", f"axle|{ALONE}"),
         ("--m1 2 --m2 2 --M 1 --axle 3", "At rest|a = 0|M = 1 kg|T₁ = 19.61 N", f"axle|m/s² |{ALONE}"),

@@ -285,10 +285,7 @@ def test_notes_show_floats_as_they_are_written(given: str, said: str) -> None:
 
 @pytest.mark.parametrize(
     ("mu", "mu_k", "sizes"),
-    [
-        (0.3, "0.3", "0.3 > 0.299999999999999988897769753748434595763683319091796875"),
-        (0.2, 0.3, "0.3 > 0.2"),
-    ],
+    [(0.3, "0.3", "0.3 > 0.299999999999999988897769753748434595763683319091796875"), (0.2, 0.3, "0.3 > 0.2")],
 )
 def test_the_digits_of_a_float_are_shown_where_they_decide(mu: float, mu_k: Any, sizes: str) -> None:
     with pytest.raises(SceneError, match=f"must not be above mu; exactly, {sizes}"):

@@ -13,9 +13,7 @@ from .regenerate import CASES, KEPT
 
 PACKAGE, TESTS = Path(atwood_cli.__file__).parent, Path(__file__).parent
 SENTENCES = ("SceneError", "Malformed", "Rule", "Unreadable", "OSError", "FileExistsError", "ArithmeticError")
-NOT_REACHED = {
-    "not settled within": "no scene is known that fifty thousand digits do not settle",
-}
+NOT_REACHED = {"not settled within": "no scene is known that fifty thousand digits do not settle"}
 
 
 def fragments(node: ast.AST) -> Iterator[str]:

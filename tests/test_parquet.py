@@ -198,8 +198,7 @@ NO_PARQUET = "atwood: cannot read IN: it is not Parquet that polars can read: "
 
 
 @pytest.mark.parametrize(
-    "column",
-    [pa.array([Decimal("1.1")], pa.decimal256(50, 2)), pa.array([[1]], pa.list_view(pa.int8()))],
+    "column", [pa.array([Decimal("1.1")], pa.decimal256(50, 2)), pa.array([[1]], pa.list_view(pa.int8()))]
 )
 def test_columns_that_cannot_be_carried(batch: Batch, column: pa.Array) -> None:
     try:

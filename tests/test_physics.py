@@ -133,10 +133,7 @@ def test_conditions_36_are_where_34_and_35_diverge() -> None:
 
 theta = sp.Symbol("theta", positive=True)
 tension = t1 * sp.exp(mu * theta)
-ends = (
-    (tension * sp.cos(theta)).subs(theta, phi) - t1,
-    (tension * sp.sin(theta)).subs(theta, phi),
-)
+ends = ((tension * sp.cos(theta)).subs(theta, phi) - t1, (tension * sp.sin(theta)).subs(theta, phi))
 
 
 def test_friction_vector_is_the_integral_28() -> None:

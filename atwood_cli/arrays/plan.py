@@ -45,10 +45,7 @@ from .pairs import PAIRS
 from .pattern import Decisions, Pattern, Task
 from .program import Program
 
-LEVELS: dict[str, tuple[Doubles, ...]] = {
-    "certified": (DOUBLES, PAIRS),
-    "exact": (PAIRS,),
-}
+LEVELS: dict[str, tuple[Doubles, ...]] = {"certified": (DOUBLES, PAIRS), "exact": (PAIRS,)}
 """The arithmetics of each accuracy's levels of precision."""
 ENOUGH_DIGITS = 32
 """Digits with which most rows are settled that doubles cannot certify, in the first computation."""

@@ -26,16 +26,7 @@ from ..model.scene import (
 )
 from ..model.units import Malformed, counted, in_quotes, read_unit, shortened
 from ..solver.messages import reasons_at
-from ..tables.headings import (
-    EMPTY,
-    Heading,
-    Vocabulary,
-    divisions,
-    listed,
-    pointed,
-    read_headings,
-    refused,
-)
+from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
 
 if TYPE_CHECKING:
     import polars as pl
@@ -177,11 +168,7 @@ class Tally:
 
 
 def solve_cells(
-    cells: "pl.DataFrame",
-    layout: Layout,
-    asked: Question,
-    tally: Tally,
-    others: Mapping[int, str] = {},
+    cells: "pl.DataFrame", layout: Layout, asked: Question, tally: Tally, others: Mapping[int, str] = {}
 ) -> "pl.DataFrame":
     """The columns to append to rows whose inputs have those cells: the results, and the errors of bad rows.
 

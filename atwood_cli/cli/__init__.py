@@ -78,8 +78,7 @@ def _print_version(wanted: bool) -> None:
 
 
 Version = Annotated[
-    bool,
-    typer.Option("--version", "-V", callback=_print_version, is_eager=True, help="Print the version."),
+    bool, typer.Option("--version", "-V", callback=_print_version, is_eager=True, help="Print the version.")
 ]
 
 

@@ -37,12 +37,7 @@ FromFormat = Annotated[
     option("Files", "--from", metavar="|".join(FORMATS), help="Format of IN, if not that of its suffix."),
 ]
 Accuracy = Annotated[
-    str,
-    option(
-        "Output",
-        metavar="|".join(ACCURACIES),
-        help="How accurate results are; exact, if not given.",
-    ),
+    str, option("Output", metavar="|".join(ACCURACIES), help="How accurate results are; exact, if not given.")
 ]
 Headings = Annotated[
     list[str] | None,

@@ -8,20 +8,8 @@ from ..laboratory.published import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..model.quantities import divided, read_names
 from ..model.scene import INPUTS, read_digits, read_input, read_whole
 from ..output.text import Target, say, show
-from .options import (
-    COULD_NOT,
-    DONE,
-    Bare,
-    FigureFile,
-    Labels,
-    check_figure,
-    option,
-    scene_option,
-    takes,
-)
-from .options import (
-    RESULTS as FORMS,
-)
+from .options import COULD_NOT, DONE, Bare, FigureFile, Labels, check_figure, option, scene_option, takes
+from .options import RESULTS as FORMS
 
 Table = Annotated[
     str,
@@ -42,8 +30,7 @@ Find = Annotated[
     ),
 ]
 Without = Annotated[
-    list[str] | None,
-    option("Measured", metavar="ROW", help="Leave this row out; repeatable, or 5,7."),
+    list[str] | None, option("Measured", metavar="ROW", help="Leave this row out; repeatable, or 5,7.")
 ]
 Only = Annotated[
     list[str] | None,

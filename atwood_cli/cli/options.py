@@ -177,12 +177,7 @@ def quantities() -> Mapping[str, str]:
 # Shared by several commands
 
 Digits = Annotated[
-    str | None,
-    option(
-        "Output",
-        metavar="N",
-        help="Significant digits; 6 in tables, a double's elsewhere.",
-    ),
+    str | None, option("Output", metavar="N", help="Significant digits; 6 in tables, a double's elsewhere.")
 ]
 Columns = Annotated[
     list[str] | None,

@@ -10,18 +10,7 @@ from ..output.text import Forms, Target, cell, said_of_scene, say, show
 from ..solver.answers import Answers, read_answers
 from ..solver.expected import failure, read_condition
 from ..solver.messages import unmarked
-from .options import (
-    COULD_NOT,
-    DONE,
-    RESULTS,
-    SCENE,
-    Bare,
-    Digits,
-    option,
-    quantities,
-    scene_option,
-    takes,
-)
+from .options import COULD_NOT, DONE, RESULTS, SCENE, Bare, Digits, option, quantities, scene_option, takes
 
 
 def _answers() -> Mapping[str, str]:
@@ -42,42 +31,21 @@ Only = Annotated[
 ]
 Expect = Annotated[
     list[str] | None,
-    option(
-        "Output",
-        metavar="CONDITION",
-        help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable.",
-    ),
+    option("Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."),
 ]
 Markdown = Annotated[
     bool, option("Output", "--markdown", help="With --explain: a page of Markdown, with LaTeX.")
 ]
-All = Annotated[
-    bool,
-    option(
-        "Output",
-        "--all",
-        help="Show all quantities, and why others are missing.",
-    ),
-]
+All = Annotated[bool, option("Output", "--all", help="Show all quantities, and why others are missing.")]
 Budget = Annotated[
-    bool,
-    option("Output", "--budget", help="Also print each uncertain input's share of the variance."),
+    bool, option("Output", "--budget", help="Also print each uncertain input's share of the variance.")
 ]
 Explain = Annotated[
-    bool,
-    option(
-        "Output",
-        "--explain",
-        help="Instead, show how it follows, with the numbers put in.",
-    ),
+    bool, option("Output", "--explain", help="Instead, show how it follows, with the numbers put in.")
 ]
 Figure = Annotated[
     str | None,
-    option(
-        "Files",
-        metavar="FILE",
-        help="Also draw the machine: .svg, .png, .pdf (extra: figure).",
-    ),
+    option("Files", metavar="FILE", help="Also draw the machine: .svg, .png, .pdf (extra: figure)."),
 ]
 
 HELP = """Solve one scene: acceleration, tensions, friction.

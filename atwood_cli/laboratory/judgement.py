@@ -14,16 +14,7 @@ from ..model import physics
 from ..model.case import Case
 from ..model.quantities import read_names
 from ..model.scene import Input, Scene, SceneError, parameter_of
-from .fitting import (
-    Estimate,
-    accelerations,
-    as_data,
-    estimate,
-    expected,
-    measurements,
-    slopes,
-    variances,
-)
+from .fitting import Estimate, accelerations, as_data, estimate, expected, measurements, slopes, variances
 from .published import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, few, shown
 from .runs import BEYOND, Run, Runs, in_range
 from .statistics import Alike, Column, stray_repeats, stray_rows, student

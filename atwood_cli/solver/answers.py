@@ -19,17 +19,7 @@ from ..model.case import Case
 from ..model.machine import Machine
 from ..model.mechanics import Undetermined
 from ..model.quantities import FROM_MOTION, MAIN, NAMES
-from ..model.scene import (
-    INPUTS,
-    MEASURED,
-    UNMEASURED,
-    Given,
-    Input,
-    Motion,
-    Scene,
-    SceneError,
-    read_input,
-)
+from ..model.scene import INPUTS, MEASURED, UNMEASURED, Given, Input, Motion, Scene, SceneError, read_input
 from ..model.units import STANDARD_GRAVITY, read_number
 
 if TYPE_CHECKING:

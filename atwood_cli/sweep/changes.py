@@ -110,12 +110,7 @@ def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
 
 
 def _between(
-    state: Callable[[Fraction], Any],
-    before: Any,
-    last: Fraction,
-    first: Fraction,
-    digits: int,
-    suffix: str,
+    state: Callable[[Fraction], Any], before: Any, last: Fraction, first: Fraction, digits: int, suffix: str
 ) -> tuple[Point, Fraction, Fraction]:
     """A change between two values: its place, and both sides of it.
 

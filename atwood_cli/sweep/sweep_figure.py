@@ -166,10 +166,7 @@ def picture(sweep: Sweep, names: Sequence[str]) -> Picture:
         x=axis_title([x.name], x.unit),
         log=x.log,
         panels=panels,
-        notes=[
-            *[f"{x.stated(LOCKED)} has no place on the axis."] * x.locks,
-            *reasons_at(reasons, 1),
-        ],
+        notes=[*[f"{x.stated(LOCKED)} has no place on the axis."] * x.locks, *reasons_at(reasons, 1)],
     )
 
 
