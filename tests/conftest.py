@@ -2,13 +2,14 @@
 
 import gc
 import os
+import signal
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from atwood_cli.cli import run
 
-from .running import Atwood, Ran
+from .running import HEARD, HOW_TO_PRINT, Atwood, Ran
 
 # No test fails where a machine is slow.
 ANYWHERE = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
@@ -33,10 +34,16 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """What the suite starts is not told how Python is to run: PYTHONUNBUFFERED hides what users meet."""
+    """What the suite starts depends on nothing that a shell has set: PYTHONUNBUFFERED hides what users meet."""
     settings.load_profile("every-digit" if config.getoption("every_digit") else "usual")
-    for name in [name for name in os.environ if name.startswith("PYTHON") and name != "PYTHONPATH"]:
+    told = [name for name in os.environ if name.startswith("PYTHON") and name != "PYTHONPATH"]
+    for name in {*told, *HOW_TO_PRINT} & {*os.environ}:
         del os.environ[name]
+    for (
+        name
+    ) in HEARD:  # an ignored signal, as under nohup, would be ignored by children; a handled one is not
+        if (number := getattr(signal, name, None)) and signal.getsignal(number) is signal.SIG_IGN:
+            signal.signal(number, lambda *_: None)
 
 
 def pytest_collection_finish() -> None:

@@ -58,10 +58,13 @@ def called(words: Sequence[str], stdin: bytes = b"") -> Ran:
     return Ran(status, *(stream.detach().getvalue().decode() for stream in (out, err)))
 
 
+HOW_TO_PRINT = ("COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR")
+"""What tells a program in its environment how to print."""
+
+
 def around(asked: Mapping[str, str]) -> dict[str, str]:
     """The environment of a run, in which nothing tells how to print but what is asked for."""
-    told = {"COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR"}
-    ours = {name: value for name, value in os.environ.items() if name not in told}
+    ours = {name: value for name, value in os.environ.items() if name not in HOW_TO_PRINT}
     return {**ours, "PYTHON": sys.executable, **asked}
 
 

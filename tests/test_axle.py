@@ -13,10 +13,8 @@ from random import Random
 from typing import Any
 
 import pytest
-import uncertainties as unc
 from hypothesis import given
 from hypothesis import strategies as st
-from uncertainties import umath
 
 from atwood_cli import SceneError, solve
 from atwood_cli.arithmetic.rational import EXACT
@@ -283,6 +281,7 @@ def test_what_is_found_beside_it_gives_the_measured_acceleration_exactly(
 
 
 def test_uncertainties_against_uncertainties() -> None:
+    unc, umath = pytest.importorskip("uncertainties"), pytest.importorskip("uncertainties.umath")
     m1, m2, M, g, torque, R = (
         unc.ufloat(*pair)
         for pair in ((0.2, 1e-4), (0.21, 2e-4), (0.08, 1e-3), (9.8, 0.01), (8e-4, 1e-5), (0.05, 1e-3))

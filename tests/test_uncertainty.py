@@ -16,8 +16,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-import uncertainties as unc
-from uncertainties import umath
 
 from atwood_cli import SceneError, solve, solve_arrays
 from atwood_cli.arithmetic.rounding import to_digits, to_place, with_uncertainty
@@ -202,6 +200,7 @@ def at_end(given: Mapping[str, Any]) -> Any:
 
 def test_small_steps_are_those_of_the_first_order() -> None:
     """By `uncertainties`, which takes derivatives; inputs to 0.1 to 1 %, and no regime near."""
+    unc, umath = pytest.importorskip("uncertainties"), pytest.importorskip("uncertainties.umath")
     m1, m2, M, g = (unc.ufloat(*pair) for pair in ((1, 0.004), (3, 0.01), (10, 0.1), (9.81, 0.02)))
     a = g * (m2 - m1) / (m1 + m2 + M / 2)
     t1, t2 = m1 * (g + a), m2 * (g - a)
