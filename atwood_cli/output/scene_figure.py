@@ -54,7 +54,7 @@ TENSION, WEIGHT, SHORTEST = 0.35, 0.5, 0.05  # the lengths of arrows: most and l
 SMALL, LARGE = 0.12, 0.3  # of friction's longest arrow; beyond, all of friction is drawn larger or smaller
 APART = radians(15)  # between arrows along the arc
 RIM, INSIDE = 0.93, 0.86  # where arrows of friction and of the normal force start
-AXLE, THETA, ACCELERATION = 0.24, 0.17, 0.36  # radii of arrows around the axle, and the length of an arrow
+AXLE, ACCELERATION = 0.24, 0.36  # the radius of the arrow around the axle, and the length of an arrow
 NAME = -0.36j  # where the pulley's mass is said
 NOT_TO_SCALE = "Arrows with open heads are not to scale."
 GUIDED = "m₂'s guide is not drawn."
@@ -88,7 +88,6 @@ def save(
         machine, *beside = figure.subplots(1, len(widths), width_ratios=widths, squeeze=False)[0]
         drawn = _draw_machine(machine, few, forces, radians(wrap), tensions, weights)
         if curves and forces:
-            _mark_theta(machine, radians(wrap))
             _draw_curves(beside[0], forces, wrap)
         said = _sentences(few, kind) if kind and not bare else []
         if wrap > 360:
@@ -193,7 +192,7 @@ def _draw_machine(
     legend, whole = _draw_contact(axes, forces, phi, scale) if forces else ([], True)
     if friction := _axle_friction(few):
         turned = few.case.sign * radians(70)
-        _draw_turn(axes, AXLE, -pi / 2 - turned, -pi / 2 + turned, ORANGE)
+        _draw_turn(axes, -pi / 2 - turned, -pi / 2 + turned, ORANGE)
         legend.append((f"axle friction, {friction} N at the rim", ORANGE))
     axes.text(NAME.real, NAME.imag, _pulley(few), ha="center", va="center", size=10)
     for i, (end, tension, weight) in enumerate(zip(ends, tensions, weights, strict=True)):
@@ -357,22 +356,12 @@ def _draw_head(axes: "Axes", tip: complex, head: complex, colour: str, whole: bo
     axes.fill(corners.real, corners.imag, facecolor=face, edgecolor=colour, lw=width, zorder=3)
 
 
-def _draw_turn(axes: "Axes", radius: float, start: float, end: float, colour: str) -> None:
+def _draw_turn(axes: "Axes", start: float, end: float, colour: str) -> None:
     """An arrow around the axle, from one angle to another."""
     way = 1 if end > start else -1
-    hidden = 0.25 * min(1.0, abs(end - start)) * (THETA / radius)  # of the line, by the head
-    line = radius * np.exp(1j * np.linspace(start, end - way * hidden, 20))
+    line = AXLE * np.exp(1j * np.linspace(start, end - 0.18 * way, 20))  # the head hides the rest
     axes.plot(line.real, line.imag, color=colour, lw=1)
-    _draw_head(axes, radius * np.exp(1j * end), 0.09j * way * np.exp(1j * (end - 0.2 * way)), colour)
-
-
-def _mark_theta(axes: "Axes", phi: float) -> None:
-    """The angle, from m1's end of the arc onwards."""
-    if (wide := min(phi, 1.0)) >= 0.2:
-        axes.plot([0, -0.3], [0, 0], color=FAINT, lw=0.8)
-        _draw_turn(axes, THETA, pi, pi - wide, INK)
-        at = 0.27 * _rim(wide / 2)
-        axes.text(at.real, at.imag, "θ", ha="center", va="center", size=9)
+    _draw_head(axes, AXLE * np.exp(1j * end), 0.09j * way * np.exp(1j * (end - 0.2 * way)), colour)
 
 
 def _draw_curves(axes: "Axes", forces: Forces, wrap: float) -> None:
