@@ -41,10 +41,10 @@ import polars as pl
 import typer
 
 from atwood_cli import SceneError, cli, solve, solve_arrays
-from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import NAMES
 from atwood_cli.model.scene import INPUTS, MASSES, MEASURED
 from atwood_cli.model.units import UNITS
+from atwood_cli.tables.sources import FORMATS
 from atwood_cli.tradeoff import measure
 
 from .running import hearing

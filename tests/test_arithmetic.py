@@ -14,10 +14,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve
-from atwood_cli.arithmetic import rounding
+from atwood_cli.arithmetic import settling
 from atwood_cli.arithmetic.interval import Enclosure, Unsettled, enclosures
 from atwood_cli.arithmetic.rational import EXACT, Irrational
-from atwood_cli.arithmetic.rounding import to_digits, to_double
+from atwood_cli.model.digits import as_typed, to_digits, to_double
+from atwood_cli.model.digits import text as text_of
 
 if TYPE_CHECKING:
     from atwood_cli.arithmetic.rational import Arithmetic, N
@@ -154,7 +155,7 @@ def test_a_quantity_that_never_settles_is_an_error_and_no_hang() -> None:
         return root - root
 
     with pytest.raises(ArithmeticError, match="not settled within 50000 digits"):
-        rounding.is_positive(undecided)
+        settling.is_positive(undecided)
 
 
 @given(st.fractions())
@@ -189,7 +190,7 @@ def test_to_double_at_the_ends(value: Fraction | Decimal, double: float) -> None
 @pytest.mark.parametrize("text", ROUNDED)
 def test_to_digits(text: str) -> None:
     value, digits = ROUNDED[text]
-    assert rounding.text(to_digits(digits)(value)) == text
+    assert text_of(to_digits(digits)(value)) == text
 
 
 @pytest.mark.parametrize("zero", [Fraction(0), Decimal("-0"), Decimal("0e-12")])
@@ -198,14 +199,14 @@ def test_zero_has_no_digits(zero: Fraction | Decimal) -> None:
 
 
 def test_text_is_what_people_write() -> None:
-    assert {value: rounding.text(value) for value in SHORTEST} == SHORTEST
-    assert {q: rounding.as_typed(q) for q in AS_TYPED} == AS_TYPED
+    assert {value: text_of(value) for value in SHORTEST} == SHORTEST
+    assert {q: as_typed(q) for q in AS_TYPED} == AS_TYPED
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_text_reads_back_to_the_same_double(value: float) -> None:
-    assert float(rounding.text(value)) == value
-    assert len(rounding.text(value)) <= len(repr(value))
+    assert float(text_of(value)) == value
+    assert len(text_of(value)) <= len(repr(value))
 
 
 def test_the_callers_decimal_context_changes_nothing() -> None:

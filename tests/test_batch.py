@@ -26,10 +26,10 @@ import pytest
 from atwood_cli import SceneError, arrays, solve
 from atwood_cli.arrays import solve_and_count
 from atwood_cli.batch import solving
-from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import ACCURACIES, NAMES
 from atwood_cli.model.scene import INPUTS
 from atwood_cli.tables import sources
+from atwood_cli.tables.sources import FORMATS
 
 from . import hostile
 from .running import HANGS, Atwood, Ran, hearing, on_terminal, plain, process

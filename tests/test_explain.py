@@ -14,8 +14,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli.arithmetic.rounding import to_digits
 from atwood_cli.model.case import Case
+from atwood_cli.model.digits import to_digits
 from atwood_cli.model.quantities import NAMES, QUANTITIES
 from atwood_cli.model.scene import Scene
 from atwood_cli.output.text import inputs_in_words

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from atwood_cli.files import written_beside
+from atwood_cli.output.files import written_beside
 
 
 def test_an_error_leaves_all_as_it_was(tmp_path: Path) -> None:

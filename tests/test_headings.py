@@ -5,7 +5,6 @@ from typing import Any
 
 import pytest
 
-from atwood_cli.files import Unreadable
 from atwood_cli.model.scene import INPUTS, SceneError
 from atwood_cli.tables.headings import (
     Heading,
@@ -18,6 +17,7 @@ from atwood_cli.tables.headings import (
     read_uncertainty,
     recognised,
 )
+from atwood_cli.tables.sources import Unreadable
 
 RUNS = Vocabulary(
     {"m1": "m1", "m2": "m2", "t": "time", "time": "time", "Time": "time", "a": "a"}, ("time", "a"), True

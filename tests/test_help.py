@@ -13,9 +13,9 @@ import pytest
 import typer
 
 from atwood_cli import cli
-from atwood_cli.files import FORMATS
 from atwood_cli.model.quantities import ACCURACIES, NAMES, QUANTITIES
 from atwood_cli.model.scene import BODIES, INERTIA_FACTORS
+from atwood_cli.tables.sources import FORMATS
 from atwood_cli.tradeoff.measure import FAMILIES
 
 from .running import Atwood, process

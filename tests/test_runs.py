@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from atwood_cli.files import Unreadable
 from atwood_cli.laboratory.runs import VOCABULARY, Runs, read_runs
 from atwood_cli.model.scene import SceneError, read_input
 from atwood_cli.tables.headings import read_named
+from atwood_cli.tables.sources import Unreadable
 
 from .running import Atwood
 

@@ -13,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve, solve_arrays
-from atwood_cli.arithmetic.rounding import is_positive, settle, to_digits, to_threshold
+from atwood_cli.arithmetic.settling import is_positive, settle
+from atwood_cli.model.digits import to_digits, to_threshold
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver.answers import Answers, read_answers
 from atwood_cli.solver.balance import contact

@@ -18,8 +18,8 @@ import numpy as np
 import pytest
 
 from atwood_cli import SceneError, solve, solve_arrays
-from atwood_cli.arithmetic.rounding import to_digits, to_place, with_uncertainty
 from atwood_cli.model.angle import Angle
+from atwood_cli.model.digits import to_digits, to_place, with_uncertainty
 from atwood_cli.model.quantities import MEASURED_NAMES, NAMES
 from atwood_cli.model.scene import read_input
 from atwood_cli.solver.answers import Answers, read_answers

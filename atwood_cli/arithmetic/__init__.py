@@ -1,1 +1,1 @@
-"""The number types the equations run in, and the rounding of their results to digits."""
+"""The number types the equations run in, and how one rounded result is settled."""

@@ -1,7 +1,7 @@
 """Interval arithmetic in decimals: enclosures lo <= value <= hi that are certain to hold the true value.
 
 Sums, products and quotients round lo down and hi up, which the standard library's `decimal` does correctly on
-every platform. So the true value always lies in the enclosure; cancellation only makes it wider. `rounding`
+every platform. So the true value always lies in the enclosure; cancellation only makes it wider. `settling`
 takes the digits from enclosures.
 
 Each function derives its own error bound. Constants and series are summed in integers, in units of 2^-w. A

@@ -33,9 +33,10 @@ from functools import lru_cache
 from typing import Any, Literal, NamedTuple, cast
 
 from ..arithmetic.lazy import lazy
-from ..arithmetic.rounding import settle, to_double
+from ..arithmetic.settling import settle
 from ..arithmetic.symbolic import Formula, Term, formula
 from ..model.case import Case, Place, is_zero
+from ..model.digits import to_double
 from ..model.machine import Machine
 from ..model.mechanics import Undetermined
 from ..model.quantities import REGIMES, Accuracy

@@ -11,8 +11,8 @@ from io import TextIOWrapper
 from queue import SimpleQueue
 from typing import IO, TYPE_CHECKING, Any, TypeVar
 
-from ..files import Unreadable
 from ..model.quantities import STANDARD, Accuracy, read_names
+from ..tables.sources import Unreadable
 from .solving import Layout, Question, Tally, read_inputs, solve_cells
 
 if TYPE_CHECKING:

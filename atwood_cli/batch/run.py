@@ -10,12 +10,21 @@ from io import BytesIO
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
-from ..files import STREAM, Stdout, Unreadable, written_beside
 from ..model.quantities import Accuracy
 from ..model.scene import SceneError
+from ..output.files import STDOUT, Stdout, written_beside
 from ..tables.headings import Heading, decimal_commas_in, read_as, read_named, recognised
 from ..tables.records import Csv, Piece, read_ndjson
-from ..tables.sources import blocks_of, cannot_read, check_format, is_packed, opened, read_format
+from ..tables.sources import (
+    STDIN,
+    Unreadable,
+    blocks_of,
+    cannot_read,
+    check_format,
+    is_packed,
+    opened,
+    read_format,
+)
 from ..tables.sources import is_stream as is_stream
 from .frames import Watch, solve_parquet
 from .solving import ERROR, VOCABULARY, Layout, Question, Tally, read_inputs, solve_cells
@@ -65,13 +74,13 @@ def run_batch(job: Job, watch: Watch, tally: Tally) -> list[str]:
 
         signal.siginterrupt(signal.SIGINT, True)
     _check_apart(job)
-    if job.target == STREAM and sys.stdout.isatty():
+    if job.target == STDOUT and sys.stdout.isatty():
         watch = lambda parts, *_: parts  # noqa: E731
     with ExitStack() as stack:
         try:
             source = opened(job.source, stack)
             target: IO[bytes] | Stdout = Stdout()
-            if job.target != STREAM:
+            if job.target != STDOUT:
                 beside = stack.enter_context(written_beside(Path(job.target), job.force))
                 target = stack.enter_context(beside.open("wb"))
             solve = {"parquet": _solve_parquet, "ndjson": _solve_ndjson}.get(job.kind, _solve_csv)
@@ -85,8 +94,8 @@ def run_batch(job: Job, watch: Watch, tally: Tally) -> list[str]:
 def _check_apart(job: Job) -> None:
     """Refuse an output that is the input, by whatever name. Raises SceneError."""
     try:
-        read = os.stat(job.source) if job.source != STREAM else os.fstat(sys.stdin.fileno())
-        target = os.stat(job.target) if job.target != STREAM else os.fstat(sys.stdout.fileno())
+        read = os.stat(job.source) if job.source != STDIN else os.fstat(sys.stdin.fileno())
+        target = os.stat(job.target) if job.target != STDOUT else os.fstat(sys.stdout.fileno())
     except (OSError, ValueError, AttributeError):  # one is closed, or not there yet
         return
     if stat.S_ISREG(target.st_mode) and os.path.samestat(read, target):

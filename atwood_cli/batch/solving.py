@@ -10,8 +10,7 @@ from math import inf, isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
-from ..arithmetic.rounding import to_double
-from ..files import Unreadable
+from ..model.digits import to_double
 from ..model.quantities import NAMES, REGIMES, Accuracy
 from ..model.scene import (
     INPUTS,
@@ -27,6 +26,7 @@ from ..model.scene import (
 from ..model.units import Malformed, counted, in_quotes, read_unit, shortened
 from ..solver.messages import reasons_at
 from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
+from ..tables.sources import Unreadable
 
 if TYPE_CHECKING:
     import polars as pl

@@ -11,9 +11,9 @@ import typer
 from typer.core import TyperCommand
 
 from .. import __version__
-from ..files import LONGEST_NAME, ClosedStdout
 from ..model.scene import SceneError
-from ..model.units import shortened
+from ..model.units import LONGEST_NAME, shortened
+from ..output.files import ClosedStdout
 from ..output.text import drop, finish, say
 from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag
 

@@ -5,11 +5,11 @@ from typing import Annotated
 
 import typer
 
-from ..files import FORMATS, LONGEST_NAME
 from ..model.quantities import ACCURACIES, STANDARD, read_accuracy, read_names
 from ..model.scene import INPUTS
-from ..model.units import counted, shortened
+from ..model.units import LONGEST_NAME, counted, shortened
 from ..output.text import say
+from ..tables.sources import FORMATS
 from .options import COULD_NOT, DONE, Columns, Force, Labels, option
 
 Table = Annotated[

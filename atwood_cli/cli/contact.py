@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from decimal import Decimal
 from typing import Annotated
 
-from ..arithmetic.rounding import tidy
+from ..model.digits import tidy
 from ..model.scene import Scene, read_digits
 from ..output.text import VERSION, Forms, Target, cell, say, scene_record, show
 from ..solver.answers import Answers

@@ -8,10 +8,10 @@ from typing import Annotated, Any, NamedTuple, get_args
 
 import typer
 
-from ..files import STREAM, check_free
 from ..model.quantities import NAMES, QUANTITIES
 from ..model.scene import INPUTS, SceneError, parameter_of
 from ..model.units import read_number, shortened
+from ..output.files import STDOUT, check_free
 from ..output.text import FORMS, Target, say
 
 COMPLETING = "_ATWOOD_COMPLETE"
@@ -239,7 +239,7 @@ def _read_target(options: Mapping[str, Any]) -> Target:
     form, file, force = "".join(asked), options["output"], options["force"]
     if force and not (file or options.get("figure")):
         raise SceneError("force", None, f"needs --output{' or --figure' * ('figure' in options)}")
-    if file in (None, STREAM):
+    if file in (None, STDOUT):
         return Target(form, None, force)
     if (figure := options.get("figure")) and os.path.realpath(figure) == os.path.realpath(file):
         raise SceneError("figure", figure, "is the file of --output; name another")

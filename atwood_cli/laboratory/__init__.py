@@ -6,8 +6,8 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
-from ..files import Unreadable
 from ..model.scene import INPUTS, Given, Input, read_input
+from ..tables.sources import Unreadable
 from .published import Fit as Fit
 
 if TYPE_CHECKING:

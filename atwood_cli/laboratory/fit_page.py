@@ -4,7 +4,7 @@ from collections.abc import Collection, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from ..arithmetic.rounding import DOUBLE_DIGITS, text, to_digits
+from ..model.digits import DOUBLE_DIGITS, text, to_digits
 from ..model.scene import UNMEASURED, parameter_of
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Forms, cell, inputs_in_words

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
-from ..files import Unreadable
 from ..model import physics
 from ..model.scene import Input
+from ..tables.sources import Unreadable
 from .runs import Kind, Run, Runs
 from .statistics import ROUNDING, Column, Line, fit_line, sum_of_squares
 

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..files import Unreadable
 from ..model import physics
 from ..model.case import Case
 from ..model.quantities import read_names
 from ..model.scene import Input, Scene, SceneError, parameter_of
+from ..tables.sources import Unreadable
 from .fitting import Estimate, accelerations, as_data, estimate, expected, measurements, slopes, variances
 from .published import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, few, shown
 from .runs import BEYOND, Run, Runs, in_range

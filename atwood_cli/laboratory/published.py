@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..arithmetic.rounding import DOUBLE_DIGITS, text, tidy, to_digits, to_place, with_one_power
+from ..model.digits import DOUBLE_DIGITS, text, tidy, to_digits, to_place, with_one_power
 from ..output.text import wrapped
 
 

@@ -8,7 +8,6 @@ from os import PathLike, fspath
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
-from ..files import Unreadable
 from ..model.scene import INPUTS, Input, SceneError
 from ..model.units import in_quotes
 from ..tables.headings import (
@@ -23,7 +22,7 @@ from ..tables.headings import (
     refused,
 )
 from ..tables.sheets import Sheet, read_sheet
-from ..tables.sources import blocks_of, opened, whole_lines
+from ..tables.sources import Unreadable, blocks_of, opened, whole_lines
 
 Kind = Literal["a", "time"]
 MEASURED = {"a": "acceleration", "time": "time"}

@@ -5,7 +5,7 @@ from math import isfinite
 
 from scipy.special import chdtrc, fdtrc
 
-from ..arithmetic.rounding import text
+from ..model.digits import text
 from ..model.scene import parameter_of
 from ..model.units import counted
 from .judgement import Fitted, beyond, common_error, to_vary, unusable

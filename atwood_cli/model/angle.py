@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
-from ..arithmetic.rounding import is_positive
+from ..arithmetic.settling import is_positive
 
 if TYPE_CHECKING:
     from ..arithmetic.rational import Arithmetic, N

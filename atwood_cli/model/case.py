@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import EXACT
-from ..arithmetic.rounding import is_positive
+from ..arithmetic.settling import is_positive
 from . import physics
 from .scene import UNMEASURED, Motion, Scene
 

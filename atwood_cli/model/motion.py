@@ -10,10 +10,10 @@ from math import inf
 from typing import Any
 
 from ..arithmetic.rational import EXACT
-from ..arithmetic.rounding import SHOWN_DIGITS, as_typed, text, tidy, to_digits, to_double, to_threshold
 from . import physics
 from .angle import Angle
 from .case import Case
+from .digits import SHOWN_DIGITS, as_typed, text, tidy, to_digits, to_double, to_threshold
 from .mechanics import Undetermined
 from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError
 

@@ -10,8 +10,8 @@ from numbers import Rational, Real
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from ..arithmetic.rational import OfFloat
-from ..arithmetic.rounding import as_typed, to_double
 from .angle import Angle
+from .digits import as_typed, to_double
 from .units import (
     MAX_DIGITS,
     MAX_MAGNITUDE,

@@ -7,7 +7,7 @@ from fractions import Fraction
 from math import inf
 from typing import NamedTuple
 
-from ..arithmetic.rounding import as_typed, to_digits
+from .digits import as_typed, to_digits
 
 STANDARD_GRAVITY = "9.80665"
 """m/s², exact by definition: 3rd General Conference on Weights and Measures, 1901."""
@@ -95,6 +95,10 @@ class Number(NamedTuple):
     value: Fraction | float
     unit: str = ""
     uncertainty: Fraction = Fraction(0)
+
+
+LONGEST_NAME = 255
+"""The most characters of a file name that a message shows."""
 
 
 def shortened(text: str, most: int = 60) -> str:

@@ -16,9 +16,9 @@ from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ..files import check_free, is_stdout, written_beside
 from ..model.quantities import QUANTITIES
 from ..model.scene import SceneError
+from .files import check_free, is_stdout, written_beside
 from .text import wrapped
 
 if TYPE_CHECKING:

@@ -8,9 +8,9 @@ from shutil import get_terminal_size
 from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
-from ..files import printable
 from ..solver.answers import Answers
 from ..solver.messages import unmarked, verdict
+from .files import printable
 from .text import describe, wrapped
 
 if TYPE_CHECKING:

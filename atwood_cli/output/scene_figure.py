@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..arithmetic.rounding import text, tidy, to_double
 from ..model import arc
+from ..model.digits import text, tidy, to_double
 from ..model.machine import Machine
 from ..model.scene import SceneError
 from ..solver.answers import Answers

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from ..arithmetic.rounding import to_digits, to_place, with_uncertainty
+from ..model.digits import to_digits, to_place, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..solver.answers import Answers
 from ..solver.expected import is_assumed

@@ -10,10 +10,10 @@ from fractions import Fraction
 from math import inf
 from typing import Any, NamedTuple, TextIO
 
-from ..arithmetic.rounding import Rounding, as_typed, exact_or_rounded, is_infinite, text, to_double
-from ..files import Stdout, printable, stdout_into
 from ..model.angle import Angle
+from ..model.digits import Rounding, as_typed, exact_or_rounded, is_infinite, text, to_double
 from ..model.scene import MEASURED, UNMEASURED, Axle, Motion, Scene, stated
+from .files import Stdout, printable, stdout_into
 
 
 def say(*messages: str) -> None:

@@ -9,8 +9,8 @@ from decimal import Decimal
 from textwrap import wrap
 from typing import Any
 
-from ..arithmetic.rounding import text
 from ..arithmetic.symbolic import Formula, Symbol, factors
+from ..model.digits import text
 from ..model.quantities import QUANTITIES
 from ..model.scene import INPUTS
 from ..solver.equations import HELD, Equation, Law, Part, plain

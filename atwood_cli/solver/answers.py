@@ -12,10 +12,11 @@ from typing import TYPE_CHECKING, Any
 from ..arithmetic.interval import LARGEST_EXPONENT
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import EXACT, Irrational
-from ..arithmetic.rounding import DOUBLE_DIGITS as DOUBLE_DIGITS  # others have these from here
-from ..arithmetic.rounding import SHOWN_DIGITS as SHOWN_DIGITS
-from ..arithmetic.rounding import Rounding, is_infinite, is_positive, settle, to_digits, to_double
+from ..arithmetic.settling import is_positive, settle
 from ..model.case import Case
+from ..model.digits import DOUBLE_DIGITS as DOUBLE_DIGITS  # others have these from here
+from ..model.digits import SHOWN_DIGITS as SHOWN_DIGITS
+from ..model.digits import Rounding, is_infinite, to_digits, to_double
 from ..model.machine import Machine
 from ..model.mechanics import Undetermined
 from ..model.quantities import FROM_MOTION, MAIN, NAMES

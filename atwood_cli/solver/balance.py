@@ -12,10 +12,10 @@ from fractions import Fraction
 from math import inf
 from typing import Any, NamedTuple
 
-from ..arithmetic.rounding import is_infinite
 from ..model import arc
 from ..model.arc import Kind
 from ..model.case import Case
+from ..model.digits import is_infinite
 from ..model.machine import Machine
 from ..model.mechanics import FREE_END, NEEDS_M
 from ..model.scene import SceneError, read_whole

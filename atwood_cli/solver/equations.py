@@ -13,8 +13,9 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.interval import LARGEST_EXPONENT
-from ..arithmetic.rounding import as_typed, is_infinite, settle, text, to_digits
+from ..arithmetic.settling import settle
 from ..arithmetic.symbolic import Formula, Symbol, Symbols, formula
+from ..model.digits import as_typed, is_infinite, text, to_digits
 from ..model.machine import Machine
 from ..model.quantities import QUANTITIES
 from .answers import SHOWN_DIGITS, Answers

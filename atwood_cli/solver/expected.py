@@ -6,8 +6,8 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..arithmetic.rounding import as_typed, is_infinite, text, to_digits, to_side_of
 from ..model.angle import Angle
+from ..model.digits import as_typed, is_infinite, text, to_digits, to_side_of
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, REGIMES, read_name
 from ..model.scene import SceneError
 from ..model.units import STANDARD_GRAVITY, Malformed, Number, in_quotes, read_number

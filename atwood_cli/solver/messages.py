@@ -10,8 +10,8 @@ from collections.abc import Mapping
 from fractions import Fraction
 from math import inf
 
-from ..arithmetic.rounding import as_typed, is_infinite, text, tidy, to_side_of, to_threshold
 from ..model.case import Case
+from ..model.digits import as_typed, is_infinite, text, tidy, to_side_of, to_threshold
 from ..model.units import MAX_MAGNITUDE
 from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
 

@@ -9,8 +9,8 @@ from fractions import Fraction
 from operator import mul, truediv
 from typing import Any, NamedTuple
 
-from ..arithmetic.rounding import as_typed, is_infinite
 from ..model import physics
+from ..model.digits import as_typed, is_infinite
 from ..model.quantities import QUANTITIES
 from .answers import Answers
 from .critical import critical, fallen, found, in_the_paper

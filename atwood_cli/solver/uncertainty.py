@@ -19,20 +19,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..arithmetic.fingerprint import FINGERPRINTS
 from ..arithmetic.interval import Enclosure, Unsettled, enclosures
 from ..arithmetic.rational import N
-from ..arithmetic.rounding import (
-    GUARD,
-    SHOWN_DIGITS,
-    as_typed,
-    is_infinite,
-    settle,
-    text,
-    tidy,
-    to_digits,
-    to_place,
-    to_threshold,
-)
-from ..arithmetic.rounding import with_uncertainty as with_both
+from ..arithmetic.settling import GUARD, settle
 from ..model.case import Case
+from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, tidy, to_digits, to_place, to_threshold
+from ..model.digits import with_uncertainty as with_both
 from ..model.machine import Machine
 from ..model.mechanics import Undetermined
 from ..model.motion import completed, number_of, with_number

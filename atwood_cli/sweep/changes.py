@@ -34,8 +34,8 @@ from math import inf
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..arithmetic.rounding import text, tidy, to_digits
 from ..model.case import Case
+from ..model.digits import text, tidy, to_digits
 from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
 from ..solver.answers import SHOWN_DIGITS

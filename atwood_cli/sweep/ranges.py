@@ -16,7 +16,7 @@ from math import inf, lcm
 from typing import Any, NamedTuple
 
 from ..arithmetic.interval import decimal_context
-from ..arithmetic.rounding import as_typed, exact_decimal, exact_or_rounded, text, tidy, to_digits
+from ..model.digits import as_typed, exact_decimal, exact_or_rounded, text, tidy, to_digits
 from ..model.motion import with_number
 from ..model.scene import (
     INPUTS,

@@ -5,8 +5,8 @@ from fractions import Fraction
 from math import isnan, nan
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from ..arithmetic.rounding import is_infinite, text, tidy, to_digits
 from ..model.case import Case
+from ..model.digits import is_infinite, text, tidy, to_digits
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, SceneError
 from ..output.figure import (

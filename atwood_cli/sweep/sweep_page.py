@@ -7,7 +7,7 @@ from fractions import Fraction
 from itertools import groupby, pairwise
 from operator import attrgetter
 
-from ..arithmetic.rounding import to_digits, to_double
+from ..model.digits import to_digits, to_double
 from ..model.quantities import QUANTITIES, STANDARD
 from ..output.page import Page, aligned, watched
 from ..output.text import VERSION, cell, scene_record

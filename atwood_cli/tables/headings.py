@@ -12,9 +12,9 @@ from fractions import Fraction
 from typing import NamedTuple
 from unicodedata import normalize
 
-from ..files import Unreadable
 from ..model.scene import Input, SceneError, parameter_of, read_input
 from ..model.units import PERCENT, Malformed, in_quotes, read_unit, symbol_of, without_blanks
+from .sources import Unreadable
 
 PARTED_BY = {",": "commas", "\t": "tabs", ";": "semicolons"}
 NO_UNIT = ("", "-", "1")

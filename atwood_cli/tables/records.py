@@ -9,10 +9,9 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..files import Unreadable
 from ..model.units import counted, in_quotes
 from .headings import PARTED_BY, Heading
-from .sources import BLOCK, LONGEST_RECORD, decoded, too_long, whole_lines
+from .sources import BLOCK, LONGEST_RECORD, Unreadable, decoded, too_long, whole_lines
 
 if TYPE_CHECKING:
     import polars as pl

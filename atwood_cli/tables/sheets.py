@@ -8,8 +8,8 @@ from io import StringIO
 from itertools import islice
 from typing import NamedTuple
 
-from ..files import Unreadable
 from .headings import PARTED_BY, Vocabulary, recognised
+from .sources import Unreadable
 
 MOST_ABOVE = 40
 """Rows in which headings are looked for, as titles may stand above them."""

@@ -14,10 +14,13 @@ from select import select
 from time import monotonic
 from typing import IO, Any
 
-from ..files import FORMATS, LONGEST_NAME, STREAM, Unreadable
 from ..model.scene import SceneError
-from ..model.units import in_quotes, shortened
+from ..model.units import LONGEST_NAME, in_quotes, shortened
 
+FORMATS = ("csv", "tsv", "ndjson", "parquet")
+"""The formats of tables; each is also the file suffix."""
+STDIN = "-"
+"""The name of a file that is standard input."""
 SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
 PACKED = ".gz"
 BLOCK = 2 << 20
@@ -34,6 +37,10 @@ FOREIGN = {
 }
 """How files of other kinds begin, what they are, and what to do."""
 JSON_FOR_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
+
+
+class Unreadable(Exception):
+    """A file or a stream is no table; the message says why."""
 
 
 def read_format(given: str | None, path: str) -> str:
@@ -61,7 +68,7 @@ def check_format(path: str, kind: str) -> None:
 
 def is_stream(path: str) -> bool:
     """Whether the path is that of stdin, stdout, a pipe or a device, not of a file."""
-    return path == STREAM or (os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path)))
+    return path == STDIN or (os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path)))
 
 
 def is_packed(path: str) -> bool:
@@ -71,7 +78,7 @@ def is_packed(path: str) -> bool:
 
 def opened(source: str, stack: ExitStack) -> IO[bytes]:
     """The file of that name, unpacked if it is compressed, or stdin. Raises Unreadable."""
-    if source == STREAM:
+    if source == STDIN:
         if sys.stdin is None:
             raise Unreadable("it is closed")
         return sys.stdin.buffer
@@ -85,7 +92,7 @@ def opened(source: str, stack: ExitStack) -> IO[bytes]:
 
 def cannot_read(source: str, why: Unreadable) -> OSError:
     """The error for a file, or stdin, that is no table."""
-    return OSError(f"cannot read {'stdin' if source == STREAM else shortened(source, LONGEST_NAME)}: {why}")
+    return OSError(f"cannot read {'stdin' if source == STDIN else shortened(source, LONGEST_NAME)}: {why}")
 
 
 def blocks_of(file: IO[bytes]) -> Iterator[bytes]:

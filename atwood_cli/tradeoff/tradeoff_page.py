@@ -6,7 +6,7 @@ from itertools import groupby
 from math import isinf
 from operator import attrgetter
 
-from ..arithmetic.rounding import text
+from ..model.digits import text
 from ..output.page import Page
 from ..output.text import VERSION
 from .measure import SETTINGS, Measured

@@ -10,14 +10,8 @@ from contextlib import contextmanager, redirect_stdout, suppress
 from io import TextIOBase
 from pathlib import Path
 
-FORMATS = ("csv", "tsv", "ndjson", "parquet")
-"""The formats of tables; each is also the file suffix."""
-STREAM = "-"
-"""The name of a file that is stdin or stdout."""
-LONGEST_NAME = 255
-"""The most characters of a file name that a message shows."""
-
-
+STDOUT = "-"
+"""The name of a file that is standard output."""
 STEERING = re.compile("[\0-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
 """Control characters, characters that change the direction of text, and halves of surrogate pairs."""
 
@@ -28,10 +22,6 @@ def printable(words: str, keep: str = "\n") -> str:
     Everything that the program did not make itself goes through here on its way to a terminal.
     """
     return STEERING.sub(lambda found: found[0] if found[0] in keep else ascii(found[0])[1:-1], words)
-
-
-class Unreadable(Exception):
-    """A file or a stream is no table; the message says why."""
 
 
 class Stdout:
@@ -113,7 +103,7 @@ def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
 @contextmanager
 def stdout_into(file: str | None, force: bool = False) -> Iterator[None]:
     """Prints into the file, if one other than - is named. Raises OSError."""
-    if file in (None, STREAM):
+    if file in (None, STDOUT):
         yield
         return
     with (
