@@ -7,12 +7,11 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import chdir, contextmanager
 from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -24,7 +23,6 @@ from .text import wrapped
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-    from matplotlib.lines import Line2D
 
 AXES = {
     "m1": ("mass", "m₁"),
@@ -50,7 +48,7 @@ BLUE, RED, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b05d9
 """Told apart without seeing red or green, and on paper: after M. Okabe and K. Ito, Color universal design."""
 INK, FAINT = "#222222", "#999999"
 INCHES, WIDE = 11, 130  # a page's width; characters: more do not fit it
-SIZE, LINE = 10, 1.5  # of names, in points, and from one line to the next as a multiple of it
+SIZE = 10  # of names, in points
 NAMES = re.compile(r"\b(m1|m2|mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 STYLE: Any = {
@@ -122,28 +120,17 @@ def say_below(figure: "Figure", words: str) -> None:
     figure.supxlabel(_lines(figure, words), fontsize=10)
 
 
-def name_ends(axes: "Axes", ends: Sequence[tuple["Line2D", float, float]]) -> None:
-    """Name lines, each at its right end, or in a legend where the names have no room below each other.
+def legend_beside(axes: "Axes") -> None:
+    """Name the lines on the right of their axes."""
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False, handlelength=4, fontsize=SIZE)
 
-    To be called last: it goes by where all else then lies.
-    """
-    figure: Any = axes.figure
-    figure.draw_without_rendering()
-    ends = sorted(ends, key=lambda end: -end[2])
-    heights = [axes.transData.transform((x, y))[1] for _, x, y in ends]
-    room = LINE * SIZE * figure.dpi / 72
-    right = {x for _, x, _ in ends} == {axes.get_xlim()[1]}
-    if ends[1:] and not (right and all(up - down >= room for up, down in pairwise(heights))):
-        handles = [line for line, *_ in ends]
-        beside: Any = {"loc": "center left", "bbox_to_anchor": (1, 0.5), "frameon": False}
-        axes.legend(handles=handles, handlelength=4, fontsize=SIZE, **beside)
-        return
-    for line, x, y in ends:
-        look: Any = {"va": "center", "color": line.get_color(), "size": SIZE, "annotation_clip": False}
-        axes.annotate(str(line.get_label()), (x, y), (6, 0), textcoords="offset points", **look)
+
+def cut(words: str) -> str:
+    """The words, without the end of numbers that nobody reads to it."""
+    return LONG_DIGITS.sub(r"\1…", words)
 
 
 def _lines(figure: "Figure", words: str) -> str:
-    """Words in lines that fit, parameters by their symbols; numbers that nobody reads to the end are cut."""
-    words = NAMES.sub(lambda name: AXES[name[0]][1], LONG_DIGITS.sub(r"\1…", words))
+    """Words in lines that fit, parameters by their symbols."""
+    words = NAMES.sub(lambda name: AXES[name[0]][1], cut(words))
     return "\n".join(wrapped(words, int(WIDE * figure.get_figwidth() / INCHES)))

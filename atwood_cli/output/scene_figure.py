@@ -29,7 +29,6 @@ from .figure import (
     RED,
     SIZE,
     check_file,
-    name_ends,
     page,
     say_above,
     say_below,
@@ -376,16 +375,12 @@ def _draw_curves(axes: "Axes", forces: Forces, wrap: float) -> None:
     axes.axhline(0, color=FAINT, lw=0.8)
     if stuck:
         axes.axvspan(angles[0], angles[1], color=FAINT, alpha=0.15, lw=0)
-    curves = axes.plot(angles, tension, color=BLUE, lw=2, label="nR = T(θ)")
-    curves += axes.plot(angles, friction, color=RED, lw=2, ls="--", label="fR = dT/dθ")
+    axes.plot(angles, tension, color=BLUE, lw=2, label="nR = T(θ)")
+    axes.plot(angles, friction, color=RED, lw=2, ls="--", label="fR = dT/dθ")
     axes.set_xlim(0, wrap)
     axes.set_xlabel("angle θ along the arc, from m₁'s end on the left (°)")
     axes.xaxis.set_major_formatter("{x:.6g}")
     axes.set_ylabel("force per radian of arc, nR and fR (N/rad)")
     axes.margins(y=0.12)
     axes.spines[["top", "right"]].set_visible(False)
-    right = -1 if forces.sign > 0 else 0
-    name_ends(
-        axes,
-        [(curve, wrap, values[right]) for curve, values in zip(curves, (tension, friction), strict=True)],
-    )
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=2, frameon=False, fontsize=SIZE)
