@@ -12,7 +12,7 @@ from atwood_cli.cli import run
 from .running import HEARD, HOW_TO_PRINT, Atwood, Ran
 
 # No test fails where a machine is slow.
-ANYWHERE = [HealthCheck.too_slow, HealthCheck.function_scoped_fixture]
+ANYWHERE = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture]
 settings.register_profile("every-digit", deadline=None, suppress_health_check=ANYWHERE)
 settings.register_profile("usual", settings.get_profile("every-digit"), max_examples=25)
 

@@ -11,6 +11,7 @@ from contextlib import contextmanager, redirect_stderr, redirect_stdout
 from functools import partial
 from io import BytesIO, TextIOWrapper
 from itertools import combinations
+from pathlib import Path
 from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 from unittest.mock import patch
@@ -22,6 +23,7 @@ from atwood_cli import cli
 from . import forks
 from .forks import HANGS as HANGS
 
+TOP = Path(__file__).parent.parent
 PAPER = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 
 QUICK = """
@@ -47,7 +49,7 @@ Atwood = Callable[..., Ran]
 
 def called(words: Sequence[str], stdin: bytes = b"") -> Ran:
     """Call the command line in this process, in which nothing tells how to print."""
-    out, err = (TextIOWrapper(BytesIO(), "utf-8", newline="") for _ in range(2))
+    out, err = (TextIOWrapper(BytesIO(), "utf-8", "surrogateescape", newline="") for _ in range(2))
     with (
         patch("sys.stdin", TextIOWrapper(BytesIO(stdin))),
         patch.dict(os.environ, around({}), clear=True),
@@ -55,7 +57,7 @@ def called(words: Sequence[str], stdin: bytes = b"") -> Ran:
         redirect_stderr(err),
     ):
         status = cli.run(list(words))
-    return Ran(status, *(stream.detach().getvalue().decode() for stream in (out, err)))
+    return Ran(status, *(stream.detach().getvalue().decode("utf-8", "replace") for stream in (out, err)))
 
 
 HOW_TO_PRINT = ("COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR")

@@ -5,16 +5,12 @@ import gzip
 import io
 import json
 import math
-import os
 import re
-import signal
 import subprocess
 import sys
-import time
 from collections.abc import Callable, Collection
 from contextlib import suppress
 from fractions import Fraction
-from functools import partial
 from itertools import count
 from pathlib import Path
 from random import Random
@@ -32,7 +28,7 @@ from atwood_cli.tables import sources
 from atwood_cli.tables.sources import FORMATS
 
 from . import hostile
-from .running import HANGS, Atwood, Ran, hearing, on_terminal, plain, process
+from .running import HANGS, Atwood, Ran, on_terminal, plain, process
 
 SEPARATORS = {"csv": ",", "tsv": "\t"}
 WHOLE = 1 << 20
@@ -447,102 +443,6 @@ def test_without_polars_one_line_says_what_to_install(batch: Batch, monkeypatch:
 
 
 # How it ends
-
-
-STATUS = {"SIGKILL": -9, "SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129}
-needs_signals = pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
-
-
-TURNED = """
-import os, signal, sys, time
-from atwood_cli import cli
-class Part:
-    def __set_name__(self, owner, name):
-        os.kill(os.getpid(), getattr(signal, sys.argv.pop()))
-        time.sleep(9)
-def run():
-    try:
-        type("Imported", (), {"part": Part()})
-    except KeyboardInterrupt as error:  # since Python 3.12; before, a RuntimeError
-        raise ImportError("numpy._core.multiarray failed to import") from error
-cli.run = run
-from atwood_cli.__main__ import main
-sys.exit(main())
-"""
-
-
-@needs_signals
-@pytest.mark.parametrize("blow", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_a_run_stopped_in_an_import_shows_no_traceback(blow: str) -> None:
-    """Classes that are being made, and modules written in C, turn what stops them into other errors."""
-    ended = subprocess.run([sys.executable, "-c", TURNED, blow], capture_output=True, check=False)
-    assert (ended.returncode, ended.stderr) == (STATUS[blow], b"")
-
-
-@needs_signals
-@pytest.mark.parametrize(
-    ("blows", "before"),
-    [
-        ("SIGKILL", None),
-        ("SIGINT", None),
-        ("SIGTERM", "as it was"),
-        ("SIGHUP", None),
-        ("SIGINT SIGINT", None),
-    ],
-)
-def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str, before: str | None) -> None:
-    out = tmp_path / "out.csv"
-    if before:
-        out.write_text(before)
-    child = hearing("batch", "-", "-o", str(out), "--force", stdin=subprocess.PIPE)
-    assert child.stdin is not None
-    child.stdin.write(b"m1,m2,M\n" + b"1,3,10\n" * 1_000_000)  # some pieces are done, more are awaited
-    child.stdin.flush()
-    while not any(path.stat().st_size for path in tmp_path.glob(".atwood-*")):
-        assert child.poll() is None
-        time.sleep(0.01)
-    for blow in blows.split():
-        child.send_signal(signal.Signals[blow])
-    _, err = child.communicate(timeout=HANGS)
-    assert child.returncode == STATUS[blows.split()[0]]
-    assert out.exists() == (before is not None)
-    if blows == "SIGKILL":
-        assert err == b""
-    else:
-        assert [path.read_text() for path in tmp_path.iterdir()] == ([before] if before else [])
-        is_left = "stays as it was" if before else "was not written"
-        said = re.fullmatch(
-            rf"atwood: stopped after (\d+) rows; {re.escape(str(out))} {is_left}\n", err.decode()
-        )
-        assert said
-        assert 0 < int(said[1]) <= 1_000_000
-
-
-@needs_signals
-def test_what_is_to_outlive_its_terminal_does(tmp_path: Path) -> None:
-    """Under nohup, which has SIGHUP ignored."""
-    ignore = partial(signal.signal, signal.SIGHUP, signal.SIG_IGN)
-    child = hearing("batch", "-", "-o", str(tmp_path / "out.csv"), stdin=subprocess.PIPE, preexec_fn=ignore)
-    while not list(tmp_path.iterdir()):
-        time.sleep(0.01)
-    child.send_signal(signal.SIGHUP)
-    assert child.communicate(TEXT.encode(), HANGS) == (b"", ONE.encode())
-    assert child.returncode == 0
-
-
-@needs_signals
-@pytest.mark.parametrize("kind", ["csv", "parquet"])
-def test_a_pipe_that_brings_nothing_is_waited_for_until_it_is_stopped(tmp_path: Path, kind: str) -> None:
-    os.mkfifo(tmp_path / "in")
-    for blow, is_open in (("SIGTERM", False), ("SIGINT", False), ("SIGINT", True)):
-        child = hearing("batch", str(tmp_path / "in"), "--from", kind)
-        writer = os.open(tmp_path / "in", os.O_RDWR) if is_open else None
-        time.sleep(1)
-        child.send_signal(signal.Signals[blow])
-        assert child.communicate(timeout=HANGS) == (b"", b"")
-        assert child.returncode == STATUS[blow]
-        if writer is not None:
-            os.close(writer)
 
 
 def test_a_reader_that_leaves_early_ends_it_quietly(tmp_path: Path) -> None:

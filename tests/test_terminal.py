@@ -1,9 +1,6 @@
 """Every command wherever it may run: terminals of any width, without colour, without Unicode, without room."""
 
 import re
-import signal
-import subprocess
-import sys
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,7 +10,7 @@ import pytest
 from atwood_cli.output.text import wrapped
 
 from . import running
-from .running import HANGS, plain, process
+from .running import plain, process
 
 SCENE = "--m1 1 --m2 3"
 COMMANDS = {
@@ -224,58 +221,6 @@ def test_notes_follow_their_results_into_one_pipe(typed: str, unbuffered: str, t
     notes = [line.startswith("atwood: ") for line in ran.out.splitlines()]
     assert True in notes
     assert notes == sorted(notes)
-
-
-SLOW = """
-import sys, time
-import atwood_cli.cli.contact, atwood_cli.solver.answers, atwood_cli.sweep.ranges, atwood_cli.batch.run
-from atwood_cli.__main__ import main
-def slow(*_, **__):
-    print("started", file=sys.stderr, flush=True)
-    while True:  # as a signal that comes while Python enters a call is seen only behind it
-        time.sleep(0.01)
-atwood_cli.cli.contact.Answers = atwood_cli.solver.answers.Answers = slow
-atwood_cli.sweep.ranges.Answers = atwood_cli.batch.run.run_batch = slow
-sys.exit(main())
-"""
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
-@pytest.mark.parametrize(
-    ("blow", "status"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)]
-)
-@pytest.mark.parametrize("command", ["solve", "contact", "sweep", "batch"])
-def test_what_ends_it_ends_it_quietly(command: str, blow: signal.Signals, status: int, table: str) -> None:
-    typed = [sys.executable, "-c", SLOW, *words(command, table)]
-    child = subprocess.Popen(typed, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    assert child.stderr is not None
-    assert child.stderr.readline() == b"started\n"
-    child.send_signal(blow)
-    out, err = child.communicate(timeout=HANGS)
-    assert (child.returncode, out, err) == (status, b"", b"")
-
-
-DROPPING = """
-import os, signal, sys, time
-from atwood_cli import cli
-from atwood_cli.__main__ import main
-class Dropped:
-    def __del__(self):
-        os.kill(os.getpid(), signal.SIGTERM)
-        time.sleep(0)
-def run():
-    Dropped()
-    while True:
-        time.sleep(0.01)
-cli.run = run
-sys.exit(main())
-"""
-
-
-@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
-def test_a_signal_is_not_lost_where_python_can_raise_nothing() -> None:
-    done = subprocess.run([sys.executable, "-c", DROPPING], capture_output=True, check=False, timeout=HANGS)
-    assert (done.returncode, done.stdout, done.stderr) == (143, b"", b"")
 
 
 def test_lines_break_between_words_and_not_within_quantities() -> None:
