@@ -12,6 +12,7 @@ from math import inf
 
 from ..model.case import Case
 from ..model.digits import as_typed, is_infinite, text, tidy, to_side_of, to_threshold
+from ..model.scene import Scene
 from ..model.units import MAX_MAGNITUDE
 from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
 
@@ -62,51 +63,24 @@ def verdict(answers: Answers) -> str:
     """What the string does, and why, in a sentence."""
     answers = answers.shown
     case, scene = answers.case, answers.case.scene
-    mu = "" if scene.mu is None else f"`mu` = {as_typed(scene.mu)}"
-
-    def enough(name: str = "mu_verge") -> str:
-        return _threshold(answers, name, up=True, given=scene.mu)
-
     if case.sign == 0:
         return "At rest: the masses are equal, so no friction is needed."
-    if case.axle_holds and case.regime == "no-slip":
-        at_rest = f"At rest: the axle holds up to {_held(case)} of difference."
-        if not case.light:
-            return at_rest
-        if mu:
-            return f"{at_rest} The string holds: {mu}, and {enough()} is enough."
-        return (
-            f"{at_rest} The string is assumed to hold, without `mu`: it does if `mu` is at least {enough()}."
-        )
-    if case.regime == "verge" and not scene.mu:
-        return "Slips on any pulley that has mass, for want of friction; the values are for one without."
     if case.regime == "verge":
-        massless = answers.with_pulley(Fraction(0))
-        return (
-            "On the verge of slipping: as `M` is not given, this is for the critical pulley mass,"
-            f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on one"
-            f" without mass the acceleration is {_say(massless, 'acceleration')} m/s²."
-        )
+        return _on_the_verge(answers)
     if case.regime == "slip":
-        if not mu:
-            return "Slides over the locked pulley."
-        kinetic = "" if scene.mu_k is None else f", and slides with `mu_k` = {as_typed(scene.mu_k)}"
-        if not case.pulley_known:
-            return (
-                f"Slips on any pulley, for the friction of its axle: {mu} is below the"
-                f" {enough('massless_verge')} that would hold it on one without mass{kinetic}."
-            )
-        where = " over a pulley that its axle holds" * (case.rim_stands and not case.locked)
-        return f"Slips{where}: {mu} is below the {enough()} that would hold it{kinetic}."
+        return _slips(answers)
+    if case.axle_holds:
+        return f"At rest: the axle holds up to {_held(case)} of difference.{_beside_the_axle(answers)}"
     if case.tensions_equal:
         return "Holds: a pulley without mass needs no friction to turn, so both tensions are equal."
     if not case.light:
         return "Holds: the string's end is fixed to the pulley."
-    if not mu:
+    if scene.mu is None:
         where = " on a pulley without mass" * (scene.M is None and scene.I is None)
-        return f"Assumed to hold, without `mu`: it does{where} if `mu` is at least {enough()}."
+        return f"Assumed to hold, without `mu`: it does{where} if `mu` is at least {_enough(answers)}."
     if case.pulley_known:
-        return f"Holds{' from rest' * (_sliding(answers) is not None)}: {mu}, and {enough()} is enough."
+        again = " from rest" * (_sliding(answers) is not None)
+        return f"Holds{again}: {_given_mu(scene)}, and {_enough(answers)} is enough."
     least = answers.rounded("least_heavier_mass", to_threshold(up=False, given=case.heavy))
     if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
         return "Holds on any pulley, under any mass that can be given in place of the heavier one."
@@ -114,6 +88,50 @@ def verdict(answers: Answers) -> str:
     return (
         f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {text(least)} kg to slip."
     )
+
+
+def _given_mu(scene: Scene) -> str:
+    return "" if scene.mu is None else f"`mu` = {as_typed(scene.mu)}"
+
+
+def _enough(answers: Answers, name: str = "mu_verge") -> str:
+    """The least coefficient that holds the string."""
+    return _threshold(answers, name, up=True, given=answers.case.scene.mu)
+
+
+def _beside_the_axle(answers: Answers) -> str:
+    """What the string does while the axle holds the pulley; nothing where its end is fixed to it."""
+    if not answers.case.light:
+        return ""
+    if mu := _given_mu(answers.case.scene):
+        return f" The string holds: {mu}, and {_enough(answers)} is enough."
+    return f" The string is assumed to hold, without `mu`: it does if `mu` is at least {_enough(answers)}."
+
+
+def _on_the_verge(answers: Answers) -> str:
+    if not answers.case.scene.mu:
+        return "Slips on any pulley that has mass, for want of friction; the values are for one without."
+    massless = answers.with_pulley(Fraction(0))
+    return (
+        "On the verge of slipping: as `M` is not given, this is for the critical pulley mass,"
+        f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on one"
+        f" without mass the acceleration is {_say(massless, 'acceleration')} m/s²."
+    )
+
+
+def _slips(answers: Answers) -> str:
+    case, scene = answers.case, answers.case.scene
+    mu = _given_mu(scene)
+    if not mu:
+        return "Slides over the locked pulley."
+    kinetic = "" if scene.mu_k is None else f", and slides with `mu_k` = {as_typed(scene.mu_k)}"
+    if not case.pulley_known:
+        return (
+            f"Slips on any pulley, for the friction of its axle: {mu} is below the"
+            f" {_enough(answers, 'massless_verge')} that would hold it on one without mass{kinetic}."
+        )
+    where = " over a pulley that its axle holds" * (case.rim_stands and not case.locked)
+    return f"Slips{where}: {mu} is below the {_enough(answers)} that would hold it{kinetic}."
 
 
 def _held(case: Case) -> str:
