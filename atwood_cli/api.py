@@ -56,10 +56,10 @@ class Solution(Answered, Generic[T]):
 
     ``scene`` is what was given, ``regime`` is "no-slip", "verge" or "slip", ``notes`` say why it is
     what it is and why a value is None. ``uncertainty`` has the standard uncertainty of every quantity
-    by name, and is empty if all that was given is exact; one is None, with a note, where there is none
-    to first order. Each is computed when it is first read, and kept. Forces are on the pulley, x from the
-    axle to where m1's string meets it, y up; accelerations, torque and angles are positive the way m2
-    descends. The quantities, with their units and the paper's equations:
+    by name, and is empty if all that was given is exact; one is None, with a note, where a value is
+    missing an uncertainty off. Each is computed when it is first read, and kept. Forces are on the pulley,
+    x from the axle to where m1's string meets it, y up; accelerations, torque and angles are positive the
+    way m2 descends. The quantities, with their units and the paper's equations:
 
 {_described(NAMES[1:])}
 
@@ -189,7 +189,8 @@ def solve(
     of the fall, and with ``time`` stands for the ``a`` it implies. The solution has what was found.
 
     Text may carry a standard uncertainty, as "1.000(2)", "1.000±0.002" or "(250±1)g"; the solution's
-    ``uncertainty`` then has those of the quantities by name, to first order.
+    ``uncertainty`` then has those of the quantities by name: half the range over each input's uncertainty,
+    and of all inputs the root of the sum of squares (Kragten, 1994).
 
     Floats come back, each the double nearest to the exact value; with ``digits=N`` Decimals, each
     correctly rounded to N significant digits. Raises SceneError (a ValueError) on bad input.
