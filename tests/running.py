@@ -8,11 +8,9 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, redirect_stderr, redirect_stdout
-from functools import partial
 from io import BytesIO, TextIOWrapper
 from itertools import combinations
 from pathlib import Path
-from tempfile import TemporaryFile
 from typing import Any, NamedTuple
 from unittest.mock import patch
 
@@ -20,20 +18,9 @@ import pytest
 
 from atwood_cli import cli
 
-from . import forks
-from .forks import HANGS as HANGS
-
+HANGS = 600  # seconds: nothing takes so long on any machine
 TOP = Path(__file__).parent.parent
 PAPER = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.3"]
-
-QUICK = """
-import sys
-from atwood_cli.__main__ import main
-from atwood_cli.output import page
-page.monotonic = lambda: 0
-sys.exit(main())
-"""
-"""The program as if no second went by: on a slow machine it would show bars."""
 
 
 class Ran(NamedTuple):
@@ -47,19 +34,6 @@ class Ran(NamedTuple):
 Atwood = Callable[..., Ran]
 
 
-def called(words: Sequence[str], stdin: bytes = b"") -> Ran:
-    """Call the command line in this process, in which nothing tells how to print."""
-    out, err = (TextIOWrapper(BytesIO(), "utf-8", "surrogateescape", newline="") for _ in range(2))
-    with (
-        patch("sys.stdin", TextIOWrapper(BytesIO(stdin))),
-        patch.dict(os.environ, around({}), clear=True),
-        redirect_stdout(out),
-        redirect_stderr(err),
-    ):
-        status = cli.run(list(words))
-    return Ran(status, *(stream.detach().getvalue().decode("utf-8", "replace") for stream in (out, err)))
-
-
 HOW_TO_PRINT = ("COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR")
 """What tells a program in its environment how to print."""
 
@@ -70,21 +44,35 @@ def around(asked: Mapping[str, str]) -> dict[str, str]:
     return {**ours, "PYTHON": sys.executable, **asked}
 
 
-def started(words: Sequence[str], streams: Sequence[int], asked: Mapping[str, str]) -> Callable[[], int]:
-    """Run the program as a process on three streams, and give what waits for its exit status.
+class Terminal(TextIOWrapper):
+    """A stream that says it is a terminal."""
 
-    It is a fork, unless Python or a module looks at what is asked for as it starts.
+    def isatty(self) -> bool:
+        return True
+
+
+def called(words: Sequence[str], stdin: bytes = b"", on_terminal: bool = False, **asked: str) -> Ran:
+    """Call the command line in this process, in which nothing tells how to print but what is asked for.
+
+    A terminal shows stderr where it shows stdout, and no second goes by on it: on a slow machine it would show bars.
     """
-    at_start = [name for name in asked if name.startswith(("PYTHON", "LC_", "_"))]
-    if hasattr(os, "fork") and at_start in ([], ["PYTHONIOENCODING"]):
-        forks.start(words, streams, around(asked))
-        return forks.status
-    program = ["-c", QUICK] if os.isatty(streams[2]) else ["-m", "atwood_cli"]
-    stdin, stdout, stderr = streams
-    child = subprocess.Popen(
-        [sys.executable, *program, *words], stdin=stdin, stdout=stdout, stderr=stderr, env=around(asked)
-    )
-    return partial(child.wait, HANGS)
+    encoding, stream = asked.pop("PYTHONIOENCODING", "utf-8"), Terminal if on_terminal else TextIOWrapper
+    errors = "surrogateescape" if encoding == "utf-8" else "strict"
+    printed = BytesIO()
+    said = printed if on_terminal else BytesIO()
+    out = stream(printed, encoding, errors, newline="", write_through=True)
+    err = stream(said, encoding, "backslashreplace", newline="", write_through=True)
+    with (
+        patch("sys.stdin", TextIOWrapper(BytesIO(stdin))),
+        patch("sys.__stdout__", out),
+        patch("atwood_cli.output.page.monotonic", lambda: 0.0),
+        patch.dict(os.environ, around(asked), clear=True),
+        redirect_stdout(out),
+        redirect_stderr(err),
+    ):
+        status = cli.run(list(words))
+    shown = [buffer.getvalue().decode("utf-8", "replace") for buffer in (printed, said)]
+    return Ran(status, shown[0], "" if on_terminal else shown[1])
 
 
 STARTED = """
@@ -107,40 +95,53 @@ def hearing(*words: str, **how: Any) -> "subprocess.Popen[bytes]":
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def process(*arguments: str, shell: str = "", code: str = "", stdin: Any = None, **environment: str) -> Ran:
-    """Run it, or other code, as a process; with ``shell``, a bash line in which `atwood` is the command."""
-    if shell or code:
-        bash = ["bash", "-c", f'atwood() {{ "$PYTHON" -m atwood_cli "$@"; }}; {shell}']
-        words = [sys.executable, "-c", code, *arguments] if code else bash
-        done = subprocess.run(
-            words, stdin=stdin, capture_output=True, env=around(environment), check=False, timeout=HANGS
-        )
-        return Ran(done.returncode, *(said.decode("utf-8", "replace") for said in (done.stdout, done.stderr)))
-    with TemporaryFile() as out, TemporaryFile() as err:
-        status = started(
-            arguments, [stdin.fileno() if stdin else 0, out.fileno(), err.fileno()], environment
-        )()
-        for file in (out, err):
-            file.seek(0)
-        return Ran(status, *(file.read().decode("utf-8", "replace") for file in (out, err)))
+def process(*arguments: str, shell: str = "", code: str = "", **asked: Any) -> Ran:
+    """Run it as a process if Python or a module looks at what is asked for as it starts, and call it otherwise.
+
+    With ``code``, run that; with ``shell``, a line of bash in which `atwood` is the command.
+    """
+    if not (shell or code or any(name.startswith(("PYTHON", "LC_", "_", "SHELL")) for name in asked)):
+        return called(arguments, **asked)
+    words = [sys.executable, *(["-c", code] if code else ["-m", "atwood_cli"]), *arguments]
+    if shell:
+        words = ["bash", "-c", f'atwood() {{ "$PYTHON" -m atwood_cli "$@"; }}; {shell}']
+    done = subprocess.run(words, capture_output=True, env=around(asked), check=False, timeout=HANGS)
+    return Ran(done.returncode, *(said.decode("utf-8", "replace") for said in (done.stdout, done.stderr)))
+
+
+def on_terminal(*arguments: str, columns: int, rows: int = 60, **asked: Any) -> str:
+    """What a terminal of that size would get to see."""
+    size = {"COLUMNS": str(columns), "LINES": str(rows)}
+    return called(arguments, on_terminal=True, **{"TERM": "xterm-256color", **size, **asked}).out
+
+
+QUICK = """
+import sys
+from atwood_cli.__main__ import main
+from atwood_cli.output import page
+page.monotonic = lambda: 0
+sys.exit(main())
+"""
+"""The program as if no second went by: on a slow machine it would show bars."""
 
 
 END = b"\0the end"
 
 
-def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: str) -> str:
-    """What a terminal of that size gets to see."""
+def on_real_terminal(*arguments: str, columns: int, rows: int = 60, program: str = QUICK) -> str:
+    """What a terminal of that size gets to see of a process."""
     pty, fcntl = pytest.importorskip("pty"), pytest.importorskip("fcntl")
     import struct
     import termios
 
     leader, follower = pty.openpty()
     fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
-    ended = started(arguments, [follower] * 3, {"TERM": "xterm-256color", **environment})
+    words, env = [sys.executable, "-c", program, *arguments], around({"TERM": "xterm-256color"})
+    child = subprocess.Popen(words, stdin=follower, stdout=follower, stderr=follower, env=env)
 
     def mark_the_end() -> int:
         try:
-            return ended()
+            return child.wait(HANGS)
         finally:
             os.write(follower, END)
 
@@ -153,8 +154,7 @@ def on_terminal(*arguments: str, columns: int, rows: int = 60, **environment: st
     os.close(follower)
     os.close(leader)
     assert status.result() >= 0, seen
-    seen = seen.removesuffix(END)
-    return seen.decode("utf-8", "replace").replace("\r\n", "\n")
+    return seen.removesuffix(END).decode("utf-8", "replace").replace("\r\n", "\n")
 
 
 def plain(seen: str) -> str:

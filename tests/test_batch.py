@@ -28,7 +28,7 @@ from atwood_cli.tables import sources
 from atwood_cli.tables.sources import FORMATS
 
 from . import hostile
-from .running import HANGS, Atwood, Ran, on_terminal, plain, process
+from .running import HANGS, Atwood, Ran, on_real_terminal, plain, process
 
 SEPARATORS = {"csv": ",", "tsv": "\t"}
 WHOLE = 1 << 20
@@ -478,15 +478,12 @@ main()
 """
 
 
-def test_a_bar_on_a_terminal_after_a_second(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    # A setting of Python is for a process of its own, in which the clock is ours.
+def test_a_bar_on_a_terminal_after_a_second(tmp_path: Path) -> None:
     (tmp_path / "in.csv").write_text(TEXT + "1,3\n" * 99)
     words = ["batch", f"{tmp_path}/in.csv", "--force", "-o", f"{tmp_path}/out.csv"]
     said = "atwood: 100 rows: 100 no-slip; no errors.\n"
-    monkeypatch.setattr("tests.running.QUICK", BAR.replace("CLOCK", "count()"))
-    seen = plain(on_terminal(*words, columns=80, PYTHONUTF8="1"))
+    seen = plain(on_real_terminal(*words, columns=80, program=BAR.replace("CLOCK", "count()")))
     assert "━" in seen
     assert "%" in seen
     assert seen.endswith(said)
-    monkeypatch.setattr("tests.running.QUICK", BAR.replace("CLOCK", "repeat(0)"))
-    assert on_terminal(*words, columns=80, PYTHONUTF8="1") == said
+    assert on_real_terminal(*words, columns=80, program=BAR.replace("CLOCK", "repeat(0)")) == said

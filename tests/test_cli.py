@@ -16,7 +16,7 @@ from atwood_cli.__main__ import main
 from atwood_cli.model.quantities import ASCII, QUANTITIES, read_names
 
 from . import oracle
-from .running import PAPER, Atwood, on_terminal, plain, process
+from .running import PAPER, Atwood, on_real_terminal, on_terminal, plain, process
 from .scenes import inputs
 
 LOADED = "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
@@ -27,7 +27,8 @@ LOADED = "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*
 
 def test_the_main_job_takes_one_screen() -> None:
     """A teacher's projector: the verdict and the prompt below the table in sight."""
-    seen = plain(on_terminal(*PAPER, columns=80, rows=24))
+    seen = plain(on_real_terminal(*PAPER, columns=80, rows=24))
+    assert seen == plain(on_terminal(*PAPER, columns=80, rows=24))
     assert seen.count("\n") < 24
     assert max(map(len, seen.splitlines())) <= 80
 
@@ -226,7 +227,8 @@ def test_only_what_is_needed_is_imported(output: str) -> None:
     loaded = set(process(*PAPER, *output.split(), code=LOADED).err.split())
     ours = {name for name in loaded if name.startswith(("atwood_cli.cli.", "atwood_cli.output."))}
     assert ours - {"atwood_cli.output.page"} == {
-        f"atwood_cli.{name}" for name in ("cli.options", "cli.solve", "output.scene_page", "output.text")
+        f"atwood_cli.{name}"
+        for name in ("cli.options", "cli.solve", "output.files", "output.scene_page", "output.text")
     }
     assert "numpy" not in loaded
     assert ("rich" in loaded) == ("atwood_cli.output.page" in ours) == (output == "")

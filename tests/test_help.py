@@ -109,31 +109,42 @@ def completed(*words: str, shell: str = "bash") -> list[str]:
     return [line for line in ran.out.splitlines() if line]
 
 
-@pytest.mark.parametrize(
-    ("words", "offered"),
-    [
-        ("s", ["solve", "sweep"]),
-        ("solve --mu", ["--mu", "--mu-k"]),
-        ("solve --m1 1 --m1 2 --cs", ["--csv"]),
-        ("solve --only ten", ["tension_1", "tension_2", "tension_ratio"]),
-        ("solve --only fall", ["fall_time"]),
-        ("sweep --only ", list(NAMES)),
-        ("batch in.csv --only reg", ["regime"]),
-        ("contact --figure a", []),
-        ("solve --g ", list(BODIES)),
-        ("contact --inertia ", list(INERTIA_FACTORS)),
-        ("solve --M ", ["inf"]),
-        ("batch in.csv --accuracy ", list(ACCURACIES)),
-        ("batch in.csv --from ", list(FORMATS)),
-        ("batch ", []),
-        ("fit ", []),
-        ("fit runs.csv --find ", ["rim_mass", "axle", "gravity"]),
-        ("fit runs.csv --only mo", ["moment_of_inertia"]),
-        ("tradeoff --family ", list(FAMILIES)),
-    ],
-)
-def test_completion(words: str, offered: list[str]) -> None:
-    assert completed(*words.split(" ")) == offered
+OFFERED: list[tuple[str, list[str]]] = [
+    ("s", ["solve", "sweep"]),
+    ("solve --mu", ["--mu", "--mu-k"]),
+    ("solve --m1 1 --m1 2 --cs", ["--csv"]),
+    ("solve --only ten", ["tension_1", "tension_2", "tension_ratio"]),
+    ("solve --only fall", ["fall_time"]),
+    ("sweep --only ", list(NAMES)),
+    ("batch in.csv --only reg", ["regime"]),
+    ("contact --figure a", []),
+    ("solve --g ", list(BODIES)),
+    ("contact --inertia ", list(INERTIA_FACTORS)),
+    ("solve --M ", ["inf"]),
+    ("batch in.csv --accuracy ", list(ACCURACIES)),
+    ("batch in.csv --from ", list(FORMATS)),
+    ("batch ", []),
+    ("fit ", []),
+    ("fit runs.csv --find ", ["rim_mass", "axle", "gravity"]),
+    ("fit runs.csv --only mo", ["moment_of_inertia"]),
+    ("tradeoff --family ", list(FAMILIES)),
+]
+COMPLETING = """
+import os, sys
+from atwood_cli.cli import run
+for words in sys.argv[1:]:
+    os.environ |= {"COMP_WORDS": f"atwood {words}", "COMP_CWORD": str(len(words.split(" ")))}
+    sys.argv = ["atwood"]
+    run()
+    print("")
+"""
+
+
+def test_completion() -> None:
+    """All in one process, by the protocol of bash."""
+    ran = process(*(words for words, _ in OFFERED), code=COMPLETING, _ATWOOD_COMPLETE="complete_bash")
+    found = [lines.split() for lines in ran.out.split("\n\n")]
+    assert found[: len(OFFERED)] == [offered for _, offered in OFFERED]
 
 
 def test_every_shell_gets_names_with_what_they_mean() -> None:
