@@ -179,7 +179,10 @@ class Number:
             one, two = two, one
         if ar.is_zero(one):
             return one
-        return one._scaled(two.power) if two.power else one._joined(two, ar.multiply, ar.loss_of_product)
+        if two.power:
+            return one._scaled(two.power)
+        loss = ar.loss_of_doubles if one.exact and two.exact else ar.loss_of_product
+        return one._joined(two, ar.multiply, loss)
 
     __rmul__ = __mul__
 
@@ -213,7 +216,7 @@ class Doubles:
     loss_of_constant = loss_of_sum = loss_of_product = loss_of_quotient = loss_of_root = ROUNDING
     """What an operation loses of its result, or rounding of a constant that is no double."""
     loss_of_doubles = ROUNDING
-    """What a sum of two doubles loses of its result, whatever cancels."""
+    """What a sum of two doubles, whatever cancels, or a product of two loses of its result."""
     roughly = True
     """Whether the larger doubt of two terms stands for that of their sum, as that takes less time."""
 

@@ -19,7 +19,8 @@ What each accuracy promises, and why it holds:
   and in the end the exact arithmetic of a single scene. A value is certified where its bound is within the
   limit. A question is answered by the sign of a difference, if its bound is below 1/4.
 - ``exact``: the double nearest to the exact value, by pairs and then by a single scene. A value is certified
-  where both ends of its bound round to the same double (Ziv's test), or where it is a tie (see `certified`).
+  where both ends of its bound round to the same double (Ziv's test), or where it is the product of two
+  inputs, whose pair is exact. Other ties, half-way between two doubles, are left to a single scene.
 
 Rows with an input beyond `doubles.WINDOW`, other than 0, are solved one by one at once. So are quantities
 that need the sine of an angle which each row has for itself, as the least and the greatest friction force do.
@@ -41,7 +42,7 @@ from ..model.machine import Machine
 from ..model.mechanics import Undetermined
 from ..model.quantities import REGIMES, Accuracy
 from .certified import certified
-from .doubles import DOUBLES, Doubles, NoProgram, absolute, equal, less
+from .doubles import DOUBLES, Doubles, NoProgram, equal, less
 from .pairs import PAIRS
 from .pattern import Decisions, Pattern, Task
 from .program import Program
@@ -181,16 +182,6 @@ def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
         mu = case.scene.mu if method == "slips_at" else case.limiting_mu
         margin = ar.log1p(case.excess(cast(Place, which), ar)) - ar.number(mu) * machine.phi
     return {"sure": less(margin.bound, 0.25), "yes": less(0.0, margin.parts[0])}
-
-
-@lru_cache(KEPT)
-def in_pairs(task: Task) -> tuple[Program, Formula]:
-    """The program for a quantity's two doubles and the bound on their error, and its plain formula."""
-    (name,) = task.names
-    value, plain = (getattr(_machine_of_columns(task, ar), name) for ar in (PAIRS, DOUBLES))
-    first, second = (*value.parts, 0.0)[:2]
-    program = Program({"first": first, "second": second, "error": absolute(first) * value.bound})
-    return program, plain.parts[0]
 
 
 def nearest_double(task: Task, name: str, number: Callable[[str], Fraction]) -> float | None:

@@ -21,7 +21,9 @@ HEAD = -1 << 27  # masks the last 27 of the 53 bits of a double
 
 
 def _head(x: Column, out: Column) -> None:
-    np.bitwise_and(x.view(np.int64), HEAD, out=out.view(np.int64))
+    bits = out.view(np.int64)
+    np.add(x.view(np.int64), -HEAD >> 1, out=bits)  # half of the last bit that stays: its size is rounded
+    np.bitwise_and(bits, HEAD, out=bits)
 
 
 def _take(index: NDArray[np.intp], table: Column, out: Column) -> None:

@@ -14,14 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic.rational import Irrational
 from ..model.case import Case
 from ..model.quantities import REGIMES, Accuracy
 from ..solver.answers import Answers
-from .certified import ties
 from .pairs import PAIRS
 from .pattern import Column, Index, Task, select, size_of
-from .plan import LEVELS, Plan, answering, condition_of, in_pairs, nearest_double, plan
+from .plan import LEVELS, Plan, answering, condition_of, nearest_double, plan
 from .program import Program, Room
 
 ROOM = 2_000_000  # bytes for the columns of a tile
@@ -135,8 +133,6 @@ class Rows:
             return np.empty(0, np.intp)
         task = group.task
         failed: NDArray[np.intp] = select(group.rows, group.places(~certified))
-        if self.accuracy == "exact" and failed.size > FEW:
-            failed = self._settle_ties(failed, task._replace(names=(name,)))
         if self.left is not None and failed.size <= LEAVE:
             later = task._replace(names=(name,), level=task.level + 1)
             self.left.setdefault(later, []).append(failed)
@@ -196,19 +192,6 @@ class Rows:
             case = Case(task.pattern.scene(self._number(rows[place])))
             yes[place] = getattr(case, method)(which)
         return yes
-
-    def _settle_ties(self, rows: NDArray[np.intp], task: Task) -> NDArray[np.intp]:
-        """Write the task's quantity where it is a tie between two doubles; returns the other rows."""
-        program, plain = in_pairs(task)
-        found = {name: np.empty(rows.size) for name in program.results}
-        self._run(program, rows, (), found)
-        inputs = {name: column[rows] if column.ndim else column for name, column in self.inputs.items()}
-        try:
-            values, tied = ties(**found, plain=plain, inputs=inputs)
-        except Irrational:
-            return rows
-        self.results[task.names[0]][rows[tied]] = values[tied]
-        return rows[~tied]
 
     def _solve_one_by_one(self, rows: Index, task: Task) -> None:
         """Solve each row as a scene of its own, exactly."""
