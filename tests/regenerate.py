@@ -105,7 +105,7 @@ KEPT = [
         for script in SCRIPTS
     ),
     *(whole(engine.with_suffix(".txt"), f'"$PYTHON" "{engine}"', needs) for engine, needs in ENGINES.items()),
-    whole(EXAMPLES / "handout.md", f"atwood solve {SCENE} --explain --markdown"),
+    whole(EXAMPLES / "handout.md", "atwood solve --m1 1 --m2 3 --mu 0.3 --explain --markdown"),
     *(
         whole(
             EXAMPLES / name,

@@ -690,11 +690,6 @@ def test_pandoc_makes_other_pages_of_a_handout_without_complaint(kind: str, tmp_
         assert files.read("word/document.xml").count(b"<m:oMath>") == html.count("<math")
 
 
-def test_the_handout_is_todays(atwood: Atwood) -> None:
-    ran = atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", "--mu", "0.3", "--explain", "--markdown")
-    assert ran.out == (TOP / "examples" / "handout.md").read_text(encoding="utf-8")
-
-
 # What cannot be
 
 

@@ -18,7 +18,7 @@ from .scenes import inputs
 
 TOP = Path(__file__).parent.parent
 PAGE = (TOP / "examples" / "json.md").read_text(encoding="utf-8")
-ROW = r"^\| `(.*?)` \| (.*?) \| (.*?) \| (.*?) \| (.*?) \|$"
+ROW = r"^- `(.*?)` \((.*?)(?:, (.*?))?\): (.*?)(?:; null: (.*))?$"
 SECTIONS = {
     title: {key: rest for key, *rest in re.findall(ROW, text, re.MULTILINE)}
     for title, text in re.findall(r"^## (.*)\n((?:(?!## ).*\n)*)", PAGE, re.MULTILINE)
