@@ -79,7 +79,7 @@ def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, la
     minus = above[0].op == "number" and above[0].parts[0] < 0
     if minus:
         above = above[1:]
-    times = (r" \cdot " if latex else " · ") if numbers else (r" \, " if latex else " ")
+    times = (r" \cdot " if latex else " · ") if numbers else (r"\," if latex else " ")
 
     def product(factors: list[Formula], alone: bool) -> str:
         factors = _powers(factors)
