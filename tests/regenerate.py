@@ -26,7 +26,6 @@ ESCAPES = {rb"\n": b"\n", rb"\r": b"\r", rb"\t": b"\t", b"\\\\": b"\\", b"%%": b
 UNSEEN = "[\0-\x09\x0b-\x1f\x7f\xa0\u2009\u2028\ufeff]"
 SCENE = "--m1 1 --m2 3 --M 10 --mu 0.3"
 
-HELP = 'echo "$ atwood${of:+ $of} -h"; atwood $of -h; echo'
 PICTURES = {
     "contact.svg": f"contact {SCENE}",
     "tensions.svg": "sweep --m1 1 --m2 3 --mu 0.3 --M 0:60:4 --only T1,T2",
@@ -56,8 +55,16 @@ def printed(line: str) -> str:
 
 def transcript(block: str) -> str:
     """The block as running its commands gives it, stderr where a terminal would show it."""
-    commands = re.findall(r"^\$ (.*)", block, re.MULTILINE)
-    return "".join(f"$ {command}\n{printed(f'{{ {command}; }} 2>&1 || true')}" for command in commands)
+    return "".join(f"$ {line}\n{shown(line)}" for line in re.findall(r"^\$ (.*)", block, re.MULTILINE))
+
+
+def shown(line: str) -> str:
+    """What a line of bash shows, called here if it does nothing but call the program."""
+    if not re.fullmatch(r"atwood( [^|;<>$&*?(){}~`]*)?", line):
+        return printed(f"{{ {line}; }} 2>&1 || true")
+    with chdir(TOP):
+        ran = called(shlex.split(line)[1:])
+    return ran.out + ran.err
 
 
 def answered(block: str) -> str:
@@ -84,14 +91,20 @@ def blocks(page: Path) -> Iterator[str]:
     yield from re.findall(r"```console\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
 
 
-def whole(file: Path, line: str, needs: str = "") -> Kept:
-    return Kept(
-        file, file.read_text(encoding="utf-8") if file.exists() else "", partial(printed, line), needs
-    )
+def help_pages() -> str:
+    """The pages of help, each behind its command."""
+    commands = ["atwood -h", *(f"atwood {command} -h" for command in COMMANDS)]
+    return "".join(f"$ {line}\n{shown(line)}\n" for line in commands)
+
+
+def whole(file: Path, today: Callable[[], str] | str, needs: str = "") -> Kept:
+    """A whole file, and what makes it: a function, or a line of bash that prints it."""
+    today = partial(printed, today) if isinstance(today, str) else today
+    return Kept(file, file.read_text(encoding="utf-8") if file.exists() else "", today, needs)
 
 
 KEPT = [
-    whole(EXAMPLES / "help.txt", f"for of in '' {' '.join(COMMANDS)}; do {HELP}; done"),
+    whole(EXAMPLES / "help.txt", help_pages),
     *(
         Kept(page, command, partial(answered, command))
         for page in CASES
@@ -105,7 +118,9 @@ KEPT = [
         for script in SCRIPTS
     ),
     *(whole(engine.with_suffix(".txt"), f'"$PYTHON" "{engine}"', needs) for engine, needs in ENGINES.items()),
-    whole(EXAMPLES / "handout.md", "atwood solve --m1 1 --m2 3 --mu 0.3 --explain --markdown"),
+    whole(
+        EXAMPLES / "handout.md", partial(shown, "atwood solve --m1 1 --m2 3 --mu 0.3 --explain --markdown")
+    ),
     *(
         whole(
             EXAMPLES / name,
