@@ -53,9 +53,9 @@ TENSION, WEIGHT, SHORTEST = 0.35, 0.5, 0.05  # the lengths of arrows: most and l
 SMALL, LARGE = 0.12, 0.3  # of friction's longest arrow; beyond, all of friction is drawn larger or smaller
 APART = radians(15)  # between arrows along the arc
 RIM, INSIDE = 0.93, 0.86  # where arrows of friction and of the normal force start
-AXLE, ACCELERATION = 0.24, 0.36  # the radius of the arrow around the axle, and the length of an arrow
+AXLE, ACCELERATION = (0.23, -0.08), 0.36  # the end of the arrow around the axle, and the length of an arrow
 NAME = -0.36j  # where the pulley's mass is said
-NOT_TO_SCALE = "Arrows with open heads are not to scale."
+NOT_TO_SCALE = "Short and long arrows are not to scale."
 GUIDED = "m₂'s guide is not drawn."
 
 
@@ -190,8 +190,9 @@ def _draw_machine(
         scale = fitting
     legend, whole = _draw_contact(axes, forces, phi, scale) if forces else ([], True)
     if friction := _axle_friction(few):
-        turned = few.case.sign * radians(70)
-        _draw_turn(axes, -pi / 2 - turned, -pi / 2 + turned, ORANGE)
+        (x, y), way = AXLE, few.case.sign
+        look: Any = {"color": ORANGE, "arrowstyle": "-|>", "connectionstyle": f"arc3,rad={0.7 * way}"}
+        axes.annotate("", (way * x, y), (-way * x, y), arrowprops=look)
         legend.append((f"axle friction, {friction} N at the rim", ORANGE))
     axes.text(NAME.real, NAME.imag, _pulley(few), ha="center", va="center", size=10)
     for i, (end, tension, weight) in enumerate(zip(ends, tensions, weights, strict=True)):
@@ -225,8 +226,9 @@ def _draw_legend(axes: "Axes", entries: Sequence[tuple[str, str]]) -> None:
 
     lines = [Line2D([], [], color=colour, marker=">", label=words) for words, colour in entries]
     if lines:
-        below: Any = {"loc": "upper center", "bbox_to_anchor": (0.5, 0), "frameon": False}
-        axes.legend(handles=lines, ncols=2, fontsize=SIZE, columnspacing=1, **below)
+        axes.legend(
+            handles=lines, ncols=2, loc="upper center", bbox_to_anchor=(0.5, 0), frameon=False, fontsize=SIZE
+        )
 
 
 def _rim(angle: Any) -> Any:
@@ -332,35 +334,17 @@ def _write_beside(axes: "Axes", at: complex, aside: complex, said: Sequence[tupl
 
 
 def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> bool:
-    """Arrows from some points, each at least so long that it is seen; whether all are to scale.
-
-    The head of one that is not is open.
-    """
-    whole = True
-    for start, arrow in zip(starts, arrows, strict=True):
-        if length := abs(arrow):
-            drawn = min(max(length, SHORTEST), WEIGHT)
-            tip, head = start + drawn / length * arrow, min(0.12, 0.75 * drawn) / length * arrow
-            line = np.array([start, tip - (0.4 if drawn == length else 1) * head])
-            axes.plot(line.real, line.imag, color=colour, lw=1.5, solid_capstyle="butt")
-            _draw_head(axes, tip, head, colour, drawn == length)
-            whole &= drawn == length
-    return whole
-
-
-def _draw_head(axes: "Axes", tip: complex, head: complex, colour: str, whole: bool = True) -> None:
-    """The head of an arrow: its tip, and the way from foot to tip."""
-    corners = tip - head * np.array([0, 1 + 0.36j, 1 - 0.36j])
-    face, width = (colour, 0) if whole else ("white", 1)
-    axes.fill(corners.real, corners.imag, facecolor=face, edgecolor=colour, lw=width, zorder=3)
-
-
-def _draw_turn(axes: "Axes", start: float, end: float, colour: str) -> None:
-    """An arrow around the axle, from one angle to another."""
-    way = 1 if end > start else -1
-    line = AXLE * np.exp(1j * np.linspace(start, end - 0.18 * way, 20))  # the head hides the rest
-    axes.plot(line.real, line.imag, color=colour, lw=1)
-    _draw_head(axes, AXLE * np.exp(1j * end), 0.09j * way * np.exp(1j * (end - 0.2 * way)), colour)
+    """Arrows from some points, each at least so long that it is seen; whether all are to scale."""
+    there = [(start, arrow) for start, arrow in zip(starts, arrows, strict=True) if arrow]
+    lengths = [abs(arrow) for _, arrow in there]
+    drawn = np.clip(lengths, SHORTEST, WEIGHT)
+    at = np.array([start for start, _ in there], complex)
+    along = np.array([arrow / length for (_, arrow), length in zip(there, lengths, strict=True)]) * drawn
+    axes.update_datalim([(place.real, place.imag) for place in (*at, *(at + along))])
+    look: Any = {"units": "inches", "width": 1.5 / 72, "headwidth": 5, "headlength": 6, "headaxislength": 6}
+    scale: Any = {"angles": "xy", "scale_units": "xy", "scale": 1, "minlength": 0}
+    axes.quiver(at.real, at.imag, along.real, along.imag, color=colour, **look, **scale)
+    return bool(np.all(drawn == lengths))
 
 
 def _draw_curves(axes: "Axes", forces: Forces, wrap: float) -> None:
