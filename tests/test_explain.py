@@ -24,13 +24,12 @@ from atwood_cli.output.typeset import law as law_in_text
 from atwood_cli.solver.answers import Answers, read_answers
 from atwood_cli.solver.equations import HELD, Equation, Law
 from atwood_cli.solver.equations import plain as in_letters
-from atwood_cli.solver.messages import unmarked
 from atwood_cli.solver.steps import Explanation, explain
 
 from . import oracle
 from .conftest import examples, many
-from .running import Atwood, on_terminal, plain, process
-from .scenes import FAMILIES, Given, inputs, of_all_kinds, scenes, table
+from .running import on_terminal, plain, process
+from .scenes import FAMILIES, Given, of_all_kinds, scenes
 
 TOP = Path(__file__).parent.parent
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
@@ -77,6 +76,9 @@ KINDS: dict[str, dict[str, str | None]] = {
     "slips beside an axle": {"m1": "3", "m2": "1", "M": "300", "mu": "0.2", "axle": "5"},
 }
 kinds = pytest.mark.parametrize("kind", KINDS)
+UNKNOWN = {"locked and slips", "finds kinetic friction", "finds no kinetic friction"}
+"""Kinds that the oracle does not know: a wrap in radians, and friction that is found."""
+known_kinds = pytest.mark.parametrize("kind", sorted(KINDS.keys() - UNKNOWN))
 
 
 def answers_of(kind: str, digits: int | None = None) -> Answers:
@@ -167,7 +169,7 @@ def check_numbers(equation: Equation, digits: int) -> None:
 
 
 @kinds
-@pytest.mark.parametrize("digits", [None, 1, 3, 30])
+@pytest.mark.parametrize("digits", [None, 1, 30])
 def test_every_line_gives_its_result(kind: str, digits: int | None) -> None:
     found = equations(told_of(kind, digits))
     assert found
@@ -261,20 +263,10 @@ def check_values(found: Explanation, scene: Scene, digits: int) -> int:
     return checked
 
 
-@kinds
+@known_kinds
 def test_every_number_is_the_oracles(kind: str) -> None:
-    scene = scene_of(kind)
-    if scene.wrap.unit == "rad" or "kinetic friction" in kind:
-        pytest.skip("the oracle's wraps are in degrees, and it finds no friction")
-    found = told_of(kind)
-    checked = check_values(found, scene, 6)
+    checked = check_values(told_of(kind), scene_of(kind), 6)
     assert checked >= (1 if kind == "no critical mass" else 4)
-
-
-def test_bounds_are_those_of_the_design() -> None:
-    found = dict(stated(told_of("grips")))
-    assert Decimal(found["F min"]).quantize(Decimal("0.0001")) == Decimal("5.4057")
-    assert Decimal(found["F max"]).quantize(Decimal("0.0001")) == Decimal("8.9493")
 
 
 SIMPLER: dict[str, dict[str, str | None]] = {
@@ -350,18 +342,17 @@ def test_every_number_in_a_sentence_is_one_that_solve_gives() -> None:
     assert checked > many(2000)
 
 
-@kinds
+@known_kinds
 def test_the_laws_hold(kind: str) -> None:
     """(1) as printed, with the oracle's numbers; (3) is worked out as an equation.
 
     On the verge the ratio of the tensions gives the critical masses: it holds with each in its place.
     """
     scene, mp.mp.dps = scene_of(kind), 40
-    if scene.wrap.unit == "rad" or "kinetic friction" in kind:
-        pytest.skip("the oracle's wraps are in degrees, and it finds no friction")
     expected = oracle.expected(scene)
     if expected["acceleration"] is None:
-        pytest.skip("the motion is open")
+        assert kind == "no critical mass"  # whose motion is open
+        return
 
     def number(name: str) -> Any:
         return mp.mpf(str(oracle.correctly_rounded(expected[name], 35)))
@@ -420,15 +411,6 @@ def test_the_laws_hold(kind: str) -> None:
 
 
 @kinds
-def test_what_acts_on_the_pulley_is_said(kind: str) -> None:
-    words = " ".join(sentences(told_of(kind)))
-    assert "`T1` and `T2` do not act on the pulley." in words
-    assert "contact force of the string" in words
-    labels = [part.label for step in told_of(kind).steps for part in step.body if not isinstance(part, str)]
-    assert {"(1)", "(2)", "(12)", "(13)", "(23)"} <= {label.removesuffix("+b") for label in labels}
-
-
-@kinds
 def test_b_marks_the_equations_that_the_axle_enters(kind: str) -> None:
     for step in told_of(kind).steps:
         for part in step.body:
@@ -438,104 +420,17 @@ def test_b_marks_the_equations_that_the_axle_enters(kind: str) -> None:
                 assert part.label.endswith("+b") == bool(enters), words
 
 
-SAID = """
-massless | (4) | takes no torque to turn the pulley
-given pulley | (27) (3) (33) (4) | Assumed to hold, without mu
-verge | (24) (26) (34) (36) | On a pulley of the critical mass
-no critical mass | (26) (36) | Holds on any pulley
-grips | (27) (33) (34) (35) (36) (4) | For a disk, as in the paper, that is
-slips | (34) (35) | m2 - m1 - z is the drive d
-locked and slips | (36) | The pulley stands until then
-grips | (4) | while the string grips
-grips on a long wrap | (27) (4) | bounds are known for up to half a turn
-slips | (1),(26) (3) (34) | that of kinetic friction
-slides without friction | (1),(26) | Without friction k_kin = 1
-locked | (1) (27) | M = inf is a pulley that is locked
-equal | (1) | neither descends
-free end | (4) | nothing hangs from its free end
-grips beside an axle | (3)+b (4)+b (34)+b (36)+b | +b marks an equation of the paper
-mirror | (1),(26) | a is positive when m2 descends, so here it is negative
-finds the pulley | (4) (33) | Found: M = 10.0000 kg
-finds gravity | (4) | g = 9.00000 m/s²
-finds gravity beside an axle | (4)+b | g = 9.00000 m/s²
-finds the heavier mass | (1),(3) | m2 = 3.00000 kg
-finds the lighter mass | (1),(3)+b | m2 = 1.00000 kg
-finds an equal mass | (1),(3) | m2 = 1.00000 kg
-finds kinetic friction | (1) (26) | μ_k = 0.220636
-finds no kinetic friction | (1) | slides without friction, μ_k = 0
-falls | (4) | takes the time t and ends with the speed v
-inertia alone | (27) | give M, the pulley's mass, beside I
-"""
-
-
-@pytest.mark.parametrize(("kind", "labels", "words"), table(SAID))
-def test_each_regime_has_its_equations_and_its_reason(kind: str, labels: str, words: str) -> None:
-    found = told_of(kind)
-    parts = [part for step in found.steps for part in step.body if not isinstance(part, str)]
-    shown = {part.label.replace(", ", ",") for part in parts}
-    assert set(labels.split()) <= shown
-    assert words in unmarked(" ".join(sentences(found))).replace(HELD, " ")
-
-
-@kinds
-def test_the_answer_comes_first(kind: str, atwood: Atwood) -> None:
-    given = [
-        word
-        for name, value in {"m1": "1", "m2": "3", **KINDS[kind]}.items()
-        if value is not None
-        for word in (f"--{name.replace('_', '-')}", value)
-    ]
-    ran = atwood("solve", *given, "--explain")
-    assert (ran.status, ran.err) == (0, "")
-    lines = atwood("solve", *given, "--digits", "6").out.splitlines()
-    sentences = [n for n, line in enumerate(lines) if line[0].isupper()]
-    scene, found = " ".join(lines[: sentences[0]]), lines[sentences[0]].startswith("Found: ")
-    top = ran.out.partition("\n1. The masses\n")[0].replace("\n", " ")
-    verdict = lines[sentences[found]]
-    assert top.startswith(f"{scene} Found: " if found else f"{scene} {verdict} ")
-    assert f" {verdict} " in top
-    assert (" a = " in top) == (kind != "no critical mass")
-
-
-def test_an_arc_of_another_angle_has_no_force_downwards_but_guide_sheaves() -> None:
-    half, other = (" ".join(sentences(told_of(kind))) for kind in ("slips", "inertia"))
-    assert "the force, downwards, and the torque" in half
-    assert "guide sheaves" not in half
-    assert "the force and the torque" in other
-    assert "guide sheaves without mass or friction" in other
-
-
-MISSED = """
-M=10 mu=0.05 axle=6     | the heavier mass must exceed m min.
-M=0.5 mu=0.205 axle=9.8 | mass it holds again
-M=10 mu=0.3 mu_k=0.1    | goes on sliding, as mu_k = 0.1 is below
-M=10 wrap=170           | y a quarter turn on along the arc
-M=10 axle=5             | equations are those here with f_axle = 0 and b = 0
-"""
-
-
-@pytest.mark.parametrize(("given", "words"), table(MISSED))
-def test_what_a_reader_would_miss_is_said(given: str, words: str) -> None:
-    """M min was spoken of where there is none, m* was the only limit, y was upwards at any wrap."""
-    assert words in unmarked(" ".join(sentences(told(Scene.read(inputs(given))))))
-
-
 def test_what_is_0_whatever_the_numbers_is_exactly_0() -> None:
     """T1 of a free end was ≈ 0."""
     found = equations(told(Scene.read({"m1": "0", "m2": "1", "M": "1"})))
     assert next(equation.signs for equation in found if equation.left == "T1") == "≈="
 
 
-def test_digits_asked_for_are_shown(atwood: Atwood) -> None:
-    out = atwood("solve", "--m1", "1", "--m2", "3", "--mu", "0.3", "--digits", "30", "--explain").out
-    assert "43.3419248632108669785916777830 kg" in out
-
-
 # On the page
 
 
 @kinds
-@pytest.mark.parametrize("width", [40, 60, 80, 200])
+@pytest.mark.parametrize("width", [40, 80])
 def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str, width: int) -> None:
     found = told_of(kind, 20)
     lines = [line for line, _ in as_text(["m1 = 1 kg"], found, width)]
@@ -551,7 +446,7 @@ def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str, width: int) -
     assert "`" not in "".join(lines)
 
 
-@pytest.mark.parametrize("columns", [30, 40, 80, 200])
+@pytest.mark.parametrize("columns", [30, 200])
 def test_on_a_terminal(columns: int) -> None:
     seen = on_terminal("solve", "--m1", "1", "--m2", "3", "--mu", "0.3", "--explain", columns=columns)
     assert "\x1b[1m1. The masses" in seen
@@ -589,11 +484,6 @@ def check_markdown(lines: list[str], title: str = "Atwood's machine, step by ste
     titles = [line for line in lines if line.startswith("#")]
     assert titles[0] == f"# {title}"
     assert all(title.startswith(f"## {i}. ") for i, title in enumerate(titles[1:], 1))
-
-
-@kinds
-def test_markdown_is_well_formed(kind: str) -> None:
-    check_markdown([*as_markdown(["m1 = 1 kg"], told_of(kind))])
 
 
 MORE: dict[str, dict[str, str | None]] = {
@@ -643,19 +533,6 @@ def test_a_handout_has_words_and_symbols_only(kind: str) -> None:
     check_markdown(page.split("\n"))
 
 
-def test_sentences_of_a_handout() -> None:
-    assert (
-        "between the least friction force $F_{\\min}$ and the greatest friction force $F_{\\max}$ while"
-        in (handout("grips"))
-    )
-    assert "angle of wrap $\\varphi$ = 180°" in handout("grips")
-    assert "The axle force $A$: not known without $M$, the pulley's mass" in handout("inertia alone")
-    assert re.search(r"\d g of difference", handout("an axle of grams"))  # which is not gravity
-    assert "a force $f_{\\mathrm{axle}}$ at the rim" in handout("an axle of grams")  # f is that of the string
-    assert "axle friction = 5 N" in handout("an axle of grams")
-    assert "slides with $\\mu_{\\mathrm{k}}$ = 0.25" in handout("slips")
-
-
 def formulas(page: str) -> Iterator[str]:
     """All that is between dollars, its numbers replaced by 2: what is left has few shapes."""
     for display, inline in re.findall(r"\$\$\n(.*?)\n\$\$|\$([^$]+)\$", page, flags=re.DOTALL):
@@ -666,7 +543,7 @@ def test_latex_takes_every_formula() -> None:
     """It takes no second superscript: the square of the least coefficient had two."""
     mathml = pytest.importorskip("latex2mathml.converter")
     mathtext = pytest.importorskip("matplotlib.mathtext").MathTextParser("path")
-    pages = [*map(handout, HANDOUTS), *map(handout_of, of_all_kinds(many(120)))]
+    pages = [*map(handout, HANDOUTS), *map(handout_of, of_all_kinds(many(60)))]
     shapes = {shape: None for page in pages for shape in formulas(page)}
     assert len(shapes) > 200
     for shape in shapes:
@@ -691,13 +568,6 @@ def test_pandoc_makes_other_pages_of_a_handout_without_complaint(kind: str, tmp_
 
 
 # What cannot be
-
-
-def test_a_ratio_too_large_to_write_is_told() -> None:
-    found = told(Scene.read({"m1": "1", "m2": "3", "M": "5", "mu": "1e9"}))
-    tell = {equation.left: equation for equation in equations(found)}
-    assert (tell["z"].signs, tell["z"].result, tell["z"].numbers) == ("=>", "10^100000000", None)
-    assert tell["a"].numbers is not None
 
 
 def test_where_nothing_but_the_axle_tells_the_motion_there_is_no_scene_without_it() -> None:
