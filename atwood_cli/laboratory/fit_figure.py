@@ -7,7 +7,7 @@ import numpy as np
 from ..model import physics
 from ..output.figure import BLUE, INK, RED, check_file, page, say_above
 from .fit_page import conditions
-from .fitting import Data, accelerations, as_data
+from .fitting import Data, accelerations, as_data, uncertain_accelerations
 from .judgement import Fitted
 from .published import QUANTITIES, USUAL, shown
 from .sentences import verdict
@@ -30,7 +30,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     best = fit.whole.best
     g, c, f = (best.values[x] for x in ("gravity", "rim_mass", "axle"))
     a, y = points(best.data, g)
-    u_a = best.sigma if best.data.drop is None else best.sigma * 2 * a / best.data.measured
+    u_a = uncertain_accelerations(best.data, best.sigma)
     u_y, u_rest = (best.data.l + best.data.h) * u_a, (best.data.l + best.data.h + c) * u_a
     with page(path, force) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])

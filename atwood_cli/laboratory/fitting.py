@@ -79,7 +79,8 @@ def estimate(
     Variances follow the values (effective variance), and least squares the variances.
     """
     values = {"axle": 0.0, "rim_mass": 0.0, **given}
-    values |= {x: near[x] for x in names} if near else _straight(data, values, names)
+    start = near or straight(data, values, names, np.ones_like(data.l))
+    values |= {x: max(start[x], _lightest(data) / 2) if x == "rim_mass" else start[x] for x in names}
     before = inf
     for _ in range(MOST_STEPS):
         ideal, J = expected(data, values), slopes(data, values, names)
@@ -162,16 +163,22 @@ def _lightest(data: Data) -> float:
     return -(1 - 1e-9) * float((data.l + data.h).min())
 
 
-def _straight(data: Data, given: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
-    """The straight line g (h - l) - c a - f = a (l + h), by least squares in a."""
+def straight(
+    data: Data, values: Mapping[str, float], names: Sequence[str], weight: Column
+) -> dict[str, float]:
+    """The straight line g (h - l) - c a - f = a (l + h), by weighted least squares of these forces."""
     a, load = accelerations(data, data.measured), data.l + data.h
     columns = {"gravity": data.h - data.l, "rim_mass": -a, "axle": np.full_like(a, -1.0)}
-    rest = a * load - sum(given[x] * column for x, column in columns.items() if x not in names)
+    rest = a * load - sum(values[x] * column for x, column in columns.items() if x not in names)
     if not names:
         return {}
-    line = np.linalg.lstsq(np.stack([columns[x] for x in names], 1), rest, rcond=None)[0]
-    start = dict(zip(names, map(float, line), strict=True))
-    return {x: max(value, _lightest(data) / 2) if x == "rim_mass" else value for x, value in start.items()}
+    sides = np.stack([columns[x] * weight for x in names], 1)
+    return dict(zip(names, np.linalg.lstsq(sides, rest * weight, rcond=None)[0].tolist(), strict=True))
+
+
+def uncertain_accelerations(data: Data, sigma: Column) -> Column:
+    """The standard uncertainties of accelerations, by those of what is measured."""
+    return sigma if data.drop is None else sigma * 2 * accelerations(data, data.measured) / data.measured
 
 
 def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -> Data:

@@ -14,7 +14,18 @@ from ..model.case import Case
 from ..model.quantities import read_names
 from ..model.scene import Input, Scene, SceneError, parameter_of
 from ..tables.sources import Unreadable
-from .fitting import Estimate, accelerations, as_data, estimate, expected, measurements, slopes, variances
+from .fitting import (
+    Estimate,
+    accelerations,
+    as_data,
+    estimate,
+    expected,
+    measurements,
+    slopes,
+    straight,
+    uncertain_accelerations,
+    variances,
+)
 from .published import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, few, shown
 from .runs import BEYOND, Run, Runs, in_range
 from .statistics import Alike, Column, stray_repeats, stray_rows, student
@@ -241,14 +252,15 @@ def common_error(fit: Fitted) -> tuple[str, dict[str, float]]:
     if data.drop is not None and data.measured.min() > 2 * DELAY:
         errors[f"a delay of {DELAY:g} s in all times"] = data._replace(measured=data.measured - DELAY)
         errors["1 % more height in all falls"] = data._replace(drop=1.01 * data.drop)
+    u_force = uncertain_accelerations(data, best.sigma) * (data.l + data.h + best.values["rim_mass"])
+    line = straight(data, best.values, best.names, 1 / u_force)
     for words, there in errors.items():
-        with suppress(Alike):
-            moved = estimate(there, fit.given.values, best.names, best.values).values
-            changes = {x: abs(moved[x] - best.values[x]) for x in best.names}
-            shares = {x: by / float(np.ptp(fit.whole.results[x].interval)) for x, by in changes.items()}
-            if max(shares.values(), default=0.0) > most:
-                most = max(shares.values())
-                worst = words, {x: by for x, by in changes.items() if shares[x] > LARGE}
+        moved = straight(there, best.values, best.names, 1 / u_force)
+        changes = {x: abs(moved[x] - line[x]) for x in best.names}
+        shares = {x: by / float(np.ptp(fit.whole.results[x].interval)) for x, by in changes.items()}
+        if max(shares.values(), default=0.0) > most:
+            most = max(shares.values())
+            worst = words, {x: by for x, by in changes.items() if shares[x] > LARGE}
     return worst
 
 

@@ -147,7 +147,7 @@ def _indistinct(fit: Fitted) -> Iterator[str]:
     words, changes = common_error(fit)
     if changes:
         sizes = (
-            f"{QUANTITIES[x].words} by {few(by / SMALL)} {QUANTITIES[x].small_unit}"
+            f"{QUANTITIES[x].words} by about {few(by / SMALL)} {QUANTITIES[x].small_unit}"
             for x, by in changes.items()
         )
         yield f"{_capital(words)} would change {' and '.join(sizes)}."
