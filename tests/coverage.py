@@ -126,9 +126,8 @@ class Set(NamedTuple):
             light, heavy = (exact(m, d.masses * bool(d.stated)) for m in (l, h))
             m1, m2 = (heavy, light) if swapped and i % 2 else (light, heavy)
             measured = tuple(exact(value, d.stated * d.u) for value in some)
-            cells = tuple(f"row {i}, time {k}" for k in range(1, len(some) + 1))
-            runs.append(Run((i,), {}, m1, m2, exact(DROP) if d.kind == "time" else None, measured, cells))
-        return Runs(d.kind, runs, True, False, [], [])
+            runs.append(Run((i,), m1, m2, exact(DROP) if d.kind == "time" else None, measured))
+        return Runs(d.kind, runs, True, False, [])
 
 
 def expected(kind: Kind, l: Any, h: Any, c: float, f: Any) -> Any:

@@ -212,8 +212,8 @@ def test_contradictory_runs_are_fitted_as_well_as_by_scipy(kind: Kind, find: lis
         rows = [(random.randint(1, 6), random.randint(1, 6), random.randint(1, 9)) for _ in range(6)]
         inputs = [[Input(Fraction(x), Fraction(0), None) for x in row] for row in rows if row[0] != row[1]]
         drop = Input(Fraction(1), Fraction(0), None)
-        used = [Run((i,), {}, m1, m2, drop, (one,)) for i, (m1, m2, one) in enumerate(inputs)]
-        data = as_data(Runs(kind, used, True, False, [], []), used)
+        used = [Run((i,), m1, m2, drop, (one,)) for i, (m1, m2, one) in enumerate(inputs)]
+        data = as_data(Runs(kind, used, True, False, []), used)
         given = {x: value for x, value in (("rim_mass", 0.0), ("axle", 0.0), ("gravity", G)) if x not in find}
         try:
             best = estimate(data, given, find)
@@ -368,7 +368,6 @@ def test_repeats_are_columns_or_rows(fit: Any) -> None:
     assert [run.pop("rows") for run in other["runs"]] == ["1 2 5", "3 6", "4 7 8"]
     assert [run.pop("rows") for run in one["runs"]] == ["1", "2", "3"]
     assert one["runs"] == other["runs"]
-    assert one["runs"][0]["rig"] == "A"
     assert one["uncertainty"] == other["uncertainty"]
 
 
@@ -522,12 +521,12 @@ RESTING = SIMMONS + 8 * "0.1,0.1,0\n" + "".join(f"0.1,0.10{i},0\n" for i in rang
 SENTENCES = [
     (FAST, "", "Row 8 is faster than with neither pulley nor friction: 48 standard uncertainties from what the others say."),
     (FAST, "", "8 runs, 8 accelerations."),  # and nothing is called significant that includes it
-    (FAST, "--R 25mm", "Without row 8: rim mass = 0.0107 ± 0.0035 kg, axle = 0.0007 ± 0.0014 N,"
-        " moment of inertia = (6.7 ± 2.2)e-6 kg m². The fit includes it."),
+    (FAST, "--R 25mm", "Without row 8: rim_mass = 0.0107 ± 0.0035 kg, axle = 0.0007 ± 0.0014 N,"
+        " moment_of_inertia = (6.7 ± 2.2)e-6 kg m². The fit includes it."),
     (ODD, "", "standard uncertainties from what the others say."),
-    (STRAYING, "--drop 98cm", "Row 3, time 3 (3.79 s) is far from its siblings: "),
-    (STRAYING, "--drop 98cm", "Without row 3, time 3: rim mass = "),
-    (STRAYING, "--drop 98cm", "The fit includes it; to leave a measurement out, empty its cell."),
+    (STRAYING, "--drop 98cm", "In row 3, 3.79 s is far from its siblings: "),
+    (STRAYING, "--drop 98cm", "Without row 3: rim_mass = "),
+    (STRAYING, "--drop 98cm", "The fit includes it."),
     (SIMMONS + "0.1,0.1,0\n", "", "Row 9 could not be used: its masses are equal, and rest."),
     (SIMMONS + "0.1,0.2,0\n", "", "Row 9 could not be used: nothing moved."),
     (SIMMONS + "0.1,0.2,-1\n", "", "Row 9 could not be used: the lighter side falls."),
@@ -562,17 +561,14 @@ def test_what_is_said(fit: Any, table: str, more: str, words: str) -> None:
     assert not any(" --" in note for note in notes)  # the same notes are in Python's result
 
 
-def test_of_a_pair_that_disagrees_both_are_named(fit: Any) -> None:
+def test_a_pair_that_disagrees_is_named(fit: Any) -> None:
     notes = " ".join(found(fit(PAIRS, "--drop", "98cm", "--json"))["notes"])
-    for cell in ("Row 3, time 1 (2.71 s)", "Row 3, time 2 (3.73 s)"):
-        assert f"{cell} is far from its siblings: " in notes
-    assert re.search("Without row 3, time [12] and row 3, time [12]: rim mass = ", notes)
+    assert re.search("In row 3, (2.71|3.73) s is far from its siblings: .* Without row 3: rim_mass = ", notes)
 
 
 def test_what_is_odd_is_said_above_the_tables_and_marked(fit: Any) -> None:
     out = fit(STRAYING, "--drop", "98cm").out
     assert out.index("is far from its siblings") < out.index("Quantity") < out.index("│ 3 ! │")
-    assert "--without" not in out
     assert "The fit includes it.\n--without 5 leaves it out.\n" in fit(ODD).out
 
 
@@ -672,40 +668,26 @@ def test_the_page_has_the_digits_and_the_width_asked_for(atwood: Atwood) -> None
     assert sum("moment_of_inertia" in line for line in with_all) == 1  # one table
     narrow = plain(on_terminal(*RIT, columns=60)).splitlines()
     assert max(len(line) for line in narrow if not re.match("[│╭├╰]", line)) <= 60
-    assert "│ rim_mass │ 0.032335 ± 0.021137 │" in atwood(*RIT, "--digits", "5").out
-    with_radius = atwood(*RIT, "--R", "25mm", "--digits", "2").out.splitlines()
-    assert with_radius[7].split("│")[1:-1:2] == [" moment_of_inertia ", " kg m² ", " (-2.2 to 6.2)e-5 "]
-    assert with_radius[7].split("│")[2] == " (2.0 ± 1.3)e-5 "  # the uncertainty was left out
+    with_radius = atwood(*RIT, "--R", "25mm").out.splitlines()
+    cells = [cell.strip() for cell in with_radius[7].split("│")[1:-1]]
+    assert cells == ["moment_of_inertia", "(2.0 ± 1.3)e-5", "kg m²", "I", "(-2.2 to 6.2)e-5"]
 
 
 @pytest.mark.parametrize(
-    ("value", "u", "digits", "both", "ends"),
+    ("value", "u", "both", "ends"),
     [
-        (7.9652e-6, 2.3e-6, None, "(8.0 ± 2.3)e-6", "(3.4 to 12.6)e-6"),  # was (0.34 to 1.26)e-5
-        (1.49e-5, 9e-7, None, "(1.490 ± 0.090)e-5", "(1.310 to 1.670)e-5"),
-        (1.49e-5, 9e-7, 3, "(1.49 ± 0.09)e-5", "(1.31 to 1.67)e-5"),
-        (-3e-7, 2e-5, None, "(0.0 ± 2.0)e-5", "(-4.0 to 4.0)e-5"),
-        (0.764, 0.012, None, "0.764 ± 0.012", "0.740 to 0.788"),
-        (0.764, 0.012, 1, "0.76 ± 0.01", "0.74 to 0.79"),  # some uncertainty is left
-        (0.0, 0.012, 5, "0.000 ± 0.012", "-0.024 to 0.024"),
-        (12345.678, 1200, None, "12300 ± 1200", "9900 to 14700"),
-        (9.80665, 1.2e-10, None, "9.8066500000 ± 0.0000000001", "9.8066499998 to 9.8066500002"),
-        (9.80665, 1e-14, None, "9.8066500000", ""),
-        (0.25, 0.0, None, "0.250000", ""),
-        (0.25, 0.0, 2, "0.25", ""),
-        (
-            2e-9,
-            0.5,
-            17,
-            "0.0000000020000000 ± 0.5000000000000000",
-            "-0.9999999979999999 to 1.0000000019999999",
-        ),
+        (7.9652e-6, 2.3e-6, "(8.0 ± 2.3)e-6", "(3.4 to 12.6)e-6"),  # was (0.34 to 1.26)e-5
+        (1.49e-5, 9e-7, "(1.490 ± 0.090)e-5", "(1.310 to 1.670)e-5"),
+        (-3e-7, 2e-5, "(0.0 ± 2.0)e-5", "(-4.0 to 4.0)e-5"),
+        (0.764, 0.012, "0.764 ± 0.012", "0.740 to 0.788"),
+        (12345.678, 1200, "12300 ± 1200", "9900 to 14700"),
+        (9.80665, 1.2e-10, "9.8066500000 ± 0.0000000001", "9.8066499998 to 9.8066500002"),
+        (9.80665, 1e-14, "9.8066500000", ""),
+        (0.25, 0.0, "0.250000", ""),
     ],
 )
-def test_a_row_is_published_by_one_rule(
-    value: float, u: float, digits: int | None, both: str, ends: str
-) -> None:
-    assert published(value, u, (value - 2 * u, value + 2 * u), digits) == (both, ends)
+def test_a_row_is_published_by_one_rule(value: float, u: float, both: str, ends: str) -> None:
+    assert published(value, u, (value - 2 * u, value + 2 * u)) == (both, ends)
 
 
 def without_nulls(value: Any) -> Any:
@@ -731,14 +713,10 @@ def test_in_python_it_is_what_json_has(atwood: Atwood) -> None:
     assert laboratory_fit(frame, drop="98cm", g="9.804", find="axle").interval.keys() == {"axle"}
     numbers = {name: [float(cell) for cell in cells] for name, cells in texts.items()}
     assert laboratory_fit(numbers, drop="98cm", find=["f"]).rim_mass is None
-    # As text it is the table, and every note.
     lines = str(result).splitlines()
-    assert lines[0].split("  ")[0] == "Quantity"
-    assert [line.split()[0] for line in lines[1:4]] == ["rim_mass", "axle", "moment_of_inertia"]
-    assert "(1.3 ± 2.1)e-5" in lines[3]
-    assert all(note in " ".join(lines) for note in result.notes)
-    assert max(map(len, lines)) <= 80
-    assert "Quantity" not in str(laboratory_fit(EQUAL, M=1, axle=0))
+    assert [line.split()[0] for line in lines[:3]] == ["rim_mass", "axle", "moment_of_inertia"]
+    assert lines[2] == "moment_of_inertia = (1.3 ± 2.1)e-5 kg m², 95 %: (-7.9 to 10.5)e-5"
+    assert lines[3:] == list(result.notes)
 
 
 @pytest.mark.parametrize(
@@ -772,27 +750,24 @@ def test_csv_has_a_row_a_run(atwood: Atwood, fit: Any) -> None:
     assert list(rows[0]) == ["rows", "m1", "m2", "drop", "time", "u", "expected", "residual"]
     assert len(rows) == 5
     assert "atwood: rim_mass = 0.032 ± 0.021 kg" in ran.err.splitlines()
-    lines = fit("Team,m1,m2,a\nA,1,2,2.4\nA,1,3,3.9\nA,1,4,4.8\nB,1,1,0\n", "--csv").out.splitlines()
-    assert lines[0] == "rows,Team,m1,m2,a,u,expected,residual"
-    assert lines[-1] == "4,B,1,1,0,,,"
+    assert (
+        fit("Team,m1,m2,a\nA,1,2,2.4\nA,1,3,3.9\nB,1,1,0\n", "--csv", "--find", "c").out.splitlines()[-1]
+        == "3,1,1,0,,,"
+    )
 
 
 def test_bare_values(atwood: Atwood) -> None:
-    ran = atwood(*RIT, "--only", "c,axle", "--digits", "3")
-    assert ran.out == "0.0323\n0.0159\n"
+    ran = atwood(*RIT, "--only", "c,axle")
+    assert [f"{float(word):.3g}" for word in ran.out.split()] == ["0.0323", "0.0159"]
     assert ran.err == "atwood: rim_mass = 0.032 ± 0.021 kg\natwood: axle = 0.0159 ± 0.0016 N\n"
     assert json.loads(atwood(*RIT, "--only", "dof", "--json").out) == {"dof": 3}
-    run = json.loads(atwood(*RIT, "--digits", "2", "--json").out)["runs"][1]
-    assert (run["m1"], run["time"], run["expected"], run["residual"]) == (0.2005, 4.58, 4.5, 1.3)
     assert atwood(*RIT, "--only", "dof", "--csv").out == "dof\n3\n"
 
 
 @pytest.mark.parametrize("form", ["", "--json", "--csv", "--only rim_mass,axle,chi2"])
 def test_no_result_has_more_digits_than_a_double(atwood: Atwood, form: str) -> None:
-    ran = atwood(*RIT, "--R", "25mm", "--digits", "40", *form.split())
-    assert ran.out == atwood(*RIT, "--R", "25mm", "--digits", "17", *form.split()).out
-    numbers = re.findall(r"\d+\.\d+", ran.out)
-    assert max(len(number.replace(".", "").lstrip("0")) for number in numbers) == 17
+    numbers = re.findall(r"\d+\.\d+", atwood(*RIT, "--R", "25mm", *form.split()).out)
+    assert max(len(number.replace(".", "").lstrip("0")) for number in numbers) <= 17
 
 
 LIGHT = "m1,m2,a\n" + "".join(f"{m},{m + d:.3f},{9.80665 * d / (2 * m + d - 0.08):.5f}\n" for m, d in APART)
@@ -871,8 +846,8 @@ def test_time_grows_as_the_rows_do(rows: int, repeats: int, tmp_path: Path, atwo
 
 
 def test_a_label_may_look_like_an_input(fit: Any) -> None:
-    result = found(fit("m1,m2,a,M\n1,2,2.4,heavy\n1,3,3.9,light\n1,4,4.8,light\n", "--label", "M", "--json"))
-    assert [run["M"] for run in result["runs"]] == ["heavy", "light", "light"]
+    table = "m1,m2,a,M\n1,2,2.4,heavy\n1,3,3.9,light\n1,4,4.8,light\n"
+    assert found(fit(table, "--label", "M", "--json"))["dof"] == 1
 
 
 def test_runs_without_any_scatter_require_what_they_show(fit: Any) -> None:

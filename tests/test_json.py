@@ -41,7 +41,7 @@ NAMED = {
     },
     "sweep": {rf"^(rows\[\])\.{INPUT}$": r"\1.INPUT", r"^(rows\[\])\.[a-z]\w+": r"\1.QUANTITY"},
     "contact": {r"^balance\.(friction|normal|sum|resultant|residual)": "balance.FORCE"},
-    "fit": {r"^(uncertainty|interval)\.\w+": r"\1.RESULT", r"^runs\[\]\.shift$": "runs[].LABEL"},
+    "fit": {r"^(uncertainty|interval)\.\w+": r"\1.RESULT"},
 }
 """Of a command, the keys that are names of quantities, of inputs, or of a file."""
 EVERYWHERE = {

@@ -77,7 +77,6 @@ def test_the_words_of_a_run(read: Any, name: str, heading: str) -> None:
     value, u = EXAMPLE["a" if "a" in names else "time"], "0.01" if name == "u(a)" else "0"
     assert numbers(runs) == [exactly("0.2", "0.207", value, "0", "0", u)]
     assert (run.drop and run.drop.value) == (None if "a" in names else Fraction("0.98"))
-    assert run.labels == {one: "A" for one in names if one == "Team"}
     assert heading == name or f"{heading!r} as {name}" in runs.remarks[0]
 
 
@@ -89,8 +88,6 @@ def test_what_no_word_is_known_for_is_named(tmp_path: Path) -> None:
     words = ["m1=Masse 1 (g)", "m2=Masse 2 (g)", "t=Zeit A", "t=Zeit B", "u(t)=Fehler (s)"]
     runs = read_runs(path, (), DROP, (), read_named(words, VOCABULARY))
     assert numbers(runs) == [exactly("0.2", "0.2075", "3.9", "4.1", "0", "0", "0.1", "0.1")]
-    assert runs.runs[0].cells == ("row 1, Zeit A", "row 1, Zeit B")
-    assert runs.labels == ["Ort"]  # a text, of which nothing is said
     assert runs.remarks == [
         f"read as: {PARTED}, 'Masse 1 (g)' as m1 in g, 'Masse 2 (g)' as m2 in g, 'Zeit A' as time, 'Zeit B' as time,"
         " 'Fehler (s)' as u(time) in s."
@@ -102,7 +99,6 @@ def test_columns_below_a_merged_heading_are_repeats(read: Any) -> None:
     table = "m1 in g;m2 in g;t in s;;;Bemerkung\n200;207;3,9;4;4,1;\n201;206;5;;5,2;warm\n"
     runs = read(table)
     assert [[float(one.value) for one in run.measured] for run in runs.runs] == [[3.9, 4.0, 4.1], [5.0, 5.2]]
-    assert runs.runs[0].cells == ("row 1, t in s", "row 1, column 4", "row 1, column 5")
     assert runs.remarks == [
         f"read as: {PARTED}, 'm1 in g' as m1 in g, 'm2 in g' as m2 in g, 't in s' as time in s, 'column 4' as time in s,"
         " 'column 5' as time in s."
@@ -153,8 +149,6 @@ NO_TABLES: list[tuple[Any, str]] = [
     ("m1,m2,a,m_1" + ROW, "columns 'm1' and 'm_1' are both m1; rename one; or let it pass by --label 'm_1'"),
     ("m1,m2,t1,time 1" + ROW, "columns 't1' and 'time 1' are both time; number what is repeated, as 'time 1'; or let it pass"
         " by --label 'time 1'"),
-    ("m1,m2,a,Team,Team\n1,2,1,x,y\n", "column 'Team' is there 2 times"),
-    ("m1,m2,a,rows\n1,2,1,1\n", "column 'rows' is called as a result is; rename it"),
     # Columns that could be two things
     ("m1,m2,a,M\n1,2,1,1\n", column("M", "holds for all runs, so it is an option: give --M")),
     *((f"m1,m2,a,{u}" + ROW, column(u, "could be an uncertainty; name what of, as in 'u(t)'"))
@@ -248,7 +242,6 @@ def test_windows_1252(read: Any) -> None:
     table = "Gruppe;m1 (g);m2 (g);a (m/s²);±\nMüller;200;207;0,12;0,01\n"
     runs = read(table.encode("cp1252"), drop=None)
     assert numbers(runs) == [exactly("0.2", "0.207", "0.12", "0", "0", "0.01")]
-    assert runs.runs[0].labels == {"Gruppe": "Müller"}
     assert runs.remarks == [
         f"read as: {PARTED}, 'm1 (g)' as m1 in g, 'm2 (g)' as m2 in g,"
         " 'a (m/s²)' as a in m/s², '±' as u(a), text in Windows-1252."
@@ -314,7 +307,6 @@ def test_columns_are_as_a_file_of_them(read: Any) -> None:
 def test_rows_left_out_are_marked() -> None:
     runs = read_runs(COLUMNS, drop=DROP, without=[2])
     assert [(run.rows, run.left_out) for run in runs.runs] == [((1,), False), ((2,), True)]
-    assert runs.runs[0].cells == ("row 1, t1", "row 1, t2")
     with pytest.raises(SceneError, match="without '3' is no row; there are 1 to 2"):
         read_runs(COLUMNS, drop=DROP, without=[3])
 

@@ -6,7 +6,7 @@ import typer
 
 from ..laboratory.published import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..model.quantities import divided, read_names
-from ..model.scene import INPUTS, read_digits, read_input, read_whole
+from ..model.scene import INPUTS, read_input, read_whole
 from ..output.text import Target, say, show
 from .options import COULD_NOT, DONE, Bare, FigureFile, Labels, check_figure, option, scene_option, takes
 from .options import RESULTS as FORMS
@@ -38,16 +38,6 @@ Only = Annotated[
         "Output", metavar="NAME", words=lambda: RESULTS, help="Print only this result; repeatable, or a,b."
     ),
 ]
-FitDigits = Annotated[
-    str | None,
-    option(
-        "Output",
-        "--digits",
-        metavar="N",
-        help="Significant digits, 17 at most; if not given, those that uncertainties leave, else of doubles.",
-    ),
-]
-
 Column = Annotated[
     list[str] | None,
     option(
@@ -95,14 +85,12 @@ def fit(
     column: Column = None,
     label: Labels = None,
     only: Only = None,
-    digits: FitDigits = None,
     figure: FigureFile = None,
     bare: Bare = False,
 ) -> int:
     options = {"M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "g": g}
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
     out = [read_whole("without", word, 1, 10**9) for word in divided(without or [])]
-    precision = read_digits(digits)
     inputs = {name: read_input(name, options.get(name)) for name in INPUTS}
     height = read_input("drop", drop) if drop is not None else None
     check_figure(figure, target.force)
@@ -114,6 +102,6 @@ def fit(
         from ..laboratory.fit_figure import save
 
         save(best, bare, figure, target.force)
-    forms = forms_of(best, names, precision)
+    forms = forms_of(best, names)
     say(*show(forms, target))
     return COULD_NOT if "" in forms.bare else DONE

@@ -48,7 +48,7 @@ def fit(
 
     Returns:
         `Fit`: values by name in SI units, their standard uncertainties and intervals of 95 %, the runs,
-        and ``notes``, which also name what is odd. As text, the table and the notes.
+        and ``notes``, which also name what is odd. As text, a line a result, and the notes.
 
     Raises:
         SceneError: A parameter is not valid (a ValueError).

@@ -1,17 +1,16 @@
 """A fit as tables with sentences, JSON and CSV."""
 
 from collections.abc import Collection, Mapping, Sequence
-from fractions import Fraction
 from typing import Any
 
-from ..model.digits import DOUBLE_DIGITS, text, to_digits
+from ..model.digits import text
 from ..model.scene import UNMEASURED, parameter_of
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Forms, cell, inputs_in_words
 from .judgement import Fitted
-from .published import COLUMNS, QUANTITIES, Fit, cut, few, rows_of, shown
+from .published import QUANTITIES, Fit, cut, equation, few, published
 from .runs import TAKEN
-from .sentences import head, notes, odd_cells
+from .sentences import head, notes
 
 NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
 WITHOUT = {
@@ -23,15 +22,13 @@ WITHOUT = {
 }
 
 
-def forms_of(fit: Fitted, only: Sequence[str], digits: int | None) -> Forms:
+def forms_of(fit: Fitted, only: Sequence[str]) -> Forms:
     """A fit in the forms in which it may be asked for; ``only`` names results."""
-    digits = digits and min(digits, DOUBLE_DIGITS)
-    record: dict[str, Any] = _rounded(results_of(fit)._asdict(), digits)
+    record: dict[str, Any] = results_of(fit)._asdict()
     said, above = notes(fit), head(fit)
-    odd = odd_cells(fit)
-    if odd and not any("," in word for word in odd):  # whole rows
-        rows = ",".join(word.removeprefix("row ") for word in odd)
-        above.append(f"--without {rows} leaves {'them' if odd[1:] else 'it'} out.")
+    if fit.without:
+        rows = [str(row) for i in fit.odd for row in fit.used[i].rows]
+        above.append(f"--without {','.join(rows)} leaves {'them' if rows[1:] else 'it'} out.")
 
     def json() -> Any:
         if only:
@@ -43,28 +40,18 @@ def forms_of(fit: Fitted, only: Sequence[str], digits: int | None) -> Forms:
 
     def beside() -> Sequence[str]:
         """The sentences that CSV and bare values have no place for."""
-        results = fit.whole.results.items()
-        values = {x: f"{x} = {shown(*one[:2])} {QUANTITIES[x].unit}" for x, one in results}
+        values = {x: equation(x, *one[:2]) for x, one in fit.whole.results.items()}
         if not only:
             return [*above, *values.values(), *said]
         absent = (f"{x}: {WITHOUT.get(x, NOT_FITTED)}." for x in only if record[x] is None)
         return [*(values[x] for x in only if x in values), *absent, *above[1:]]
 
     def page() -> None:
-        _print_page(fit, record["runs"], above, said, digits)
+        _print_page(fit, record["runs"], above, said)
 
     records = json if only else None
     values = [cell(record[name]) for name in only]
     return Forms(json, lambda: [records()] if records else record["runs"], page, beside, values)
-
-
-def _rounded(value: Any, digits: int | None) -> Any:
-    """Results rounded to the digits asked for, in lists and mappings too; inputs stay as they are."""
-    if isinstance(value, dict):
-        return {name: one if name in TAKEN else _rounded(one, digits) for name, one in value.items()}
-    if isinstance(value, list):
-        return [_rounded(one, digits) for one in value]
-    return to_digits(digits)(Fraction(value)) if isinstance(value, float) and digits else value
 
 
 def results_of(fit: Fitted) -> Fit:
@@ -95,7 +82,6 @@ def _lines(fit: Fitted) -> list[dict[str, Any]]:
         lines.append(
             {
                 "rows": " ".join(map(str, run.rows)),
-                **run.labels,
                 "m1": float(run.m1.value),
                 "m2": float(run.m2.value),
                 **({} if run.drop is None else {"drop": float(run.drop.value)}),
@@ -109,20 +95,23 @@ def _lines(fit: Fitted) -> list[dict[str, Any]]:
 
 
 def _print_page(
-    fit: Fitted,
-    lines: Sequence[Mapping[str, Any]],
-    above: Sequence[str],
-    said: Sequence[str],
-    digits: int | None,
+    fit: Fitted, lines: Sequence[Mapping[str, Any]], above: Sequence[str], said: Sequence[str]
 ) -> None:
     """The conditions, the results, the runs, and what there is to say."""
     page = Page()
     page.say(", ".join(conditions(fit)))
     page.say(*above, style="bold")
     if fit.whole.results:
-        columns = zip(*rows_of(fit.whole.results, digits), strict=True)
-        _print_table(page, dict(zip(COLUMNS, columns, strict=True)), ("Quantity", "Unit", "Symbol"))
-    _print_table(page, _columns(fit, lines), fit.runs.labels)
+        written = {x: published(*one) for x, one in fit.whole.results.items()}
+        table = {
+            "Quantity": list(written),
+            "Value": [value for value, _ in written.values()],
+            "Unit": [QUANTITIES[x].unit for x in written],
+            "Symbol": [QUANTITIES[x].symbol for x in written],
+            "95 % interval": [ends for _, ends in written.values()],
+        }
+        _print_table(page, table, ("Quantity", "Unit", "Symbol"))
+    _print_table(page, _columns(fit, lines), ())
     u = "u is the standard uncertainty of a run, by all that varies from run to run"
     if (pair := fit.whole.correlation) is not None:
         u += f"; correlation of {pair[0]} and {pair[1]}: {few(pair[2], 2)}"
@@ -143,7 +132,6 @@ def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, Seque
 
     return {
         "row": [line["rows"].replace(" ", ",") + " !" * (line["rows"] in odd) for line in lines],
-        **{name: [line[name] for line in lines] for name in fit.runs.labels},
         **{f"{name} (kg)": [text(line[name]) for line in lines] for name in ("m1", "m2")},
         f"{kind} ({unit})": column(kind),
         f"expected ({unit})": column("expected"),

@@ -100,23 +100,23 @@ class Outcome(NamedTuple):
 class Fitted(NamedTuple):
     """The fit of the runs that can be used, what is odd about them, and the fit without that.
 
-    ``repeats`` are single measurements far from their siblings, ``rows`` runs far from what the others say:
-    indices, with the distance in standard uncertainties. ``without`` is None where nothing is odd, or where
-    too few runs are left.
+    ``repeats`` are runs with a measurement far from its siblings, which is given, ``rows`` runs far from what
+    the others say: by their indices, with the distance in standard uncertainties. ``without`` is None where
+    nothing is odd, or where too few runs are left.
     """
 
     runs: Runs
     used: Sequence[Run]
     given: Conditions
     whole: Outcome
-    repeats: Mapping[tuple[int, int], float]
+    repeats: Mapping[int, tuple[float, float]]
     rows: Mapping[int, float]
     without: Outcome | None
 
     @property
     def odd(self) -> list[int]:
         """The runs that have anything odd."""
-        return sorted({*(i for i, _ in self.repeats), *self.rows})
+        return sorted({*self.repeats, *self.rows})
 
 
 def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
@@ -166,11 +166,9 @@ def fitted(runs: Runs, given: Conditions, find: Sequence[str]) -> Fitted:
         raise Unreadable(f"no run can be used: in {runs.runs[0].name}, {why}")
     names = find or [x for x in USUAL if x not in given.values]
     whole = outcome(runs, used, given, names)
-    repeats, without, left = _odd_repeats(used), None, dict[int, Run]()
-    for i, run in enumerate(used):
-        kept = tuple(one for k, one in enumerate(run.measured) if (i, k) not in repeats)
-        left |= {i: run._replace(measured=kept)} if kept else {}
-    rows = _odd_rows(runs, left, whole.best)
+    repeats, without = _odd_repeats(used), None
+    left = {i: run for i, run in enumerate(used) if i not in repeats}
+    rows = _odd_rows(runs, left, whole.best) if left else {}
     if repeats or rows:
         with suppress(Alike, TooFew):
             without = outcome(runs, [run for i, run in left.items() if i not in rows], given, names)
@@ -264,15 +262,13 @@ def common_error(fit: Fitted) -> tuple[str, dict[str, float]]:
     return worst
 
 
-def _odd_repeats(used: Sequence[Run]) -> dict[tuple[int, int], float]:
-    """The repeats that are far from their siblings, by the indices of run and repeat."""
+def _odd_repeats(used: Sequence[Run]) -> dict[int, tuple[float, float]]:
+    """By the indices of runs, the repeat that is furthest from its siblings, if it is far, and how far."""
     values, u, index = measurements(used)
     strays = stray_repeats(values, np.where(u > 0, u, 1), index, CHANCE) if len(index) > len(used) else {}
-    first = np.searchsorted(index, index)
-    repeats = {(int(index[i]), int(i - first[i])): away for i, away in strays.items()}
-    for (i, k), away in list(repeats.items()):
-        if len(used[i].measured) == 2:  # which of them it is, nobody knows
-            repeats[i, 1 - k] = -away
+    repeats = dict[int, tuple[float, float]]()
+    for i, away in strays.items():
+        repeats.setdefault(int(index[i]), (float(values[i]), away))
     return repeats
 
 

@@ -5,7 +5,6 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from ..model.digits import DOUBLE_DIGITS, text, tidy, to_digits, to_place, with_one_power
-from ..output.text import wrapped
 
 
 class Quantity(NamedTuple):
@@ -41,9 +40,6 @@ SMALL = 1e-3
 """A small unit in units."""
 MOST_DIGITS = 11
 """Digits that doubles leave right."""
-WIDTH = 80
-"""Characters of a line of text, at most."""
-COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "95 % interval")
 
 
 class Result(NamedTuple):
@@ -60,30 +56,17 @@ class Result(NamedTuple):
         return (low > 0) - (high < 0)
 
 
-def rows_of(results: Mapping[str, Result], digits: int | None = None) -> list[tuple[str, ...]]:
-    """A table of results, with `COLUMNS`, a row a quantity."""
-    written = {name: published(*one, digits) for name, one in results.items()}
-    return [
-        (name, value, QUANTITIES[name].unit, QUANTITIES[name].symbol, ends)
-        for name, (value, ends) in written.items()
-    ]
-
-
-def published(
-    value: float, uncertainty: float, interval: tuple[float, float] = (0, 0), digits: int | None = None
-) -> tuple[str, str]:
+def published(value: float, uncertainty: float, interval: Sequence[float] = (0, 0)) -> tuple[str, str]:
     """A value ± its uncertainty, and its interval: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.
 
-    All are cut at the second digit of the uncertainty, or at as many ``digits`` of the value as leave the
-    uncertainty one. A value without uncertainty has six digits, and no interval. No number has more digits
-    than a double.
+    All are cut at the second digit of the uncertainty. A value without uncertainty has six digits, and no
+    interval. No number has more digits than a double.
     """
     largest = max(map(abs, (value, uncertainty, *interval)))
-    place = max(_place(value, uncertainty, digits), _place(largest, largest, DOUBLE_DIGITS))
+    place = max(_place(value, uncertainty), _place(largest, largest) - (DOUBLE_DIGITS - 2))
     numbers = [to_place(place)(Fraction(x)) for x in (value, uncertainty, *interval)]
     if not numbers[1]:
-        most = MOST_DIGITS if uncertainty else 6
-        return text(to_digits(digits or most)(Fraction(value))), ""
+        return text(to_digits(MOST_DIGITS if uncertainty else 6)(Fraction(value))), ""
     power = max(number.adjusted() for number in numbers[:2] if number)
     both = with_one_power("{:f} ± {:f}", numbers[:2], power)
     return both, with_one_power("{:f} to {:f}", numbers[2:], power)
@@ -94,6 +77,11 @@ def shown(value: float, uncertainty: float | None) -> str:
     return published(value, uncertainty or 0)[0]
 
 
+def equation(name: str, value: float, uncertainty: float) -> str:
+    """A result in a line."""
+    return f"{name} = {shown(value, uncertainty)} {QUANTITIES[name].unit}"
+
+
 def cut(value: float, uncertainty: float | None) -> str:
     """A value cut at the second digit of an uncertainty; to six digits if there is none."""
     if not uncertainty:
@@ -101,11 +89,9 @@ def cut(value: float, uncertainty: float | None) -> str:
     return f"{to_place(_place(value, uncertainty))(Fraction(value)):f}"
 
 
-def _place(value: float, uncertainty: float, digits: int | None = None) -> int:
+def _place(value: float, uncertainty: float) -> int:
     """The place of the last digit, as a power of ten."""
     first, of_u = (to_digits(2)(Fraction(x)).adjusted() if x else -(10**3) for x in (value, uncertainty))
-    if digits is not None and value:
-        return min(first - digits + 1, of_u)
     return max(of_u - 1, first - MOST_DIGITS + 1)
 
 
@@ -122,7 +108,7 @@ class Fit(NamedTuple):
     the pulley's shape, ``moment_of_inertia`` (kg m²) its radius. ``uncertainty`` and ``interval`` (95 %) are
     those of these values, by name; ``between_runs`` (kg) is the standard deviation between runs that their
     own uncertainties do not explain, as a mass; ``chi2`` is χ² by these uncertainties, ``dof`` the number of
-    degrees of freedom. ``runs`` are the rows of ``--csv``. As text it is the table, with the notes below.
+    degrees of freedom. ``runs`` are the rows of ``--csv``. As text it is a line a result, and the notes.
     """
 
     rim_mass: float | None
@@ -140,9 +126,8 @@ class Fit(NamedTuple):
     notes: Sequence[str]
 
     def __str__(self) -> str:
-        ends = {name: (low, high) for name, (low, high) in self.interval.items()}
-        values = {x: Result(getattr(self, x), u, ends[x]) for x, u in self.uncertainty.items()}
-        table = [COLUMNS, *rows_of(values)] if values else []
-        widths = [max(map(len, column)) for column in zip(*table, strict=True)]
-        lines = ["  ".join(map(str.ljust, row, widths)).rstrip() for row in table]
-        return "\n".join([*lines, *(line for note in self.notes for line in wrapped(note, WIDTH))])
+        lines = [
+            f"{equation(x, getattr(self, x), u)}, 95 %: {published(getattr(self, x), u, self.interval[x])[1]}"
+            for x, u in self.uncertainty.items()
+        ]
+        return "\n".join([*lines, *self.notes])

@@ -38,8 +38,6 @@ NEEDED = {
     "m2": "m2; name it, as --column m2='Masse 2 (g)'",
     "a time": "of times or accelerations; name it, as --column t='Zeit in s'",
 }
-RESULTS = ("rows", "u", "expected", "residual")
-"""The other columns of results, which no label may be called."""
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
 MISSING = ("nan", "None", "<NA>", "NaT")
 """How Python writes a missing value."""
@@ -50,17 +48,15 @@ BEYOND = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]
 class Run(NamedTuple):
     """Masses, the height of fall if there is one, and what was measured, once or more often.
 
-    ``rows`` are the numbers of its rows, which differ only in what was measured and in ``labels``. ``cells``
-    says where each measurement stands, ``left_out`` that the user leaves the run out of the fit.
+    ``rows`` are the numbers of its rows, which differ only in what was measured; ``left_out`` says that the
+    user leaves the run out of the fit.
     """
 
     rows: tuple[int, ...]
-    labels: Mapping[str, str]
     m1: Input
     m2: Input
     drop: Input | None
     measured: tuple[Input, ...]
-    cells: tuple[str, ...] = ()
     left_out: bool = False
 
     @property
@@ -85,7 +81,6 @@ class Runs(NamedTuple):
     runs: Sequence[Run]
     one_drop: bool
     signed: bool
-    labels: Sequence[str]
     remarks: Sequence[str]
 
 
@@ -110,19 +105,17 @@ def read_runs(
     headings = [one for one in headings if kind == "time" or one.name != "drop"]
     one_drop = "drop" not in [one.name for one in headings]
     _check_drop(drop, kind, one_drop)
-    others = _others(sheet, headings, labels)
+    unread = _unread(sheet, headings, labels)
     for number in without:
         if not 1 <= number <= len(sheet.rows):
             raise SceneError("without", f"{number}", f"is no row; there are 1 to {len(sheet.rows)}")
     places = [column.at for one in headings for column in (one, one.u) if column]
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
-    unsaid = [x for x, at in others.items() if x not in labels and _has_numbers(sheet, at)]
-    also = [*(f"{in_quotes(x)} as a label" for x in unsaid), *sheet.remarks]
+    also = [*(f"{in_quotes(column)} as a label" for column in unread), *sheet.remarks]
     remarks = read_as(headings, sheet.separator, usual * bool(sheet.separator), comma, also)
     runs = []
     for run in _joined([_run(n, row, headings, comma, drop) for n, row in enumerate(sheet.rows, 1)], without):
-        at = {x: sheet.rows[run.rows[0] - 1][place] for x, place in others.items()}
-        runs += [run._replace(labels=at)] if run.measured else []
+        runs += [run] if run.measured else []
         remarks += [] if run.measured else [f"Row {run.rows[0]} has no {kind}: it is no run."]
     if not runs:
         raise Unreadable("it has no runs")
@@ -131,7 +124,7 @@ def read_runs(
         remarks.append(
             "accelerations have no sign here: none is negative, though m1 is the heavier at times."
         )
-    return Runs(kind, runs, one_drop, signed, list(others), remarks)
+    return Runs(kind, runs, one_drop, signed, remarks)
 
 
 def _sheet_of(source: Any, usual: str, named: Mapping[str, str]) -> Sheet:
@@ -189,25 +182,24 @@ def _kind_of(names: set[str]) -> Kind:
     return "a" if "a" in names else "time"
 
 
-def _others(sheet: Sheet, headings: Sequence[Heading], labels: Collection[str]) -> dict[str, int]:
-    """The places of the columns that hold no quantity, by their headings. Raises Unreadable."""
+def _unread(sheet: Sheet, headings: Sequence[Heading], labels: Collection[str]) -> list[str]:
+    """The columns of numbers that hold no quantity, and that the user does not name as such.
+
+    Raises Unreadable for those that could hold one.
+    """
     taken = {column.at for one in headings for column in (one, one.u) if column}
-    others: dict[str, int] = {}
+    unread: list[str] = []
     for at, column in enumerate(sheet.columns):
-        if at in taken or not column.strip():
+        if at in taken or not column.strip() or column in labels:
             continue
-        if column in others:
-            raise Unreadable(f"column {in_quotes(column)} is there {sheet.columns.count(column)} times")
-        if column not in labels and column in INPUTS:
-            raise refused(
-                column, f"holds for all runs, so it is an option: give --{column.replace('_', '-')}"
-            )
-        if column not in labels and LIKE_UNCERTAINTY.search(column) and _has_numbers(sheet, at):
-            raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
-        if column in RESULTS:
-            raise Unreadable(f"column {in_quotes(column)} is called as a result is; rename it")
-        others[column] = at
-    return others
+        if column in INPUTS:
+            option = column.replace("_", "-")
+            raise refused(column, f"holds for all runs, so it is an option: give --{option}")
+        if _has_numbers(sheet, at):
+            if LIKE_UNCERTAINTY.search(column):
+                raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
+            unread.append(column)
+    return unread
 
 
 def _check_drop(drop: Input | None, kind: Kind, one_drop: bool) -> None:
@@ -235,8 +227,7 @@ def _joined(rows: Sequence[Run], without: Collection[int]) -> list[Run]:
         run = run._replace(left_out=run.rows[0] in without)
         key = (run.m1[:2], run.m2[:2], run.drop and run.drop[:2], run.left_out, run.rows[: not run.measured])
         if first := alike.get(key):
-            both = {x: getattr(first, x) + getattr(run, x) for x in ("rows", "measured", "cells")}
-            run = first._replace(**both)
+            run = first._replace(rows=first.rows + run.rows, measured=first.measured + run.measured)
         alike[key] = run
     return [*alike.values()]
 
@@ -245,14 +236,12 @@ def _run(
     number: int, row: Sequence[str], headings: Sequence[Heading], comma: bool, drop: Input | None
 ) -> Run:
     """The run of one row. Raises Unreadable."""
-    given, measured, cells = dict[str, Input](), list[Input](), list[str]()
-    several = sum(heading.name in MEASURED for heading in headings) > 1
+    given, measured = dict[str, Input](), list[Input]()
     try:
         for heading in headings:
             value = _read_cell(heading, row, comma)
             if value and heading.name in MEASURED:
                 measured.append(value)
-                cells.append(f"row {number}" + f", {heading.column}" * several)
             elif value:
                 given[heading.name] = value
             elif heading.name not in MEASURED:
@@ -260,7 +249,7 @@ def _run(
     except SceneError as error:
         raise Unreadable(f"row {number}: {error}") from None
     m1, m2, drop = given["m1"], given["m2"], given.get("drop", drop)
-    return Run((number,), {}, m1, m2, drop, tuple(measured), tuple(cells))
+    return Run((number,), m1, m2, drop, tuple(measured))
 
 
 def _read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None:

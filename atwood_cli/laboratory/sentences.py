@@ -1,6 +1,6 @@
 """A fit in words: what the runs determine, what is odd about them, and what to vary."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from math import isfinite
 
 from scipy.special import chdtrc, fdtrc
@@ -9,7 +9,7 @@ from ..model.digits import text
 from ..model.scene import parameter_of
 from ..model.units import counted
 from .judgement import Fitted, beyond, common_error, to_vary, unusable
-from .published import QUANTITIES, SMALL, USUAL, Result, few, shown
+from .published import QUANTITIES, SMALL, USUAL, equation, few
 from .runs import MEASURED
 
 MUCH = 0.95
@@ -41,44 +41,30 @@ def verdict(fit: Fitted) -> str:
     return " ".join(said)
 
 
-def odd_cells(fit: Fitted) -> list[str]:
-    """The cells and rows that are odd: row 3, or row 3, time 2 where a row has several measurements."""
-    rows = sorted(row for i in fit.rows for row in fit.used[i].rows)
-    return [*(fit.used[i].cells[k] for i, k in fit.repeats), *(f"row {row}" for row in rows)]
-
-
 def _oddities(fit: Fitted) -> list[str]:
     """What is odd about the runs, and the result without it; none if the runs are sound."""
     if not fit.odd:
         return []
-    unit, names = parameter_of(fit.runs.kind).unit, [_capital(run.name) for run in fit.used]
-    repeats = []
-    for (i, k), size in fit.repeats.items():
-        cell = f"{_capital(fit.used[i].cells[k])} ({text(float(fit.used[i].measured[k].value))} {unit})"
-        repeats.append(f"{cell} is far from its siblings: {_far(size)} standard deviations.")
+    unit, names = parameter_of(fit.runs.kind).unit, [run.name for run in fit.used]
+    repeats = (
+        f"In {names[i]}, {text(value)} {unit} is far from its siblings: {_far(size)} standard deviations."
+        for i, (value, size) in fit.repeats.items()
+    )
     _, faster = beyond(fit.whole.best)
     impossible = "is faster than with neither pulley nor friction"
     rows = (
-        f"{names[i]} {impossible if faster[i] > 0 else 'stands out'}: {_far(size)} standard uncertainties"
-        " from what the others say."
+        f"{_capital(names[i])} {impossible if faster[i] > 0 else 'stands out'}:"
+        f" {_far(size)} standard uncertainties from what the others say."
         for i, size in fit.rows.items()
     )
     said = [*_some(repeats, "are, too"), *_some(rows, "stand out, too")]
-    cells = odd_cells(fit)
-    what = f"{', '.join(cells[:-1])}{' and ' * (len(cells) > 1)}{cells[-1]}"
-    what = "all that is odd" if len(cells) > MOST_NAMED else what
+    odd = [names[i] for i in fit.odd]
+    what = "all that is odd" if len(odd) > MOST_NAMED else " and ".join(odd)
     if fit.without is None:
         return [*said, f"Without {what} too few runs are left to fit."]
-    empty = "; to leave a measurement out, empty its cell" * any("," in cell for cell in cells)
-    end = f"The fit includes {'them' if cells[1:] else 'it'}{empty}."
-    return [*said, f"Without {what}: {in_words(fit.without.results) or 'no result'}. {end}"]
-
-
-def in_words(results: Mapping[str, Result]) -> str:
-    """Results in a line."""
-    return ", ".join(
-        f"{x.replace('_', ' ')} = {shown(*one[:2])} {QUANTITIES[x].unit}" for x, one in results.items()
-    )
+    results = ", ".join(equation(x, *one[:2]) for x, one in fit.without.results.items())
+    end = f"The fit includes {'them' if odd[1:] else 'it'}."
+    return [*said, f"Without {what}: {results or 'no result'}. {end}"]
 
 
 def notes(fit: Fitted) -> list[str]:
