@@ -142,3 +142,9 @@ def test_only_prints_its_keys_alone(atwood: Atwood) -> None:
         ("solve --m1 1.0(1) --m2 3", ["tension_1", "uncertainty"]),
     ):
         assert list(json.loads(atwood(*words.split(), "--only", "tension_1", "--json").out)) == keys
+
+
+def test_what_no_double_holds_is_text_in_python() -> None:
+    """JSON has a number for it, which `json` would read as infinite."""
+    scene = solve(m1=1, m2=3, M="1e400").to_dict()["scene"]
+    assert (scene["M"], scene["m2"]) == ("1e400", 3.0)

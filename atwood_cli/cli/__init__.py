@@ -146,19 +146,22 @@ def run(arguments: list[str] | None = None) -> int:
             return COULD_NOT
         drop(sys.stdout)  # who reads it may have stopped, and writing would wait for ever
         raise KeyboardInterrupt from None
-    except ModuleNotFoundError as error:
-        package = str(error.name).partition(".")[0]
-        if package not in EXTRAS:
-            raise
-        say(f"this needs {package}; install it with: pip install 'atwood-cli[{EXTRAS[package]}]'")
-        return COULD_NOT
-    except OSError as error:
-        known = error.errno is None  # a sentence of ours
-        name = shortened(str(error.filename or "the output"), LONGEST_NAME)
-        say(str(error) if known else f"cannot write {name}: {error.strerror}")
-        return COULD_NOT
-    except ArithmeticError as error:
-        say(str(error))
+    except (ModuleNotFoundError, OSError, ArithmeticError) as error:
+        say(_why(error))
         return COULD_NOT
     finally:
         finish()
+
+
+def _why(error: Exception) -> str:
+    """Why something could not be done, in a sentence."""
+    if isinstance(error, ModuleNotFoundError):
+        package = str(error.name).partition(".")[0]
+        if package not in EXTRAS:
+            raise error
+        return f"this needs {package}; install it with: pip install 'atwood-cli[{EXTRAS[package]}]'"
+    if isinstance(error, OSError) and error.errno is not None:  # without a number, it is a sentence of ours
+        return (
+            f"cannot write {shortened(str(error.filename or 'the output'), LONGEST_NAME)}: {error.strerror}"
+        )
+    return str(error)

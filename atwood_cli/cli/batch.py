@@ -102,15 +102,17 @@ def batch(
         remarks = run_batch(job, watched, tally)
     except KeyboardInterrupt:
         if not is_stream(output) and _stamp(output) == before:
-            is_left = "stays as it was" if before else "was not written"
-            say(f"stopped after {counted(tally.rows, 'row')}; {shortened(output, LONGEST_NAME)} {is_left}")
+            _say_stopped(tally.rows, output, "stays as it was" if before else "was not written")
         raise
     if not only:
         tally.reasons.clear()  # a reason for what nobody asked for is noise
     say(*remarks, *tally.lines())
-    failed = tally.errors and not allow_errors
     missing = only and tally.missing and tally.rows > tally.errors
-    return COULD_NOT if failed or missing else DONE
+    return COULD_NOT if missing or (tally.errors and not allow_errors) else DONE
+
+
+def _say_stopped(rows: int, output: str, is_left: str) -> None:
+    say(f"stopped after {counted(rows, 'row')}; {shortened(output, LONGEST_NAME)} {is_left}")
 
 
 def _stamp(path: str) -> tuple[int, int] | None:

@@ -105,10 +105,19 @@ class Derivation:
         self.digits = answers.digits or SHOWN_DIGITS
         self.shown: set[str] = set()
         self.explained: set[str] = set()
+        self.light, self.heavy = ("2", "1") if self.case.sign < 0 else ("1", "2")
+        self.computed = self._symbols_of_the_machine()
+        values = self._values()
+        self.inputs = [Symbol(name, value) for name, value in values.items() if value is not None]
+        motion = self.case.motion
+        self.found = {"c", "M"} if motion.finds == "M" else {motion.finds}
+        if motion.time is not None:
+            self.found.add(self.computed["magnitude"])
+
+    def _values(self) -> dict[str, Fraction | None]:
+        """What is given or found, by the symbols of equations."""
         case, scene, motion = self.case, self.scene, self.case.motion
-        self.light, self.heavy = ("2", "1") if case.sign < 0 else ("1", "2")
-        magnitude = "a" if case.sign >= 0 else "|a|"
-        values = {
+        return {
             "m1": scene.m1,
             "m2": scene.m2,
             "M": case.pulley_mass,
@@ -121,18 +130,18 @@ class Derivation:
             "R": scene.R,
             "f_axle": case.axle_friction if case.rubs else None,
             "b": case.axle_mass if case.rubs else None,
-            magnitude: case.measured_acceleration if motion.finds else None,
+            self.computed["magnitude"]: case.measured_acceleration if motion.finds else None,
             "s": motion.drop,
             "t": motion.time,
             "τ_axle": scene.axle.number if scene.axle and scene.axle.unit == "N m" else None,
         }
-        self.inputs = [Symbol(name, value) for name, value in values.items() if value is not None]
-        self.found = {"c", "M"} if motion.finds == "M" else {motion.finds}
-        if motion.time is not None:
-            self.found.add(magnitude)
-        self.computed = NAMED | {
+
+    def _symbols_of_the_machine(self) -> dict[str, str]:
+        """The symbols of what the model computes in this scene."""
+        case, scene = self.case, self.scene
+        symbols = NAMED | {
             "phi": "π" if scene.wrap.is_half_turn else "φ",
-            "magnitude": magnitude,
+            "magnitude": "a" if case.sign >= 0 else "|a|",
             "light_tension": f"T{self.light}",
             "heavy_tension": f"T{self.heavy}",
             "difference": f"T{self.heavy} - T{self.light}",
@@ -140,12 +149,13 @@ class Derivation:
             "rim_acceleration": "a_rim" if case.regime == "slip" else "a",
         }
         if case.regime != "verge":  # there it is the coefficient given
-            self.computed["mu_verge"] = "μ*"
+            symbols["mu_verge"] = "μ*"
         if case.slide_measured:
-            self.computed |= {"limiting_k1": "x_kin", "mu_k": "μ_k"}
+            symbols |= {"limiting_k1": "x_kin", "mu_k": "μ_k"}
         elif case.regime == "slip" and scene.mu_k is not None:
             kinetic = {"limiting_k1": "k_kin - 1", "limiting_transfer": "z_kin", "limiting_drive": "d_kin"}
-            self.computed |= kinetic
+            symbols |= kinetic
+        return symbols
 
     def symbol(self, name: str) -> str:
         """What equations write for a quantity."""

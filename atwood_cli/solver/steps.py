@@ -109,6 +109,12 @@ def _pulley(derivation: Derivation) -> Iterator[Part]:
             " fixed, too, and with that the torque is the same."
         )
     yield from _turning(derivation)
+    yield from _with_the_rim(derivation)
+
+
+def _with_the_rim(derivation: Derivation) -> Iterator[Part]:
+    """How the pulley goes along with the masses, (3), and its inertia as a mass at the rim."""
+    case, difference = derivation.case, derivation.symbol("difference")
     if case.axle_holds and not case.locked:
         yield "The axle holds the difference of the masses, which is no more than `b`: `α = 0`."
     elif case.sign == 0:
@@ -266,27 +272,33 @@ def _grip(derivation: Derivation) -> Iterator[Part]:
         if case.regime == "verge" and derivation.answers["critical_pulley_mass"] is not None:
             yield f"Only without mass does it go along: {derivation.say('critical_pulley_mass')}."
     elif case.pulley_known:
-        if case.stands:
-            held = "a locked pulley" if case.locked else "a pulley that the axle holds"
-            have = f"On {held} the tensions of a string that holds are the weights. Their ratio is"
-        elif case.regime == "no-slip":
-            have = f"By {derivation.cite('(4)')} the tensions have the ratio"
-        else:
-            have = f"If the string held, the tensions would by {derivation.cite('(4)')} have the ratio"
-        yield f"{have} `T{h}/T{l}` = `1 + x`, with"
-        yield from derivation.lines("excess")
-        if case.regime == "no-slip":
-            yield "so the ratio is"
-            yield from derivation.lines("tension_ratio")
-            yield from in_the_paper(derivation, "tension_ratio")
-        yield "The least coefficient that allows it is, by (26) for the whole arc,"
-        yield from derivation.lines("mu_verge")
+        yield from _least_grip(derivation)
     else:
         yield from _grip_on_any_pulley(derivation)
     yield verdict(answers)
     if scene.mu and case.pulley_known:
         yield f"There is {derivation.say('safety_factor')} times the friction that is needed."
     yield from kinetic(answers)
+
+
+def _least_grip(derivation: Derivation) -> Iterator[Part]:
+    """The ratio of the tensions of a string that holds, and the least coefficient that allows it."""
+    case, l, h = derivation.case, derivation.light, derivation.heavy
+    if case.stands:
+        held = "a locked pulley" if case.locked else "a pulley that the axle holds"
+        have = f"On {held} the tensions of a string that holds are the weights. Their ratio is"
+    elif case.regime == "no-slip":
+        have = f"By {derivation.cite('(4)')} the tensions have the ratio"
+    else:
+        have = f"If the string held, the tensions would by {derivation.cite('(4)')} have the ratio"
+    yield f"{have} `T{h}/T{l}` = `1 + x`, with"
+    yield from derivation.lines("excess")
+    if case.regime == "no-slip":
+        yield "so the ratio is"
+        yield from derivation.lines("tension_ratio")
+        yield from in_the_paper(derivation, "tension_ratio")
+    yield "The least coefficient that allows it is, by (26) for the whole arc,"
+    yield from derivation.lines("mu_verge")
 
 
 def _grip_on_any_pulley(derivation: Derivation) -> Iterator[Part]:
