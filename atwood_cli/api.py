@@ -178,22 +178,35 @@ def solve(
 ) -> Any:
     """The state of Atwood's machine: m1 and m2 on a rough string over a pulley.
 
-    Masses in kg, R in m, I in kg m², g in m/s², wrap in degrees; text may carry a unit ("250g",
-    "5cm", "9.81m/s2") or name a body or shape (g="moon", inertia="hoop"). What is given decides the model:
-    no M, a massless pulley, or with mu the one that brings the string to the verge of slipping.
-    Defaults: g standard gravity, inertia that of a disk (1/2), wrap 180, mu_k = mu, no friction in the axle.
-    That is ``axle``, in N at the rim; as text it may be a torque ("0.4mNm").
+    What is given decides the model: without M the pulley is massless, or with mu the one that brings the
+    string to the verge of slipping. An input is a number in the unit below, or a text, which may have a unit
+    ("250g", "5cm", "9.81m/s2"), a name (g="moon", inertia="hoop") or a standard uncertainty ("1.000(2)",
+    "1.000±0.002", "(250±1)g").
 
-    ``a``, a measured acceleration, stands in place of M, or beside M of a mass or g, and finds it; of a
-    string that slips, as it must on M="inf", it finds mu_k. ``drop``, a height, gives the time and speed
-    of the fall, and with ``time`` stands for the ``a`` it implies. The solution has what was found.
+    Args:
+        m1, m2: The masses, in kg.
+        M: The pulley's mass, in kg; "inf" locks it.
+        mu, mu_k: The coefficients of static and of kinetic friction; mu_k is mu unless given.
+        g: Gravity, in m/s²; standard gravity unless given.
+        inertia: I/(M R²); 1/2, that of a disk, unless given.
+        I, R: The moment of inertia, in kg m², and the radius, in m.
+        axle: The friction of the axle as a force at the rim, in N, or as text a torque ("0.4mNm"); 0 unless
+            given.
+        wrap: The angle that the string wraps, in degrees; 180 unless given.
+        a: A measured acceleration, in m/s². In place of M it finds M, or beside M a mass or g; of a string
+            that slips, as it must on M="inf", it finds mu_k.
+        drop, time: A height, in m, gives the time and the speed of the fall; with the time, in s, it stands
+            for the ``a`` that they imply.
+        digits: The number of significant digits of Decimals; floats if None.
 
-    Text may carry a standard uncertainty, as "1.000(2)", "1.000±0.002" or "(250±1)g"; the solution's
-    ``uncertainty`` then has those of the quantities by name: half the range over each input's uncertainty,
-    and of all inputs the root of the sum of squares (Kragten, 1994).
+    Returns:
+        `Solution`: the quantities by name, in SI units. A float is the double nearest to the exact value,
+        a Decimal is correctly rounded. Its ``uncertainty`` is half the range over the uncertainty of each
+        input, and of all inputs the root of the sum of squares (Kragten, 1994).
 
-    Floats come back, each the double nearest to the exact value; with ``digits=N`` Decimals, each
-    correctly rounded to N significant digits. Raises SceneError (a ValueError) on bad input.
+    Raises:
+        SceneError: An input is not valid; it names the input, the value and the rule (a ValueError).
+        TypeError: There is no such input.
     """
     inputs = SIGNATURE.bind(m1, m2, **given).arguments  # raises TypeError where there is no such input
     return _solved(*read_answers(inputs, read_digits(digits)).given)

@@ -91,6 +91,16 @@ def test_both_setup_commands_are_there() -> None:
     assert all(command.startswith("python3 -m venv .venv && .venv/bin/pip install") for command in commands)
 
 
+def test_the_workflow_runs_what_the_project_says() -> None:
+    """The oldest and the newest Python of the classifiers, and the first commands of the README."""
+    workflow, project = ((TOP / name).read_text() for name in (".github/workflows/ci.yml", "pyproject.toml"))
+    versions = re.findall(r'Python :: (3[.]\d+)"', project)
+    assert re.search(r"python: \[(.*)\]", workflow)[1] == f'"{versions[0]}", "{versions[-1]}"'  # type: ignore[index]
+    for command in re.findall(r"```(?:sh|powershell)\n(.*pip install [.](?: .*|;.*))\n```", README):
+        assert f"run: {command}\n" in workflow
+    assert workflow.count("run: p") == 2
+
+
 def test_a_query_keeps_rows_that_are_no_scenes() -> None:
     import polars as pl
 

@@ -47,25 +47,36 @@ def solve_arrays(
     accuracy: Accuracy = "certified",
     quantities: Sequence[str] | None = None,
 ) -> dict[str, NDArray[Any]]:
-    """Solve arrays of scenes, broadcast against each other, in doubles.
+    """Solve arrays of scenes in doubles.
 
-    Masses are in kg, g in m/s², I in kg m², R in m, wrap in degrees, and axle in N, as a force at the rim.
-    M = inf locks the pulley. ``inertia`` is 0.5, a disk's, in rows where neither it nor I is given.
+    An input is a number, a sequence, an array or a polars column. All are broadcast against each other. An
+    input is not given in rows where it is masked (`numpy.ma`), None, or a null of polars. A NaN is an error
+    of its row.
 
-    An input is not given in rows where it is masked (`numpy.ma`), None, or a null in a polars column. A NaN
-    is an error of its row.
+    Args:
+        m1, m2: The masses, in kg.
+        M: The pulley's mass, in kg; inf locks it.
+        mu, mu_k: The coefficients of static and of kinetic friction.
+        g: Gravity, in m/s².
+        inertia: I/(M R²); 0.5, a disk's, in rows where neither it nor I is given.
+        I, R: The moment of inertia, in kg m², and the radius, in m.
+        wrap: The angle that the string wraps, in degrees.
+        axle: The friction of the axle as a force at the rim, in N.
+        accuracy: "certified" (every regime right, every value proven within 2e-14 of itself), whose last
+            places may depend on NumPy's build and on the other rows; or "exact" (the nearest double), which
+            is the same everywhere.
+        quantities: The names or symbols of quantities, as "acceleration" or "a"; if None, the names in
+            `quantities.STANDARD`.
 
-    ``accuracy`` is "certified" (every regime right, and every value proven within 2e-14 of itself) or "exact"
-    (the nearest double). Exact results are the same everywhere. The last places of certified ones may depend
-    on NumPy's build and on the other rows.
+    Returns:
+        Arrays by the names of the quantities, in SI units, of the common shape of the inputs: NaN where a
+        value is undetermined, ±inf where it is beyond the doubles. ``regime`` is an int8 index into
+        `REGIMES`, -1 in an invalid row. There is always ``status``, an int8 index into `STATUSES`, 0 in a
+        valid row. An invalid row never stops the others.
 
-    Returns arrays by name, of the inputs' common shape. There is one for each of the ``quantities``, or of
-    `quantities.STANDARD` if None: NaN where undetermined, ±inf beyond the doubles. A quantity may be asked
-    for by its symbol, as "a" or "T1"; its array has its name, "acceleration". ``regime`` is an int8 index
-    into `REGIMES`, -1 in an invalid row. There is always ``status``, an int8 index into `STATUSES`, 0 in a
-    valid row. An invalid row never stops the others. Raises SceneError for a missing mass, for what is no
-    real number or beyond the range of doubles, for an unknown accuracy or quantity, and for shapes that do
-    not broadcast.
+    Raises:
+        SceneError: A mass is missing, an input is no real number or beyond the range of doubles, an accuracy
+            or quantity is not known, or shapes do not broadcast (a ValueError).
     """
     values = (m1, m2, M, mu, mu_k, g, inertia, I, R, wrap, axle)
     return solve_and_count(dict(zip(INPUTS, values, strict=True)), accuracy, quantities)[0]

@@ -28,13 +28,20 @@ GROUP_ROWS, GROUP_CELLS = 1 << 16, 1 << 20
 def solve_table(table: Table, quantities: Sequence[str] | None = None, accuracy: Accuracy = "exact") -> Table:
     """A table of scenes with results appended, and the error of each bad row: what `atwood batch` makes.
 
-    ``table`` is a data frame of polars, eager or lazy, and so is what comes back. Its columns m1, m2, M, mu
-    and so on are inputs, in SI units or in those of the heading, as "m1 (g)"; other columns stay as they are.
-    An input is not given where a value is missing. A NaN is an error of its row, and so is a text that is no
-    number.
+    Args:
+        table: A data frame of polars, eager or lazy, a row a scene. Its columns m1, m2, M, mu and so on are
+            inputs, in SI units or in those of the heading, as "m1 (g)"; other columns stay as they are. An
+            input is not given where a value is missing. A NaN is an error of its row, and so is a text that
+            is no number.
+        quantities, accuracy: As `solve_arrays` takes them.
 
-    For ``quantities`` and ``accuracy`` see `solve_arrays`. Raises SceneError for one that is not known,
-    ValueError for a table that lacks a mass or has a column that could be meant for an input.
+    Returns:
+        The table, eager or lazy as it was, with a column for each of the quantities, in SI units, and
+        ``error``, the sentence on a bad row.
+
+    Raises:
+        SceneError: A quantity or an accuracy is not known (a ValueError).
+        ValueError: The table lacks a mass, or has a column that could be meant for an input.
     """
     import polars as pl
 
