@@ -1,7 +1,12 @@
-"""The outputs that are kept in files, and what prints each: python -m tests.regenerate brings them up to date."""
+"""The outputs that are kept in files, and what prints each: python -m tests.regenerate brings them up to date.
+
+`python -m tests.regenerate measured` measures the table and the picture of `examples/tradeoff.md` anew, in minutes.
+"""
 
 import re
 import shlex
+import subprocess
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import chdir
 from functools import partial
@@ -139,8 +144,23 @@ def essence(text: str) -> object:
     return text.replace("argument(s)", "arguments")  # as typer words it, by its version
 
 
+def measure() -> None:
+    """Write what `atwood tradeoff` measures on this machine into its page and its picture."""
+    page, command = EXAMPLES / "tradeoff.md", ["-m", "atwood_cli", "tradeoff"]
+    figure = ["--figure", str(page.with_suffix(".svg")), "--force"]
+    ran = subprocess.run(
+        [sys.executable, *command, *figure], capture_output=True, check=True, encoding="utf-8"
+    )
+    before, _, rest = page.read_text(encoding="utf-8").partition("```text\n")
+    after = rest.partition("```\n")[2]
+    fresh = f"{before}```text\n$ atwood tradeoff\n{ran.stdout}```\n{after}"
+    page.write_text(fresh, encoding="utf-8", newline="\n")
+
+
 if __name__ == "__main__":
-    for kept in KEPT:
+    if sys.argv[1:] == ["measured"]:
+        measure()
+    for kept in [] if sys.argv[1:] else KEPT:
         name = kept.file.relative_to(TOP)
         if kept.lacks:
             print(f"{name}: left as it was, without {kept.lacks}")
