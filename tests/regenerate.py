@@ -8,7 +8,7 @@ import shlex
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import chdir
+from contextlib import ExitStack, chdir
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 from atwood_cli.cli import COMMANDS
 
-from .running import called, labels, process
+from .running import called, labels, pages_seen, process, words_on
 
 TOP = Path(__file__).parent.parent
 EXAMPLES = TOP / "examples"
@@ -73,7 +73,7 @@ def shown(line: str) -> str:
 
 
 def answered(block: str) -> str:
-    """The block as its command gives it, called here: stdout, stderr, and the status if it is not 0."""
+    """The block as its command gives it, called here: stdout, stderr, the words of pictures, and a status but 0."""
     line = block.splitlines()[0]
     found = re.fullmatch(r"\$ (?:printf '(.*)' \| )?atwood ?(.*)", line)
     assert found, line
@@ -82,13 +82,16 @@ def answered(block: str) -> str:
         return bytes([int(escaped[1], 16)]) if escaped[1] else ESCAPES[escaped[0]]
 
     content = re.sub(rb"\\x(..)|\\.|%%", byte, (found[1] or "").encode())
-    with TemporaryDirectory() as folder, chdir(folder):
+    draws = "--figure" in line and find_spec("matplotlib")
+    with TemporaryDirectory() as folder, chdir(folder), ExitStack() as stack:
+        pages = stack.enter_context(pages_seen()) if draws else []
         ran = called(shlex.split(found[2]), content)
     shown = re.sub(
         UNSEEN, lambda unseen: "".join(f"\\x{unit:02x}" for unit in unseen[0].encode()), ran.out + ran.err
     )
     end = "" if not shown or shown.endswith("\n") else "\n"
-    return f"{line}\n{shown}{end}" + (f"[{ran.status}]\n" if ran.status else "")
+    words = "".join(f"| {words}\n" for page in pages for words in words_on(page))
+    return f"{line}\n{shown}{end}{words}" + (f"[{ran.status}]\n" if ran.status else "")
 
 
 def blocks(page: Path) -> Iterator[str]:
@@ -111,7 +114,7 @@ def whole(file: Path, today: Callable[[], str] | str, needs: str = "") -> Kept:
 KEPT = [
     whole(EXAMPLES / "help.txt", help_pages),
     *(
-        Kept(page, command, partial(answered, command))
+        Kept(page, command, partial(answered, command), "matplotlib" if page.stem == "pictures" else "")
         for page in CASES
         for block in blocks(page)
         for command in re.findall(r"^\$ .*\n(?:(?!\$ ).*\n)*", block, re.MULTILINE)

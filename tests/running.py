@@ -7,10 +7,11 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager, redirect_stderr, redirect_stdout
+from contextlib import chdir, contextmanager, redirect_stderr, redirect_stdout
 from io import BytesIO, TextIOWrapper
 from itertools import combinations
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 from unittest.mock import patch
 
@@ -168,13 +169,31 @@ def labels(svg: str) -> list[str]:
 
 
 @contextmanager
-def pages_seen(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Any]]:
+def pages_seen() -> Iterator[list[Any]]:
     """The pictures that would be saved meanwhile, as matplotlib has them."""
-    figure = pytest.importorskip("matplotlib.figure")
     pages: list[Any] = []
-    with monkeypatch.context() as patching:
-        patching.setattr(figure.Figure, "savefig", lambda page, *_, **__: pages.append(page))
+    figure = pytest.importorskip("matplotlib.figure")
+    with patch.object(figure.Figure, "savefig", lambda page, *_, **__: pages.append(page)):
         yield pages
+
+
+def drawn(line: str) -> Any:
+    """The picture that a command line has, as matplotlib has it."""
+    with TemporaryDirectory() as folder, chdir(folder), pages_seen() as pages:
+        ran = called([*line.split(), "--figure", "a.svg"])
+    assert ran.status == 0, ran.err
+    (page,) = pages
+    return page
+
+
+def words_on(page: Any) -> list[str]:
+    """What a picture says, but for the numbers along its axes."""
+    from matplotlib.text import Text
+
+    scales = [axis for axes in page.axes for axis in (axes.xaxis, axes.yaxis)]
+    numbers = {text for axis in scales for text in axis.findobj(Text) if text is not axis.label}
+    texts = (text.get_text() for text in page.findobj(Text) if text not in numbers)
+    return [words for text in texts if (words := " ".join(text.split()))]
 
 
 def misplaced(page: Any) -> list[str]:

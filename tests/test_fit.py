@@ -793,7 +793,7 @@ def test_nothing_is_cut_from_the_picture(
     fit: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, table: str, more: tuple[str, ...]
 ) -> None:
     """A bar of an outlier ran off; a run that is left out was not there; --bare has no sentences."""
-    with pages_seen(monkeypatch) as pages:
+    with pages_seen() as pages:
         assert fit(table, *more, "--figure", str(tmp_path / "line.png")).status == 0
     (page,) = pages
     line = page.axes[0]

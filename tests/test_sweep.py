@@ -23,7 +23,7 @@ from atwood_cli.model.scene import INPUTS, SceneError
 from atwood_cli.sweep.ranges import Row, Sweep, read_list, read_range, read_sweep, solve_rows
 from atwood_cli.sweep.sweep_figure import Curve, picture
 
-from .running import Atwood, labels, misplaced, on_terminal, pages_seen, plain, process
+from .running import Atwood, drawn, misplaced, on_terminal, plain, process
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]
@@ -273,55 +273,6 @@ def curves(swept: Sweep, name: str) -> list[Curve]:
     return found
 
 
-def test_a_figure(atwood: Atwood, tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
-    files = [tmp_path / "a.svg", tmp_path / "b.svg"]
-    words = [*HELD, "--M", "1:100:34", "--mu", "0.2:0.3:2", "--only", "regime,friction_force", "--csv"]
-    for file in files:
-        ran = atwood(*words, "--figure", str(file))
-        assert (ran.status, ran.out) == (0, atwood(*words).out)
-    first, second = (file.read_bytes() for file in files)
-    assert first == second
-    shown = {label.strip() for label in labels(first.decode())}
-    assert {"pulley mass M (kg)", "friction force F (N)"} <= shown
-    assert {"μ = 0.2, slips from 9.32 kg", "μ = 0.3, slips from 43.3 kg"} <= shown
-    assert any(
-        label.startswith(
-            "Friction force F against pulley mass M: m₁ = 1 kg, m₂ = 3 kg, μ from 0.2 to 0.3, g ="
-        )
-        for label in shown
-    )
-
-
-def test_a_figure_of_several_quantities(atwood: Atwood, tmp_path: Path) -> None:
-    pytest.importorskip("matplotlib")
-    file = tmp_path / "a.svg"
-    words = [
-        *SWEEP[:-2],
-        "--mu",
-        "0.2,0.3",
-        "--M",
-        "10:60:2",
-        "--only",
-        "T1,tension_2,a",
-        "--figure",
-        str(file),
-    ]
-    assert atwood(*words).status == 0
-    shown = labels(file.read_text(encoding="utf-8"))
-    ends = {f"{of}μ = {mu}" for of in ("T₂, ", "") for mu in ("0.2", "0.3")}
-    ends |= {"T₁, μ = 0.2", "T₁, μ = 0.3, slips from 43.3 kg"}
-    titles = {"tension T₁, T₂ (N)", "acceleration a (m/s²)", "pulley mass M (kg)"}
-    assert {*ends, *titles} <= {label.strip() for label in shown}
-    assert shown.count("pulley mass M (kg)") == 1
-    assert atwood(*words, "--bare", "--force").status == 0
-    bare = labels(file.read_text(encoding="utf-8"))
-    assert sorted({*shown} - {*bare}) == [
-        "Tension T₁, T₂, acceleration a against pulley mass M: m₁ = 1 kg, m₂ = 3 kg, μ = 0.2 or 0.3,"
-        " g = 9.80665 m/s², β = 0.5, φ = 180°."
-    ]
-
-
 @pytest.mark.parametrize(
     "words",
     [
@@ -342,25 +293,12 @@ def test_a_figure_of_several_quantities(atwood: Atwood, tmp_path: Path) -> None:
         "tension_1 --m1 1 --m2 1 --g 1:25:3",
     ],
 )
-def test_no_words_of_a_figure_overlap_or_run_off(
-    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, words: str
-) -> None:
-    name, *options = words.split()
-    with pages_seen(monkeypatch) as pages:
-        ran = atwood("sweep", *options, "--csv", "--figure", str(tmp_path / "a.png"), "--only", name)
-    assert ran.status == 0
-    (page,) = pages
-    assert misplaced(page) == []
+def test_no_words_of_a_figure_overlap_or_run_off(words: str) -> None:
+    assert misplaced(drawn(f"sweep --csv --only {words}")) == []
 
 
-def test_with_twelve_marks_a_legend_says_each(
-    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    words = "sweep --m1 0.1:30:9 --m2 3 --M 50 --mu 0.05:0.3:6 --csv --figure".split()
-    with pages_seen(monkeypatch) as pages:
-        assert atwood(*words, str(tmp_path / "a.png")).status == 0
-    (page,) = pages
-    (axes,) = page.axes
+def test_with_twelve_marks_a_legend_says_each() -> None:
+    (axes,) = drawn("sweep --m1 0.1:30:9 --m2 3 --M 50 --mu 0.05:0.3:6 --csv").axes
     dots = [line.get_color() for line in axes.lines if line.get_marker() == "o"]
     curves = [line.get_color() for line in axes.get_legend().get_lines()]
     assert (len(dots), len({*dots}), len({*dots, *curves})) == (12, 1, 7)
@@ -369,13 +307,8 @@ def test_with_twelve_marks_a_legend_says_each(
     assert [name.split(",")[0] for name in names] == [f"μ = {mu}" for mu in (0.05, 0.1, 0.15, 0.2, 0.25, 0.3)]
 
 
-def test_a_scene_looks_the_same_in_all_panels(
-    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    words = "sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.2,0.3 --only a,T1,T2 --csv --figure".split()
-    with pages_seen(monkeypatch) as pages:
-        assert atwood(*words, str(tmp_path / "a.png")).status == 0
-    (page,) = pages
+def test_a_scene_looks_the_same_in_all_panels() -> None:
+    page = drawn("sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.2,0.3 --only a,T1,T2 --csv")
     one, two = [
         [(line.get_color(), line.get_linestyle()) for line in axes.get_legend().get_lines()]
         for axes in page.axes
@@ -383,31 +316,27 @@ def test_a_scene_looks_the_same_in_all_panels(
     assert (one, len({*two})) == (two[:2], 4)
 
 
-def test_an_axis_starts_at_0_where_no_more_than_half_of_it_is_empty(
-    atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_axis_starts_at_0_where_no_more_than_half_of_it_is_empty() -> None:
     for words, starts, ends in (
         ("--m1 1 --m2 3 --M 0:50:6", True, False),
         ("--m1 3 --m2 1 --M 0:50:6", False, True),
         ("--m1 1 --m2 3 --M 0:1:6", False, False),
     ):
-        with pages_seen(monkeypatch) as pages:
-            atwood("sweep", *words.split(), "--figure", str(tmp_path / "a.png"), "--force")
-        low, high = pages[0].axes[0].get_ylim()
+        low, high = drawn(f"sweep {words}").axes[0].get_ylim()
         assert (low == 0, high == 0) == (starts, ends), words
 
 
 def test_curves_turn_exactly_where_the_regime_changes() -> None:
     """Four curves parted at M = 0 and slipped at 10, 10, 20 and 50: they coincide until then."""
     swept = read_sweep({"m1": "1", "m2": "3", "M": "0:50:6", "mu": "0.15:0.3:4"})
-    drawn = curves(swept, "acceleration")
-    assert [curve.name for curve in drawn] == [
+    shown = curves(swept, "acceleration")
+    assert [curve.name for curve in shown] == [
         "μ = 0.15, slips from 5.17 kg",
         "μ = 0.2, slips from 9.32 kg",
         "μ = 0.25, slips from 17.8 kg",
         "μ = 0.3, slips from 43.3 kg",
     ]
-    for curve, mu in zip(drawn, ("0.15", "0.2", "0.25", "0.3"), strict=True):
+    for curve, mu in zip(shown, ("0.15", "0.2", "0.25", "0.3"), strict=True):
         exact = solve(m1="1", m2="3", mu=mu)
         ((x, y),) = curve.marks
         assert x == pytest.approx(exact.critical_pulley_mass, rel=1e-6)
@@ -445,14 +374,6 @@ def test_a_figure_of_friction_has_a_band_where_it_is_not_one_number() -> None:
     assert band[at_ten] == pytest.approx((5.405688718651033, 8.94931775365255))
     assert band[0] == (0, 0)
     assert band[-1] == (ys[-1], ys[-1])
-
-
-@pytest.mark.parametrize("suffix", ["png", "pdf", "svg"])
-def test_a_figure_of_every_kind(atwood: Atwood, tmp_path: Path, suffix: str) -> None:
-    pytest.importorskip("matplotlib")
-    file = tmp_path / f"a.{suffix}"
-    assert atwood(*SWEEP, "--M", "1:1000:9:log", "--figure", str(file)).status == 0
-    assert file.read_bytes().startswith({"svg": b"<?xml", "png": b"\x89PNG", "pdf": b"%PDF"}[suffix])
 
 
 def test_without_its_extra_it_names_the_pip_command() -> None:

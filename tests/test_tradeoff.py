@@ -292,7 +292,7 @@ def test_the_figure_has_a_pane_for_each_family(tmp_path: Path, monkeypatch: pyte
     off = dict(zip(NAMES, (None, 39.2, 0.499, 4.2e-34), strict=True))
     measured = [Measured(family, name, 1e-7, off[name], 0.0) for family in FAMILIES for name in NAMES]
     for bare in (False, True):
-        with pages_seen(monkeypatch) as pages:
+        with pages_seen() as pages:
             save(measured, str(tmp_path / "a.svg"), force=True, bare=bare)
         (page,) = pages
         assert misplaced(page) == []
