@@ -506,7 +506,6 @@ PAIRS = "m1,m2,time 1,time 2\n" + "".join(
 )  # fmt: skip
 FAST = SIMMONS.replace("0.780", "2.1")
 DRIVEN = SIMMONS.replace("0.0", "1.0").replace("0.65,", "1.65,")
-TIMED = "m1,m2,time\n0.2,0.207,3.99\n0.2005,0.2065,4.58\n0.201,0.206,5.02\n0.2015,0.2055,6.16\n0.202,0.205,7.873\n"
 UNEVEN = "m1,m2,a\n1.00(1),2.00(1),2.50(1)\n1.00(1),3.00(1),4.10(1)\n1.50(1),2.00(1),0.70(1)\n2.0(1),3.0(1),1.7(1)\n"
 UNCERTAIN = "m1,m2,time\n1.00(1),2.00(1),1.0\n1.00(1),3.00(1),.8\n1.50(1),2.00(1),1.7\n2.0(1),3.0(1),1.21\n"
 NEGATIVE = "m1,m2,a\n" + "".join(
@@ -598,58 +597,7 @@ def test_two_runs_with_uncertainties_are_enough(fit: Any) -> None:
     assert result["uncertainty"]["rim_mass"] > 0
 
 
-TOO_FEW = (
-    "1 run is too few for what is to be fitted and its scatter: give more runs, or repeats, or uncertainties"
-    " (as 2.05+/-0.02), or what is known (M, axle), or fit one quantity alone (find)"
-)
-ALL = "rim_mass, axle, gravity, pulley_mass, moment_of_inertia, correlation, chi2, dof, between_runs"
 NO_VALUE = "gravity: has no value: it is given, was not to be fitted, or the runs do not determine it."
-ONE = "m1,m2,a\n1,2,1\n"
-# fmt: off
-ERRORS = [
-    (ONE, "", 1, TOO_FEW),
-    ("m1,m2,a\n" + 3 * "1,2,1(1)\n", "--find c,f", 1, TOO_FEW),
-    ("m1,m2,a\n1,3,1\n1.5,2.5,.5\n1.9,2.1,.1\n", "--find c,g", 1,
-        "the runs do not separate the pulley's inertia from gravity: vary m1 + m2 as well"),
-    ("m1,m2,a\n1,1,1\n", "", 1, "cannot read RUNS: no run can be used: in row 1, its masses are equal, and rest"),
-    (ONE, "--axle 10N", 1,
-        "cannot read RUNS: no run can be used: in row 1, an axle with the friction given holds its masses"),
-    ("m1,m2,a\n1,2,1(1)\n1,3,2\n", "", 1,
-        "cannot read RUNS: row 2 has no uncertainty of its a, as others have; give all"),
-    ("m1,m2,a1,a2,±\n1,2,3,4,5\n", "", 1,
-        "cannot read RUNS: row 1 has no uncertainty of its a, as others have; give all"),
-    ("Masse 1;Masse 2;t\n1;2;3\n", "", 1, "cannot read RUNS: no column m1; name it, as --column m1='Masse 1 (g)'"),
-    ("m1,m2,a\n1,2,2.4\n1,3,3.9\n", "", 1, TOO_FEW.replace("1 run is", "2 runs are")),
-    (SIMMONS, "--column t", 2, "--column 't' must be NAME=HEADING, as t='Fallzeit (s)', each heading once"),
-    (SIMMONS, "--column t=x", 2, "--column 't=x' is not there; there are 'm1', 'm2', 'a'"),
-    (SIMMONS, "--column x=a", 2, "--column 'x=a' has no name of a quantity before =; there are m1, m2, drop, a, time"),
-    (SIMMONS, "--without 9", 2, "--without '9' is no row; there are 1 to 8"),
-    (SIMMONS, "--without a", 2, "--without 'a' must be a whole number from 1 to 1000000000"),
-    (SIMMONS, "--find mass", 2, "--find 'mass' is no quantity to fit; did you mean rim_mass?"),
-    (SIMMONS, "--find g --g 9.8", 2, "--find 'gravity' is known by g; leave one of them out"),
-    (SIMMONS, "--find c --M 1", 2, "--find 'rim_mass' is known by M; leave one of them out"),
-    (SIMMONS, "--M inf", 2, "--M 'inf' lets nothing move; give the mass of a pulley that turns"),
-    (SIMMONS, "--R 1±1", 2, "--R '1±1' has an uncertainty that reaches 0"),
-    (SIMMONS, "--drop 1", 2, "--drop '1' has no part here: the table has a"),
-    (SIMMONS, "--g 1e-31", 2, "--g '1e-31' is beyond what a fit computes with, 1e-30 to 1e+30"),
-    (TIMED, "--drop 1e31", 2, "--drop '1e31' is beyond what a fit computes with, 1e-30 to 1e+30"),
-    (SIMMONS, "--axle 1Nm", 2, "--axle '1Nm' is a torque, which needs the radius R as well"),
-    (SIMMONS, "--only mu", 2, f"--only 'mu' is an input, no result; there are {ALL}"),
-    *((SIMMONS, word, 2, f"No such option: {word}; atwood fit -h shows how") for word in ("--explain", "--markdown", "--mu")),
-    (SIMMONS, "--wrap 90", 2, "No such option: --wrap (Possible options: --drop); atwood fit -h shows how"),
-    (SIMMONS, "--only gravity", 1, NO_VALUE),
-    (SIMMONS, "--only pulley_mass", 1,
-        "pulley_mass: needs the rim mass to be fitted, and the pulley's shape, --inertia."),
-    (SIMMONS, "--bare", 2, "--bare needs --figure"),
-    (SIMMONS, "--figure a.gif", 2, "--figure 'a.gif' must end in one of .svg, .png, .pdf"),
-]
-# fmt: on
-
-
-@pytest.mark.parametrize(("table", "more", "status", "error"), ERRORS)
-def test_errors(fit: Any, table: str, more: str, status: int, error: str) -> None:
-    ran = fit(table, *more.split())
-    assert (ran.status, ran.out, ran.err) == (status, "", f"atwood: {error}\n")
 
 
 @pytest.mark.parametrize(

@@ -122,63 +122,8 @@ def test_uncertainties_are_in_the_unit_of_their_column(read: Any) -> None:
     assert numbers(percent) == [exactly("1", "2", "4", "5", "0", "0", "0.04", "0.1")]
 
 
-ROW = "\n1,2,3,4\n"
-NO_TIMES = "no column of times or accelerations; name it, as --column t='Zeit in s'"
-HEIGHT = "times need the height of fall: give drop, or a column of that name"
-POINT = "; is there a decimal comma (write a point), or one at its end?"
-MASS = "kg, g, mg, ug, t, lb, lbs, oz, st, slug"
-
-
-def column(name: str, why: str) -> str:
-    return f"column '{name}' {why}; or let it pass by --label '{name}'"
-
-
 # fmt: off
-NO_TABLES: list[tuple[Any, str]] = [
-    # Columns that are missing, or there twice
-    ("m1,m2\n1,2\n", NO_TIMES),
-    ("m1,a\n1,2\n", "no column m2; name it, as --column m2='Masse 2 (g)'"),
-    (";;\n", "no column m1; name it, as --column m1='Masse 1 (g)'"),
-    ("Masse 1;Masse 2;Zeit\n0,2;0,207;3,99\n", "no column m1; name it, as --column m1='Masse 1 (g)'"),
-    ("m1 (g);Masse 2 (g);t\n200;207,5;3,99\n", "no column m2; name it, as --column m2='Masse 2 (g)'"),
-    ("m1,m2,Zeit\n1,2,3\n", NO_TIMES),
-    ("0.2,0.207,3.99\n0.21,0.22,4\n", "no column m1; name it, as --column m1='Masse 1 (g)'"),
-    ("m1,m2,time\n1,2,1\n", HEIGHT),
-    ("m1,m2,Fallhöhe,t" + ROW, HEIGHT),
-    ("m1,m2,a,time\n1,2,1,1\n", "there are columns a and time; keep one, or let one pass by --label"),
-    ("m1,m2,a,m_1" + ROW, "columns 'm1' and 'm_1' are both m1; rename one; or let it pass by --label 'm_1'"),
-    ("m1,m2,t1,time 1" + ROW, "columns 't1' and 'time 1' are both time; number what is repeated, as 'time 1'; or let it pass"
-        " by --label 'time 1'"),
-    # Columns that could be two things
-    ("m1,m2,a,M\n1,2,1,1\n", column("M", "holds for all runs, so it is an option: give --M")),
-    *((f"m1,m2,a,{u}" + ROW, column(u, "could be an uncertainty; name what of, as in 'u(t)'"))
-        for u in ("Δm", "error", "u", "± a", "σ", "error in t", "Uncertainty (s)")),
-    ("m1,m2,a,t_err" + ROW, column("t_err", "could be an uncertainty, but no column is what it would be of")),
-    (",m1,m2,time\n0,0.2,0.207,3.99\n", "column 1 has numbers and no heading; give it one"),
-    ("m1,,m2,a" + ROW, "column 2 has numbers and no heading; give it one"),
-    ("m1,m2,a,±,\n1,2,3,4,5\n", "column 5 has numbers and no heading; give it one"),
-    ("m1,m2,a,Team,±\n1,2,3,A,1\n", column("±", "could be an uncertainty, but no column is what it would be of")),
-    ("m1,m2,a,±,u(a)\n1,2,3,4,5\n", column("u(a)", "is a second uncertainty of a")),
-    ("m1,m2,T1 (N),a" + ROW, column("T1 (N)", "has the unit 'N'; it takes s, ms, min, h")),
-    ("m1 (s),m2,a\n1,2,1\n", column("m1 (s)", f"has the unit 's'; it takes {MASS}")),
-    # Rows
-    ("", "it is empty"),
-    ("m1,m2,a\n", "it has no runs"),
-    ("m1,m2,a\n1,2\n", "row 1 has 2 cells, and the header 3"),
-    ("m1,m2,a\n1,2,3\n1,2,1,5\n", f"row 2 has 4 cells, and the header 3{POINT}"),
-    ("Lab 3\nmass a,mass b,t\n1,2,3\n", f"row 1 has 3 cells, and the header 1{POINT}"),
-    ("m1,m2,a\n1,,1\n", "row 1 has no m2"),
-    ("m1,m2,a\n1,x,1\n", "row 1: m2 'x' is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1)"),
-    ("m1,m2,a\n1,2,3\nMean,,3\n", "row 2: m1 'Mean' is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1)"),
-    ("m1,m2,a\n1,2,3\nSeries 2,,\n1,2,3\n",
-        "row 2: m1 'Series 2' is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1)"),
-    ("m1,m2,a\n1e31,2,1\n", "row 1: m1 '1e31' is beyond what a fit computes with, 1e-30 to 1e+30"),
-    ("m1;m2;a\n1,5;2.5;1\n", "row 1: m2 '2.5' has a point in a table of decimal commas; write all alike"),
-    ("m1,m2,a,±\n1,2,3,-1\n", "row 1: ± '-1' is no uncertainty; write it like 0.02 or 2%"),
-    ("m1,m2,a,±\n1,2,3(1),1\n", "row 1: ± '1' is a second uncertainty, beside '3(1)'"),
-    ('m1,m2,a\n1,"2,1\n', "line 2: unexpected end of data"),
-    ('m1,m2,a\n1,"2"3,1\n', "line 2: ',' expected after '\"'"),
-    # Columns in Python
+NO_COLUMNS: list[tuple[Any, str]] = [
     (3, "it is of type int; give a path, a mapping or a data frame"),
     ([[1, 2, 3]], "it is of type list; give a path, a mapping or a data frame"),
     ({"m1": [1], "m2": [2, 3]}, "its columns differ in length: 'm1' has 1 cells, 'm2' has 2 cells"),
@@ -191,10 +136,11 @@ NO_TABLES: list[tuple[Any, str]] = [
 # fmt: on
 
 
-@pytest.mark.parametrize(("table", "error"), NO_TABLES)
-def test_what_is_no_table_of_runs_is_refused(read: Any, table: Any, error: str) -> None:
+@pytest.mark.parametrize(("table", "error"), NO_COLUMNS)
+def test_what_is_no_table_of_columns_is_refused(table: Any, error: str) -> None:
+    """Texts that are no table are in `cases/fit.md`."""
     with pytest.raises(Unreadable) as raised:
-        read(table, drop=None) if isinstance(table, str) else read_runs(table)
+        read_runs(table)
     assert str(raised.value) == error
 
 
