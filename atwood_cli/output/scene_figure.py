@@ -144,13 +144,9 @@ class Forces(NamedTuple):
     def along(self, shares: Any) -> tuple[Any, Any]:
         """Tension and friction per radian (N) at shares of the arc; the first is the normal force, too."""
         from_light = shares if self.sign > 0 else 1 - shares
-        tension, friction = self.limiting(np.clip((from_light - self.stuck) / (1 - self.stuck), 0, 1))
-        return tension, np.where(from_light < self.stuck, 0, friction)
-
-    def limiting(self, shares: Any) -> tuple[Any, Any]:
-        """The same at shares of the arc over which friction is at its limit, from the lighter mass on."""
-        tension = self.light * (self.heavy / self.light) ** shares
-        return tension, self.mu * tension
+        limiting = np.clip((from_light - self.stuck) / (1 - self.stuck), 0, 1)
+        tension = self.light * (self.heavy / self.light) ** limiting
+        return tension, np.where(from_light < self.stuck, 0, self.mu * tension)
 
 
 class End(NamedTuple):
@@ -349,16 +345,13 @@ def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> bool:
 
 def _draw_curves(axes: "Axes", forces: Forces, wrap: float) -> None:
     """Normal force and friction along the arc, which is grey where the string is stuck."""
-    stuck = forces.stuck
-    from_light = np.linspace(stuck, 1, CURVE_POINTS)
-    tension, friction = forces.limiting((from_light - stuck) / (1 - stuck))
-    if stuck:
-        from_light = np.concatenate([[0, stuck], from_light])
-        tension, friction = np.concatenate([tension[[0, 0]], tension]), np.concatenate([[0, 0], friction])
-    angles = wrap * (from_light if forces.sign > 0 else 1 - from_light)
+    edge = forces.stuck if forces.sign > 0 else 1 - forces.stuck
+    shares = np.sort([*np.linspace(0, 1, CURVE_POINTS), *np.nextafter(edge, [0, edge, 1])])
+    tension, friction = forces.along(shares)
+    angles = wrap * shares
     axes.axhline(0, color=FAINT, lw=0.8)
-    if stuck:
-        axes.axvspan(angles[0], angles[1], color=FAINT, alpha=0.15, lw=0)
+    if forces.stuck:
+        axes.axvspan(wrap * edge, wrap * (forces.sign < 0), color=FAINT, alpha=0.15, lw=0)
     axes.plot(angles, tension, color=BLUE, lw=2, label="nR = T(θ)")
     axes.plot(angles, friction, color=RED, lw=2, ls="--", label="fR = dT/dθ")
     axes.set_xlim(0, wrap)
