@@ -6,10 +6,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from fractions import Fraction
 from math import nan
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,38 +28,6 @@ FEW = 24  # rows that are solved sooner one by one than by a program that is yet
 LEAVE = 2_000  # rows of one block that are solved sooner together with rows of other blocks
 
 Flags = NDArray[np.bool_]
-
-
-class Group(NamedTuple):
-    """A task, the rows that its program runs on, and which of these are wanted; None for all.
-
-    To select rows costs more than to compute some in vain. So a group that has most of some rows that follow
-    each other runs on all of them, and the results of the others are overwritten when their turn comes.
-    """
-
-    task: Task
-    rows: Index
-    wanted: Flags | None = None
-
-    @property
-    def number(self) -> int:
-        """The number of rows that are wanted."""
-        return size_of(self.rows) if self.wanted is None else int(np.count_nonzero(self.wanted))
-
-    def wanted_and(self, flags: Flags) -> Flags:
-        """Whether a row is wanted and has a flag."""
-        return flags if self.wanted is None else flags & self.wanted
-
-    def places(self, flags: Flags) -> NDArray[np.intp]:
-        """The places of the rows that are wanted and have a flag."""
-        return np.flatnonzero(self.wanted_and(flags))
-
-    def part(self, task: Task, flags: Flags) -> Group:
-        """The group of the rows that are wanted and have a flag."""
-        wanted = self.wanted_and(flags)
-        if isinstance(self.rows, slice) and 2 * np.count_nonzero(wanted) > wanted.size:
-            return Group(task, self.rows, wanted)
-        return Group(task, select(self.rows, np.flatnonzero(wanted)))
 
 
 class Rows:
@@ -81,63 +49,45 @@ class Rows:
 
     def solve(self, rows: Index, task: Task) -> None:
         """Write the results of a task for rows of its pattern and decisions."""
-        waiting = [Group(task, rows)]
+        waiting = [(rows, task)]
         while waiting:
-            group = waiting.pop()
-            level = group.task.level
-            if level == len(self.levels) or (level and size_of(group.rows) <= FEW):
-                self._solve_one_by_one(group.rows, group.task)
+            rows, task = waiting.pop()
+            if not size_of(rows):
+                continue
+            if task.level == len(self.levels) or (task.level and size_of(rows) <= FEW):
+                self._solve_one_by_one(rows, task)
             else:
-                waiting += self._solved_but_for(group)
+                waiting += self._solved_but_for(rows, task)
 
-    def _solved_but_for(self, group: Group) -> list[Group]:
-        """Do what the plan of a group says; returns what is left to do.
+    def _solved_but_for(self, rows: Index, task: Task) -> Iterator[tuple[Index, Task]]:
+        """Do what the plan of a task says; yields what is left to do.
 
-        A row and quantity that is not certified is left to the next level. The last group is solved first: it
-        has most of the rows, and may run on all of them.
+        A row and quantity that is not certified is left to the next level.
         """
-        task, rows = group.task, group.rows
         how = plan(task, self.accuracy)
         for name, constant in how.constants.items():
             self.results[name][rows] = constant
         for name, reason in how.missing.items():
             self.results[name][rows] = nan
-            self.reasons[name, reason] += group.number
+            self.reasons[name, reason] += size_of(rows)
         found = self._run_plan(how, rows)
-        left = [
-            Group(task._replace(names=(name,), level=task.level + 1), failed)
-            for name in how.conditional
-            if (failed := self._uncertified(group, name, found[condition_of(name)])).size
-        ]
+        for name in how.conditional:
+            failed = select(rows, np.flatnonzero(~found[condition_of(name)]))
+            again = task._replace(names=(name,), level=task.level + 1)
+            if self.left is not None and failed.size <= LEAVE:
+                self.left.setdefault(again, []).append(failed)
+            else:
+                yield failed, again
         if how.alone:
-            places = group.places(np.ones(size_of(rows), np.bool_))
-            left.append(Group(task._replace(names=how.alone, level=len(self.levels)), select(rows, places)))
+            yield rows, task._replace(names=how.alone, level=len(self.levels))
         if how.question:
-            yes = found["yes"]
-            if not found["sure"].all():
-                places = group.places(~found["sure"])
-                yes[places] = self._ask(select(rows, places), task, how.question)
-            answers = [
-                group.part(
-                    task._replace(decisions=task.decisions | {(how.question, answer)}, names=how.asking),
-                    yes == answer,
-                )
-                for answer in (False, True)
-            ]
-            left += sorted((part for part in answers if part.number), key=lambda part: part.number)
-        return left
-
-    def _uncertified(self, group: Group, name: str, certified: Flags) -> NDArray[np.intp]:
-        """The rows in which a quantity is left to the next level at once."""
-        if certified.all():
-            return np.empty(0, np.intp)
-        task = group.task
-        failed: NDArray[np.intp] = select(group.rows, group.places(~certified))
-        if self.left is not None and failed.size <= LEAVE:
-            later = task._replace(names=(name,), level=task.level + 1)
-            self.left.setdefault(later, []).append(failed)
-            return failed[:0]
-        return failed
+            yes, unsure = found["yes"], np.flatnonzero(~found["sure"])
+            yes[unsure] = self._ask(select(rows, unsure), task, how.question)
+            for answer in (False, True):
+                places = np.flatnonzero(yes == answer)
+                answered = rows if places.size == yes.size else select(rows, places)
+                decisions = task.decisions | {(how.question, answer)}
+                yield answered, task._replace(decisions=decisions, names=how.asking)
 
     def _run_plan(self, how: Plan, rows: Index) -> dict[str, Flags]:
         """Run a plan's program; returns what it says beside the quantities, by name."""
