@@ -22,7 +22,7 @@ from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, UNIT, Number
 from atwood_cli.arrays.pairs import PAIRS, head_of, two_product
 from atwood_cli.arrays.pattern import COLUMN, Pattern, Task
 from atwood_cli.arrays.plan import answering
-from atwood_cli.arrays.program import OPERATIONS, Program, Room
+from atwood_cli.arrays.program import OPERATIONS, Program
 from atwood_cli.model.scene import INPUTS
 
 from . import oracle
@@ -50,7 +50,7 @@ def worked_out(formulas: Sequence[Term], **columns: Any) -> list[Any]:
     size = max((column.size for column in columns.values()), default=1)
     results = {name: np.empty(size) for name in named}
     with np.errstate(all="ignore"):
-        program.run(columns, results, Room().columns(program.between, size))
+        program.run(columns, results, [np.empty(size, kind) for kind in program.between])
     return [*results.values()]
 
 
@@ -328,7 +328,7 @@ def test_a_question_is_open_where_the_bound_says_nothing() -> None:
         program = answering(task, f"slips_at {question}", DOUBLES)
         found[question] = {name: np.empty(4, np.bool_) for name in program.results}
         columns = {name: np.array(column) for name, column in inputs.items()}
-        program.run(columns, found[question], Room().columns(program.between, 4))
+        program.run(columns, found[question], [np.empty(4, kind) for kind in program.between])
     assert found["scene"]["sure"].tolist() == [True] * 4
     assert found["scene"]["yes"].tolist() == [True, False, False, True]
     assert found["lightest_held"]["sure"].tolist() == [True, True, True, False]

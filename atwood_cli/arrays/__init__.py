@@ -11,7 +11,6 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from math import nan, prod
-from threading import Lock
 from typing import Any
 
 import numpy as np
@@ -23,10 +22,9 @@ from .inputs import DEFAULTS, GivenColumn, Numbers, groups, input_columns, read_
 from .inputs import STATUSES as STATUSES
 from .pattern import Index, Task
 from .plan import LEVELS
-from .program import Room
 from .rows import Rows
 
-BLOCK = 131_072  # rows, as measured
+BLOCK = 262_144  # rows, as measured
 THREADS = 4  # more would wait for the interpreter's lock
 CODES = {"regime": np.int8, "status": np.int8}
 
@@ -95,23 +93,23 @@ def solve_and_count(
     left: dict[Task, list[NDArray[np.intp]]] = {}
     counted: list[Counter[tuple[str, str]]] = []
 
-    def rows_at(index: Index, room: Room) -> tuple[Rows, dict[str, GivenColumn]]:
+    def rows_at(index: Index) -> tuple[Rows, dict[str, GivenColumn]]:
         given = {name: one.cut(shape, index) for name, one in inputs.items()}
         columns = {name: one.column for name, one in given.items()}
-        rows = Rows(columns, {name: flat[name][index] for name in results}, accuracy, room)
+        rows = Rows(columns, {name: flat[name][index] for name in results}, accuracy)
         counted.append(rows.reasons)
         return rows, given
 
-    def solve_block(block: slice, room: Room) -> None:
+    def solve_block(block: slice) -> None:
         """Solve all rows of a block, but for the tasks that are left for the end."""
-        rows, given = rows_at(block, room)
+        rows, given = rows_at(block)
         rows.left = {} if len(blocks) > 1 else None
         _solve(rows, given, names)
         for task, some in (rows.left or {}).items():
             left.setdefault(task, []).extend(index + block.start for index in some)
 
-    def solve_left(index: NDArray[np.intp], task: Task, room: Room) -> None:
-        rows, _ = rows_at(index, room)
+    def solve_left(index: NDArray[np.intp], task: Task) -> None:
+        rows, _ = rows_at(index)
         rows.solve(slice(0, index.size), task)
         for name in task.names:
             flat[name][index] = rows.results[name]
@@ -155,34 +153,22 @@ def _blocks(size: int, most: int, multiple_of: int = 1) -> list[slice]:
 
 
 def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> None:
-    """Do the parts of the work on threads, which run at once because NumPy releases the interpreter's lock.
+    """Do the parts of the work on threads, which run at once as NumPy releases the interpreter's lock."""
 
-    Each thread keeps its own `Room` from part to part.
-    """
-    waiting = iter(parts)
-    taking = Lock()
-
-    def share() -> None:
-        room = Room()
+    def quiet(part: tuple[Any, ...]) -> None:
         with np.errstate(all="ignore"):
-            while True:
-                with taking:
-                    part = next(waiting, None)
-                if part is None:
-                    return
-                work(*part, room)
+            work(*part)
 
-    count = min(THREADS, os.cpu_count() or 1, len(parts))
-    if count < 2:
-        share()
+    if len(parts) < 2:
+        for part in parts:
+            quiet(part)
         return
-    pool = ThreadPoolExecutor(count)
+    pool = ThreadPoolExecutor(min(THREADS, os.cpu_count() or 1))
     try:
-        for done in [pool.submit(share) for _ in range(count)]:
+        for done in [pool.submit(quiet, part) for part in parts]:
             done.result()
     finally:
-        waiting = iter(())  # stops all threads if one has failed, or at Ctrl-C
-        pool.shutdown()
+        pool.shutdown(cancel_futures=True)  # where one has failed, or at Ctrl-C
 
 
 def _solve(rows: Rows, given: Mapping[str, GivenColumn], names: tuple[str, ...]) -> None:

@@ -6,7 +6,7 @@ a temporary column is reused after its last use.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -104,25 +104,6 @@ KINDS: dict[str, type[Any]] = dict.fromkeys(("<", "<=", "==", "and", "or"), np.b
 """The type of an operation's results, if they are not doubles."""
 NOT_IN_PLACE = ("where", "take")
 """Operations that write results before they have read all operands."""
-
-
-class Room:
-    """Columns for intermediate values, kept from tile to tile. Each thread needs its own."""
-
-    def __init__(self) -> None:
-        self._kept: dict[tuple[type[Any], int], NDArray[Any]] = {}
-
-    def columns(self, kinds: Sequence[type[Any]], size: int) -> list[NDArray[Any]]:
-        """A column of each of those types; the same ones again in the next call."""
-        count: dict[type[Any], int] = {}
-        columns = []
-        for kind in kinds:
-            place = kind, count.setdefault(kind, 0)
-            count[kind] += 1
-            if place not in self._kept or self._kept[place].size < size:
-                self._kept[place] = np.empty(size, kind)
-            columns.append(self._kept[place][:size])
-        return columns
 
 
 class Program:

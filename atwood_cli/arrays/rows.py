@@ -20,7 +20,7 @@ from ..solver.answers import Answers
 from .pairs import PAIRS
 from .pattern import Column, Index, Task, select, size_of
 from .plan import LEVELS, Plan, answering, condition_of, nearest_double, plan
-from .program import Program, Room
+from .program import Program
 
 ROOM = 2_000_000  # bytes for the columns of a tile
 SMALLEST, LARGEST = 8_192, 32_768  # rows of a tile
@@ -34,13 +34,9 @@ class Rows:
     """Some rows: their inputs, and where their results go, by name."""
 
     def __init__(
-        self,
-        inputs: Mapping[str, Column],
-        results: Mapping[str, NDArray[Any]],
-        accuracy: Accuracy,
-        room: Room,
+        self, inputs: Mapping[str, Column], results: Mapping[str, NDArray[Any]], accuracy: Accuracy
     ) -> None:
-        self.inputs, self.results, self.accuracy, self.room = inputs, results, accuracy, room
+        self.inputs, self.results, self.accuracy = inputs, results, accuracy
         self.levels = LEVELS[accuracy]
         self.left: dict[Task, list[NDArray[np.intp]]] | None = None
         """Tasks with few rows, kept for the end of all blocks; None where they are solved at once."""
@@ -105,29 +101,26 @@ class Rows:
 
         In rows that follow each other, quantities are written where they belong. Others are gathered first.
         """
-        size, columns = size_of(rows), len(program.between) + len(program.inputs) + len(quantities)
-        most = min(max(SMALLEST, ROOM // (8 * columns)), LARGEST)
+        follow, size = isinstance(rows, slice), size_of(rows)
+        columns = [np.float64] * (len(program.inputs) + len(quantities)) + program.between
+        most = min(max(SMALLEST, ROOM // (8 * len(columns))), LARGEST, size)
+        room = [np.empty(most, kind) for kind in (program.between if follow else columns)]
         for start in range(0, size, most):
             part = slice(start, min(start + most, size))
             tile = select(rows, part)
+            free = iter([column[: size_of(tile)] for column in room])
             results = {name: column[part] for name, column in others.items()}
-            if isinstance(tile, slice):
-                room = iter(self.room.columns(program.between, size_of(tile)))
+            if follow:
                 inputs = {
                     name: self.inputs[name][tile] if self.inputs[name].ndim else self.inputs[name]
                     for name in program.inputs
                 }
                 results |= {name: self.results[name][tile] for name in quantities}
             else:
-                kinds: list[type[Any]] = [
-                    *[np.float64] * (len(program.inputs) + len(quantities)),
-                    *program.between,
-                ]
-                room = iter(self.room.columns(kinds, tile.size))
-                inputs = {name: _gathered(self.inputs[name], tile, next(room)) for name in program.inputs}
-                results |= {name: next(room) for name in quantities}
-            program.run(inputs, results, room)
-            if not isinstance(tile, slice):
+                inputs = {name: _gathered(self.inputs[name], tile, next(free)) for name in program.inputs}
+                results |= {name: next(free) for name in quantities}
+            program.run(inputs, results, free)
+            if not follow:
                 for name in quantities:
                     self.results[name][tile] = results[name]
 
