@@ -50,20 +50,10 @@ class Design(NamedTuple):
     f: float = F
 
     def __str__(self) -> str:
-        words = [f"{self.runs:2} x {self.repeats}"]
-        words.append(
-            f"{100 * self.u:g} % of t"
-            if self.relative
-            else f"{self.u:g} {'s' if self.kind == 'time' else 'm/s²'}"
-        )
-        words += [self.sums] * (self.sums != "constant")
-        words += [f"masses {1000 * self.masses:g} g"] * bool(self.masses)
-        words += [f"friction {100 * self.axle:g} %"] * bool(self.axle)
-        words += [f"between {100 * self.between:g} % of t"] * bool(self.between)
-        words += [f"stated x {self.stated:g}"] * bool(self.stated) + ["averaged"] * self.averaged
-        words += [f"delay {self.delay:g} s"] * bool(self.delay)
-        words += [f"c {1000 * self.c:g} g"] * (self.c != C) + [f"f {1000 * self.f:g} mN"] * (self.f != F)
-        return ", ".join(words)
+        """What differs from the usual."""
+        usual = self._field_defaults
+        more = (f"{name} {value}" for name, value in self._asdict().items() if value != usual.get(name))
+        return ", ".join(more)
 
 
 class Bar(NamedTuple):
@@ -222,12 +212,12 @@ BLUNDER = 0.01
 
 def report(sets: int) -> Iterator[str]:
     yield f"{sets} sets each; c/f; 95 % intervals that hold the truth, median width over SciPy's"
-    yield f"{'runs x repeats, scatter of one':45} held      width       SciPy     no result  accused"
+    yield f"{'what is drawn':60} held      width       SciPy     no result  accused"
     for bar in BARS:
         one = counts(bar.design, sets)
         (c, f), (wide_c, wide_f), (their_c, their_f) = one.within, one.width, one.scipy
         shares = f"{c:4.0f}/{f:3.0f}  {wide_c:.2f}/{wide_f:.2f}  {their_c:4.0f}/{their_f:3.0f}"
-        yield f"{bar.design!s:45} {shares}   {one.refused:5.1f}     {one.accused:5.1f}"
+        yield f"{bar.design!s:60} {shares}   {one.refused:5.1f}     {one.accused:5.1f}"
     yield f"two of eight masses 10 g off: none, one, both named in {blunders_named(sets)} of {sets} sets"
 
 

@@ -164,7 +164,7 @@ def test_slopes_are_those_of_differences(kind: Kind) -> None:
 
 def as_columns(kind: Kind, l: Any, h: Any, drop: Any, measured: Any) -> Data:
     ones = np.ones(len(l))
-    return Data(kind, l, h, drop if kind == "time" else None, measured, ones, 0 * ones, inf, {}, 0.0)
+    return Data(l, h, drop if kind == "time" else None, measured, ones, 0 * ones, inf, {})
 
 
 # Against SciPy
@@ -175,7 +175,7 @@ def by_scipy(best: Fitted, sigma: Any) -> tuple[Any, Any]:
 
     def ideal(_: Any, c: float, f: float) -> Any:
         a = (gravity * (data.h - data.l) - f) / (data.h + data.l + c)
-        return a if data.kind == "a" else np.sqrt(2 * DROP / a)
+        return a if data.drop is None else np.sqrt(2 * DROP / a)
 
     tight = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-14)
     found = optimize.curve_fit(
@@ -234,7 +234,7 @@ def by_scipy_from_many(data: Data, given: dict[str, float], find: list[str]) -> 
     def rest(values: Any) -> Any:
         by = given | dict(zip(find, values, strict=True))
         a = (by["gravity"] * (data.h - data.l) - by["axle"]) / (data.l + data.h + by["rim_mass"])
-        ideal = a if data.kind == "a" else np.sqrt(2 / np.maximum(a, 1e-12))
+        ideal = a if data.drop is None else np.sqrt(2 / np.maximum(a, 1e-12))
         return data.measured - ideal
 
     for _ in range(8):

@@ -11,7 +11,7 @@ from scipy.optimize import least_squares
 from ..model import physics
 from ..model.scene import Input
 from ..tables.sources import Unreadable
-from .runs import Kind, Run, Runs
+from .runs import Run, Runs
 from .statistics import ROUNDING, Column, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
@@ -26,11 +26,9 @@ class Data(NamedTuple):
 
     ``measured`` are means of ``times`` values each. ``spread`` is the standard uncertainty of one such value,
     stated or by its repeats, 0 where there is neither; ``within`` are the degrees of freedom it is known by.
-    ``uncertain`` is what else is uncertain in each run, by name, and ``ratio`` how many times as much the
-    repeats scatter as is stated, 0 if nothing shows it.
+    ``uncertain`` is what else is uncertain in each run, by name.
     """
 
-    kind: Kind
     l: Column
     h: Column
     drop: Column | None
@@ -39,7 +37,6 @@ class Data(NamedTuple):
     spread: Column
     within: float
     uncertain: Mapping[str, Column]
-    ratio: float
 
     @property
     def least(self) -> Column:
@@ -204,7 +201,6 @@ def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -
     scatter = sqrt(squares / repeated) if repeated else 0.0  # by what is stated, if anything is
     spread = np.sqrt(times / total) * (max(scatter, 1.0) if stated else scatter)
     return Data(
-        runs.kind,
         np.minimum(m1, m2),
         np.maximum(m1, m2),
         drop,
@@ -213,7 +209,6 @@ def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -
         spread,
         inf if stated or not squares else repeated,
         {name: some for name, some in uncertain.items() if some.any()},
-        scatter if stated else 0.0,
     )
 
 

@@ -100,13 +100,15 @@ class Outcome(NamedTuple):
 class Fitted(NamedTuple):
     """The fit of the runs that can be used, what is odd about them, and the fit without that.
 
-    ``repeats`` are runs with a measurement far from its siblings, which is given, ``rows`` runs far from what
-    the others say: by their indices, with the distance in standard uncertainties. ``without`` is None where
-    nothing is odd, or where too few runs are left.
+    ``unusable`` says why other runs cannot be used, by their rows. ``repeats`` are runs with a measurement
+    far from its siblings, which is given, ``rows`` runs far from what the others say: by their indices, with
+    the distance in standard uncertainties. ``without`` is None where nothing is odd, or where too few runs
+    are left.
     """
 
     runs: Runs
     used: Sequence[Run]
+    unusable: Mapping[tuple[int, ...], str]
     given: Conditions
     whole: Outcome
     repeats: Mapping[int, tuple[float, float]]
@@ -160,10 +162,10 @@ def read_find(words: Sequence[str], inputs: Mapping[str, Input]) -> list[str]:
 
 def fitted(runs: Runs, given: Conditions, find: Sequence[str]) -> Fitted:
     """The fit of both usual quantities, or of just ``find``. Raises Unreadable, TooFew, Alike."""
-    used = [run for run in runs.runs if not unusable(runs, run, given, find)]
+    reasons = {run.rows: why for run in runs.runs if (why := _unusable(runs, run, given, find))}
+    used = [run for run in runs.runs if run.rows not in reasons]
     if not used:
-        why = unusable(runs, runs.runs[0], given, find)
-        raise Unreadable(f"no run can be used: in {runs.runs[0].name}, {why}")
+        raise Unreadable(f"no run can be used: in {runs.runs[0].name}, {next(iter(reasons.values()))}")
     names = find or [x for x in USUAL if x not in given.values]
     whole = outcome(runs, used, given, names)
     repeats, without = _odd_repeats(used), None
@@ -172,7 +174,7 @@ def fitted(runs: Runs, given: Conditions, find: Sequence[str]) -> Fitted:
     if repeats or rows:
         with suppress(Alike, TooFew):
             without = outcome(runs, [run for i, run in left.items() if i not in rows], given, names)
-    return Fitted(runs, used, given, whole, repeats, rows, without)
+    return Fitted(runs, used, reasons, given, whole, repeats, rows, without)
 
 
 def outcome(runs: Runs, used: Sequence[Run], given: Conditions, names: Sequence[str]) -> Outcome:
@@ -296,7 +298,7 @@ def to_vary(used: Sequence[Run]) -> str:
     return "vary m1 + m2 as well" if same_sum else "vary m2 - m1 more, and m1 + m2"
 
 
-def unusable(runs: Runs, run: Run, given: Conditions, find: Sequence[str]) -> str:
+def _unusable(runs: Runs, run: Run, given: Conditions, find: Sequence[str]) -> str:
     """Why nothing can be expected of a run; empty if something can."""
     mean, difference = run.mean, float(run.m2.value - run.m1.value)
     if run.left_out:

@@ -39,6 +39,7 @@ NEEDED = {
     "a time": "of times or accelerations; name it, as --column t='Zeit in s'",
 }
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
+UNSIGNED = "accelerations have no sign here: none is negative, though m1 is the heavier at times."
 MISSING = ("nan", "None", "<NA>", "NaT")
 """How Python writes a missing value."""
 MEASURABLE = 1e-30, 1e30
@@ -113,17 +114,14 @@ def read_runs(
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     also = [*(f"{in_quotes(column)} as a label" for column in unread), *sheet.remarks]
     remarks = read_as(headings, sheet.separator, usual * bool(sheet.separator), comma, also)
-    runs = []
-    for run in _joined([_run(n, row, headings, comma, drop) for n, row in enumerate(sheet.rows, 1)], without):
-        runs += [run] if run.measured else []
-        remarks += [] if run.measured else [f"Row {run.rows[0]} has no {kind}: it is no run."]
+    joined = _joined([_run(n, row, headings, comma, drop) for n, row in enumerate(sheet.rows, 1)], without)
+    remarks += [f"Row {run.rows[0]} has no {kind}: it is no run." for run in joined if not run.measured]
+    runs = [run for run in joined if run.measured]
     if not runs:
         raise Unreadable("it has no runs")
     signed = any(one.value < 0 for run in runs for one in run.measured)
     if kind == "a" and not signed and any(run.m1.value > run.m2.value for run in runs):
-        remarks.append(
-            "accelerations have no sign here: none is negative, though m1 is the heavier at times."
-        )
+        remarks.append(UNSIGNED)
     return Runs(kind, runs, one_drop, signed, remarks)
 
 
@@ -134,6 +132,11 @@ def _sheet_of(source: Any, usual: str, named: Mapping[str, str]) -> Sheet:
             blocks = blocks_of(opened(fspath(source), stack))
             content = b"".join(lines for lines, _ in whole_lines(blocks, cells=True))
         return read_sheet(content, usual, VOCABULARY, named)
+    return _sheet_of_columns(source)
+
+
+def _sheet_of_columns(source: Any) -> Sheet:
+    """A mapping or a data frame as a table of texts. Raises Unreadable."""
     if not hasattr(source, "items") and not hasattr(source, "columns"):
         raise Unreadable(f"it is of type {type(source).__name__}; give a path, a mapping or a data frame")
     columns: list[tuple[str, list[str]]] = []

@@ -8,7 +8,7 @@ from scipy.special import chdtrc, fdtrc
 from ..model.digits import text
 from ..model.scene import parameter_of
 from ..model.units import counted
-from .judgement import Fitted, beyond, common_error, to_vary, unusable
+from .judgement import Fitted, beyond, common_error, to_vary
 from .published import QUANTITIES, SMALL, USUAL, equation, few
 from .runs import MEASURED
 
@@ -74,14 +74,12 @@ def notes(fit: Fitted) -> list[str]:
 
 
 def _unused(fit: Fitted) -> Iterator[str]:
-    used, others = {run.rows for run in fit.used}, []
-    for run in fit.runs.runs:
-        if run.left_out:
-            yield f"{_capital(run.name)} was left out, as asked."
-        elif run.rows not in used:
-            why = unusable(fit.runs, run, fit.given, fit.whole.best.names)
-            others.append(f"{_capital(run.name)} could not be used: {why}.")
-    yield from _some(others, "could not be used")
+    runs = [run for run in fit.runs.runs if run.rows in fit.unusable]
+    yield from (f"{_capital(run.name)} was left out, as asked." for run in runs if run.left_out)
+    cannot = "could not be used"
+    others = [run for run in runs if not run.left_out]
+    why = (f"{_capital(run.name)} {cannot}: {fit.unusable[run.rows]}." for run in others)
+    yield from _some(why, cannot)
 
 
 def _assumed(fit: Fitted) -> Iterator[str]:
@@ -94,11 +92,6 @@ def _assumed(fit: Fitted) -> Iterator[str]:
 def _spread(fit: Fitted) -> Iterator[str]:
     """How the scatter of the runs is known, and how probable it is."""
     data, chi2, dof = fit.whole.best.data, fit.whole.chi2, fit.whole.best.dof
-    if data.ratio:
-        repeats = float(data.times.sum()) - len(data.times)
-        larger = chdtrc(repeats, repeats * data.ratio**2)
-        if min(larger, 1 - larger) < RARE:
-            yield f"Repeats scatter {few(data.ratio)} times as much as the uncertainties stated."
     if chi2 is None:
         yield f"Nothing but the runs themselves shows the scatter of a single {MEASURED[fit.runs.kind]}."
         return
