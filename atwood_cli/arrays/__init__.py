@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.quantities import STANDARD, Accuracy, read_accuracy, read_names
+from ..model.quantities import Accuracy, read_accuracy, read_quantities
 from ..model.scene import INPUTS, MASSES, MISSING_MASS, SceneError
 from .inputs import DEFAULTS, GivenColumn, Numbers, groups, input_columns, read_column
 from .inputs import STATUSES as STATUSES
@@ -84,8 +84,7 @@ def solve_and_count(
     given: Mapping[str, Numbers | None], accuracy: Accuracy, quantities: Sequence[str] | None
 ) -> tuple[dict[str, NDArray[Any]], Counter[tuple[str, str]]]:
     """As `solve_arrays`; and the number of valid rows without a value, by quantity and reason."""
-    words = [quantities] if isinstance(quantities, str) else STANDARD if quantities is None else quantities
-    names = tuple(dict.fromkeys(read_names("quantities", map(str, words))))
+    names = tuple(read_quantities(quantities))
     accuracy = read_accuracy(accuracy)
     inputs, shape = _read(given)
     results = {name: np.empty(shape, CODES.get(name, np.float64)) for name in (*names, "status")}

@@ -11,7 +11,7 @@ from io import TextIOWrapper
 from queue import SimpleQueue
 from typing import IO, TYPE_CHECKING, Any, TypeVar
 
-from ..model.quantities import STANDARD, Accuracy, read_names
+from ..model.quantities import Accuracy, read_quantities
 from ..tables.sources import Unreadable
 from .solving import Layout, Question, Tally, read_inputs, solve_cells
 
@@ -47,8 +47,7 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None, accuracy:
 
     if not isinstance(table, pl.DataFrame | pl.LazyFrame):
         raise ValueError(f"a table is a data frame of polars, eager or lazy, not {type(table).__name__}")
-    words = [quantities] if isinstance(quantities, str) else STANDARD if quantities is None else quantities
-    asked = Question(list(dict.fromkeys(read_names("quantities", map(str, words)))), accuracy)
+    asked = Question(read_quantities(quantities), accuracy)
     schema = table.collect_schema()
     try:
         solve = partial(with_results, layout=Layout(read_inputs(schema.names(), asked)), asked=asked)

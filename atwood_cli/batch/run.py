@@ -4,28 +4,16 @@ import os
 import signal
 import stat
 import sys
-from collections.abc import Sequence
 from contextlib import ExitStack
 from io import BytesIO
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
-from ..model.quantities import Accuracy
 from ..model.scene import SceneError
 from ..output.files import STDOUT, Stdout, written_beside
-from ..tables.headings import Heading, decimal_commas_in, read_as, read_named, recognised
+from ..tables.headings import Heading, decimal_commas_in, read_as, recognised
 from ..tables.records import Csv, Piece, read_ndjson
-from ..tables.sources import (
-    STDIN,
-    Unreadable,
-    blocks_of,
-    cannot_read,
-    check_format,
-    is_packed,
-    opened,
-    read_format,
-)
-from ..tables.sources import is_stream as is_stream
+from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream, opened
 from .frames import Watch, solve_parquet
 from .solving import ERROR, VOCABULARY, Layout, Question, Tally, read_inputs, solve_cells
 
@@ -43,25 +31,6 @@ class Job(NamedTuple):
     target: str
     force: bool
     asked: Question
-
-
-def read_job(
-    source: str,
-    target: str,
-    *,
-    kind: str | None,
-    force: bool,
-    names: Sequence[str],
-    accuracy: Accuracy,
-    labels: Sequence[str],
-    columns: Sequence[str],
-) -> Job:
-    """What is to be done, by the words of the command. Raises SceneError."""
-    kind = read_format(kind, source)
-    check_format(target, kind)
-    return Job(
-        source, kind, target, force, Question(names, accuracy, labels, read_named(columns, VOCABULARY))
-    )
 
 
 def run_batch(job: Job, watch: Watch, tally: Tally) -> list[str]:

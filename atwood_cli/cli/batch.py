@@ -9,7 +9,7 @@ from ..model.quantities import ACCURACIES, STANDARD, read_accuracy, read_names
 from ..model.scene import INPUTS
 from ..model.units import LONGEST_NAME, counted, shortened
 from ..output.text import say
-from ..tables.sources import FORMATS
+from ..tables.sources import FORMATS, check_format, is_stream, read_format
 from .options import COULD_NOT, DONE, Columns, Force, Labels, option
 
 Table = Annotated[
@@ -81,21 +81,16 @@ def batch(
     allow_errors: AllowErrors = False,
     force: Force = False,
 ) -> int:
-    from ..batch.run import is_stream, read_job, run_batch
-    from ..batch.solving import Tally
+    from ..batch.run import Job, run_batch
+    from ..batch.solving import VOCABULARY, Question, Tally
     from ..output.page import watched
+    from ..tables.headings import read_named
 
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
-    job = read_job(
-        table,
-        output,
-        kind=from_,
-        force=force,
-        names=names,
-        accuracy=read_accuracy(accuracy),
-        labels=label or (),
-        columns=column or (),
-    )
+    kind = read_format(from_, table)
+    check_format(output, kind)
+    named = read_named(column or (), VOCABULARY)
+    job = Job(table, kind, output, force, Question(names, read_accuracy(accuracy), label or (), named))
     tally = Tally(set(names))
     before = _stamp(output)
     try:

@@ -1,7 +1,7 @@
 """The registry: every quantity's name, symbol, unit, equation and meaning, once; and names as typed."""
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import Literal, NamedTuple, get_args
 
@@ -125,6 +125,12 @@ def read_names(
 ) -> list[str]:
     """The names meant; a word may hold several with commas between. Raises SceneError."""
     return [read_name(parameter, word, known, kind, symbols) for word in divided(typed)]
+
+
+def read_quantities(words: Sequence[str] | None) -> list[str]:
+    """The quantities that a program names, each once: by default the standard ones. Raises SceneError."""
+    typed = [words] if isinstance(words, str) else STANDARD if words is None else words
+    return list(dict.fromkeys(read_names("quantities", map(str, typed))))
 
 
 def read_name(
