@@ -1,11 +1,11 @@
 """Headings and cells of tables: the grammar that `fit` and `batch` share."""
 
+import re
 from fractions import Fraction
-from typing import Any
 
 import pytest
 
-from atwood_cli.model.scene import INPUTS, SceneError
+from atwood_cli.model.scene import INPUTS
 from atwood_cli.tables.headings import (
     Heading,
     Vocabulary,
@@ -54,46 +54,22 @@ def test_the_grammar_of_headings(want: str, heading: str) -> None:
 
 
 def test_names_of_scenes_tell_capitals_apart() -> None:
-    columns = [
-        "m1 (g)",
-        "m2 [g]",
-        "M",
-        "m",
-        "mu",
-        "mu_k",
-        "g",
-        "G",
-        "R/cm",
-        "r",
-        "wrap (turn)",
-        "axle (mN)",
-        "u(m1)",
-    ]
+    columns = "m1 (g)|m2 [g]|M|m|mu|mu_k|g|G|R/cm|r|wrap (turn)|axle (mN)|u(m1)".split("|")
     found = {one.column: (one.name, one.factor) for one in read_headings(columns, SCENES)}
-    assert found == {
-        **{
-            "m1 (g)": ("m1", Fraction(1, 1000)),
-            "m2 [g]": ("m2", Fraction(1, 1000)),
-            "M": ("M", 1),
-            "mu": ("mu", 1),
-        },
-        **{"mu_k": ("mu_k", 1), "g": ("g", 1), "R/cm": ("R", Fraction(1, 100)), "wrap (turn)": ("wrap", 360)},
-        "axle (mN)": ("axle", Fraction(1, 1000)),
-    }
+    thousandth = Fraction(1, 1000)
+    masses = {"m1 (g)": ("m1", thousandth), "m2 [g]": ("m2", thousandth)}
+    plain = {name: (name, 1) for name in ("M", "mu", "mu_k", "g")}
+    units = {"R/cm": ("R", Fraction(1, 100)), "wrap (turn)": ("wrap", 360), "axle (mN)": ("axle", thousandth)}
+    assert found == masses | plain | units
 
 
 def test_what_the_grammar_does_not_know_is_named() -> None:
-    named = read_named(
-        ["m1=Masse 1 (g)", "m2 [g]=Masse (rechts)", "t=Zeit A (s)", "t=Zeit B (s)", "u(t)=Fehler = 1σ"], RUNS
-    )
+    words = "m1=Masse 1 (g)|m2 [g]=Masse (rechts)|t=Zeit A (s)|t=Zeit B (s)|u(t)=Fehler = 1σ".split("|")
+    named = read_named(words, RUNS)
     columns = ["Masse 1 (g)", "Masse (rechts)", "Zeit A (s)", "Zeit B (s)", "Fehler = 1σ", "m1"]
     found = read_headings(columns, RUNS, ["m1"], named)
-    assert [(one.at, one.name, one.unit) for one in found] == [
-        (0, "m1", "g"),
-        (1, "m2", "g"),
-        (2, "time", "s"),
-        (3, "time", "s"),
-    ]
+    said = [f"{one.at} {one.name} {one.unit}" for one in found]
+    assert said == ["0 m1 g", "1 m2 g", "2 time s", "3 time s"]
     assert [one.u and one.u.at for one in found] == [None, None, 4, 4]
     assert read_as(found, ";", ",", True) == [
         "read as: cells parted by semicolons, decimal commas, 'Masse 1 (g)' as m1 in g, 'Masse (rechts)' as m2 in g,"
@@ -104,34 +80,16 @@ def test_what_the_grammar_does_not_know_is_named() -> None:
 
 
 PASS = "; or let it pass by --label"
-REFUSED: list[tuple[list[str], str]] = [
-    (["m1", "m_1"], f"columns 'm1' and 'm_1' are both m1; rename one{PASS} 'm_1'"),
-    (
-        ["t1", "time 1"],
-        f"columns 't1' and 'time 1' are both time; number what is repeated, as 'time 1'{PASS} 'time 1'",
-    ),
-    (
-        ["m1 (s)"],
-        f"column 'm1 (s)' has the unit 's'; it takes kg, g, mg, ug, t, lb, lbs, oz, st, slug{PASS} 'm1 (s)'",
-    ),
-    (
-        ["a", "Team", "±"],
-        f"column '±' could be an uncertainty, but no column is what it would be of{PASS} '±'",
-    ),
-    (
-        ["m1", "a_err"],
-        f"column 'a_err' could be an uncertainty, but no column is what it would be of{PASS} 'a_err'",
-    ),
-    (["a", "±", "u(a)"], f"column 'u(a)' is a second uncertainty of a{PASS} 'u(a)'"),
-]
+REFUSED = ["m1|m_1", "t1|time 1", "m1 (s)", "a|Team|±", "m1|a_err", "a|±|u(a)"]
+"""Columns whose last could be two things; `cases/fit.md` has the sentences."""
 
 
-@pytest.mark.parametrize(("columns", "why"), REFUSED)
-def test_what_could_be_two_things_is_refused(columns: list[str], why: str) -> None:
-    with pytest.raises(Unreadable) as raised:
-        read_headings(columns, RUNS)
-    assert str(raised.value) == why
-    assert columns[-1] not in [one.column for one in read_headings(columns, RUNS, columns[-1:])]
+@pytest.mark.parametrize("columns", REFUSED)
+def test_a_column_that_is_refused_may_pass_as_a_label(columns: str) -> None:
+    *others, last = columns.split("|")
+    with pytest.raises(Unreadable, match=re.escape(f"{PASS} '{last}'")):
+        read_headings([*others, last], RUNS)
+    assert last not in [one.column for one in read_headings([*others, last], RUNS, [last])]
 
 
 @pytest.mark.parametrize(
@@ -145,22 +103,6 @@ def test_units_of_scenes_that_are_refused(column: str, why: str) -> None:
     with pytest.raises(Unreadable) as raised:
         read_headings([column], SCENES)
     assert str(raised.value) == f"column {column!r} {why}{PASS} {column!r}"
-
-
-@pytest.mark.parametrize(
-    ("word", "why"),
-    [
-        ("t", "column 't' must be NAME=HEADING, as t='Fallzeit (s)', each heading once"),
-        ("t=", "column 't=' must be NAME=HEADING, as t='Fallzeit (s)', each heading once"),
-        ("x=Zeit", "column 'x=Zeit' has no name of a quantity before =; there are m1, m2, time, a"),
-        ("±=Zeit", "column '±=Zeit' has no name of a quantity before =; there are m1, m2, time, a"),
-        ("t=Zeit", "column 't=Zeit' is not there; there are 'm1', 'Z'"),
-    ],
-)
-def test_names_that_cannot_be_given(word: str, why: str) -> None:
-    with pytest.raises(SceneError) as raised:
-        read_headings(["m1", "Z"], RUNS, (), read_named([word], RUNS))
-    assert str(raised.value) == why
 
 
 def test_a_heading_is_looked_at_quickly() -> None:
@@ -204,29 +146,6 @@ def test_cells_of_uncertainties(cell: str, unit: str, uncertainty: str) -> None:
     assert read_uncertainty(GRAMS._replace(column="±", unit=unit), cell, Fraction("0.2"), False) == Fraction(
         uncertainty
     )
-
-
-@pytest.mark.parametrize(
-    ("read", "why"),
-    [
-        (
-            lambda: read_cell(GRAMS, "2.5", True),
-            "m1 '2.5' has a point in a table of decimal commas; write all alike",
-        ),
-        (
-            lambda: read_cell(GRAMS, "x", False),
-            "m1 'x' is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1)",
-        ),
-        (
-            lambda: read_uncertainty(GRAMS, "-1", Fraction(1), False),
-            "m1 (g) '-1' is no uncertainty; write it like 0.02 or 2%",
-        ),
-    ],
-)
-def test_cells_that_are_no_numbers(read: Any, why: str) -> None:
-    with pytest.raises(SceneError) as raised:
-        read()
-    assert str(raised.value) == why
 
 
 @pytest.mark.parametrize(
