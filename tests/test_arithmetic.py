@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import decimal
+from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import mpmath
 import pytest
@@ -17,11 +18,12 @@ from atwood_cli import solve
 from atwood_cli.arithmetic import settling
 from atwood_cli.arithmetic.interval import Enclosure, Unsettled, enclosures
 from atwood_cli.arithmetic.rational import EXACT, Irrational
-from atwood_cli.model.digits import as_typed, to_digits, to_double
+from atwood_cli.arithmetic.settling import settle
+from atwood_cli.model.digits import as_typed, to_digits, to_double, with_one_power
 from atwood_cli.model.digits import text as text_of
 
 if TYPE_CHECKING:
-    from atwood_cli.arithmetic.rational import Arithmetic, N
+    from atwood_cli.arithmetic.rational import Arithmetic, N, Quantity
 
 precisions = st.sampled_from([20, 25, 50, 97, 200, 1000])
 rationals = st.fractions().filter(lambda q: abs(q) < 10**30)
@@ -176,10 +178,63 @@ ROUNDED: dict[str, tuple[Fraction | Decimal, int]] = {
 SHORTEST = {1.0: "1", 0.1: "0.1", 1e16: "1e16", 1e22: "1e22", 5e-324: "5e-324", 0.0: "0", 1.5e-7: "1.5e-7"}
 AS_TYPED = {
     Fraction(3): "3", Fraction(1, 3): "1/3", Fraction(1, 8): "0.125", Fraction(10) ** 400: "1e400",
-    Fraction(1, 10**9): "1e-9", Fraction(100): "100",
+    Fraction(1, 10**9): "1e-9", Fraction(100): "100", Fraction(10**15): "1000000000000000",
+    Fraction(10**16): "1e16", Fraction(3 * 10**16): "3e16",
     Fraction(1, 12960): "1/12960", Fraction(2 * 10**9, 3 * 10**9 + 1): "0.66666666644444444",
 }
 # fmt: on
+
+
+def test_a_power_of_ten_stands_behind_numbers_from_1e16_on() -> None:
+    assert with_one_power("{:f} ± {:f}", (Decimal("1E15"), Decimal("1E14")), 15).endswith(
+        " ± 100000000000000"
+    )
+    assert with_one_power("{:f} ± {:f}", (Decimal("1.0E16"), Decimal("1E15")), 16) == "(1.0 ± 0.1)e16"
+
+
+@given(st.fractions(0, 20), st.fractions(0, 6), st.fractions(0, 1))
+def test_functions_of_a_wide_argument_enclose(lo: Fraction, width: Fraction, share: Fraction) -> None:
+    """What an argument's width adds is bounded up to 1, and beyond that both ends are evaluated."""
+    at = enclosures(25)
+    x = Enclosure(at, at.number(lo).lo, at.number(lo + width).hi)
+    inside = lo + share * width
+    with mpmath.workdps(60):
+        exact = mpmath.mpf(inside.numerator) / inside.denominator
+        for name in ("expm1", "log1p", "sqrt"):
+            assert contains(getattr(at, name)(x), getattr(mpmath, name)(exact)), name
+        cos, sin = at.cos_sin(x)
+        assert contains(cos, mpmath.cos(exact))
+        assert contains(sin, mpmath.sin(exact))
+
+
+def enclosed_to(value: str, width: Callable[[int], int]) -> Quantity:
+    """An irrational quantity whose enclosures of so many digits are as wide as a power of ten."""
+
+    def quantity(ar: Any) -> Any:
+        if ar is EXACT:
+            raise Irrational
+        with decimal.localcontext(prec=20_000):
+            half = Decimal((0, (1,), width(ar.digits)))
+            return Enclosure(ar, Decimal(value) - half, Decimal(value) + half)
+
+    return quantity
+
+
+def test_wide_enclosures_are_not_taken_for_a_tie() -> None:
+    near = f"2.5{'0' * 30}1"
+    settled = settle(enclosed_to(near, lambda digits: -8000 if digits > 7000 else -20), to_digits(1), 1)
+    assert settled == 3
+    tie = settle(enclosed_to("2.5", lambda digits: -digits), to_digits(1), 1)
+    assert tie == 2  # to even
+
+
+def test_a_difference_that_is_0_in_all_its_digits_is_0() -> None:
+    def quantity(ar: Any) -> Any:
+        if ar is EXACT:
+            raise Irrational
+        return Enclosure(ar, Decimal(0), Decimal((0, (1,), -ar.digits)))
+
+    assert settle(quantity, to_digits(3), 3) == 0
 
 
 @pytest.mark.parametrize(("value", "double"), DOUBLES)

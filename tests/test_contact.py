@@ -1,5 +1,6 @@
 """The arc of contact: identities, bounds against a linear programme, output, figure."""
 
+import json
 import shlex
 import subprocess
 import sys
@@ -508,3 +509,10 @@ def test_a_figure_is_not_drawn_where_standard_output_goes(tmp_path: Path) -> Non
     ran = process(shell=f"cd {there}; atwood contact --m1 1 --m2 3 --M 10 --figure a.svg --force > a.svg")
     why = "atwood: --figure 'a.svg' is where standard output goes; name another\n"
     assert (ran.status, ran.err, (tmp_path / "a.svg").read_text()) == (2, why, "")
+
+
+def test_a_sum_of_which_one_term_is_beyond_doubles(atwood: Atwood) -> None:
+    ran = atwood(*"contact --m1 9e306 --m2 1e307 --M 1e307 --mu 0.1 --json".split())
+    balance = json.loads(ran.out)["balance"]
+    assert balance["friction"]["y"] == pytest.approx(-2.0267e306, rel=1e-4)
+    assert [balance[name]["y"] for name in ("normal", "sum", "resultant", "residual")] == [None] * 4

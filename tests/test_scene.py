@@ -307,3 +307,9 @@ def test_gravity_is_that_of_a_mass_at_its_radius() -> None:
     wanted = {body: 1000 * gm / radius**2 for body, (gm, radius) in GM_AND_RADIUS.items()}
     given = {body: float(gravity) for body, gravity in BODIES.items() if body != "earth"}
     assert given == pytest.approx(wanted, abs=0.006)
+
+
+def test_a_fraction_of_1500_digits_is_the_longest() -> None:
+    assert Scene.read({"m1": Fraction(1, 10**1500 - 1), "m2": "1"}).m1.denominator == 10**1500 - 1
+    with pytest.raises(SceneError, match="is too long"):
+        Scene.read({"m1": Fraction(1, 10**1500), "m2": "1"})

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import chain
-from math import exp, hypot, pi
+from math import exp, hypot, inf, pi
 from random import Random
 from typing import Any
 
@@ -297,6 +297,21 @@ def test_why_no_uncertainty_is_shown(given: str) -> None:
     assert NOT_SHOWN[given] in map(without_count, solution.notes)
     assert None not in [getattr(solution, name) for name in names]
     assert all(solution.uncertainty[name] in (None, 0) for name in names)
+
+
+def test_an_infinite_value_may_have_a_finite_uncertainty() -> None:
+    solution = solve(m1="1e308", m2="(1.100±0.001)e308", M="1e308")
+    assert solution.tension_1 == inf
+    assert 3e305 < (solution.uncertainty["tension_1"] or 0) < 4e305
+    too_small = solve(m1=1, m2=3, M=10, mu="1e9±1")
+    assert too_small.uncertainty["critical_lighter_mass"] is None
+
+
+def test_kinetic_friction_ends_at_static() -> None:
+    given: dict[str, Any] = {"m1": 1, "m2": 3, "M": 100, "mu": "0.3"}
+    u = solve(**given, mu_k="0.29(2)").uncertainty["acceleration"]
+    values = [float(solve(**given, mu_k=mu_k).acceleration or 0) for mu_k in ("0.27", "0.29", "0.3")]
+    assert u == pytest.approx((max(values) - min(values)) / 2, rel=1e-14)
 
 
 def test_as_many_digits_as_are_asked_for() -> None:

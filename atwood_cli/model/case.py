@@ -274,7 +274,7 @@ class Case:
         if place == "heaviest":
             assert c is not None
             return physics.heaviest_excess(*map(ar.number, (l, c, b)))
-        if c is None or place == "locked" or (place == "scene" and (self.stands or not self.sign)):
+        if c is None or place == "locked" or (place == "scene" and self.stands):
             return physics.excess_ratio(*map(ar.number, (l, h, ONE, b, ZERO)))
         if place == "lightest_held":
             l = h - b
