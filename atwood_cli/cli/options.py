@@ -80,15 +80,11 @@ NONE: Rules = {}
 
 
 class Shared(NamedTuple):
-    """Options that several commands have, and what a command gets in their place, by its name.
-
-    ``then`` is called when the command is done.
-    """
+    """Options that several commands have, and what a command gets in their place, by its name."""
 
     gives: str
     options: Mapping[str, Any]
     read: Callable[[Mapping[str, Any]], Any]
-    then: Callable[[Mapping[str, Any]], None] = lambda options: None
 
 
 def takes(*shared: Shared, no_effect: Rules = NONE, needs: Rules = NONE) -> Callable[[Command], Command]:
@@ -105,8 +101,7 @@ def takes(*shared: Shared, no_effect: Rules = NONE, needs: Rules = NONE) -> Call
             _check(options, no_effect, needs)
             read = {group.gives: group.read(options) for group in shared}
             status = command(**{one.name: options[one.name] for one in own}, **read)
-            for group in shared:
-                group.then(options)
+            _ask_about_radians(options.get("wrap"))
             return status
 
         first, *rest = ([_parameter(*each) for each in group.options.items()] for group in shared)
@@ -147,8 +142,8 @@ def _read_scene(options: Mapping[str, Any]) -> dict[str, str | None]:
     return {name: options[name] for name in INPUTS}
 
 
-def _ask_about_radians(options: Mapping[str, Any]) -> None:
-    if (wrap := options["wrap"]) and _may_be_radians(wrap):
+def _ask_about_radians(wrap: str | None) -> None:
+    if wrap and _may_be_radians(wrap):
         typed = f"--wrap {shortened(wrap)}"
         say(f"{typed} was taken for degrees; if it is in radians, write rad behind it, as 3.14rad")
 
@@ -166,7 +161,7 @@ def _may_be_radians(typed: str) -> bool:
 
 
 SCENE_OPTIONS = {name: Annotated[str | None, scene_option(name)] for name in INPUTS}
-SCENE = Shared("given", SCENE_OPTIONS, _read_scene, _ask_about_radians)
+SCENE = Shared("given", SCENE_OPTIONS, _read_scene)
 
 
 def quantities() -> Mapping[str, str]:
