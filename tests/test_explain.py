@@ -22,7 +22,7 @@ from atwood_cli.output.text import inputs_in_words
 from atwood_cli.output.typeset import as_markdown, as_text, chain
 from atwood_cli.output.typeset import law as law_in_text
 from atwood_cli.solver.answers import Answers, read_answers
-from atwood_cli.solver.equations import HELD, Equation, Law
+from atwood_cli.solver.equations import Equation, Law
 from atwood_cli.solver.equations import plain as in_letters
 from atwood_cli.solver.steps import Explanation, explain
 
@@ -249,7 +249,8 @@ def stated(found: Explanation) -> Iterator[tuple[str, str]]:
         if equation.signs[1] != ">":
             yield equation.left, equation.result
     for words in sentences(found):
-        yield from re.findall(rf"`([^`]+)`{HELD}={HELD}({NUMBER})", words)
+        if not words.startswith("- "):  # what a simpler model gives
+            yield from re.findall(rf"`([^`]+)` = ({NUMBER})", words)
 
 
 def check_values(found: Explanation, scene: Scene, digits: int) -> int:
@@ -441,7 +442,7 @@ def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str, width: int) -
         for number in (equation.numbers or {}).values():
             shown = str(number).lower().replace("e+", "e")
             assert any(shown in word for word in words)
-    assert HELD not in "".join(lines)
+    assert "\xa0" not in "".join(lines)
     assert not any(re.search(r"^=|\w =$", line) for line in lines)
     assert "`" not in "".join(lines)
 
@@ -468,7 +469,7 @@ def test_where_stdout_lacks_symbols_all_else_is_there(more: list[str], encoding:
 def check_markdown(lines: list[str], title: str = "Atwood's machine, step by step") -> None:
     page = "\n".join(lines)
     assert "`" not in page
-    assert HELD not in page
+    assert "\xa0" not in page
     pieces = page.split("$$")
     assert len(pieces) % 2 == 1
     for display in pieces[1::2]:

@@ -33,14 +33,18 @@ HELD = rf" (?=[±=])|(?<=[±=]) |(?<=[\d)]) (?=(?:{UNITS})\b)|(?<=\bN) (?=m\b)|(
 """The blanks at which no line breaks: within a name, its value, uncertainty and unit."""
 
 
-def wrapped(words: str, width: int) -> list[str]:
-    """The words in lines of that width, but for a number that is longer with its unit."""
+def wrapped(words: str, width: int, first: str = "", later: str = "") -> list[str]:
+    """The words in lines of that width, but for a number that is longer with its unit.
+
+    ``first`` stands before the first line, ``later`` before the others.
+    """
     import re
     from textwrap import wrap
 
     held = re.sub(HELD, "\xa0", words).split(" ")
     held = [part if len(part) <= width else part.replace("=\xa0", "= ") for part in held]
-    lines = wrap(" ".join(held), max(width, 1), break_long_words=False, break_on_hyphens=False)
+    how: Any = {"break_long_words": False, "break_on_hyphens": False}
+    lines = wrap(" ".join(held), max(width, 1), initial_indent=first, subsequent_indent=later, **how)
     return [line.replace("\xa0", " ") for line in lines]
 
 

@@ -6,15 +6,15 @@ Formulas come first, from symbols and numbers to a line; then the page that sent
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from decimal import Decimal
-from textwrap import wrap
 from typing import Any
 
 from ..arithmetic.symbolic import Formula, Symbol, factors
 from ..model.digits import text
 from ..model.quantities import QUANTITIES
 from ..model.scene import INPUTS
-from ..solver.equations import HELD, Equation, Law, Part, plain
+from ..solver.equations import Equation, Law, Part, plain
 from ..solver.steps import Explanation
+from .text import wrapped
 
 Written = tuple[str, int]
 """A formula as text and its precedence, which decides where it needs parentheses."""
@@ -163,24 +163,11 @@ def is_item(part: Part) -> bool:
     return isinstance(part, str) and part.startswith("- ")
 
 
-def wrapped(words: str, width: int, first: str = "", later: str = "") -> list[str]:
-    """The words in lines, which break at blanks only: a number stays whole."""
-    lines = wrap(
-        words,
-        width,
-        initial_indent=first,
-        subsequent_indent=later,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
-    return [line.replace(HELD, " ") for line in lines]
-
-
 def in_text(words: str) -> str:
-    """A sentence without its backticks; no line breaks between them, nor beside an = sign."""
+    """A sentence without its backticks; no line breaks between them."""
     pieces = words.split("`")
-    pieces[1::2] = [piece.replace(" ", HELD) for piece in pieces[1::2]]
-    return "".join(pieces).replace(" = ", f"{HELD}={HELD}")
+    pieces[1::2] = [piece.replace(" ", "\xa0") for piece in pieces[1::2]]
+    return "".join(pieces)
 
 
 def law(law: Law, latex: bool = False) -> str:
@@ -265,7 +252,7 @@ def in_markdown(words: str) -> str:
     pieces = MATHEMATICS.split(named)
     pieces[::2] = (re.sub(r"([][*_|<>$\\^~@#]|-(?=-))", r"\\\1", piece) for piece in pieces[::2])
     pieces[1::2] = (f"${in_math(piece.strip('`'))}$" for piece in pieces[1::2])
-    return "".join(pieces).replace(HELD, " ")
+    return "".join(pieces)
 
 
 MATHEMATICS = re.compile(r"(`[^`]*`|\(-?[\d.]+ ± [\d.]+\)e-?\d+|-?[\d.]+ ± [\d.]+|[μπφθαβτ≈≤≥√±])")

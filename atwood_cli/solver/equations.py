@@ -54,9 +54,6 @@ class Equation(NamedTuple):
     unit: str
 
 
-HELD = "\x1f"
-"""Stands for a blank at which no line breaks: an ASCII character, which every stream takes."""
-
 Part = str | Law | Equation
 
 
@@ -301,7 +298,7 @@ class Derivation:
         """A symbol with its value, for a sentence."""
         known = name in QUANTITIES
         value = self.answers[name] if known else self.number(Symbol("", name), self.digits)[0]
-        return f"`{self.symbol(name)}`{HELD}={HELD}{in_words(name, value).replace(' ', HELD)}"
+        return f"`{self.symbol(name)}` = {in_words(name, value)}"
 
 
 def unit_of(name: str) -> str:
