@@ -49,9 +49,8 @@ def forms_of(fit: Fitted, only: Sequence[str]) -> Forms:
     def page() -> None:
         _print_page(fit, record["runs"], above, said)
 
-    records = json if only else None
     values = [cell(record[name]) for name in only]
-    return Forms(json, lambda: [records()] if records else record["runs"], page, beside, values)
+    return Forms(json, lambda: [json()] if only else record["runs"], page, beside, values)
 
 
 def results_of(fit: Fitted) -> Fit:
