@@ -113,13 +113,10 @@ def solve_and_count(
         for name in task.names:
             flat[name][index] = rows.results[name]
 
-    blocks = _blocks(prod(shape), BLOCK, THREADS)
+    blocks = _blocks(prod(shape))
     _on_threads(solve_block, [(block,) for block in blocks])
-    again = []
-    for task, indices in left.items():
-        index = np.sort(np.concatenate(indices))  # the same order whichever thread was first
-        again += [(index[block], task) for block in _blocks(index.size, BLOCK)]
-    _on_threads(solve_left, again)
+    # Sorted, for the same digits whichever thread was first.
+    _on_threads(solve_left, [(np.sort(np.concatenate(some)), task) for task, some in left.items()])
     return results, sum(counted, Counter())
 
 
@@ -141,13 +138,13 @@ def _read(given: Mapping[str, Numbers | None]) -> tuple[dict[str, GivenColumn], 
     return inputs, shape
 
 
-def _blocks(size: int, most: int, multiple_of: int = 1) -> list[slice]:
-    """Slices of nearly the same length; their number is a multiple that threads can share evenly.
+def _blocks(size: int) -> list[slice]:
+    """Slices of nearly the same length; if there are several, threads can share them evenly.
 
     The number of processors plays no part, as the digits must not depend on it.
     """
-    count = -(-size // most)
-    count = -(-count // multiple_of) * multiple_of if count > 1 else count
+    count = -(-size // BLOCK)
+    count = -(-count // THREADS) * THREADS if count > 1 else count
     return [slice(size * i // count, size * (i + 1) // count) for i in range(count)]
 
 

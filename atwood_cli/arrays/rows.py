@@ -70,10 +70,10 @@ class Rows:
         for name in how.conditional:
             failed = select(rows, np.flatnonzero(~found[condition_of(name)]))
             again = task._replace(names=(name,), level=task.level + 1)
-            if self.left is not None and failed.size <= LEAVE:
-                self.left.setdefault(again, []).append(failed)
-            else:
+            if self.left is None or failed.size > LEAVE:
                 yield failed, again
+            elif failed.size:
+                self.left.setdefault(again, []).append(failed)
         if how.alone:
             yield rows, task._replace(names=how.alone, level=len(self.levels))
         if how.question:
