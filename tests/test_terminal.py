@@ -121,10 +121,7 @@ SCENES = f'm1,m2,l {HOSTILE}\n1,3,"{HOSTILE}\r2"\n1,x{HOSTILE},z\n'
 @pytest.mark.parametrize(
     ("typed", "content"),
     [
-        *(
-            (f"fit {{file}}.csv{form}", RUNS)
-            for form in ("", " --csv", " --json", " --explain", " --label x")
-        ),
+        *((f"fit {{file}}.csv{form}", RUNS) for form in ("", " --csv", " --json")),
         *((f"batch {{file}}.csv --from {kind}", SCENES) for kind in ("csv", "tsv", "ndjson", "parquet")),
         ("batch {file}.csv -o {file}2.csv --force", SCENES),
         ("batch {file}.csv", SCENES.replace(",l ", ",M ")),
@@ -154,13 +151,11 @@ def test_nothing_typed_steers_the_terminal(command: str, typed: str) -> None:
 
 
 def test_in_a_pipe_or_a_file_a_table_keeps_its_bytes(tmp_path: Path) -> None:
-    for command, content in (("fit", RUNS), ("batch", SCENES)):
-        (tmp_path / "in.csv").write_text(content, newline="", encoding="utf-8")
-        for given in ({}, {"PYTHONIOENCODING": "ascii"}):
-            csv = "--csv" if command == "fit" else "--allow-errors"
-            ran = process(command, str(tmp_path / "in.csv"), csv, **given)
-            assert ran.status == 0
-            assert ran.out.count(HOSTILE) >= 2
+    (tmp_path / "in.csv").write_text(SCENES, newline="", encoding="utf-8")
+    for given in ({}, {"PYTHONIOENCODING": "ascii"}):
+        ran = process("batch", str(tmp_path / "in.csv"), "--allow-errors", **given)
+        assert ran.status == 0
+        assert ran.out.count(HOSTILE) >= 2
 
 
 # How it ends
