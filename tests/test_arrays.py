@@ -544,6 +544,16 @@ def test_what_leaves_the_doubles_is_infinite() -> None:
                 np.testing.assert_array_max_ulp(results[name], np.full(40, float(getattr(one, name))), ulps)
 
 
+def test_many_rows_beside_the_least_mass_that_slips_are_solved() -> None:
+    """Their critical pulley mass alone goes to the next level, where it asks a question of its own."""
+    mu = np.linspace(0.02, 0.2, 100)
+    (least, _) = solve_arrays(1.0, 2.0, mu=mu, accuracy="exact", quantities=["least_heavier_mass"]).values()
+    given: dict[str, Any] = {"m1": 1.0, "m2": np.nextafter(least, inf), "M": 4e16, "mu": mu}
+    results = solve_arrays(**given, accuracy="exact")
+    for i in range(0, 100, 9):
+        assert_is_solve(results, i, given | {"m2": float(given["m2"][i]), "mu": float(mu[i])}, "exact")
+
+
 def test_rows_of_the_next_level_are_solved_wherever_they_wait(monkeypatch: pytest.MonkeyPatch) -> None:
     """Many are solved with their block, few with those of all blocks; and some need two more levels."""
     given = columns(rows("ordinary", 200) + rows("near_critical", 800))
