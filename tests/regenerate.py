@@ -125,7 +125,11 @@ KEPT = [
         whole(script.with_suffix(".txt"), f'python3() {{ "$PYTHON" "$@"; }}; . "{script}"')
         for script in SCRIPTS
     ),
-    *(whole(engine.with_suffix(".txt"), f'"$PYTHON" "{engine}"', needs) for engine, needs in ENGINES.items()),
+    # On a busy machine dask says on stderr that a port is taken, or a heartbeat late.
+    *(
+        whole(engine.with_suffix(".txt"), f'"$PYTHON" "{engine}" 2> /dev/null', needs)
+        for engine, needs in ENGINES.items()
+    ),
     whole(
         EXAMPLES / "handout.md", partial(shown, "atwood solve --m1 1 --m2 3 --mu 0.3 --explain --markdown")
     ),
