@@ -5,14 +5,17 @@ import signal
 import sys
 
 INTERRUPTED = 130
-STATUSES = {"SIGINT": INTERRUPTED, "SIGTERM": 143, "SIGHUP": 129, "SIGALRM": 142}
-"""Signals that end a run, where the system has them, with the exit status of each."""
+STATUSES = {
+    getattr(signal, name): status
+    for name, status in {"SIGINT": INTERRUPTED, "SIGTERM": 143, "SIGHUP": 129, "SIGALRM": 142}.items()
+    if hasattr(signal, name)
+}
+"""Signals that end a run, of those that the system has, with the exit status of each."""
 
 
 def main() -> int:
     """Run the command line and return its exit status. What comes after is the end of the process."""
     ended_by, heeded = 0, True  # the signal that ended the run, and whether the next one is heeded
-    statuses = {getattr(signal, name): status for name, status in STATUSES.items() if hasattr(signal, name)}
 
     def end(number: int, _: object) -> None:
         """Stop as on Ctrl-C, which cleans up: nothing half-written stays beside a file."""
@@ -32,33 +35,36 @@ def main() -> int:
             signal.setitimer(signal.ITIMER_REAL, 0.01)
 
     try:
-        for number in statuses:
+        for number in STATUSES:
             if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
                 signal.signal(number, end)
         sys.unraisablehook = end_soon
-        # The environment may allow fewer than we do.
-        sys.set_int_max_str_digits(sys.int_info.default_max_str_digits)
-        gc.disable()  # imported code stays: searching it for garbage takes a seventh of a short run
-        # Imported here, so that Ctrl-C during start-up shows no traceback either.
-        from .cli import run
-
-        gc.freeze()
-        gc.enable()
-        status = run()
+        status = _run()
     except KeyboardInterrupt:
-        status = statuses.get(ended_by, INTERRUPTED)
+        status = STATUSES.get(ended_by, INTERRUPTED)
     except Exception:  # a module in the middle of its import may turn the interrupt into another error
         if not ended_by:
             raise
-        status = statuses[ended_by]
+        status = STATUSES[ended_by]
     finally:
         heeded = False  # all is done; Python would show a traceback of an interrupt at its end
         sys.unraisablehook = sys.__unraisablehook__
-        for number in statuses:
+        for number in STATUSES:
             signal.signal(number, signal.SIG_IGN)
-        gc.enable()
         gc.freeze()  # so that it is not searched at the end either
     return status
+
+
+def _run() -> int:
+    """Run the command line, imported here, so that Ctrl-C during start-up shows no traceback either."""
+    # The environment may allow fewer than we do.
+    sys.set_int_max_str_digits(sys.int_info.default_max_str_digits)
+    gc.disable()  # imported code stays: searching it for garbage takes a seventh of a short run
+    from .cli import run
+
+    gc.freeze()
+    gc.enable()
+    return run()
 
 
 if __name__ == "__main__":
