@@ -137,23 +137,33 @@ class Rows:
         return yes
 
     def _solve_one_by_one(self, rows: Index, task: Task) -> None:
-        """Solve each row as a scene of its own, exactly."""
+        """Solve rows as scenes of their own, exactly; those that are alike, as in tables of a few whole
+        numbers, once."""
+        columns = [column for column in self.inputs.values() if column.ndim]
+        alike: dict[tuple[float, ...], list[int]] = {}
         for place in range(size_of(rows)):
             row = select(rows, place)
-            if len(task.names) == 1 and task.decisions:
-                value = nearest_double(task, task.names[0], self._number(row))
-                if value is not None:
-                    self.results[task.names[0]][row] = value
-                    continue
-            answers = Answers(task.pattern.scene(self._number(row)))
-            for name in task.names:
-                if name == "regime":
-                    self.results[name][row] = REGIMES.index(answers.case.regime)
-                else:
-                    value = answers[name]
-                    self.results[name][row] = nan if value is None else float(value)
-                    if value is None:
-                        self.reasons[name, answers.reasons[name]] += 1
+            alike.setdefault(tuple(column[row] for column in columns), []).append(row)
+        for same in alike.values():
+            self._solve_scene(same, task)
+
+    def _solve_scene(self, rows: list[int], task: Task) -> None:
+        """Solve the scene that is in these rows."""
+        number = self._number(rows[0])
+        if len(task.names) == 1 and task.decisions:
+            value = nearest_double(task, task.names[0], number)
+            if value is not None:
+                self.results[task.names[0]][rows] = value
+                return
+        answers = Answers(task.pattern.scene(number))
+        for name in task.names:
+            if name == "regime":
+                self.results[name][rows] = REGIMES.index(answers.case.regime)
+            else:
+                value = answers[name]
+                self.results[name][rows] = nan if value is None else float(value)
+                if value is None:
+                    self.reasons[name, answers.reasons[name]] += len(rows)
 
     def _number(self, row: int) -> Callable[[str], Fraction]:
         """The inputs of a row, exactly, by their names."""
