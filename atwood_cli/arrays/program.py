@@ -7,6 +7,7 @@ a temporary column is reused after its last use.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from threading import local
 from typing import Any
 
 import numpy as np
@@ -104,6 +105,23 @@ KINDS: dict[str, type[Any]] = dict.fromkeys(("<", "<=", "==", "and", "or"), np.b
 """The type of an operation's results, if they are not doubles."""
 NOT_IN_PLACE = ("where", "take")
 """Operations that write results before they have read all operands."""
+
+
+_KEPT = local()
+
+
+def columns_for(kinds: Iterable[type[Any]], size: int) -> list[NDArray[Any]]:
+    """Columns for intermediate values, of each of those types: a thread gets the same ones in its next call.
+
+    New ones would be new pages of memory each time, which takes as long as half of what is computed in them.
+    """
+    kept: dict[tuple[int, type[Any]], NDArray[Any]] = vars(_KEPT).setdefault("columns", {})
+    columns = []
+    for place in enumerate(kinds):
+        if place not in kept or kept[place].size < size:
+            kept[place] = np.empty(size, place[1])
+        columns.append(kept[place][:size])
+    return columns
 
 
 class Program:

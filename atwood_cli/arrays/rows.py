@@ -20,7 +20,7 @@ from ..solver.answers import Answers
 from .pairs import PAIRS
 from .pattern import Column, Index, Task, select, size_of
 from .plan import LEVELS, Plan, answering, condition_of, nearest_double, plan
-from .program import Program
+from .program import Program, columns_for
 
 ROOM = 2_000_000  # bytes for the columns of a tile
 SMALLEST, LARGEST = 8_192, 32_768  # rows of a tile
@@ -104,7 +104,7 @@ class Rows:
         follow, size = isinstance(rows, slice), size_of(rows)
         columns = [np.float64] * (len(program.inputs) + len(quantities)) + program.between
         most = min(max(SMALLEST, ROOM // (8 * len(columns))), LARGEST, size)
-        room = [np.empty(most, kind) for kind in (program.between if follow else columns)]
+        room = columns_for(program.between if follow else columns, most)
         for start in range(0, size, most):
             part = slice(start, min(start + most, size))
             tile = select(rows, part)
