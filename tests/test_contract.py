@@ -14,6 +14,8 @@ from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from functools import partial
 from math import inf, log, pi
+from pathlib import Path
+from runpy import run_path
 from typing import Any
 
 import pytest
@@ -25,8 +27,10 @@ from atwood_cli.model.machine import Machine
 from atwood_cli.model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
 from atwood_cli.model.scene import INPUTS, MEASURED, Motion
 
-from . import oracle, user_script
+from . import oracle
 from .scenes import inputs, table
+
+USER_SCRIPT = str(Path(__file__).with_name("user_script.py"))
 
 
 def nulls(solution: Solution[Any]) -> set[str]:
@@ -408,11 +412,15 @@ def test_the_python_door_needs_neither_typer_nor_rich_nor_numpy() -> None:
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
+def test_a_users_script_runs() -> None:
+    run_path(USER_SCRIPT)
+
+
 def test_pyright_knows_what_a_users_script_gets() -> None:
     """mypy checks it with the whole tree."""
     pytest.importorskip("basedpyright")
     options = ["--level", "error", "--pythonpath", sys.executable]
-    command = [sys.executable, "-m", "basedpyright", *options, user_script.__file__]
+    command = [sys.executable, "-m", "basedpyright", *options, USER_SCRIPT]
     checked = subprocess.run(command, capture_output=True, text=True, check=False)
     assert (checked.returncode, checked.stdout) == (0, "0 errors, 0 warnings, 0 notes\n")
 
