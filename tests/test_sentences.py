@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from atwood_cli.model import mechanics
+from atwood_cli.model import reasons
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver import answers as answers_
 from atwood_cli.solver.answers import Answers
@@ -241,25 +241,25 @@ SENTENCES: dict[str, Callable[..., None]] = {
 """What is said of a scene, and the claim in it."""
 
 REASONS: dict[str, Callable[[Claims], bool]] = {
-    mechanics.NO_CRITICAL_MASS: lambda c: c.any_pulley() == {"no-slip"},
-    mechanics.AXLE_HOLDS: lambda c: c.any_pulley() == {"no-slip"} and c.h - c.l <= c.b,
-    mechanics.ALWAYS_SLIPS: lambda c: c.any_pulley() == {"slip"} and c.b > 0,
-    mechanics.NO_CRITICAL_HEAVIER_MASS: lambda c: not may_slip_somewhere(c),
-    mechanics.AXLE_ENOUGH: lambda c: c.any_pulley(h=c.l + c.b) == {"slip"},
-    mechanics.NO_NEED: lambda c: c.regime(mu=Fraction(0)) == "no-slip" or c.scene.mu == 0,
-    mechanics.NO_WRAP: lambda c: c.regime(mu=Fraction(0)) == "slip",
-    mechanics.NOT_APPLICABLE: lambda c: c.scene.mu == c.b == 0 and c.scene.M is None,
-    mechanics.FREE_END: lambda c: c.l == 0,
-    mechanics.DEFINITE: lambda c: c.regime() != "no-slip",
-    mechanics.NOT_DEFINITE: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
-    mechanics.NOT_BOUNDED: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
-    mechanics.LONG_WRAP: lambda c: c.scene.wrap.number > 180,
-    mechanics.NEEDS_MU: lambda c: c.scene.mu is None,
-    mechanics.NEEDS_M: lambda c: c.scene.M is None,
-    mechanics.NEEDS_R: lambda c: c.scene.R is None,
-    mechanics.UNKNOWN_SHAPE: lambda c: c.scene.I is not None and c.scene.M is None,
-    mechanics.LOCKED_AXLE: lambda c: c.scene.M == inf,
-    mechanics.ONE_SIDED: lambda c: (c.scene.wrap.number - 180) % 360 != 0,
+    reasons.NO_CRITICAL_MASS: lambda c: c.any_pulley() == {"no-slip"},
+    reasons.AXLE_HOLDS: lambda c: c.any_pulley() == {"no-slip"} and c.h - c.l <= c.b,
+    reasons.ALWAYS_SLIPS: lambda c: c.any_pulley() == {"slip"} and c.b > 0,
+    reasons.NO_CRITICAL_HEAVIER_MASS: lambda c: not may_slip_somewhere(c),
+    reasons.AXLE_ENOUGH: lambda c: c.any_pulley(h=c.l + c.b) == {"slip"},
+    reasons.NO_NEED: lambda c: c.regime(mu=Fraction(0)) == "no-slip" or c.scene.mu == 0,
+    reasons.NO_WRAP: lambda c: c.regime(mu=Fraction(0)) == "slip",
+    reasons.NOT_APPLICABLE: lambda c: c.scene.mu == c.b == 0 and c.scene.M is None,
+    reasons.FREE_END: lambda c: c.l == 0,
+    reasons.DEFINITE: lambda c: c.regime() != "no-slip",
+    reasons.NOT_DEFINITE: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
+    reasons.NOT_BOUNDED: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
+    reasons.LONG_WRAP: lambda c: c.scene.wrap.number > 180,
+    reasons.NEEDS_MU: lambda c: c.scene.mu is None,
+    reasons.NEEDS_M: lambda c: c.scene.M is None,
+    reasons.NEEDS_R: lambda c: c.scene.R is None,
+    reasons.UNKNOWN_SHAPE: lambda c: c.scene.I is not None and c.scene.M is None,
+    reasons.LOCKED_AXLE: lambda c: c.scene.M == inf,
+    reasons.ONE_SIDED: lambda c: (c.scene.wrap.number - 180) % 360 != 0,
 }
 """Why something is missing, and whether that is so."""
 

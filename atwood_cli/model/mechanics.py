@@ -1,4 +1,4 @@
-"""What moves and what pulls, written once for every number type; why a quantity may be undetermined."""
+"""What moves and what pulls, written once for every number type."""
 
 from __future__ import annotations
 
@@ -8,51 +8,12 @@ from typing import TYPE_CHECKING, Generic
 
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import N
-from . import arc, physics
+from . import arc, physics, reasons
 from .case import Case, is_zero
+from .reasons import Undetermined
 
 if TYPE_CHECKING:
     from ..arithmetic.rational import Arithmetic
-
-NEEDS_MU = "`give` `mu`, the friction coefficient"
-NEEDS_M = "`give` `M`, the pulley's mass, which decides here"
-NEEDS_R = "`give` `R`, the pulley's radius"
-UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, beside `I`"
-FREE_END = "not defined for a free end: the string is fixed to the pulley and no friction holds it"
-NOT_BOUNDED = "not one number while the string grips with friction to spare"
-NOT_DEFINITE = (
-    "between `friction_force_min` and `friction_force_max` while the string grips"
-    " (atwood quantities says when)"
-)
-DEFINITE = "bounds are for a string that grips with friction to spare; here `friction_force` is definite"
-LONG_WRAP = "bounds are known for up to half a turn of wrap (180 degrees)"
-NO_CRITICAL_MASS = "does not exist, as the string holds on any pulley, however heavy"
-NO_CRITICAL_HEAVIER_MASS = "does not exist, as the string holds under any heavier mass"
-AXLE_HOLDS = "does not exist, as the axle holds the difference on any pulley"
-ALWAYS_SLIPS = "does not exist, as for the friction of the axle the string slips on any pulley, however light"
-AXLE_ENOUGH = "no condition here, as the friction of the axle is enough to make the string slip on any pulley"
-NO_NEED = "does not exist, as no friction is needed"
-NO_WRAP = "does not exist, as without friction no wrap holds"
-NOT_APPLICABLE = "conditions (36) do not apply without friction"
-LOCKED_AXLE = "not defined for a locked pulley: `M` = `inf` is not its weight"
-ONE_SIDED = "defined for half a turn of wrap (and whole turns more), where both ends pull downwards"
-NEEDS_A = "`give` `a`, a measured acceleration, in place of `M`"
-NEEDS_A_BESIDE_M = "`give` `a`, a measured acceleration, beside `M` and in place of `g`"
-NEEDS_A_AND_M = "`give` `a`, a measured acceleration, and `M` in place of `{}`"
-NEEDS_A_OF_A_SLIDE = (
-    "`give` `a`, a measured acceleration, beside `M` = `inf`, or beside `M` and a `mu` that is too small"
-)
-NEEDS_DROP = "`give` `drop`, the height that the heavier mass falls from rest"
-AT_REST = "does not exist, as nothing moves"
-
-
-class Undetermined(Exception):
-    """The scene does not determine the quantity; the reason says why and what to give.
-
-    What a page of mathematics writes in another way stands between backticks: names of inputs and of
-    quantities, and the word "give". `solver.messages` says who takes the backticks out.
-    """
-
 
 class Mechanics(Generic[N]):
     """The motion, the tensions and the friction of a case in one arithmetic.
@@ -60,36 +21,13 @@ class Mechanics(Generic[N]):
     ``known`` are quantities known beforehand, by name: they are taken as they are and not computed.
     """
 
-    def __init__(self, case: Case, ar: Arithmetic[N], known: Mapping[str, N] | None = None) -> None:
+    def __init__(self, case: Case, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:
         self.case, self.scene, self.ar = case, case.scene, ar
+        self.l, self.h, self.g = map(ar.number, (case.light, case.heavy, self.scene.g))
+        # The axle's friction as a force at the rim (N), and as a mass (kg).
+        self.f, self.b = map(ar.number, (case.axle_friction, case.axle_mass))
         self._arcs: dict[arc.Kind, list[arc.Arc[N]]] = {}
-        for name, value in (known or {}).items():
-            setattr(self, name, value)
-
-    @lazy
-    def l(self) -> N:
-        """Lighter mass (kg)."""
-        return self.ar.number(self.case.light)
-
-    @lazy
-    def h(self) -> N:
-        """Heavier mass (kg)."""
-        return self.ar.number(self.case.heavy)
-
-    @lazy
-    def g(self) -> N:
-        """Gravity (m/s²)."""
-        return self.ar.number(self.scene.g)
-
-    @property
-    def f(self) -> N:
-        """The axle's friction as a force at the rim (N)."""
-        return self.ar.number(self.case.axle_friction)
-
-    @property
-    def b(self) -> N:
-        """That friction as a mass (kg)."""
-        return self.ar.number(self.case.axle_mass)
+        vars(self).update(known)
 
     @lazy
     def phi(self) -> N:
@@ -106,7 +44,7 @@ class Mechanics(Generic[N]):
     @property
     def mu(self) -> N:
         """Coefficient of static friction, which a free end does not take."""
-        return self._given(self.scene.mu, FREE_END if self.case.free_end else NEEDS_MU)
+        return self._given(self.scene.mu, reasons.FREE_END if self.case.free_end else reasons.NEEDS_MU)
 
     def _capstan_excess(self, given: Fraction | None, mu: N) -> N:
         """e^{μφ} - 1; without friction no exponential is asked for."""
@@ -176,7 +114,7 @@ class Mechanics(Generic[N]):
             return self.ar.number(0)
         else:
             drive = self.gripping_drive
-            load = physics.load(l, h, self._given(case.rim_mass, NEEDS_M))
+            load = physics.load(l, h, self._given(case.rim_mass, reasons.NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
     @lazy
@@ -188,7 +126,7 @@ class Mechanics(Generic[N]):
             return self.ar.number(self.case.limiting_mu)
         if self.scene.mu is None or self.case.tensions_equal or not self.case.pulley_known:
             return self.mu_verge
-        raise Undetermined(NOT_BOUNDED if self.case.long_wrap else NOT_DEFINITE)
+        raise Undetermined(reasons.NOT_BOUNDED if self.case.long_wrap else reasons.NOT_DEFINITE)
 
     @lazy
     def friction_vector(self) -> tuple[N, N]:
@@ -260,7 +198,7 @@ class Mechanics(Generic[N]):
             return self.ar.number(0)
         if case.stands:
             return self.ar.not_negative(physics.difference_of_a_locked_pulley(self.l, self.h, self.g))
-        c = self._given(case.rim_mass, NEEDS_M)
+        c = self._given(case.rim_mass, reasons.NEEDS_M)
         return physics.difference_of_a_pulley(c, self.magnitude, self.f)
 
     @property
@@ -271,20 +209,19 @@ class Mechanics(Generic[N]):
     def _bounded(self) -> bool:
         """Whether the friction force is bounded by more than 0; raises where it has no bounds."""
         if self.case.regime != "no-slip":
-            raise Undetermined(DEFINITE)
+            raise Undetermined(reasons.DEFINITE)
         _ = self.mu_verge  # raises where there is none
         if self.case.tensions_equal:
             return False
         _ = self.mu  # raises if it is not given
         if self.case.long_wrap:
-            raise Undetermined(LONG_WRAP)
+            raise Undetermined(reasons.LONG_WRAP)
         return True
 
     # The quantities
 
     @property
     def acceleration(self) -> N:
-        """Acceleration of the masses (m/s²), positive when m2 descends: (4), in slip (1) with (26)."""
         return self.magnitude if self.case.sign > 0 else self.magnitude * self.case.sign
 
     @lazy
@@ -299,53 +236,47 @@ class Mechanics(Generic[N]):
 
     @property
     def tension_1(self) -> N:
-        """Tension of the string at m1 (N): (4), in slip (1) with (26)."""
         return self.case.by_side(self.light_tension, self.heavy_tension)[0]
 
     @property
     def tension_2(self) -> N:
-        """Tension of the string at m2 (N): (4), in slip (1) with (26)."""
         return self.case.by_side(self.light_tension, self.heavy_tension)[1]
 
     @lazy
     def mu_verge(self) -> N:
-        """Friction coefficient at which a string that grips would be on the verge of slipping (27)."""
         case = self.case
         if case.free_end:
-            raise Undetermined(FREE_END)
+            raise Undetermined(reasons.FREE_END)
         if case.tensions_equal:
             return self.ar.number(0)
         if not case.pulley_known:
             if case.regime == "verge":
                 return self.ar.number(case.limiting_mu)
-            raise Undetermined(NEEDS_M)
+            raise Undetermined(reasons.NEEDS_M)
         phi = self.phi  # first, as fractions give up on π sooner than on the ratio
         return physics.verge_coefficient(self.log_ratio, phi)
 
     @lazy
     def safety_factor(self) -> N:
-        """The coefficient of friction over the one that a string which grips needs."""
         mu = self.mu
         if self.case.tensions_equal or (self.case.regime == "verge" and is_zero(self.scene.mu)):
-            raise Undetermined(NO_NEED)
+            raise Undetermined(reasons.NO_NEED)
         return physics.safety_factor(mu, self.mu_verge)
 
     @lazy
     def tension_ratio(self) -> N:
-        """The greater tension over the lesser (33)."""
         if self.case.regime != "no-slip":
             return self.limiting_k1 + 1
         if self.case.free_end:
-            raise Undetermined(FREE_END)
+            raise Undetermined(reasons.FREE_END)
         if self.case.tensions_equal:
             return self.ar.number(1)
         if not self.case.pulley_known:
-            raise Undetermined(NEEDS_M)
+            raise Undetermined(reasons.NEEDS_M)
         return self.excess + 1
 
     @lazy
     def capstan_ratio(self) -> N:
-        """e^{μφ}, the greatest ratio of tensions that static friction holds (26)."""
         return self.k1 + 1
 
     @lazy
@@ -355,7 +286,6 @@ class Mechanics(Generic[N]):
 
     @lazy
     def friction_force(self) -> N:
-        """Magnitude of the net friction force on the pulley (N), where it is one number (32)."""
         mu = self.friction_mu
         if self.ar.is_zero(mu):
             return self.ar.number(0)
@@ -372,39 +302,33 @@ class Mechanics(Generic[N]):
 
     @lazy
     def friction_force_x(self) -> N:
-        """Net friction force on the pulley (N), towards the side of m1 (31)."""
         return self.friction_vector[0]
 
     @lazy
     def friction_force_y(self) -> N:
-        """Net friction force on the pulley (N), upwards (31)."""
         return self.friction_vector[1]
 
     @lazy
     def torque(self) -> N:
-        """Torque of the string on the pulley (N m), positive the way m2 descends (23)."""
-        return self.tension_difference * self._given(self.scene.R, NEEDS_R)
+        return self.tension_difference * self._given(self.scene.R, reasons.NEEDS_R)
 
     @lazy
     def rim_acceleration(self) -> N:
-        """Acceleration of the pulley's rim (m/s²), which falls behind the string in slip (3)."""
         if self.case.regime != "slip":
             return self.acceleration
         if self.case.rim_stands:
             return self.ar.number(0)
-        c = self._given(self.case.rim_mass, NEEDS_M)
+        c = self._given(self.case.rim_mass, reasons.NEEDS_M)
         return physics.rim_acceleration(self.difference, c, self.f) * self.case.sign
 
     @lazy
     def angular_acceleration(self) -> N:
-        """Angular acceleration of the pulley (rad/s²), positive the way m2 descends (2)."""
-        return self.rim_acceleration / self._given(self.scene.R, NEEDS_R)
+        return self.rim_acceleration / self._given(self.scene.R, reasons.NEEDS_R)
 
     @lazy
     def mu_k(self) -> N:
-        """Coefficient of kinetic friction that gives the measured acceleration, from (26)."""
         if not self.case.slide_measured:
-            raise Undetermined(NEEDS_A_OF_A_SLIDE)
+            raise Undetermined(reasons.NEEDS_A_OF_A_SLIDE)
         return physics.verge_coefficient(self.ar.log1p(self.limiting_k1), self.phi)
 
     @lazy

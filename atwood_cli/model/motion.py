@@ -14,7 +14,7 @@ from . import physics
 from .angle import Angle
 from .case import Case
 from .digits import SHOWN_DIGITS, as_typed, text, tidy, to_digits, to_double, to_threshold
-from .mechanics import Undetermined
+from .reasons import Undetermined
 from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError
 
 

@@ -17,7 +17,7 @@ from ..model.arc import Kind
 from ..model.case import Case
 from ..model.digits import is_infinite
 from ..model.machine import Machine
-from ..model.mechanics import FREE_END, NEEDS_M
+from ..model.reasons import FREE_END, NEEDS_M
 from ..model.scene import SceneError, read_whole
 from .answers import Answers
 from .messages import unmarked
