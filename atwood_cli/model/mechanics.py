@@ -15,6 +15,7 @@ from .reasons import Undetermined
 if TYPE_CHECKING:
     from ..arithmetic.rational import Arithmetic
 
+
 class Mechanics(Generic[N]):
     """The motion, the tensions and the friction of a case in one arithmetic.
 

@@ -18,8 +18,8 @@ from ..model.digits import DOUBLE_DIGITS as DOUBLE_DIGITS  # others have these f
 from ..model.digits import SHOWN_DIGITS as SHOWN_DIGITS
 from ..model.digits import Rounding, is_infinite, to_digits, to_double
 from ..model.machine import Machine
-from ..model.reasons import Undetermined
 from ..model.quantities import FROM_MOTION, MAIN, NAMES
+from ..model.reasons import Undetermined
 from ..model.scene import INPUTS, MEASURED, UNMEASURED, Given, Input, Motion, Scene, SceneError, read_input
 from ..model.units import STANDARD_GRAVITY, read_number
 

@@ -24,9 +24,9 @@ from ..model.case import Case
 from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, tidy, to_digits, to_place, to_threshold
 from ..model.digits import with_uncertainty as with_both
 from ..model.machine import Machine
-from ..model.reasons import Undetermined
 from ..model.motion import completed, number_of, with_number
 from ..model.quantities import QUANTITIES
+from ..model.reasons import Undetermined
 from ..model.scene import INPUTS, MEASURED, Scene, parameter_of
 
 if TYPE_CHECKING:
