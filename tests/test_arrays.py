@@ -439,12 +439,12 @@ def test_a_number_is_a_column_of_it(accuracy: Any) -> None:
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)
-@pytest.mark.parametrize("block", [7, arrays.BLOCK])
+@pytest.mark.parametrize("block", [7, arrays.BLOCK_ROWS])
 def test_why_values_are_missing_is_counted(
     accuracy: Any, block: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """As each row's own scene says it, whichever rows are solved together."""
-    monkeypatch.setattr(arrays, "BLOCK", block)
+    monkeypatch.setattr(arrays, "BLOCK_ROWS", block)
     rng = Random(5)
     numbers = {"m1": (1, 2, 0), "m2": (1, 2, 3), "M": (None, 0, 1, 100, inf), "mu": (None, 0, 0.1, 1)}
     numbers |= {"R": (None, 1), "wrap": (90, 180, 360, 540), "axle": (*[None] * 4, 0, 10)}
@@ -496,9 +496,9 @@ def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> N
     whole = solve_arrays(**given, accuracy=accuracy)
     every_other: dict[str, Any] = {name: np.repeat(c, 2)[::2] for name, c in given.items()}
     strided = solve_arrays(**every_other, accuracy=accuracy)
-    monkeypatch.setattr(arrays, "BLOCK", 7)
-    monkeypatch.setattr(arrays.rows, "SMALLEST", 3)
-    monkeypatch.setattr(arrays.rows, "ROOM", 0)
+    monkeypatch.setattr(arrays, "BLOCK_ROWS", 7)
+    monkeypatch.setattr(arrays.rows, "FEWEST_TILE_ROWS", 3)
+    monkeypatch.setattr(arrays.rows, "TILE_BYTES", 0)
     in_blocks = solve_arrays(**given, accuracy=accuracy)
     for name in whole:
         np.testing.assert_array_equal(whole[name], in_blocks[name])
@@ -507,7 +507,7 @@ def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> N
 
 def test_blocks_are_the_same_on_any_number_of_processors(monkeypatch: pytest.MonkeyPatch) -> None:
     """And so is which rows are solved together: the last place could depend on it."""
-    monkeypatch.setattr(arrays, "BLOCK", 7)
+    monkeypatch.setattr(arrays, "BLOCK_ROWS", 7)
     on_threads = Mock(wraps=arrays._on_threads)
     monkeypatch.setattr(arrays, "_on_threads", on_threads)
     for count in (None, 1, 3, 16):
@@ -558,9 +558,9 @@ def test_rows_of_the_next_level_are_solved_wherever_they_wait(monkeypatch: pytes
     """Many are solved with their block, few with those of all blocks; and some need two more levels."""
     given = columns(rows("ordinary", 200) + rows("near_critical", 800))
     exact = solve_arrays(**given, accuracy="exact")
-    monkeypatch.setattr(arrays, "BLOCK", 100)
+    monkeypatch.setattr(arrays, "BLOCK_ROWS", 100)
     for leave in (0, 1, 10, 1000):
-        monkeypatch.setattr(arrays.rows, "LEAVE", leave)
+        monkeypatch.setattr(arrays.rows, "ROWS_LEFT", leave)
         results = solve_arrays(**given)
         for name in exact:
             np.testing.assert_allclose(results[name], exact[name], 2e-14, 0)

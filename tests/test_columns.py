@@ -198,7 +198,7 @@ def bounds_hold() -> None:
             (PAIRS, f"loss_of_{of}", 0.0)
             for of in ("constant", "sum", "product", "quotient", "root", "series")
         ),
-        (pairs_, "LARGEST", 1000.0),
+        (pairs_, "LARGEST_EXPONENT", 1000.0),
     ],
 )
 def test_a_smaller_constant_does_not_hold(
@@ -330,7 +330,7 @@ def test_a_question_is_open_where_the_bound_says_nothing() -> None:
         columns = {name: np.array(column) for name, column in inputs.items()}
         program.run(columns, found[question], [np.empty(4, kind) for kind in program.between])
     assert found["scene"]["sure"].tolist() == [True] * 4
-    assert found["scene"]["yes"].tolist() == [True, False, False, True]
+    assert found["scene"]["answer"].tolist() == [True, False, False, True]
     assert found["lightest_held"]["sure"].tolist() == [True, True, True, False]
 
 

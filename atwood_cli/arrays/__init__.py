@@ -1,7 +1,7 @@
 """Many scenes at once: arrays in, arrays out, block by block, on threads.
 
-`inputs` checks each row's inputs, and puts rows with the same pattern of inputs into one group. `rows` solves
-a group. `plan` shows by an example how results are certified.
+`inputs` checks the inputs of each row and groups the rows by what is given. `rows` solves a group. `plan`
+shows by an example how results are certified.
 """
 
 from __future__ import annotations  # help() shows types by the names written here
@@ -18,15 +18,18 @@ from numpy.typing import NDArray
 
 from ..model.quantities import Accuracy, read_accuracy, read_quantities
 from ..model.scene import INPUTS, MASSES, MISSING_MASS, SceneError
-from .inputs import DEFAULTS, GivenColumn, Numbers, groups, input_columns, read_column
+from .inputs import DEFAULT_DOUBLES, GivenColumn, Numbers, groups, input_columns, read_column
 from .inputs import STATUSES as STATUSES
 from .pattern import Index, Task
 from .plan import LEVELS
 from .rows import Rows
 
-BLOCK = 131_072  # rows, as measured
-THREADS = 4  # more would wait for the interpreter's lock
-CODES = {"regime": np.int8, "status": np.int8}
+BLOCK_ROWS = 131_072
+"""The most rows of a block; this number was measured to be fast."""
+THREADS = 4
+"""The most threads; more would wait for the interpreter's lock."""
+CODE_TYPES = {"regime": np.int8, "status": np.int8}
+"""The types of results that are codes; all others are doubles."""
 
 
 def solve_arrays(
@@ -36,11 +39,11 @@ def solve_arrays(
     mu: Numbers | None = None,
     mu_k: Numbers | None = None,
     *,
-    g: Numbers = DEFAULTS["g"],
+    g: Numbers = DEFAULT_DOUBLES["g"],
     inertia: Numbers | None = None,
     I: Numbers | None = None,
     R: Numbers | None = None,
-    wrap: Numbers = DEFAULTS["wrap"],
+    wrap: Numbers = DEFAULT_DOUBLES["wrap"],
     axle: Numbers | None = None,
     accuracy: Accuracy = "certified",
     quantities: Sequence[str] | None = None,
@@ -87,27 +90,28 @@ def solve_and_count(
     names = tuple(read_quantities(quantities))
     accuracy = read_accuracy(accuracy)
     inputs, shape = _read(given)
-    results = {name: np.empty(shape, CODES.get(name, np.float64)) for name in (*names, "status")}
+    results = {name: np.empty(shape, CODE_TYPES.get(name, np.float64)) for name in (*names, "status")}
     flat = {name: column.reshape(-1) for name, column in results.items()}
     left: dict[Task, list[NDArray[np.intp]]] = {}
-    counted: list[Counter[tuple[str, str]]] = []
+    counters: list[Counter[tuple[str, str]]] = []
 
     def rows_at(index: Index) -> tuple[Rows, dict[str, GivenColumn]]:
-        given = {name: one.cut(shape, index) for name, one in inputs.items()}
-        columns = {name: one.column for name, one in given.items()}
-        rows = Rows(columns, {name: flat[name][index] for name in results}, accuracy)
-        counted.append(rows.reasons)
-        return rows, given
+        cut = {name: column.cut(shape, index) for name, column in inputs.items()}
+        doubles = {name: column.doubles for name, column in cut.items()}
+        rows = Rows(doubles, {name: flat[name][index] for name in results}, accuracy)
+        counters.append(rows.reasons)
+        return rows, cut
 
     def solve_block(block: slice) -> None:
         """Solve all rows of a block, but for the tasks that are left for the end."""
-        rows, given = rows_at(block)
+        rows, cut = rows_at(block)
         rows.left = {} if len(blocks) > 1 else None
-        _solve(rows, given, names)
-        for task, some in (rows.left or {}).items():
-            left.setdefault(task, []).extend(index + block.start for index in some)
+        _solve(rows, cut, names)
+        for task, selections in (rows.left or {}).items():
+            left.setdefault(task, []).extend(index + block.start for index in selections)
 
     def solve_left(index: NDArray[np.intp], task: Task) -> None:
+        """Solve the rows of all blocks that are left with a task."""
         rows, _ = rows_at(index)
         rows.solve(slice(0, index.size), task)
         for name in task.names:
@@ -115,26 +119,25 @@ def solve_and_count(
 
     blocks = _blocks(prod(shape))
     _on_threads(solve_block, [(block,) for block in blocks])
-    # Sorted, for the same digits whichever thread was first.
-    _on_threads(solve_left, [(np.sort(np.concatenate(some)), task) for task, some in left.items()])
-    return results, sum(counted, Counter())
+    # Rows are sorted, so that the digits are the same whichever thread was first.
+    _on_threads(solve_left, [(np.sort(np.concatenate(rows)), task) for task, rows in left.items()])
+    return results, sum(counters, Counter())
 
 
 def _read(given: Mapping[str, Numbers | None]) -> tuple[dict[str, GivenColumn], tuple[int, ...]]:
-    """The inputs as columns, and the shape that they are broadcast to. Raises SceneError."""
+    """The inputs as columns, and the shape to which they are broadcast. Raises SceneError."""
     for mass in MASSES:
         if given.get(mass) is None:
             raise SceneError(mass, None, MISSING_MASS)
     inputs = {name: read_column(name, given.get(name)) for name in INPUTS}
     shape: tuple[int, ...] = ()
-    for name, (column, _) in inputs.items():
+    for name, (doubles, _) in inputs.items():
         try:
-            shape = np.broadcast_shapes(shape, column.shape)
+            shape = np.broadcast_shapes(shape, doubles.shape)
         except ValueError:
             before = f"{shape}, the shape of what comes before it"
-            raise SceneError(
-                name, None, f"of shape {column.shape} does not broadcast with {before}"
-            ) from None
+            rule = f"of shape {doubles.shape} does not broadcast with {before}"
+            raise SceneError(name, None, rule) from None
     return inputs, shape
 
 
@@ -143,7 +146,7 @@ def _blocks(size: int) -> list[slice]:
 
     The number of processors plays no part, as the digits must not depend on it.
     """
-    count = -(-size // BLOCK)
+    count = -(-size // BLOCK_ROWS)
     count = -(-count // THREADS) * THREADS if count > 1 else count
     return [slice(size * i // count, size * (i + 1) // count) for i in range(count)]
 
@@ -151,30 +154,30 @@ def _blocks(size: int) -> list[slice]:
 def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> None:
     """Do the parts of the work on threads, which run at once as NumPy releases the interpreter's lock."""
 
-    def quiet(part: tuple[Any, ...]) -> None:
+    def without_warnings(part: tuple[Any, ...]) -> None:
         with np.errstate(all="ignore"):
             work(*part)
 
     if len(parts) < 2:
         for part in parts:
-            quiet(part)
+            without_warnings(part)
         return
     pool = ThreadPoolExecutor(min(THREADS, os.cpu_count() or 1))
     try:
-        for done in [pool.submit(quiet, part) for part in parts]:
-            done.result()
+        for future in [pool.submit(without_warnings, part) for part in parts]:
+            future.result()
     finally:
-        pool.shutdown(cancel_futures=True)  # where one has failed, or at Ctrl-C
+        pool.shutdown(cancel_futures=True)  # some wait still if one has failed, or at Ctrl-C
 
 
 def _solve(rows: Rows, given: Mapping[str, GivenColumn], names: tuple[str, ...]) -> None:
-    """Write the status of all rows, and the quantities: those of invalid rows have no value."""
+    """Write the status of all rows, and the quantities, which have no value in invalid rows."""
     size = len(rows.results["status"])
-    for index, status, pattern, far in groups(input_columns(given), size):
-        rows.results["status"][index] = status
-        if pattern:
-            level = len(LEVELS[rows.accuracy]) if far else 0
-            rows.solve(index, Task(pattern, frozenset(), names, level))
+    for group in groups(input_columns(given), size):
+        rows.results["status"][group.rows] = group.status
+        if group.pattern:
+            level = len(LEVELS[rows.accuracy]) if group.beyond_window else 0
+            rows.solve(group.rows, Task(group.pattern, frozenset(), names, level))
             continue
         for name in names:
-            rows.results[name][index] = -1 if name == "regime" else nan
+            rows.results[name][group.rows] = -1 if name == "regime" else nan

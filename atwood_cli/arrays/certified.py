@@ -1,4 +1,4 @@
-"""When a double is right: within what `certified` promises, or the nearest one."""
+"""When a double is right: its error is within the promise of `certified`, or it is the nearest one."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from .doubles import Number, absolute, at_most, both, either, equal
 PROMISE = 2e-14
 """The largest relative error of a value that is certified."""
 LIMIT = 1.95e-14
-"""The largest bound that is certified: bounds leave out products of two, and a pair is rounded to a
-double."""
-FINE = 2.0**-104
-"""Of a value, more than the rounding errors of the ends of its bound."""
+"""The largest bound that is certified. It is below the promise, as bounds leave out products of two, and the
+rounding of a pair to a double."""
+END_ERROR = 2.0**-104
+"""A bound on the relative rounding error of the ends between which a value lies."""
 
 
 def certified(value: Number, accuracy: Accuracy) -> tuple[Term, Formula | None]:
-    """A value as a double, and the condition under which a row's double is right; None for none."""
+    """A value as a double, and the condition under which it is right in a row; None if it always is."""
     double: Any = value.parts[0] if value.positive else value.parts[0] + 0.0  # 0.0 makes 0 of -0
     if accuracy == "exact":
         return double, is_nearest(value)
@@ -30,6 +30,6 @@ def certified(value: Number, accuracy: Accuracy) -> tuple[Term, Formula | None]:
 def is_nearest(value: Number) -> Formula:
     """Whether the first part is the double nearest to the exact value: both ends of the bound round to it."""
     first, second = (*value.parts, 0.0)[:2]
-    error = absolute(first) * (value.bound + FINE)
-    same = both(equal(first + (second - error), first), equal(first + (second + error), first))
-    return either(same, equal(value.bound, 0.0))
+    error = absolute(first) * (value.bound + END_ERROR)
+    ends_round_to_it = both(equal(first + (second - error), first), equal(first + (second + error), first))
+    return either(ends_round_to_it, equal(value.bound, 0.0))

@@ -10,22 +10,24 @@ from ..arithmetic.interval import enclosures
 from ..arithmetic.rational import EXACT, Irrational
 from .pattern import Column
 
-STEPS = 16_384  # of the table of powers to a factor of 2
-
-ENOUGH = enclosures(80)
-BITS = 240  # of a table's numbers after the binary point
+TABLE_STEPS = 16_384
+"""The number of equal steps from ln 1 to ln 2 in the table of powers."""
+PRECISE = enclosures(80)
+"""The arithmetic of the constants, in decimals of 80 digits."""
+BINARY_PLACES = 240
+"""The bits of a table's numbers after the binary point."""
 
 
 @cache
 def pi() -> Fraction:
     """π."""
-    return Fraction(ENOUGH.pi.lo)
+    return Fraction(PRECISE.pi.lo)
 
 
 @cache
 def ln2() -> Fraction:
     """ln 2."""
-    return Fraction(ENOUGH.log1p(ENOUGH.number(1)).lo)
+    return Fraction(PRECISE.log1p(PRECISE.number(1)).lo)
 
 
 def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
@@ -33,7 +35,7 @@ def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
     try:
         return EXACT.cos_sin_of_degrees(degrees)
     except Irrational:
-        cos, sin = ENOUGH.cos_sin_of_degrees(degrees % 360)
+        cos, sin = PRECISE.cos_sin_of_degrees(degrees % 360)
         return Fraction(cos.lo), Fraction(sin.lo)
 
 
@@ -48,22 +50,22 @@ def cos_sin_in_doubles(degrees: float) -> tuple[float, ...]:
 
 @cache
 def in_parts(q: Fraction, bits: int, count: int) -> tuple[float, ...]:
-    """A number as a sum of ``count`` parts of so many bits, with exact small multiples, and the rest."""
-    parts = []
+    """A number as a sum of ``count`` parts of so many bits, whose small multiples are exact, and the rest."""
+    parts, rest = [], q
     for _ in range(count):
-        mantissa, exponent = frexp(float(q))
+        mantissa, exponent = frexp(float(rest))
         parts.append(ldexp(round(ldexp(mantissa, bits)), exponent - bits))
-        q -= Fraction(parts[-1])
-    return (*parts, float(q))
+        rest -= Fraction(parts[-1])
+    return (*parts, float(rest))
 
 
 @cache
 def powers() -> tuple[Column, Column]:
-    """2^(i/STEPS) - 1 for i from 0 to STEPS - 1, as the sum of two columns."""
+    """2^(i/n) - 1 for each step i of the table's n, as the sum of two columns."""
     exact = [0]
-    step = int(Fraction(ENOUGH.expm1(ENOUGH.number(ln2() / STEPS)).lo) * 2**BITS)
-    for _ in range(STEPS - 1):
-        exact.append(exact[-1] + step + (exact[-1] * step >> BITS))
+    step = int(Fraction(PRECISE.expm1(PRECISE.number(ln2() / TABLE_STEPS)).lo) * 2**BINARY_PLACES)
+    for _ in range(TABLE_STEPS - 1):
+        exact.append(exact[-1] + step + (exact[-1] * step >> BINARY_PLACES))
     firsts = [float(value) for value in exact]
     rests = [float(value - int(first)) for value, first in zip(exact, firsts, strict=True)]
-    return np.array(firsts) * 2.0**-BITS, np.array(rests) * 2.0**-BITS
+    return np.array(firsts) * 2.0**-BINARY_PLACES, np.array(rests) * 2.0**-BINARY_PLACES

@@ -1,32 +1,32 @@
 """Doubles in columns, each with a proven bound on its error: the first level of `certified`.
 
-A `Number` is what an operation on columns gives: formulas of doubles, and a bound on the relative error of
-their sum. The bound has two parts. Its *loss* is the same in all rows and is known before any row is
-computed; its *doubt* is a column. Here a number is one double; in `pairs` it is the sum of two.
+Each operation on columns gives a `Number`: formulas of doubles, and a bound on the relative error of their
+sum. The bound has two parts. Its *loss* is the same in all rows and is known before any row is computed; its
+*doubt* is a column. Here a number is one double; in `pairs` it is the sum of two.
 
 The proof. Let u = 2^-53.
 
-- Doubles follow IEEE 754 and round to nearest: + - * / and a root are off by at most u (`ROUNDING`) of the
-  result. Python and NumPy do so on any platform. So is the double of a constant.
+- Doubles follow IEEE 754 and round to nearest, in Python and NumPy on any platform: the result of + - * / or
+  a root is off by at most u of itself. The double of a constant is, too.
 - NumPy's expm1, log1p, sin and cos are off by at most 4 u (`LIBRARY`) of the result. (The tests measure 1.2.)
 - In a product or quotient the bounds of both operands add up, and a root halves the bound. A sum of two
   numbers that are never negative has at most the larger bound of the two.
-- In any other sum the terms may cancel: the absolute errors of both terms are added and compared with what is
-  left, row by row. That is the doubt. What is known not to be negative may come out negative; its doubt is 1
-  or more then.
+- In any other sum the terms may cancel. Their absolute errors are added and divided by the size of the sum,
+  row by row: that is the doubt. A sum that cannot be negative may come out negative; its doubt is 1 or more
+  then.
 - An error of x counts (1 + x) times in e^x - 1, as x e^x < (1 + x) (e^x - 1), at most once in ln(1 + x), and
   at most once in the sine and cosine of an angle that is folded to 45° or less.
-- Inputs are 0 or within 2^±120 (`WINDOW`), as are I/R² and f/g, which stand for I and the axle's friction:
-  the caller checks that. A value whose μφ is 90 or more is not certified, for (1 + x) times its bound. So no
-  operation on what is certified leaves the normal doubles, but for squares that are negligible beside what
-  they are added to.
+- Inputs are 0 or within 2^±120 (`WINDOW`). I/R² and f/g are, too, which stand for I and the axle's friction.
+  The caller checks this. A value whose μφ is 90 or more is not certified, as its bound is (1 + x) times as
+  large. So no operation on a certified value leaves the normal doubles, but for squares that are negligible
+  beside the term to which they are added.
 - Bounds are of first order: products of two bounds are left out. They are below 1e-27, and the limit that
   bounds are compared with is 5e-16 below the promise (`certified.LIMIT`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from fractions import Fraction
 from math import frexp
 from typing import Any
@@ -37,59 +37,35 @@ from ..arithmetic.lazy import lazy
 from ..arithmetic.symbolic import Formula, Term, formula
 from .constants import pi, precise_cos_sin
 
-UNIT = 2.0**-53  # u
-ROUNDING = UNIT
+UNIT = 2.0**-53
+"""u, the largest relative error of a rounded double."""
 LIBRARY = 4 * UNIT
+"""The largest relative error that is assumed of NumPy's functions."""
 WINDOW = 2.0**-120, 2.0**120
+"""The range of inputs for which the bounds hold, in SI units."""
 
 Parts = tuple[Any, ...]
 
 
 class NoProgram(ArithmeticError):
-    """No arithmetic of columns has this operation: each row is to be solved alone."""
+    """No arithmetic of columns has an operation: each row is to be solved alone."""
 
 
 # Operations that formulas of columns have beside + - * /
 
 
-def maximum(x: Term, y: Term) -> Any:
-    """The larger of the two."""
-    return Formula("maximum", formula(x), formula(y))
+def _operation(op: str) -> Callable[[Term, Term], Formula]:
+    return lambda x, y: Formula(op, formula(x), formula(y))
 
 
-def minimum(x: Term, y: Term) -> Any:
-    """The smaller of the two."""
-    return Formula("minimum", formula(x), formula(y))
+maximum, minimum, equal, both, either = map(_operation, ("maximum", "minimum", "==", "and", "or"))
+less, at_most = map(_operation, ("<", "<="))
+"""x < y and x <= y, which are false where either is NaN."""
 
 
 def absolute(x: Term) -> Any:
     """The size of x."""
     return Formula("abs", x) if isinstance(x, Formula) else abs(x)
-
-
-def at_most(x: Term, y: Term) -> Formula:
-    """Whether x <= y; false where either is NaN."""
-    return Formula("<=", formula(x), formula(y))
-
-
-def less(x: Term, y: Term) -> Formula:
-    """Whether x < y; false where either is NaN."""
-    return Formula("<", formula(x), formula(y))
-
-
-def equal(x: Term, y: Term) -> Formula:
-    """Whether x = y."""
-    return Formula("==", formula(x), formula(y))
-
-
-def both(x: Formula, y: Formula) -> Formula:
-    """Whether both conditions hold."""
-    return Formula("and", x, y)
-
-
-def either(x: Formula, y: Formula) -> Formula:
-    """Whether one of the conditions holds."""
-    return Formula("or", x, y)
 
 
 def where(condition: Formula, x: Term, y: Term) -> Formula:
@@ -103,12 +79,12 @@ def looked_up(table: Any, index: Formula) -> Formula:
 
 
 def joined(x: Term | None, y: Term | None) -> Any:
-    """The sum of two columns, either of which may be None."""
+    """The sum of two columns, where None stands for 0."""
     return y if x is None else x if y is None else x + y
 
 
 class Number:
-    """A column of numbers: sums of ``parts``, with a relative error of at most ``loss`` + ``doubt``.
+    """A column of numbers: sums of ``parts``, whose relative error is at most ``loss`` + ``doubt``.
 
     ``loss`` is the same in all rows. ``doubt`` is a column, or None; it is NaN or infinite in rows without a
     bound. ``positive`` says that no row is negative.
@@ -144,7 +120,7 @@ class Number:
 
     @property
     def exact(self) -> bool:
-        """Whether this is a double, or a column of them."""
+        """Whether each row is a double without an error."""
         return len(self.parts) == 1 and self.loss == 0 and self.doubt is None
 
     def __add__(self, other: Number | int) -> Number:
@@ -157,32 +133,32 @@ class Number:
 
     def _plus(self, other: Number | int, sign: float) -> Number:
         """The sum, or the difference for sign -1."""
-        ar, one, two = self.arithmetic, self, self.arithmetic.number(other)
-        if ar.is_zero(two):
-            return one
-        if ar.is_zero(one):
-            return two * sign
-        positive = sign > 0 and one.positive and two.positive
-        parts = ar.sum(one.parts, two.parts, sign, positive)
-        if one.exact and two.exact:
+        ar, left, right = self.arithmetic, self, self.arithmetic.number(other)
+        if ar.is_zero(right):
+            return left
+        if ar.is_zero(left):
+            return right * sign
+        positive = sign > 0 and left.positive and right.positive
+        parts = ar.sum(left.parts, right.parts, sign, positive)
+        if left.exact and right.exact:
             return Number(ar, parts, ar.loss_of_doubles, None, positive)
-        if positive and (ar.roughly or (one.doubt is None and two.doubt is None)):
-            doubts = [of.doubt for of in (one, two) if of.doubt is not None]
+        if positive and (ar.roughly or (left.doubt is None and right.doubt is None)):
+            doubts = [term.doubt for term in (left, right) if term.doubt is not None]
             doubt = maximum(*doubts) if len({*map(id, doubts)}) == 2 else doubts[0] if doubts else None
-            return Number(ar, parts, max(one.loss, two.loss) + ar.loss_of_sum, doubt)
-        error = joined(*(ar.error(of) for of in (one, two)))
+            return Number(ar, parts, max(left.loss, right.loss) + ar.loss_of_sum, doubt)
+        error = joined(ar.error(left), ar.error(right))
         return Number(ar, parts, ar.loss_of_doubles, error / absolute(parts[0]), positive)
 
     def __mul__(self, other: Number | Fraction | float) -> Number:
-        ar, one, two = self.arithmetic, self, self.arithmetic.number(other)
-        if one.power or ar.is_zero(two):
-            one, two = two, one
-        if ar.is_zero(one):
-            return one
-        if two.power:
-            return one._scaled(two.power)
-        loss = ar.loss_of_doubles if one.exact and two.exact else ar.loss_of_product
-        return one._joined(two, ar.multiply, loss)
+        ar, left, right = self.arithmetic, self, self.arithmetic.number(other)
+        if left.power or ar.is_zero(right):
+            left, right = right, left
+        if ar.is_zero(left):
+            return left
+        if right.power:
+            return left._scaled(right.power)
+        loss = ar.loss_of_doubles if left.exact and right.exact else ar.loss_of_product
+        return left._joined(right, ar.multiply, loss)
 
     __rmul__ = __mul__
 
@@ -193,8 +169,8 @@ class Number:
         return self._scaled(1 / two.power) if two.power else self._joined(two, ar.divide, ar.loss_of_quotient)
 
     def __rtruediv__(self, other: int) -> Number:
-        one: Number = self.arithmetic.number(other)
-        return one / self
+        dividend: Number = self.arithmetic.number(other)
+        return dividend / self
 
     def _scaled(self, factor: float) -> Number:
         """This number times ±2^n."""
@@ -213,15 +189,15 @@ class Number:
 class Doubles:
     """The arithmetic of numbers that are one double."""
 
-    loss_of_constant = loss_of_sum = loss_of_product = loss_of_quotient = loss_of_root = ROUNDING
-    """What an operation loses of its result, or rounding of a constant that is no double."""
-    loss_of_doubles = ROUNDING
-    """What a sum of two doubles, whatever cancels, or a product of two loses of its result."""
+    loss_of_constant = loss_of_sum = loss_of_product = loss_of_quotient = loss_of_root = UNIT
+    """The relative errors of operations, and of a constant that is no double."""
+    loss_of_doubles = UNIT
+    """The relative error of a sum of two doubles, whatever cancels, and of a product of two doubles."""
     roughly = True
-    """Whether the larger doubt of two terms stands for that of their sum, as that takes less time."""
+    """Whether the larger doubt of two terms is taken for the doubt of their sum, as this takes less time."""
 
     def error(self, x: Number) -> Any:
-        """The absolute error of a term that may cancel, and of taking it; None if there is none."""
+        """The absolute error of a term that may cancel, and of adding it; None if there is none."""
         return None if x.exact else x.size * x.bound
 
     # Parts, without bounds
@@ -250,10 +226,10 @@ class Doubles:
             return q
         if isinstance(q, Formula):
             return Number(self, (q,))
-        q = Fraction(q)
-        parts = self.constant(q)
-        loss = 0.0 if sum(map(Fraction, parts)) == q else self.loss_of_constant
-        return Number(self, parts, loss, positive=q >= 0)
+        exact = Fraction(q)
+        parts = self.constant(exact)
+        loss = 0.0 if sum(map(Fraction, parts)) == exact else self.loss_of_constant
+        return Number(self, parts, loss, positive=exact >= 0)
 
     def is_zero(self, x: Number) -> bool:
         return x.parts == (0.0,)
@@ -286,24 +262,28 @@ class Doubles:
         """ln(1 + x) for x >= 0."""
         return Number(self, (Formula("log1p", formula(x.parts[0])),), LIBRARY + x.loss, x.doubt)
 
-    def cos_sin_of_degrees(self, x: Any) -> tuple[Number, Number]:
-        """Cosine and sine of an angle in degrees, or of a column of exact ones."""
-        if isinstance(x, Fraction):
-            cos, sin = map(self.number, precise_cos_sin(x))
+    def cos_sin_of_degrees(self, angle: Any) -> tuple[Number, Number]:
+        """Cosine and sine of an angle in degrees, or of a column of exact angles."""
+        if isinstance(angle, Fraction):
+            cos, sin = map(self.number, precise_cos_sin(angle))
             return cos, sin
-        return self.cos_sin_of_column(x.parts[0])
+        return self.cos_sin_of_column(angle.parts[0])
 
     def cos_sin_of_column(self, degrees: Formula) -> tuple[Number, Number]:
-        """The angle less its quarter turns, exactly; these exchange the two, and set their signs."""
+        """The cosine and the sine of angles in degrees, which are exact.
+
+        The quarter turns of an angle are taken off, exactly. Their number says whether the two are exchanged,
+        and which signs they have.
+        """
         degrees = Formula("fmod", degrees, formula(360.0))
         quarters = Formula("rint", degrees / 90)
-        which = Formula("int", quarters)
-        odd = equal(Formula("bits", which, 1), 1.0)
+        number = Formula("int", quarters)
+        odd = equal(Formula("bits", number, 1), 1.0)
         angle = Number(self, (degrees - 90 * quarters,), positive=False) * (self.pi / 180)
         cos, sin = (Formula(name, angle.parts[0]) for name in ("cos", "sin"))
         folded = where(odd, sin, cos), where(odd, cos, sin)
         signed = (
-            value * looked_up(signs, Formula("bits", which, 3))
+            value * looked_up(signs, Formula("bits", number, 3))
             for value, signs in zip(folded, SIGNS, strict=True)
         )
         x, y = (Number(self, (value,), LIBRARY + angle.loss, positive=False) for value in signed)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
+from enum import IntEnum
 from fractions import Fraction
 from math import inf, nan
 from typing import Any, NamedTuple
@@ -16,34 +17,34 @@ from .doubles import WINDOW
 from .pattern import COLUMN, Column, Index, Pattern
 
 Numbers = ArrayLike | Sequence[str | float | Decimal | Fraction | None]
-"""What a column may be: whatever NumPy makes an array of. A polars column is one too."""
-DEFAULTS = {"g": 9.80665, "inertia": 0.5, "wrap": 180.0}
-"""Inputs that always have a value."""
-WHERE_ABSENT = DEFAULTS | {"axle": 0.0}
-"""What stands for an input in rows where it is not given; NaN for the others."""
-SHAPES = ("inertia", "wrap")
+"""The types that a column may have: whatever NumPy makes an array of. A polars column is one too."""
+DEFAULT_DOUBLES = {"g": 9.80665, "inertia": 0.5, "wrap": 180.0}
+"""The values of inputs that always have one, in SI units and degrees."""
+WHERE_ABSENT = DEFAULT_DOUBLES | {"axle": 0.0}
+"""The doubles that stand for an input in rows where it is not given; NaN stands for the other inputs."""
+BUILT_IN = ("inertia", "wrap")
 """Inputs whose common value is built into a program: with 1/2 and π it is simpler than with a column."""
-REAL = "iufOSU"
-"""NumPy's kinds of arrays that may hold real numbers. It would convert some others to numbers too."""
+REAL_KINDS = "iufOSU"
+"""NumPy's kinds of arrays that may hold real numbers. NumPy would convert some other kinds, too."""
 STATUSES = (
     *("valid", "m1", "m2", "M", "mu", "mu_k", "g", "inertia", "R", "wrap"),
     *("no mass", "friction at a free end", "mu_k without mu", "mu_k above mu"),
     *("NaN", "I", "axle", "I and inertia", "I without R", "I with M = 0 or inf"),
 )
-"""What the codes in ``status`` mean: an input that is outside its domain (or a mass that is not given),
+"""The meanings of the codes in ``status``: an input that is outside its domain (or a mass that is not given),
 inputs that do not go together, or one that is not a number."""
 
 
 class GivenColumn(NamedTuple):
     """The doubles of an input, and the rows in which it is not given; None if it is given in all."""
 
-    column: Column
+    doubles: Column
     absent: NDArray[np.bool_] | None
 
     def cut(self, shape: tuple[int, ...], rows: Index) -> GivenColumn:
         """Rows of the column as if it were broadcast and flat; a single number stays single."""
         absent = None if self.absent is None else _cut(self.absent, shape, rows)
-        return GivenColumn(_cut(self.column, shape, rows), absent)
+        return GivenColumn(_cut(self.doubles, shape, rows), absent)
 
 
 def _cut(column: NDArray[Any], shape: tuple[int, ...], rows: Index) -> NDArray[Any]:
@@ -57,8 +58,8 @@ def _cut(column: NDArray[Any], shape: tuple[int, ...], rows: Index) -> NDArray[A
 def read_column(name: str, value: Numbers | None) -> GivenColumn:
     """An input as doubles.
 
-    Raises SceneError for what is no real number, and for a number that would round to 0 or inf and is
-    neither.
+    Raises SceneError for what is no real number, and for another number than 0 or inf that would round to one
+    of these.
     """
     default = WHERE_ABSENT.get(name, nan)
     if value is None:
@@ -71,139 +72,156 @@ def read_column(name: str, value: Numbers | None) -> GivenColumn:
         if absent is not None and plain.dtype == object:
             plain = np.where(absent, nan, plain)
         with np.errstate(over="ignore"):
-            column: Any = plain.astype(np.float64, copy=False) if array.dtype.kind in REAL else None
+            doubles: Any = plain.astype(np.float64, copy=False) if array.dtype.kind in REAL_KINDS else None
     except (TypeError, ValueError, OverflowError) as error:
         raise SceneError(name, None, f"must be real numbers: {error}") from None
     items = value if isinstance(value, list | tuple) else plain.flat if plain.dtype == object else ()
-    if column is None or any(isinstance(one, bool | np.bool_) for one in items):
-        kind = array.dtype if column is None else "bool"
+    if doubles is None or any(isinstance(item, bool | np.bool_) for item in items):
+        kind = array.dtype if doubles is None else "bool"
         raise SceneError(name, None, f"must be real numbers, not {kind}")
     if absent is not None:
-        column = np.where(absent, default, column)
+        doubles = np.where(absent, default, doubles)
     if not np.can_cast(array.dtype, np.float64):
-        ends = np.isinf(column) | (column == 0)
-        ends &= True if absent is None else ~absent
-        for one, double in zip(plain[ends], column[ends], strict=True):
-            text = one.decode() if isinstance(one, bytes) else one
-            if (Decimal(text) if isinstance(text, str) else text) != double:
-                raise SceneError(name, str(text), "is beyond the range of doubles")
-    return GivenColumn(column, absent)
+        is_end = np.isinf(doubles) | (doubles == 0)
+        is_end &= True if absent is None else ~absent
+        for number, double in zip(plain[is_end], doubles[is_end], strict=True):
+            exact = number.decode() if isinstance(number, bytes) else number
+            if (Decimal(exact) if isinstance(exact, str) else exact) != double:
+                raise SceneError(name, str(exact), "is beyond the range of doubles")
+    return GivenColumn(doubles, absent)
 
 
 def _absent(value: Any, array: NDArray[Any]) -> NDArray[np.bool_] | None:
-    """Where nothing is given: what is masked, None, and a null of a polars column. A NaN is none of these."""
+    """Whether each item is not given, as masked ones, None and nulls of polars; None where all are given."""
     absent: Any = None
     if isinstance(value, np.ma.MaskedArray):
         absent = np.ma.getmaskarray(value)
     elif hasattr(value, "is_null"):  # polars
         absent = np.asarray(value.is_null(), np.bool_)
     if array.dtype == object:
-        nothing = np.asarray(np.frompyfunc(lambda one: one is None, 1, 1)(array), np.bool_)
+        nothing = np.asarray(np.frompyfunc(lambda item: item is None, 1, 1)(array), np.bool_)
         absent = nothing if absent is None else absent | nothing
     return None if absent is None or not absent.any() else absent
 
 
 # The pattern of each row's inputs
 
-KINDS = USUAL, ABSENT, NAN, NEGATIVE, ZERO, INFINITE, FAR = range(7)
+
+class Kind(IntEnum):
+    """The kinds of numbers that an input may be in a row; a usual one is positive and within the window."""
+
+    USUAL, ABSENT, NAN, NEGATIVE, ZERO, INFINITE, BEYOND_WINDOW = range(7)
+
+
 OUTSIDE = {
-    name: {NEGATIVE, *[ZERO] * (not domain.zero), *[INFINITE] * (not domain.inf)}
+    name: {Kind.NEGATIVE, *[Kind.ZERO] * (not domain.zero), *[Kind.INFINITE] * (not domain.inf)}
     for name, domain in INPUTS.items()
 }
-"""Of each input, the kinds of numbers that are outside its domain."""
-SAME_IN_ALL = {ABSENT: None, ZERO: Fraction(0), INFINITE: inf}
-"""What stands in a `Pattern` for numbers of a kind, if not their column."""
+"""The kinds of numbers that are outside the domain of an input, by its name."""
+SAME_IN_ALL: dict[int, Any] = {Kind.ABSENT: None, Kind.ZERO: Fraction(0), Kind.INFINITE: inf}
+"""The values that stand in a `Pattern` for the numbers of a kind; for other kinds it has a column."""
 
 
 class InputColumn(NamedTuple):
     """An input in the rows of a block: its numbers, and the kind of each, or the one kind of all."""
 
-    column: Column
+    doubles: Column
     kinds: int | NDArray[np.int_]
 
     def kind(self, row: int) -> int:
         return self.kinds if isinstance(self.kinds, int) else int(self.kinds[row])
 
 
+class Group(NamedTuple):
+    """Rows of a block with the same status, and of valid rows the pattern that they have in common."""
+
+    rows: Index
+    status: int
+    pattern: Pattern | None
+    beyond_window: bool
+    """Whether an input is beyond the window of `doubles`."""
+
+
 def input_columns(given: Mapping[str, GivenColumn]) -> dict[str, InputColumn]:
     """The inputs of a block, with the kinds of their numbers."""
-    return {name: InputColumn(one.column, _kinds(name, given)) for name, one in given.items()}
+    return {name: InputColumn(column.doubles, _kinds(name, given)) for name, column in given.items()}
 
 
 def _kinds(name: str, given: Mapping[str, GivenColumn]) -> int | NDArray[np.int_]:
     """The kind of each number of an input, or the one kind of all.
 
     The equations take I as the mass I/R² and the axle's friction as the mass f/g. So these must be within the
-    window too.
+    window, too.
     """
-    (column, absent), (low, high) = given[name], WINDOW
+    (doubles, absent), (low, high) = given[name], WINDOW
     if absent is not None and absent.all():
-        return ABSENT
-    sizes = [column]
+        return Kind.ABSENT
+    sizes = [doubles]
     if name == "I":
-        sizes.append(column / given["R"].column / given["R"].column)
+        sizes.append(doubles / given["R"].doubles / given["R"].doubles)
     if name == "axle":
-        sizes.append(column / given["g"].column)
+        sizes.append(doubles / given["g"].doubles)
     if absent is None and all(low < size.min() and size.max() < high for size in sizes):
-        return USUAL
+        return Kind.USUAL
     is_kind = [
-        *([] if absent is None else [(ABSENT, absent)]),
-        (NAN, np.isnan(column)),
-        (NEGATIVE, column < 0),
-        (ZERO, column == 0),
-        (INFINITE, column == inf),
-        *((FAR, (size <= low) | (size >= high)) for size in sizes),
+        *([] if absent is None else [(Kind.ABSENT, absent)]),
+        (Kind.NAN, np.isnan(doubles)),
+        (Kind.NEGATIVE, doubles < 0),
+        (Kind.ZERO, doubles == 0),
+        (Kind.INFINITE, doubles == inf),
+        *((Kind.BEYOND_WINDOW, (size <= low) | (size >= high)) for size in sizes),
     ]
-    kinds = np.array(USUAL)
+    kinds = np.array(Kind.USUAL)
     for kind, rows in reversed(is_kind):  # the first kind overwrites the others
         if rows.any():
             kinds = np.where(rows, kind, kinds)
     return kinds if kinds.ndim else int(kinds)
 
 
-def groups(inputs: Mapping[str, InputColumn], size: int) -> Iterator[tuple[Index, int, Pattern | None, bool]]:
-    """A block's rows, grouped by pattern, and whether an input of the group is beyond the window.
-
-    Each group comes with its status; where that is no valid one, without a pattern.
-    """
-    m1, m2, mu, mu_k = (inputs[name].column for name in ("m1", "m2", "mu", "mu_k"))
+def groups(inputs: Mapping[str, InputColumn], size: int) -> Iterator[Group]:
+    """The rows of a block, grouped by their status and pattern."""
+    m1, m2, mu, mu_k = (inputs[name].doubles for name in ("m1", "m2", "mu", "mu_k"))
+    # Rows differ by the digits of a key, each with its base: kinds, the heavier mass, a mu_k above mu.
     digits: list[tuple[int, NDArray[Any]]] = [
-        (len(KINDS), one.kinds) for one in inputs.values() if not isinstance(one.kinds, int)
+        (len(Kind), column.kinds) for column in inputs.values() if not isinstance(column.kinds, int)
     ]
-    above = np.array(False) if inputs["mu_k"].kinds is ABSENT else mu_k > mu
+    mu_k_above = np.array(False) if inputs["mu_k"].kinds is Kind.ABSENT else mu_k > mu
     if not (m2 > m1).all():
         digits.append((3, 1 * (m1 > m2) + 2 * (m1 == m2)))
-    if above.any():
-        digits.append((2, above))
-    key, place = np.zeros(1, np.int64), 1
+    if mu_k_above.any():
+        digits.append((2, mu_k_above))
+    keys, weight = np.zeros(1, np.int64), 1
     for base, digit in digits:
-        key, place = key + place * digit, place * base
-    key = np.broadcast_to(key, size)
-    for one in np.unique(key) if digits else key[:1]:
-        index = np.flatnonzero(key == one) if digits else slice(0, size)
-        row = 0 if isinstance(index, slice) else int(index[0])
-        kinds = {name: one.kind(row) for name, one in inputs.items()}
-        if status := STATUSES.index(_fault(kinds, bool(_at(above, row)))):
-            yield index, status, None, False
+        keys, weight = keys + weight * digit, weight * base
+    keys = np.broadcast_to(keys, size)
+    # A group's first row stands for all of them.
+    for key in np.unique(keys) if digits else keys[:1]:
+        rows = np.flatnonzero(keys == key) if digits else slice(0, size)
+        row = 0 if isinstance(rows, slice) else int(rows[0])
+        kinds = {name: column.kind(row) for name, column in inputs.items()}
+        if status := STATUSES.index(_fault(kinds, bool(_number(mu_k_above, row)))):
+            yield Group(rows, status, None, False)
             continue
-        pattern = {name: _in_pattern(name, kinds[name], one.column) for name, one in inputs.items()}
+        pattern = {name: _in_pattern(name, kinds[name], column.doubles) for name, column in inputs.items()}
         if pattern["I"] is not None:
             pattern["inertia"] = None
-        sign = int(_at(m2, row) > _at(m1, row)) - int(_at(m2, row) < _at(m1, row))
-        yield index, status, Pattern(sign, tuple(pattern.values())), FAR in kinds.values()
+        mass_1, mass_2 = _number(m1, row), _number(m2, row)
+        sign = int(mass_2 > mass_1) - int(mass_2 < mass_1)
+        beyond_window = Kind.BEYOND_WINDOW in kinds.values()
+        yield Group(rows, status, Pattern(sign, tuple(pattern.values())), beyond_window)
 
 
-def _at(column: NDArray[Any], row: int) -> Any:
-    """The item of a row."""
+def _number(column: NDArray[Any], row: int) -> Any:
+    """The number in a row of a column, or the single number that is the same in all rows."""
     return column[row] if column.ndim else column[()]
 
 
 def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool) -> str:
     """The first fault of inputs of these kinds: whether they are in their domains and go together."""
-    given = {name for name, kind in kinds.items() if kind != ABSENT}
-    zero = {name for name, kind in kinds.items() if kind == ZERO}
+    given = {name for name, kind in kinds.items() if kind != Kind.ABSENT}
+    zero = {name for name, kind in kinds.items() if kind == Kind.ZERO}
     faults = [
-        *(("NaN", kind == NAN) for kind in kinds.values()),
+        *(("NaN", kind == Kind.NAN) for kind in kinds.values()),
         *((name, kind in OUTSIDE[name]) for name, kind in kinds.items()),
         *((name, name not in given) for name in MASSES),
         ("I and inertia", given >= {"I", "inertia"}),
@@ -212,14 +230,14 @@ def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool) -> str:
         ("mu_k without mu", "mu_k" in given and "mu" not in given),
         ("mu_k above mu", mu_k_above_mu),
         ("I without R", "I" in given and "R" not in given),
-        ("I with M = 0 or inf", "I" in given and kinds["M"] in (ZERO, INFINITE)),
+        ("I with M = 0 or inf", "I" in given and kinds["M"] in (Kind.ZERO, Kind.INFINITE)),
         ("valid", True),
     ]
     return next(fault for fault, is_so in faults if is_so)
 
 
-def _in_pattern(name: str, kind: int, column: Column) -> Fraction | float | str | None:
+def _in_pattern(name: str, kind: int, doubles: Column) -> Fraction | float | str | None:
     """An input in the `Pattern` of a row."""
-    if kind in SAME_IN_ALL and not (kind == ABSENT and name in DEFAULTS):
-        return None if name == "axle" else SAME_IN_ALL[kind]  # no friction is no axle
-    return Fraction(float(column)) if name in SHAPES and not column.ndim else COLUMN
+    if kind in SAME_IN_ALL and not (kind == Kind.ABSENT and name in DEFAULT_DOUBLES):
+        return None if name == "axle" else SAME_IN_ALL[kind]  # an axle without friction is none
+    return Fraction(float(doubles)) if name in BUILT_IN and not doubles.ndim else COLUMN

@@ -4,15 +4,14 @@ A `Number` stands for the sum of its parts, of which the second is at most u = 2
 operations lose is counted in u² of the result, or of both terms in a difference:
 
 - a constant, 1: its second part is rounded;
-- a sum, 4: it is exact, but for the second parts, which are added in doubles to what the first parts lose:
-  twice 2 u is rounded;
+- a sum, 4: it is exact, but for the second parts, which are added in doubles to the rounding error of the
+  first parts: 2 u is rounded twice;
 - a product of two doubles, 0: it comes with its rounding error (see `two_product`);
-- a product of pairs, 8: to that of the first parts the products of a first and a second part are added. It
-  loses 2 for forming them, 2 and 3 for adding them, and 1 for the product of the second parts, which is left
-  out;
-- a quotient, 13: it is the rounded quotient q of the first parts, and the remainder x - q y over y. The
-  remainder is off by 7 (of x) and at most 3 u of x; divided by the first part of y, rounded, it loses 6
-  more;
+- a product of pairs, 8: the product of the first parts, to which both products of a first and a second part
+  are added. It loses 2 for forming these, 2 and 3 for adding them, and 1 for the product of the second parts,
+  which is left out;
+- a quotient, 13: the rounded quotient q of the first parts, and the remainder x - q y over y. The remainder
+  is off by 7 u² of x, and it is at most 3 u of x; its division by the first part of y, rounded, loses 6 more;
 - a root, 8: it is found in the same way, by a step of Newton's method.
 
 The rest of the proof is that of `doubles`.
@@ -27,11 +26,12 @@ from operator import add, sub
 from typing import Any
 
 from ..arithmetic.symbolic import Formula, Term, formula
-from .constants import STEPS, in_parts, ln2, powers
+from .constants import TABLE_STEPS, in_parts, ln2, powers
 from .doubles import UNIT, Doubles, Number, Parts, less, looked_up, maximum, minimum, where
 
-SQUARE = UNIT**2
-LARGEST = 180.0  # argument of an exponential: neither e^x nor its square leaves the doubles behind it
+UNIT_SQUARED = UNIT**2
+LARGEST_EXPONENT = 180.0
+"""The largest x for which e^x has a bound: e^x and its square are doubles then."""
 
 
 # Error-free transformations: sums and products of doubles with their rounding errors
@@ -57,13 +57,13 @@ def two_product(x: Term, y: Term) -> tuple[Any, Any]:
     exact, and so are their sums.
     """
     product = x * y
-    a, c = head_of(x), head_of(y)
-    b, d = x - a, y - c
-    return product, ((a * c - product) + b * c + a * d) + b * d
+    head_x, head_y = head_of(x), head_of(y)
+    tail_x, tail_y = x - head_x, y - head_y
+    return product, ((head_x * head_y - product) + tail_x * head_y + head_x * tail_y) + tail_x * tail_y
 
 
 def head_of(x: Term) -> Any:
-    """Each double rounded to 26 bits, and away from 0 where two are equally near."""
+    """Each double rounded to 26 bits; a tie is rounded away from 0."""
     if isinstance(x, Formula):
         return Formula("head", x)
     mantissa, exponent = frexp(x)
@@ -73,9 +73,9 @@ def head_of(x: Term) -> Any:
 class Pairs(Doubles):
     """The arithmetic of numbers that are the sum of two doubles."""
 
-    loss_of_constant, loss_of_sum, loss_of_product = SQUARE, 4 * SQUARE, 8 * SQUARE
-    loss_of_quotient, loss_of_root, loss_of_doubles = 13 * SQUARE, 8 * SQUARE, 0.0
-    loss_of_series = 256 * SQUARE
+    loss_of_constant, loss_of_sum, loss_of_product = UNIT_SQUARED, 4 * UNIT_SQUARED, 8 * UNIT_SQUARED
+    loss_of_quotient, loss_of_root, loss_of_doubles = 13 * UNIT_SQUARED, 8 * UNIT_SQUARED, 0.0
+    loss_of_series = 256 * UNIT_SQUARED
     roughly = False
 
     def error(self, x: Number) -> Any:
@@ -84,19 +84,19 @@ class Pairs(Doubles):
     # Parts, without bounds
 
     def sum(self, x: Parts, y: Parts, sign: float, positive: bool) -> Parts:
-        (a, *low), (b, *more) = x, y
+        (first_x, *rest_x), (first_y, *rest_y) = x, y
         plus = add if sign > 0 else sub
         if positive:
-            high, rest = fast_two_sum(maximum(a, b), minimum(a, b))
+            high, rest = fast_two_sum(maximum(first_x, first_y), minimum(first_x, first_y))
         else:
-            high, rest = two_sum(a, b * sign)
-        for part in low:
+            high, rest = two_sum(first_x, first_y * sign)
+        for part in rest_x:
             rest = rest + part
-        for part in more:
+        for part in rest_y:
             rest = plus(rest, part)
-        if positive or not (low or more):
-            return fast_two_sum(high, rest) if low or more else (high, rest)
-        return two_sum(high, rest)
+        if not (rest_x or rest_y):
+            return high, rest
+        return fast_two_sum(high, rest) if positive else two_sum(high, rest)
 
     def multiply(self, x: Parts, y: Parts) -> Parts:
         product, rest = two_product(x[0], y[0])
@@ -109,10 +109,10 @@ class Pairs(Doubles):
     def divide(self, x: Parts, y: Parts) -> Parts:
         """The rounded quotient, and the quotient of the remainder that it leaves."""
         quotient = x[0] / y[0]
-        left = _remainder(x, quotient, y[0])
+        remainder = _remainder(x, quotient, y[0])
         for part in y[1:]:
-            left = left - quotient * part
-        return fast_two_sum(quotient, left / y[0])
+            remainder = remainder - quotient * part
+        return fast_two_sum(quotient, remainder / y[0])
 
     def root_of(self, x: Parts) -> Parts:
         """The rounded root, and a step of Newton's from the remainder that its square leaves."""
@@ -127,28 +127,28 @@ class Pairs(Doubles):
     # Functions
 
     def expm1(self, x: Number) -> Number:
-        """k = e^x - 1 for x >= 0, without a bound beyond x = 180 (`LARGEST`).
+        """k = e^x - 1 for x >= 0, without a bound beyond x = 180 (`LARGEST_EXPONENT`).
 
-        The largest multiple of ln 2/16384 that is not above x is split into m ln 2 and steps of a table of a
-        = 2^(i/16384) - 1. The rest r < 4.3e-5 of x loses 8 u² of x, as a product does. It gives s = e^r - 1
-        by its Taylor series, in which terms from r⁴ on are computed in doubles and those from r⁷ on are left
-        out: that loses 256 u² of s. Then 1 + k = 2^m (1 + a)(1 + s). The factors are joined as a + s + a s,
-        where nothing cancels.
+        x is split into m ln 2, i steps of ln 2/16384 and a rest r < 4.3e-5, which loses 8 u² of x, as a
+        product does. The steps are looked up in a table of a = 2^(i/16384) - 1. The rest gives s = e^r - 1 by
+        its Taylor series: terms from r⁴ on are computed in doubles and terms from r⁷ on are left out, which
+        loses 256 u² of s. Then 1 + k = 2^m (1 + a)(1 + s). The factors are joined as a + s + a s, where
+        nothing cancels.
         """
         first, *others = x.parts
-        high = minimum(first, LARGEST)
-        count = Formula("floor", high * (STEPS / log(2)))
+        high = minimum(first, LARGEST_EXPONENT)
+        count = Formula("floor", high * (TABLE_STEPS / log(2)))
         number = Formula("int", count)
         s = self._small_expm1(_rest(high, others, count))
-        step = Formula("bits", number, STEPS - 1)
+        step = Formula("bits", number, TABLE_STEPS - 1)
         a = Number(self, [looked_up(column, step) for column in powers()], self.loss_of_constant)
         k = a + s + a * s
-        power = Formula("power", Formula(">>", number, STEPS.bit_length() - 1))
+        power = Formula("power", Formula(">>", number, TABLE_STEPS.bit_length() - 1))
         k = Number(self, [part * power for part in k.parts], k.loss)
         k = k + Number(self, fast_two_sum(power, -1.0))
         doubt = (1.0 + high) * (x.bound + self.loss_of_product)
         doubt = doubt + s.parts[0] * (1.0 + 1.0 / k.parts[0]) * self.loss_of_series
-        return Number(self, k.parts, k.loss, where(less(first, LARGEST), doubt, inf))
+        return Number(self, k.parts, k.loss, where(less(first, LARGEST_EXPONENT), doubt, inf))
 
     def _small_expm1(self, r: Parts) -> Number:
         """e^r - 1 = r + r² (1/2 + r (1/6 + ...)) for a small r."""
@@ -181,8 +181,8 @@ class Pairs(Doubles):
 def _remainder(x: Parts, q: Term, y: Term) -> Any:
     """x - q y for a rounded quotient q, as a double: q y is so close to x that their difference is exact."""
     product, error = two_product(q, y)
-    left = (x[0] - product) - error
-    return left + x[1] if len(x) == 2 else left
+    remainder = (x[0] - product) - error
+    return remainder + x[1] if len(x) == 2 else remainder
 
 
 def _rest(first: Term, others: Sequence[Term], count: Formula) -> Parts:
@@ -190,10 +190,10 @@ def _rest(first: Term, others: Sequence[Term], count: Formula) -> Parts:
 
     The constant is split into parts of 24 bits, whose multiples are exact, and the rest.
     """
-    near, middle, last, rest = in_parts(ln2() / STEPS, 24, 3)
+    near, middle, last, rest = in_parts(ln2() / TABLE_STEPS, 24, 3)
     high, error = two_sum(first - count * near, count * -middle)
-    high, more = two_sum(high, count * -last)
-    low = error + more + count * -rest
+    high, next_error = two_sum(high, count * -last)
+    low = error + next_error + count * -rest
     for part in others:
         low = low + part
     return two_sum(high, low)

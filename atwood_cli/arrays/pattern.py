@@ -17,6 +17,7 @@ Index = slice | NDArray[np.intp]
 """A selection of rows, in ascending order."""
 
 COLUMN = "column"
+"""The entry of a pattern for an input that each row has for itself."""
 
 
 class Pattern(NamedTuple):
@@ -29,7 +30,7 @@ class Pattern(NamedTuple):
     inputs: tuple[Fraction | float | str | None, ...]
 
     def scene(self, column: Callable[[str], Any]) -> Scene:
-        """The scene of a row, or of all of them; ``column`` gives the number of an input that is a column."""
+        """The scene of a row, or of all rows; ``column`` gives the number of an input that is a column."""
         fields: dict[str, Any] = {
             name: column(name) if value == COLUMN else value
             for name, value in zip(INPUTS, self.inputs, strict=True)
@@ -40,11 +41,11 @@ class Pattern(NamedTuple):
 
 
 Decisions = frozenset[tuple[str, bool]]
-"""Questions, and what the rows of a group have answered."""
+"""Questions, each with the answer of a group's rows."""
 
 
 class Task(NamedTuple):
-    """Quantities to compute, at a level of precision, for the rows of one pattern and the same decisions."""
+    """Quantities to compute at a level of precision, for rows with one pattern and the same decisions."""
 
     pattern: Pattern
     decisions: Decisions
@@ -57,10 +58,10 @@ def size_of(index: Index) -> int:
     return index.stop - index.start if isinstance(index, slice) else index.size
 
 
-def select(index: Any, some: Any) -> Any:
-    """The rows at some places of a selection, or the row at one place: two selections made one."""
+def select(index: Any, places: Any) -> Any:
+    """The rows at places of a selection, which are a slice, an array or the number of one place."""
     if not isinstance(index, slice):
-        return index[some]
-    if isinstance(some, slice):
-        return slice(index.start + some.start, min(index.start + some.stop, index.stop))
-    return some + index.start if index.start else some
+        return index[places]
+    if isinstance(places, slice):
+        return slice(index.start + places.start, min(index.start + places.stop, index.stop))
+    return places + index.start if index.start else places

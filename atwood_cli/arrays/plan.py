@@ -9,9 +9,9 @@ Take the row m1 = 1, m2 = 3, M = 100, mu = 0.3, and its acceleration, certified.
 3. The formulas become a `Program` of some twenty NumPy operations on doubles, with a bound on their error
    (see `doubles`). For this row it gives 0.764026672247107, off by at most 6e-15 of that. The bound is below
    2e-14, so the value is certified.
-4. Beside it, the row M = 1e6, mu = 0.34969 hardly slips: m2 - e^{μφ} m1 = 8.6e-5 has lost too many digits,
-   and the bound is 3e-11. Only this row, and only this quantity, goes to the next level of precision: sums of
-   two doubles (see `pairs`) are off by at most 3e-26 of the value.
+4. Another row of the group, M = 1e6, mu = 0.34969, hardly slips: m2 - e^{μφ} m1 = 8.6e-5 has lost too many
+   digits, and the bound is 3e-11. This row alone, and this quantity alone, go to the next level of precision:
+   sums of two doubles (see `pairs`) are off by at most 3e-26 of the value.
 
 What each accuracy promises, and why it holds:
 
@@ -22,8 +22,8 @@ What each accuracy promises, and why it holds:
   where both ends of its bound round to the same double (Ziv's test), or where it is the product of two
   inputs, whose pair is exact. Other ties, half-way between two doubles, are left to a single scene.
 
-Rows with an input beyond `doubles.WINDOW`, other than 0, are solved one by one at once. So are quantities
-that need the sine of an angle which each row has for itself, as the least and the greatest friction force do.
+Rows with an input beyond `doubles.WINDOW`, other than 0, are solved one by one at once. Quantities are, too,
+if they need the sine of an angle that each row has for itself: the least and the greatest friction force.
 """
 
 from __future__ import annotations
@@ -50,15 +50,16 @@ from .program import Program
 LEVELS: dict[str, tuple[Doubles, ...]] = {"certified": (DOUBLES, PAIRS), "exact": (PAIRS,)}
 """The arithmetics of each accuracy's levels of precision."""
 ENOUGH_DIGITS = 32
-"""Digits with which most rows are settled that doubles cannot certify, in the first computation."""
-KEPT = 256  # plans: enough for ten patterns
+"""The digits of a first computation: they settle most rows that doubles cannot certify."""
+KEPT_PLANS = 256
+"""The number of plans that are kept: enough for ten patterns."""
 
 
 class Asked(Exception):
-    """A question about the rows that they have not answered yet: with it the model stops in the middle.
+    """A question that the rows have not answered yet: it stops the model in the middle.
 
-    `plan` puts the question into the plan, whose program answers it; the model then runs anew for the rows
-    of either answer, with the answer among their decisions.
+    `plan` takes the question up, and the program of the plan answers it. The model then runs anew for the
+    rows of either answer, with that answer among their decisions.
     """
 
 
@@ -105,32 +106,33 @@ def _machine_of_columns(task: Task, ar: Doubles) -> Machine[Any]:
 
 
 class Plan(NamedTuple):
-    """What is done for a task.
-
-    The ``program`` gives the quantities in ``computed``; for those in ``conditional`` also whether a row is
-    certified, by the name `condition_of`. ``constants`` have the same value in all rows, ``missing`` have
-    none, for a reason. No program gives those that are ``alone``. Those that are ``asking`` need the answer
-    to the ``question`` first. If there is one, the program gives for each row whether the answer is "yes",
-    and whether that is "sure".
-    """
+    """How a task is done: the way of each of its quantities."""
 
     program: Program | None
     computed: tuple[str, ...]
+    """Quantities that the program gives."""
     conditional: tuple[str, ...]
+    """Computed ones for which the program also says which rows are certified, by the name `condition_of`."""
     constants: dict[str, float]
+    """Values that are the same in all rows, by quantity."""
     missing: dict[str, str]
+    """The reasons of quantities without a value."""
     alone: tuple[str, ...]
+    """Quantities that no program gives: each row is solved alone."""
     question: str
+    """A question, or "". The program gives each row's "answer" to it, and whether that is "sure"."""
     asking: tuple[str, ...]
+    """Quantities that need the answer first."""
 
 
 def condition_of(name: str) -> str:
+    """The name of a program's result that says whether a quantity is certified."""
     return f"{name} is certified"
 
 
-@lru_cache(KEPT)
+@lru_cache(KEPT_PLANS)
 def plan(task: Task, accuracy: Accuracy) -> Plan:
-    """The plan for a task: the model is run on columns, quantity by quantity."""
+    """The plan for a task, made by running the model on columns, quantity by quantity."""
     machine = _machine_of_columns(task, LEVELS[accuracy][task.level])
     values: dict[str, Term] = {}
     conditions: dict[str, Formula] = {}
@@ -162,30 +164,30 @@ def plan(task: Task, accuracy: Accuracy) -> Plan:
     )
 
 
-@lru_cache(KEPT)
+@lru_cache(KEPT_PLANS)
 def answering(task: Task, question: str, ar: Doubles) -> Program:
-    """The program that answers a question in each row: whether it is "yes", and whether that is "sure"."""
+    """The program that gives each row's "answer" to a question, and whether that is "sure"."""
     return Program(_answer(task, question, ar))
 
 
 def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
     wrap = Formula("symbol", "wrap")
     if question == "long_wrap":
-        return {"sure": less(0.0, wrap), "yes": less(180.0, wrap)}
+        return {"sure": less(0.0, wrap), "answer": less(180.0, wrap)}
     if question == "ends_hang_down":
-        return {"sure": less(0.0, wrap), "yes": equal(Formula("fmod", wrap, formula(360.0)), 180.0)}
-    machine, (method, which) = _machine_of_columns(task, ar), question.split()
+        return {"sure": less(0.0, wrap), "answer": equal(Formula("fmod", wrap, formula(360.0)), 180.0)}
+    machine, (method, point) = _machine_of_columns(task, ar), question.split()
     case = machine.case
     if method == "moves_axle":
-        margin: Any = getattr(case, which) * machine.g - machine.f
+        margin: Any = getattr(case, point) * machine.g - machine.f
     else:
         mu = case.scene.mu if method == "slips_at" else case.limiting_mu
-        margin = ar.log1p(case.excess(cast(Place, which), ar)) - ar.number(mu) * machine.phi
-    return {"sure": less(margin.bound, 0.25), "yes": less(0.0, margin.parts[0])}
+        margin = ar.log1p(case.excess(cast(Place, point), ar)) - ar.number(mu) * machine.phi
+    return {"sure": less(margin.bound, 0.25), "answer": less(0.0, margin.parts[0])}
 
 
 def nearest_double(task: Task, name: str, number: Callable[[str], Fraction]) -> float | None:
-    """A quantity of a single row, exactly, by what its group has decided; None if something is undecided."""
+    """A quantity of a single row, exactly, by the decisions of its group; None if they do not suffice."""
     case = _GroupCase(task.pattern, task.decisions, number)
     try:
         return settle(lambda ar: getattr(Machine(case, ar), name), to_double, ENOUGH_DIGITS)

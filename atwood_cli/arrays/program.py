@@ -1,7 +1,7 @@
-"""Formulas compiled to programs: lists of NumPy operations, run on tiles of rows that fit the cache.
+"""Formulas are compiled to programs: lists of NumPy operations, run on tiles of rows that fit the cache.
 
-A `Program` is made from the formulas of its results. A subexpression that occurs twice is computed once, and
-a temporary column is reused after its last use.
+A `Program` is made from the formulas of its results. An expression that occurs twice is computed once, and
+the column of an intermediate value is used again after the value's last use.
 """
 
 from __future__ import annotations
@@ -18,13 +18,14 @@ from .constants import cos_sin_in_doubles
 from .pattern import Column
 
 Operation = Callable[..., Any]
-HEAD = -1 << 27  # masks the last 27 of the 53 bits of a double
+HEAD_MASK = -1 << 27
+"""The bits of a double without the last 27 of its mantissa's 53."""
 
 
 def _head(x: Column, out: Column) -> None:
     bits = out.view(np.int64)
-    np.add(x.view(np.int64), -HEAD >> 1, out=bits)  # half of the last bit that stays: its size is rounded
-    np.bitwise_and(bits, HEAD, out=bits)
+    np.add(x.view(np.int64), -HEAD_MASK >> 1, out=bits)  # adds half of the last bit that stays, to round
+    np.bitwise_and(bits, HEAD_MASK, out=bits)
 
 
 def _take(index: NDArray[np.intp], table: Column, out: Column) -> None:
@@ -56,12 +57,12 @@ def _power(exponent: NDArray[np.intp], out: Column) -> None:
     np.ldexp(1.0, exponent.astype(np.intc), out=out)
 
 
-def _of_degrees(part: int) -> Operation:
+def _of_degrees(which: int) -> Operation:
     """One of the doubles of `cos_sin_in_doubles`: each angle that occurs is computed once, to 70 digits."""
 
     def operation(degrees: Column, out: Column) -> None:
         angles, places = np.unique(degrees, return_inverse=True)
-        out[:] = np.array([cos_sin_in_doubles(angle)[part] for angle in angles.tolist()])[places]
+        out[:] = np.array([cos_sin_in_doubles(angle)[which] for angle in angles.tolist()])[places]
 
     return operation
 
@@ -99,79 +100,87 @@ OPERATIONS: dict[str, Operation] = {
     "sin°": _of_degrees(2),
     "rest of sin°": _of_degrees(3),
 }
-KINDS: dict[str, type[Any]] = dict.fromkeys(("<", "<=", "==", "and", "or"), np.bool_) | dict.fromkeys(
-    ("int", "bits", ">>"), np.intp
-)
-"""The type of an operation's results, if they are not doubles."""
+RESULT_TYPES: dict[str, type[Any]] = {
+    **dict.fromkeys(("<", "<=", "==", "and", "or"), np.bool_),
+    **dict.fromkeys(("int", "bits", ">>"), np.intp),
+}
+"""The types of operations' results that are not doubles."""
 NOT_IN_PLACE = ("where", "take")
 """Operations that write results before they have read all operands."""
 
 
-_KEPT = local()
+_OF_THREAD = local()
 
 
-def columns_for(kinds: Iterable[type[Any]], size: int) -> list[NDArray[Any]]:
-    """Columns for intermediate values, of each of those types: a thread gets the same ones in its next call.
+def columns_for(types: Iterable[type[Any]], size: int) -> list[NDArray[Any]]:
+    """Columns of these types for intermediate values; a thread gets the same columns in its next call.
 
-    New ones would be new pages of memory each time, which takes as long as half of what is computed in them.
+    New ones would be new pages of memory at each call, which take half as long as the work in them.
     """
-    kept: dict[tuple[int, type[Any]], NDArray[Any]] = vars(_KEPT).setdefault("columns", {})
+    kept: dict[tuple[int, type[Any]], NDArray[Any]] = vars(_OF_THREAD).setdefault("columns", {})
     columns = []
-    for place in enumerate(kinds):
-        if place not in kept or kept[place].size < size:
-            kept[place] = np.empty(size, place[1])
-        columns.append(kept[place][:size])
+    for place, type_ in enumerate(types):
+        column = kept.get((place, type_))
+        if column is None or column.size < size:
+            column = kept[place, type_] = np.empty(size, type_)
+        columns.append(column[:size])
     return columns
 
 
 class Program:
     """The operations that compute ``results``, by their names, from ``inputs``, the names of columns.
 
-    Operations read and write numbered slots. The slots of inputs, constants and results come first, then
-    those of intermediate values, whose types are ``between``.
+    Operations read and write numbered slots. The slots of inputs, constants and results come first. Those of
+    intermediate values follow, whose types are ``between``.
     """
 
     def __init__(self, results: Mapping[str, Term]) -> None:
         values = _Values()
         wanted = [values.number(formula(result)) for result in results.values()]
         self.results = tuple(results)
+        # Inputs and constants have the first slots, as they are there before any operation.
         inputs, constants = (
-            [n for n, (op, _) in enumerate(values.all) if op == kind] for kind in ("symbol", "number")
+            [value for value, (op, _) in enumerate(values.all) if op == leaf] for leaf in ("symbol", "number")
         )
-        self.inputs: list[str] = [values.all[n][1][0] for n in inputs]
-        self.constants = [values.all[n][1][0] for n in constants]
-        slots = {n: slot for slot, n in enumerate([*inputs, *constants])}
+        self.inputs: list[str] = [values.all[value][1][0] for value in inputs]
+        self.constants = [values.all[value][1][0] for value in constants]
+        slots = {value: slot for slot, value in enumerate([*inputs, *constants])}
         leaves, copies = set(slots), []
-        for slot, n in enumerate(wanted, len(leaves)):
-            if n in slots:
-                copies.append((_copy, (slots[n], slot)))
+        # Each result has the next slot, in which its value is computed. A value that is there already, as an
+        # input or another result, is copied in the end.
+        for slot, value in enumerate(wanted, len(leaves)):
+            if value in slots:
+                copies.append((_copy, (slots[value], slot)))
             else:
-                slots[n] = slot
+                slots[value] = slot
         self.between: list[type[Any]] = []
         self.operations = [*self._operations(values, leaves, slots, len(leaves) + len(wanted)), *copies]
 
     def _operations(
-        self, values: _Values, leaves: set[int], slots: dict[int, int], first: int
+        self, values: _Values, leaves: set[int], slots: dict[int, int], first_between: int
     ) -> Iterator[tuple[Operation, tuple[int, ...]]]:
-        """The operations with their slots. A slot is free after the last use of its value."""
+        """The operations with their slots: operands first, the result last."""
         fixed, free = set(slots), dict[type[Any], list[int]]()
-        last_use = {part: n for n, (_, parts) in enumerate(values.all) if n not in leaves for part in parts}
-        kinds = [KINDS.get(op, np.float64) for op, _ in values.all]
-        for n, (op, parts) in enumerate(values.all):
-            if n in leaves:
-                continue
-            done = dict.fromkeys(part for part in parts if last_use[part] == n and part not in fixed)
+        operations = [value for value in range(len(values.all)) if value not in leaves]
+        last_use = {part: value for value in operations for part in values.all[value][1]}
+        types = [RESULT_TYPES.get(op, np.float64) for op, _ in values.all]
+        for value in operations:
+            op, parts = values.all[value]
+            # After the last use of an intermediate value its slot is free. Most operations may write in it.
+            ended = dict.fromkeys(part for part in parts if last_use[part] == value and part not in fixed)
             in_place = op not in NOT_IN_PLACE
-            for part in done if in_place else ():
-                free.setdefault(kinds[part], []).append(slots[part])
-            if n not in slots:
-                if not free.get(kinds[n]):
-                    free[kinds[n]] = [first + len(self.between)]
-                    self.between.append(kinds[n])
-                slots[n] = free[kinds[n]].pop()
-            for part in () if in_place else done:
-                free.setdefault(kinds[part], []).append(slots[part])
-            yield OPERATIONS[op], (*[slots[part] for part in parts], slots[n])
+            for part in ended if in_place else ():
+                free.setdefault(types[part], []).append(slots[part])
+            # The result takes a free slot of its type, or a new one.
+            if value not in slots:
+                if not free.get(types[value]):
+                    free[types[value]] = [first_between + len(self.between)]
+                    self.between.append(types[value])
+                slots[value] = free[types[value]].pop()
+            # The other operations still read their operands while they write.
+            for part in () if in_place else ended:
+                free.setdefault(types[part], []).append(slots[part])
+            yield OPERATIONS[op], (*[slots[part] for part in parts], slots[value])
 
     def run(
         self,
@@ -180,12 +189,12 @@ class Program:
         between: Iterable[NDArray[Any]],
     ) -> None:
         """Write the results of these inputs; ``between`` are columns for intermediate values."""
-        given, found = [inputs[name] for name in self.inputs], [results[name] for name in self.results]
-        at = [*given, *self.constants, *found, *between]
-        # Look up operands first: Python code between two operations would keep other threads waiting.
-        bound = [(operation, [at[slot] for slot in slots]) for operation, slots in self.operations]
-        for operation, columns in bound:
-            operation(*columns)
+        read, written = [inputs[name] for name in self.inputs], [results[name] for name in self.results]
+        columns = [*read, *self.constants, *written, *between]
+        # Operands are looked up first: Python code between two operations would keep other threads waiting.
+        calls = [(operation, [columns[slot] for slot in slots]) for operation, slots in self.operations]
+        for operation, operands in calls:
+            operation(*operands)
 
 
 class _Values:
@@ -200,25 +209,26 @@ class _Values:
         """The number of a formula's value. Formulas are too deep for recursion."""
         numbers, waiting = self._of, [root]
         while waiting:
-            one = waiting[-1]
-            if one in numbers:
+            top = waiting[-1]
+            if top in numbers:
                 waiting.pop()
                 continue
-            missing = [part for part in one.parts if isinstance(part, Formula) and part not in numbers]
+            missing = [part for part in top.parts if isinstance(part, Formula) and part not in numbers]
             if missing:
                 waiting += reversed(missing)
             else:
-                numbers[waiting.pop()] = self._numbered(one)
+                numbers[waiting.pop()] = self._numbered(top)
         return numbers[root]
 
-    def _numbered(self, one: Formula) -> int:
-        if one.op == "symbol":
-            return self._kept("symbol", one.parts)
-        if one.op == "number":
-            return self._constant(float(one.parts[0]))
+    def _numbered(self, node: Formula) -> int:
+        """The number of a formula's value, where its operands have theirs."""
+        if node.op == "symbol":
+            return self._kept("symbol", node.parts)
+        if node.op == "number":
+            return self._constant(float(node.parts[0]))
         numbers = self._of
-        parts = [numbers[part] if isinstance(part, Formula) else self._constant(part) for part in one.parts]
-        return self._kept(one.op, tuple(sorted(parts) if one.op in "+*" else parts))
+        parts = [numbers[part] if isinstance(part, Formula) else self._constant(part) for part in node.parts]
+        return self._kept(node.op, tuple(sorted(parts) if node.op in "+*" else parts))
 
     def _constant(self, value: Any) -> int:
         if isinstance(value, np.ndarray):  # a table

@@ -1,6 +1,6 @@
-"""Rows solved, group by group: questions are put to them, and programs run on tiles that fit the cache.
+"""Rows are solved group by group: questions are put to them, and programs run on tiles that fit the cache.
 
-`plan` shows by an example what is done for a group, and why. Here it is done.
+`plan` shows by an example how a group is solved, and why. This module does it.
 """
 
 from __future__ import annotations
@@ -22,16 +22,20 @@ from .pattern import Column, Index, Task, select, size_of
 from .plan import LEVELS, Plan, answering, condition_of, nearest_double, plan
 from .program import Program, columns_for
 
-ROOM = 2_000_000  # bytes for the columns of a tile
-SMALLEST, LARGEST = 8_192, 32_768  # rows of a tile
-FEW = 24  # rows that are solved sooner one by one than by a program that is yet to be made
-LEAVE = 2_000  # rows of one block that are solved sooner together with rows of other blocks
+TILE_BYTES = 2_000_000
+"""The most bytes of a tile's columns, which then fit the cache."""
+FEWEST_TILE_ROWS, MOST_TILE_ROWS = 8_192, 32_768
+"""The fewest rows of a tile, however many columns it has, and the most."""
+ROWS_ONE_BY_ONE = 24
+"""The most rows that are solved sooner one by one than by a program that is yet to be made."""
+ROWS_LEFT = 2_000
+"""The most rows of a block that are solved sooner together with rows of other blocks."""
 
 Flags = NDArray[np.bool_]
 
 
 class Rows:
-    """Some rows: their inputs, and where their results go, by name."""
+    """Rows: the columns of their inputs, and the columns that take their results, by name."""
 
     def __init__(
         self, inputs: Mapping[str, Column], results: Mapping[str, NDArray[Any]], accuracy: Accuracy
@@ -39,9 +43,9 @@ class Rows:
         self.inputs, self.results, self.accuracy = inputs, results, accuracy
         self.levels = LEVELS[accuracy]
         self.left: dict[Task, list[NDArray[np.intp]]] | None = None
-        """Tasks with few rows, kept for the end of all blocks; None where they are solved at once."""
+        """The rows of tasks that few rows have, kept until all blocks are done; None where none are kept."""
         self.reasons: Counter[tuple[str, str]] = Counter()
-        """In how many rows a quantity has no value, by its name and the reason."""
+        """The number of rows in which a quantity has no value, by its name and the reason."""
 
     def solve(self, rows: Index, task: Task) -> None:
         """Write the results of a task for rows of its pattern and decisions."""
@@ -50,95 +54,97 @@ class Rows:
             rows, task = waiting.pop()
             if not size_of(rows):
                 continue
-            if task.level == len(self.levels) or (task.level and size_of(rows) <= FEW):
+            if task.level == len(self.levels) or (task.level and size_of(rows) <= ROWS_ONE_BY_ONE):
                 self._solve_one_by_one(rows, task)
             else:
-                waiting += self._solved_but_for(rows, task)
+                waiting += self._follow_plan(rows, task)
 
-    def _solved_but_for(self, rows: Index, task: Task) -> Iterator[tuple[Index, Task]]:
-        """Do what the plan of a task says; yields what is left to do.
-
-        A row and quantity that is not certified is left to the next level.
-        """
-        how = plan(task, self.accuracy)
-        for name, constant in how.constants.items():
+    def _follow_plan(self, rows: Index, task: Task) -> Iterator[tuple[Index, Task]]:
+        """Do what the plan of a task says, and yield the tasks that remain, each with its rows."""
+        plan_ = plan(task, self.accuracy)
+        # Some quantities need no program: the rows have one value, or none.
+        for name, constant in plan_.constants.items():
             self.results[name][rows] = constant
-        for name, reason in how.missing.items():
+        for name, reason in plan_.missing.items():
             self.results[name][rows] = nan
             self.reasons[name, reason] += size_of(rows)
-        found = self._run_plan(how, rows)
-        for name in how.conditional:
-            failed = select(rows, np.flatnonzero(~found[condition_of(name)]))
-            again = task._replace(names=(name,), level=task.level + 1)
-            if self.left is None or failed.size > LEAVE:
-                yield failed, again
+        flags = self._run_plan(plan_, rows)
+        # A quantity that is not certified in a row goes to the next level: now, or with rows of other blocks.
+        for name in plan_.conditional:
+            failed = select(rows, np.flatnonzero(~flags[condition_of(name)]))
+            next_task = task._replace(names=(name,), level=task.level + 1)
+            if self.left is None or failed.size > ROWS_LEFT:
+                yield failed, next_task
             elif failed.size:
-                self.left.setdefault(again, []).append(failed)
-        if how.alone:
-            yield rows, task._replace(names=how.alone, level=len(self.levels))
-        if how.question:
-            yes, unsure = found["yes"], np.flatnonzero(~found["sure"])
-            yes[unsure] = self._ask(select(rows, unsure), task, how.question)
+                self.left.setdefault(next_task, []).append(failed)
+        # A quantity that no program gives goes to the last level at once.
+        if plan_.alone:
+            yield rows, task._replace(names=plan_.alone, level=len(self.levels))
+        # The question splits the rows: either part goes on, with its answer and the quantities that asked.
+        if plan_.question:
+            answers, unsure = flags["answer"], np.flatnonzero(~flags["sure"])
+            answers[unsure] = self._ask(select(rows, unsure), task, plan_.question)
             for answer in (False, True):
-                places = np.flatnonzero(yes == answer)
-                answered = rows if places.size == yes.size else select(rows, places)
-                decisions = task.decisions | {(how.question, answer)}
-                yield answered, task._replace(decisions=decisions, names=how.asking)
+                places = np.flatnonzero(answers == answer)
+                answered = rows if places.size == answers.size else select(rows, places)
+                decisions = task.decisions | {(plan_.question, answer)}
+                yield answered, task._replace(decisions=decisions, names=plan_.asking)
 
-    def _run_plan(self, how: Plan, rows: Index) -> dict[str, Flags]:
-        """Run a plan's program; returns what it says beside the quantities, by name."""
-        if how.program is None:
+    def _run_plan(self, plan_: Plan, rows: Index) -> dict[str, Flags]:
+        """Run the program of a plan, and return its conditions and answers, by their names."""
+        if plan_.program is None:
             return {}
-        flags = [name for name in how.program.results if name not in how.computed]
-        found = {name: np.empty(size_of(rows), np.bool_) for name in flags}
-        self._run(how.program, rows, how.computed, found)
-        return found
+        names = [name for name in plan_.program.results if name not in plan_.computed]
+        flags = {name: np.empty(size_of(rows), np.bool_) for name in names}
+        self._run(plan_.program, rows, plan_.computed, flags)
+        return flags
 
     def _run(
-        self, program: Program, rows: Index, quantities: tuple[str, ...], others: Mapping[str, NDArray[Any]]
+        self, program: Program, rows: Index, quantities: tuple[str, ...], flags: Mapping[str, Flags]
     ) -> None:
-        """Run a program tile by tile. ``others`` are columns for those results that are no quantities.
-
-        In rows that follow each other, quantities are written where they belong. Others are gathered first.
-        """
-        follow, size = isinstance(rows, slice), size_of(rows)
-        columns = [np.float64] * (len(program.inputs) + len(quantities)) + program.between
-        most = min(max(SMALLEST, ROOM // (8 * len(columns))), LARGEST, size)
-        room = columns_for(program.between if follow else columns, most)
-        for start in range(0, size, most):
-            part = slice(start, min(start + most, size))
-            tile = select(rows, part)
-            free = iter([column[: size_of(tile)] for column in room])
-            results = {name: column[part] for name, column in others.items()}
-            if follow:
+        """Run a program tile by tile. ``flags`` are columns for those results that are no quantities."""
+        adjoin, size = isinstance(rows, slice), size_of(rows)
+        types = [np.float64] * (len(program.inputs) + len(quantities)) + program.between
+        tile_size = min(max(FEWEST_TILE_ROWS, TILE_BYTES // (8 * len(types))), MOST_TILE_ROWS, size)
+        scratch = columns_for(program.between if adjoin else types, tile_size)
+        for start in range(0, size, tile_size):
+            places = slice(start, min(start + tile_size, size))
+            tile = select(rows, places)
+            free = iter([column[: size_of(tile)] for column in scratch])
+            results = {name: column[places] for name, column in flags.items()}
+            # Where rows adjoin each other, the program reads inputs and writes quantities in place.
+            if adjoin:
                 inputs = {
                     name: self.inputs[name][tile] if self.inputs[name].ndim else self.inputs[name]
                     for name in program.inputs
                 }
                 results |= {name: self.results[name][tile] for name in quantities}
+            # Elsewhere, both are gathered in columns of their own.
             else:
                 inputs = {name: _gathered(self.inputs[name], tile, next(free)) for name in program.inputs}
                 results |= {name: next(free) for name in quantities}
             program.run(inputs, results, free)
-            if not follow:
+            if not adjoin:
                 for name in quantities:
                     self.results[name][tile] = results[name]
 
     def _ask(self, rows: NDArray[np.intp], task: Task, question: str) -> Flags:
         """Each row's answer to a question that doubles leave open."""
-        yes, sure = np.empty((2, rows.size), np.bool_)
+        answers, sure = np.empty((2, rows.size), np.bool_)
         sure[:] = False
-        if rows.size > FEW:
-            self._run(answering(task, question, PAIRS), rows, (), {"yes": yes, "sure": sure})
+        # Pairs may decide it. They are not worth a program for few rows.
+        if rows.size > ROWS_ONE_BY_ONE:
+            self._run(answering(task, question, PAIRS), rows, (), {"answer": answers, "sure": sure})
+        # Exact arithmetic decides the rest.
         for place in np.flatnonzero(~sure).tolist():
-            method, which = question.split()
+            method, point = question.split()
             case = Case(task.pattern.scene(self._number(rows[place])))
-            yes[place] = getattr(case, method)(which)
-        return yes
+            answers[place] = getattr(case, method)(point)
+        return answers
 
     def _solve_one_by_one(self, rows: Index, task: Task) -> None:
-        """Solve rows as scenes of their own, exactly; those that are alike, as in tables of a few whole
-        numbers, once."""
+        """Solve rows as scenes of their own, exactly. Rows that are alike are solved once: in tables of whole
+        numbers there are many."""
         columns = [column for column in self.inputs.values() if column.ndim]
         alike: dict[tuple[float, ...], list[int]] = {}
         for place in range(size_of(rows)):
@@ -148,8 +154,9 @@ class Rows:
             self._solve_scene(same, task)
 
     def _solve_scene(self, rows: list[int], task: Task) -> None:
-        """Solve the scene that is in these rows."""
+        """Solve the scene that is in each of these rows."""
         number = self._number(rows[0])
+        # What the group has decided spares a single quantity all questions, if it suffices.
         if len(task.names) == 1 and task.decisions:
             value = nearest_double(task, task.names[0], number)
             if value is not None:
@@ -175,6 +182,6 @@ class Rows:
         return number
 
 
-def _gathered(column: Column, rows: NDArray[np.intp], room: Column) -> Column:
-    """The rows of a column, in the room for them; a single number stays single."""
-    return column.take(rows, out=room, mode="clip") if column.ndim else column
+def _gathered(column: Column, rows: NDArray[np.intp], out: Column) -> Column:
+    """The rows of a column, copied to ``out``; a single number stays single."""
+    return column.take(rows, out=out, mode="clip") if column.ndim else column
