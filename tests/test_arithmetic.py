@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from atwood_cli import solve
 from atwood_cli.arithmetic import settling
-from atwood_cli.arithmetic.interval import Enclosure, Unsettled, enclosures
+from atwood_cli.arithmetic.interval import Enclosure, Enclosures, Unsettled, enclosures
 from atwood_cli.arithmetic.rational import EXACT, Irrational
 from atwood_cli.arithmetic.settling import settle
 from atwood_cli.model.digits import as_typed, to_digits, to_double, with_one_power
@@ -73,6 +73,40 @@ def test_functions_enclose_tightly(digits: int, q: Fraction) -> None:
         assert tight(root, digits)
         for enclosure, value in zip(at.cos_sin(x), (mpmath.cos(exact), mpmath.sin(exact)), strict=True):
             assert contains(enclosure, value)
+
+
+class Unrounded(Enclosures):
+    """Keeps values, their bounds and bits from before they are rounded to digits, which hides errors of 2^40."""
+
+    def _fixed(self, value: int, error: int, bits: int) -> Enclosure:
+        vars(self).setdefault("kept", []).append((value, error, bits))
+        return super()._fixed(value, error, bits)
+
+
+@pytest.mark.parametrize("digits", [20, 50, 151, 200, 1000])
+@given(positive(-9, 3))
+def test_functions_and_constants_are_within_the_bounds_of_their_proofs(digits: int, q: Fraction) -> None:
+    """With 151 digits, π is cut from one that has but a single bit more, and those that guard it."""
+    at = Unrounded(digits)
+    angle, power = at.number(q).lo, at.number(q / 1024).lo
+    at.cos_sin(Enclosure(at, angle, angle))
+    at.expm1(Enclosure(at, power, power))
+    _ = at.pi
+    with mpmath.workdps(digits + 400):
+        x, y = mpmath.mpf(str(angle)), mpmath.mpf(str(power))
+        exact = mpmath.cos(x), mpmath.sin(x), mpmath.expm1(y), mpmath.pi()
+        for (value, error, bits), function in zip(vars(at)["kept"], exact, strict=True):
+            assert abs(value - function * mpmath.mpf(2) ** bits) <= error
+
+
+@pytest.mark.parametrize("wrong", ["-0.3", "-1e-9", "1e-9", "0.3"])
+@given(precisions, positive(-3, 4))
+def test_a_logarithm_is_enclosed_whatever_is_guessed(wrong: str, digits: int, q: Fraction) -> None:
+    at = Enclosures(digits)
+    guessed = enclosures(28).log1p(enclosures(28).number(q)).lo
+    at._log1p_guess = lambda y: guessed * (1 + Decimal(wrong))  # type: ignore
+    with mpmath.workdps(digits + 20):
+        assert contains(at.log1p(at.number(q)), mpmath.log1p(mpmath.mpf(q.numerator) / q.denominator))
 
 
 @pytest.mark.parametrize("root", ["0", "0.0125", "345", "1e-400"])
