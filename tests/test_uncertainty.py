@@ -384,6 +384,8 @@ LOPSIDED = {
     # More to one side, across 0, and both.
     "mu=0.31(2)": "axle_force is 590 ± 420 N, from 380 to 1230; critical_pulley_mass is 56 ± 43 kg, from 35 to 121, as mu is uncertain.",
     "m1=1.00(2) m2=1": "acceleration is 0.000 ± 0.098 m/s², from -0.097 to 0.099; tension_1 is 9.807 ± 0.098 N, from 9.708 to 9.904; tension_2 is 9.807 ± 0.098 N, from 9.708 to 9.904, and so on for N more, as m1 is uncertain.",
+    # A mass at rest hangs in its weight, whichever is heavier: that of m1 does not change with m2.
+    "m2=1.00(2) M=inf mu=0.3": "tension_2 is 9.81 ± 0.20 N, from 9.61 to 10; mu_verge is 0.0000 ± 0.0032, from 0 to 0.0064; tension_ratio is 1.000 ± 0.010, from 1 to 1.02, and so on for N more, as m2 is uncertain.",
     "m1=1.0(1) m2=1.2 M=10": "friction_force_y is -0.035 ± 0.039 N, from -0.085 to -0.008, as m1 is uncertain.",
 }
 

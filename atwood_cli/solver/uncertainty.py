@@ -64,7 +64,7 @@ class Uncertainties:
 
     def of(self, quantity: OnMachine) -> Quantity:
         """The standard uncertainty of a quantity that has a value at all ends."""
-        return lambda ar: ar.sqrt(_sum_of_squares(ar, self._steps(quantity, ar).values()))
+        return lambda ar: ar.sqrt(_sum_of_squares(ar, self._steps(quantity, ar)))
 
     def percent(self, quantity: OnMachine, x: str) -> Quantity:
         """The share of an input in the variance of a quantity, which must not be 0, in percent."""
@@ -73,14 +73,14 @@ class Uncertainties:
             steps = self._steps(quantity, ar)
             if x not in steps or len(steps) == 1:
                 return ar.number(100 * (x in steps))
-            return 100 * _sum_of_squares(ar, [steps[x]]) / _sum_of_squares(ar, steps.values())
+            return 100 * steps[x] * steps[x] / _sum_of_squares(ar, steps)
 
         return percent
 
     def _steps(self, quantity: OnMachine, ar: Arithmetic[N]) -> dict[str, N]:
         """By input x on which the quantity depends: half the range of its values at x and at both ends."""
         return {
-            x: _range([self._value(quantity, case, ar) for case in self._cases(x)]) / 2
+            x: _half_range(*(self._value(quantity, case, ar) for case in self._cases(x)))
             for x in self.given
             if len({self._value(quantity, case, FINGERPRINTS) for case in self._cases(x)}) > 1
         }
@@ -174,16 +174,15 @@ class Uncertainties:
             steps = self._steps(quantity, ar)
             if x not in steps:
                 return False
-            if any(_kind(case) != _kind(self.case) for case in cases):
+            if any(_otherwise(self.case, case) for case in cases):
                 return True
             here, *there = (self._value(quantity, case, ar) for case in cases)
-            u = ar.sqrt(_sum_of_squares(ar, steps.values()))
+            u = ar.sqrt(_sum_of_squares(ar, steps))
         except (Unsettled, ZeroDivisionError, OverflowError):  # nearer to a pole than anything measured
             return False
-        if any((one.lo > 0 and here.hi < 0) or (one.hi < 0 and here.lo > 0) for one in there):
+        if any((end * here).hi < 0 for end in there):
             return True
-        one_sided = [_range([here, one]) - steps[x] for one in there]
-        return any(_least_size(LOPSIDED * off) > u.hi for off in one_sided)
+        return any((LOPSIDED * abs(abs(here - end) - steps[x]) - u).lo > 0 for end in there)
 
     def _from_end_to_end(self, name: str, x: str) -> str:
         """A quantity with its uncertainty, and from where to where it goes with an input."""
@@ -228,18 +227,17 @@ def end_of(case: Case, x: str, step: Fraction) -> End:
     return End(number, found)
 
 
-def _kind(case: Case) -> tuple[Any, ...]:
-    """What may change from one end of an input to the other."""
-    return case.regime, case.sign, case.axle_holds
+DOUBTFUL = {
+    "Which mass is heavier": "sign",
+    "Whether the axle holds the difference": "axle_holds",
+    "Whether the string slips": "regime",
+}
+"""What may be otherwise at an end of an input, and the attribute of `Case` that says so."""
 
 
 def _otherwise(case: Case, other: Case) -> str:
     """What is otherwise in another case; empty if nothing is."""
-    if case.sign != other.sign:
-        return "Which mass is heavier"
-    if case.axle_holds != other.axle_holds:
-        return "Whether the axle holds the difference"
-    return "" if case.regime == other.regime else "Whether the string slips"
+    return next((what for what, x in DOUBTFUL.items() if getattr(case, x) != getattr(other, x)), "")
 
 
 def _at(case: Case, x: str, end: End) -> str:
@@ -259,25 +257,9 @@ def _listed(said: list[str]) -> str:
     return "; ".join(said[:NAMED]) + more
 
 
-def _sum_of_squares(ar: Arithmetic[N], steps: Iterable[N]) -> N:
-    total = ar.number(0)
-    for step in steps:
-        total += step * step
-    return total
+def _sum_of_squares(ar: Arithmetic[N], steps: Mapping[str, N]) -> N:
+    return sum((step * step for step in steps.values()), ar.number(0))
 
 
-def _range(values: list[Any]) -> Any:
-    """The greatest of some numbers less the least."""
-    if not isinstance(values[0], Enclosure):
-        return max(values) - min(values)
-    ar = values[0].arithmetic
-    most, least = (
-        Enclosure(ar, pick(value.lo for value in values), pick(value.hi for value in values))
-        for pick in (max, min)
-    )
-    return most - least
-
-
-def _least_size(x: Enclosure) -> Decimal:
-    """How far from 0 a number is at least."""
-    return Decimal(0) if x.lo <= 0 <= x.hi else min(x.lo.copy_abs(), x.hi.copy_abs())
+def _half_range(a: Any, b: Any, c: Any) -> Any:
+    return (abs(a - b) + abs(b - c) + abs(c - a)) / 4
