@@ -117,7 +117,7 @@ class Set(NamedTuple):
             m1, m2 = (heavy, light) if swapped and i % 2 else (light, heavy)
             measured = tuple(exact(value, d.stated * d.u) for value in some)
             runs.append(Run((i,), m1, m2, exact(DROP) if d.kind == "time" else None, measured))
-        return Runs(d.kind, runs, True, False, [])
+        return Runs(d.kind, runs, False, [])
 
 
 def expected(kind: Kind, l: Any, h: Any, c: float, f: Any) -> Any:

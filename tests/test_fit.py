@@ -213,7 +213,7 @@ def test_contradictory_runs_are_fitted_as_well_as_by_scipy(kind: Kind, find: lis
         inputs = [[Input(Fraction(x), Fraction(0), None) for x in row] for row in rows if row[0] != row[1]]
         drop = Input(Fraction(1), Fraction(0), None)
         used = [Run((i,), m1, m2, drop, (one,)) for i, (m1, m2, one) in enumerate(inputs)]
-        data = as_data(Runs(kind, used, True, False, []), used)
+        data = as_data(Runs(kind, used, False, []), used)
         given = {x: value for x, value in (("rim_mass", 0.0), ("axle", 0.0), ("gravity", G)) if x not in find}
         try:
             best = estimate(data, given, find)

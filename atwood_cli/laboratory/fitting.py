@@ -185,7 +185,7 @@ def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -
     drop = None
     if runs.kind == "time":
         drop, u_drop = _columns([one for run in used if (one := drop_of_all or run.drop)])
-        uncertain |= {} if runs.one_drop else {"drop": u_drop}
+        uncertain["drop"] = u_drop
     values, u, index = measurements(used)
     times, weight = np.bincount(index).astype(float), np.ones(len(values))
     if stated := bool(u.any()):

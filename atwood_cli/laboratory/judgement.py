@@ -147,7 +147,7 @@ def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
             raise SceneError(x, one.given, "has an uncertainty that reaches 0")
         ends = [one.value._replace(number=size + by) if x == "axle" else size + by for by in (-u, u) if u]
         if ends:
-            yield [conditions_of({**given.inputs, x: one._replace(value=value)}) for value in ends]
+            yield [conditions_of({**given.inputs, x: Input(end, Fraction(0), one.given)}) for end in ends]
 
 
 def read_find(words: Sequence[str], inputs: Mapping[str, Input]) -> list[str]:

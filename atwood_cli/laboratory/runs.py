@@ -1,11 +1,8 @@
 """A table of runs, from a file or from columns in Python, and the runs that its rows make."""
 
 import re
-from collections.abc import Collection, Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from fractions import Fraction
-from os import PathLike, fspath
-from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
 from ..model.scene import INPUTS, Input, SceneError
@@ -21,8 +18,8 @@ from ..tables.headings import (
     read_uncertainty,
     refused,
 )
-from ..tables.sheets import Sheet, read_sheet
-from ..tables.sources import Unreadable, blocks_of, opened, whole_lines
+from ..tables.sheets import Sheet, sheet_of
+from ..tables.sources import Unreadable
 
 Kind = Literal["a", "time"]
 MEASURED = {"a": "acceleration", "time": "time"}
@@ -34,14 +31,14 @@ SPELLINGS = {word: name for name, words in WORDS.items() for word in words.split
 SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
 VOCABULARY = Vocabulary(SPELLINGS, repeated=MEASURED, uncertain=True)
 NEEDED = {
-    "m1": "m1; name it, as --column m1='Masse 1 (g)'",
-    "m2": "m2; name it, as --column m2='Masse 2 (g)'",
-    "a time": "of times or accelerations; name it, as --column t='Zeit in s'",
+    "m1": "no column m1; name it, as --column m1='Masse 1 (g)'",
+    "m2": "no column m2; name it, as --column m2='Masse 2 (g)'",
+    "a time": "no column of times or accelerations; name it, as --column t='Zeit in s'",
+    "a drop": "times need the height of fall: give drop, or a column of that name",
 }
+"""The columns of which a run needs one, and what is said if there is none."""
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
 UNSIGNED = "accelerations have no sign here: none is negative, though m1 is the heavier at times."
-MISSING = ("nan", "None", "<NA>", "NaT")
-"""How Python writes a missing value."""
 MEASURABLE = 1e-30, 1e30
 BEYOND = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
 
@@ -74,13 +71,11 @@ class Run(NamedTuple):
 class Runs(NamedTuple):
     """The runs of a table, and how it was read.
 
-    ``one_drop`` means that all have the same height of fall, ``signed`` that accelerations have signs, as one
-    of them is negative: they are positive when m2 descends.
+    ``signed`` means that accelerations have signs, as one is negative: they are positive when m2 descends.
     """
 
     kind: Kind
     runs: Sequence[Run]
-    one_drop: bool
     signed: bool
     remarks: Sequence[str]
 
@@ -99,120 +94,71 @@ def read_runs(
     ``drop`` is the height of fall of all runs. The rows ``without``, by numbers from 1, are marked as left
     out. Raises Unreadable where it is no table of runs, SceneError for what does not fit the table.
     """
-    usual = "\t" if isinstance(source, str | PathLike) and Path(source).suffix.lower() == ".tsv" else ","
-    sheet = _sheet_of(source, usual, named)
-    headings = _with_unnamed(sheet, read_headings(sheet.columns, VOCABULARY, labels, named))
-    kind = _kind_of({one.name for one in headings})
-    headings = [one for one in headings if kind == "time" or one.name != "drop"]
-    one_drop = "drop" not in [one.name for one in headings]
-    _check_drop(drop, kind, one_drop)
-    unread = _unread(sheet, headings, labels)
+    sheet = sheet_of(source, VOCABULARY, named)
+    headings = read_headings(sheet.columns, VOCABULARY, labels, named)
+    names = {heading.name for heading in headings}
+    kind: Kind = "a" if "a" in names else "time"
+    headings = [heading for heading in headings if kind == "time" or heading.name != "drop"]
+    headings, others = _with_unnamed(sheet, headings, labels)
+    _check(names, drop)
     for number in without:
         if not 1 <= number <= len(sheet.rows):
             raise SceneError("without", f"{number}", f"is no row; there are 1 to {len(sheet.rows)}")
-    places = [column.at for one in headings for column in (one, one.u) if column]
+    places = [column.at for heading in headings for column in (heading, heading.u) if column]
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
-    also = [*(f"{in_quotes(column)} as a label" for column in unread), *sheet.remarks]
-    remarks = read_as(headings, sheet.separator, usual * bool(sheet.separator), comma, also)
-    joined = _joined([_run(n, row, headings, comma, drop) for n, row in enumerate(sheet.rows, 1)], without)
-    remarks += [f"Row {run.rows[0]} has no {kind}: it is no run." for run in joined if not run.measured]
-    runs = [run for run in joined if run.measured]
+    remarks = read_as(headings, sheet.separator, sheet.usual, comma, [*others, *sheet.remarks])
+    common = drop and drop._replace(uncertainty=Fraction(0))  # what counts for all runs together
+    rows = [_run(i, row, headings, comma, common, i in without) for i, row in enumerate(sheet.rows, 1)]
+    remarks += [f"Row {run.rows[0]} has no {kind}: it is no run." for run in rows if not run.measured]
+    runs = _joined(run for run in rows if run.measured)
     if not runs:
         raise Unreadable("it has no runs")
     signed = any(one.value < 0 for run in runs for one in run.measured)
     if kind == "a" and not signed and any(run.m1.value > run.m2.value for run in runs):
         remarks.append(UNSIGNED)
-    return Runs(kind, runs, one_drop, signed, remarks)
+    return Runs(kind, runs, signed, remarks)
 
 
-def _sheet_of(source: Any, usual: str, named: Mapping[str, str]) -> Sheet:
-    """A file, a mapping or a data frame as a table of texts. Raises Unreadable."""
-    if isinstance(source, str | PathLike):
-        with ExitStack() as stack:
-            blocks = blocks_of(opened(fspath(source), stack))
-            content = b"".join(lines for lines, _ in whole_lines(blocks, cells=True))
-        return read_sheet(content, usual, VOCABULARY, named)
-    return _sheet_of_columns(source)
+def _with_unnamed(
+    sheet: Sheet, headings: Sequence[Heading], labels: Collection[str]
+) -> tuple[list[Heading], list[str]]:
+    """The columns, with repeats that have no heading of their own, as below a merged one; and what is said of
+    other columns of numbers, which hold no quantity.
 
-
-def _sheet_of_columns(source: Any) -> Sheet:
-    """A mapping or a data frame as a table of texts. Raises Unreadable."""
-    if not hasattr(source, "items") and not hasattr(source, "columns"):
-        raise Unreadable(f"it is of type {type(source).__name__}; give a path, a mapping or a data frame")
-    columns: list[tuple[str, list[str]]] = []
-    for name, cells in (
-        source.items() if hasattr(source, "items") else zip(source.columns, source, strict=True)
-    ):
-        if isinstance(cells, str) or not hasattr(cells, "__iter__"):
-            what = f"column {in_quotes(name)} is of type {type(cells).__name__}"
-            raise Unreadable(f"{what}; give a sequence of cells")
-        columns.append((str(name), ["" if str(cell) in MISSING else str(cell) for cell in cells]))
-    if len({len(cells) for _, cells in columns}) > 1:
-        lengths = ", ".join(f"{in_quotes(name)} has {len(cells)} cells" for name, cells in columns)
-        raise Unreadable(f"its columns differ in length: {lengths}")
-    return Sheet([name for name, _ in columns], list(zip(*(cells for _, cells in columns), strict=True)))
-
-
-def _with_unnamed(sheet: Sheet, headings: Sequence[Heading]) -> list[Heading]:
-    """The columns, with repeats that have no heading of their own, as below a merged one.
-
-    Raises Unreadable for any other column of numbers without a heading.
+    Raises Unreadable for a column that could hold one, unless it is one of the ``labels``.
     """
-    found = {one.at: one for one in headings}
-    for at, column in enumerate(sheet.columns):
-        if column.strip() or not _has_numbers(sheet, at):
-            continue
-        before = found.get(at - 1)
-        if not before or before.name not in MEASURED or before.u:
-            raise Unreadable(f"column {at + 1} has numbers and no heading; give it one")
-        name = f"column {at + 1}"
-        found[at] = before._replace(at=at, column=name, number=name)
-    return [found[at] for at in sorted(found)]
-
-
-def _has_numbers(sheet: Sheet, at: int) -> bool:
-    """Whether a column has cells that begin as numbers do."""
-    return any(re.match(r"\s*[-+±]?[.,]?\d", row[at]) for row in sheet.rows)
-
-
-def _kind_of(names: set[str]) -> Kind:
-    """Whether accelerations or times were measured; Unreadable if a run lacks a column, or has both."""
-    if {"a", "time"} <= names:
-        raise Unreadable("there are columns a and time; keep one, or let one pass by --label")
-    for either, words in NEEDED.items():
-        if not names & {*either.split()}:
-            raise Unreadable(f"no column {words}")
-    return "a" if "a" in names else "time"
-
-
-def _unread(sheet: Sheet, headings: Sequence[Heading], labels: Collection[str]) -> list[str]:
-    """The columns of numbers that hold no quantity, and that the user does not name as such.
-
-    Raises Unreadable for those that could hold one.
-    """
-    taken = {column.at for one in headings for column in (one, one.u) if column}
-    unread: list[str] = []
-    for at, column in enumerate(sheet.columns):
-        if at in taken or not column.strip() or column in labels:
+    found = {heading.at: heading for heading in headings}
+    taken = {*found, *(heading.u.at for heading in headings if heading.u)}
+    others: list[str] = []
+    for place, column in enumerate(sheet.columns):
+        if place in taken or column in labels:
             continue
         if column in INPUTS:
             option = column.replace("_", "-")
             raise refused(column, f"holds for all runs, so it is an option: give --{option}")
-        if _has_numbers(sheet, at):
-            if LIKE_UNCERTAINTY.search(column):
-                raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
-            unread.append(column)
-    return unread
+        if not any(re.match(r"\s*[-+±]?[.,]?\d", row[place]) for row in sheet.rows):
+            continue
+        if not column.strip():
+            before, name = found.get(place - 1), f"column {place + 1}"
+            if not before or before.name not in MEASURED or before.u:
+                raise Unreadable(f"{name} has numbers and no heading; give it one")
+            found[place] = before._replace(at=place, column=name, number=name)
+        elif LIKE_UNCERTAINTY.search(column):
+            raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
+        else:
+            others.append(f"{in_quotes(column)} as a label")
+    return [found[place] for place in sorted(found)], others
 
 
-def _check_drop(drop: Input | None, kind: Kind, one_drop: bool) -> None:
-    """Raises Unreadable, SceneError."""
-    if kind == "time" and drop is None and one_drop:
-        raise Unreadable("times need the height of fall: give drop, or a column of that name")
-    if drop is not None and not in_range(drop):
-        raise SceneError("drop", drop.given, BEYOND)
-    if drop is not None and not (kind == "time" and one_drop):
-        has = "drop" if kind == "time" else "a"
+def _check(names: Collection[str], drop: Input | None) -> None:
+    """Raises Unreadable if a run lacks a column, or has times and accelerations; SceneError for a drop."""
+    if "a" in names and "time" in names:
+        raise Unreadable("there are columns a and time; keep one, or let one pass by --label")
+    given = [*names, *["drop"] * (drop is not None)]
+    for either, words in NEEDED.items():
+        if not any(name in given for name in either.split()):
+            raise Unreadable(words)
+    if drop is not None and (has := next((name for name in ("a", "drop") if name in names), "")):
         raise SceneError("drop", drop.given, f"has no part here: the table has {has}")
 
 
@@ -223,12 +169,11 @@ def in_range(one: Input) -> bool:
     return all(low <= abs(size) <= high for size in sizes if size)
 
 
-def _joined(rows: Sequence[Run], without: Collection[int]) -> list[Run]:
-    """The runs of rows: those that differ only in what was measured are one; others are as they are."""
+def _joined(rows: Iterable[Run]) -> list[Run]:
+    """The runs of rows: those that differ only in what was measured are one."""
     alike: dict[object, Run] = {}
     for run in rows:
-        run = run._replace(left_out=run.rows[0] in without)
-        key = (run.m1[:2], run.m2[:2], run.drop and run.drop[:2], run.left_out, run.rows[: not run.measured])
+        key = run.m1[:2], run.m2[:2], run.drop and run.drop[:2], run.left_out
         if first := alike.get(key):
             run = first._replace(rows=first.rows + run.rows, measured=first.measured + run.measured)
         alike[key] = run
@@ -236,7 +181,12 @@ def _joined(rows: Sequence[Run], without: Collection[int]) -> list[Run]:
 
 
 def _run(
-    number: int, row: Sequence[str], headings: Sequence[Heading], comma: bool, drop: Input | None
+    number: int,
+    row: Sequence[str],
+    headings: Sequence[Heading],
+    comma: bool,
+    drop: Input | None,
+    left_out: bool,
 ) -> Run:
     """The run of one row. Raises Unreadable."""
     given, measured = dict[str, Input](), list[Input]()
@@ -251,8 +201,7 @@ def _run(
                 raise Unreadable(f"row {number} has no {heading.name}")
     except SceneError as error:
         raise Unreadable(f"row {number}: {error}") from None
-    m1, m2, drop = given["m1"], given["m2"], given.get("drop", drop)
-    return Run((number,), m1, m2, drop, tuple(measured))
+    return Run((number,), given["m1"], given["m2"], given.get("drop", drop), tuple(measured), left_out)
 
 
 def _read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None:

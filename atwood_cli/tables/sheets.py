@@ -1,28 +1,59 @@
-"""A table as spreadsheets and people write it: its headings found, its cells as texts."""
+"""A table as spreadsheets, people and Python have it: its headings found, its cells as texts."""
 
 import csv
 import re
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from io import StringIO
 from itertools import islice
-from typing import NamedTuple
+from os import PathLike, fspath
+from pathlib import Path
+from typing import Any, NamedTuple
 
+from ..model.units import in_quotes
 from .headings import PARTED_BY, Vocabulary, recognised
-from .sources import Unreadable
+from .sources import Unreadable, blocks_of, opened, whole_lines
 
 MOST_ABOVE = 40
 """Rows in which headings are looked for, as titles may stand above them."""
 COMMENTS = "lines that begin with # left out"
+MISSING = ("nan", "None", "<NA>", "NaT")
+"""How Python writes a missing value."""
 
 
 class Sheet(NamedTuple):
-    """A table of texts: its headings, its rows, the separator of its cells, and how else it was read."""
+    """A table of texts: its headings, its rows, the separator of its cells and that which is usual for its
+    kind of file, and how else it was read.
+    """
 
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     separator: str = ""
+    usual: str = ""
     remarks: Sequence[str] = ()
+
+
+def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
+    """A file by its path, "-" for stdin, a mapping or a data frame as a table of texts. Raises Unreadable."""
+    if isinstance(source, str | PathLike):
+        with ExitStack() as stack:
+            blocks = blocks_of(opened(fspath(source), stack))
+            content = b"".join(lines for lines, _ in whole_lines(blocks, cells=True))
+        usual = "\t" if Path(source).suffix.lower() == ".tsv" else ","
+        return read_sheet(content, usual, vocabulary, named)
+    if not hasattr(source, "items") and not hasattr(source, "columns"):
+        raise Unreadable(f"it is of type {type(source).__name__}; give a path, a mapping or a data frame")
+    columns: list[tuple[str, list[str]]] = []
+    pairs = source.items() if hasattr(source, "items") else zip(source.columns, source, strict=True)
+    for name, cells in pairs:
+        if isinstance(cells, str) or not hasattr(cells, "__iter__"):
+            what = f"column {in_quotes(name)} is of type {type(cells).__name__}"
+            raise Unreadable(f"{what}; give a sequence of cells")
+        columns.append((str(name), ["" if str(cell) in MISSING else str(cell) for cell in cells]))
+    if len({len(cells) for _, cells in columns}) > 1:
+        lengths = ", ".join(f"{in_quotes(name)} has {len(cells)} cells" for name, cells in columns)
+        raise Unreadable(f"its columns differ in length: {lengths}")
+    return Sheet([name for name, _ in columns], list(zip(*(cells for _, cells in columns), strict=True)))
 
 
 def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
@@ -60,7 +91,7 @@ def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mappin
     separator = max((usual, *PARTED_BY), key=lambda mark: header(text, mark)[:2])
     start = header(text, separator)[2]
     remarks += ["lines above the headings left out"] * (start > 0)
-    return Sheet(*_rows(text, separator, start), separator, remarks)
+    return Sheet(*_rows(text, separator, start), separator, usual, remarks)
 
 
 def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[str]]]:
