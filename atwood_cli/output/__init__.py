@@ -1,1 +1,1 @@
-"""What commands share in showing: tables, text, curves and pictures."""
+"""How results look: text, tables, type, pictures, and the files that they are written to."""

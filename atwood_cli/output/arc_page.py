@@ -1,4 +1,4 @@
-"""What acts along the arc of contact, as tables and JSON show it."""
+"""The forces along the arc of contact, as tables and JSON show them."""
 
 from decimal import Decimal
 
@@ -43,9 +43,9 @@ def print_table(answers: Answers, arc: Contact) -> None:
         for name in arc.points[0]
     ]
     page.table(heads, [list(zip(*columns, strict=True))])
-    names, forces = zip(*((name, row) for name, row in arc.balance.items() if "x" in row), strict=True)
-    xs, ys = (aligned(cell(force[axis]) for force in forces) for axis in "xy")
-    force_rows = list(zip(names, xs, ys, strict=True))
+    forces = {name: row for name, row in arc.balance.items() if "x" in row}
+    xs, ys = (aligned(cell(force[axis]) for force in forces.values()) for axis in "xy")
+    force_rows = list(zip(forces, xs, ys, strict=True))
     page.table(["Force on the pulley", "x (N)", "y (N)"], [force_rows[:2], force_rows[2:]])
     unit = "N m" if answers.case.scene.R is not None else "N, per unit radius"
     torques = aligned(map(cell, arc.balance["torque"].values()))

@@ -1,6 +1,7 @@
-"""Pictures in files, for a slide: needs matplotlib (extra ``figure``); the modules beside it draw them.
+"""Pictures in files, for a slide: their page, their style and their sentences.
 
-No pyplot, no display; the same scene gives the same SVG to the byte.
+matplotlib draws them (extra ``figure``), without pyplot or a display. The same scene gives the same SVG, to
+the byte.
 """
 
 import os
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-AXES = {
+AXIS_WORDS = {
     "m1": ("mass", "m₁"),
     "m2": ("mass", "m₂"),
     "M": ("pulley mass", "M"),
@@ -42,14 +43,16 @@ AXES = {
     "friction_force_x": ("horizontal friction force", "Fx"),
     "friction_force_y": ("vertical friction force", "Fy"),
 }
-"""Names and symbols on axes, of parameters and of quantities whose own name says less."""
-FORMATS = (".svg", ".png", ".pdf")
+"""The names and symbols on axes: of parameters, and of quantities whose own name says less."""
+PICTURE_SUFFIXES = (".svg", ".png", ".pdf")
 BLUE, RED, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b05d91", "#b07800", "#56b4e9"
-"""Told apart without seeing red or green, and on paper: after M. Okabe and K. Ito, Color universal design."""
+"""Colours that differ on paper and without seeing red or green (M. Okabe, K. Ito, Color universal design)."""
 INK, FAINT = "#222222", "#999999"
-INCHES, WIDE = 11, 130  # a page's width; characters: more do not fit it
-SIZE = 10  # of names, in points
-NAMES = re.compile(r"\b(m1|m2|mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
+PAGE_INCHES, PAGE_CHARACTERS = 11, 130
+"""The width of a page, and the most characters of a line on it."""
+NAME_POINTS = 10
+"""The size of names, in points."""
+NAMES_IN_WORDS = re.compile(r"\b(m1|m2|mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 STYLE: Any = {
     "svg.hashsalt": "atwood",  # else the SVG's ids are random
@@ -61,15 +64,17 @@ STYLE: Any = {
 
 def axis_words(name: str) -> tuple[str, str]:
     """The name and the symbol of a parameter or a quantity."""
-    if name in AXES:
-        return AXES[name]
+    if name in AXIS_WORDS:
+        return AXIS_WORDS[name]
     return name.rstrip("_12").replace("_", " "), QUANTITIES[name].symbol
 
 
 def check_file(path: str, force: bool) -> None:
-    """Raises in time: SceneError where the suffix is no format, ImportError, or OSError if it exists."""
-    if Path(path).suffix.lower() not in FORMATS:
-        raise SceneError("figure", path, f"must end in one of {', '.join(FORMATS)}")
+    """Raise in time what a picture would run into: SceneError where its suffix is no format, ImportError, and
+    OSError where the file exists.
+    """
+    if Path(path).suffix.lower() not in PICTURE_SUFFIXES:
+        raise SceneError("figure", path, f"must end in one of {', '.join(PICTURE_SUFFIXES)}")
     if is_stdout(path):
         raise SceneError("figure", path, "is where standard output goes; name another")
     _load()
@@ -77,9 +82,10 @@ def check_file(path: str, force: bool) -> None:
 
 
 def _load() -> None:
-    """Import matplotlib without any settings but its own: neither the user's nor those of the folder.
+    """Import matplotlib with its own settings. Raises ImportError.
 
-    It takes those of the folder it is in first; in its own, these are as it came. Raises ImportError.
+    It would prefer settings of the user, and above all a file of settings in the folder where it is imported.
+    So it is imported in the folder of its own file.
     """
     spec = find_spec("matplotlib")
     if "matplotlib" not in sys.modules and spec and spec.origin:
@@ -90,24 +96,24 @@ def _load() -> None:
 
 
 @contextmanager
-def page(path: str, force: bool, inches: float = INCHES) -> Iterator["Figure"]:
-    """A figure to draw on, of some width, which is then saved."""
+def page(path: str, force: bool, inches: float = PAGE_INCHES) -> Iterator["Figure"]:
+    """A figure to draw on, so many inches wide, which is then saved."""
     _load()
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     kind = Path(path).suffix[1:].lower()
-    dated = {"svg": "Date", "pdf": "CreationDate"}.get(kind)
+    date_key = {"svg": "Date", "pdf": "CreationDate"}.get(kind)
     os.environ.pop("SOURCE_DATE_EPOCH", None)  # a figure has no date, whatever this is set to
-    drawn = BytesIO()  # a full disk is none of matplotlib's business
+    image = BytesIO()  # matplotlib would not report a full disk as we do
     with written_beside(Path(path), force) as beside:
         with warnings.catch_warnings(action="ignore"), rc_context({**rcParamsDefault, **STYLE}):
             figure = Figure(figsize=(inches, 6), layout="constrained")
-            FigureCanvasAgg(figure)  # which knows how wide words are
+            FigureCanvasAgg(figure)  # knows the width of words
             yield figure
-            figure.savefig(drawn, format=kind, dpi=200, metadata={dated: None} if dated else None)
-        beside.write_bytes(drawn.getbuffer())
+            figure.savefig(image, format=kind, dpi=200, metadata={date_key: None} if date_key else None)
+        beside.write_bytes(image.getbuffer())
 
 
 def say_above(figure: "Figure", *sentences: str) -> None:
@@ -122,15 +128,16 @@ def say_below(figure: "Figure", words: str) -> None:
 
 def legend_beside(axes: "Axes") -> None:
     """Name the lines on the right of their axes."""
-    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), frameon=False, handlelength=4, fontsize=SIZE)
+    look: Any = {"frameon": False, "handlelength": 4, "fontsize": NAME_POINTS}
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), **look)
 
 
 def cut(words: str) -> str:
-    """The words, without the end of numbers that nobody reads to it."""
+    """The words, with the first twelve digits of numbers that have twice as many."""
     return LONG_DIGITS.sub(r"\1…", words)
 
 
 def _lines(figure: "Figure", words: str) -> str:
-    """Words in lines that fit, parameters by their symbols."""
-    words = NAMES.sub(lambda name: AXES[name[0]][1], cut(words))
-    return "\n".join(wrapped(words, int(WIDE * figure.get_figwidth() / INCHES)))
+    """Words in lines that fit, with symbols for the names of parameters."""
+    in_symbols = NAMES_IN_WORDS.sub(lambda name: AXIS_WORDS[name[0]][1], cut(words))
+    return "\n".join(wrapped(in_symbols, int(PAGE_CHARACTERS * figure.get_figwidth() / PAGE_INCHES)))

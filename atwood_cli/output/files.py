@@ -17,15 +17,15 @@ STEERING = re.compile("[\0-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u
 
 
 def printable(words: str, keep: str = "\n") -> str:
-    """The words with escapes for characters that could steer a terminal, other than those to keep.
+    """The words with escapes for characters that could steer a terminal, except for the ones to ``keep``.
 
-    Everything that the program did not make itself goes through here on its way to a terminal.
+    All text that the program did not make itself goes through here on its way to a terminal.
     """
     return STEERING.sub(lambda found: found[0] if found[0] in keep else ascii(found[0])[1:-1], words)
 
 
 class Stdout:
-    """Standard output for tables. Bytes pass unchanged, unless they could steer a terminal."""
+    """Standard output for tables. Bytes pass unchanged, but for characters that could steer a terminal."""
 
     def __init__(self) -> None:
         sys.stdout.flush()
@@ -42,7 +42,7 @@ class Stdout:
 
 
 class ClosedStdout(TextIOBase):
-    """Stands for a standard output that the caller closed: nothing can be written to it."""
+    """A stand-in for a standard output that the caller has closed: nothing can be written to it."""
 
     @property
     def buffer(self) -> "ClosedStdout":
@@ -62,7 +62,7 @@ def is_stdout(path: str) -> bool:
     """Whether standard output goes to that file, by any name."""
     try:
         return os.path.isfile(path) and os.path.samestat(os.stat(path), os.fstat(sys.stdout.fileno()))
-    except (OSError, ValueError, AttributeError):  # one is closed, or not there yet
+    except (OSError, ValueError, AttributeError):  # stdout is closed, or the file not there yet
         return False
 
 
@@ -79,7 +79,7 @@ def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
         return
     check_free(path, force)
     target = Path(os.path.realpath(path))  # a link stays a link
-    # A name that nobody can foresee, and of no more than 255 bytes however long the other is.
+    # Nobody can foresee this name, and it fits in 255 bytes, however long the target's is.
     beside = target.with_name(f".atwood-{os.urandom(8).hex()}")
     mode = None
     try:
@@ -92,7 +92,7 @@ def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
         check_free(path, force)
         os.replace(beside, target)
     except OSError as error:
-        if error.errno and error.filename in (None, str(beside), str(target)):  # not the name asked for
+        if error.errno and error.filename in (None, str(beside), str(target)):  # nobody asked for this name
             raise type(error)(error.errno, error.strerror, str(path)) from None
         raise
     finally:
@@ -102,7 +102,7 @@ def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
 
 @contextmanager
 def stdout_into(file: str | None, force: bool = False) -> Iterator[None]:
-    """Prints into the file, if one other than - is named. Raises OSError."""
+    """Print into a file, unless it is None or -. Raises OSError."""
     if file in (None, STDOUT):
         yield
         return

@@ -1,4 +1,4 @@
-"""Tables and sentences on the terminal or in a pipe, by rich, which is imported where they are needed."""
+"""Tables and sentences on the terminal or in a pipe, by rich, which is imported where it is needed."""
 
 import re
 import sys
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
     from ..solver.steps import Explanation
 
-T = TypeVar("T")
+Part = TypeVar("Part")
 Groups = Sequence[Sequence[Sequence[str]]]
-"""The rows of a table, each a row of cells, in groups."""
+"""Groups of rows of cells."""
 
-PIPED, READABLE, NARROWEST = 100, 80, 40
-"""Columns of text: where there is no terminal, and the most and the least of a derivation."""
+PIPE_WIDTH, WIDEST_DERIVATION, NARROWEST_DERIVATION = 100, 80, 40
+"""Widths, in characters."""
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 
 
@@ -33,13 +33,13 @@ class Page:
     def __init__(self, console: "Console | None" = None) -> None:
         from rich.console import Console
 
-        # rich itself takes COLUMNS=0 at its word, and every dumb terminal for one of 80 columns.
+        # rich itself would take COLUMNS=0 at its word, and any dumb terminal to be 80 columns wide.
         width, height = get_terminal_size()
-        # FORCE_COLOR is for what a terminal is shown, not for the file of --output.
+        # FORCE_COLOR concerns the terminal, not the file of --output.
         force = None if sys.stdout is sys.__stdout__ else False
         self.console = console or Console(highlight=False, force_terminal=force, width=width, height=height)
         self.room = self.console.width if self.console.is_terminal else None
-        self.width = self.room or PIPED
+        self.width = self.room or PIPE_WIDTH
 
     def say(self, *sentences: str, style: str = "") -> None:
         """Sentences, in lines no longer than the terminal is wide, or than a page in a pipe."""
@@ -47,7 +47,7 @@ class Page:
             self.line(line, style)
 
     def lines(self, *sentences: str) -> list[str]:
-        """The lines of sentences."""
+        """Sentences in lines, as `say` prints them."""
         return [line for words in sentences for line in wrapped(printable(words), self.width)]
 
     def line(self, words: str, style: str = "") -> None:
@@ -57,17 +57,17 @@ class Page:
         self.console.print(Text(printable(words), style), soft_wrap=True)
 
     def head(self, answers: Answers, found: Sequence[str] = ()) -> None:
-        """The scene, sentences on what was found of it, and the verdict."""
-        scene, motion, known = answers.case.scene, answers.case.motion, answers.uncertainties
-        self.say(describe(scene, motion, known.given if known else {}))
+        """The scene, sentences on the quantities found from a motion, and the verdict."""
+        self.say(describe(answers.case.scene, answers.case.motion, answers.uncertain))
         self.say(*found, style="bold")
         bold = "bold " * (not found)
         self.say(unmarked(verdict(answers)), style=f"{bold}{REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Groups) -> None:
-        """A table, with a line between groups of rows. Where the terminal is narrow, words are folded.
+        """A table, with a line between groups of rows.
 
-        Numbers and heads never are: a table that has no room for them is wider than the terminal.
+        Words are folded where the terminal is narrow. Numbers and heads are not: a table that has no room for
+        them is wider than the terminal.
         """
         from rich import box
         from rich.table import Table
@@ -90,7 +90,7 @@ class Page:
         left = iter(rows)
         for group in groups:
             lines = list(islice(left, len(group)))
-            # Rows joined to one, as rich takes five times as long over a row a line.
+            # Rows are joined where none is folded, as rich takes five times as long over single ones.
             for part in [lines] if fits else [[line] for line in lines]:
                 joined = (Text("\n".join(column)) for column in zip(*part, strict=True))
                 table.add_row(*joined, end_section=part[-1] is lines[-1])
@@ -106,13 +106,13 @@ def print_explanation(given: Sequence[str], explanation: "Explanation", markdown
             print(printable(line))
         return
     page = Page()
-    width = max(NARROWEST, min(READABLE, page.room or READABLE))
+    width = max(NARROWEST_DERIVATION, min(WIDEST_DERIVATION, page.room or WIDEST_DERIVATION))
     for line, style in as_text(given, explanation, width):
         page.line(line, style)
 
 
 def _width(columns: Iterable[int]) -> int:
-    """The width of a table with columns so wide."""
+    """The width of a table with columns of these widths."""
     return 1 + sum(3 + width for width in columns)
 
 
@@ -135,7 +135,9 @@ def _integer_part(value: str) -> int:
     return len(value.partition(" ")[0].partition(".")[0].partition("e")[0]) if _is_number(value) else 0
 
 
-def watched(parts: Iterator[T], total: int | None, size: Callable[[T], int] = lambda _: 1) -> Iterator[T]:
+def watched(
+    parts: Iterator[Part], total: int | None, size: Callable[[Part], int] = lambda _: 1
+) -> Iterator[Part]:
     """The parts, with a bar on a terminal's stderr once they take longer than a second."""
     start, done = monotonic(), 0
     for part in parts:

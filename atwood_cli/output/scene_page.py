@@ -19,14 +19,14 @@ if TYPE_CHECKING:
 
 
 def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> dict[str, object]:
-    """The record for JSON: all quantities with scene and notes, or only those named."""
+    """The record for JSON: all quantities with scene and notes, or the quantities named alone."""
     names = only or answers.names
     results: dict[str, object] = {name: answers[name] for name in names}
     uncertainty = answers.standard_uncertainties(names) or None
     shares = {name: answers.budget(name) or None for name in names if name != "regime"} if budget else None
-    beside = {"uncertainty": uncertainty, "budget": shares}
+    uncertain = {"uncertainty": uncertainty, "budget": shares}
     if only:
-        return results | {name: one for name, one in beside.items() if one is not None}
+        return results | {key: values for key, values in uncertain.items() if values is not None}
     absent = dict.fromkeys(QUANTITIES)
     return {
         "version": VERSION,
@@ -34,7 +34,7 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
         "regime": answers.case.regime,
         **absent,
         **results,
-        **{name: one and absent | one for name, one in beside.items()},
+        **{key: values and absent | values for key, values in uncertain.items()},
         "notes": notes(answers),
     }
 
@@ -43,18 +43,18 @@ def csv_record(answers: Answers, names: Sequence[str], budget: bool = False) -> 
     """The record for CSV: values, then uncertainties, then each input's share of the variances."""
     values = {name: answers[name] for name in names}
     uncertain = {f"u_{name}": u for name, u in answers.standard_uncertainties(names).items()}
-    inputs = answers.uncertainties.given if budget and answers.uncertainties else ()
+    inputs = answers.uncertain if budget else ()
     shares = {
-        f"budget_{name}_{one}": answers.budget(name).get(one)
+        f"budget_{name}_{given}": answers.budget(name).get(given)
         for name in names
         if name != "regime"
-        for one in inputs
+        for given in inputs
     }
     return values | uncertain | shares
 
 
 def beside_bare(answers: Answers, only: Sequence[str], values: bool) -> list[str]:
-    """What CSV and bare values leave out: what is assumed, reasons, and uncertain values if asked for."""
+    """Sentences that CSV and bare values leave out: assumptions, reasons, and uncertain ``values``."""
     assumed = ["regime: assumed, as mu is not given."] if "regime" in only and is_assumed(answers) else []
     uncertain = [name for name in only if values and answers.standard_uncertainties([name]).get(name)]
     return [*assumed, *(_stated(answers, name) for name in uncertain), *reasons(answers)]
@@ -62,36 +62,29 @@ def beside_bare(answers: Answers, only: Sequence[str], values: bool) -> list[str
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 AT_LIMIT = ("friction_force", "friction_force_x", "friction_force_y")
-"""What is one number only where friction is at its limit."""
+"""Quantities that are one number only where friction is at its limit."""
 
 
 def print_table(
     answers: Answers, whole: bool = False, budget: bool = False, console: "Console | None" = None
 ) -> None:
-    """Print the scene, what was found, the verdict, quantities, main or ``whole``, notes, and the budget."""
+    """Print the scene, the verdict, the main quantities or the ``whole`` table, notes, and the budget."""
     from .page import Page
 
     answers, page = answers.shown, Page(console)
     names = answers.names[1:] if whole else answers.main
-    found, groups, said = _parts(answers, names)
-    page.head(answers, found)
+    groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *answers.found)])
+    found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
+    page.head(answers, [f"Found: {', '.join(found)}."] * bool(found))
     if groups:
         page.table(COLUMNS, groups)
-    page.say(*said)
+    page.say(*map(unmarked, remarks(answers)), *reasons(answers))
     if budget:
         print_budget(answers, names, page)
 
 
-def _parts(answers: Answers, names: Sequence[str]) -> tuple[list[str], list[list[list[str]]], list[str]]:
-    """What was found, in sentences; the rows of the table, by group; and the sentences below it."""
-    groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *answers.found)])
-    found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
-    said = [*map(unmarked, remarks(answers)), *reasons(answers)]
-    return [f"Found: {', '.join(found)}."] * bool(found), groups, said
-
-
 def as_text(answers: Answers) -> str:
-    """The same page as text, in the characters and the width of where the program prints, without colours."""
+    """The same page as text without colours, in the width and the characters of standard output."""
     from shutil import get_terminal_size
 
     from rich.console import Console
@@ -110,13 +103,14 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
 
     values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
     if values.get("least_heavier_mass") == values.get("critical_heavier_mass"):
-        values.pop("least_heavier_mass", None)  # on a locked pulley they are one
+        values.pop("least_heavier_mass", None)  # on a locked pulley the two are the same
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
         about, case = QUANTITIES[name], answers.case
         equation = cited(name, case.regime == "slip", case.rubs)
-        at = " at mu_verge" * (name in AT_LIMIT and case.mu_assumed)
-        groups.setdefault(about.group, []).append([f"{name}{at}", value, about.unit, about.symbol, equation])
+        condition = " at mu_verge" * (name in AT_LIMIT and case.mu_assumed)
+        row = [f"{name}{condition}", value, about.unit, about.symbol, equation]
+        groups.setdefault(about.group, []).append(row)
     return list(groups.values())
 
 
@@ -138,9 +132,8 @@ def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = N
 
     page, names = page or Page(), [name for name in names if name != "regime"]
     page.say("Each input's share of the variance, in percent:")
-    shares = {name: one for name in names if (one := answers.budget(name, to_place(-1)))}
-    inputs = list(answers.uncertainties.given) if answers.uncertainties else []
-    columns = [aligned(str(one[x]) for one in shares.values()) for x in inputs]
-    rows = ([name, *cells] for name, *cells in zip(shares, *columns, strict=True))
+    budgets = {name: shares for name in names if (shares := answers.budget(name, to_place(-1)))}
+    columns = [aligned(str(shares[given]) for shares in budgets.values()) for given in answers.uncertain]
+    rows = ([name, *cells] for name, *cells in zip(budgets, *columns, strict=True))
     by_group = groupby(rows, lambda row: QUANTITIES[row[0]].group)
-    page.table(["Quantity", *inputs], [list(group) for _, group in by_group])
+    page.table(["Quantity", *answers.uncertain], [list(group) for _, group in by_group])

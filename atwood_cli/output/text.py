@@ -17,7 +17,7 @@ from .files import Stdout, printable, stdout_into
 
 
 def say(*messages: str) -> None:
-    """Each message on stderr, as the program's, a line."""
+    """Print each message on stderr, a line for each, under the name of the program."""
     for message in messages:
         line = f"atwood: {printable(message, keep='')}"
         if sys.stderr.isatty():
@@ -28,23 +28,23 @@ def say(*messages: str) -> None:
             print(line, file=sys.stderr)
 
 
-UNITS = r"kg|g|m/s²|rad/s²|m/s\^2|m|[mnµ]?s|m?Nm?|ulp"
-HELD = rf" (?=[±=])|(?<=[±=]) |(?<=[\d)]) (?=(?:{UNITS})\b)|(?<=\bN) (?=m\b)|(?<=\bkg) (?=m[²^])"
-"""The blanks at which no line breaks: within a name, its value, uncertainty and unit."""
+A_UNIT = r"kg|g|m/s²|rad/s²|m/s\^2|m|[mnµ]?s|m?Nm?|ulp"
+UNBROKEN = rf" (?=[±=])|(?<=[±=]) |(?<=[\d)]) (?=(?:{A_UNIT})\b)|(?<=\bN) (?=m\b)|(?<=\bkg) (?=m[²^])"
+"""The blanks at which no line breaks: they join a name, its value, its uncertainty and its unit."""
 
 
 def wrapped(words: str, width: int, first: str = "", later: str = "") -> list[str]:
-    """The words in lines of that width, but for a number that is longer with its unit.
+    """The words in lines of at most that width; a number that is longer with its unit has a line of its own.
 
-    ``first`` stands before the first line, ``later`` before the others.
+    ``first`` stands before the first line, and ``later`` before every other line.
     """
     import re
     from textwrap import wrap
 
-    held = re.sub(HELD, "\xa0", words).split(" ")
-    held = [part if len(part) <= width else part.replace("=\xa0", "= ") for part in held]
-    how: Any = {"break_long_words": False, "break_on_hyphens": False}
-    lines = wrap(" ".join(held), max(width, 1), initial_indent=first, subsequent_indent=later, **how)
+    pieces = re.sub(UNBROKEN, "\xa0", words).split(" ")
+    pieces = [piece if len(piece) <= width else piece.replace("=\xa0", "= ") for piece in pieces]
+    whole: Any = {"break_long_words": False, "break_on_hyphens": False}
+    lines = wrap(" ".join(pieces), max(width, 1), initial_indent=first, subsequent_indent=later, **whole)
     return [line.replace("\xa0", " ") for line in lines]
 
 
@@ -58,7 +58,7 @@ def finish() -> None:
 
 
 def drop(stream: TextIO) -> None:
-    """Discard what is buffered, and all that follows."""
+    """Discard all that a stream has buffered, and all that follows."""
     with suppress(OSError):  # the stream may have no file
         number = stream.fileno()
         nowhere = os.open(os.devnull, os.O_WRONLY)
@@ -68,14 +68,14 @@ def drop(stream: TextIO) -> None:
 
 DISK = Fraction(1, 2)
 VERSION = 2
-"""Of the keys of JSON, which `examples/json.md` lists; it grows when one goes, or changes its meaning."""
+"""The version of JSON's keys (see `examples/json.md`); it grows when a key goes or changes its meaning."""
 
 
 class Forms(NamedTuple):
-    """A result in the forms in which it may be asked for, each of which is made only if it is.
+    """A result in the forms in which it may be asked for; a form is made when it is asked for.
 
-    ``json`` and ``records``, the lines of CSV, return what is to be printed; ``page`` prints. ``bare``
-    are the values that --only names, and ``below`` prints what comes after them.
+    ``json`` returns the record, and ``records`` the lines of CSV. ``page`` prints the page. ``bare`` are the
+    values that --only names, and ``below`` prints the lines after them. ``notes`` are for forms without any.
     """
 
     json: Callable[[], Mapping[str, object]]
@@ -87,7 +87,7 @@ class Forms(NamedTuple):
 
 
 class Form(NamedTuple):
-    """A form for programs: the suffix of its files, the help of its option, and what prints it."""
+    """A form for programs: the suffix of its files, the help of its option, and its printer."""
 
     suffix: str
     help: str
@@ -108,11 +108,11 @@ FORMS = {
     "json": Form(".json", "Print JSON: results, scene and notes.", _write_json, True),
     "csv": Form(".csv", "Print CSV, with a line of names first.", _write_csv, False),
 }
-"""By the name of their option. Without one of these, a page is printed, or bare values."""
+"""The forms, by the name of their option. Without such an option a page is printed, or bare values."""
 
 
 class Target(NamedTuple):
-    """In which form a result goes where: the name of a form, empty for a page; a file, None for stdout."""
+    """The form of a result, "" for a page, and the file that it goes to, None for stdout."""
 
     form: str = ""
     file: str | None = None
@@ -142,7 +142,7 @@ def show(forms: Forms, target: Target) -> Sequence[str]:
 def as_json(value: object, indent: str = "\n") -> Iterator[str]:
     """A value as JSON, piece by piece, so that the items of an iterator are written as they come.
 
-    Numbers are printed as everywhere; those that no double can hold are null.
+    Numbers are printed as everywhere. A number that no double can hold is null.
     """
     inner = indent + "  "
     match value:
@@ -166,9 +166,9 @@ def as_json(value: object, indent: str = "\n") -> Iterator[str]:
 
 
 def for_json(value: Any, digits: int | None) -> Any:
-    """A value as the `json` module takes it: the same as `as_json` writes.
+    """A value as the `json` module takes it, so that it writes what `as_json` writes.
 
-    Numbers are doubles. With ``digits``, and where it is beyond the doubles, a decimal is text.
+    Numbers are doubles. With ``digits``, and beyond the range of doubles, a decimal is text.
     """
     match value:
         case Mapping():
@@ -183,7 +183,7 @@ def for_json(value: Any, digits: int | None) -> Any:
 
 
 def print_csv(records: Iterable[Mapping[str, object]]) -> None:
-    """A line of names and a line for each record, as they come."""
+    """Print a line of names, and a line for each record when it comes."""
     from csv import writer
 
     table = writer(Stdout(), lineterminator="\n")
@@ -194,7 +194,7 @@ def print_csv(records: Iterable[Mapping[str, object]]) -> None:
 
 
 def cell(value: object) -> str:
-    """A value as bare text, empty where it does not exist or no double can hold it."""
+    """A value as bare text; empty if it does not exist or no double can hold it."""
     match value:
         case float() | Decimal():
             return "" if is_infinite(value) else text(value)
@@ -208,7 +208,7 @@ def scene_record(
 ) -> dict[str, object]:
     """The inputs for JSON, in SI units and degrees: numbers, or text where JSON has no number.
 
-    A decimal is exact; other numbers are rounded as results are.
+    A number that is a finite decimal is exact. Others are rounded as results are.
     """
 
     def written(value: object, unit: str) -> object:
@@ -217,11 +217,11 @@ def scene_record(
         number = exact_or_rounded(value, round_)
         return f"{text(number)}{unit}" if unit else number
 
-    return {name: written(*one) for name, one in _given(scene, motion).items()}
+    return {name: written(value, unit) for name, (value, unit) in _given(scene, motion).items()}
 
 
 def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
-    """The inputs by name, each with its unit where that is not the usual one."""
+    """The inputs by name, each with its unit if this is not the usual one."""
     given: dict[str, Any] = scene._asdict() | {name: getattr(motion, name) for name in MEASURED}
     if motion.finds:
         given[motion.finds] = None
@@ -245,19 +245,19 @@ def said_of_scene(
     uncertain: Mapping[str, Fraction] = {},
     varied: Container[str] = (),
 ) -> dict[str, str]:
-    """Each input in words, but for defaults on which nothing depends that is shown.
+    """Each input in words, without defaults on which nothing that is shown depends.
 
-    These are a disk where the pulley has no mass or stands, and half a turn where nothing rubs.
+    A disk is one where the pulley has no mass or stands still. Half a turn is one where nothing rubs.
     """
     rubs = scene.mu is not None or "mu" in varied or motion.finds is not None
     heavy = scene.M not in (None, 0) or scene.I is not None or "M" in varied or "I" in varied
-    words = inputs_in_words(scene, motion, uncertain)
     idle = set()
     if scene.inertia == DISK and not rubs and (not heavy or scene.M == inf):
         idle.add("inertia")
     if scene.wrap == 180 and not (rubs or heavy or scene.axle is not None or "axle" in varied):
         idle.add("wrap")
-    return {name: said for name, said in words.items() if name not in idle or name in uncertain}
+    in_words = inputs_in_words(scene, motion, uncertain)
+    return {name: words for name, words in in_words.items() if name not in idle or name in uncertain}
 
 
 def inputs_in_words(
@@ -275,9 +275,9 @@ def inputs_in_words(
     return parts
 
 
-def _as_fine(number: str, other: str) -> str:
-    """The number with as many decimals as the other, zeros if it has fewer: 3 beside 0.02 is 3.00."""
-    decimals = len(other.partition(".")[2]) - len(number.partition(".")[2])
-    if decimals <= 0 or "e" in number + other or "/" in number + other:
+def _as_fine(number: str, uncertainty: str) -> str:
+    """The number with at least as many decimals as its uncertainty: 3 beside 0.02 is 3.00."""
+    decimals = len(uncertainty.partition(".")[2]) - len(number.partition(".")[2])
+    if decimals <= 0 or set("e/") & {*number, *uncertainty}:
         return number
     return f"{number}{'' if '.' in number else '.'}{'0' * decimals}"

@@ -1,6 +1,7 @@
-"""A derivation set in type: plain text for a terminal, Markdown with LaTeX for a handout.
+"""A derivation is set in type: plain text for a terminal, Markdown with LaTeX for a handout.
 
-Formulas come first, from symbols and numbers to a line; then the page that sentences and equations make.
+The first half writes formulas, with symbols or with numbers. The second half makes a page of sentences and
+equations.
 """
 
 import re
@@ -17,9 +18,10 @@ from ..solver.steps import Explanation
 from .text import wrapped
 
 Written = tuple[str, int]
-"""A formula as text and its precedence, which decides where it needs parentheses."""
+"""A formula as text, and its precedence, which decides where it needs parentheses."""
 SUM, PRODUCT, POWER, ATOM = range(4)
-GREEK = {
+"""The precedences, from the lowest on."""
+GREEK_IN_LATEX = {
     "μ": r"\mu",
     "π": r"\pi",
     "φ": r"\varphi",
@@ -35,7 +37,7 @@ def written(formula: Formula, numbers: Mapping[Symbol, Decimal] | None = None, l
     return _write(formula, numbers, latex)[0]
 
 
-def _write(f: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) -> Written:
+def _write(node: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) -> Written:
     def write(part: Formula) -> Written:
         return _write(part, numbers, latex)
 
@@ -43,39 +45,39 @@ def _write(f: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) ->
         words, its_level = write(part)
         return words if its_level >= level else f"({words})"
 
-    match f.op:
+    match node.op:
         case "symbol":
             if numbers is not None:
-                return _write_number(text(numbers[f.parts[0]]), latex)
-            name = f.parts[0].name
+                return _write_number(text(numbers[node.parts[0]]), latex)
+            name = node.parts[0].name
             level = SUM if " " in name else POWER if "*" in name else ATOM  # LaTeX takes one superscript
             return in_math(name) if latex else name, level
         case "number":
-            return _write_number(str(f.parts[0]), latex)
+            return _write_number(str(node.parts[0]), latex)
         case "+" | "-":
-            left, right = f.parts
-            level = SUM if f.op == "+" == right.op else PRODUCT
-            return f"{write(left)[0]} {f.op} {tight(right, level)}", SUM
+            left, right = node.parts
+            level = SUM if node.op == "+" == right.op else PRODUCT
+            return f"{write(left)[0]} {node.op} {tight(right, level)}", SUM
         case "*" | "/":
-            return _quotient(f, write, numbers is not None, latex)
+            return _quotient(node, write, numbers is not None, latex)
         case "square":
-            return f"{tight(f.parts[0])}^2", POWER
+            return f"{tight(node.parts[0])}^2", POWER
         case "hypot":
-            inside = " + ".join(tight(part) + "^2" * (part.op != "number") for part in f.parts)
+            inside = " + ".join(tight(part) + "^2" * (part.op != "number") for part in node.parts)
             return (rf"\sqrt{{{inside}}}" if latex else f"√({inside})"), ATOM
         case "expm1":
-            power = write(f.parts[0])[0]
+            power = write(node.parts[0])[0]
             return (f"e^{{{power}}} - 1" if latex else f"e^({power}) - 1"), SUM
         case "sqrt" if latex:
-            return rf"\sqrt{{{write(f.parts[0])[0]}}}", ATOM
-    inside = f"1 + {tight(f.parts[0], PRODUCT)}" if f.op == "log1p" else write(f.parts[0])[0]
-    function = {"log1p": "ln", "sqrt": "√"}.get(f.op, f.op)
+            return rf"\sqrt{{{write(node.parts[0])[0]}}}", ATOM
+    inside = f"1 + {tight(node.parts[0], PRODUCT)}" if node.op == "log1p" else write(node.parts[0])[0]
+    function = {"log1p": "ln", "sqrt": "√"}.get(node.op, node.op)
     return (rf"\{function}({inside})" if latex else f"{function}({inside})"), ATOM
 
 
-def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, latex: bool) -> Written:
-    """A product or quotient of all its factors: a minus in front, what divides below one line."""
-    above, below = factors(f)
+def _quotient(node: Formula, write: Callable[[Formula], Written], numbers: bool, latex: bool) -> Written:
+    """A product or quotient of all its factors: a minus stands in front, and all divisors below one line."""
+    above, below = factors(node)
     minus = above[0].op == "number" and above[0].parts[0] < 0
     if minus:
         above = above[1:]
@@ -96,7 +98,7 @@ def _quotient(f: Formula, write: Callable[[Formula], Written], numbers: bool, la
 
 
 def _powers(factors: list[Formula]) -> list[Formula]:
-    """The factors; of a symbol that is there twice, the square."""
+    """The factors, with the square of a symbol that is there twice."""
     powers: dict[Any, Formula] = {}
     for factor in factors:
         same = factor.parts if factor.op == "symbol" else factor
@@ -125,7 +127,7 @@ def in_math(words: str) -> str:
     words = words.replace("*", r"^{\ast}").replace("√", r"\sqrt").replace("∞", r"\infty ")
     words = words.replace("≈", r"\approx ").replace("≤", r"\le ").replace("≥", r"\ge ")
     words = words.replace("±", r"\pm ").replace(" to ", r"~\mathrm{to}~")
-    words = re.sub("[" + "".join(GREEK) + "]", lambda m: GREEK[m[0]] + " ", words)
+    words = re.sub("[" + "".join(GREEK_IN_LATEX) + "]", lambda found: GREEK_IN_LATEX[found[0]] + " ", words)
     return re.sub(r" +([ })^_]|$)", r"\1", words)
 
 
@@ -135,16 +137,12 @@ def in_math(words: str) -> str:
 def as_text(given: Iterable[str], explanation: Explanation, width: int) -> Iterator[tuple[str, str]]:
     """Lines of at most that width, each with its style; a longer word has a line of its own.
 
-    ``given`` says what each input is, as "m1 = 1 kg".
+    ``given`` has each input in words, as "m1 = 1 kg".
     """
-    room = max(
-        len(part.label) for step in explanation.steps for part in step.body if not isinstance(part, str)
-    )
-    for words, style in (
-        (", ".join(given), ""),
-        *((words, "bold") for words in explanation.answer),
-        (explanation.reading, ""),
-    ):
+    parts = (part for step in explanation.steps for part in step.body)
+    label_width = max(len(part.label) for part in parts if not isinstance(part, str))
+    above = [(", ".join(given), ""), *((words, "bold") for words in explanation.answer)]
+    for words, style in (*above, (explanation.reading, "")):
         yield from ((line, style) for line in wrapped(in_text(words), width))
     for number, step in enumerate(explanation.steps, 1):
         yield "", ""
@@ -154,7 +152,7 @@ def as_text(given: Iterable[str], explanation: Explanation, width: int) -> Itera
                 first, later = ("  ", "    ") if is_item(part) else ("", "")
                 lines = wrapped(in_text(part), width, first, later)
             else:
-                lines = _equation_lines(part, width, f"  {part.label:<{room}} ")
+                lines = _equation_lines(part, width, f"  {part.label:<{label_width}} ")
             yield from ((line, "") for line in lines)
 
 
@@ -164,7 +162,7 @@ def is_item(part: Part) -> bool:
 
 
 def in_text(words: str) -> str:
-    """A sentence without its backticks; no line breaks between them."""
+    """A sentence without its backticks, between which no line breaks."""
     pieces = words.split("`")
     pieces[1::2] = [piece.replace(" ", "\xa0") for piece in pieces[1::2]]
     return "".join(pieces)
@@ -192,18 +190,17 @@ def chain(equation: Equation, latex: bool = False) -> list[str]:
 
 
 def _equation_lines(part: Law | Equation, width: int, label: str) -> list[str]:
-    """An equation in one line if it fits, else a line for each of its sides, below each other."""
+    """An equation in one line if it fits, else in a line for each of its sides."""
     if isinstance(part, Law):
         return wrapped(law(part), width, label, " " * (len(label) + 2))
-    left, sides = part.left, [*chain(part)]
-    whole = f"{label}{left} {' '.join(sides)}"
+    first, *others = chain(part)
+    whole = f"{label}{part.left} {' '.join([first, *others])}"
     if len(whole) <= width:
         return [whole]
-    indent = " " * (len(label) + len(left) + 1)
+    indent = " " * (len(label) + len(part.left) + 1)
     if len(indent) > width // 3:
         indent = " " * 4
-    first, *others = sides
-    lines = wrapped(f"{left} {first}", width, label, indent + "  ")
+    lines = wrapped(f"{part.left} {first}", width, label, indent + "  ")
     for side in others:
         lines += wrapped(side, width, indent, indent + "  ")
     return lines
@@ -212,10 +209,8 @@ def _equation_lines(part: Law | Equation, width: int, label: str) -> list[str]:
 def as_markdown(given: Iterable[str], explanation: Explanation) -> Iterator[str]:
     """A page of Markdown, its mathematics in LaTeX between dollars."""
     yield f"# {explanation.title}"
-    scene = ", ".join(
-        f"`{name}` = {PRINTED.get(value, value)}"
-        for name, _, value in (one.partition(" = ") for one in given)
-    )
+    inputs = (words.partition(" = ") for words in given)
+    scene = ", ".join(f"`{name}` = {PRINTED.get(value, value)}" for name, _, value in inputs)
     for words in (scene, *explanation.answer, explanation.reading):
         yield ""
         yield in_markdown(words)
@@ -242,9 +237,9 @@ def _aligned(part: Law | Equation) -> str:
 
 
 def in_markdown(words: str) -> str:
-    """A sentence with its names and symbols as mathematics, and no character of it mistaken for markup.
+    """A sentence with its names and symbols as mathematics, in which no character is taken for markup.
 
-    All that is not ASCII is mathematics, but for signs of units, so that any LaTeX can set it.
+    Characters that are not ASCII are mathematics, except in units, so that any LaTeX can set them.
     """
     named = re.sub("`([^`]*)`", lambda name: PRINTED.get(name[1], name[0]), words)
     if words.startswith("`"):
@@ -256,7 +251,7 @@ def in_markdown(words: str) -> str:
 
 
 MATHEMATICS = re.compile(r"(`[^`]*`|\(-?[\d.]+ ± [\d.]+\)e-?\d+|-?[\d.]+ ± [\d.]+|[μπφθαβτ≈≤≥√±])")
-"""In a sentence: what stands between backticks, numbers with uncertainties, signs that are not ASCII."""
+"""The mathematics in a sentence: words between backticks, uncertain numbers, and signs that are not ASCII."""
 IN_WORDS = {
     "tension_1": "tension",
     "tension_2": "tension",
@@ -266,7 +261,7 @@ IN_WORDS = {
     "friction_force_x": "friction force",
     "friction_force_y": "friction force",
 }
-"""What a page calls a quantity where its name with blanks says less."""
+"""The words for a quantity whose name with blanks says less."""
 PRINTED = {
     name: f"the {IN_WORDS.get(name, name.replace('_', ' '))} `{plain(about.symbol)}`"
     for name, about in QUANTITIES.items()
@@ -282,4 +277,4 @@ PRINTED = {
     "inf": "`∞`",
     "give": "not known without",
 }
-"""What a page says for a name of the program; one that is not here is its own symbol."""
+"""The words on a page for names of the program; a name that is not here is its own symbol."""

@@ -10,7 +10,7 @@ from ..model.digits import is_infinite, tidy, to_digits
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, SceneError
 from ..output.figure import (
-    AXES,
+    AXIS_WORDS,
     BLUE,
     GREEN,
     INK,
@@ -204,7 +204,9 @@ def _in_symbols(sweep: Sweep, at: Mapping[str, Point]) -> str:
     """What tells a scene from the others of a sweep: μ = 0.2, or disk; empty where it is the only one."""
     ranges = [range_ for range_ in sweep.ranges if range_.name in at]
     points = [(range_, at[range_.name]) for range_ in ranges]
-    said = (point.name or f"{AXES[range_.name][1]} = {range_.in_units(point)}" for range_, point in points)
+    said = (
+        point.name or f"{AXIS_WORDS[range_.name][1]} = {range_.in_units(point)}" for range_, point in points
+    )
     return cut("".join(said))
 
 
