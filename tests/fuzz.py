@@ -1,4 +1,4 @@
-"""What may be typed, drawn by Hypothesis: command lines and the file that they read, and calls from Python."""
+"""What may be typed, read or given, drawn by Hypothesis: command lines, tables that are hardly any, calls from Python."""
 
 import gzip
 import io
@@ -29,25 +29,12 @@ OFTEN = {"--wrap": 0.2, "--m1": 0.97, "--m2": 0.97, "--M": 0.6, "--mu": 0.6}
 
 GOOD = "1 3 2 0.3 10 0.25 1.5e-3 100 0.1 90 180 4 0.5".split()
 FREE = "1 3 2.5 0.3 1e-300 1e300 1.0000000000000001 0.99 1e-9 7e463".split()
+# fmt: off
 EDGES = [
     *"0 -0 -1 inf -inf INF nan 1e500 1e-500 1e501 1e-501 1e9999999 1e308 1.8e308 4.9e-324 1e-400 .5 5. +2".split(),
     *"1e 1e+ 0x10 1_000 1,5 1,000 1.2.3 １ ٣ −1 ½ -- - = : ( ) ± % '' \" \\ moon disk hoop None".split(),
-    *(
-        "",
-        " ",
-        " 1 ",
-        "1\xa0kg",
-        "\x1b[31m",
-        "\udcff",
-        "1\n",
-        "1\t2",
-        "9" * 1000,
-        "9" * 1001,
-        "0." + "3" * 500,
-        "1" * 100_000,
-        "1 kg" + "*st^9" * 20_000,
-        "1kg" + " t^9/ug^9" * 5,
-    ),
+    *("", " ", " 1 ", "1\xa0kg", "\x1b[31m", "\udcff", "1\n", "1\t2", "0." + "3" * 500, "1kg" + " t^9/ug^9" * 5),
+    *("9" * 1000, "9" * 1001, "1" * 100_000, "1 kg" + "*st^9" * 20_000),
 ]
 SOME_UNITS = "kg g lb t mg µg m cm mm in ft deg rad turn ° % s ms N m/s2 m/s² x µ kgg".split()
 OF_METAVAR = {
@@ -57,42 +44,36 @@ OF_METAVAR = {
 """Units by the metavar of an option."""
 UNCERTAIN = "175(7)|180(3)|90+/-2|540±0.5|1.5(1)rad|0.5(1)turn|1(1)|179.9(2)|360(1)|0.1(1)".split("|")
 HOSTILE = ["\x1b[31mRED", "\x1b]0;a\x07", "\x9b31mred", "a\x85b", "\u202edrow", "\u2066a", "a\u2028b", "\x7f"]
-LONG = [
-    "x" * 100_000,
-    "9" * 100_000,
-    "1" + "kg " * 30_000,
-    "--" + "m1" * 50_000,
-    "1(" * 50_000,
-    "m1:" * 30_000,
-]
+LONG = [word * 100_000 for word in "x9"]
+LONG += ["1" + "kg " * 30_000, "--" + "m1" * 50_000, "1(" * 50_000, "m1:" * 30_000]
 TEXTS = [*"x µ =1+1 regime tension_1 ' \" , ;".split(), "", "a b", "M (kg)", "m1 ", "\t", *HOSTILE]
-FILES = [
-    "in.csv",
-    "a",
-    *(f"a.{kind}" for kind in (*FORMATS, "svg", "json", "txt")),
-    "-",
-    "no/a.svg",
-    "\x1b.csv",
-]
+FILES = ["in.csv", "a", *(f"a.{kind}" for kind in (*FORMATS, "svg", "json", "txt")), "-", "no/a.svg", "\x1b.csv"]
 COUNTS = "1 2 5 17 33 40 100 0 -1 10000001 1.5".split()
 SHAPES = "{} {} {}{u} {}_{u} {}+/-{} {}({}) {}±{} {}:{}:{} {}:{}:5:log {}/{} -{}".split()
 ODD_VALUES: list[Any] = [
     *(None, True, 1 + 2j, "x", b"1", [], [1, 2], {}, object(), nan, inf, -inf, 5e-324, 1e308, 10**400, -1, 0),
     *(Decimal("sNaN"), Decimal("1e400"), Decimal("Infinity"), Fraction(1, 3), np.float32(0.1), np.int64(2)),
     *(np.datetime64("2020"), np.timedelta64(1, "s"), np.ma.masked, np.array(2.0), np.array([1.0, nan, 0.0])),
-    *(
-        np.ma.array([1.0, 2.0, 3.0], mask=[False, True, False]),
-        np.array([(1.0,)], dtype=[("a", float)]),
-        [[1], [2, 3]],
-    ),
+    *(np.ma.array([1.0, 2.0, 3.0], mask=[False, True, False]), np.array([(1.0,)], dtype=[("a", float)]), [[1], [2, 3]]),
 ]
-
-
 HEADINGS = (
     'M|time 2|a1|m1 (g)|t/s|u(a)|±|u (%)|Δm|m1+m2|h_cm|Team|T1||Run 1: Time (s)|a (m/s²) Run #1|"m1\n(g)"|u(((|'
     "u(u(a))|+/-|/|a/(|Zeit"
 ).split("|")
-AROUND = [[line] * bool(line) for line in '||||# about|Lab 3|sep=;|sep=,|;;;|,,|5" drop|Mean,,'.split("|")]
+AROUND = '||||# about|Lab 3|sep=;|sep=,|;;;|,,|5" drop|Mean,,'.split("|")
+LABELS = [
+    *('"', '""', '"""', '"a"', '"a""b"', '"x,y;z\tw"', '"p\nq"', '"p\r\nq"', '"\n"', "a\rb", "\r", 'a"', '5" d', '"a"b'),
+    *("", "", "", " ", "x", "µ", "\u2028", "\x00", "a,b", "\t", ";", "\x85", "#", "m1", "NA"),
+]
+LINES = [
+    *("", " ", "[1]", "x", "{}", "null", '{"m1":1', '{"m1":1,"m1":2,"m2":3}', '{"m1":NaN,"m2":3}', '{"m1":1,"m2":3}}'),
+    "\xff",
+]
+# fmt: on
+ODD = [0.03, 0.1, 0.4]
+"""The shares of cells or lines that are odd, where these are what is tried."""
+PIECES = [1 << 20, 1, 3, 17]
+"""Bytes of a table that are read at a time."""
 
 
 class Run(NamedTuple):
@@ -104,18 +85,18 @@ class Run(NamedTuple):
 
 
 class Dice:
-    """Choices that Hypothesis makes, the first and the usual where it can. In some runs much is wrong."""
+    """Choices that Hypothesis makes, the first and the usual where it can. In some runs much is odd."""
 
-    def __init__(self, draw: st.DrawFn) -> None:
+    def __init__(self, draw: st.DrawFn, odd: Sequence[float] = (0.0, 0.03, 0.2)) -> None:
         self.draw = draw
-        self.odd = self.choice([0.0, 0.03, 0.2])
+        self.odd = self.choice(odd)
         self.given = self.choice([0.04, 0.1, 0.2])
 
     def choice(self, values: Sequence[T]) -> T:
         return self.draw(st.sampled_from(values))
 
     def chance(self, share: float) -> bool:
-        return self.draw(st.integers(0, 999)) >= 1000 * (1 - share)
+        return share > 0 and self.draw(st.integers(0, 999)) >= 1000 * (1 - share)
 
     def is_odd(self) -> bool:
         return self.chance(self.odd)
@@ -189,14 +170,39 @@ class Dice:
             frame = pl.DataFrame({name: [row[i] for row in texts] for i, name in enumerate(columns)})
             frame.cast(self.choice([pl.String, pl.Float64]), strict=False).write_parquet(buffer)
             return buffer.getvalue()
-        separator = self.choice(",\t;|") if self.is_odd() else {"tsv": "\t"}.get(kind, ",")
-        lines = [separator.join(row) for row in [columns, *rows]]
         if kind == "ndjson":
-            lines = [json.dumps(dict(zip(columns, row, strict=True))) for row in rows]
-        end = self.choice(["\r\n", "\n\n", "\r"]) if self.is_odd() else "\n"
-        return (self.choice(["", "\ufeff"]) + end.join(lines) + self.choice(["", end])).encode(
-            "utf-8", "replace"
-        )
+            objects = [[json.dumps(dict(zip(columns, row, strict=True)))] for row in rows]
+            return self.text(objects, "").encode("utf-8", "replace")
+        separator = self.choice(",\t;|") if self.is_odd() else {"tsv": "\t"}.get(kind, ",")
+        return self.text([columns, *rows], separator).encode("utf-8", "replace")
+
+    def text(self, rows: Sequence[Sequence[str]], separator: str) -> str:
+        """Rows of cells as they may be written."""
+        end = self.choice(["\r", "\n\n"]) if self.is_odd() else self.choice(["\n", "\n", "\r\n"])
+        lines = end.join(separator.join(row) for row in rows)
+        return self.choice(["", "\ufeff"]) + lines + end * self.choice([1, 0, 2])
+
+    def labelled(self, separator: str) -> str:
+        """Two masses of one digit each, and columns of labels, more or less whole."""
+        columns = self.draw(st.permutations(["m1", "m2", *["n", "p q", '"r\ns"'][: self.choice([1, 0, 3])]]))
+        rows = [columns]
+        for _ in range(self.choice([3, 0, 1, 8])):
+            whole = [self.choice("5203146789") if name in MASSES else "abc" for name in columns]
+            row = [self.choice(LABELS) if self.is_odd() else cell for cell in whole]
+            is_cut = self.chance(self.odd / 5)
+            rows.append(self.choice([row[:-1], row * 2, [], [" "], row[:1]]) if is_cut else row)
+        return self.text(rows, separator)
+
+    def objects(self) -> list[str]:
+        """Lines of NDJSON with two masses, more or less whole."""
+        lines = []
+        for _ in range(self.choice([3, 1, 12])):
+            m1, m2 = (int(self.choice("5203146789")) for _ in MASSES)
+            row: dict[str, object] = {"m1": m1, "n": [{"q": '"}'}], "m2": m2}
+            if self.is_odd():
+                row |= self.choice([{"m1": None}, {"m2": "x"}, {"M": None}])
+            lines.append(self.choice(LINES) if self.is_odd() else json.dumps(row))
+        return lines
 
     def runs(self) -> bytes:
         """A table of runs of one pulley and axle, more or less whole and true."""
@@ -218,9 +224,8 @@ class Dice:
                 [self.choice(TEXTS) if name in TEXTS else cell for name, cell in zip(names, row, strict=True)]
             )
         separator = self.choice(",;\t")
-        table = [separator.join(row) for row in [names, *rows]]
-        table = [*self.choice(AROUND), *table, *self.choice(AROUND)]
-        return "\n".join(table).encode(self.choice(["utf-8"] * 8 + ["cp1252"] * 2), "replace")
+        table = [self.choice(AROUND), *(separator.join(row) for row in [names, *rows]), self.choice(AROUND)]
+        return "\n".join(filter(None, table)).encode(self.choice(["utf-8"] * 8 + ["cp1252"] * 2), "replace")
 
     def broken(self, content: bytes) -> bytes:
         """A table, at times cut, changed, packed, or written in another encoding."""
@@ -255,6 +260,21 @@ def runs(draw: st.DrawFn, command: str) -> Run:
         place = draw(st.integers(0, len(line)))
         line.insert(place, dice.choice([*EDGES, *TEXTS, *LONG, "--m", "-m1", "-h", "--version"]))
     return Run(line, source if source != "-" else "in.csv", content)
+
+
+@st.composite
+def tables(draw: st.DrawFn) -> tuple[str, str, int]:
+    """CSV, its separator, and the bytes that are read at a time."""
+    dice = Dice(draw, ODD)
+    separator = dice.choice(",;\t")
+    return dice.labelled(separator), separator, dice.choice(PIECES)
+
+
+@st.composite
+def lines(draw: st.DrawFn) -> tuple[list[str], str, int]:
+    """Lines of NDJSON, what is behind them, and the bytes that are read at a time."""
+    dice = Dice(draw, ODD)
+    return dice.objects(), "\n" * dice.choice([1, 0, 2]), dice.choice(PIECES)
 
 
 @st.composite

@@ -27,7 +27,6 @@ from atwood_cli.model.scene import INPUTS
 from atwood_cli.tables import sources
 from atwood_cli.tables.sources import FORMATS
 
-from . import hostile
 from .running import HANGS, Atwood, Ran, on_real_terminal, plain, process
 
 SEPARATORS = {"csv": ",", "tsv": "\t"}
@@ -328,13 +327,6 @@ def test_the_first_error_is_that_of_the_whole_table(batch: Batch, monkeypatch: p
     assert ran.err.startswith(
         "atwood: 20 rows: 18 no-slip; 2 errors.\natwood: first error, in row 10: m2 'x' is"
     )
-
-
-@pytest.mark.parametrize("first", range(0, 400, 100))
-def test_hostile_tables_come_out_cell_for_cell(first: int, pytestconfig: pytest.Config) -> None:
-    """A few of the runs of which `python -m tests.hostile 100000` makes many."""
-    some = 100 if pytestconfig.getoption("every_digit") else 25
-    assert [wrong for run in range(first, first + some) if (wrong := hostile.wrong_with(run))] == []
 
 
 # Units

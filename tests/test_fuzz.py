@@ -1,9 +1,9 @@
 """Whatever is typed, read or given, promises hold; python -m tests.test_fuzz 100000 tries so many of each kind.
 
 A run ends within the limits, without a traceback or a warning, with a status of ours, with stdout empty on an
-error and with sentences on stderr. A table comes out with as many rows as were read. What is read steers no
-terminal, and nothing long is repeated whole. What a closed stdout loses is said. Hypothesis makes what fails as
-small as it can, and tries it first the next time.
+error and with sentences on stderr. A table comes out with the records that went in, cell for cell, each with its
+own result behind it. What is read steers no terminal, and nothing long is repeated whole. What a closed stdout
+loses is said. Hypothesis makes what fails as small as it can, and tries it first the next time.
 """
 
 import csv
@@ -17,6 +17,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import chdir, contextmanager
+from fractions import Fraction
 from itertools import pairwise
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -28,6 +29,7 @@ import pytest
 from hypothesis import given, settings
 
 from atwood_cli import SceneError
+from atwood_cli.tables import records, sources
 from atwood_cli.tradeoff import measure
 
 from . import fuzz, running
@@ -37,8 +39,7 @@ from .running import Ran, called
 BUSY = 15  # seconds of processor time, for any run
 MOST_SAID = 2000  # characters of a sentence
 STATUSES = (0, 1, 2, 130)
-RUNS = {"solve": 600, "contact": 250, "sweep": 250, "batch": 350, "fit": 350, "tradeoff": 20}
-"""How many runs of a command are tried with --every-digit; otherwise a quarter."""
+MARK = "\ufeff"
 
 
 @contextmanager
@@ -60,6 +61,9 @@ def limited() -> Iterator[None]:
         signal.signal(signal.SIGPROF, before)
 
 
+# What is typed
+
+
 @contextmanager
 def at(run: fuzz.Run) -> Iterator[None]:
     """In a folder with the file of the run, where measurements are short and every warning is shown."""
@@ -69,6 +73,11 @@ def at(run: fuzz.Run) -> Iterator[None]:
         Path("in.csv").touch()
         Path(run.source).write_bytes(run.content)
         yield
+
+
+def check_run(run: fuzz.Run) -> None:
+    with at(run):
+        check(run.words, called(run.words, Path("in.csv").read_bytes()))
 
 
 def check(words: Sequence[str], ran: Ran) -> None:
@@ -102,19 +111,139 @@ def rows_out(words: Sequence[str], printed: str) -> int | None:
     return sum(1 for row in csv.reader(io.StringIO(printed, newline="")) if row) - 1
 
 
-def try_runs(command: str, count: int) -> None:
+# Tables of text, cell for cell
+
+
+def batch(content: bytes, kind: str, piece: int) -> Ran:
+    """Accelerations of a table that is read in pieces of that size."""
+    with patch.object(sources, "BLOCK", piece), patch.object(records, "BLOCK", piece), limited():
+        return called(["batch", "-", "--from", kind, "--only", "a"], content)
+
+
+def acceleration(masses: Sequence[object]) -> float | None:
+    """That of two masses; None where they are not two digits, of which one is above 0."""
+    if not all(re.fullmatch(r"\s*\d\s*", str(mass)) for mass in masses):
+        return None
+    m1, m2 = map(int, map(str, masses))
+    return float(Fraction(9.80665) * (m2 - m1) / (m1 + m2)) if m1 or m2 else None
+
+
+def rows_of(text: str, separator: str) -> list[tuple[str, list[str]]] | None:
+    """The records of CSV with their cells, without blank lines; None where one is malformed.
+
+    A quotation mark opens a cell where one begins, and closes it where one ends; elsewhere in a cell that is
+    not quoted it stands for itself.
+    """
+    rows: list[tuple[str, list[str]]] = []
+    record, cells, cell, state = "", [], "", "begin"
+    for i, letter in enumerate([*text, ""]):
+        follows = text[i + 1 : i + 2]
+        if state == "quoted":
+            if not letter:
+                return None
+            state, cell = ("closed", cell) if letter == '"' else (state, cell + letter)
+        elif letter == '"' and state in ("begin", "closed"):
+            cell, state = (cell + '"' if state == "closed" else cell), "quoted"
+        elif letter in (separator, "\n", "") or (letter == "\r" and follows in ("\n", "")):
+            if letter == "\r":
+                continue
+            cells.append(cell)
+            cell, state = "", "begin"
+            if letter != separator:
+                if record.strip() or len(cells) > 1:
+                    rows.append((record, cells))
+                record, cells = "", []
+                continue
+        elif state == "closed" or letter == "\r":
+            return None
+        else:
+            cell, state = cell + letter, "bare"
+        record += letter
+    return rows
+
+
+def check_cells(table: tuple[str, str, int]) -> None:
+    """Records of CSV come out as they went in, or are refused: some are malformed, or have too many cells."""
+    text, separator, piece = table
+    ran = batch(text.encode(), "tsv" if separator == "\t" else "csv", piece)
+    (head, columns), *rows = rows_of(text.removeprefix(MARK), separator) or [("", [])]
+    if not columns or any(len(cells) > len(columns) for _, cells in rows):
+        assert ran.status == 1
+        assert "cannot read" in ran.err
+        return
+    assert ran.out.startswith(MARK) == text.startswith(MARK)
+    came = rows_of(ran.out.removeprefix(MARK), separator) or []
+    assert came[0] == (separator.join([head, "acceleration", "error"]), [*columns, "acceleration", "error"])
+    for (record, cells), (printed, (*kept, result, error)) in zip(rows, came[1:], strict=True):
+        lacking = len(columns) - len(cells)
+        right = None if lacking else acceleration([cells[columns.index(name)] for name in ("m1", "m2")])
+        assert printed.startswith(record + separator * (lacking + 1))
+        assert kept == [*cells, *[""] * lacking]
+        decimal = (
+            result if separator == "," else result.replace(",", ".")
+        )  # results have the mark of the table
+        assert decimal == ("" if right is None else repr(right))
+        assert bool(error) == (right is None)
+
+
+def check_lines(table: tuple[list[str], str, int]) -> None:
+    """Lines of NDJSON come out as they went in, or are errors."""
+    lines, end, piece = table
+    ran = batch(("\n".join(lines) + end).encode("latin-1"), "ndjson", piece)
+    lines = [line for line in lines if line.strip()]
+    assert lines or "it is empty" in ran.err
+    for line, printed in zip(lines, ran.out.split("\n")[:-1], strict=True):
+        result = json.loads(printed)
+        try:
+            row = json.loads(line, parse_constant=lambda word: 1 / 0)
+        except (ValueError, ZeroDivisionError):
+            row = None
+        is_whole = isinstance(row, dict) and line.count('"m1"') < 2
+        right = acceleration([row.get(name) for name in ("m1", "m2")]) if is_whole else None
+        assert result["acceleration"] == right
+        assert bool(result["error"]) == (right is None)
+        assert not is_whole or printed.startswith(line.removesuffix("}"))
+
+
+# What is given
+
+
+def check_call(call: tuple[Callable[..., object], dict[str, Any]]) -> None:
+    function, arguments = call
+    with limited():
+        try:
+            function(**arguments)
+        except SceneError as error:
+            str(error)
+        except ValueError as error:
+            if "broadcast" not in str(error):
+                raise
+
+
+RUNS = {"solve": 600, "contact": 250, "sweep": 250, "batch": 350, "fit": 350, "tradeoff": 20}
+PROMISES: dict[str, tuple[Any, Callable[[Any], None], int]] = {
+    **{command: (fuzz.runs(command), check_run, count) for command, count in RUNS.items()},
+    "cells": (fuzz.tables(), check_cells, 400),
+    "lines": (fuzz.lines(), check_lines, 200),
+    "Python": (fuzz.calls(), check_call, 400),
+}
+"""What is drawn, what is promised of it, and how many are tried with --every-digit; otherwise a quarter."""
+
+
+def try_many(kind: str, count: int) -> None:
+    drawn, promise, _ = PROMISES[kind]
+
     @settings(max_examples=count)
-    @given(fuzz.runs(command))
-    def keeps_its_promises(run: fuzz.Run) -> None:
-        with at(run):
-            check(run.words, called(run.words, Path("in.csv").read_bytes()))
+    @given(drawn)
+    def is_kept(example: object) -> None:
+        promise(example)
 
-    keeps_its_promises()
+    is_kept()
 
 
-@pytest.mark.parametrize("command", RUNS)
-def test_nothing_that_is_typed_breaks_a_promise(command: str) -> None:
-    try_runs(command, many(RUNS[command]))
+@pytest.mark.parametrize("kind", PROMISES)
+def test_nothing_that_is_typed_read_or_given_breaks_a_promise(kind: str) -> None:
+    try_many(kind, many(PROMISES[kind][2]))
 
 
 @pytest.mark.skipif(os.name == "nt", reason="needs a POSIX shell")
@@ -131,22 +260,6 @@ def test_what_a_closed_stdout_loses_is_said(run: fuzz.Run) -> None:
     assert b"Traceback" not in ended.stderr
     elsewhere = {"-o", "--output", "-h", "--help", "-V", "--version"} & {*run.words}
     assert ended.returncode or elsewhere, "status 0, though stdout is closed"
-
-
-@settings(max_examples=many(400))
-@given(fuzz.calls())
-def test_nothing_that_python_is_given_breaks_a_promise(
-    call: tuple[Callable[..., object], dict[str, Any]],
-) -> None:
-    function, arguments = call
-    with limited():
-        try:
-            function(**arguments)
-        except SceneError as error:
-            str(error)
-        except ValueError as error:
-            if "broadcast" not in str(error):
-                raise
 
 
 @pytest.mark.parametrize(
@@ -176,5 +289,5 @@ def test_what_a_promise_is(status: int, out: str, err: str, kept: bool) -> None:
 
 if __name__ == "__main__":
     settings.load_profile("every-digit")
-    for name in RUNS:
-        try_runs(name, int(sys.argv[1]))
+    for kind in PROMISES:
+        try_many(kind, int(sys.argv[1]))
