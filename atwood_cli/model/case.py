@@ -198,15 +198,13 @@ class Case:
     @lazy
     def can_slip(self) -> bool:
         """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
-        if self.sign == 0:
-            return False
         # Whatever slips on a pulley slips on a heavier one. If that is not known, the pulley is not read.
         return vars(self).get("slips", False) or self.slips_at("locked")
 
     @lazy
     def always_slips(self) -> bool:
         """Whether the string slips on any pulley, however light, for the friction of its axle."""
-        return self.rubs and self.sign != 0 and self.slips_at("locked" if self.axle_holds else "massless")
+        return self.rubs and self.slips_at("locked" if self.axle_holds else "massless")
 
     @lazy
     def slips_once_it_moves(self) -> bool:
@@ -223,9 +221,7 @@ class Case:
     @lazy
     def can_be_made_slip(self) -> bool:
         """Whether the string slips under some heavier mass: second condition of (36)."""
-        if self.rim_mass is None or self.turns_freely:
-            return self.rim_mass is None
-        return self.slips_once_it_moves or self.slips_at("heaviest")
+        return not self.turns_freely and (self.slips_once_it_moves or self.slips_at("heaviest"))
 
     @lazy
     def holds_again(self) -> bool:
@@ -235,7 +231,7 @@ class Case:
     @lazy
     def rim_stands(self) -> bool:
         """Whether the pulley stands still while the string slips over it."""
-        if self.stands or self.rim_mass is None:
+        if self.stands:
             return True
         if not self.rubs:
             return False

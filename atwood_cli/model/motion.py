@@ -105,7 +105,7 @@ def _refused(scene: Scene, motion: Motion) -> str:
     if found.m1 == found.m2 == 0:
         return "implies that both masses are 0"
     value, domain = getattr(found, finds), INPUTS[finds]
-    if value > 0 or (value == 0 and domain.zero):
+    if value >= 0:  # 0 is a mass
         return ""
     shown = text(tidy(to_digits(SHOWN_DIGITS)(value)))
     return f"implies {finds} = {shown} {domain.unit}, which {domain.domain}"
