@@ -19,7 +19,7 @@ from atwood_cli.arithmetic import settling
 from atwood_cli.arithmetic.interval import Enclosure, Enclosures, Unsettled, enclosures
 from atwood_cli.arithmetic.rational import EXACT, Irrational
 from atwood_cli.arithmetic.settling import settle
-from atwood_cli.model.digits import as_typed, to_digits, to_double, with_one_power
+from atwood_cli.model.digits import as_typed, tidy, to_digits, to_double, with_one_power
 from atwood_cli.model.digits import text as text_of
 
 if TYPE_CHECKING:
@@ -290,6 +290,8 @@ def test_zero_has_no_digits(zero: Fraction | Decimal) -> None:
 def test_text_is_what_people_write() -> None:
     assert {value: text_of(value) for value in SHORTEST} == SHORTEST
     assert {q: as_typed(q) for q in AS_TYPED} == AS_TYPED
+    whole = {q: typed for q, typed in AS_TYPED.items() if q.denominator == 1}
+    assert {q: text_of(tidy(Decimal(int(q)))) for q in whole} == whole
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))

@@ -263,9 +263,9 @@ def test_a_float_that_cannot_be_compared_is_its_number(name: str) -> None:
 
 
 def test_units_are_consistent() -> None:
-    mass, length, force, torque = (
+    mass, length, force, torque, inertia = (
         {unit: Fraction(factor) for unit, factor in UNITS[name].items()}
-        for name in ("mass", "length", "force", "torque")
+        for name in ("mass", "length", "force", "torque", "moment of inertia")
     )
     assert mass["lb"] == mass["lbs"] == 16 * mass["oz"] == mass["st"] / 14 == Fraction("0.45359237")
     assert [mass[unit] for unit in ("t", "g", "mg", "ug")] == [
@@ -277,7 +277,9 @@ def test_units_are_consistent() -> None:
     # A pound-force gives a slug 1 ft/s², and a pound standard gravity.
     assert mass["slug"] * length["ft"] == force["lbf"] == Fraction("4.4482216152605")
     assert force["kgf"] == Fraction(STANDARD_GRAVITY)
-    assert torque["lbf ft"] == 12 * torque["lbf in"] == force["lbf"] * length["ft"]
+    for symbol, factor in (torque | inertia).items():
+        one, arm = symbol.split()
+        assert factor == (force | mass)[one] * length[arm.rstrip("2")] ** (1 + arm.endswith("2"))
     assert length["yd"] == 3 * length["ft"] == 36 * length["in"] == Fraction("0.9144")
     assert length["km"] == 1000 * length["m"] == 10**4 * length["dm"] == 10**5 * length["cm"]
     assert length["m"] == 1000 * length["mm"] == 10**6 * length["um"]
