@@ -322,7 +322,7 @@ def test_what_is_wrong_with_rows_that_are_alike_is_found_once(
 
 
 def test_the_first_error_is_that_of_the_whole_table(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sources, "BLOCK", 8)
+    monkeypatch.setattr(sources, "BLOCK_BYTES", 8)
     ran = batch("m1,m2\n" + "1,3\n" * 9 + "1,x\n" + "1,3\n" * 9 + "1,y\n", "--only regime")
     assert ran.err.startswith(
         "atwood: 20 rows: 18 no-slip; 2 errors.\natwood: first error, in row 10: m2 'x' is"
@@ -465,7 +465,7 @@ from itertools import count, repeat
 from atwood_cli.__main__ import main
 from atwood_cli.output import page
 from atwood_cli.tables import sources
-sources.BLOCK = 64
+sources.BLOCK_BYTES = 64
 page.monotonic = CLOCK.__next__
 main()
 """

@@ -116,7 +116,7 @@ def rows_out(words: Sequence[str], printed: str) -> int | None:
 
 def batch(content: bytes, kind: str, piece: int) -> Ran:
     """Accelerations of a table that is read in pieces of that size."""
-    with patch.object(sources, "BLOCK", piece), patch.object(records, "BLOCK", piece), limited():
+    with patch.object(sources, "BLOCK_BYTES", piece), patch.object(records, "BLOCK_BYTES", piece), limited():
         return called(["batch", "-", "--from", kind, "--only", "a"], content)
 
 

@@ -68,9 +68,9 @@ def test_what_the_grammar_does_not_know_is_named() -> None:
     named = read_named(words, RUNS)
     columns = ["Masse 1 (g)", "Masse (rechts)", "Zeit A (s)", "Zeit B (s)", "Fehler = 1σ", "m1"]
     found = read_headings(columns, RUNS, ["m1"], named)
-    said = [f"{one.at} {one.name} {one.unit}" for one in found]
+    said = [f"{one.place} {one.name} {one.unit}" for one in found]
     assert said == ["0 m1 g", "1 m2 g", "2 time s", "3 time s"]
-    assert [one.u and one.u.at for one in found] == [None, None, 4, 4]
+    assert [one.u and one.u.place for one in found] == [None, None, 4, 4]
     assert read_as(found, ";", ",", True) == [
         "read as: cells parted by semicolons, decimal commas, 'Masse 1 (g)' as m1 in g, 'Masse (rechts)' as m2 in g,"
         " 'Zeit A (s)' as time in s, 'Zeit B (s)' as time in s, 'Fehler = 1σ' as u(time)."

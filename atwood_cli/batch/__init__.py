@@ -1,1 +1,1 @@
-"""Files of scenes: a table in, the same table with its results out."""
+"""Tables of scenes: a table goes in, and comes out with its results."""

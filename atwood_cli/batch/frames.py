@@ -1,4 +1,4 @@
-"""Frames of scenes: `solve_table`, for those of polars, eager and lazy; and Parquet, which is a lazy one."""
+"""Frames of scenes: `solve_table` for frames of polars, eager and lazy, and files of Parquet."""
 
 import os
 import re
@@ -20,28 +20,34 @@ if TYPE_CHECKING:
 
 Table = TypeVar("Table", "pl.DataFrame", "pl.LazyFrame")
 Watch = Callable[[Iterator[Any], int | None, Callable[[Any], int]], Iterator[Any]]
-"""Passes parts on, and may show progress: its arguments are the parts, the size of all, and of one."""
+"""A function that passes parts on, and may show progress. It takes the parts, their whole size if that is
+known, and a function that gives the size of a part."""
 GROUP_ROWS, GROUP_CELLS = 1 << 16, 1 << 20
-"""The most rows and cells of a row group that is written."""
+"""The most rows, and the most cells, of a row group that is written."""
 
 
 def solve_table(table: Table, quantities: Sequence[str] | None = None, accuracy: Accuracy = "exact") -> Table:
-    """A table of scenes with results appended, and the error of each bad row: what `atwood batch` makes.
+    """Append its results to each row of a table of scenes, as `atwood batch` does.
 
     Args:
-        table: A data frame of polars, eager or lazy, a row a scene. Its columns m1, m2, M, mu and so on are
-            inputs, in SI units or in those of the heading, as "m1 (g)"; other columns stay as they are. An
-            input is not given where a value is missing. A NaN is an error of its row, and so is a text that
-            is no number.
-        quantities, accuracy: As `solve_arrays` takes them.
+        table: A data frame of polars, eager or lazy, with a row for each scene. Its columns m1, m2, M, mu and
+            so on are inputs, in SI units and degrees, or in the unit of the heading, as "m1 (g)". Other
+            columns stay as they are. An input is not given where a value is missing. A NaN is an error of
+            its row, and a text that is no number is, too.
+        quantities: The names or symbols of quantities, as "acceleration" or "a"; if None, the names in
+            `quantities.STANDARD`.
+        accuracy: "exact" (the nearest double) or "certified" (faster; every regime is right, and every value
+            within 2e-14 of itself).
 
     Returns:
-        The table, eager or lazy as it was, with a column for each of the quantities, in SI units, and
-        ``error``, the sentence on a bad row.
+        A table with the same rows, eager or lazy as the other was. Behind the columns of that table it has
+        a column for each quantity, in SI units, null where a value does not exist or is beyond the doubles;
+        and ``error``, a sentence on each bad row, null in the others.
 
     Raises:
         SceneError: A quantity or an accuracy is not known (a ValueError).
-        ValueError: The table lacks a mass, or has a column that could be meant for an input.
+        ValueError: The table is no frame of polars, lacks a mass, or has a column that could be meant for an
+            input, holds no numbers, or is named as a result.
     """
     import polars as pl
 
@@ -55,7 +61,7 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None, accuracy:
             return solve(table)
         return table.map_batches(solve, schema=solve(pl.DataFrame(schema=schema)).schema, streamable=True)
     except Unreadable as error:
-        why = re.sub("[;,] or [a-z ]+ --.*", "", str(error))  # the options of the command
+        why = re.sub("[;,] or [a-z ]+ --.*", "", str(error))  # without the options of the command
         raise ValueError(f"cannot read the table: {why}") from None
 
 
@@ -63,7 +69,7 @@ def with_results(
     frame: "pl.DataFrame", layout: Layout, asked: Question, tally: Tally | None = None
 ) -> "pl.DataFrame":
     """A frame of scenes with their results. Raises Unreadable for a column that holds no numbers."""
-    cells = frame.select(frame[one.column].alias(one.name) for one in layout.headings)
+    cells = frame.select(frame[heading.column].alias(heading.name) for heading in layout.headings)
     return frame.hstack(solve_cells(cells, layout, asked, tally or Tally(set())))
 
 
@@ -72,7 +78,7 @@ def solve_parquet(
 ) -> Layout:
     """Write a file of scenes with their results, in the same order, in row groups of a fixed size.
 
-    Raises Unreadable for what is no Parquet, or damaged.
+    Raises Unreadable for a file that is no Parquet, or is damaged.
     """
     import polars as pl
 
@@ -100,9 +106,9 @@ def _write(
     rows: int,
     watch: Callable[[Iterator[int]], Iterator[int]],
 ) -> int:
-    """Write frames as Parquet in groups of so many rows, and return how many there are.
+    """Write frames as Parquet in groups of at most ``rows`` rows. Returns the number of all rows.
 
-    A thread does it, and this one waits, as polars would not hear Ctrl-C. What fails ends the frames, since
+    A thread writes while this one waits, as polars would not hear Ctrl-C. An error ends the frames, since
     polars would panic over an exception, and is raised here.
     """
     from polars.io.plugins import register_io_source
@@ -137,10 +143,10 @@ def _write(
 
 @contextmanager
 def _reading() -> Iterator[None]:
-    """Raises Unreadable for whatever polars makes of damaged Parquet.
+    """Raises Unreadable for any error that polars makes of damaged Parquet.
 
-    Its threads that panic write to the descriptor of stderr, which meanwhile leads nowhere. `sys.stderr`
-    still leads where it did.
+    Its threads that panic write to the descriptor of stderr. So this leads nowhere meanwhile, while
+    `sys.stderr` leads where it did.
     """
     import polars as pl
 

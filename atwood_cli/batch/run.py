@@ -1,4 +1,4 @@
-"""Files of scenes: each record comes out as it went in, and its results behind it."""
+"""Files of scenes: each record comes out as it went in, followed by its results."""
 
 import os
 import signal
@@ -24,7 +24,7 @@ SEPARATORS = {"csv": ",", "tsv": "\t"}
 
 
 class Job(NamedTuple):
-    """A table with its format, where it goes, and what is asked of it."""
+    """A table and its format, the file that it goes to, and the question that is asked of it."""
 
     source: str
     kind: str
@@ -34,7 +34,7 @@ class Job(NamedTuple):
 
 
 def run_batch(job: Job, watch: Watch, tally: Tally) -> list[str]:
-    """Solve a table of scenes, and return how it was read. Raises OSError.
+    """Solve a table of scenes. Returns sentences on how it was read. Raises OSError.
 
     ``watch`` shows progress, unless results go to a terminal.
     """
@@ -65,7 +65,7 @@ def _check_apart(job: Job) -> None:
     try:
         read = os.stat(job.source) if job.source != STDIN else os.fstat(sys.stdin.fileno())
         target = os.stat(job.target) if job.target != STDOUT else os.fstat(sys.stdout.fileno())
-    except (OSError, ValueError, AttributeError):  # one is closed, or not there yet
+    except (OSError, ValueError, AttributeError):  # a stream is closed, or a file not there yet
         return
     if stat.S_ISREG(target.st_mode) and os.path.samestat(read, target):
         raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
@@ -79,7 +79,7 @@ def _size(job: Job, source: IO[bytes]) -> int | None:
 def _solve_csv(
     job: Job, source: IO[bytes], target: IO[bytes] | Stdout, watch: Watch, tally: Tally
 ) -> list[str]:
-    """Rows of cells: results follow behind the separator of the table, and with its decimal mark."""
+    """Solve rows of cells: results follow with the separator and the decimal mark of the table."""
     usual, asked = SEPARATORS[job.kind], job.asked
     table = Csv(blocks_of(source), usual, lambda columns: recognised(columns, VOCABULARY, asked.named))
     layout = Layout(read_inputs(table.columns, asked))
@@ -122,7 +122,7 @@ def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memo
 def _solve_ndjson(
     job: Job, source: IO[bytes], target: IO[bytes] | Stdout, watch: Watch, tally: Tally
 ) -> list[str]:
-    """A line an object: results become its last members."""
+    """Solve lines, each of which is an object: results become its last members."""
     layout = Layout([])
 
     def headings(keys: Any) -> list[Heading]:
@@ -152,7 +152,8 @@ def _ndjson(piece: Piece, results: "pl.DataFrame") -> memoryview:
 def _solve_parquet(
     job: Job, source: IO[bytes], target: IO[bytes] | Stdout, watch: Watch, tally: Tally
 ) -> list[str]:
-    """Parquet, whose columns keep their types; it is not read from front to back, nor written so."""
+    """Solve Parquet, whose columns keep their types."""
+    # Parquet is not read from front to back, nor written so: a stream goes through memory.
     if is_stream(job.source) or is_packed(job.source):
         source = BytesIO(b"".join(blocks_of(source)))
     whole = BytesIO()
@@ -163,7 +164,7 @@ def _solve_parquet(
 
 
 def _remarks(layout: Layout, separator: str, usual: str, tally: Tally) -> list[str]:
-    """How a table was read, if not as usual."""
-    words = [f"{' and '.join(sorted(tally.not_given))} as not given"] if tally.not_given else []
-    headings = [one for one in layout.headings if one.at >= 0]
-    return read_as(headings, separator, usual, layout.comma, words)
+    """Sentences on how a table was read, if not as usual."""
+    not_given = [f"{' and '.join(sorted(tally.not_given))} as not given"] if tally.not_given else []
+    headings = [heading for heading in layout.headings if heading.place >= 0]
+    return read_as(headings, separator, usual, layout.comma, not_given)

@@ -1,4 +1,4 @@
-"""Rows of scenes: what columns hold, cells as doubles, the results, and the error of each bad row."""
+"""Rows of scenes: their columns are recognised, their cells read, and results or errors found for each."""
 
 import re
 from collections import Counter
@@ -47,18 +47,18 @@ OTHER_NAMES = {
     **{name.lower(): name for name in (*reversed(INPUTS), *MEASURED) if name != "I"},  # i may count rows
 }
 # fmt: on
-"""What headings could be meant for, in small ASCII letters."""
-GREEK = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
+"""The inputs that other headings could be meant for, in small ASCII letters."""
+GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
 LARGEST_POWER = 22
 """The largest power of ten that is a double."""
-LONG = 100
-"""Characters: a shorter text that is a nonzero double is within the limits of digits and exponents."""
+LONG_CELL = 100
+"""The characters up to which any text of a nonzero double is within the limits of digits and exponents."""
 
 
 class Question(NamedTuple):
-    """What is asked of a table: the results and their accuracy, and what the user says of its columns.
+    """A question about a table: the quantities wanted, their accuracy, and remarks of the user on columns.
 
-    ``labels`` are columns that hold no input, whatever they look like, ``named`` maps headings to inputs.
+    ``labels`` are columns that hold no input, whatever they look like. ``named`` maps headings to inputs.
     """
 
     names: Sequence[str]
@@ -78,36 +78,37 @@ class Layout(NamedTuple):
 
 
 def read_inputs(columns: Sequence[str], asked: Question, whole: bool = True) -> list[Heading]:
-    """The columns of inputs. Without both masses a table is no ``whole`` one: their cells are empty.
+    """The columns of inputs. A table that is not ``whole`` may lack masses, whose cells are empty then.
 
-    Raises Unreadable for a column that could be meant for an input and is none, if it is no label, and for
-    one that is named as a result.
+    Raises Unreadable where a column is named as a result, or could be meant for an input and is neither an
+    input nor a label.
     """
     if clash := [column for column in columns if column in (*asked.names, ERROR)]:
-        how = "as a result is named so; rename it"
-        raise Unreadable(f"column {in_quotes(clash[0])} would be there twice, {how}")
+        raise Unreadable(
+            f"column {in_quotes(clash[0])} would be there twice, as a result is named so; rename it"
+        )
     headings = read_headings(columns, VOCABULARY, asked.labels, asked.named)
-    found = {one.name for one in headings}
-    passed = {*asked.labels, *(one.column for one in headings)}
-    others = {column: name for column in columns if column not in passed and (name := _meant(column))}
-    for column, name in others.items():
-        if name in INPUTS and name not in found:
-            how = f"say so by --column {name}={in_quotes(column)}"
-            raise refused(column, f"could be meant for {name}; rename it, or {how}")
-    missing = [mass for mass in MASSES if mass not in found]
+    inputs = {heading.name for heading in headings}
+    passed = {*asked.labels, *(heading.column for heading in headings)}
+    doubtful = {column: name for column in columns if column not in passed and (name := _meant(column))}
+    for column, name in doubtful.items():
+        if name in INPUTS and name not in inputs:
+            way = f"say so by --column {name}={in_quotes(column)}"
+            raise refused(column, f"could be meant for {name}; rename it, or {way}")
+    missing = [mass for mass in MASSES if mass not in inputs]
     if missing and whole:
-        how = f"there are {listed(columns)}; or name one by --column {missing[0]}=HEADING"
-        raise Unreadable(f"column {missing[0]} is missing; {how}")
-    for column, name in others.items():
+        way = f"there are {listed(columns)}; or name one by --column {missing[0]}=HEADING"
+        raise Unreadable(f"column {missing[0]} is missing; {way}")
+    for column, name in doubtful.items():
         if name in MEASURED:
             raise refused(column, "tells of a motion, which only solve takes")
     return [*headings, *(Heading(-1, mass, mass) for mass in missing)]
 
 
 def _meant(column: str) -> str | None:
-    """What a heading could be meant for: with other letters, another name, or a unit after it."""
+    """The input that a heading could be meant for: with other letters, another name, or a unit after it."""
     *_, (name, _) = divisions(column)
-    letters = normalize("NFKC", name).casefold().translate(GREEK)
+    letters = normalize("NFKC", name).casefold().translate(GREEK_SPELLED)
     words = [word for word in re.split("[^0-9a-z]+", letters) if word]
     if meant := OTHER_NAMES.get("_".join(words)):
         return meant
@@ -129,12 +130,10 @@ def _is_unit(word: str, name: str) -> bool:
 
 @dataclass
 class Tally:
-    """The counts of a run, and what its rows lack.
-
-    ``missing`` are the results that no row has, and ``not_given`` the words that stand for an empty cell.
-    """
+    """The counts of a run, the results that its rows lack, and the words that stood for empty cells."""
 
     missing: set[str]
+    """The results that no row has had."""
     rows: int = 0
     regimes: Counter[str] = field(default_factory=Counter)
     errors: int = 0
@@ -154,7 +153,7 @@ class Tally:
         self.rows += results.height
 
     def lines(self) -> list[str]:
-        """The messages: the summary, why valid rows lack results, the first error."""
+        """The messages: the summary, reasons for missing results of valid rows, and the first error."""
         parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
         counts = [", ".join(parts)] if parts else []
         counts.append(counted(self.errors, "error") if self.errors else "no errors")
@@ -162,17 +161,21 @@ class Tally:
             counts.append(f"{counted(self.beyond, 'value')} beyond the range of doubles left empty")
         summary = f"{counted(self.rows, 'row')}: {'; '.join(counts)}."
         first = [f"first error, in {self.first_error}"] if self.errors else []
-        # Threads count in any order: the most frequent reason first.
-        reasons = sorted(self.reasons.items(), key=lambda one: (-one[1], NAMES.index(one[0][0]), one[0][1]))
+
+        def rank(counted: tuple[tuple[str, str], int]) -> tuple[int, int, str]:
+            (name, reason), count = counted
+            return -count, NAMES.index(name), reason
+
+        reasons = sorted(self.reasons.items(), key=rank)  # as threads count in any order
         return [summary, *reasons_at(dict(reasons), self.rows, "in {} of {} rows"), *first]
 
 
 def solve_cells(
-    cells: "pl.DataFrame", layout: Layout, asked: Question, tally: Tally, others: Mapping[int, str] = {}
+    cells: "pl.DataFrame", layout: Layout, asked: Question, tally: Tally, unread: Mapping[int, str] = {}
 ) -> "pl.DataFrame":
-    """The columns to append to rows whose inputs have those cells: the results, and the errors of bad rows.
+    """The columns to append to rows with these cells: the results, and the errors of bad rows.
 
-    ``others`` are errors of rows that could not be read. Raises Unreadable for a column without numbers.
+    ``unread`` has the errors of rows that could not be read. Raises Unreadable for a column without numbers.
     """
     import polars as pl
 
@@ -180,7 +183,7 @@ def solve_cells(
 
     doubles: Any
     doubles, errors, not_given = _doubles(cells, layout)
-    errors |= others
+    errors |= unread
     doubles["m1"].scatter(list(errors), None)  # such a row has no results
     solved, reasons = solve_and_count(doubles, asked.accuracy, ["regime", *asked.names])
     regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
@@ -203,8 +206,9 @@ def solve_cells(
 def _doubles(
     cells: "pl.DataFrame", layout: Layout
 ) -> "tuple[dict[str, pl.Series], dict[int, str], set[str]]":
-    """The inputs by name, null where a cell is empty or wrong; the first error of each row that has one; and
-    the words that stand for an empty cell.
+    """The inputs by name, the first error of each bad row, and the words that stand for empty cells.
+
+    An input is null where its cell is empty or wrong.
     """
     import polars as pl
 
@@ -235,7 +239,7 @@ def _doubles(
 
 
 def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
-    """The double nearest to each cell of a column in the SI, null where only `_double` can tell."""
+    """The double nearest to each cell of a column, in SI units; null where only `_double` can tell."""
     import polars as pl
 
     factor = heading.factor
@@ -260,16 +264,16 @@ def _odd_cells(cells: "pl.Series", doubles: "pl.Series") -> dict[int, Any]:
 
     text = cells.dtype == pl.String
     odd = cells.is_not_null() & ~doubles.is_finite().fill_null(False)
-    if (zero := doubles == 0).any():  # what is too small for a double would be another scene
-        odd |= zero & (cells.str.contains("[1-9]") if text else cells != 0)  # it may be an exponent's, too
+    if (zero := doubles == 0).any():  # a number too small for a double would become 0, another scene
+        odd |= zero & (cells.str.contains("[1-9]") if text else cells != 0)  # the digit may be an exponent's
     if text:
-        odd |= cells.str.len_bytes() > LONG
+        odd |= cells.str.len_bytes() > LONG_CELL
     rows = odd.arg_true()
     return dict(zip(rows, cells[rows], strict=True))
 
 
 def _double(heading: Heading, cell: str | float, comma: bool) -> float:
-    """A cell as the double nearest to it in the SI. Raises SceneError."""
+    """A cell as the double nearest to it, in SI units. Raises SceneError."""
     name = heading.name
     if isinstance(cell, str):
         exact = read_plain(name, cell, pointed(name, cell, comma))
@@ -285,13 +289,13 @@ def _double(heading: Heading, cell: str | float, comma: bool) -> float:
 
 
 def _reasons(cells: "pl.DataFrame", layout: Layout) -> list[str]:
-    """Why each row is no scene."""
+    """The errors of rows that are no scenes."""
     why = cache(partial(_why, layout))  # as many rows may be alike
     return [why(row) for row in cells.iter_rows()]
 
 
 def _why(layout: Layout, row: Sequence[Any]) -> str:
-    """The error of a row, in the words of `solve`; cells that are numbers are quoted as typed."""
+    """The error of a row, in the words of `solve`. It quotes numbers as they were typed."""
     cells: dict[str, Given | None] = {}
     for heading, cell in zip(layout.headings, row, strict=True):
         text = pointed(heading.name, cell, layout.comma) if isinstance(cell, str) else cell

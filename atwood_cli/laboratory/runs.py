@@ -104,7 +104,7 @@ def read_runs(
     for number in without:
         if not 1 <= number <= len(sheet.rows):
             raise SceneError("without", f"{number}", f"is no row; there are 1 to {len(sheet.rows)}")
-    places = [column.at for heading in headings for column in (heading, heading.u) if column]
+    places = [column.place for heading in headings for column in (heading, heading.u) if column]
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     remarks = read_as(headings, sheet.separator, sheet.usual, comma, [*others, *sheet.remarks])
     common = drop and drop._replace(uncertainty=Fraction(0))  # what counts for all runs together
@@ -127,8 +127,8 @@ def _with_unnamed(
 
     Raises Unreadable for a column that could hold one, unless it is one of the ``labels``.
     """
-    found = {heading.at: heading for heading in headings}
-    taken = {*found, *(heading.u.at for heading in headings if heading.u)}
+    found = {heading.place: heading for heading in headings}
+    taken = {*found, *(heading.u.place for heading in headings if heading.u)}
     others: list[str] = []
     for place, column in enumerate(sheet.columns):
         if place in taken or column in labels:
@@ -142,7 +142,7 @@ def _with_unnamed(
             before, name = found.get(place - 1), f"column {place + 1}"
             if not before or before.name not in MEASURED or before.u:
                 raise Unreadable(f"{name} has numbers and no heading; give it one")
-            found[place] = before._replace(at=place, column=name, number=name)
+            found[place] = before._replace(place=place, column=name, number=name)
         elif LIKE_UNCERTAINTY.search(column):
             raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
         else:
@@ -206,9 +206,9 @@ def _run(
 
 def _read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None:
     """A quantity of a row in SI units; None if its cell is empty. Raises SceneError."""
-    cell = row[heading.at]
+    cell = row[heading.place]
     given = read_cell(heading, cell, comma)
-    if given and heading.u and (u := row[heading.u.at].strip()) not in EMPTY:
+    if given and heading.u and (u := row[heading.u.place].strip()) not in EMPTY:
         if given.uncertainty:
             raise SceneError(heading.u.column, u, f"is a second uncertainty, beside {in_quotes(cell)}")
         given = given._replace(uncertainty=read_uncertainty(heading.u, u, given.value, comma))

@@ -19,18 +19,20 @@ from .sweep_figure import MAX_CURVES
 
 
 class SweepPage:
-    """A sweep in the forms in which it may be asked for; rows of JSON and CSV are written as they come."""
+    """A sweep in the forms in which it may be asked for. Rows of JSON and CSV are written as they come."""
 
     def __init__(self, sweep: Sweep, names: Sequence[str], digits: int | None) -> None:
         self.sweep, self.digits = sweep, digits
-        self.asked, self.missing = set(names), set(names)  # quantities, and those of them that no row has
+        self.asked = set(names)
+        self.missing = set(names)
+        """The quantities that were asked for and that no row has."""
         self.names = names or STANDARD
-        # Where a sentence tells the regimes, a column of them must be asked for.
+        # Where a sentence tells the regimes, they have a column only if it is asked for.
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
         self.reasons: Counter[tuple[str, str]] = Counter()
 
     def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
-        """The rows, while it is counted why values are missing."""
+        """The rows; on the way, reasons for missing values are counted."""
         rows = solve_rows(self.sweep, names, digits)
         for row in watched(rows, self.sweep.total) if watch else rows:
             self.reasons.update(row.reasons.items())
@@ -38,12 +40,12 @@ class SweepPage:
             yield row
 
     def notes(self) -> list[str]:
-        """Why values that were asked for are missing, and at how many points, when all rows are out."""
+        """The reasons for missing values that were asked for, with the number of points, after all rows."""
         asked = {key: points for key, points in self.reasons.items() if key[0] in self.asked}
         return reasons_at(asked, self.sweep.total)
 
     def _all_notes(self) -> Iterator[str]:
-        """Why any values are missing; begun when all rows are out."""
+        """The reasons for all missing values: an iterator that begins after all rows."""
         yield from reasons_at(self.reasons, self.sweep.total)
 
     def json(self) -> Mapping[str, object]:
@@ -57,13 +59,13 @@ class SweepPage:
         }
 
     def records(self) -> Iterator[dict[str, object]]:
-        # Where rows would run into the bar, there is none.
+        # Without the bar, into which rows on a terminal would run.
         for row in self._rows(self.names, self.digits, watch=not sys.stdout.isatty()):
-            at = {name: point.printed for name, point in row.at.items()}
-            yield at | {name: row.values[name] for name in self.names}
+            points = {name: point.printed for name, point in row.at.items()}
+            yield points | {name: row.values[name] for name in self.names}
 
     def page(self) -> None:
-        """The scene, its regimes, what is the same in all rows, a row a point, and the notes.
+        """Print the scene, its regimes, values that all rows share, a row for each point, and the notes.
 
         Columns without a value are left out.
         """
@@ -77,8 +79,8 @@ class SweepPage:
         above = [", ".join(sweep.inputs.values()), *_regimes(sweep, rows, self.digits)]
         if PULLEY not in same and any(row.regime == "verge" for row in rows):
             above.append(PULLEYS)
-        if once := [_stated(name, value) for name, value in same.items() if name != "regime"]:
-            above.append(f"In all rows: {', '.join(once)}.")
+        if shared := [_stated(name, value) for name, value in same.items() if name != "regime"]:
+            above.append(f"In all rows: {', '.join(shared)}.")
         notes = self.notes()
         page.say(*above)
         if len(same) < len(shown) or not shown:
@@ -92,7 +94,8 @@ class SweepPage:
                 unit = _in_brackets(QUANTITIES[name].unit) if name in QUANTITIES else ""
                 columns[f"{name}\n{unit}"] = aligned(shown[name])
             lines = zip(*columns.values(), strict=True)
-            slow = sweep.ranges[0].name  # groups are of its points, or of regimes
+            # Groups are the points of the range that varies slowly, or the regimes along a single range.
+            slow = sweep.ranges[0].name
             groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
             table = [[next(lines) for _ in group] for _, group in groups]
             page.table(list(columns), table)
@@ -104,22 +107,22 @@ PULLEYS = "As M is not given, each row that is on the verge has a pulley of its 
 
 
 def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:
-    """The regimes along one range, that which varies fast if two come into question.
+    """The regimes along one range, in a sentence for each point of the other range, if these are few.
 
-    There is a sentence for each point of the other, if these are few.
+    The range is the one that varies fast, if two come into question.
     """
     along = max(reversed(sweep.ranges), key=attrgetter("rank"))
     if len({row.regime for row in rows}) == 1 and sweep.ranges[1:]:
         yield f"Regimes: {rows[0].regime}."
     elif sweep.total // len(along.points) <= MAX_CURVES:
-        for scene, at in sweep.along(along):
-            part = [row for row in rows if at.items() <= row.at.items()]
+        for scene, points in sweep.along(along):
+            part = [row for row in rows if points.items() <= row.at.items()]
             if along.is_list:
                 part = [row for point in along.finite for row in part if row.at[along.name] == point]
-            beside = [two for two in pairwise(part) if two[0].regime != two[1].regime]
-            known = {Fraction(row.at[along.name].exact): row.regime for two in beside for row in two}
+            pairs = [pair for pair in pairwise(part) if pair[0].regime != pair[1].regime]
+            known = {Fraction(row.at[along.name].exact): row.regime for pair in pairs for row in pair}
             words = ", ".join(regimes(along, list(changes(scene, along, digits, known)), scene))
-            yield f"{sweep.stated(at) or 'Regimes'}: {words}."
+            yield f"{sweep.stated(points) or 'Regimes'}: {words}."
 
 
 def _stated(name: str, value: str) -> str:

@@ -1,9 +1,9 @@
-"""One grammar of headings, for tables of runs and of scenes; the vocabulary is handed in.
+"""One grammar of headings, for tables of runs and of scenes; each brings its vocabulary.
 
 A heading is `name [number] [(unit) | [unit] | /unit | in unit]`: m1, "m1 (g)", "time 2 [s]", a/(m/s²).
-Uncertainties stand in a column u(name) or name_err, or ± behind that of the quantity; a unit of their own may
-follow. Blanks and underscores in names do not count. Any other heading is named by the user, as by
---column t='Fallzeit (s)'.
+A column of uncertainties is u(name) or name_err, or ± behind the column of the quantity; a unit may follow.
+Blanks and underscores in names do not count. The user names any other heading, as by --column
+t='Fallzeit (s)'.
 """
 
 import re
@@ -19,16 +19,16 @@ from .sources import Unreadable
 PARTED_BY = {",": "commas", "\t": "tabs", ";": "semicolons"}
 NO_UNIT = ("", "-", "1")
 EMPTY = ("", "NA", "NULL", "null")
-"""Cells without a number: besides those that are empty, what R and databases write."""
-LONGEST = 80
-"""Characters of a heading that may be recognised: the patterns take long for long texts."""
+"""The texts of cells without a number: R and databases write a word."""
+LONGEST_HEADING = 80
+"""The most characters of a heading that has a unit: the patterns take long for long texts."""
 DIVIDED = (r"(.+?)[ /]*[(\[]([^()\[\]]*)[)\]]", r"([^/]+?) ?(?:/| in ) ?(.+)")
-"""A name and its unit: m1 (g), m1 [g], a/(m/s²); m1/g, m1 in g."""
+"""The patterns of a name with its unit: m1 (g), m1 [g], a/(m/s²); m1/g, m1 in g."""
 UNCERTAINTY = re.compile(r"u ?\((.+)\)|(.+?)[ _]err")
-BEHIND = ("±", "+/-")
-"""The heading of uncertainties of the column before."""
+OF_COLUMN_BEFORE = ("±", "+/-")
+"""The names of columns that hold the uncertainties of the column before."""
 OWN_UNIT = re.compile(r"(?![eE][+-]?\d)[^\W\d_]|°")
-"""In a cell: a letter that is not an exponent's."""
+"""The sign that a cell has a unit: a letter that is not an exponent's."""
 PART_THOUSANDS = r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$"
 ONE = Fraction(1)
 
@@ -36,8 +36,8 @@ ONE = Fraction(1)
 class Vocabulary(NamedTuple):
     """The quantities that columns may hold.
 
-    ``names`` maps each spelling, without blanks and underscores, to a parameter of the model. Columns of a
-    quantity that is ``repeated`` may have numbers. Columns of uncertainties are known if ``uncertain``.
+    ``names`` maps each spelling, without blanks and underscores, to a parameter of the model. A quantity in
+    ``repeated`` may have several columns, with numbers. Columns of uncertainties are known if ``uncertain``.
     """
 
     names: Mapping[str, str]
@@ -48,10 +48,10 @@ class Vocabulary(NamedTuple):
 class Heading(NamedTuple):
     """A column that holds a quantity: its place, its heading, the unit of its cells, that unit in SI units.
 
-    ``number`` says which of several columns of the quantity it is, ``u`` is the column of its uncertainties.
+    ``number`` tells several columns of the quantity apart. ``u`` is the column of its uncertainties.
     """
 
-    at: int
+    place: int
     column: str
     name: str
     number: str = ""
@@ -61,7 +61,7 @@ class Heading(NamedTuple):
 
 
 class _Meaning(NamedTuple):
-    """What a heading says. Without a name it is the uncertainty of the column before."""
+    """The meaning of a heading. Without a name it is the uncertainty of the column before."""
 
     name: str
     number: str
@@ -80,7 +80,7 @@ def read_headings(
 ) -> list[Heading]:
     """The columns that hold a quantity, in their order, each with its column of uncertainties.
 
-    ``labels`` are headings that hold no quantity, whatever they look like, and ``named`` maps headings to
+    ``labels`` are headings of columns without a quantity, whatever they look like. ``named`` maps headings to
     names of this grammar. Raises Unreadable where two columns hold the same, a unit is wrong or an
     uncertainty belongs to no column, SceneError where the table lacks a heading that is ``named``.
     """
@@ -89,32 +89,32 @@ def read_headings(
         raise SceneError("column", word, f"is not there; there are {listed(columns)}")
     headings: dict[tuple[str, str], Heading] = {}
     uncertain: list[tuple[int, _Meaning]] = []
-    for at, column in enumerate(columns):
+    for place, column in enumerate(columns):
         meaning = None if column in labels else _meaning(column, vocabulary, named)
         if meaning and meaning.uncertain:
-            uncertain.append((at, meaning))
+            uncertain.append((place, meaning))
         elif meaning:
             key = meaning.name, meaning.number
             if column in named and key in headings and meaning.name in vocabulary.repeated:
                 key = meaning.name, column  # a repeat that its user did not number
             if key in headings:
                 number = f"number what is repeated, as '{key[0]} 1'" * (key[0] in vocabulary.repeated)
-                two = f"{in_quotes(headings[key].column)} and {in_quotes(column)} are both {key[0]}"
-                raise Unreadable(f"columns {two}; {number or 'rename one'}{_let_pass(column)}")
+                same = f"{in_quotes(headings[key].column)} and {in_quotes(column)} are both {key[0]}"
+                raise Unreadable(f"columns {same}; {number or 'rename one'}{_let_pass(column)}")
             factor = unit_factor(key[0], meaning.unit, column)
-            headings[key] = Heading(at, column, *key, meaning.unit, factor)
-    for at, meaning in uncertain:
-        _add_uncertainty(headings, at, columns[at], meaning)
+            headings[key] = Heading(place, column, *key, meaning.unit, factor)
+    for place, meaning in uncertain:
+        _add_uncertainty(headings, place, columns[place], meaning)
     return list(headings.values())
 
 
 def recognised(columns: Sequence[str], vocabulary: Vocabulary, named: Mapping[str, str] = {}) -> list[str]:
-    """The columns that the vocabulary knows, or that are named."""
+    """The columns that the vocabulary knows, or that the user has named."""
     return [column for column in columns if _meaning(column, vocabulary, named)]
 
 
 def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
-    """The names by headings, of options --column NAME=HEADING. Raises SceneError."""
+    """The names by their headings, from options --column NAME=HEADING. Raises SceneError."""
     named: dict[str, str] = {}
     for word in words:
         name, equals, heading = word.partition("=")
@@ -128,11 +128,11 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
 
 
 def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> _Meaning | None:
-    """What a heading says; None if it is not known."""
+    """The meaning of a heading; None if it is not known."""
     name = without_blanks(named.get(column, column))
     meanings = (_named(word, unit, vocabulary) for word, unit in divisions(name))
     meaning = next(filter(None, meanings), None)
-    if meaning and column in named and not meaning.unit:  # the heading itself may have one
+    if meaning and column in named and not meaning.unit:  # the heading itself may have a unit
         *_, (_, unit) = divisions(without_blanks(column))
         return meaning._replace(unit=unit)
     return meaning
@@ -141,17 +141,17 @@ def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> _
 def divisions(text: str) -> Iterator[tuple[str, str]]:
     """The ways to read a heading as a name and a unit, first as a name alone."""
     yield text, ""
-    found = (re.fullmatch(pattern, text) for pattern in DIVIDED if len(text) <= LONGEST)
+    found = (re.fullmatch(pattern, text) for pattern in DIVIDED if len(text) <= LONGEST_HEADING)
     if match := next(filter(None, found), None):
         unit = match[2].strip()
         yield match[1].strip(), "" if unit in NO_UNIT else unit
 
 
 def _named(word: str, unit: str, vocabulary: Vocabulary) -> _Meaning | None:
-    """What a name without its unit says."""
+    """The meaning of a name without its unit; None if it is not known."""
     uncertain = False
     if vocabulary.uncertain:
-        if word in BEHIND:
+        if word in OF_COLUMN_BEFORE:
             return _Meaning("", "", unit, True)
         if found := UNCERTAINTY.fullmatch(word):
             word, uncertain = found[1] or found[2], True
@@ -164,27 +164,26 @@ def _named(word: str, unit: str, vocabulary: Vocabulary) -> _Meaning | None:
 
 
 def _add_uncertainty(
-    headings: dict[tuple[str, str], Heading], at: int, column: str, meaning: _Meaning
+    headings: dict[tuple[str, str], Heading], place: int, column: str, meaning: _Meaning
 ) -> None:
     """Give quantities their column of uncertainties. Raises Unreadable."""
     name, number, unit, _ = meaning
-    of = [
-        key
+    uncertain = {
+        key: own
         for key, own in headings.items()
-        if (own.name == name and number in ("", own.number) if name else own.at == at - 1)
-    ]
-    if not of:
+        if (own.name == name and number in ("", own.number) if name else own.place == place - 1)
+    }
+    if not uncertain:
         raise refused(column, "could be an uncertainty, but no column is what it would be of")
-    for key in of:
-        own = headings[key]
+    for key, own in uncertain.items():
         if own.u:
             raise refused(column, f"is a second uncertainty of {own.name}")
         factor = unit_factor(own.name, unit, column) if unit not in ("", PERCENT) else own.factor
-        headings[key] = own._replace(u=Heading(at, column, own.name, own.number, unit, factor))
+        headings[key] = own._replace(u=Heading(place, column, own.name, own.number, unit, factor))
 
 
 def unit_factor(name: str, unit: str, column: str) -> Fraction:
-    """The factor from the unit of a column to the SI, or to degrees. Raises Unreadable."""
+    """The factor from the unit of a column to SI units, or to degrees. Raises Unreadable."""
     if not unit:
         return ONE
     dimension = "force" if name == "axle" else parameter_of(name).dimension
@@ -199,7 +198,7 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
 
 
 def refused(column: str, why: str) -> Unreadable:
-    """The error for a heading, with the way to let it pass."""
+    """The error for a heading, with the option that lets it pass."""
     return Unreadable(f"column {in_quotes(column)} {why}{_let_pass(column)}")
 
 
@@ -216,12 +215,12 @@ def listed(names: Sequence[str], most: int = 12) -> str:
 def read_as(
     headings: Iterable[Heading], separator: str, usual: str, comma: bool, others: Iterable[str] = ()
 ) -> list[str]:
-    """A line that says how a table was read; none if it was as usual."""
+    """A line that says how a table was read, if it was not as usual."""
     parts = [f"cells parted by {PARTED_BY[separator]}"] if separator != usual else []
     parts += ["decimal commas"] if comma else []
-    said = {one.at: (one.column, one.name, one.unit) for one in headings}
-    said |= {one.u.at: (one.u.column, f"u({one.name})", one.u.unit) for one in headings if one.u}
-    for _, (column, name, unit) in sorted(said.items()):
+    read = {own.place: (own.column, own.name, own.unit) for own in headings}
+    read |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit) for own in headings if own.u}
+    for _, (column, name, unit) in sorted(read.items()):
         if column != name:
             parts.append(f"{in_quotes(column)} as {name}{f' in {unit}' if unit else ''}")
     parts += others
@@ -232,12 +231,13 @@ def read_as(
 
 
 def decimal_commas_in(rows: Iterable[Sequence[str]], places: Collection[int], separator: str) -> bool:
-    """Whether commas in those places of rows are decimal: between semicolons all are, and between tabs
-    unless each separates thousands.
+    """Whether commas in those places of rows are decimal.
+
+    In a table with semicolons all are. In one with tabs they are, unless each comma separates thousands.
     """
     if separator in ("", ","):
         return False
-    with_comma = [cell for row in rows for at in places if (cell := row[at]) and "," in cell]
+    with_comma = [cell for row in rows for place in places if (cell := row[place]) and "," in cell]
     return any(separator == ";" or not re.match(PART_THOUSANDS, cell) for cell in with_comma)
 
 
@@ -251,7 +251,7 @@ def pointed(name: str, cell: str, comma: bool) -> str:
 def read_cell(heading: Heading, cell: str, comma: bool) -> Input | None:
     """The number in a cell, exact and in SI units, with its uncertainty; None if the cell is empty.
 
-    A unit in the cell goes before that of the heading. Raises SceneError.
+    A unit in the cell goes before the unit of the heading. Raises SceneError.
     """
     text = pointed(heading.name, cell, comma)
     if text in EMPTY:
@@ -265,7 +265,7 @@ def read_cell(heading: Heading, cell: str, comma: bool) -> Input | None:
 
 
 def read_uncertainty(heading: Heading, cell: str, value: Fraction, comma: bool) -> Fraction:
-    """The uncertainty of a value, by the cell in the column of its uncertainties. Raises SceneError."""
+    """The uncertainty of a value, from the cell in the column of its uncertainties. Raises SceneError."""
     number = pointed(heading.column, cell, comma).lstrip("± ")
     relative = number.endswith(PERCENT) or heading.unit == PERCENT
     number = number.removesuffix(PERCENT)

@@ -1,6 +1,6 @@
 """Tables of text: each record stays as it came, and the cells of its quantities are read beside it.
 
-A record of CSV is a row, which may have several lines, and one of NDJSON is a line. Cells are texts too.
+A record of CSV is a row, which may have several lines. A record of NDJSON is a line. Cells are texts, too.
 """
 
 import csv
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..model.units import counted, in_quotes
 from .headings import PARTED_BY, Heading
-from .sources import BLOCK, LONGEST_RECORD, Unreadable, decoded, too_long, whole_lines
+from .sources import BLOCK_BYTES, LONGEST_RECORD, Unreadable, decoded, too_long, whole_lines
 
 if TYPE_CHECKING:
     import polars as pl
@@ -25,29 +25,32 @@ STRAY_RETURN = (
 
 
 class Piece(NamedTuple):
-    """Some records of a table.
-
-    ``texts`` are the records without their line ends, ``cells`` those of the columns that hold a quantity, by
-    its name, ``errors`` say why a record cannot be read, and ``size`` is how much of the file it all is.
-    """
+    """Consecutive records of a table."""
 
     texts: "pl.Series"
+    """The records without their line ends."""
     cells: "pl.DataFrame"
+    """The cells of columns that hold a quantity, by its name."""
     errors: Mapping[int, str]
+    """The reasons of records that cannot be read, by their place."""
     size: int
+    """The length of the piece in the file, to show progress."""
 
 
 class Csv:
     """A table of cells parted by a separator, under a header.
 
-    Where no record has a quotation mark and all have as many cells as the header, they are taken apart at
-    the separators in bulk. Elsewhere Python's `csv` does it, and is strict about quotation marks.
+    Records without a quotation mark, and with as many cells as the header, are split at the separators in
+    bulk. Elsewhere Python's `csv` splits them, and is strict about quotation marks.
     """
 
     def __init__(
         self, blocks: Iterator[bytes], usual: str, known: Callable[[Sequence[str]], Collection[str]]
     ):
-        """Read the header by the separator that makes most ``known`` columns, then most, or else is usual."""
+        """Read the header by the separator that makes most ``known`` columns, then most columns.
+
+        If several are as good, it is the ``usual`` one.
+        """
         csv.field_size_limit(LONGEST_RECORD)
         self._texts = (decoded(*lines) for lines in whole_lines(blocks, cells=True))
         self._text, self._at, self._line = next(self._texts, ""), 0, 1
@@ -84,7 +87,7 @@ class Csv:
                 yield from self._by_csv(headings)
 
     def _in_bulk(self, headings: Sequence[Heading]) -> Piece | None:
-        """The records of a text that are plain, one and all."""
+        """The records of the text if all of them are plain, else None."""
         import polars as pl
 
         text = self._text
@@ -96,11 +99,11 @@ class Csv:
         cells = lines.str.split(self.separator)
         if not (cells.list.len() == len(self.columns)).all():
             return None
-        frame = pl.DataFrame({one.name: cells.list.get(one.at) for one in headings})
+        frame = pl.DataFrame({heading.name: cells.list.get(heading.place) for heading in headings})
         return Piece(lines, frame, {}, len(text))
 
     def _by_csv(self, headings: Sequence[Heading]) -> Iterator[Piece]:
-        """The records from here to one that ends where a text does."""
+        """The records from here to the first that ends where a text ends."""
         import polars as pl
 
         width = len(self.columns)
@@ -110,7 +113,8 @@ class Csv:
         size = 0
 
         def piece() -> Piece:
-            frame = pl.DataFrame(rows, dict.fromkeys((one.name for one in headings), pl.String), orient="row")
+            types = dict.fromkeys((heading.name for heading in headings), pl.String)
+            frame = pl.DataFrame(rows, types, orient="row")
             return Piece(pl.Series(texts, dtype=pl.String), frame, errors, size)
 
         for record, cells in self._records():
@@ -121,16 +125,16 @@ class Csv:
                 errors[len(texts)] = f"the row has {counted(len(cells), 'cell')}, and the header {width}"
             texts.append(record.rstrip("\r\n") + self.separator * lacking)
             cells += [""] * lacking
-            rows.append([cells[one.at] for one in headings])
+            rows.append([cells[heading.place] for heading in headings])
             size += len(record)
-            if size > BLOCK:
+            if size > BLOCK_BYTES:
                 yield piece()
                 texts, rows, errors, size = [], [], {}, 0
         if texts:
             yield piece()
 
     def _records(self) -> Iterator[tuple[str, list[str]]]:
-        """The rows that are not blank, with their cells, up to one that ends where a text does."""
+        """The rows that are not blank, with their cells, up to the first that ends where a text ends."""
         taken: list[str] = []
 
         def lines() -> Iterator[str]:
@@ -148,7 +152,7 @@ class Csv:
             for cells in csv.reader(lines(), delimiter=self.separator, strict=True):
                 record = "".join(taken)
                 taken.clear()
-                if "\r\r" in record[-3:]:  # of which csv takes both for line ends
+                if "\r\r" in record[-3:]:  # csv would take both for line ends
                     raise csv.Error("new-line")
                 if record.strip() or len(cells) > 1:
                     yield record, cells
@@ -157,24 +161,24 @@ class Csv:
             raise self._refused(str(error)) from None
 
     def _refused(self, error: str) -> Unreadable:
-        """What is wrong with the quotation marks of a row, by the error of `csv`."""
-        where = f"the row that begins in line {self._line}"
+        """The error for a row whose quotation marks are wrong, by the error of `csv`."""
+        row = f"the row that begins in line {self._line}"
         if "end of data" in error:
-            how = "it is truncated, or one is left open"
-            return Unreadable(f"it ends within quotation marks, in {where}: {how}")
+            return Unreadable(
+                f"it ends within quotation marks, in {row}: it is truncated, or one is left open"
+            )
         if "limit" in error:
             return Unreadable(f"{too_long(self._line)}; is a quotation mark left open?")
-        how = STRAY_RETURN if "new-line" in error else STRAY_MARK
-        return Unreadable(f"{where} {how}")
+        return Unreadable(f"{row} {STRAY_RETURN if 'new-line' in error else STRAY_MARK}")
 
     def _too_wide(self, cells: int) -> Unreadable:
-        """The error for a row of more cells than there are columns."""
-        how = "; is there a decimal comma (write a point), or one at its end?" * (self.separator == ",")
-        return Unreadable(f"line {self._line} has {cells} cells, and the header {len(self.columns)}{how}")
+        """The error for a row with more cells than there are columns."""
+        hint = "; is there a decimal comma (write a point), or one at its end?" * (self.separator == ",")
+        return Unreadable(f"line {self._line} has {cells} cells, and the header {len(self.columns)}{hint}")
 
 
 def _first_row(text: str, separator: str) -> list[str]:
-    """The first row that is not blank, as it seems by that separator."""
+    """The cells of the first row that is not blank, if the table has that separator."""
     rows = csv.reader(StringIO(text, newline="\n"), delimiter=separator)
     try:
         return next((cells for cells in rows if len(cells) > 1 or "".join(cells).strip()), [])
@@ -188,9 +192,9 @@ def _first_row(text: str, separator: str) -> list[str]:
 def read_ndjson(
     blocks: Iterator[bytes], headings: Callable[[Sequence[str]], Sequence[Heading]]
 ) -> Iterator[Piece]:
-    """The lines that are not blank. One that is no object is an error of its record. Raises Unreadable.
+    """The lines that are not blank. A line that is no object is an error of its record. Raises Unreadable.
 
-    ``headings`` is asked what the keys hold, and again when there are more of them.
+    ``headings`` finds the quantities among the keys, and is called again when there are more keys.
     """
     import polars as pl
 
@@ -219,14 +223,15 @@ def read_ndjson(
         if len(keys) > known:
             known = len(keys)
             wanted = headings(list(keys))
-        cells = {one.name: _column([row.get(one.column) for row in objects]) for one in wanted}
+        columns = {heading.name: [row.get(heading.column) for row in objects] for heading in wanted}
+        cells = {name: _column(values) for name, values in columns.items()}
         yield Piece(pl.Series(lines), pl.DataFrame(cells), errors, len(text))
     if known < 0:
         raise Unreadable("it is empty")
 
 
 def _object(raw: bytes, line: str) -> dict[str, object]:
-    """The object of a line, with numbers as they are written. Raises Unreadable."""
+    """The object in a line, with its numbers as texts. Raises Unreadable."""
     why = "it is no object"
     try:
         raw.decode()
@@ -263,7 +268,7 @@ _DECODER = json.JSONDecoder(
 
 
 def _column(values: Sequence[object]) -> "pl.Series":
-    """Values as texts, as they are written in JSON where they are no texts, numbers or null."""
+    """Values as texts. A value that is neither a text nor null is written as JSON."""
     import polars as pl
 
     try:

@@ -1,4 +1,4 @@
-"""Tables opened: files, unpacked if they are compressed, and pipes; what is none is called what it is."""
+"""Files and pipes of tables are opened and unpacked. A file of another kind is refused by its name."""
 
 import gzip
 import os
@@ -18,16 +18,16 @@ from ..model.scene import SceneError
 from ..model.units import LONGEST_NAME, in_quotes, shortened
 
 FORMATS = ("csv", "tsv", "ndjson", "parquet")
-"""The formats of tables; each is also the file suffix."""
+"""The formats of tables, each by its file suffix."""
 STDIN = "-"
 """The name of a file that is standard input."""
 SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
 PACKED = ".gz"
-BLOCK = 2 << 20
-"""The bytes that are read at a time; a piece of a table takes several times as much memory."""
+BLOCK_BYTES = 2 << 20
+"""The bytes that are read at a time. A piece of a table takes several times as much memory."""
 MOMENT = 0.05  # seconds
 LONGEST_RECORD = 1 << 20
-"""Bytes. A quotation mark that is never closed must not make the whole file one record."""
+"""The bytes of the longest record: an open quotation mark must not make one of the whole file."""
 FOREIGN = {
     rb"\x1f\x8b|BZh|\xfd7zXZ|\x28\xb5\x2f\xfd": "compressed; unpack it first",
     rb"PK\x03\x04|\xd0\xcf\x11\xe0": "a workbook (.xlsx, .xls), or an archive; save the sheet as CSV",
@@ -35,7 +35,7 @@ FOREIGN = {
     rb"PAR1": "Parquet; batch reads it with --from parquet, and fit reads CSV",
     rb"\[[{\n]": "a JSON array; write an object a line, and give --from ndjson to batch",
 }
-"""How files of other kinds begin, what they are, and what to do."""
+"""Files of other kinds: the patterns of their first bytes, their names, and the way to use them."""
 JSON_FOR_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit reads CSV"}
 
 
@@ -44,8 +44,9 @@ class Unreadable(Exception):
 
 
 def read_format(given: str | None, path: str) -> str:
-    """The format named, or that of the suffix, before which a packed file has another; CSV for a stream, a
-    pipe or a device. Raises SceneError.
+    """The format named, or else the format of the suffix; CSV for a stream, a pipe or a device.
+
+    A packed file has two suffixes, of which the first counts. Raises SceneError.
     """
     if given is not None:
         if given not in FORMATS:
@@ -60,14 +61,14 @@ def read_format(given: str | None, path: str) -> str:
 
 
 def check_format(path: str, kind: str) -> None:
-    """Refuse an output whose suffix is that of another format. Raises SceneError."""
+    """Refuse an output whose suffix belongs to another format. Raises SceneError."""
     suffix = Path(path).suffix.lower()
     if suffix == PACKED or SUFFIXES.get(suffix, kind) != kind:
         raise SceneError("output", path, f"ends in {suffix}; results are in the format of the table, {kind}")
 
 
 def is_stream(path: str) -> bool:
-    """Whether the path is that of stdin, stdout, a pipe or a device, not of a file."""
+    """Whether the path leads to stdin, stdout, a pipe or a device, not to a file."""
     return path == STDIN or (os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path)))
 
 
@@ -96,11 +97,11 @@ def cannot_read(source: str, why: Unreadable) -> OSError:
 
 
 def blocks_of(file: IO[bytes]) -> Iterator[bytes]:
-    """The bytes of a file in blocks, of a pipe in blocks of what comes within a moment. Raises Unreadable."""
+    """The bytes of a file or a pipe in blocks; bytes of a pipe wait a moment at most. Raises Unreadable."""
     read = file.read if file.seekable() else partial(_what_comes, file)
     while True:
         try:
-            block = read(BLOCK)
+            block = read(BLOCK_BYTES)
         except (OSError, EOFError, zlib.error) as error:
             why = getattr(error, "strerror", None) or str(error)
             raise Unreadable(why) from None
@@ -110,7 +111,7 @@ def blocks_of(file: IO[bytes]) -> Iterator[bytes]:
 
 
 def _what_comes(pipe: Any, most: int) -> bytes:
-    """What a pipe brings within a moment, once it brings something; nothing at its end."""
+    """The bytes that come through a pipe within a moment, after the first; none at its end."""
     block: bytes = pipe.read1(most)
     end = monotonic() + MOMENT
     with suppress(OSError):  # on Windows, only sockets can be asked
@@ -122,9 +123,9 @@ def _what_comes(pipe: Any, most: int) -> bytes:
 
 
 def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[tuple[bytes, int]]:
-    """Blocks that end where a line does, but for the last, each with the number of its first line.
+    """Blocks of whole lines, each with the number of its first line.
 
-    Raises Unreadable for what is neither a text of ``cells`` nor one of objects.
+    Raises Unreadable for a file of another kind: no text of ``cells``, or else of objects.
     """
     rest, line = b"", 1
     for block in chain(blocks, [b""]):
@@ -144,14 +145,14 @@ def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[tuple[bytes, i
 
 
 def too_long(line: int) -> Unreadable:
-    """The error for a row that may as well be a whole file."""
+    """The error for a row that is too long, as an open quotation mark makes it."""
     return Unreadable(
         f"the row that begins in line {line} is longer than {LONGEST_RECORD >> 20} MB, the most taken"
     )
 
 
 def decoded(text: bytes, line: int) -> str:
-    """The text, which begins in that line of the file. Raises Unreadable."""
+    """The text of bytes that begin in that line of the file. Raises Unreadable."""
     try:
         return text.decode()
     except UnicodeDecodeError as error:
