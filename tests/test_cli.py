@@ -5,7 +5,6 @@ import marshal
 import re
 import subprocess
 import sys
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -15,22 +14,13 @@ from atwood_cli import solve
 from atwood_cli.__main__ import main
 from atwood_cli.model.quantities import ASCII, QUANTITIES, read_names
 
-from . import oracle
-from .running import PAPER, Atwood, on_real_terminal, on_terminal, plain, process
+from .running import PAPER, Atwood, process
 from .scenes import inputs
 
 LOADED = "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
 
 
 # The table
-
-
-def test_the_main_job_takes_one_screen() -> None:
-    """A teacher's projector: the verdict and the prompt below the table in sight."""
-    seen = plain(on_real_terminal(*PAPER, columns=80, rows=24))
-    assert seen == plain(on_terminal(*PAPER, columns=80, rows=24))
-    assert seen.count("\n") < 24
-    assert max(map(len, seen.splitlines())) <= 80
 
 
 SHOWN = """
@@ -50,6 +40,7 @@ def test_a_solution_shows_itself_as_the_command_does(atwood: Atwood, given: str)
     number: Any = str if "digits" in given else float
     shown = json.loads(atwood(*typed, "--json").out, parse_float=number, parse_int=number)
     assert json.loads(json.dumps(solution.to_dict(), allow_nan=False)) == {**shown, "version": 2}
+    assert list(solution.to_dict()) == list(shown)
 
 
 def test_a_printed_solution_fits_the_terminal_and_has_no_colours(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -60,156 +51,73 @@ def test_a_printed_solution_fits_the_terminal_and_has_no_colours(monkeypatch: py
     assert "\x1b" not in str(solution)
 
 
-def test_with_all_the_table_shows_what_exists_and_the_notes_the_rest(atwood: Atwood) -> None:
-    solution = solve(m1="1", m2="3", mu="0.3")
-    table, notes = atwood(*PAPER, "--all").out.split("╰")
-    for name in oracle.NAMES[1:]:
-        exists = getattr(solution, name) is not None
-        assert bool(re.search(rf"│ {name} ", table)) == exists
-        assert exists or name in notes
-
-
-@pytest.mark.parametrize("digits", ["1", "40", "300"])
-@pytest.mark.parametrize("columns", [10, 40, 60, 80, 200])
-def test_no_width_cuts_a_number_off(columns: int, digits: str) -> None:
-    seen = on_terminal(*PAPER, "--all", "--digits", digits, columns=columns)
-    unwrapped = plain(seen).replace("\n", "")
-    solution = solve(m1="1", m2="3", mu="0.3", digits=int(digits))
-    for value in (solution.acceleration, solution.friction_force_y, solution.critical_pulley_mass):
-        assert str(value).lower().replace("e+", "e") in unwrapped
-    assert "…" not in seen
-
-
-@pytest.mark.parametrize(
-    "words", ["", "--M 10 --R 2", "--M 10 --mu-k 0.2 --all", "--axle 1N", "--m2 3.00(1)"]
-)
-def test_at_40_columns_no_sentence_splits_a_word_or_a_unit(words: str) -> None:
-    options = [*PAPER, *words.split()]
-    if "--m2" in words:
-        options = ["solve", "--m1", "1", "--mu", "0.3", *words.split()]
-    lines = [line for line in plain(on_terminal(*options, columns=40)).splitlines() if line[0] not in "╭├│╰"]
-    assert max(map(len, lines)) <= 40
-    for line, after in pairwise(lines):
-        assert not re.search(r"\d$", line) or not re.match(r"(kg|N|m/s²|rad/s²)\b", after)
-    whole = process(*options).out.split()
-    assert {word for line in lines for word in line.split()} - set(whole) <= {"="}
-
-
-def test_piped_no_line_of_text_is_longer_than_100_columns(atwood: Atwood) -> None:
-    for words in (["solve"], ["solve", "--all"], ["contact"], ["sweep", "--g", "1:10:4"]):
-        ran = atwood(*words, "--m1", "1", "--m2", "3", "--M", "10.25", "--mu", "0.3", "--mu-k", "0.29")
-        assert (ran.status, ran.err) == (0, "")
-        assert max(map(len, ran.out.splitlines())) <= 100
-
-
-def test_piped_the_table_is_whole_whatever_the_width(atwood: Atwood, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("COLUMNS", "30")
-    out = atwood(*PAPER, "--digits", "300").out
-    assert str(solve(m1="1", m2="3", mu="0.3", digits=300).acceleration) in out
-    assert "Equation" in out
-
-
-def test_colour_only_on_a_terminal_that_wants_it(atwood: Atwood) -> None:
-    assert "\x1b" not in atwood(*PAPER).out
-    assert "\x1b[1;33mOn the verge" in on_terminal(*PAPER, columns=90)
-    assert "\x1b[1mOn the verge" in on_terminal(*PAPER, columns=90, NO_COLOR="1")
-    assert "\x1b" not in on_terminal(*PAPER, columns=90, TERM="dumb")
-
-
 # JSON
 
 
-@pytest.mark.parametrize(("digits", "g"), [((), 8.333333333333334), (("--digits", "4"), 8.333)])
-@pytest.mark.parametrize("command", [["solve"], ["contact", "--M", "1"], ["sweep", "--M", "1:2:2"]])
-def test_json_has_numbers_that_are_no_decimals_as_results(
-    atwood: Atwood, command: list[str], digits: tuple[str, ...], g: float
-) -> None:
+@pytest.mark.parametrize("command", ["solve", "contact --M 1", "sweep --M 1:2:2"])
+def test_json_has_numbers_that_are_no_decimals_as_results(atwood: Atwood, command: str) -> None:
     """A decimal is exact, whatever --digits."""
-    more = [] if command == ["solve"] else ["--R", "1", "--axle", "25/324 Nm"]
-    given = ["--m1", "1.0000000000000000001", "--m2", "3", "--g", "25/3"]
-    ran = atwood(*command, *given, *more, *digits, "--json")
-    assert '"m1": 1.0000000000000000001,\n' in ran.out
-    scene = json.loads(ran.out)["scene"]
-    assert scene["g"] == g
-    assert scene["axle"] is None or float(scene["axle"].removesuffix(" Nm")) == pytest.approx(25 / 324, 1e-3)
-    assert "/" not in str(scene.get("axle"))
+    given = "--m1 1.0000000000000000001 --m2 3 --g 25/3 --R 1 --axle 25/324Nm --json"
+    for digits, g in (("", 8.333333333333334), ("--digits 4", 8.333)):
+        ran = atwood(*f"{command} {given} {digits}".split())
+        assert '"m1": 1.0000000000000000001,\n' in ran.out
+        scene = json.loads(ran.out)["scene"]
+        assert scene["g"] == g
+        assert float(scene["axle"].removesuffix(" Nm")) == pytest.approx(25 / 324, 1e-3 if digits else 1e-15)
 
 
 # --only
 
 
-@pytest.mark.parametrize("name", QUANTITIES)
-def test_every_symbol_names_its_quantity(name: str) -> None:
-    symbol = QUANTITIES[name].symbol
-    plain = symbol.translate(ASCII)
-    ways = [symbol, plain, plain.replace(" ", "_"), plain.replace(" ", ""), name, name.replace("_", "-")]
-    assert read_names("only", ways, QUANTITIES) == [name] * len(ways)
+def test_every_symbol_names_its_quantity() -> None:
+    for name, about in QUANTITIES.items():
+        plain = about.symbol.translate(ASCII)
+        ways = [
+            about.symbol,
+            plain,
+            plain.replace(" ", "_"),
+            plain.replace(" ", ""),
+            name,
+            name.replace("_", "-"),
+        ]
+        assert read_names("only", ways, QUANTITIES) == [name] * len(ways)
 
 
 # Errors
-
-
-ESCAPE = "\x1b]0;owned\x07\n"
-
-
-@pytest.mark.parametrize(
-    ("words", "status"),
-    [
-        ("batch {}.csv", 1),
-        ("batch {}.pdf", 2),
-        ("batch {}.csv -o x/{}", 1),
-        ("sweep --m1 1 --m2 3 --M 0:1:2 -o x/{}.csv", 1),
-        ("contact --m1 1 --m2 3 --M 1 --figure x/{}.svg", 1),
-        ("solve {}", 2),
-        ("solve --{}", 2),
-        ("solve --m1 1 --m2 2 --only {}", 2),
-        ("{}", 2),
-    ],
-)
-def test_no_name_that_is_typed_steers_the_terminal(atwood: Atwood, words: str, status: int) -> None:
-    ran = atwood(*(word.format(ESCAPE) for word in words.split()))
-    assert (ran.status, ran.out) == (status, "")
-    assert "\x1b" not in ran.err
-    assert ran.err.count("\n") == 1
-    assert r"\x1b]0;owned\x07" in ran.err
 
 
 LONG = [
     "a" * 100_000,
     "1 kg" + "*st^9" * 20_000,
     "1" * 100_000,
-    "1," * 50_000 + "1",
+    "1," * 20_000 + "1",
     "x " * 50_000,
     "-" * 100_000,
 ]
 
 
+LINES = (
+    """
+solve --m1 1 --m2 3 --M {}|solve --m1 1 --m2 3 --wrap {}|solve --m1 1 --m2 3 --I {}|contact --m1 1 --m2 3 --M {}
+sweep --m1 1 --m2 3 --M {}|sweep --m1 1 --m2 3 --M {}:2:3|sweep --m1 1 --m2 3 --M 1:2:{}|sweep --m1 1 --m2 3 --M 1:2:3:{}
+sweep --m1 1 --m2 3 --M 1:2:3 --only {}|sweep --m1 1 --m2 3 --M 1:2:3 --figure {}|sweep --m1 1 --m2 3 --M 1:2:3 -o {}
+sweep --m1 1 --m2 3 --M 1:2:3 --digits {}|{}|solve {}|solve --m1 1 --m2 3 {}|solve --m1 1 --m2 3 --M 1 {}
+solve --m1 1 --m2 3 --{}|solve --m1 1 --m2 3 --json={}|solve --m1 1 --m2 3 -{}=1|solve --m1 1 --m2 3 --M --mu={}
+contact --m1 1 --m2 3 --figure {}|batch {}|fit {}|batch - --from {}|batch - --only {}|batch - --accuracy {}
+fit - --find {}|fit - --only {}|fit - --drop {}|tradeoff --family {}
+""".strip()
+    .replace("\n", "|")
+    .split("|")
+)
+
+
 @pytest.mark.parametrize("long", LONG, ids=lambda word: word[:8])
 def test_no_message_repeats_all_that_was_typed(atwood: Atwood, long: str) -> None:
     """Nor does it take long: an unknown unit of 100 kB took a minute."""
-    scene = ["--m1", "1", "--m2", "3"]
-    for words in (
-        *(
-            [command, *scene, name, long]
-            for command in ("solve", "contact")
-            for name in ("--M", "--wrap", "--I")
-        ),
-        *(["sweep", *scene, "--M", word] for word in (long, f"{long}:2:3", f"1:2:{long}", f"1:2:3:{long}")),
-        *(["sweep", *scene, "--M", "1:2:3", name, long] for name in ("--only", "--figure", "-o", "--digits")),
-        *([*words, long] for words in ([], ["solve"], ["solve", *scene], ["solve", *scene, "--M", "1"])),
-        *(["solve", *scene, word] for word in (f"--{long}", f"--json={long}", f"-{long}=1")),
-        *(["solve", *scene, "--M", f"--mu={long}"], ["solve", *scene, *["x"] * 20_000]),
-        ["contact", *scene, "--figure", long],
-        *([command, long] for command in ("batch", "fit")),
-        *(["batch", "-", name, long] for name in ("--from", "--only", "--accuracy")),
-        *(["fit", "-", name, long] for name in ("--find", "--only", "--drop")),
-        ["tradeoff", "--family", long],
-    ):
-        ran = atwood(*words)
-        assert ran.status in (1, 2)
-        assert ran.out == ""
-        assert ran.err.count("\n") == 1
-        assert len(ran.err) < 700, words[:5]
+    for line in (*LINES, *["solve" + " x" * 20_000] * (long == LONG[0])):
+        ran = atwood(*(word.format(long) for word in line.split()))
+        assert (ran.status in (1, 2), ran.out, ran.err.count("\n")) == (True, "", 1), line
+        assert len(ran.err) < 700, line
 
 
 # How it begins and ends

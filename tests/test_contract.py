@@ -97,6 +97,10 @@ mu=0.3 m2=2.566332395208135 | | Holds on any pulley: the heavier mass, 2.5663323
     2.5663323952081353 kg to slip.
 m2=1.5 mu=2.6e7 wrap=60 digits=40 | | Holds on any pulley, under any mass that can be given
 M=10 mu=0.3 wrap=1e499rad digits=200 | regime=no-slip least_heavier_mass=inf
+M=10 mu=1            | | between friction_force_min and friction_force_max
+M=10 mu=1 wrap=181   | friction_force_min=None friction_force_max=None | up to half a turn of wrap (180 degrees)
+M=10 mu=1 wrap=3.15rad | friction_force_min=None
+M=1e-300 mu=1        | friction_force_min=0
 m1=1e400 m2=2e400    | tension_1=inf acceleration=3.268883333333333 | beyond the range of doubles
 m1=1e-400 m2=2e-400  | tension_1=0 | below the range of doubles
 M=10 mu=1e9          | critical_lighter_mass=0 | not 0 but too small to be written out: about 10^-100000000 or less.

@@ -1,8 +1,6 @@
 """Help and completion, as people and shells ask for them."""
 
-import json
 import os
-import re
 import shutil
 import subprocess
 import sys
@@ -13,16 +11,14 @@ import pytest
 import typer
 
 from atwood_cli import cli
-from atwood_cli.model.quantities import ACCURACIES, NAMES, QUANTITIES
+from atwood_cli.model.quantities import ACCURACIES, NAMES
 from atwood_cli.model.scene import BODIES, INERTIA_FACTORS
 from atwood_cli.tables.sources import FORMATS
 from atwood_cli.tradeoff.measure import FAMILIES
 
-from .running import Atwood, process
+from .running import TOP, process
 
-TOP = Path(__file__).parent.parent
 GROUP: Any = cli.program()
-PAGES = ["-h", *(f"{command} -h" for command in cli.COMMANDS)]
 ATWOOD = Path(sys.executable).with_name("atwood")
 
 
@@ -52,30 +48,15 @@ def test_every_option_says_what_it_means_and_in_which_group(command: str) -> Non
     assert all(getattr(param, "is_flag", False) or param.metavar for param in params)
 
 
-@pytest.mark.parametrize("words", PAGES)
-def test_help_fits_a_screen(words: str) -> None:
-    """At 80 columns; a page has 60 lines at most."""
-    lines = process(*words.split(), COLUMNS="80").out.splitlines()
-    assert len(lines) <= 60
-    assert max(map(len, lines)) <= 80
-    assert "..." not in "".join(lines).replace("[ARGS]...", "")  # no sentence is cut
-
-
-def test_every_quantity_is_listed(atwood: Atwood) -> None:
-    listed = {one["name"]: one for one in json.loads(atwood("quantities", "--json").out)["quantities"]}
-    assert list(listed) == ["regime", *QUANTITIES]
-    table = atwood("quantities").out
-    for name, about in QUANTITIES.items():
-        assert (listed[name]["symbol"], listed[name]["unit"]) == (about.symbol, about.unit)
-        assert (listed[name]["meaning"], listed[name]["equation"]) == (about.meaning, about.equation)
-        assert re.search(rf"│ {name} +│ {re.escape(about.symbol)} ", table)
-    assert atwood("quantities", "--csv").out.startswith("name,symbol,unit,meaning,equation\nregime,")
-
-
-@pytest.mark.parametrize("command", ["sweep", "contact"])
-def test_options_of_a_scene_are_explained_once(command: str) -> None:
-    out = " ".join(process(command, "-h").out.split())
-    assert "--m1 --m2 --M --mu --mu-k --g --inertia --I --R --wrap --axle, as in atwood solve -h" in out
+def test_help_fits_a_screen() -> None:
+    """At 80 columns; a page has 60 lines at most. The pages are kept, one behind the other."""
+    pages = (TOP / "examples" / "help.txt").read_text(encoding="utf-8").split("$ atwood ")[1:]
+    assert len(pages) == len(cli.COMMANDS) + 1
+    for page in pages:
+        lines = page.splitlines()[1:]
+        assert len(lines) <= 60 + 1
+        assert max(map(len, lines)) <= 80
+        assert "..." not in page.replace("[ARGS]...", "")  # no sentence is cut
 
 
 @pytest.mark.parametrize("words", ["batch -h", "solve --only te", "sweep --only a"])
@@ -92,21 +73,6 @@ def test_help_and_completion_import_little(words: str) -> None:
 
 
 # Completion
-
-
-def completed(*words: str, shell: str = "bash") -> list[str]:
-    """What the program offers for the last of the words, by the protocol of the shell."""
-    typed = " ".join(["atwood", *words])
-    asked = {
-        "COMP_WORDS": typed,
-        "COMP_CWORD": str(len(words)),
-        "_TYPER_COMPLETE_ARGS": typed,
-        "_TYPER_COMPLETE_WORD_TO_COMPLETE": words[-1],
-        "_TYPER_COMPLETE_FISH_ACTION": "get-args",
-    }
-    ran = process(**asked, _ATWOOD_COMPLETE=f"complete_{shell}")
-    assert (ran.status, ran.err) == (0, "")
-    return [line for line in ran.out.splitlines() if line]
 
 
 OFFERED: list[tuple[str, list[str]]] = [
@@ -132,29 +98,37 @@ OFFERED: list[tuple[str, list[str]]] = [
 COMPLETING = """
 import os, sys
 from atwood_cli.cli import run
-for words in sys.argv[1:]:
-    os.environ |= {"COMP_WORDS": f"atwood {words}", "COMP_CWORD": str(len(words.split(" ")))}
+shell, *lines = sys.argv[1:]
+for words in lines:
+    typed, last = f"atwood {words}", words.split(" ")[-1]
+    os.environ |= {"COMP_WORDS": typed, "COMP_CWORD": str(len(words.split(" "))), "_TYPER_COMPLETE_ARGS": typed}
+    os.environ |= {"_TYPER_COMPLETE_WORD_TO_COMPLETE": last, "_TYPER_COMPLETE_FISH_ACTION": "get-args"}
     sys.argv = ["atwood"]
     run()
     print("")
 """
 
 
+def completed(shell: str, *lines: str) -> list[str]:
+    """What the program offers for the last word of each line, by the protocol of the shell; all in one process."""
+    ran = process(shell, *lines, code=COMPLETING, _ATWOOD_COMPLETE=f"complete_{shell}")
+    assert (ran.status, ran.err) == (0, "")
+    return ran.out.split("\n\n")[: len(lines)]
+
+
 def test_completion() -> None:
-    """All in one process, by the protocol of bash."""
-    ran = process(*(words for words, _ in OFFERED), code=COMPLETING, _ATWOOD_COMPLETE="complete_bash")
-    found = [lines.split() for lines in ran.out.split("\n\n")]
-    assert found[: len(OFFERED)] == [offered for _, offered in OFFERED]
+    offered = completed("bash", *(words for words, _ in OFFERED))
+    assert [lines.split() for lines in offered] == [words for _, words in OFFERED]
 
 
 def test_every_shell_gets_names_with_what_they_mean() -> None:
-    words = ("solve", "--only", "tor")
-    assert completed(*words) == ["torque"]
-    assert completed(*words, shell="fish") == ["torque\ttorque of the string on the pulley"]
-    assert completed(*words, shell="zsh") == [
-        '_arguments \'*: :(("torque":"torque of the string on the pulley"))\''
-    ]
-    assert completed(*words, shell="powershell") == ["torque:::torque of the string on the pulley"]
+    meaning = "torque of the string on the pulley"
+    for shell, offered in {
+        "fish": f"torque\t{meaning}",
+        "zsh": f"""_arguments '*: :(("torque":"{meaning}"))'""",
+        "powershell": f"torque:::{meaning}",
+    }.items():
+        assert completed(shell, "solve --only tor") == [offered]
 
 
 @pytest.mark.parametrize(("words", "status"), [("solve --only tor", 0), ("batch in", 1)])

@@ -14,7 +14,6 @@ from atwood_cli.model.quantities import QUANTITIES
 from atwood_cli.model.scene import INPUTS, MEASURED
 
 from .running import Atwood
-from .scenes import inputs
 
 TOP = Path(__file__).parent.parent
 PAGE = (TOP / "examples" / "json.md").read_text(encoding="utf-8")
@@ -102,12 +101,6 @@ def test_every_key_is_on_the_page_and_of_its_type(atwood: Atwood, tmp_path: Path
     assert all(one == top[0] for one in top)
 
 
-def test_scene_and_solution_have_every_name(atwood: Atwood) -> None:
-    solved = json.loads(atwood(*"solve --m1 1 --m2 3 --json".split()).out)
-    assert solved.keys() > QUANTITIES.keys()
-    assert solved["scene"].keys() == INPUTS.keys() | MEASURED.keys()
-
-
 def test_units_of_a_fit_are_those_of_its_table() -> None:
     for name, quantity in laboratory.QUANTITIES.items():
         assert SECTIONS["fit"][name][1] == quantity.unit
@@ -126,22 +119,6 @@ def test_keys_of_the_short_lists(
     assert section
     keys = {*result, *(key for item in result[listed] for key in item)}
     assert keys == set(re.findall(r"`(\w+)`", section[1]))
-
-
-@pytest.mark.parametrize(
-    "given", ["m1=1 m2=3 mu=0.3", "m1=1.0(1) m2=3 a=2 drop=1", "m1=0.1 m2=0.4 M=inf a=2.141"]
-)
-def test_to_dict_has_the_keys_that_json_has(atwood: Atwood, given: str) -> None:
-    typed = ["solve", *(word for one in given.split() for word in f"--{one}".split("=")), "--json"]
-    assert list(solve(**inputs(given)).to_dict()) == list(json.loads(atwood(*typed).out))
-
-
-def test_only_prints_its_keys_alone(atwood: Atwood) -> None:
-    for words, keys in (
-        ("solve --m1 1 --m2 3", ["tension_1"]),
-        ("solve --m1 1.0(1) --m2 3", ["tension_1", "uncertainty"]),
-    ):
-        assert list(json.loads(atwood(*words.split(), "--only", "tension_1", "--json").out)) == keys
 
 
 def test_what_no_double_holds_is_text_in_python() -> None:
