@@ -126,7 +126,7 @@ def test_bounds_against_a_linear_programme(words: str) -> None:
     force is the greatest of those over all directions, the least (the distance of a convex set from
     the origin) the greatest of their minima.
     """
-    scene = {name: float(x) for name, x in inputs(words).items()}
+    scene: dict[str, Any] = {name: float(x) for name, x in inputs(words).items()}
     solution = solve(**scene)
     low, high = sorted((float(solution.tension_1 or 0), float(solution.tension_2 or 0)))
     count = 150
