@@ -7,6 +7,7 @@ from ..model.digits import text
 from ..model.scene import UNMEASURED, parameter_of
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Forms, cell, inputs_in_words
+from .fitting import expected
 from .judgement import Fitted
 from .published import QUANTITIES, Fit, cut, equation, few, published
 from .runs import TAKEN
@@ -71,13 +72,14 @@ def results_of(fit: Fitted) -> Fit:
 
 def _lines(fit: Fitted) -> list[dict[str, Any]]:
     """The runs, as JSON and CSV have them; the residual is in standard uncertainties."""
-    columns = (fit.whole.best.data.measured, fit.whole.best.expected, fit.whole.best.sigma)
+    data, values = fit.whole.best.data, fit.whole.best.values
+    accelerations = expected(data._replace(drop=None), values)  # not positive where nothing would move
+    columns = (data.measured, expected(data, values), accelerations, fit.whole.best.sigma)
     used = {run.rows: one for run, *one in zip(fit.used, *(c.tolist() for c in columns), strict=True)}
     lines = []
     for run in fit.runs.runs:
         sign = -1 if run.mean < 0 else 1
-        measured, expected, u = used.get(run.rows, (abs(run.mean), None, None))
-        moves = expected is not None and expected == expected  # NaN where nothing would move
+        measured, ideal, a, u = used.get(run.rows, (abs(run.mean), 0.0, 0.0, None))
         lines.append(
             {
                 "rows": " ".join(map(str, run.rows)),
@@ -86,8 +88,8 @@ def _lines(fit: Fitted) -> list[dict[str, Any]]:
                 **({} if run.drop is None else {"drop": float(run.drop.value)}),
                 fit.runs.kind: sign * measured,
                 "u": u,
-                "expected": sign * expected if moves else None,
-                "residual": sign * (measured - expected) / u if moves else None,
+                "expected": sign * ideal if a > 0 else None,
+                "residual": sign * (measured - ideal) / u if a > 0 else None,
             }
         )
     return lines
@@ -123,8 +125,8 @@ def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, Seque
     odd = {" ".join(map(str, fit.used[i].rows)) for i in fit.odd}
     unit = parameter_of(kind).unit
     finest = min((line["u"] for line in lines if line["u"]), default=None)
-    if data.spread.any() and finest:  # the mean has the digits of its own scatter
-        finest = min(finest, float((data.spread / data.times**0.5).min()))
+    if data.scatter.any() and finest:  # the mean has the digits of its own scatter
+        finest = min(finest, float(data.scatter.min()))
 
     def column(name: str) -> list[str]:
         return ["" if line[name] is None else cut(line[name], finest) for line in lines]

@@ -24,7 +24,7 @@ TINY = 1e-100
 class Data(NamedTuple):
     """Runs as columns, light and heavy masses apart.
 
-    ``measured`` are means of ``times`` values each. ``spread`` is the standard uncertainty of one such value,
+    ``measured`` are means of ``times`` values each. ``scatter`` is the standard uncertainty of such a mean,
     stated or by its repeats, 0 where there is neither; ``within`` are the degrees of freedom it is known by.
     ``uncertain`` is what else is uncertain in each run, by name.
     """
@@ -34,38 +34,24 @@ class Data(NamedTuple):
     drop: Column | None
     measured: Column
     times: Column
-    spread: Column
+    scatter: Column
     within: float
     uncertain: Mapping[str, Column]
-
-    @property
-    def least(self) -> Column:
-        """The least variance of what is measured."""
-        return np.square(ROUNDING * self.measured)
 
 
 class Estimate(NamedTuple):
     """The fitted values, of these ``names``, and the given ones, with the linear fit at these values.
 
-    ``expected`` is what these values give for each run, NaN where nothing would move.
+    ``sigma`` is the standard uncertainty of each run's measurement, by all that varies from run to run, and
+    ``dof`` the degrees of freedom: the runs less the fitted quantities.
     """
 
     data: Data
     values: Mapping[str, float]
     names: Sequence[str]
     line: Line
-    expected: Column
-
-    @property
-    def sigma(self) -> Column:
-        """The standard uncertainty of each run's measurement, by all that varies from run to run."""
-        sigma: Column = np.sqrt(self.line.scale * self.line.variance)
-        return sigma
-
-    @property
-    def dof(self) -> int:
-        """Degrees of freedom: the runs less the fitted quantities."""
-        return len(self.data.l) - len(self.names)
+    sigma: Column
+    dof: int
 
 
 def estimate(
@@ -76,12 +62,12 @@ def estimate(
     Variances follow the values (effective variance), and least squares the variances.
     """
     values = {"axle": 0.0, "rim_mass": 0.0, **given}
-    start = near or straight(data, values, names, np.ones_like(data.l))
+    start = near or straight(data, values, names)
     values |= {x: max(start[x], _lightest(data) / 2) if x == "rim_mass" else start[x] for x in names}
     before = inf
     for _ in range(MOST_STEPS):
-        ideal, J = expected(data, values), slopes(data, values, names)
-        line = fit_line(J, data.measured - ideal, *variances(data, values), data.least)
+        J = slopes(data, values, names)
+        line = fit_line(J, data.measured - expected(data, values), *variances(data, values))
         if not names:
             break
         found = _least_squares(data, values, names, np.sqrt(line.variance))
@@ -90,8 +76,8 @@ def estimate(
         if share < CLOSE or share >= before:  # nothing but rounding is left
             break
         values, before = values | found, share
-    moving = expected(data._replace(drop=None), values) > 0
-    return Estimate(data, values, names, line, np.where(moving, ideal, np.nan))
+    sigma = np.sqrt(line.scale * line.variance)
+    return Estimate(data, values, names, line, sigma, len(data.l) - len(names))
 
 
 def expected(data: Data, values: Mapping[str, Any]) -> Any:
@@ -100,7 +86,7 @@ def expected(data: Data, values: Mapping[str, Any]) -> Any:
     ``values`` are rim_mass, axle and gravity, and may replace columns. Where next to nothing would move, the
     time goes on along its tangent, so that a fit finds its way back.
     """
-    x: dict[str, Any] = {"l": data.l, "h": data.h, "drop": data.drop, **values}
+    x: dict[str, Any] = {**data._asdict(), **values}
     drive = physics.drive(x["l"], x["h"], physics.axle_mass(x["axle"], x["gravity"]))
     a = physics.acceleration(drive, physics.load(x["l"], x["h"], x["rim_mass"]), x["gravity"])
     if data.drop is None:
@@ -116,17 +102,20 @@ def slopes(data: Data, values: Mapping[str, Any], names: Sequence[str]) -> Any:
 
     The imaginary part by an imaginary step is the derivative to the last digit.
     """
-    x: dict[str, Any] = {"l": data.l, "h": data.h, "drop": data.drop, **values}
+    x: dict[str, Any] = {**data._asdict(), **values}
     columns = [expected(data, {**values, name: x[name] + 1j * TINY}).imag / TINY for name in names]
     return np.stack(columns, 1) if names else np.empty((len(data.l), 0))
 
 
-def variances(data: Data, values: Mapping[str, float]) -> tuple[Column, Column]:
-    """The known variance of each run, and the shape of the unknown one: as of a force, or of each value."""
-    known = data.spread**2 / data.times
+def variances(data: Data, values: Mapping[str, float]) -> tuple[Column, Column, Column]:
+    """The known variance of each run, the shape of the unknown one, as of a force or of each value, and the
+    least that their sum may be.
+    """
+    known = data.scatter**2
     for name, u in data.uncertain.items():
         known = known + (slopes(data, values, [name])[:, 0] * u) ** 2
-    return known, slopes(data, values, ["axle"])[:, 0] ** 2 if data.spread.any() else 1 / data.times
+    shape = slopes(data, values, ["axle"])[:, 0] ** 2 if data.scatter.any() else 1 / data.times
+    return known, shape, np.square(ROUNDING * data.measured)
 
 
 def accelerations(data: Data, measured: Column) -> Column:
@@ -161,7 +150,7 @@ def _lightest(data: Data) -> float:
 
 
 def straight(
-    data: Data, values: Mapping[str, float], names: Sequence[str], weight: Column
+    data: Data, values: Mapping[str, float], names: Sequence[str], weight: Any = 1.0
 ) -> dict[str, float]:
     """The straight line g (h - l) - c a - f = a (l + h), by weighted least squares of these forces."""
     a, load = accelerations(data, data.measured), data.l + data.h
@@ -180,36 +169,26 @@ def uncertain_accelerations(data: Data, sigma: Column) -> Column:
 
 def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -> Data:
     """The runs as columns. Raises Unreadable where only some measurements have an uncertainty."""
-    (m1, u1), (m2, u2) = _columns([run.m1 for run in used]), _columns([run.m2 for run in used])
-    uncertain = {"l": np.where(m1 > m2, u2, u1), "h": np.where(m1 > m2, u1, u2)}
-    drop = None
+    sides = zip(*(sorted((run.m1, run.m2), key=lambda mass: mass.value) for run in used), strict=True)
+    (l, u_l), (h, u_h) = map(_columns, sides)
+    drop, uncertain = None, {"l": u_l, "h": u_h}
     if runs.kind == "time":
-        drop, u_drop = _columns([one for run in used if (one := drop_of_all or run.drop)])
-        uncertain["drop"] = u_drop
+        drop, uncertain["drop"] = _columns([one for run in used if (one := drop_of_all or run.drop)])
     values, u, index = measurements(used)
-    times, weight = np.bincount(index).astype(float), np.ones(len(values))
-    if stated := bool(u.any()):
-        if not u.all():
-            name = used[int(index[np.argmin(u > 0)])].name
-            raise Unreadable(f"{name} has no uncertainty of its {runs.kind}, as others have; give all")
-        weight = u**-2
+    if (stated := bool(u.any())) and not u.all():
+        name = used[int(index[np.argmin(u > 0)])].name
+        raise Unreadable(f"{name} has no uncertainty of its {runs.kind}, as others have; give all")
+    weight = u**-2 if stated else np.ones_like(values)
     total = np.bincount(index, weight)
-    means = np.array([abs(run.mean) for run in used])
-    measured = np.bincount(index, weight * values) / total if stated else means
+    exact = np.array([abs(run.mean) for run in used])
+    measured = np.bincount(index, weight * values) / total if stated else exact
     squares = sum_of_squares(np.sqrt(weight) * (values - measured[index]))
     repeated = len(values) - len(used)
     scatter = sqrt(squares / repeated) if repeated else 0.0  # by what is stated, if anything is
-    spread = np.sqrt(times / total) * (max(scatter, 1.0) if stated else scatter)
-    return Data(
-        np.minimum(m1, m2),
-        np.maximum(m1, m2),
-        drop,
-        measured,
-        times,
-        spread,
-        inf if stated or not squares else repeated,
-        {name: some for name, some in uncertain.items() if some.any()},
-    )
+    scatters = (max(scatter, 1.0) if stated else scatter) / np.sqrt(total)
+    within = inf if stated or not squares else repeated
+    uncertain = {name: column for name, column in uncertain.items() if column.any()}
+    return Data(l, h, drop, measured, np.bincount(index).astype(float), scatters, within, uncertain)
 
 
 def measurements(used: Sequence[Run]) -> tuple[Column, Column, NDArray[np.intp]]:

@@ -57,10 +57,6 @@ NONE_SUCH = {
 }
 
 
-class TooFew(ArithmeticError):
-    """The runs are fewer than the quantities to be fitted."""
-
-
 class Conditions(NamedTuple):
     """What is the same in all runs: inputs, with ``drop`` if that is, and the quantities that they give."""
 
@@ -79,7 +75,7 @@ class Outcome(NamedTuple):
     @property
     def chi2(self) -> float | None:
         """χ² of the runs by the uncertainties stated, or by the scatter of repeats; None without either."""
-        return self.best.line.chi2 if self.best.data.spread.any() else None
+        return self.best.line.chi2 if self.best.data.scatter.any() else None
 
     @property
     def between_runs(self) -> float | None:
@@ -161,7 +157,7 @@ def read_find(words: Sequence[str], inputs: Mapping[str, Input]) -> list[str]:
 
 
 def fitted(runs: Runs, given: Conditions, find: Sequence[str]) -> Fitted:
-    """The fit of both usual quantities, or of just ``find``. Raises Unreadable, TooFew, Alike."""
+    """The fit of both usual quantities, or of just ``find``. Raises Unreadable, Alike."""
     reasons = {run.rows: why for run in runs.runs if (why := _unusable(runs, run, given, find))}
     used = [run for run in runs.runs if run.rows not in reasons]
     if not used:
@@ -172,16 +168,16 @@ def fitted(runs: Runs, given: Conditions, find: Sequence[str]) -> Fitted:
     left = {i: run for i, run in enumerate(used) if i not in repeats}
     rows = _odd_rows(runs, left, whole.best) if left else {}
     if repeats or rows:
-        with suppress(Alike, TooFew):
+        with suppress(Alike):
             without = outcome(runs, [run for i, run in left.items() if i not in rows], given, names)
     return Fitted(runs, used, reasons, given, whole, repeats, rows, without)
 
 
 def outcome(runs: Runs, used: Sequence[Run], given: Conditions, names: Sequence[str]) -> Outcome:
-    """The fit of these runs, with its uncertainties. Raises TooFew, Alike."""
+    """The fit of these runs, with its uncertainties. Raises Alike."""
     data, dof = as_data(runs, used), len(used) - len(names)
-    if dof < 0 or not (dof or data.spread.any() or data.uncertain):
-        raise TooFew(TOO_FEW.format(f"{len(used)} runs are" if used[1:] else "1 run is"))
+    if dof < 0 or not (dof or data.scatter.any() or data.uncertain):
+        raise Alike(TOO_FEW.format(f"{len(used)} runs are" if used[1:] else "1 run is"))
 
     def found(there: Conditions) -> dict[str, float]:
         moved = as_data(runs, used, there.inputs.get("drop"))
@@ -245,31 +241,30 @@ def common_error(fit: Fitted) -> tuple[str, dict[str, float]]:
 
     Of the usual ones it is that which changes a result most, if this is more than a third of its interval.
     """
-    best, worst, most = fit.whole.best, ("", dict[str, float]()), LARGE
-    data, right = best.data, np.array([run.m2.value > run.m1.value for run in fit.used])
-    gram = data._replace(l=data.l + GRAM * ~right, h=data.h + GRAM * right)
-    errors = {"1 g more on the side of m2": gram}
+    best, right = fit.whole.best, np.array([run.m2.value > run.m1.value for run in fit.used])
+    data = best.data
+    errors = {"1 g more on the side of m2": data._replace(l=data.l + GRAM * ~right, h=data.h + GRAM * right)}
     if data.drop is not None and data.measured.min() > 2 * DELAY:
         errors[f"a delay of {DELAY:g} s in all times"] = data._replace(measured=data.measured - DELAY)
         errors["1 % more height in all falls"] = data._replace(drop=1.01 * data.drop)
     u_force = uncertain_accelerations(data, best.sigma) * (data.l + data.h + best.values["rim_mass"])
-    line = straight(data, best.values, best.names, 1 / u_force)
-    for words, there in errors.items():
-        moved = straight(there, best.values, best.names, 1 / u_force)
-        changes = {x: abs(moved[x] - line[x]) for x in best.names}
-        shares = {x: by / float(np.ptp(fit.whole.results[x].interval)) for x, by in changes.items()}
-        if max(shares.values(), default=0.0) > most:
-            most = max(shares.values())
-            worst = words, {x: by for x, by in changes.items() if shares[x] > LARGE}
-    return worst
+    line, *moved = (straight(one, best.values, best.names, 1 / u_force) for one in (data, *errors.values()))
+    changes = {
+        words: {x: abs(there[x] - line[x]) for x in best.names}
+        for words, there in zip(errors, moved, strict=True)
+    }
+    widths = {x: float(np.ptp(fit.whole.results[x].interval)) for x in best.names}
+    worst = max(
+        changes, key=lambda words: max((by / widths[x] for x, by in changes[words].items()), default=0)
+    )
+    return worst, {x: by for x, by in changes[worst].items() if by > LARGE * widths[x]}
 
 
 def _odd_repeats(used: Sequence[Run]) -> dict[int, tuple[float, float]]:
     """By the indices of runs, the repeat that is furthest from its siblings, if it is far, and how far."""
     values, u, index = measurements(used)
-    strays = stray_repeats(values, np.where(u > 0, u, 1), index, CHANCE) if len(index) > len(used) else {}
     repeats = dict[int, tuple[float, float]]()
-    for i, away in strays.items():
+    for i, away in stray_repeats(values, np.where(u > 0, u, 1), index, CHANCE).items():
         repeats.setdefault(int(index[i]), (float(values[i]), away))
     return repeats
 
@@ -279,7 +274,7 @@ def _odd_rows(runs: Runs, left: Mapping[int, Run], best: Estimate) -> dict[int, 
     data, numbers = as_data(runs, [*left.values()]), [*left]
     rest, J = data.measured - expected(data, best.values), slopes(data, best.values, best.names)
     level = CHANCE / (1 + 2 * (data.times.max() > 1))
-    strays = stray_rows(J, rest, *variances(data, best.values), data.least, data.within, level)
+    strays = stray_rows(J, rest, *variances(data, best.values), data.within, level)
     return {numbers[i]: away for i, away in strays.items()}
 
 
@@ -301,15 +296,12 @@ def to_vary(used: Sequence[Run]) -> str:
 def _unusable(runs: Runs, run: Run, given: Conditions, find: Sequence[str]) -> str:
     """Why nothing can be expected of a run; empty if something can."""
     mean, difference = run.mean, float(run.m2.value - run.m1.value)
-    if run.left_out:
-        return "it was left out"
-    if not difference:
-        return "its masses are equal, and rest"
-    if not mean:
-        return "nothing moved"
-    if runs.signed and (mean > 0) != (difference > 0):
-        return "the lighter side falls"
-    f = 0.0 if "gravity" in find else given.values.get("axle", 0.0)
-    if f and abs(difference) * given.values["gravity"] <= f:
-        return "an axle with the friction given holds its masses"
-    return ""
+    held = 0.0 if "gravity" in find else given.values.get("axle", 0.0) / given.values["gravity"]
+    reasons = {
+        "it was left out": run.left_out,
+        "its masses are equal, and rest": not difference,
+        "nothing moved": not mean,
+        "the lighter side falls": runs.signed and (mean > 0) != (difference > 0),
+        "an axle with the friction given holds its masses": abs(difference) <= held,
+    }
+    return next((why for why, holds in reasons.items() if holds), "")

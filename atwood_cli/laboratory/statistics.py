@@ -109,22 +109,23 @@ def stray_rows(
     other values, their sum those of B. L. Welch and F. E. Satterthwaite.
     """
 
+    def line_of(rows: Any) -> Line:
+        return fit_line(J[rows], y[rows], known[rows], shape[rows], least[rows])
+
     def furthest(kept: NDArray[np.bool_]) -> tuple[int, float, float]:
-        at = np.flatnonzero(kept)
-        line = fit_line(J[at], y[at], known[at], shape[at], least[at])
-        rest = y[at] - J[at] @ line.coefficients
-        of_line = np.einsum("ij,jk,ik->i", J[at], line.covariance, J[at])  # the leverage, times the variance
-        i = int(at[np.argmax(rest**2 / np.maximum(line.variance - of_line, 1e-9 * line.variance))])
-        others = at[at != i]
-        line = fit_line(J[others], y[others], known[others], shape[others], least[others])
-        free = len(others) - J.shape[1]
-        if line.chi2 is None:
-            own, share, scale = float(shape[i]), 1.0, line.scale
-        else:
+        rows = np.flatnonzero(kept)
+        line = line_of(rows)
+        rest = y[rows] - J[rows] @ line.coefficients
+        of_line = np.einsum("ij,jk,ik->i", J[rows], line.covariance, J[rows])  # leverage, times the variance
+        i = int(rows[np.argmax(rest**2 / np.maximum(line.variance - of_line, 1e-9 * line.variance))])
+        others = rows[rows != i]
+        line = line_of(others)
+        own, share, scale = float(shape[i]), 1.0, line.scale
+        if line.chi2 is not None:
             own = float(known[i] + line.between * shape[i])
             share, scale = line.between * float(shape[i]) / own, 1.0
         variance = max(scale * (own + float(J[i] @ line.covariance @ J[i])), float(least[i]))
-        inverse = share**2 / free + (1 - share) ** 2 / within
+        inverse = share**2 / (len(others) - J.shape[1]) + (1 - share) ** 2 / within
         return i, float(y[i] - J[i] @ line.coefficients) / sqrt(variance), 1 / inverse if inverse else inf
 
     return _strays(len(y), J.shape[1], level / max(len(y), 1), furthest)
