@@ -4,12 +4,11 @@ import csv
 import gzip
 import io
 import json
-import math
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Collection
-from contextlib import suppress
+from collections.abc import Callable
+from contextlib import redirect_stderr, redirect_stdout
 from fractions import Fraction
 from itertools import count
 from pathlib import Path
@@ -19,19 +18,20 @@ from typing import Any
 import polars as pl
 import pytest
 
-from atwood_cli import SceneError, arrays, solve
+from atwood_cli import SceneError, arrays, solve, solve_table
 from atwood_cli.arrays import solve_and_count
 from atwood_cli.batch import solving
-from atwood_cli.model.quantities import ACCURACIES, NAMES
-from atwood_cli.model.scene import INPUTS
+from atwood_cli.cli import run
+from atwood_cli.model.quantities import NAMES
+from atwood_cli.model.units import UNITS
 from atwood_cli.tables import sources
 from atwood_cli.tables.sources import FORMATS
 
-from .running import HANGS, Atwood, Ran, on_real_terminal, plain, process
+from .running import HANGS, Atwood, Ran, on_real_terminal, on_terminal, plain, process
 
 SEPARATORS = {"csv": ",", "tsv": "\t"}
-WHOLE = 1 << 20
-"""A piece of that many bytes is the whole table."""
+TEXT = "m1,m2\n1,3\n"
+ONE = "atwood: 1 row: 1 no-slip; no errors.\n"
 
 Batch = Callable[..., Ran]
 
@@ -40,29 +40,17 @@ Batch = Callable[..., Ran]
 def batch(atwood: Atwood, tmp_path: Path) -> Batch:
     """Run `atwood batch` on a file with that content; in messages the file is called IN."""
 
-    def call(content: bytes | str, words: str = "", name: str = "in.csv", command: str = "batch") -> Ran:
+    def call(content: bytes | str, words: str = "", name: str = "in.csv") -> Ran:
         path = tmp_path / name
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        ran = atwood(*command.split(), str(path), *words.replace("OUT", str(tmp_path / "out")).split())
+        ran = atwood("batch", str(path), *words.replace("OUT", str(tmp_path / "out")).split())
         return ran._replace(err=ran.err.replace(str(path), "IN"))
 
     return call
 
 
-def as_csv(rows: list[dict[str, str]], columns: Collection[str] = tuple(INPUTS), separator: str = ",") -> str:
-    out = io.StringIO()
-    writer = csv.DictWriter(out, columns, restval="", lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(rows)
-    return out.getvalue()
-
-
-def records(ran: Ran, separator: str = ",") -> list[dict[str, str]]:
-    return list(csv.DictReader(io.StringIO(ran.out, newline=""), delimiter=separator))
-
-
 def errors_of(ran: Ran) -> list[str]:
-    return [row["error"] for row in records(ran)]
+    return [row["error"] for row in csv.DictReader(io.StringIO(ran.out, newline=""))]
 
 
 def written(frame: pl.DataFrame, kind: str, path: Path) -> Path:
@@ -83,26 +71,26 @@ def read_back(path: Path, kind: str) -> pl.DataFrame:
 
 # Results
 
-ODD_SCENE = "0.25 .5e0 0.1 1 1.62 1 0.1 90"
-SCENES = [
-    {"m1": "1", "m2": "3", "mu": "0.3"},
-    {"m1": "1", "m2": "3", "M": "10"},
-    {"m1": "1", "m2": "3", "M": "100", "mu": "0.3", "mu_k": "0.25"},
-    {"m1": "1", "m2": "3", "M": "inf"},
-    {"m1": "2", "m2": "2"},
-    dict(zip("m1 m2 M mu g inertia R wrap".split(), ODD_SCENE.split(), strict=True)),
-]
+SCENES = """m1,m2,M,mu,mu_k,g,inertia,R,wrap
+1,3,,0.3,,,,,
+1,3,10,,,,,,
+1,3,100,0.3,0.25,,,,
+1,3,inf,,,,,,
+2,2,,,,,,,
+0.25,.5e0,0.1,1,,1.62,1,0.1,90
+"""
 REGIMES = ["verge", "no-slip", "slip", "no-slip", "no-slip", "no-slip"]
 SUMMARY = "atwood: 6 rows: 4 no-slip, 1 verge, 1 slip; no errors.\n"
 
 
 def test_results_are_those_of_solve(batch: Batch) -> None:
-    ran = batch(as_csv(SCENES), "".join(f" --only {name}" for name in NAMES))
+    ran = batch(SCENES, "".join(f" --only {name}" for name in NAMES))
     assert ran.status == 0
     assert ran.err.startswith(SUMMARY)
-    for scene, row in zip(SCENES, records(ran), strict=True):
-        given: dict[str, Any] = {"g": 9.80665, **{name: float(text) for name, text in scene.items()}}
-        solution = solve(**given)
+    scenes, rows = (csv.DictReader(io.StringIO(text)) for text in (SCENES, ran.out))
+    for scene, row in zip(scenes, rows, strict=True):
+        given: dict[str, Any] = {name: float(text) for name, text in scene.items() if text}
+        solution = solve(**{"g": 9.80665, **given})
         assert row["regime"] == solution.regime
         for name in NAMES[1:]:
             exact = getattr(solution, name)
@@ -110,8 +98,7 @@ def test_results_are_those_of_solve(batch: Batch) -> None:
             assert exact is None or float(row[name]) == exact, name
 
 
-@pytest.mark.parametrize("accuracy", ACCURACIES)
-def test_every_accuracy_is_handed_on(batch: Batch, monkeypatch: pytest.MonkeyPatch, accuracy: str) -> None:
+def test_the_accuracy_is_handed_on(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     asked = []
 
     def spy(given: Any, accuracy: Any, names: Any) -> Any:
@@ -119,13 +106,9 @@ def test_every_accuracy_is_handed_on(batch: Batch, monkeypatch: pytest.MonkeyPat
         return solve_and_count(given, accuracy, names)
 
     monkeypatch.setattr(arrays, "solve_and_count", spy)
-    assert batch(as_csv(SCENES), f"--accuracy {accuracy}").status == 0
-    assert asked == [accuracy]
-    batch(as_csv(SCENES))
-    assert asked == [accuracy, "exact"]
-
-
-ONE = "atwood: 1 row: 1 no-slip; no errors.\n"
+    for words in ("--accuracy certified", "--accuracy exact", ""):
+        assert batch(TEXT, words).status == 0
+    assert asked == ["certified", "exact", "exact"]
 
 
 # Formats
@@ -133,37 +116,33 @@ ONE = "atwood: 1 row: 1 no-slip; no errors.\n"
 
 @pytest.mark.parametrize("kind", FORMATS)
 def test_every_format(atwood: Atwood, tmp_path: Path, kind: str) -> None:
-    frame = pl.read_csv(as_csv(SCENES).encode(), infer_schema=False)
-    if kind == "parquet":
-        frame = frame.cast(pl.Float64)
-    out = tmp_path / f"out.{kind}"
-    start = written(frame, kind, tmp_path / f"in.{kind}")
+    frame = pl.read_csv(SCENES.encode(), infer_schema=False)
+    frame = frame.cast(pl.Float64) if kind == "parquet" else frame
+    start, out = written(frame, kind, tmp_path / f"in.{kind}"), tmp_path / f"out.{kind}"
     ran = atwood("batch", str(start), "-o", str(out), "--only", "regime")
     assert (ran.status, ran.out, ran.err) == (0, "", SUMMARY)
     result = read_back(out, kind)
-    assert result.columns == [*INPUTS, "regime", "error"]
+    assert result.columns == [*frame.columns, "regime", "error"]
     assert result["regime"].to_list() == REGIMES
     assert result["error"].null_count() == 6
     assert result["m1"].cast(pl.Float64).to_list() == [1, 1, 1, 1, 2, 0.25]
     assert list(tmp_path.glob(".*")) == []
 
 
-@pytest.mark.parametrize("kind", FORMATS)
-def test_streams(tmp_path: Path, kind: str) -> None:
+@pytest.mark.parametrize(
+    ("kind", "line"),
+    [
+        ("csv", "atwood batch <(cat IN) --only regime > OUT"),
+        ("csv", "cat IN | atwood batch /dev/stdin -o /dev/stdout --only regime | cat > OUT"),
+        ("parquet", "cat IN | atwood batch - --from parquet --only regime > OUT"),
+    ],
+)
+def test_streams(tmp_path: Path, kind: str, line: str) -> None:
+    """A pipe by any name is CSV, if nothing else is said."""
     path = written(pl.DataFrame({"m1": [1.0], "m2": [3.0]}), kind, tmp_path / "in")
-    formats = f"--from {kind}" if kind != "csv" else ""
-    ran = process(shell=f"cat {path} | atwood batch - {formats} --only regime > {tmp_path}/out")
+    ran = process(shell=line.replace("IN", str(path)).replace("OUT", str(tmp_path / "out")))
     assert (ran.status, ran.err) == (0, ONE)
     assert read_back(tmp_path / "out", kind).rows() == [(1.0, 3.0, "no-slip", None)]
-
-
-def test_a_pipe_by_any_name_is_csv() -> None:
-    for line in (
-        "atwood batch <(printf 'm1,m2\n1,3\n') --only regime",
-        "printf 'm1,m2\n1,3\n' | atwood batch /dev/stdin -o /dev/stdout --only regime",
-    ):
-        ran = process(shell=line)
-        assert (ran.status, ran.out) == (0, "m1,m2,regime,error\n1,3,no-slip,\n")
 
 
 @pytest.mark.parametrize("kind", ["csv", "ndjson", "parquet"])
@@ -175,38 +154,29 @@ def test_compressed_files_are_unpacked_by_their_suffix(batch: Batch, tmp_path: P
     whole = (tmp_path / f"out.{kind}").read_bytes()
     assert batch(packed, f"-o OUT.{kind} --force", f"in.{kind}.gz") == ran
     assert (tmp_path / f"out.{kind}").read_bytes() == whole
-    ran = batch(packed[:-9], "", f"in.{kind}.gz")
-    assert (ran.status, ran.out, ran.err[:55]) == (
-        1,
-        "",
-        "atwood: cannot read IN: Compressed file ended before th",
-    )
-    assert (
-        batch(content, "", f"in.{kind}.gz").err
-        == f"atwood: cannot read IN: Not a gzipped file ({content[:2]!r})\n"
-    )
+    cut, unpacked = (batch(damaged, "", f"in.{kind}.gz") for damaged in (packed[:-9], content))
+    assert (cut.status, cut.out) == (1, "")
+    assert cut.err.startswith("atwood: cannot read IN: Compressed file ended before th")
+    assert unpacked.err == f"atwood: cannot read IN: Not a gzipped file ({content[:2]!r})\n"
 
 
 def test_a_pipe_of_ndjson_is_answered_row_by_row() -> None:
-    words = "batch - --from ndjson --only regime --allow-errors".split()
-    with subprocess.Popen(
-        [sys.executable, "-m", "atwood_cli", *words],
-        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-    ) as child:  # fmt: skip
+    command = [sys.executable, "-m", "atwood_cli", "batch", "-", "--from", "ndjson", "--only", "regime"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, stdin=pipe, stdout=pipe, stderr=pipe, encoding="utf-8") as child:
         assert child.stdin
         assert child.stdout
-        answers = {
-            "x": '{"regime":null,"error":"\'x\' is not a line of NDJSON: Expecting value at character 1"}'
-        }
-        answers |= {
-            f'{{"m1":1,"m2":{i}}}': f'{{"m1":1,"m2":{i},"regime":"no-slip","error":null}}' for i in range(3)
-        }
-        for line, answer in answers.items():
-            child.stdin.write(f"{line}\n".encode())
+        masses = [f'"m1":1,"m2":{m2}' for m2 in range(4)]
+        wrong = "'x' is not a line of NDJSON: Expecting value at character 1"
+        answers = {"x": f'{{"regime":null,"error":"{wrong}"}}'}
+        answers |= {f"{{{row}}}": f'{{{row},"regime":"no-slip","error":null}}' for row in masses}
+        *_, last = answers
+        for line in [line for line in answers if line != last]:
+            child.stdin.write(f"{line}\n")
             child.stdin.flush()
-            assert child.stdout.readline().decode() == f"{answer}\n"
-        child.stdin.write(b'{"m1":1,"m2":9}')  # the last has no line end
-        assert child.communicate(timeout=HANGS)[0] == b'{"m1":1,"m2":9,"regime":"no-slip","error":null}\n'
+            assert child.stdout.readline() == f"{answers[line]}\n"
+        # The last has no line end.
+        assert child.communicate(last, HANGS)[0] == f"{answers[last]}\n"
 
 
 # Bad rows
@@ -233,8 +203,6 @@ def test_a_cell_is_a_number_where_solve_takes_it_for_one(batch: Batch) -> None:
 
 # Tables that are none
 
-TEXT = "m1,m2\n1,3\n"
-
 
 @pytest.mark.parametrize(
     ("name", "content"),
@@ -255,18 +223,6 @@ def test_what_a_file_holds_or_is_called_steers_no_terminal(
     assert ran.status == 1
     assert re.search(r"\\(x|u00)1b\[31m|quotation mark", ran.err)
     assert "\x1b" not in ran.err
-
-
-def test_polars_alone_would_be_wrong_in_silence(batch: Batch) -> None:
-    """A short row becomes another scene, and quotation marks out of place take rows away."""
-    short, stray = "m1,m2,M\n1,3\n", 'n,m1,m2\n"p"q,1,3\nr,1,3\n"s"t,1,3\n'
-    assert pl.read_csv(short.encode()).rows() == [(1, 3, None)]
-    assert errors_of(batch(short)) == ["the row has 2 cells, and the header 3"]
-    with suppress(pl.exceptions.PolarsError):
-        assert pl.read_csv(stray.encode()).height != 3
-    assert batch(stray).err.startswith(
-        "atwood: cannot read IN: the row that begins in line 2 has a quotation mark"
-    )
 
 
 LONG = "x" * 200_000
@@ -332,60 +288,27 @@ def test_the_first_error_is_that_of_the_whole_table(batch: Batch, monkeypatch: p
 # Units
 
 
-@pytest.mark.parametrize(
-    ("heading", "cell", "name", "exact"),
-    [
-        ("m1 (g)", "250.1", "m1", "0.2501"),
-        ("m1[g]", "2.501e2", "m1", "0.2501"),
-        ("M [kg]", "2", "M", "2"),
-        ("M (t)", "0.1", "M", "100"),
-        ("M (lb)", "3", "M", "1.36077711"),
-        ("M (g)", "inf", "M", "inf"),
-        ("R (cm)", "2.7", "R", "0.027"),
-        ("g (cm/s²)", "981.3", "g", "9.813"),
-        ("g (ft/s2)", "32.3", "g", "9.84504"),
-        ("wrap (turn)", "0.3", "wrap", "108"),
-        ("wrap (deg)", "90", "wrap", "90"),
-        ("mu (-)", "0.3", "mu", "0.3"),
-        ("mu_k []", "", "mu_k", None),
-        (" m1 ", " 1E-1 ", "m1", "0.1"),
-        ("M", "1.", "M", "1"),
-        ("M", "INF", "M", "inf"),
-        ("M", "\xa02\xa0", "M", "2"),
-    ],
-)
-@pytest.mark.parametrize("source", ["csv", "ndjson", "parquet"])
-def test_units_in_headings(
-    atwood: Atwood, tmp_path: Path, source: str, heading: str, cell: str, name: str, exact: str | None
-) -> None:
-    """A cell is the double nearest to it in the SI, not a product that was rounded twice."""
-    row = {"m1": "1", "m2": "3", "R": "1"}
-    row.pop(name, None)
-    frame = pl.DataFrame({**{other: [text] * 2 for other, text in row.items()}, heading: [cell] * 2})
-    value: Any = exact and float(exact)
-    if source == "parquet":
-        frame = frame.with_columns(pl.all().str.strip_chars().cast(pl.Float64, strict=False))
-        if value and math.isfinite(value):  # the cell is a double already
-            value = float(Fraction(float(cell)) * Fraction(str(exact)) / Fraction(cell.strip()))
-    start = str(written(frame, source, tmp_path / f"in.{source}"))
-    given: dict[str, Any] = {"g": 9.80665, **{other: float(text) for other, text in row.items()}, name: value}
-    right = solve(**given)
-    only = ["--only", "tension_1,torque,mu_verge"]
-    ran = atwood("batch", start, "-o", str(out := tmp_path / f"out.{source}"), "--accuracy", "exact", *only)
-    printed = read_back(out, source).row(0, named=True)
-    assert not printed["error"]
-    assert [printed[one] for one in ("tension_1", "torque")] == [right.tension_1, right.torque]
-    unit = heading.strip(f"{name}[( )]-")
-    said = f"atwood: read as: {heading!r} as {name}{f' in {unit}' if unit else ''}.\n" * (heading != name)
-    assert ran.err.startswith(f"{said}atwood: 2 rows")
+@pytest.mark.parametrize("kind", [pl.String, pl.Float64])
+@pytest.mark.parametrize("unit", UNITS["mass"])
+def test_a_cell_is_the_double_nearest_to_it_in_the_si(unit: str, kind: Any) -> None:
+    """It is not a product that was rounded twice: of equal masses, a tension is mg."""
+    rng = Random(unit)
+    cells = [rng.uniform(0.01, 10) for _ in range(100)]
+    masses = [
+        Fraction(repr(cell) if kind == pl.String else cell) * Fraction(UNITS["mass"][unit]) for cell in cells
+    ]
+    table = pl.DataFrame({f"{name} ({unit})": cells for name in ("m1", "m2")}).cast(kind)
+    solved = solve_table(table, ["tension_1", "torque"])
+    assert solved["error"].null_count() == 100
+    assert solved["tension_1"].to_list() == [
+        float(Fraction(9.80665) * Fraction(float(mass))) for mass in masses
+    ]
 
 
-def test_what_a_unit_takes_beyond_the_doubles_is_an_error_of_the_row(atwood: Atwood, tmp_path: Path) -> None:
-    for factor, cell in (("ug", 1e-323), ("t", 1e308)):
-        frame = pl.DataFrame({f"m1 ({factor})": [cell, 0.0], "m2": [1.0, 1.0]})
-        start, out = str(written(frame, "parquet", tmp_path / "in.parquet")), tmp_path / "out.parquet"
-        assert atwood("batch", start, "-o", str(out), "--force").status == 1
-        assert pl.read_parquet(out)["error"].to_list() == [f"m1 {cell!r} {BEYOND}", None]
+def test_what_a_unit_takes_beyond_the_doubles_is_an_error_of_the_row() -> None:
+    for unit, cell in (("ug", 1e-323), ("t", 1e308)):
+        solved = solve_table(pl.DataFrame({f"m1 ({unit})": [cell, 0.0], "m2": [1.0, 1.0]}), "regime")
+        assert solved["error"].to_list() == [f"m1 {cell!r} {BEYOND}", None]
 
 
 def test_a_heading_that_is_long_takes_no_time(batch: Batch) -> None:
@@ -397,35 +320,37 @@ def test_a_heading_that_is_long_takes_no_time(batch: Batch) -> None:
 # Usage and files
 
 
-def test_files_that_cannot_be_read_or_written(
-    batch: Batch, atwood: Atwood, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    batch("m1,m2\n1,2\n", "-o OUT.csv")
+def test_a_file_is_replaced_only_by_force(batch: Batch, tmp_path: Path) -> None:
+    assert batch(TEXT, "-o OUT.csv").err == ONE
+    out = tmp_path / "out.csv"
+    why = f"cannot write {out}: it exists already; --force replaces it"
+    assert batch(TEXT, "-o OUT.csv --only torque") == (1, "", f"atwood: {why}\n")
+    assert out.read_text().startswith("m1,m2,regime,")
+    assert batch(TEXT, "-o OUT.csv --only torque --force --allow-errors").status == 1
+    assert out.read_text() == "m1,m2,torque,error\n1,3,,\n"
+
+
+@pytest.mark.skipif(not Path("/proc/self/mem").exists(), reason="needs a file that cannot be read")
+def test_what_reading_runs_into_is_said(atwood: Atwood) -> None:
+    why = "cannot read /proc/self/mem: Input/output error"
+    assert atwood("batch", "/proc/self/mem", "--from", "csv") == (1, "", f"atwood: {why}\n")
+
+
+@pytest.mark.parametrize("line", ["in.csv -o in.csv --force", "in.csv -o hard.csv --force", "in.csv -o soft.csv --force", "- -o in.csv --force <", "in.csv >>", "- < >>"])  # fmt: skip
+def test_the_input_is_never_overwritten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, line: str) -> None:
     monkeypatch.chdir(tmp_path)
-    for words, message in [
-        ("no.jsonl", "cannot read no.jsonl: No such file or directory"),
-        (". --from csv", "cannot read .: Is a directory"),
-        ("in.csv -o no/a.csv", "cannot write no/a.csv: No such file or directory"),
-        ("in.csv -o out.csv", "cannot write out.csv: it exists already; --force replaces it"),
-        *[("/proc/self/mem --from csv", "cannot read /proc/self/mem: Input/output error")]
-        * Path("/proc/self/mem").exists(),
-    ]:
-        assert atwood("batch", *words.split()) == (1, "", f"atwood: {message}\n")
-    assert Path("out.csv").read_text().startswith("m1,m2,regime,")
-    assert atwood("batch", *"in.csv -o out.csv --force --only torque --allow-errors".split()).status == 1
-    assert Path("out.csv").read_text() == "m1,m2,torque,error\n1,2,,\n"
-
-
-@pytest.mark.parametrize("line", ["in.csv -o in.csv --force", "in.csv -o hard.csv --force", "in.csv -o soft.csv --force", "- -o in.csv --force < in.csv", "in.csv >> in.csv", "- < in.csv >> in.csv", "in.csv 1<> in.csv"])  # fmt: skip
-def test_the_input_is_never_overwritten(tmp_path: Path, line: str) -> None:
-    scenes = tmp_path / "in.csv"
+    scenes, said = Path("in.csv"), io.StringIO()
     scenes.write_text(TEXT)
-    (tmp_path / "hard.csv").hardlink_to(scenes)
-    (tmp_path / "soft.csv").symlink_to(scenes)
-    ran = process(shell=f'cd "{tmp_path}"; atwood batch {line}')
-    name = line.split("-o ")[1].split()[0] if "-o" in line else "-"
+    Path("hard.csv").hardlink_to(scenes)
+    Path("soft.csv").symlink_to(scenes)
+    words = [word for word in line.split() if word not in ("<", ">>")]
+    with scenes.open() as stdin, scenes.open("a") as stdout, redirect_stderr(said):
+        monkeypatch.setattr(sys, "stdin", stdin if "<" in line else None)
+        with redirect_stdout(stdout if ">>" in line else io.StringIO()):
+            assert run(["batch", *words]) == 2
+    name = words[words.index("-o") + 1] if "-o" in words else "-"
     why = f"--output {name!r} is the input, which is never overwritten; name another"
-    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: {why}\n")
+    assert said.getvalue() == f"atwood: {why}\n"
     assert scenes.read_text() == TEXT
 
 
@@ -444,16 +369,15 @@ def test_a_reader_that_leaves_early_ends_it_quietly(tmp_path: Path) -> None:
     assert (ran.status, ran.out, ran.err) == (0, "m1,m2,M,regime,error\n", "")
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")
 def test_a_full_disk_is_an_error(batch: Batch) -> None:
-    if not Path("/dev/full").exists():
-        pytest.skip("needs a device that is always full")
     ran = batch(TEXT, "-o /dev/full")
     assert (ran.status, ran.err) == (1, "atwood: cannot write the output: No space left on device\n")
 
 
 def test_closed_streams(tmp_path: Path) -> None:
     (tmp_path / "in.csv").write_text("m1,m2\n1,x\n")
-    for streams in (">&-", "2>&-", ">&- 2>&-"):
+    for streams in (">&-", "2>&-"):
         ran = process(shell=f"atwood batch {tmp_path}/in.csv {streams}")
         assert (ran.status, "Traceback" in ran.err) == (1, False)
     ran = process(shell="atwood batch - <&-")
@@ -461,12 +385,12 @@ def test_closed_streams(tmp_path: Path) -> None:
 
 
 BAR = """
-from itertools import count, repeat
+from itertools import count
 from atwood_cli.__main__ import main
 from atwood_cli.output import page
 from atwood_cli.tables import sources
 sources.BLOCK_BYTES = 64
-page.monotonic = CLOCK.__next__
+page.monotonic = count().__next__
 main()
 """
 
@@ -475,8 +399,8 @@ def test_a_bar_on_a_terminal_after_a_second(tmp_path: Path) -> None:
     (tmp_path / "in.csv").write_text(TEXT + "1,3\n" * 99)
     words = ["batch", f"{tmp_path}/in.csv", "--force", "-o", f"{tmp_path}/out.csv"]
     said = "atwood: 100 rows: 100 no-slip; no errors.\n"
-    seen = plain(on_real_terminal(*words, columns=80, program=BAR.replace("CLOCK", "count()")))
+    seen = plain(on_real_terminal(*words, columns=80, program=BAR))
     assert "━" in seen
     assert "%" in seen
     assert seen.endswith(said)
-    assert on_real_terminal(*words, columns=80, program=BAR.replace("CLOCK", "repeat(0)")) == said
+    assert on_terminal(*words, columns=80) == said
