@@ -23,7 +23,7 @@ from .rational import EXACT, Irrational
 # Far beyond any input (1e±1500), far within what `decimal` takes on a 32-bit machine.
 LARGEST_EXPONENT = 10**8
 LARGEST_ARGUMENT = LARGEST_EXPONENT * 2_302_585_092 // 10**9  # of an exponential: times ln 10
-ZERO, ONE, TWO, INFINITY = Decimal(0), Decimal(1), Decimal(2), Decimal("inf")
+ZERO, TWO, INFINITY = Decimal(0), Decimal(2), Decimal("inf")
 KEPT = 256  # values of a function: quantities ask for the same ones
 DOUBLES = 300  # the largest exponent of a number that is taken for a double
 LOG10_E = Decimal("0.434294481903")  # rounded down, so that the rest of an argument is not negative
@@ -55,30 +55,30 @@ class Enclosure:
         return other if isinstance(other, Enclosure) else self.arithmetic.number(other)
 
     def __add__(self, other: Enclosure | int) -> Enclosure:
-        other, at = self._lift(other), self.arithmetic
-        return Enclosure(at, at.down.add(self.lo, other.lo), at.up.add(self.hi, other.hi))
+        other, ar = self._lift(other), self.arithmetic
+        return Enclosure(ar, ar.down.add(self.lo, other.lo), ar.up.add(self.hi, other.hi))
 
     __radd__ = __add__
 
     def __sub__(self, other: Enclosure | int) -> Enclosure:
-        other, at = self._lift(other), self.arithmetic
-        return Enclosure(at, at.down.subtract(self.lo, other.hi), at.up.subtract(self.hi, other.lo))
+        other, ar = self._lift(other), self.arithmetic
+        return Enclosure(ar, ar.down.subtract(self.lo, other.hi), ar.up.subtract(self.hi, other.lo))
 
     def __mul__(self, other: Enclosure | int) -> Enclosure:
-        other, at = self._lift(other), self.arithmetic
+        other, ar = self._lift(other), self.arithmetic
         if self.lo >= ZERO and other.lo >= ZERO:
-            return Enclosure(at, at.down.multiply(self.lo, other.lo), at.up.multiply(self.hi, other.hi))
-        one, two = (other, self) if self.lo < 0 < self.hi else (self, other)
-        if one.lo >= 0:
-            lo = at.down.multiply(one.lo if two.lo >= 0 else one.hi, two.lo)
-            hi = at.up.multiply(one.hi if two.hi >= 0 else one.lo, two.hi)
-        elif one.hi <= 0:
-            lo = at.down.multiply(one.lo if two.hi >= 0 else one.hi, two.hi)
-            hi = at.up.multiply(one.hi if two.lo >= 0 else one.lo, two.lo)
+            return Enclosure(ar, ar.down.multiply(self.lo, other.lo), ar.up.multiply(self.hi, other.hi))
+        x, y = (other, self) if self.lo < 0 < self.hi else (self, other)
+        if x.lo >= 0:
+            lo = ar.down.multiply(x.lo if y.lo >= 0 else x.hi, y.lo)
+            hi = ar.up.multiply(x.hi if y.hi >= 0 else x.lo, y.hi)
+        elif x.hi <= 0:
+            lo = ar.down.multiply(x.lo if y.hi >= 0 else x.hi, y.hi)
+            hi = ar.up.multiply(x.hi if y.lo >= 0 else x.lo, y.lo)
         else:
-            lo = min(at.down.multiply(one.lo, two.hi), at.down.multiply(one.hi, two.lo))
-            hi = max(at.up.multiply(one.lo, two.lo), at.up.multiply(one.hi, two.hi))
-        return Enclosure(at, lo, hi)
+            lo = min(ar.down.multiply(x.lo, y.hi), ar.down.multiply(x.hi, y.lo))
+            hi = max(ar.up.multiply(x.lo, y.lo), ar.up.multiply(x.hi, y.hi))
+        return Enclosure(ar, lo, hi)
 
     __rmul__ = __mul__
 
@@ -88,13 +88,13 @@ class Enclosure:
         Raises Unsettled for a denominator that may be zero, ZeroDivisionError for one that is.
         Raises OverflowError for one beyond 10^LARGEST_EXPONENT, which is infinity: a quotient would be 0.
         """
-        other, at = self._lift(other), self.arithmetic
+        other, ar = self._lift(other), self.arithmetic
         if other.lo == INFINITY:
             raise OverflowError(f"a denominator is beyond 10^{LARGEST_EXPONENT}")
         if other.lo <= ZERO:
             raise ZeroDivisionError if other.hi == 0 == other.lo else Unsettled
-        lo = at.down.divide(self.lo, other.hi if self.lo >= ZERO else other.lo)
-        return Enclosure(at, lo, at.up.divide(self.hi, other.lo if self.hi >= ZERO else other.hi))
+        lo = ar.down.divide(self.lo, other.hi if self.lo >= ZERO else other.lo)
+        return Enclosure(ar, lo, ar.up.divide(self.hi, other.lo if self.hi >= ZERO else other.hi))
 
     def __rtruediv__(self, other: int) -> Enclosure:
         return self._lift(other) / self
@@ -309,10 +309,7 @@ class Enclosures:
             return enclosures(self.digits // 2 + 2)._log1p(y).lo
         if -DOUBLES < y.adjusted() < DOUBLES:
             return Decimal(math.log1p(float(y)))
-        at = self.down
-        if y.adjusted() < -9:
-            return at.multiply(y, at.subtract(ONE, at.divide(y, TWO)))
-        return decimal_context(self.digits // 2 + 12, ROUND_HALF_EVEN).ln(at.add(ONE, y))
+        return y if y < 1 else decimal_context(self.digits // 2 + 12, ROUND_HALF_EVEN).ln(y)
 
 
 @lru_cache(maxsize=64)
