@@ -24,11 +24,16 @@ class Mechanics(Generic[N]):
 
     def __init__(self, case: Case, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:
         self.case, self.scene, self.ar = case, case.scene, ar
-        self.l, self.h, self.g = map(ar.number, (case.light, case.heavy, self.scene.g))
+        self.l, self.h = ar.number(case.light), ar.number(case.heavy)
         # The axle's friction as a force at the rim (N), and as a mass (kg).
         self.f, self.b = map(ar.number, (case.axle_friction, case.axle_mass))
         self._arcs: dict[arc.Kind, list[arc.Arc[N]]] = {}
         vars(self).update(known)
+
+    @lazy
+    def g(self) -> N:
+        """Gravity (m/s²), read where it enters: a sweep of it computes the rest once."""
+        return self.ar.number(self.scene.g)
 
     @lazy
     def phi(self) -> N:

@@ -35,11 +35,11 @@ from operator import attrgetter
 from typing import Any, NamedTuple
 
 from ..model.case import Case
-from ..model.digits import text, tidy, to_digits
+from ..model.digits import tidy, to_digits
 from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
 from ..solver.answers import SHOWN_DIGITS
-from .ranges import LOCKED, Point, Range, about_power, exact_point, with_value
+from .ranges import LOCKED, Point, Range, about_power, decimal_point, exact_point, with_value
 
 BESIDE = Fraction(1, 10**60)
 """A number is asked for so far from a value, in proportion, to see whether the regime changes there."""
@@ -134,7 +134,7 @@ def _between(
         else:
             digits += 1
     place = tidy(down(last)) if last == start else down(last)
-    return Point(last, f"{text(place)}{suffix}" if suffix else place), last, first
+    return decimal_point(place, suffix), last, first
 
 
 def _middle(one: Fraction, other: Fraction) -> Fraction:

@@ -70,6 +70,11 @@ def exact_point(value: Fraction | float, suffix: str = "", name: str = "") -> Po
     return Point(value, tidy(number), name)
 
 
+def decimal_point(value: Decimal, suffix: str) -> Point:
+    """A decimal as a point."""
+    return Point(Fraction(value), f"{text(value)}{suffix}" if suffix else value)
+
+
 class Range(NamedTuple):
     """A parameter that is swept, over a range or a list: as typed, its points, the unit that they carry."""
 
@@ -216,17 +221,6 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
     return sweep
 
 
-class _Number(NamedTuple):
-    """A number of a range or a list, the unit that points carry for it, and whether it was typed with a unit.
-
-    A name is typed neither with a unit nor without: None.
-    """
-
-    value: Any
-    suffix: str
-    has_unit: bool | None
-
-
 def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     """A range of a parameter, its points to about so many digits. Raises SceneError."""
     words = typed.split(":")
@@ -236,9 +230,8 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
         if word.strip().lower() in (LOCKED.text, *INPUTS[name].names):
             rule = f"has the end {in_quotes(word)}; a range runs between finite numbers"
             raise SceneError(name, typed, rule)
-    numbers = [_read_number(name, word) for word in words[:2]]
-    suffix = _common_unit(name, typed, numbers)
-    start, stop, log = numbers[0].value, numbers[1].value, len(words) == 4
+    (start, stop), suffix = _read_numbers(name, typed, words[:2])
+    log = len(words) == 4
     if start == stop:
         raise SceneError(name, typed, "has equal ends; a range runs from one value to another")
     if log and not (start > 0 and stop > 0):
@@ -253,8 +246,7 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
         raise SceneError(name, typed, f"{rule}; take fewer points, or ends further apart")
     ends = [tidy(exact_or_rounded(end, to_digits(kept))) for end in (start, stop)]
     points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last, kept), ends[1]]
-    printed = [Point(Fraction(x), f"{text(x)}{suffix}" if suffix else x) for x in points]
-    return Range(name, typed, printed, log, suffix)
+    return Range(name, typed, [decimal_point(x, suffix) for x in points], log, suffix)
 
 
 def read_list(name: str, typed: str) -> Range:
@@ -266,9 +258,7 @@ def read_list(name: str, typed: str) -> Range:
         raise SceneError(name, typed, "has an empty place; write a list as 0,1,10")
     if any(re.match(r"0\d", word) for word in words[1:]):
         read_value(name, typed)  # refuses 1,05 and 1,000: numbers rather than lists
-    numbers = [_read_number(name, word) for word in words]
-    suffix = _common_unit(name, typed, numbers)
-    values = [number.value for number in numbers]
+    values, suffix = _read_numbers(name, typed, words)
     if len(set(values)) < len(values):
         again = next(word for i, word in enumerate(words) if values[i] in values[:i])
         raise SceneError(name, typed, f"has the value {in_quotes(again)} twice; give it once")
@@ -277,25 +267,20 @@ def read_list(name: str, typed: str) -> Range:
     return Range(name, typed, points, False, suffix)
 
 
-def _read_number(name: str, word: str) -> _Number:
-    """A number of a range or a list. Raises SceneError."""
-    value = read_value(name, word)
-    named = word.strip().lower() in (LOCKED.text, *INPUTS[name].names)
-    has_unit = None if named else bool(read_number(word, INPUTS[name].dimension).unit)
-    if name in ("wrap", "axle"):
-        return _Number(value.number, UNUSUAL.get(value.unit, ""), has_unit)
-    return _Number(value, "", has_unit)
-
-
-def _common_unit(name: str, typed: str, numbers: Sequence[_Number]) -> str:
-    """The unit that points carry, if any. Raises SceneError."""
-    # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
-    numbers = [x for x in numbers if x.value and x.has_unit is not None]
-    if len({x.has_unit for x in numbers}) > 1:
+def _read_numbers(name: str, typed: str, words: Sequence[str]) -> tuple[list[Any], str]:
+    """The numbers of a range or a list, and the unit that points carry for them. Raises SceneError."""
+    values = [read_value(name, word) for word in words]
+    numbers = [getattr(value, "number", value) for value in values]
+    named = (LOCKED.text, *INPUTS[name].names)
+    # A name is typed neither with a unit nor without, and 0 is 0 in any.
+    plain = [i for i, word in enumerate(words) if numbers[i] and word.strip().lower() not in named]
+    if len({bool(read_number(words[i], INPUTS[name].dimension).unit) for i in plain}) > 1:
+        # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
         raise SceneError(name, typed, "has a unit at some numbers only; write it at each")
-    if len({x.suffix for x in numbers}) > 1:
+    suffixes = {UNUSUAL.get(getattr(values[i], "unit", ""), "") for i in plain}
+    if len(suffixes) > 1:
         raise SceneError(name, typed, "has units of two kinds; write all numbers in the same unit")
-    return numbers[0].suffix if numbers else ""
+    return numbers, next(iter(suffixes), "")
 
 
 def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: int | None) -> int:
@@ -388,9 +373,9 @@ def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterat
     swept = [range_.name for range_ in sweep.ranges]
     unchanged = dict(_unchanged(sweep, ["regime", *names], digits))
     for points in product(*(range_.points for range_ in sweep.ranges)):
-        at = dict(zip(swept, points, strict=True))
-        answers = Answers(sweep.at(at), digits)
+        place = dict(zip(swept, points, strict=True))
+        answers = Answers(sweep.at(place), digits)
         found = {name: unchanged.get(name, answers) for name in ["regime", *names]}
         values = {name: found[name][name] for name in names}
         reasons = {name: found[name].reasons[name] for name in names if name in found[name].reasons}
-        yield Row(at, found["regime"]["regime"], values, reasons)
+        yield Row(place, found["regime"]["regime"], values, reasons)
