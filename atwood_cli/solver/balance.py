@@ -120,7 +120,7 @@ def _piece(answers: Answers, kind: Kind, from_light: Fraction) -> int:
             angle = machine.ar.number(from_light) * machine.phi
             return angle - machine.arcs(kind)[piece].end.angle
 
-        if from_light == 0 or (from_light < 1 and not answers.is_positive(beyond)):
+        if not answers.is_positive(beyond):
             return piece
     return last
 

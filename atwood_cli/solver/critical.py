@@ -125,7 +125,7 @@ def found(derivation: Derivation) -> Iterator[Part]:
             yield from derivation.lines("mu_k")
     else:
         known = "m1" if finds == "m2" else "m2"
-        falls = case.sign and finds == f"m{h}"
+        falls = finds == f"m{h}"
         yield f"(1) gives the tension on `{known}`, and with {turning} that on `{finds}`. So"
         law = physics.heavier_mass if falls else physics.lighter_mass
         yield derivation.by(finds, law, f"{known} c a g f", "(1), (3)")

@@ -279,7 +279,7 @@ class Derivation:
         for name in MOTION:
             here, there = (in_words(name, answers[name]) for answers in (self.answers, other))
             value = self.answers[name]
-            off = f" ({self.off(other, name)} %)" if value and not is_infinite(value) else ""
+            off = f" ({self.off(other, name)} %)" if value else ""
             yield f"- `{plain(QUANTITIES[name].symbol)}` = {there} in place of {here}{off}"
 
     def off(self, other: Answers, name: str) -> str:
@@ -292,7 +292,7 @@ class Derivation:
             return percent
 
         shown = text(settle(error, to_digits(DOUBT), DOUBT))
-        return shown if shown.startswith("-") or shown == "0" else f"+{shown}"
+        return shown if shown.startswith("-") else f"+{shown}"
 
     def say(self, name: str) -> str:
         """A symbol with its value, for a sentence."""

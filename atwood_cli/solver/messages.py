@@ -171,7 +171,7 @@ def holding_again(answers: Answers) -> list[str]:
 def open_range(answers: Answers) -> list[str]:
     """The range of the motion, where it depends on a pulley mass that is not given."""
     case = answers.case
-    if case.scene.mu is None or case.regime != "no-slip" or answers["acceleration"] is not None:
+    if case.scene.mu is None or answers["acceleration"] is not None:
         return []
     ends = [answers.with_pulley(mass) for mass in (Fraction(0), inf)]
     ranges = (
