@@ -1,14 +1,17 @@
 """Seeded scenes of every stress family, as the texts that a user would type."""
 
+import cmath
 import re
 from collections.abc import Callable, Iterator
 from decimal import Context, Decimal
 from fractions import Fraction
+from math import degrees, exp, expm1, inf, ldexp, log, log1p, nextafter, pi, radians, ulp
 from random import Random
 from typing import Any
 
 import flint
 
+from atwood_cli.model.case import Case
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver.answers import Answers
 
@@ -111,6 +114,7 @@ def whole_range(rng: Random) -> Given:
 FAMILIES: dict[str, Callable[[Random], Given]] = {
     f.__name__: f for f in (ordinary, nearly_equal, light_pulley, near_critical, whole_range)
 }
+ON_AN_AXLE = " on an axle"
 
 
 def _vary(rng: Random, scene: Given) -> Given:
@@ -134,9 +138,24 @@ def _vary(rng: Random, scene: Given) -> Given:
 
 
 def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
-    rng = Random(f"{family} {seed}")
+    """Scenes of a family, on an axle that rubs if its name says so, or of a danger."""
+    rng, usual = Random(f"{family} {seed}"), family.removesuffix(ON_AN_AXLE)
     for _ in range(count):
-        yield _vary(rng, FAMILIES[family](rng))
+        given = _vary(rng, FAMILIES[usual](rng)) if usual in FAMILIES else typed(DANGERS[family](rng))
+        yield given if usual == family else with_axle(rng, given)
+
+
+def as_doubles(given: Given) -> Given | None:
+    """A scene whose numbers are the doubles nearest to those of this one; None if that is no such scene."""
+    scene = Scene.read(given)
+    numbers = scene._asdict() | {"wrap": scene.wrap.number, "axle": Case(scene).axle_friction}
+    try:
+        row = {name: float(value) for name, value in numbers.items() if value is not None}
+    except OverflowError:
+        return None
+    if not all(row.get(name, 1) for name in ("m1", "m2", "g", "I")):
+        return None
+    return typed(row)
 
 
 def with_axle(rng: Random, given: Given) -> Given:
@@ -200,3 +219,233 @@ def with_friction(rng: Random, size: float = 1) -> Given:
     if rng.random() < 0.75:
         words["mu"] = rng.choice(["0", *[f"{_log_uniform(rng, -3, 0.2):.3g}"] * 5, "1e9"])
     return words
+
+
+# Dangers of numbers, each by its name: rows of doubles that have the same inputs, so that columns solve them together
+
+Row = dict[str, float]
+G = 9.80665
+
+
+DANGERS: dict[str, Callable[[Random], Row]] = {}
+
+
+def danger(scene: Callable[[Random], Row]) -> Callable[[Random], Row]:
+    DANGERS[scene.__name__] = scene
+    return scene
+
+
+def typed(row: Row) -> Given:
+    """The doubles as texts that mean just them, to the last of their digits."""
+    return {name: "inf" if value == inf else str(Decimal(value)) for name, value in {"g": G, **row}.items()}
+
+
+def _tiny(rng: Random, least: float = 12, most: float = 305) -> float:
+    """From about 2^-40 to beyond 2^-1000."""
+    return rng.uniform(1, 2) * _log_uniform(rng, -most, -least)
+
+
+def _near_1(rng: Random, closest: float) -> float:
+    """Beside 1, by 1e-8 or less."""
+    return 1 + rng.choice([-1, 1]) * _log_uniform(rng, -closest, -8)
+
+
+def _masses(rng: Random) -> Row:
+    m1 = _log_uniform(rng, -1, 1)
+    return {"m1": m1, "m2": m1 * (1 + _log_uniform(rng, -2, 1)), "R": _log_uniform(rng, -1, 1)}
+
+
+def _turns(rng: Random) -> float:
+    return 360.0 * rng.randint(1, 3)
+
+
+def _beside(rng: Random, exact: flint.arb) -> float:
+    """One of the two doubles next to a real number that is none."""
+    nearest = float(exact.mid())
+    below = nearest if exact > nearest else nextafter(nearest, 0)
+    return rng.choice([below, nextafter(below, inf)])
+
+
+def _capstan(mu: float) -> flint.arb:
+    """k - 1 = e^{mu pi} - 1, to 400 bits."""
+    flint.ctx.prec = 400
+    return (flint.arb(mu) * flint.arb.pi()).expm1()
+
+
+@danger
+def light_pulley_whole_turns(rng: Random) -> Row:
+    return _masses(rng) | {"M": _tiny(rng), "wrap": _turns(rng)}
+
+
+@danger
+def light_pulley_short_wrap(rng: Random) -> Row:
+    return _masses(rng) | {"M": _tiny(rng, most=150), "wrap": _tiny(rng, 1, 150)}
+
+
+@danger
+def heavy_pulley(rng: Random) -> Row:
+    return _masses(rng) | {"M": rng.choice([_log_uniform(rng, 20, 300), inf])}
+
+
+@danger
+def slip_on_a_short_wrap(rng: Random) -> Row:
+    return _masses(rng) | {
+        "M": _log_uniform(rng, -1, 1),
+        "wrap": _tiny(rng, 4),
+        "mu": _log_uniform(rng, -1, 0),
+    }
+
+
+@danger
+def slip_with_weak_friction(rng: Random) -> Row:
+    return _masses(rng) | {"M": _log_uniform(rng, -1, 1), "wrap": _turns(rng), "mu": _tiny(rng)}
+
+
+@danger
+def verge_with_weak_friction(rng: Random) -> Row:
+    return _masses(rng) | {"wrap": _turns(rng), "mu": _tiny(rng)}
+
+
+@danger
+def weak_friction_on_nearly_equal_masses(rng: Random) -> Row:
+    m1, apart = _log_uniform(rng, -3, 3), _log_uniform(rng, -14, -8)
+    return {"m1": m1, "m2": m1 * (1 + apart), "mu": apart * rng.uniform(0.1, 0.9) / pi}
+
+
+@danger
+def masses_a_few_doubles_apart(rng: Random) -> Row:
+    m1 = _log_uniform(rng, -1, 1)
+    M = _log_uniform(rng, -1, 1) * _tiny(rng, 0, 20)
+    return {"m1": m1, "m2": m1 + ulp(m1) * rng.randint(1, 1000), "R": 1.0, "M": M, "wrap": _turns(rng)}
+
+
+@danger
+def near_the_least_heavier_mass(rng: Random) -> Row:
+    m1, apart = _log_uniform(rng, -1, 1), _tiny(rng, 0, 15)
+    mu = log1p(apart) / pi * _near_1(rng, 16)
+    return {"m1": m1, "m2": m1 * (1 + apart), "mu": mu, "M": _log_uniform(rng, 0, 30), "R": 1.0}
+
+
+@danger
+def near_the_least_pulley_mass(rng: Random) -> Row:
+    given, mu = _masses(rng), _log_uniform(rng, -10, 0)
+    return given | {"mu": mu, "M": 4 * given["m1"] * expm1(mu * pi) * _near_1(rng, 16)}
+
+
+@danger
+def beside_the_mass_that_any_pulley_holds(rng: Random) -> Row:
+    m1, mu = _log_uniform(rng, -3, 3), rng.uniform(0.01, 2)
+    return {"m1": m1, "m2": _beside(rng, m1 * (1 + _capstan(mu))), "mu": mu}
+
+
+@danger
+def beside_the_pulley_that_any_mass_leaves_holding(rng: Random) -> Row:
+    """The mass is beyond what a double next to the limit needs to slip."""
+    m1, mu = _log_uniform(rng, -3, 3), rng.uniform(0.01, 2)
+    return {"m1": m1, "m2": 1e25 * m1 * exp(mu * pi), "M": _beside(rng, 4 * m1 * _capstan(mu)), "mu": mu}
+
+
+@danger
+def beside_the_critical_pulley_mass(rng: Random) -> Row:
+    m1 = _log_uniform(rng, -3, 3)
+    m2 = m1 * rng.uniform(1.01, 100)
+    mu = rng.uniform(0.01, 0.99) * log(m2 / m1) / pi
+    k1 = _capstan(mu)
+    critical = 4 * flint.arb(m1) * m2 * k1 / (m2 - m1 * (1 + k1))
+    return {"m1": m1, "m2": m2, "mu": mu, "mu_k": mu * rng.uniform(0, 0.99), "M": _beside(rng, critical)}
+
+
+@danger
+def grip_with_little_to_spare(rng: Random) -> Row:
+    given, M = _masses(rng), _log_uniform(rng, -1, 1)
+    excess = (given["m2"] / given["m1"] - 1) * M / (4 * given["m2"] + M)
+    return given | {"M": M, "mu": log1p(excess) / pi * (1 + _tiny(rng, 2, 15))}
+
+
+@danger
+def capstan_ratio_beyond_the_doubles(rng: Random) -> Row:
+    return {"m1": 2.0**-1000, "m2": 2.0**1000, "M": inf, "mu": rng.uniform(230, 440)}
+
+
+@danger
+def capstan_ratio_that_a_mass_brings_back(rng: Random) -> Row:
+    """Or that leaves the doubles only beside a mass."""
+    mu, power = rng.choice([(235.0, -110), (690 / pi, rng.randint(26, 32))])
+    return {"m1": 2.0**power, "m2": 2.0 ** (power + 1), "M": 1.0, "mu": mu}
+
+
+@danger
+def friction_straight_up(rng: Random) -> Row:
+    """Its part x changes its sign between two doubles of wrap."""
+    given = _masses(rng) | {"mu": _log_uniform(rng, -2, -0.5)}
+    low, high, turn = radians(200), radians(500), complex(given["mu"], 1)
+    for _ in range(60):
+        wrap = (low + high) / 2
+        before = (1j * (cmath.exp(turn * wrap) - 1) / turn).real < 0
+        low, high = (wrap, high) if before else (low, wrap)
+    return given | {"wrap": degrees(low)}
+
+
+@danger
+def axle_that_just_holds(rng: Random) -> Row:
+    given = _masses(rng)
+    return given | {"M": _log_uniform(rng, -1, 1), "axle": G * (given["m2"] - given["m1"]) * _near_1(rng, 16)}
+
+
+@danger
+def axle_that_just_moves_on_a_rough_string(rng: Random) -> Row:
+    given = _masses(rng)
+    axle = G * (given["m2"] - given["m1"]) * (1 - abs(1 - _near_1(rng, 15)))
+    return given | {"M": rng.choice([0.0, inf, 3.0]), "mu": _log_uniform(rng, -2, 0), "axle": axle}
+
+
+@danger
+def slip_on_any_pulley_or_hardly(rng: Random) -> Row:
+    """Where the critical pulley mass is about 0."""
+    given, mu = _masses(rng), _log_uniform(rng, -3, -1)
+    m1, m2, z = given["m1"], given["m2"], given["m1"] * expm1(mu * pi)
+    return given | {"mu": mu, "axle": G * 2 * m2 * z / (m1 + m2 + z) * _near_1(rng, 16)}
+
+
+@danger
+def slip_on_an_axle_that_just_turns(rng: Random) -> Row:
+    given, mu = _masses(rng), _log_uniform(rng, -3, -2)
+    m1, m2, k = given["m1"], given["m2"], exp(mu * pi / 2)
+    axle = (k - 1) * 2 * m1 * m2 * G / (m2 + m1 * k) * _near_1(rng, 16)
+    return given | {"M": 1e3 * m2, "mu": mu, "mu_k": mu / 2, "axle": axle}
+
+
+@danger
+def axle_that_just_bears_the_heavier_mass(rng: Random) -> Row:
+    given = _masses(rng)
+    axle = G * given["m2"] * _near_1(rng, 12)
+    return given | {"M": _log_uniform(rng, -1, 1), "mu": _log_uniform(rng, -1, 1), "axle": axle}
+
+
+@danger
+def pulley_of_a_tiny_moment_of_inertia(rng: Random) -> Row:
+    given = _masses(rng)
+    return given | {"I": _tiny(rng, 4, 60), "axle": G * _tiny(rng, 4, 60), "wrap": _turns(rng), "mu": 0.2}
+
+
+@danger
+def masses_at_an_end_of_the_doubles(rng: Random) -> Row:
+    """Sums of the largest overflow, products of the smallest vanish; only results may."""
+    power = rng.choice([-1074, 1020])
+    return {x: ldexp(rng.randint(1, 15), power) for x in ("m1", "m2", "M")} | {"mu": rng.uniform(0.01, 2)}
+
+
+@danger
+def gravity_at_an_end_of_the_doubles(rng: Random) -> Row:
+    g = rng.choice([5e-324, 1e-310, 1e-200, 1e200, 1.7e308])
+    return _masses(rng) | {"M": _log_uniform(rng, -1, 1), "mu": _log_uniform(rng, -2, 0), "g": g}
+
+
+@danger
+def tie_or_beside_it(rng: Random) -> Row:
+    """With load 6 and drive 3 a tension is 3 g/2, of 54 bits: half-way between two doubles, for an odd g."""
+    scale, g = 2.0 ** rng.randint(-20, 20), 9.80665 + 2.0**-49 * rng.randint(0, 100)
+    load, M, g = rng.choice(
+        [(4, 2.0, g), (3, 2.0**-110, g), (3, 2.0**-90, g), (3, 0.0, float((2**54 - 1) // 3) * 2.0**-50)]
+    )
+    return {"m1": scale, "m2": load * scale, "M": M * scale, "g": g}

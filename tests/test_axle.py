@@ -1,15 +1,10 @@
 """Friction in the axle: Newton's laws in exact fractions, every digit, and what is said of it."""
 
-import csv
-import io
 import json
-from collections import Counter
 from decimal import Decimal
 from fractions import Fraction
 from itertools import pairwise
-from math import inf, pi
-from pathlib import Path
-from random import Random
+from math import pi
 from typing import Any
 
 import pytest
@@ -24,9 +19,8 @@ from atwood_cli.model.scene import Axle, Scene
 from atwood_cli.solver.answers import Answers
 
 from . import oracle
-from .conftest import many
 from .running import Atwood
-from .scenes import FAMILIES, inputs, scenes, table, with_axle
+from .scenes import inputs, table
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
 forces = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
@@ -45,32 +39,6 @@ def test_the_ratio_grows_with_the_pulley_and_bends_where_the_axle_lets_go() -> N
         falls = [later < earlier for earlier, later in pairwise(ratios_[1:])]
         assert falls == [c < b] * 3
         assert abs(ratios_[-1] - (c + b) / 2) < Fraction(1, 10**5)
-
-
-# Every digit
-
-
-@pytest.mark.parametrize("family", FAMILIES)
-def test_every_digit_beside_an_axle(family: str) -> None:
-    rng = Random(family)
-    wrong = []
-    regimes: Counter[str] = Counter()
-    for given_ in scenes(family, many(150), seed=16):
-        scene = Scene.read(with_axle(rng, given_))
-        expected, case = oracle.expected(scene), Case(scene)
-        regimes[f"{expected['regime']}{' at rest' * case.axle_holds}{' always' * case.always_slips}"] += 1
-        for digits in (None, 6, 40):
-            answers = Answers(scene, digits)
-            assert answers["regime"] == expected["regime"], given_
-            for name in NAMES:
-                got, want = answers[name], expected[name]
-                if got != (rounded := oracle.shown(want, digits)):
-                    wrong.append((scene, digits, name, got, rounded))
-    assert not wrong, f"{len(wrong)} wrong, such as {wrong[0]}"
-    assert regimes["no-slip at rest"] > many(5)
-    assert sum(count for regime, count in regimes.items() if "slip" in regime.split("-")[0]) > many(10), (
-        regimes
-    )
 
 
 # What is said of it
@@ -193,25 +161,6 @@ def test_it_is_a_force_at_the_rim_or_a_torque(axle: Any, newtons: Any) -> None:
     assert Case(scene).axle_friction == Fraction(newtons)
 
 
-ERRORS = """
-axle=-1 | axle '-1' must be 0 or more, and finite
-axle=0.5Nm | axle '0.5Nm' is a torque, which needs the radius R as well
-axle=5g | axle '5g' has the unit 'g'; it takes N m, mN m, N cm, lbf ft, lbf in, N, mN, kN, lbf, kgf
-axle=1MN | axle '1MN' has the unit 'MN'; it takes N m, mN m, N cm, lbf ft, lbf in, N, mN, kN, lbf, kgf
-axle=30 a=1 | a '1' has no place beside an axle whose friction holds the masses at rest; leave one of
-    them out
-axle=1 a=0 M=1 m2=None | a '0' tells nothing of m2, as the axle holds a difference at rest; leave one of
-    them out
-"""
-
-
-@pytest.mark.parametrize(("given_", "message"), table(ERRORS))
-def test_errors(given_: str, message: str) -> None:
-    with pytest.raises(SceneError) as caught:
-        solve(**inputs(given_))
-    assert str(caught.value) == message
-
-
 @pytest.mark.parametrize(("name", "given_"), [("axle", (1, "N")), ("R", Axle(1))])
 def test_what_is_no_number_is_refused(name: str, given_: Any) -> None:
     with pytest.raises(
@@ -234,20 +183,6 @@ def test_not_given_nothing_of_it_shows(atwood: Atwood) -> None:
     assert record["axle"] == "0.02 Nm"
     assert solve(**{name: value for name, value in record.items() if value is not None}).scene.axle == Axle(
         Fraction("0.02"), "N m"
-    )
-
-
-def test_it_is_swept(atwood: Atwood) -> None:
-    ran = atwood("sweep", "--m1", "1", "--m2", "3", "--axle", "0:30:4", "--only", "acceleration", "--csv")
-    assert ran.out.splitlines() == ["axle,acceleration", "0,4.903325", "10,2.403325", "20,0", "30,0"]
-    ran = atwood(
-        "sweep", "--m1", "1", "--m2", "3", "--R", "5cm", "--axle", "0:1Nm:3", "--only", "a", "--digits", "5"
-    )
-    assert "│ axle │ acceleration │\n│ (Nm) │ (m/s²)       │" in ran.out
-    assert "│ 0.5  │ 2.4033       │" in ran.out
-    ran = atwood("sweep", "--m1", "1", "--m2", "3", "--R", "5cm", "--axle", "1N:1Nm:3")
-    assert ran.err == (
-        "atwood: --axle '1N:1Nm:3' has units of two kinds; write all numbers in the same unit\n"
     )
 
 
@@ -311,39 +246,6 @@ def test_whether_the_axle_holds_may_be_in_doubt() -> None:
     assert bend.uncertainty["acceleration"] == pytest.approx(1 / 3.1 / 2)
     none = solve(m1="1", m2="3", M="10", axle="0.0(1)N")
     assert none.uncertainty["acceleration"] == pytest.approx(0.1 / 9 / 2)
-
-
-def test_the_scene_shows_it_with_its_uncertainty(atwood: Atwood) -> None:
-    words = ["solve", "--m1", "1", "--m2", "3", "--R", "5cm", "--axle"]
-    assert "axle = 0.50 ± 0.01 Nm\n" in atwood(*words, "0.50(1)Nm").out
-    assert ", axle = 0.50 ± 0.01 N\n" in atwood(*words, "0.50(1)N").out
-    assert atwood(*words, "inf").status == 2
-    assert inf > solve(m1="1", m2="3", axle="1e400").tension_1 > 0  # type: ignore[operator]
-
-
-def test_tables_take_it_beside_a_moment_of_inertia(atwood: Atwood, tmp_path: Path) -> None:
-    file = tmp_path / "in.csv"
-    file.write_text(
-        "m1 (g),m2 (g),M (g),inertia,I (g cm2),R (cm),axle (mN)\n"
-        "200,210,84,,,,16\n200,210,,,1000,5,16\n200,210,84,0.4,,5,0\n200,201,,,1000,5,16\n"
-        "200,210,,,1000,,16\n200,210,,0.5,1000,5,16\n200,210,0,,1000,5,\n200,210,84,,,,-1\n200,210,84,,,,NaN\n"
-    )
-    ran = atwood("batch", str(file), *"--only acceleration,tension_2 --accuracy exact".split())
-    rows = list(csv.DictReader(io.StringIO(ran.out)))
-    pulleys = [{"M": 0.084}, {"I": 1e-4, "R": 0.05}, {"M": 0.084, "inertia": 0.4}, {"I": 1e-4, "R": 0.05}]
-    masses = zip([0.21, 0.21, 0.21, 0.201], [0.016, 0.016, 0.0, 0.016], pulleys, strict=True)
-    solve_any: Any = solve
-    for row, (m2, axle, pulley) in zip(rows, masses, strict=False):
-        s = solve_any(m1=0.2, m2=m2, axle=axle, g=9.80665, **pulley)
-        assert [float(row["acceleration"]), float(row["tension_2"])] == [s.acceleration, s.tension_2]
-    assert [row["error"] for row in rows] == [
-        *[""] * 4,
-        "I '1000g cm2' needs the radius R as well",
-        "I '1000g cm2' and inertia both describe the pulley; give one of them",
-        "I '1000g cm2' contradicts M = 0g; leave one of them out",
-        "axle '-1mN' must be 0 or more, and finite",
-        "axle 'NaN' must be 0 or more, and finite",
-    ]
 
 
 def test_the_table_marks_the_equations_that_the_axle_enters(atwood: Atwood) -> None:

@@ -1,9 +1,6 @@
 """From a measured acceleration back to the pulley or to gravity, and the fall from rest."""
 
-import csv
-import io
 import json
-import re
 from decimal import Decimal
 from fractions import Fraction
 from math import pi, sqrt
@@ -15,10 +12,9 @@ from hypothesis import strategies as st
 
 from atwood_cli import Scene, SceneError, Solution, solve
 from atwood_cli.model.angle import Angle
-from atwood_cli.model.quantities import MEASURED_NAMES, NAMES
+from atwood_cli.model.quantities import NAMES
 
-from .running import Atwood, on_terminal, process
-from .scenes import inputs, table
+from .running import Atwood, on_terminal
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
 
@@ -215,157 +211,13 @@ def test_a_fall_in_doubt_of_slipping() -> None:
 # What cannot be
 
 
-ERRORS = """
-a=inf | a 'inf' must be finite
-a=1kg | a '1kg' has the unit 'kg'; it takes m/s2, m s-2, cm/s2, ft/s2, N/kg
-drop=0 | drop '0' must be above 0, and finite
-drop=1s | drop '1s' has the unit 's'; it takes m, km, dm, cm, mm, um, in, ft, yd
-drop=1 time=-1 | time '-1' must be above 0, and finite
-time=1 | time '1' needs drop, the height fallen in it
-time=1 drop=1 a=1 | time '1' and a both tell the acceleration; give one of them
-a=1 mu=0.3 | a '1' has no place beside mu, as a string that slips moves alike on any pulley; leave
-    mu out
-a=1 I=1 R=1 g=9.8 | a '1' leaves nothing to find beside both I and g; leave one of them out
-a=1 m2=None | m2 is missing; give it, or M, beside which a finds it
-a=1 m2=None m1=None | m1 is missing; give both masses, m1 and m2
-m2=None M=1 | m2 is missing; give both masses, m1 and m2
-a=1 m2=None M=1 mu=0.3 | a '1' has no place beside mu, as whether the string slips depends on m2;
-    leave mu out
-drop=80cm time=0.55 | time '0.55' implies M = -0.583721 kg, which must be 0 or more (inf locks the
-    pulley)
-a=5.0(1) | a '5.0(1)' implies M = -0.15468 kg, which must be 0 or more (inf locks the pulley)
-drop=1 time=1 m2=None M=1 | time '1' does not tell which way m2 moves; give a in its place, positive
-    when m2 descends
-a=1 m1=0 m2=None M=0 | a '1' tells nothing of m2, which falls freely; give the other mass or M above
-    0
-a=9.80665 m2=None M=10 | a '9.80665' must be below 9.80665 m/s², that of free fall
-a=11 m2=None M=10 | a '11' must be below 9.80665 m/s², that of free fall
-a=-1.7 m2=None M=10 | a '-1.7' implies m2 = -0.0341846 kg, which must be 0 or more, and finite
-a=-9.9 m1=None M=10 | a '-9.9' must be above -9.80665 m/s², that of free fall
-a=0 m1=0 m2=None M=10 | a '0' implies that both masses are 0
-a=0 M=inf | a '0' must be above 0, as m2 is the heavier mass
-a=5 M=inf | a '5' is too large for any friction: without it the acceleration is 4.90 m/s²
-a=-1 M=inf | a '-1' must be above 0, as m2 is the heavier mass
-a=1 M=inf m1=0 | a '1' has no place beside M = inf and a free end, which is fixed to the pulley;
-    leave it out
-a=1 M=inf mu=0.3 mu_k=0.2 | a '1' and mu_k both tell how the string slides; leave one of them out
-a=1 M=10 mu=0.3 | a '1' has no place beside mu = 0.3, with which the string does not slip; leave mu
-    out
-a=0.7 M=inf mu=0.3 | a '0.7' is that of a string with more kinetic friction than mu; check both
-a=1 M=inf m2=None | a '1' has no place beside M = inf, which lets nothing move; leave one of them
-    out
-a=1 M=1 g=9.8 | a '1' leaves nothing to find beside both M and g; leave one of them out
-a=1 m2=1 | a '1' tells nothing of equal masses, which rest on any pulley; leave it out
-a=0 | a '0' must be above 0, as m2 is the heavier mass
-a=-1 | a '-1' must be above 0, as m2 is the heavier mass
-a=4.9034 | a '4.9034' implies M = -0.000122364 kg, which must be 0 or more (inf locks the pulley)
-a=5.00(3) | a '5.00(3)' implies M = -0.15468 kg, which must be 0 or more (inf locks the pulley)
-a=1 m1=3 m2=1 | a '1' must be below 0, as m1 is the heavier mass
-drop=1 time=0.500(5) | time '0.500(5)' implies M = -3.09668 kg, which must be 0 or more (inf locks
-    the pulley)
-a=-1 M=1 | a '-1' must be above 0, as m2 is the heavier mass
-a=0 M=1 m1=4 | a '0' must be below 0, as m1 is the heavier mass
-a=1.0(0.1) | a '1.0(0.1)' is not a number with its uncertainty; write it like 1.000±0.002, 1.000+-0.002
-    or 1.000(2), and a unit after that
-"""
-
-
-@pytest.mark.parametrize(("given", "message"), table(ERRORS))
-def test_errors(given: str, message: str) -> None:
-    with pytest.raises(SceneError) as caught:
-        solve(**inputs(given))
-    assert str(caught.value) == message
-
-
 @pytest.mark.parametrize("a", [float("nan"), float("-inf")])
 def test_an_acceleration_is_a_finite_number(a: float) -> None:
     with pytest.raises(SceneError, match=f"^a {a} must be finite$"):
         solve(m1=1, m2=3, a=a)
 
 
-def test_only_of_what_the_scene_does_not_ask_names_the_option(atwood: Atwood) -> None:
-    words = [word for name in MEASURED_NAMES for word in ("--only", name)]
-    ran = atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", *words)
-    assert (ran.status, ran.out) == (1, "")
-    assert ran.err.splitlines() == [
-        "atwood: pulley_mass, moment_of_inertia: give a, a measured acceleration, in place of M.",
-        "atwood: gravity: give a, a measured acceleration, beside M and in place of g.",
-        "atwood: m1: give a, a measured acceleration, and M in place of m1.",
-        "atwood: m2: give a, a measured acceleration, and M in place of m2.",
-        "atwood: mu_k: give a, a measured acceleration, beside M = inf, or beside M and a mu that is too small.",
-        "atwood: fall_time, final_speed: give drop, the height that the heavier mass falls from rest.",
-    ]
-
-
-@pytest.mark.parametrize("given", [["--m2", "1"], ["--m2", "3", "--M", "inf"]])
-def test_what_rests_does_not_fall(given: list[str], atwood: Atwood) -> None:
-    ran = atwood("solve", "--m1", "1", *given, "--drop", "1", "--only", "fall_time", "--only", "final_speed")
-    assert (ran.status, ran.out) == (1, "")
-    assert ran.err == "atwood: fall_time, final_speed: does not exist, as nothing moves.\n"
-
-
-def test_a_fall_that_needs_the_pulley(atwood: Atwood) -> None:
-    ran = atwood("solve", "--m1", "1", "--m2", "3", "--mu", "0.4", "--drop", "1", "--only", "fall_time")
-    assert (ran.status, ran.err) == (1, "atwood: fall_time: give M, the pulley's mass, which decides here.\n")
-
-
-# How they are shown
-
-
-FROM_PULLEY_AND_FALL = ("pulley_mass", "moment_of_inertia", "fall_time", "final_speed")
-LAB = ["solve", "--m1", "1", "--m2", "3", "--a", "1.00(1)", "--R", "10cm", "--drop", "2"]
-
-
-def test_the_scene_shows_what_was_measured_and_not_what_was_found(atwood: Atwood) -> None:
-    ran = atwood(*LAB)
-    assert (ran.status, ran.err) == (0, "")
-    assert "wrap = 180°, a = 1.00 ± 0.01 m/s²,\ndrop = 2 m\n" in ran.out
-    assert ", M = " not in ran.out.splitlines()[0]
-
-
-def test_json_has_null_for_what_was_not_found_and_csv_has_no_column(atwood: Atwood) -> None:
-    def found(printed: dict[str, Any]) -> set[str]:
-        return {name for name in MEASURED_NAMES if printed[name] is not None}
-
-    printed = json.loads(atwood(*LAB, "--json").out)
-    assert found(printed) == set(FROM_PULLEY_AND_FALL)
-    assert printed["scene"]["M"] is None
-    assert (printed["scene"]["a"], printed["scene"]["drop"], printed["scene"]["time"]) == (1, 2, None)
-    gravity = json.loads(atwood("solve", "--m1", "1", "--m2", "3", "--M", "7", "--a", "1.5", "--json").out)
-    assert found(gravity) == {"gravity"}
-    assert (gravity["scene"]["g"], gravity["gravity"]) == (None, 5.625)
-    names, values = csv.reader(io.StringIO(atwood(*LAB, "--csv").out))
-    here = [*NAMES, *FROM_PULLEY_AND_FALL]
-    assert names == [*here, *(f"u_{name}" for name in here[1:])]
-    assert dict(zip(names, values, strict=True))["pulley_mass"] == "31.2266"
-
-
 # By T = m (g ± a), and M/2 = (T_h - T_l)/a.
-FOUND = """
---m1 1 --m2 3 --M 0 --a 2                | gravity = 4.00000 m/s²
---m1 1 --m2 3 --a 2                      | pulley_mass = 11.6133 kg
---m1 1 --M 0.8 --a 4.903325              | m2 = 3.40000 kg
---m2 3 --M 0 --a 4.903325                | m1 = 1.00000 kg
---m1 1 --m2 3 --M inf --a 4.903325       | mu_k = 0
---m1 1 --m2 3 --M 0 --g 8 --drop 2       | fall_time = 1.00000 s, final_speed = 4.00000 m/s
---m1 1 --m2 3 --M 0 --drop 1 --time 1    | gravity = 4.00000 m/s², acceleration = 2.00000 m/s²,
-    final_speed = 2.00000 m/s
---m1 1 --m2 3 --M 0 --a 2 --drop 1 --all | gravity = 4.00000 m/s², fall_time = 1.00000 s,
-    final_speed = 2.00000 m/s
---m1 1 --m2 3 --a 1.00(1) --R 10cm --drop 2 | pulley_mass = 31.23 ± 0.39 kg,
-    moment_of_inertia = 0.1561 ± 0.0020 kg m², fall_time = 2.000 ± 0.010 s, final_speed = 2.000 ± 0.010 m/s
-"""
-
-
-@pytest.mark.parametrize(("words", "found"), table(FOUND))
-def test_what_was_found_is_the_first_line_below_the_scene(atwood: Atwood, words: str, found: str) -> None:
-    out = atwood("solve", *words.split()).out
-    scene, below = out.split("\nFound: ")
-    assert re.fullmatch(r"(\S+ = [^=]+)+", scene)
-    assert below.replace("\n", " ").startswith(f"{found}. ")
-    rows = re.findall(r"│ (\w+) ", out)
-    assert "mu_verge" in rows
-    assert not {*rows} & {*MEASURED_NAMES, *re.findall(r"(\w+) =", found)}
 
 
 def test_it_is_bold_on_a_terminal() -> None:
@@ -380,20 +232,6 @@ def test_a_pulley_mass_without_a_decimal_is_no_trouble_for_json(atwood: Atwood) 
         json.loads(atwood("solve", "--m1", "1", "--m2", "3", "--a", "0.3", "--json").out)["scene"]["M"]
         is None
     )
-
-
-def test_other_commands_and_solutions_know_nothing_of_them(atwood: Atwood) -> None:
-    assert not any(getattr(solve(m1=1, m2=3, M=10), name) for name in MEASURED_NAMES)
-    ran = atwood("sweep", "--m1", "1", "--m2", "3", "--M", "1:2:3", "--only", "fall_time")
-    assert ran.err.startswith("atwood: --only 'fall_time' is no quantity; ")
-    assert "No such option: --drop" in atwood("contact", "--m1", "1", "--m2", "3", "--drop", "1").err
-    batch = process(shell="printf 'm1,m2\\n1,3\\n' | atwood batch - --only pulley_mass")
-    assert batch.err.startswith("atwood: --only 'pulley_mass' is no quantity; ")
-
-
-def test_help_has_a_panel_for_them(atwood: Atwood) -> None:
-    words = atwood("solve", "-h").out
-    assert all(option in words for option in ("Measured", "--a ", "--drop", "--time"))
 
 
 def test_digits_and_signs() -> None:

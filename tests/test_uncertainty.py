@@ -1,7 +1,5 @@
 """Standard uncertainties: how they are typed, propagated, shown, and what is refused."""
 
-import csv
-import io
 import json
 import re
 import subprocess
@@ -20,17 +18,11 @@ import pytest
 from atwood_cli import SceneError, solve, solve_arrays
 from atwood_cli.model.angle import Angle
 from atwood_cli.model.digits import to_digits, to_place, with_uncertainty
-from atwood_cli.model.quantities import MEASURED_NAMES, NAMES
 from atwood_cli.model.scene import read_input
 from atwood_cli.solver.answers import Answers, read_answers
 
 from .conftest import many
-from .running import Atwood, process
 from .scenes import of_all_kinds, with_friction
-
-A_STEPS = [9.80665 / 2 * (2.002 / 8.998 - 1.998 / 9.002), 9.80665 / 2 * (2.01 / 9.01 - 1.99 / 8.99)]
-"""Of a = g (m2 - m1)/(m1 + m2 + 5) with m1 and with m2, in the scene that follows."""
-UNCERTAIN = ["solve", "--m1", "1.000(2)", "--m2", "3+/-0.01", "--M", "10"]
 
 
 def inputs(words: str) -> dict[str, str]:
@@ -68,46 +60,6 @@ def test_angles_stay_in_their_unit() -> None:
     assert radians[:2] == (Angle(Fraction("3.14"), "rad"), Fraction("0.02"))
     assert turns[:2] == (Angle(Fraction(180)), Fraction("3.6"))
     assert radians.value != Fraction("3.14")
-
-
-FORMS = "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+-0.002 or 1.000(2), and a unit after that"
-# fmt: off
-NO_NUMBERS = [
-    "1.0(0.2)", "1.0()", "(1.0)", "1±", "±1", "1±-1", "1±1±1", "1.0(2)(3)", "1 (2)", "1.0(2", "1g±1", "1kg±1g",
-    "inf±1", "1±inf", "(1e3±1)", "1,5±1", "1%±1", "1±%", "sin(1)",
-]
-# fmt: on
-REFUSED = {
-    **{f"m1 {bad}": FORMS for bad in NO_NUMBERS},
-    "g moon±0.1": FORMS,
-    "m1 -1.0(2)": "must be 0 or more, and finite",
-    "g 0±1": "must be above 0, and finite",
-    "m1 1.0(2)kgg": "has the unit 'kgg'; it takes kg, g, mg, ug, t, lb, lbs, oz, st, slug",
-    "mu 0.30(1)kg": "must be a plain number, without the 'kg'",
-    "m1 1±1e501": "has an exponent beyond 500 in magnitude",
-    "mu_k 0.40(1)": "must not be above mu; exactly, 0.4 > 0.3",
-}
-
-
-@pytest.mark.parametrize("typed", REFUSED)
-def test_errors_say_what_was_typed(typed: str) -> None:
-    name, _, value = typed.partition(" ")
-    with pytest.raises(SceneError) as caught:
-        solve(**{"m1": "1", "m2": "3", "mu": "0.30(1)", name: value})
-    assert str(caught.value) == f"{name} {value!r} {REFUSED[typed]}"
-
-
-@pytest.mark.parametrize(
-    "arguments", ["contact --m1 1.0(2) --m2 3", "sweep --m1 1.0(2) --m2 3 --M 1:2:3", "batch -"]
-)
-def test_only_solve_takes_them(arguments: str, atwood: Atwood) -> None:
-    rule = "'1.0(2)' carries an uncertainty, which only solve takes; give the value alone"
-    if arguments == "batch -":
-        ran = process(shell="printf 'm1,m2\\n1.0(2),3\\n' | atwood batch - --only regime")
-        assert ran.out == f'm1,m2,regime,error\n1.0(2),3,,"m1 {rule}"\n'
-        return
-    ran = atwood(*arguments.split())
-    assert (ran.status, ran.out, ran.err) == (2, "", f"atwood: --m1 {rule}\n")
 
 
 # Against steps by hand, by `solve`, by another library and by chance
@@ -405,31 +357,7 @@ def test_all_that_have_no_uncertainty_are_counted() -> None:
     assert f"and so on for {len(without) - 3} more: at R = 0 m" in " ".join(solution.notes)
 
 
-def test_only_what_is_asked_for_is_said(atwood: Atwood) -> None:
-    given = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.34(2)"]
-    ran = atwood(*given, "--only", "critical_pulley_mass")
-    assert "acceleration" not in ran.err
-    assert "critical_pulley_mass is 254.567 kg, 77.8 kg or more" in ran.err
-
-
 # How they are shown
-
-
-def test_the_table_ends_values_at_the_second_digit_of_their_uncertainty(atwood: Atwood) -> None:
-    ran = atwood(*UNCERTAIN)
-    assert (ran.status, ran.err) == (0, "")
-    assert ran.out.startswith("m1 = 1.000 ± 0.002 kg, m2 = 3.00 ± 0.01 kg, M = 10 kg, g")
-    assert re.search(r"│ acceleration +│ +2\.1793 ± 0\.0089 +│", ran.out)
-    assert re.search(r"│ tension_2 +│ +22\.882 ± 0\.051 +│", ran.out)
-    assert re.search(r"│ axle_force +│ 132\.935 ± 0\.066 +│", atwood(*UNCERTAIN, "--all").out)
-
-
-def test_what_has_no_uncertainty_is_shown_with_six_digits(atwood: Atwood) -> None:
-    assert re.search(r"│ mu_verge +│ +0 +│", atwood("solve", "--m1", "1.000(2)", "--m2", "3").out)
-    given = ["solve", "--m1", "1", "--m2", "3", "--M", "10", "--g", "9.81(1)"]
-    assert re.search(r"│ mu_verge +│ +0\.205828 +│", atwood(*given).out)
-    assert re.search(r"│ mu_verge +│ +0\.2058 +│", atwood(*given, "--digits", "4").out)
-    assert re.search(r"│ acceleration +│ +2\.1800 ± 0\.0022 +│", atwood(*given, "--digits", "1").out)
 
 
 # fmt: off
@@ -451,84 +379,6 @@ def test_numbers_of_every_size(numbers: str) -> None:
     assert with_uncertainty(lambda place: to_place(place)(Fraction(value)), u) == SIZES[numbers]
 
 
-def test_the_scene_shows_radians_as_they_are(atwood: Atwood) -> None:
-    ran = atwood("solve", "--m1", "1", "--m2", "3", "--wrap", "3.1(1)rad")
-    assert "wrap = 3.1 ± 0.1rad\n" in ran.out
-    assert "wrap = 180 ± 2°\n" in atwood("solve", "--m1", "1", "--m2", "3", "--wrap", "180(2)").out
-
-
-def test_json_has_an_object_of_them(atwood: Atwood) -> None:
-    result = json.loads(atwood(*UNCERTAIN, "--json").out)
-    exact = json.loads(atwood("solve", "--m1", "1", "--m2", "3", "--M", "10", "--json").out)
-    assert {**result, "uncertainty": None} == exact
-    assert list(result["uncertainty"]) == [*NAMES[1:], *MEASURED_NAMES]
-    assert result["uncertainty"]["acceleration"] == pytest.approx(hypot(*A_STEPS), rel=1e-13)
-    assert result["uncertainty"]["torque"] is None
-    only = json.loads(atwood(*UNCERTAIN, "--json", "--only", "regime", "--only", "torque").out)
-    assert only == {"regime": "no-slip", "torque": None, "uncertainty": {"torque": None}}
-    digits = atwood(*UNCERTAIN, "--json", "--only", "acceleration", "--digits", "3").out
-    assert '"acceleration": 2.18,' in digits
-    assert '"acceleration": 0.00888' in digits
-
-
-def test_csv_has_columns_after(atwood: Atwood) -> None:
-    ran = atwood(*UNCERTAIN, "--csv", "--only", "regime", "--only", "acceleration", "--only", "torque")
-    names, values = csv.reader(io.StringIO(ran.out))
-    assert names == ["regime", "acceleration", "torque", "u_acceleration", "u_torque"]
-    assert [*values[:3], values[4]] == ["no-slip", "2.1792555555555557", "", ""]
-    assert float(values[3]) == pytest.approx(hypot(*A_STEPS), rel=1e-13)
-    assumed = "atwood: regime: assumed, as mu is not given.\n"
-    assert ran.err == f"{assumed}atwood: torque: give R, the pulley's radius.\n"
-    every = next(csv.reader(io.StringIO(atwood(*UNCERTAIN, "--csv").out)))
-    assert every == [*NAMES, *(f"u_{name}" for name in NAMES[1:])]
-
-
-def test_only_gives_scripts_the_value_and_people_the_doubt(atwood: Atwood) -> None:
-    ran = atwood(*UNCERTAIN, "--only", "acceleration", "--only", "mu_verge", "--only", "regime")
-    assert (ran.status, ran.out) == (0, "2.1792555555555557\n0.20582781927064067\nno-slip\n")
-    said = "acceleration = 2.1793 ± 0.0089 m/s²\natwood: mu_verge = 0.20583 ± 0.00066\n"
-    assert ran.err == f"atwood: regime: assumed, as mu is not given.\natwood: {said}"
-    doubtful = atwood(*UNCERTAIN, "--mu", "0.21(1)", "--only", "regime")
-    assert (doubtful.status, doubtful.out) == (0, "no-slip\n")
-    assert doubtful.err.startswith(
-        "atwood: Whether the string slips is in doubt: it is otherwise at mu = 0.19, 2"
-    )
-
-
-def test_the_budget_in_a_table_and_in_json(atwood: Atwood) -> None:
-    out = atwood(*UNCERTAIN, "--budget").out
-    assert "Each input's share of the variance, in percent:" in out
-    assert re.search(r"│ acceleration +│ +9\.0 │ +91\.0 │", out)
-    result = json.loads(
-        atwood(*UNCERTAIN, "--budget", "--json", "--only", "acceleration", "--only", "torque").out
-    )
-    shares = result["budget"]["acceleration"]
-    assert shares == {
-        "m1": pytest.approx(100 * A_STEPS[0] ** 2 / hypot(*A_STEPS) ** 2, rel=1e-12),
-        "m2": pytest.approx(100 * A_STEPS[1] ** 2 / hypot(*A_STEPS) ** 2, rel=1e-12),
-    }
-    assert result["budget"]["torque"] is None
-
-
-def test_a_budget_needs_an_uncertain_input(atwood: Atwood) -> None:
-    ran = atwood("solve", "--m1", "1", "--m2", "3", "--budget")
-    why = "atwood: --budget needs an input with its uncertainty, like --m1 '1.000(2)'\n"
-    assert (ran.status, ran.out, ran.err) == (2, "", why)
-
-
-def test_the_budget_beside_bare_values_and_in_csv(atwood: Atwood) -> None:
-    ran = atwood(*UNCERTAIN, "--budget", "--only", "acceleration")
-    value, *budget = ran.out.splitlines()
-    assert (ran.status, value) == (0, "2.1792555555555557")
-    assert re.search(r"│ acceleration +│ +9\.0 │ +91\.0 │", "".join(budget))
-    (row,) = csv.DictReader(io.StringIO(atwood(*UNCERTAIN, "--budget", "--csv", "--only", "a,torque").out))
-    assert list(row)[-4:] == [
-        f"budget_{name}_{x}" for name in ("acceleration", "torque") for x in ("m1", "m2")
-    ]
-    assert float(row["budget_acceleration_m1"]) == pytest.approx(100 * A_STEPS[0] ** 2 / hypot(*A_STEPS) ** 2)
-    assert row["budget_torque_m1"] == ""
-
-
 def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:
     code = (
         "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
@@ -548,9 +398,3 @@ def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:
 
 def test_digits_give_decimals() -> None:
     assert solve(m1="1.000(2)", m2="3", digits=5).uncertainty["acceleration"] == Decimal("0.0073550")
-
-
-def test_sentences_beside_uncertainties_are_short(atwood: Atwood) -> None:
-    for digits in ([], ["--digits", "9"]):
-        ran = atwood("solve", "--m1", "1.000(2)", "--m2", "3", "--M", "10", *digits)
-        assert ran.out.splitlines()[1] == "Assumed to hold, without mu: it does if mu is at least 0.206."

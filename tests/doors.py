@@ -1,0 +1,159 @@
+"""The ways to a value: from Python, the command line and tables, of scenes given as texts or as doubles."""
+
+import csv
+import io
+import json
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from decimal import Decimal
+from math import isnan
+from typing import Any, NamedTuple
+
+import numpy as np
+import polars as pl
+
+from atwood_cli import REGIMES, solve, solve_arrays, solve_table
+from atwood_cli.model.quantities import NAMES
+from atwood_cli.model.scene import INPUTS
+
+from .running import called
+from .scenes import Given
+
+Values = Mapping[str, Any]
+solve_any: Any = solve  # with inputs that are put together here
+
+
+class Door(NamedTuple):
+    """A way to the values of scenes, and how right they are: to digits, or to the double that is nearest.
+
+    A slow one is tried on every so many scenes. What stands on paper has nothing where a value is infinite.
+    """
+
+    open: Callable[[Sequence[Given]], Iterator[Values]]
+    digits: int | None = None
+    every: int = 1
+    on_paper: bool = False
+    certified: bool = False
+
+
+def words(given: Given) -> list[str]:
+    """The options that give the scene."""
+    return [word for name, text in given.items() for word in (f"--{name.replace('_', '-')}", text)]
+
+
+def out_of(command: str, given: Given, *more: str) -> str:
+    """What the command prints of the scene: nothing where values that are asked for need another input."""
+    ran = called([command, *words(given), *more])
+    assert ran.status in (0, 1) or "which decides here" in ran.err, (given, ran.err)
+    return ran.out
+
+
+def of_solutions(digits: int | None) -> Callable[[Sequence[Given]], Iterator[Values]]:
+    def values(scenes: Sequence[Given]) -> Iterator[Values]:
+        for given in scenes:
+            solution = solve_any(**given, digits=digits)
+            yield {name: getattr(solution, name) for name in NAMES}
+
+    return values
+
+
+def of_json(scenes: Sequence[Given]) -> Iterator[Values]:
+    return (json.loads(out_of("solve", given, "--json")) for given in scenes)
+
+
+def of_json_with_digits(scenes: Sequence[Given]) -> Iterator[Values]:
+    for given in scenes:
+        yield json.loads(
+            out_of("solve", given, "--json", "--digits", "30"), parse_float=Decimal, parse_int=Decimal
+        )
+
+
+def of_sweeps(scenes: Sequence[Given]) -> Iterator[Values]:
+    """The first row of two."""
+    for given in scenes:
+        swept = given | {"m2": f"{given['m2']},{given['m1']}"}
+        yield next(of_csv(out_of("sweep", swept, "--csv", "--only", ",".join(NAMES))))
+
+
+def of_contact(scenes: Sequence[Given]) -> Iterator[Values]:
+    for given in scenes:
+        found = json.loads(out_of("contact", given, "--json", "--points", "2") or "{}")
+        ends = {f"tension_{i}": point["tension"] for i, point in enumerate(found.get("points", []), start=1)}
+        yield {"regime": found["regime"], **ends} if found else {}
+
+
+def of_explanations(scenes: Sequence[Given]) -> Iterator[Values]:
+    """What stands in the line below the verdict."""
+    symbols = {"a": "acceleration", "T1": "tension_1", "T2": "tension_2"}
+    for given in scenes:
+        [line] = re.findall(r"^a = [^.].*?\.$|$", out_of("solve", given, "--explain"), re.MULTILINE)[:1]
+        yield {symbols[symbol]: Decimal(value) for symbol, value in re.findall(r"(\w+) = ([-\d.e]+)", line)}
+
+
+def of_csv(text: str) -> Iterator[Values]:
+    for row in csv.DictReader(io.StringIO(text)):
+        yield {
+            name: cell if name == "regime" else float(cell) if cell else None for name, cell in row.items()
+        }
+
+
+def of_batch(scenes: Sequence[Given]) -> Iterator[Values]:
+    table = io.StringIO()
+    writer = csv.DictWriter(table, INPUTS)
+    writer.writeheader()
+    writer.writerows(scenes)
+    ran = called(["batch", "-", "--only", ",".join(NAMES)], table.getvalue().encode())
+    assert "no errors" in ran.err, ran.err
+    return of_csv(ran.out)
+
+
+def of_table(scenes: Sequence[Given]) -> Iterator[Values]:
+    columns = {name: [float(given[name]) if name in given else None for given in scenes] for name in INPUTS}
+    frame = solve_table(pl.DataFrame(columns, schema=dict.fromkeys(INPUTS, pl.Float64)), NAMES)
+    return frame.iter_rows(named=True)
+
+
+def of_arrays(accuracy: Any) -> Callable[[Sequence[Given]], Iterator[Values]]:
+    def values(scenes: Sequence[Given]) -> Iterator[Values]:
+        results = solve_arrays(**columns_of(scenes), accuracy=accuracy, quantities=NAMES)
+        assert not results["status"].any()
+        for i in range(len(scenes)):
+            row = {name: results[name][i].item() for name in NAMES}
+            values = {name: None if isnan(value) else value for name, value in row.items()}
+            yield values | {"regime": REGIMES[row["regime"]]}
+
+    return values
+
+
+def columns_of(scenes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """They cannot be written to, so that every test sees that inputs are left alone."""
+    columns = {
+        name: np.ma.array(
+            [float(given.get(name, 0)) for given in scenes], mask=[name not in given for given in scenes]
+        )
+        for name in INPUTS
+    }
+    for column in columns.values():
+        column.flags.writeable = False
+    return columns
+
+
+TEXTS = {
+    "doubles": Door(of_solutions(None)),
+    "6 digits": Door(of_solutions(6), 6),
+    "40 digits": Door(of_solutions(40), 40),
+    **{f"{digits} digits": Door(of_solutions(digits), digits, every=8) for digits in (1, 17, 200)},
+    "JSON": Door(of_json, every=16, on_paper=True),
+    "JSON, 30 digits": Door(of_json_with_digits, 30, every=16, on_paper=True),
+    "a sweep": Door(of_sweeps, every=16, on_paper=True),
+    "contact": Door(of_contact, every=16, on_paper=True),
+    "an explanation": Door(of_explanations, 6, every=16),
+}
+"""Doors for scenes as people type them."""
+DOUBLES = {
+    "certified": Door(of_arrays("certified"), certified=True),
+    "exact": Door(of_arrays("exact")),
+    "batch": Door(of_batch, on_paper=True),
+    "a table": Door(of_table, on_paper=True),
+}
+"""Doors for scenes whose numbers are doubles."""
