@@ -16,11 +16,14 @@ import numpy as np
 from scipy import optimize, stats
 
 from atwood_cli.laboratory.judgement import Fitted, conditions_of, fitted
+from atwood_cli.laboratory.published import USUAL
 from atwood_cli.laboratory.runs import Kind, Run, Runs
 from atwood_cli.laboratory.statistics import Alike
 from atwood_cli.model.scene import INPUTS, Input, read_input
 
 C, F, G, DROP = 0.028, 0.009, 9.80665, 1.1
+BLUNDER = 0.01
+"""kg, of a mass that is mistyped."""
 NOTHING = {name: read_input(name, None) for name in INPUTS}
 Random = np.random.Generator
 
@@ -31,7 +34,7 @@ class Design(NamedTuple):
     ``u`` is that of a single time (s) or acceleration (m/s²), or of a time as a share of it if ``relative``;
     ``masses`` that of each mass (kg), ``axle`` that of the axle's friction from run to run, ``between`` that of
     all times of a run, both as shares. ``stated``: the uncertainties that the table states, times this.
-    ``delay`` is common to all times (s). If ``averaged``, the table has only the mean of the repeats.
+    If ``averaged``, the table has only the mean of the repeats.
     """
 
     runs: int
@@ -45,15 +48,14 @@ class Design(NamedTuple):
     stated: float = 0.0
     relative: bool = False
     averaged: bool = False
-    delay: float = 0.0
     c: float = C
     f: float = F
 
     def __str__(self) -> str:
         """What differs from the usual."""
         usual = self._field_defaults
-        more = (f"{name} {value}" for name, value in self._asdict().items() if value != usual.get(name))
-        return ", ".join(more)
+        names = [name for name, value in self._asdict().items() if value != usual.get(name)]
+        return ", ".join(f"{name} {getattr(self, name)}" for name in names)
 
 
 class Bar(NamedTuple):
@@ -61,39 +63,29 @@ class Bar(NamedTuple):
 
     design: Design
     within: float = 90.0
-    width: float = nan
+    width: float = 1.25
 
 
 BARS = [
     # Runs that differ by their scatter alone.
-    Bar(Design(7, 3, 0.1), 90, 1.25),
-    Bar(Design(3, 3, 0.07), 90, 1.25),
-    Bar(Design(4, 3, 0.05), 90, 1.25),
-    Bar(Design(5, 3, 0.05), 90, 1.25),
-    Bar(Design(5, 4, 0.05, "vary"), 90, 1.25),
-    Bar(Design(7, 3, 0.07), 90, 1.25),
-    Bar(Design(12, 3, 0.05), 90, 1.25),
-    Bar(Design(20, 5, 0.05), 90, 1.25),
-    Bar(Design(7, 3, 0.1, averaged=True), 90, 1.25),
-    Bar(Design(7, 3, 0.2, averaged=True), 90, 1.25),
-    Bar(Design(8, 1, 0.05), 90, 1.25),
-    Bar(Design(8, 1, 0.01, kind="a"), 90, 1.25),
-    Bar(Design(8, 3, 0.01, "vary", kind="a"), 90, 1.25),
-    Bar(Design(8, 3, 0.05, "swapped"), 90, 1.25),
-    Bar(Design(8, 3, 0.05, c=0.0, f=0.0), 90, 1.25),
+    *(Bar(Design(runs, 3, u)) for runs, u in ((7, 0.1), (3, 0.07), (4, 0.05), (5, 0.05))),
+    Bar(Design(5, 4, 0.05, "vary")),
+    *(Bar(Design(*of)) for of in ((7, 3, 0.07), (12, 3, 0.05), (20, 5, 0.05))),
+    *(Bar(Design(7, 3, u, averaged=True)) for u in (0.1, 0.2)),
+    Bar(Design(8, 1, 0.05)),
+    Bar(Design(8, 1, 0.01, kind="a")),
+    Bar(Design(8, 3, 0.01, "vary", kind="a")),
+    Bar(Design(8, 3, 0.05, "swapped")),
+    Bar(Design(8, 3, 0.05, c=0.0, f=0.0)),
     # Uncertainties that are stated, rightly and wrongly.
-    Bar(Design(7, 3, 0.05, stated=1.0), 90, 1.25),
-    Bar(Design(7, 3, 0.05, stated=0.5), 90, 1.25),
-    Bar(Design(7, 3, 0.05, stated=2.0), 90, 1.25),
-    Bar(Design(8, 3, 0.05, masses=2e-4, stated=1.0), 92),
-    Bar(Design(8, 1, 0.05, masses=2e-4, stated=1.0), 92),
+    *(Bar(Design(7, 3, 0.05, stated=times)) for times in (1.0, 0.5, 2.0)),
+    *(Bar(Design(8, repeats, 0.05, masses=2e-4, stated=1.0), 92, nan) for repeats in (3, 1)),
     # Runs that differ by more than their scatter.
-    Bar(Design(8, 3, 0.001, axle=0.1)),
-    Bar(Design(8, 3, 0.001, between=0.015)),
-    Bar(Design(8, 3, 0.05, masses=2e-4), 80),
-    Bar(Design(8, 1, 0.02, relative=True), 80),
+    Bar(Design(8, 3, 0.001, axle=0.1), 90, nan),
+    Bar(Design(8, 3, 0.001, between=0.015), 90, nan),
+    Bar(Design(8, 3, 0.05, masses=2e-4), 80, nan),
+    Bar(Design(8, 1, 0.02, relative=True), 80, nan),
 ]
-DELAYED = Design(7, 3, 0.05, delay=0.1)
 
 
 class Set(NamedTuple):
@@ -110,19 +102,35 @@ class Set(NamedTuple):
 
         d = self.design
         values = self.values.mean(1, keepdims=True) if d.averaged else self.values
-        swapped = d.sums == "swapped"
-        runs = []
+        drop, runs = exact(DROP) if d.kind == "time" else None, []
         for i, (l, h, some) in enumerate(zip(self.l, self.h, values, strict=True), 1):
-            light, heavy = (exact(m, d.masses * bool(d.stated)) for m in (l, h))
-            m1, m2 = (heavy, light) if swapped and i % 2 else (light, heavy)
-            measured = tuple(exact(value, d.stated * d.u) for value in some)
-            runs.append(Run((i,), m1, m2, exact(DROP) if d.kind == "time" else None, measured))
+            masses = [exact(m, d.masses * bool(d.stated)) for m in (l, h)]
+            m1, m2 = masses[::-1] if d.sums == "swapped" and i % 2 else masses
+            runs.append(Run((i,), m1, m2, drop, tuple(exact(value, d.stated * d.u) for value in some)))
         return Runs(d.kind, runs, False, [])
 
+    def fit(self) -> Fitted:
+        return fitted(self.runs(), conditions_of(NOTHING), [])
 
-def expected(kind: Kind, l: Any, h: Any, c: float, f: Any) -> Any:
-    a = ((h - l) * G - f) / (l + h + c)
-    return a if kind == "a" else np.sqrt(2 * DROP / np.maximum(a, 1e-6))
+
+def expected(kind: Kind, l: Any, h: Any, c: Any, f: Any, g: Any = G, drop: float = DROP) -> Any:
+    """The acceleration, or the time of the fall, as in a textbook."""
+    a = ((h - l) * g - f) / (l + h + c)
+    return a if kind == "a" else np.sqrt(2 * drop / np.maximum(a, 1e-6))
+
+
+def by_scipy(kind: Kind, l: Any, h: Any, measured: Any, names: Any = USUAL, **known: Any) -> tuple[Any, Any]:
+    """The values of these names by least squares, with ``sigma`` as weights, and their covariance."""
+    known = {"gravity": G, "drop": DROP, "sigma": None, **known}
+
+    def ideal(_: Any, *values: float) -> Any:
+        x = known | dict(zip(names, values, strict=True))
+        return expected(kind, l, h, x["rim_mass"], x["axle"], x["gravity"], x["drop"])
+
+    start = [{"rim_mass": 0.03, "axle": 0.01, "gravity": G}[name] for name in names]
+    tight: Any = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-14)
+    found = optimize.curve_fit(ideal, l, measured, start, known["sigma"], maxfev=20_000, **tight)
+    return found[0], found[1]
 
 
 def drawn(design: Design, random: Random) -> Set:
@@ -136,27 +144,10 @@ def drawn(design: Design, random: Random) -> Set:
         l, h = (0.45 - difference) / 2, (0.45 + difference) / 2
     l_true, h_true = (m + design.masses * random.standard_normal(n) for m in (l, h))
     f = design.f * (1 + design.axle * random.standard_normal(n))
-    ideal = expected(design.kind, l_true, h_true, design.c, f) * (
-        1 + design.between * random.standard_normal(n)
-    )
+    shares = 1 + design.between * random.standard_normal(n)
+    ideal = (expected(design.kind, l_true, h_true, design.c, f) * shares)[:, None]
     noise = design.u * random.standard_normal((n, design.repeats))
-    values = ideal[:, None] * (1 + noise) if design.relative else ideal[:, None] + noise
-    return Set(design, l, h, values + design.delay)
-
-
-def fit_of(made: Set) -> Fitted:
-    return fitted(made.runs(), conditions_of(NOTHING), [])
-
-
-def by_scipy(made: Set) -> tuple[Any, Any]:
-    """The values of c and f and half their intervals, by unweighted least squares."""
-    kind, means = made.design.kind, made.values.mean(1)
-
-    def ideal(_: Any, c: float, f: float) -> Any:
-        return expected(kind, made.l, made.h, c, f)
-
-    values, covariance = optimize.curve_fit(ideal, made.l, means, [0.03, 0.01], xtol=1e-12, maxfev=20_000)
-    return values, stats.t.ppf(0.975, len(means) - 2) * np.sqrt(np.diag(covariance))
+    return Set(design, l, h, ideal * (1 + noise) if design.relative else ideal + noise)
 
 
 class Counts(NamedTuple):
@@ -174,24 +165,21 @@ def counts(design: Design, sets: int, seed: int = 1) -> Counts:
     within, widths, theirs, accused = list[Any](), list[Any](), list[Any](), 0
     for _ in range(sets):
         made = drawn(design, random)
-        values, half = by_scipy(made)
+        values, covariance = by_scipy(design.kind, made.l, made.h, made.values.mean(1))
+        half = stats.t.ppf(0.975, design.runs - 2) * np.sqrt(np.diag(covariance))
         theirs.append(np.abs(values - truth) <= half)
         try:
-            fit = fit_of(made)
+            fit = made.fit()
         except Alike:
             continue
         accused += bool(fit.odd)
         if not fit.whole.reason:
-            ends = np.array([fit.whole.results[x].interval for x in ("rim_mass", "axle")])
+            ends = np.array([fit.whole.results[x].interval for x in USUAL])
             within.append((ends[:, 0] <= truth) & (truth <= ends[:, 1]))
             widths.append((ends[:, 1] - ends[:, 0]) / 2 / half)
-    return Counts(
-        100 * np.mean(within, 0),
-        np.median(widths, 0),
-        100 * np.mean(theirs, 0),
-        100 * (1 - len(within) / sets),
-        100 * accused / sets,
-    )
+    held, theirs_held = (100 * np.mean(some, 0) for some in (within, theirs))
+    refused = 100 * (1 - len(within) / sets)
+    return Counts(held, np.median(widths, 0), theirs_held, refused, 100 * accused / sets)
 
 
 def blunders_named(sets: int, seed: int = 1) -> list[int]:
@@ -202,12 +190,8 @@ def blunders_named(sets: int, seed: int = 1) -> list[int]:
         off = random.choice(8, 2, replace=False)
         h = made.h.copy()
         h[off] += random.choice([-1, 1], 2) * BLUNDER
-        named[len({*off.tolist()} & {*fit_of(made._replace(h=h)).odd})] += 1
+        named[len({*off.tolist()} & {*made._replace(h=h).fit().odd})] += 1
     return named
-
-
-BLUNDER = 0.01
-"""kg, of a mass that is mistyped."""
 
 
 def report(sets: int) -> Iterator[str]:
