@@ -39,9 +39,9 @@ _HOMES = {
 
 
 def __getattr__(name: str) -> Any:
-    """The names above, imported when first used: the command line starts before they are there.
+    """Import one of the names above when it is first used.
 
-    So it can catch Ctrl-C while they load.
+    So the command line starts before they are there, and can catch Ctrl-C while they load.
     """
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
@@ -52,5 +52,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> set[str]:
-    """What a shell completes: the names above, whether used yet or not."""
+    """The names that a shell completes: all names above, whether they were used or not."""
     return {*globals(), *__all__}

@@ -13,7 +13,7 @@ from .solver.messages import notes
 
 
 class Inputs(TypedDict, total=False):
-    """What `solve` takes beside masses and ``digits``; None is not given, as is what is left out."""
+    """The inputs of `solve` beside masses and ``digits``. An input that is None or left out is not given."""
 
     M: Given | None
     mu: Given | None
@@ -44,7 +44,7 @@ def _described(names: Sequence[str]) -> str:
 
 
 class Answered:
-    """Where a solution has its values from."""
+    """A solution's source of values."""
 
     __slots__ = ("_answers",)
     _answers: Answers
@@ -54,16 +54,18 @@ class Answered:
 class Solution(Answered, Generic[T]):
     __doc__ = f"""The state of a scene: floats, or Decimals if digits were asked for; None if undetermined.
 
-    ``scene`` is what was given, ``regime`` is "no-slip", "verge" or "slip", ``notes`` say why it is
-    what it is and why a value is None. ``uncertainty`` has the standard uncertainty of every quantity
-    by name, and is empty if all that was given is exact; one is None, with a note, where a value is
-    missing an uncertainty off. Each is computed when it is first read, and kept. Forces are on the pulley,
-    x from the axle to where m1's string meets it, y up; accelerations, torque and angles are positive the
-    way m2 descends. The quantities, with their units and the paper's equations:
+    ``scene`` has the inputs. ``regime`` is "no-slip", "verge" or "slip". ``notes`` give the reasons for the
+    regime, and for each value that is None. ``uncertainty`` has the standard uncertainty of every quantity
+    by name, and is empty if all inputs are exact; an uncertainty is None, with a note, where the value is
+    missing with an input an uncertainty off. Each field is computed when it is first read, and kept.
+
+    Forces are on the pulley, with x from the axle to the place where m1's string meets it, and y up.
+    Accelerations, torque and angles are positive when m2 descends. The quantities, with their units and the
+    paper's equations:
 
 {_described(NAMES[1:])}
 
-    Where ``a`` or ``drop`` was given, what follows from it; else None:
+    These follow from ``a`` or ``drop``, and are None without:
 
 {_described(MEASURED_NAMES)}
     """
@@ -113,12 +115,12 @@ class Solution(Answered, Generic[T]):
             if name not in self.__dataclass_fields__:
                 return object.__getattribute__(self, name)  # raises the usual error
             values = _computed(name, self._answers)
-            for one, value in values.items():
-                object.__setattr__(self, one, value)
+            for field, value in values.items():
+                object.__setattr__(self, field, value)
             return values[name]
 
     def to_dict(self) -> dict[str, Any]:
-        """What ``--json`` prints, ready for `json`: of Decimals text, None for what is infinite."""
+        """The record that ``--json`` prints, ready for `json`: Decimals are text, infinite values None."""
         from .output.scene_page import record
         from .output.text import for_json
 
@@ -126,7 +128,7 @@ class Solution(Answered, Generic[T]):
         return {name: for_json(value, answers.digits) for name, value in record(answers).items()}
 
     def __str__(self) -> str:
-        """The table of what the scene is about, as ``atwood solve`` prints it, without colours."""
+        """The page that ``atwood solve`` prints, without colours."""
         from .output.scene_page import as_text
 
         return as_text(Answers(*self._answers.given))
@@ -144,7 +146,7 @@ class Solution(Answered, Generic[T]):
 
 
 def _computed(name: str, answers: Answers) -> dict[str, Any]:
-    """The value of a field, by its name; and all others with the notes, which are on all of them."""
+    """The value of a field, by its name. The notes come with all other fields, as they are on all of them."""
     if name == "scene":
         return {name: answers.case.scene}
     if name == "uncertainty":
@@ -158,7 +160,7 @@ def _computed(name: str, answers: Answers) -> dict[str, Any]:
 
 
 def _solved(*given: Any) -> Solution[Any]:
-    """The solution to what is given; one that was copied or pickled is computed again when it is read."""
+    """The solution for these inputs. A copied or pickled solution is computed again when it is read."""
     return Solution(Answers(*given))
 
 
@@ -178,10 +180,10 @@ def solve(
 ) -> Any:
     """The state of Atwood's machine: m1 and m2 on a rough string over a pulley.
 
-    What is given decides the model: without M the pulley is massless, or with mu the one that brings the
-    string to the verge of slipping. An input is a number in the unit below, or a text, which may have a unit
-    ("250g", "5cm", "9.81m/s2"), a name (g="moon", inertia="hoop") or a standard uncertainty ("1.000(2)",
-    "1.000±0.002", "(250±1)g").
+    The inputs decide the model. Without M the pulley is massless; with mu and without M it is the pulley that
+    brings the string to the verge of slipping. An input is a number in the unit below, or a text, which may
+    have a unit ("250g", "5cm", "9.81m/s2"), a name (g="moon", inertia="hoop") or a standard uncertainty
+    ("1.000(2)", "1.000±0.002", "(250±1)g").
 
     Args:
         m1, m2: The masses, in kg.
@@ -193,16 +195,16 @@ def solve(
         axle: The friction of the axle as a force at the rim, in N, or as text a torque ("0.4mNm"); 0 unless
             given.
         wrap: The angle that the string wraps, in degrees; 180 unless given.
-        a: A measured acceleration, in m/s². In place of M it finds M, or beside M a mass or g; of a string
-            that slips, as it must on M="inf", it finds mu_k.
-        drop, time: A height, in m, gives the time and the speed of the fall; with the time, in s, it stands
-            for the ``a`` that they imply.
-        digits: The number of significant digits of Decimals; floats if None.
+        a: A measured acceleration, in m/s². Without M it finds M. Beside M it finds the mass or the g that
+            is not given, or mu_k if the string slips, as it must on M="inf".
+        drop, time: A height of fall, in m, gives the time and the speed of the fall. With a measured time,
+            in s, it stands for the acceleration ``a`` that they imply.
+        digits: The number of significant digits of Decimals; None gives floats.
 
     Returns:
-        `Solution`: the quantities by name, in SI units. A float is the double nearest to the exact value,
-        a Decimal is correctly rounded. Its ``uncertainty`` is half the range over the uncertainty of each
-        input, and of all inputs the root of the sum of squares (Kragten, 1994).
+        `Solution`: the quantities by name, in SI units. A float is the double nearest to the exact value;
+        a Decimal is correctly rounded. Its ``uncertainty`` combines half the range of a value over the
+        uncertainty of each input, as the root of the sum of squares (Kragten, 1994).
 
     Raises:
         SceneError: An input is not valid; it names the input, the value and the rule (a ValueError).

@@ -67,7 +67,7 @@ def limited() -> Iterator[None]:
 @contextmanager
 def at(run: fuzz.Run) -> Iterator[None]:
     """In a folder with the file of the run, where measurements are short and every warning is shown."""
-    short = patch.multiple(measure, RUN_SECONDS=1e-5, REPEATS=1, MOST_SCENES=20, MOST=2)
+    short = patch.multiple(measure, RUN_SECONDS=1e-5, REPEATS=1, MOST_SCENES=20, MOST_ROWS=2)
     with TemporaryDirectory() as folder, chdir(folder), short, warnings.catch_warnings(), limited():
         warnings.simplefilter("always")
         Path("in.csv").touch()

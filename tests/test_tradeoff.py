@@ -41,7 +41,7 @@ def briefly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few repeats of short runs: these tests are about the errors."""
     monkeypatch.setattr(tradeoff, "REPEATS", 2)
     monkeypatch.setattr(tradeoff, "RUN_SECONDS", 1e-4)
-    monkeypatch.setattr(tradeoff, "MOST", 0)
+    monkeypatch.setattr(tradeoff, "MOST_ROWS", 0)
 
 
 def of(measured: list[Measured], setting: str) -> Measured:
@@ -200,8 +200,8 @@ def test_rows_that_take_long_are_few(seconds: float, passes: Passes, monkeypatch
     monkeypatch.setattr(tradeoff, "SETTINGS", [Setting("slow", run)])
     (found,) = measure("any", [{"m1": 1.0, "m2": 3.0, "M": 10.0, "mu": 0.3}])
     assert found.seconds == pytest.approx(seconds)
-    assert max(sizes) == tradeoff.MOST or max(sizes) * seconds >= tradeoff.LONG_SECONDS
-    assert sum(sizes) * seconds < 200 or max(sizes) == tradeoff.FEWEST
+    assert max(sizes) == tradeoff.MOST_ROWS or max(sizes) * seconds >= tradeoff.LONG_SECONDS
+    assert sum(sizes) * seconds < 200 or max(sizes) == tradeoff.FEWEST_ROWS
 
 
 def test_numbers_are_short() -> None:

@@ -1,4 +1,4 @@
-"""The command line: its commands, each in a module of its name, and how errors are reported."""
+"""The command line: its commands, each in a module, and its errors, each a sentence."""
 
 import io
 import os
@@ -18,7 +18,10 @@ from ..output.text import drop, finish, say
 from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag
 
 COMMANDS = ("solve", "sweep", "contact", "fit", "batch", "quantities", "tradeoff")
+OTHER_MODULES = {"quantities": "listing"}
+"""The modules of commands that have another name than their command."""
 EXTRAS = {"matplotlib": "figure", "polars": "batch", "scipy": "fit"}
+"""The extras that bring optional packages."""
 HELP = """Atwood's machine, its pulley massive and its string rough, every digit right.
 
 \b
@@ -38,11 +41,11 @@ UsageError: Any = typer.BadParameter.__mro__[1]
 
 
 ON_CTRL_C = 130
-"""What typer returns for a command that was interrupted."""
+"""The status that typer returns for a command that was interrupted."""
 
 
 class Command(TyperCommand):
-    """A command with our help, and hints at two slips that typer takes for something else."""
+    """A command with our help, and with hints at two slips that typer would misunderstand."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         options = {flag: param for param in self.get_params(ctx) for flag in param.opts}
@@ -66,7 +69,7 @@ class Command(TyperCommand):
         write_options(self, ctx, formatter)
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
-        """`[OPTIONS] RUNS`, which versions of typer put differently."""
+        """`[OPTIONS] RUNS`, the same in all versions of typer."""
         arguments = [param for param in self.params if param.param_type_name == "argument"]
         return ["[OPTIONS]", *(str(param.metavar) for param in arguments)]
 
@@ -89,7 +92,7 @@ def root(context: typer.Context, version: Version = False) -> None:
 
 
 def program(names: Iterable[str] = COMMANDS) -> Any:
-    """The program with the commands named: importing one and making its options takes a while."""
+    """The program with these commands; a command takes a while to import."""
     app = typer.Typer(
         name="atwood",
         help=HELP,
@@ -100,20 +103,20 @@ def program(names: Iterable[str] = COMMANDS) -> Any:
     )
     app.callback()(root)
     for name in names:
-        module = import_module(f".{name}", __name__)
+        module = import_module(f".{OTHER_MODULES.get(name, name)}", __name__)
         app.command(name, cls=Command, help=module.HELP)(getattr(module, name))
     return typer.main.get_command(app)
 
 
 def _needed(arguments: list[str]) -> tuple[str, ...]:
-    """The command named; all where none is, so that help, completion and hints know them."""
+    """The command named, or all commands where help, completion or a hint must know them."""
     first = next(iter(arguments), "")
     return (first,) if first in COMMANDS and COMPLETING not in os.environ else COMMANDS
 
 
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line; every error is a sentence on stderr and an exit status."""
-    # A stream that the caller closed is None. Lost results are an error; lost messages cannot be reported.
+    # A stream that the caller has closed is None. Lost results are an error; lost messages are not.
     sys.stdout, sys.stderr = sys.stdout or cast(Any, ClosedStdout()), sys.stderr or io.StringIO()
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # for symbols that it cannot write
@@ -136,15 +139,15 @@ def run(arguments: list[str] | None = None) -> int:
         say(error.describe(flag(error.parameter)))
         return WRONG_USAGE
     except UsageError as error:
-        how = f"; {error.ctx.command_path} -h shows how" if error.ctx else ""
+        hint = f"; {error.ctx.command_path} -h shows how" if error.ctx else ""
         words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
-        say(f"{shortened(words, LONGEST_NAME)}{how}")
+        say(f"{shortened(words, LONGEST_NAME)}{hint}")
         return WRONG_USAGE
     except (KeyboardInterrupt, EOFError, typer.Abort) as error:
-        if EOFError in (type(error), type(error.__cause__)):  # of a compiled module that was cut off
+        if EOFError in (type(error), type(error.__cause__)):  # a compiled module was cut off
             say("a file of the program is damaged; install it again")
             return COULD_NOT
-        drop(sys.stdout)  # who reads it may have stopped, and writing would wait for ever
+        drop(sys.stdout)  # its reader may have stopped, and writing would wait for ever
         raise KeyboardInterrupt from None
     except (ModuleNotFoundError, OSError, ArithmeticError) as error:
         say(_why(error))
@@ -154,14 +157,13 @@ def run(arguments: list[str] | None = None) -> int:
 
 
 def _why(error: Exception) -> str:
-    """Why something could not be done, in a sentence."""
+    """The reason of an error, in a sentence."""
     if isinstance(error, ModuleNotFoundError):
         package = str(error.name).partition(".")[0]
         if package not in EXTRAS:
             raise error
         return f"this needs {package}; install it with: pip install 'atwood-cli[{EXTRAS[package]}]'"
     if isinstance(error, OSError) and error.errno is not None:  # without a number, it is a sentence of ours
-        return (
-            f"cannot write {shortened(str(error.filename or 'the output'), LONGEST_NAME)}: {error.strerror}"
-        )
+        file = shortened(str(error.filename or "the output"), LONGEST_NAME)
+        return f"cannot write {file}: {error.strerror}"
     return str(error)

@@ -1,4 +1,4 @@
-"""`atwood batch`: a file of scenes, the same file with their results."""
+"""`atwood batch`: a table of scenes, solved row by row."""
 
 import os
 from typing import Annotated
@@ -100,7 +100,7 @@ def batch(
             _say_stopped(tally.rows, output, "stays as it was" if before else "was not written")
         raise
     if not only:
-        tally.reasons.clear()  # a reason for what nobody asked for is noise
+        tally.reasons.clear()  # nobody asked for these quantities
     say(*remarks, *tally.lines())
     missing = only and tally.missing and tally.rows > tally.errors
     return COULD_NOT if missing or (tally.errors and not allow_errors) else DONE
@@ -111,7 +111,7 @@ def _say_stopped(rows: int, output: str, is_left: str) -> None:
 
 
 def _stamp(path: str) -> tuple[int, int] | None:
-    """What tells a file from one that took its place; None if there is none."""
+    """The identity of a file and the time of its last change; None if there is no file."""
     try:
         about = os.stat(path)
         return about.st_ino, about.st_mtime_ns

@@ -1,4 +1,4 @@
-"""`atwood contact`: what acts along the arc, as a table, JSON, CSV or a figure."""
+"""`atwood contact`: the forces along the arc, as a table, JSON, CSV or a figure."""
 
 from collections.abc import Mapping
 from typing import Annotated
@@ -8,7 +8,7 @@ from ..output.arc_page import print_table, record
 from ..output.text import Forms, Target, say, show
 from ..solver.answers import Answers
 from ..solver.balance import contact as solve_contact
-from .options import DONE, RESULTS, SCENE, Bare, Digits, FigureFile, option, takes
+from .options import DONE, OUTPUT, SCENE, Bare, Digits, FigureFile, option, takes
 
 DEFAULT_POINTS = 13
 Points = Annotated[
@@ -30,7 +30,7 @@ Examples:
 """
 
 
-@takes(SCENE, RESULTS, needs={"bare": "figure"})
+@takes(SCENE, OUTPUT, needs={"bare": "figure"})
 def contact(
     given: Mapping[str, str | None],
     target: Target,

@@ -8,8 +8,18 @@ from ..laboratory.published import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..model.quantities import divided, read_names
 from ..model.scene import INPUTS, read_input, read_whole
 from ..output.text import Target, say, show
-from .options import COULD_NOT, DONE, Bare, FigureFile, Labels, check_figure, option, scene_option, takes
-from .options import RESULTS as FORMS
+from .options import (
+    COULD_NOT,
+    DONE,
+    OUTPUT,
+    Bare,
+    FigureFile,
+    Labels,
+    check_figure,
+    option,
+    scene_option,
+    takes,
+)
 
 Table = Annotated[
     str,
@@ -66,7 +76,7 @@ by --without.
 """
 
 
-@takes(FORMS, needs={"bare": "figure"})
+@takes(OUTPUT, needs={"bare": "figure"})
 def fit(
     table: Table,
     target: Target,
@@ -90,14 +100,14 @@ def fit(
 ) -> int:
     options = {"M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "g": g}
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
-    out = [read_whole("without", word, 1, 10**9) for word in divided(without or [])]
+    rows_left_out = [read_whole("without", word, 1, 10**9) for word in divided(without or [])]
     inputs = {name: read_input(name, options.get(name)) for name in INPUTS}
     height = read_input("drop", drop) if drop is not None else None
     check_figure(figure, target.force)
     from ..laboratory import fit_of
     from ..laboratory.fit_page import forms_of
 
-    best = fit_of(table, inputs, height, find or [], label or [], out, column or [])
+    best = fit_of(table, inputs, height, find or [], label or [], rows_left_out, column or [])
     if figure is not None:
         from ..laboratory.fit_figure import save
 

@@ -3,9 +3,9 @@
 from typing import Any
 
 BRIEF = ("sweep", "contact")
-"""Commands whose help names the options of a scene alone, as that of solve explains them."""
+"""Commands whose help only names the options of a scene: the help of solve explains them."""
 LAST = ("Output", "Files")
-"""Groups of options that stand behind a command's own."""
+"""Groups of options that stand behind a command's own groups."""
 
 
 def write_options(command: Any, context: Any, formatter: Any) -> None:

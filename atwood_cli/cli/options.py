@@ -1,8 +1,10 @@
-"""Options: those of a scene, and those that several commands share."""
+"""The options of a scene, and other options that several commands share."""
 
 import inspect
 import os
 from collections.abc import Callable, Mapping
+from itertools import chain
+from operator import attrgetter
 from pathlib import Path
 from typing import Annotated, Any, NamedTuple, get_args
 
@@ -15,9 +17,9 @@ from ..output.files import STDOUT, check_free
 from ..output.text import FORMS, Target, say
 
 COMPLETING = "_ATWOOD_COMPLETE"
-"""The environment variable by which a shell asks how a word could go on."""
+"""The environment variable by which a shell asks for the completions of a word."""
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
-"""Exit status."""
+"""The exit statuses of commands."""
 
 ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
 REMARKS = {
@@ -41,11 +43,14 @@ def flag(name: str) -> str:
 
 
 Words = Callable[[], Mapping[str, str]]
-"""Words that a shell may complete, with what they mean."""
+"""A function that returns words that a shell may complete, with their meanings."""
 
 
 def option(group: str, *flags: str, metavar: str = "", words: Words | None = None, **more: Any) -> Any:
-    """An option: the group in which help shows it, and the words it takes, if not those of a metavar a|b."""
+    """An option, with the ``group`` in which help shows it, and the words that it takes.
+
+    If there are no ``words``, it takes the words of a metavar a|b, or any text.
+    """
 
     def complete(incomplete: str) -> list[tuple[str, str]]:
         return list((words() if words else dict.fromkeys(metavar.split("|"), "")).items())
@@ -55,14 +60,14 @@ def option(group: str, *flags: str, metavar: str = "", words: Words | None = Non
         metavar=metavar or None,
         rich_help_panel=group,
         show_default=False,
-        # typer takes its time over every such function, so at other times there is none.
+        # typer takes long over such a function, so there is none unless a word is to be completed.
         autocompletion=complete if (words or "|" in metavar) and COMPLETING in os.environ else None,
         **more,
     )
 
 
 def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> Any:
-    """The option of a parameter of a scene or of the motion, with a remark of a command's own."""
+    """The option for a parameter of a scene or a motion, with a remark that a command may replace."""
     parameter = parameter_of(name)
     flags = [flag(name), *ALIASES.get(name, [])]
     unit = f" ({parameter.unit})" if parameter.unit not in ("", "°") else ""
@@ -75,41 +80,42 @@ def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> 
 
 Command = Callable[..., int]
 Rules = Mapping[str, str]
-"""By the name of an option, the names of others."""
-NONE: Rules = {}
+"""The names of other options, by the name of an option."""
+NO_RULES: Rules = {}
 
 
 class Shared(NamedTuple):
-    """Options that several commands have, and what a command gets in their place, by its name."""
+    """Options that several commands have, and the argument that a command gets in their place."""
 
-    gives: str
+    argument: str
     options: Mapping[str, Any]
     read: Callable[[Mapping[str, Any]], Any]
 
 
-def takes(*shared: Shared, no_effect: Rules = NONE, needs: Rules = NONE) -> Callable[[Command], Command]:
-    """Give a command shared options: typer sees each of them, the command what they are read as.
+def takes(
+    *shared: Shared, no_effect: Rules = NO_RULES, needs: Rules = NO_RULES
+) -> Callable[[Command], Command]:
+    """Give a command shared options: typer sees each option, the command the arguments read from them.
 
-    An option of ``no_effect`` has none beside those named there; one of ``needs`` needs one of those.
+    An option in ``no_effect`` excludes each option named there. An option in ``needs`` needs an option named
+    there.
     """
 
     def taking(command: Command) -> Command:
-        gives = [group.gives for group in shared]
-        own = [one for one in inspect.signature(command).parameters.values() if one.name not in gives]
+        read = {group.argument for group in shared}
+        own = [given for given in inspect.signature(command).parameters.values() if given.name not in read]
 
         def run(**options: Any) -> int:
             _check(options, no_effect, needs)
-            read = {group.gives: group.read(options) for group in shared}
-            status = command(**{one.name: options[one.name] for one in own}, **read)
+            arguments = {group.argument: group.read(options) for group in shared}
+            status = command(**{given.name: options[given.name] for given in own}, **arguments)
             _ask_about_radians(options.get("wrap"))
             return status
 
-        first, *rest = ([_parameter(*each) for each in group.options.items()] for group in shared)
-        parameters = sorted(
-            [*first, *own, *(one for group in rest for one in group)], key=lambda one: one.kind
-        )
+        first, *others = ([_parameter(*named) for named in group.options.items()] for group in shared)
+        parameters = sorted([*first, *own, *chain(*others)], key=attrgetter("kind"))
         run.__dict__["__signature__"] = inspect.Signature(parameters)
-        run.__annotations__ = {one.name: one.annotation for one in parameters}
+        run.__annotations__ = {given.name: given.annotation for given in parameters}
         run.__name__ = command.__name__
         return run
 
@@ -122,7 +128,7 @@ def _parameter(name: str, annotation: Any) -> inspect.Parameter:
 
 
 def _check(options: Mapping[str, Any], no_effect: Rules, needs: Rules) -> None:
-    """Raises SceneError where an option that is given excludes another, or lacks one that it needs."""
+    """Raises SceneError where an option that is given excludes another, or lacks an option that it needs."""
     given = {name: value for name, value in options.items() if value not in (None, False, [], ())}
     for name, value in given.items():
         shown = value[0] if isinstance(value, list | tuple) else None if value is True else value
@@ -149,11 +155,11 @@ def _ask_about_radians(wrap: str | None) -> None:
 
 
 LIKE_RADIANS = (0.3, 12.6)
-"""Numbers that are few degrees, and in radians a wrap that a pulley may have, up to two turns."""
+"""The range of numbers that would be few degrees, and in radians the wrap of a pulley, up to two turns."""
 
 
 def _may_be_radians(typed: str) -> bool:
-    """Whether a valid angle, or all numbers of a range or a list, have no unit and the size of radians."""
+    """Whether a valid angle, a range or a list has numbers without a unit, of the size of radians."""
     least, most = LIKE_RADIANS
     words = typed.split(":")[:2] if ":" in typed else typed.split(",")
     angles = [read_number(word, "angle") for word in words]
@@ -165,7 +171,7 @@ SCENE = Shared("given", SCENE_OPTIONS, _read_scene)
 
 
 def quantities() -> Mapping[str, str]:
-    """The quantities that every scene has, with what they mean."""
+    """The quantities that every scene has, with their meanings."""
     return {"regime": "no-slip, verge or slip", **{name: QUANTITIES[name].meaning for name in NAMES[1:]}}
 
 
@@ -207,7 +213,7 @@ Force = Annotated[bool, option("Files", "--force", help="Replace a file that is 
 
 
 def results(*forms: str) -> Shared:
-    """The options that say in which of these forms a result goes where."""
+    """The options that choose among these forms of a result, and name the file that it goes to."""
     suffixes = ", ".join(f"{FORMS[form].suffix}" for form in forms)
     options = {
         **{form: Annotated[bool, option("Output", flag(form), help=FORMS[form].help)] for form in forms},
@@ -227,7 +233,7 @@ def results(*forms: str) -> Shared:
 
 
 def _read_target(options: Mapping[str, Any]) -> Target:
-    """In which form a result goes where. Raises SceneError, FileExistsError."""
+    """The form and the file of a result. Raises SceneError, FileExistsError."""
     asked = [form for form in FORMS if options.get(form)]
     if asked[1:]:
         raise SceneError(asked[0], None, f"has no effect with {flag(asked[1])}; leave one of them out")
@@ -244,7 +250,7 @@ def _read_target(options: Mapping[str, Any]) -> Target:
 
 
 def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
-    """The form of a file: what was asked for, or by its suffix. Raises SceneError where the two disagree."""
+    """The form of a file: as asked for, or by its suffix. Raises SceneError where the two disagree."""
     name, suffix = os.path.splitext(file)
     page = ".md" if options.get("markdown") else ".txt"
     known = [] if options.get("explain") else [form for form in FORMS if form in options]
@@ -256,15 +262,15 @@ def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
     if not asked and page == ".txt":
         raise SceneError("output", file, f"must end in one of {', '.join(forms)}")
     right = name + (FORMS[asked].suffix if asked else page)
-    then = "" if asked else f"; then pandoc {right} -o {file} makes the other"
-    raise SceneError("output", file, f"would hold {asked.upper() or 'Markdown'}; name it {right}{then}")
+    convert = "" if asked else f"; then pandoc {right} -o {file} makes the other"
+    raise SceneError("output", file, f"would hold {asked.upper() or 'Markdown'}; name it {right}{convert}")
 
 
-RESULTS = results(*FORMS)
+OUTPUT = results(*FORMS)
 
 
 def check_figure(figure: str | None, force: bool) -> None:
-    """Raise, before anything is solved, what a picture will run into: SceneError, OSError, ImportError."""
+    """Raise errors of a picture before anything is solved: SceneError, OSError, ImportError."""
     if figure is not None:
         from ..output.figure import check_file
 

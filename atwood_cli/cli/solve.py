@@ -10,14 +10,14 @@ from ..output.text import Forms, Target, cell, said_of_scene, say, show
 from ..solver.answers import Answers, read_answers
 from ..solver.expected import failure, read_condition
 from ..solver.messages import unmarked
-from .options import COULD_NOT, DONE, RESULTS, SCENE, Bare, Digits, option, quantities, scene_option, takes
+from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Digits, option, quantities, scene_option, takes
 
 
-def _answers() -> Mapping[str, str]:
+def _askable() -> Mapping[str, str]:
     return {**quantities(), **dict.fromkeys(MEASURED_NAMES, "found from what was measured")}
 
 
-A = Annotated[str | None, scene_option("a", "Measured")]
+Acceleration = Annotated[str | None, scene_option("a", "Measured")]
 Drop = Annotated[str | None, scene_option("drop", "Measured")]
 Time = Annotated[str | None, scene_option("time", "Measured")]
 Only = Annotated[
@@ -25,7 +25,7 @@ Only = Annotated[
     option(
         "Output",
         metavar="NAME",
-        words=_answers,
+        words=_askable,
         help="Print only this, or several: a,T1; see atwood quantities.",
     ),
 ]
@@ -63,7 +63,7 @@ Any number may carry its standard uncertainty; results then have theirs.
 
 @takes(
     SCENE,
-    RESULTS,
+    OUTPUT,
     no_effect={"explain": "json csv only budget", "all": "json csv only explain"},
     needs={"markdown": "explain", "bare": "figure"},
 )
@@ -71,7 +71,7 @@ def solve(
     given: Mapping[str, str | None],
     target: Target,
     *,
-    a: A = None,
+    a: Acceleration = None,
     drop: Drop = None,
     time: Time = None,
     only: Only = None,

@@ -8,7 +8,7 @@ from ..output.text import Forms, Target, say, show
 from ..sweep.ranges import read_sweep
 from ..sweep.sweep_figure import drawable, save
 from ..sweep.sweep_page import SweepPage
-from .options import COULD_NOT, DONE, RESULTS, SCENE, Bare, Columns, Digits, FigureFile, check_figure, takes
+from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Columns, Digits, FigureFile, check_figure, takes
 
 HELP = """Solve a range or a list of scenes.
 
@@ -27,7 +27,7 @@ below each other. Curves run along a range; a second one, or a list, is a curve 
 """
 
 
-@takes(SCENE, RESULTS, needs={"bare": "figure"})
+@takes(SCENE, OUTPUT, needs={"bare": "figure"})
 def sweep(
     given: Mapping[str, str | None],
     target: Target,

@@ -1,6 +1,7 @@
 """`atwood tradeoff`: time beside error on this machine."""
 
 from collections.abc import Mapping
+from itertools import chain
 from typing import Annotated
 
 from ..model.quantities import read_names
@@ -71,7 +72,7 @@ def tradeoff(
     count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
     start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
     parts = (measure(name, draw_scenes(name, count, start)) for name in families)
-    measured = [one for part in watched(parts, len(families)) for one in part]
+    measured = list(chain.from_iterable(watched(parts, len(families))))
     if figure is not None:
         from ..tradeoff.tradeoff_figure import save
 

@@ -1,7 +1,7 @@
-"""Time a scene and error of each way to solve many, on families of scenes that are hard on doubles.
+"""Each way to solve many scenes is timed, and its errors are found, on families that are hard on doubles.
 
-Scenes come from a seed, so that the errors can be had again; times are this machine's. Errors are in units
-in the last place (ulp) of the exact value's double, and count where the regime is right. The error of a
+Scenes are drawn from a seed, so that anybody finds the same errors; times are this machine's. Errors are in
+units in the last place (ulp) of the exact value's double, and count where the regime is right. The error of a
 scene is the worst of its quantities'.
 """
 
@@ -30,16 +30,17 @@ MOST_SCENES = 100_000
 EXACT_DIGITS = 240
 PRECISE = Context(prec=EXACT_DIGITS + 20)
 REPEATS, RUN_SECONDS = 5, 0.01
-FEWEST, MOST = 40, 10_000  # rows of a table that is timed
-ONE_BY_ONE = (
-    100  # rows of one that is solved scene by scene; its errors are all about half a unit in the last digit
-)
-LONG_SECONDS = 0.25  # where a run takes so long, no more rows are added to it
+FEWEST_ROWS, MOST_ROWS = 40, 10_000
+"""The rows of a table that is timed."""
+MOST_ONE_BY_ONE = 100
+"""The most rows that are solved scene by scene: all have errors of about half a unit in the last digit."""
+LONG_SECONDS = 0.25
+"""The time of a run from which on no more rows are added to it."""
 
 
 # Scenes: every platform draws the same doubles. Mantissas and exponents are drawn one by one, so that no
-# library's powers or logarithms matter, and what has to lie near the verge is first solved exactly. All
-# scenes have M and mu.
+# library's powers or logarithms matter. Masses near the verge are solved exactly first. All scenes have M and
+# mu.
 
 Inputs = dict[str, Any]
 """The inputs of a scene by parameter, as doubles."""
@@ -67,7 +68,7 @@ def _light_pulley(rng: Random) -> Inputs:
 
 
 def _near_critical(rng: Random) -> Inputs:
-    """Beside the critical pulley mass, or beside the least heavier mass that can slip."""
+    """A scene beside its critical pulley mass, or beside the least heavier mass that can slip."""
     m1, mu = _between(rng, -7, 7), _between(rng, -7, 0)
     off = 1 + rng.choice((-1, 1)) * _between(rng, -50, -10)
     least: Any = _nearest("least_heavier_mass", m1=m1, m2=2 * m1, mu=mu)
@@ -88,7 +89,7 @@ def _whole_range(rng: Random) -> Inputs:
 
 
 class Family(NamedTuple):
-    """A kind of scenes: the function that draws one, and what they are in words."""
+    """A kind of scenes: the function that draws a scene, and a description."""
 
     draw: Callable[[Random], Inputs]
     meaning: str
@@ -106,7 +107,7 @@ FAMILIES = {
 
 
 def draw_scenes(family: str, count: int, seed: int) -> list[Inputs]:
-    """So many scenes of a family; the same seed draws the same ones, and fewer the first of them."""
+    """``count`` scenes of a family. The same seed draws the same scenes, whatever their number."""
     rng = Random(f"{family} {seed}")
     return [FAMILIES[family].draw(rng) for _ in range(count)]
 
@@ -115,7 +116,10 @@ def draw_scenes(family: str, count: int, seed: int) -> list[Inputs]:
 
 
 class Setting(NamedTuple):
-    """A way to solve scenes: columns of inputs in, those of quantities out; of a family ``most`` scenes."""
+    """A way to solve scenes: a function from columns of inputs to columns of quantities.
+
+    It solves at most ``most`` scenes of a family.
+    """
 
     name: str
     run: Callable[[Columns], Columns]
@@ -125,7 +129,7 @@ class Setting(NamedTuple):
 def in_numpy(given: Columns) -> Columns:
     """The paper's formulas, with shared sums computed once, for m1 <= m2 and half a turn over a disk.
 
-    They know no regime, subtract what is nearly equal, and what they form on the way may overflow.
+    They know no regime and subtract nearly equal numbers, and intermediate values may overflow.
     """
     l, h, M, mu = (given[name] for name in ("m1", "m2", "M", "mu"))
     with np.errstate(all="ignore"):
@@ -154,7 +158,7 @@ def in_arrays(accuracy: Any, given: Columns) -> Columns:
 SETTINGS = (
     Setting("paper", in_numpy),
     *(Setting(accuracy, partial(in_arrays, accuracy)) for accuracy in ACCURACIES),
-    Setting("50 digits", partial(in_digits, 50), ONE_BY_ONE),
+    Setting("50 digits", partial(in_digits, 50), MOST_ONE_BY_ONE),
 )
 
 
@@ -166,13 +170,13 @@ def errors(solved: Columns, exact: Columns) -> list[float]:
     rows, right = (zip(*(columns[name] for name in STANDARD), strict=True) for columns in (solved, exact))
     return [
         max((_ulps(*pair) for pair in zip(values, wanted, strict=True) if pair[1] is not None), default=0.0)
-        for (regime, *values), (its_regime, *wanted) in zip(rows, right, strict=True)
-        if regime == its_regime
+        for (regime, *values), (right_regime, *wanted) in zip(rows, right, strict=True)
+        if regime == right_regime
     ]
 
 
 def _ulps(value: Any, exact: Decimal) -> float:
-    """How far a value is off, in units in the last place of the double nearest to the exact one."""
+    """The error of a value, in units in the last place of the double nearest to the exact value."""
     nearest = float(exact)
     if isinstance(value, float) and not (isfinite(value) and isfinite(nearest)):
         return 0.0 if value == nearest else inf
@@ -189,7 +193,7 @@ class Measured(NamedTuple):
     family: str
     setting: str
     seconds: float
-    """Of one scene, the median of the repeats."""
+    """The time of a scene, the median of the repeats."""
     worst_ulp: float | None
     share_wrong_regime: float
 
@@ -203,36 +207,36 @@ def measure(family: str, scenes: Sequence[Inputs]) -> list[Measured]:
     for setting, table, seconds in zip(SETTINGS, tables, times, strict=True):
         count = min(len(scenes), setting.most)
         solved = setting.run(_columns(scenes, count))
-        off = errors(solved, {name: column[:count] for name, column in exact.items()})
-        a_scene, wrong = seconds / len(table["m1"]), 1 - len(off) / count
-        measured.append(Measured(family, setting.name, a_scene, max(off, default=None), wrong))
+        found = errors(solved, {name: column[:count] for name, column in exact.items()})
+        worst, wrong = max(found, default=None), 1 - len(found) / count
+        measured.append(Measured(family, setting.name, seconds / len(table["m1"]), worst, wrong))
     return measured
 
 
 def _columns(scenes: Sequence[Inputs], rows: int) -> Columns:
-    """The scenes as columns, over and over until there are so many rows."""
+    """The scenes as columns of ``rows`` rows, in which they are repeated."""
     return {name: np.resize([scene[name] for scene in scenes], rows) for name in scenes[0]}
 
 
 def _timed_table(setting: Setting, scenes: Sequence[Inputs]) -> Columns:
     """The scenes in a table that is not too long to be timed."""
-    rows, most = FEWEST, min(MOST, setting.most)
+    rows, most = FEWEST_ROWS, min(MOST_ROWS, setting.most)
     while rows < most and _quickest(partial(setting.run, _columns(scenes, rows))) < LONG_SECONDS:
         rows = min(16 * rows, most)
     return _columns(scenes, rows)
 
 
 def _quickest(run: Callable[[], object]) -> float:
-    """The lesser time (s) of two calls, which no interruption has lengthened."""
+    """The lesser time of two calls, in s: a single call may have been interrupted."""
     return min(Timer(run, timer=perf_counter).repeat(2, 1))
 
 
 def timed(runs: Sequence[Callable[[], object]]) -> list[float]:
-    """Of each run, the median time of a call (s).
+    """The median time of a call of each run, in s.
 
-    They take turns, so that what slows the machine for a while slows all of them.
+    The runs take turns, so that whatever slows the machine for a while slows all of them.
     """
     timers = [Timer(run, timer=perf_counter) for run in runs]
     calls = [ceil(RUN_SECONDS / max(_quickest(run), 1e-7)) for run in runs]
-    repeats = [[one.timeit(n) / n for one, n in zip(timers, calls, strict=True)] for _ in range(REPEATS)]
+    repeats = [[timer.timeit(n) / n for timer, n in zip(timers, calls, strict=True)] for _ in range(REPEATS)]
     return [median(times) for times in zip(*repeats, strict=True)]

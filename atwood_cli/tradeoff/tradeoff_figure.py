@@ -8,7 +8,7 @@ from ..output.figure import BLUE, GREEN, PURPLE, RED, page, say_above
 from .measure import SETTINGS, Measured
 
 LEAST, GREATEST = 1e-3, 1e16
-"""Errors (ulp) beyond these are drawn as these."""
+"""The least and the greatest error that is drawn, in ulp; others are drawn as these."""
 TICKS = {
     LEAST: "$\\leq 10^{-3}$",
     1.0: "1",
@@ -17,12 +17,15 @@ TICKS = {
     1e12: "$10^{12}$",
     GREATEST: "no digit\nright",
 }
-NAMES = (setting.name for setting in SETTINGS)
-MARKS = dict(zip(NAMES, zip("oD^v", (RED, BLUE, GREEN, PURPLE), strict=True), strict=True))
+LOOKS = zip("oD^v", (RED, BLUE, GREEN, PURPLE), strict=True)
+MARKS = {setting.name: look for setting, look in zip(SETTINGS, LOOKS, strict=True)}
 
 
 def save(measured: Sequence[Measured], path: str, force: bool, bare: bool = False) -> None:
-    """Draw it to a file, whose suffix is its format; ``bare`` leaves the sentence out. Raises OSError."""
+    """Draw errors against times to a file, whose suffix is its format. Raises OSError.
+
+    ``bare`` leaves the sentence out.
+    """
     families = {family: [*group] for family, group in groupby(measured, attrgetter("family"))}
     with page(path, force) as figure:
         if not bare:
@@ -36,9 +39,9 @@ def save(measured: Sequence[Measured], path: str, force: bool, bare: bool = Fals
             pane.set_yticks(list(TICKS), TICKS.values())
             pane.set_yticks([], minor=True)
             pane.grid(alpha=0.3)
-            for one in settings:
-                worst = GREATEST if one.worst_ulp is None else min(max(one.worst_ulp, LEAST), GREATEST)
-                mark, colour = MARKS[one.setting]
-                pane.plot(one.seconds, worst, mark, color=colour, label=one.setting)
+            for point in settings:
+                worst = GREATEST if point.worst_ulp is None else min(max(point.worst_ulp, LEAST), GREATEST)
+                mark, colour = MARKS[point.setting]
+                pane.plot(point.seconds, worst, mark, color=colour, label=point.setting)
         panes[0].set_ylabel("worst error ε (ulp)")
         figure.legend(*panes[0].get_legend_handles_labels(), loc="outside lower center", ncols=len(SETTINGS))

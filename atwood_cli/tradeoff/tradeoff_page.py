@@ -1,8 +1,8 @@
-"""What was measured, as a table and for JSON."""
+"""Times and errors as a table and for JSON."""
 
 from collections.abc import Sequence
 from decimal import Decimal
-from itertools import groupby
+from itertools import chain, groupby
 from math import isinf
 from operator import attrgetter
 
@@ -20,31 +20,27 @@ SECONDS = {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
 
 
 def record(measured: Sequence[Measured], scenes: int, seed: int) -> dict[str, object]:
-    """For JSON: what was drawn, and every setting on every family."""
-    settings = [one._asdict() for one in measured]
+    """The record for JSON: the seed, the number of scenes, and every setting on every family."""
+    settings = [point._asdict() for point in measured]
     return {"version": VERSION, "seed": seed, "scenes": scenes, "settings": settings}
 
 
 def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
-    """A column for each setting; of each family its times, errors and shares of wrong regimes."""
+    """Print a column for each setting, with its time, error and share of wrong regimes on each family."""
     groups = []
     for family, group in groupby(measured, attrgetter("family")):
         heads = [family, "  error (ulp)", "  wrong"]
         cells = (
-            [in_seconds(one.seconds), short(one.worst_ulp), percent(one.share_wrong_regime)] for one in group
+            [in_seconds(point.seconds), short(point.worst_ulp), percent(point.share_wrong_regime)]
+            for point in group
         )
         groups.append([list(row) for row in zip(heads, *cells, strict=True)])
-    widths = [max(len(row[i]) for rows in groups for row in rows) for i in range(len(SETTINGS) + 1)]
-    flush = [
-        [
-            [head, *(cell.rjust(width) for cell, width in zip(cells, widths[1:], strict=True))]
-            for head, *cells in rows
-        ]
-        for rows in groups
-    ]
+    widths = [max(map(len, column)) for column in zip(*chain(*groups), strict=True)]
+    for row in chain(*groups):
+        row[1:] = map(str.rjust, row[1:], widths[1:])
     page = Page()
     page.say(f"{scenes} scenes of each family, seed {seed}")
-    page.table(["Family", *(setting.name for setting in SETTINGS)], flush)
+    page.table(["Family", *(setting.name for setting in SETTINGS)], groups)
     page.say(*LEGEND)
 
 

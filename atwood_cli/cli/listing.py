@@ -1,10 +1,10 @@
-"""`atwood quantities`: what can be asked for by its name."""
+"""`atwood quantities`: the quantities that can be asked for by name."""
 
 from collections.abc import Sequence
 
 from ..model.quantities import QUANTITIES, REGIMES
 from ..output.text import VERSION, Forms, Target, show
-from .options import DONE, RESULTS, takes
+from .options import DONE, OUTPUT, takes
 
 HELP = """List the quantities: symbols, units, meanings, equations.
 
@@ -13,19 +13,22 @@ Examples:
   atwood quantities
   atwood quantities --json
 """
-WHEN = (
+ON_FRICTION = (
     "While a string grips with friction to spare, the tension along its arc is not unique. friction_force is"
     " then between friction_force_min and friction_force_max, if friction nowhere opposes the rest; tension"
     " locked in on laying the string widens that range. Without mu, friction_force is that at mu_verge."
 )
 
 
-@takes(RESULTS)
+@takes(OUTPUT)
 def quantities(target: Target) -> int:
     columns = ("name", "symbol", "unit", "meaning", "equation")
     rows = [
         ("regime", "", "", f"what the string does: {', '.join(REGIMES)}", ""),
-        *((name, one.symbol, one.unit, one.meaning, one.equation) for name, one in QUANTITIES.items()),
+        *(
+            (name, about.symbol, about.unit, about.meaning, about.equation)
+            for name, about in QUANTITIES.items()
+        ),
     ]
     records = [dict(zip(columns, row, strict=True)) for row in rows]
     show(
@@ -40,4 +43,4 @@ def _print(rows: Sequence[Sequence[str]]) -> None:
 
     page = Page()
     page.table(["Name", "Symbol", "Unit", "Meaning", "Equation"], [rows])
-    page.say(WHEN)
+    page.say(ON_FRICTION)
