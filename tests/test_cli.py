@@ -72,15 +72,8 @@ def test_json_has_numbers_that_are_no_decimals_as_results(atwood: Atwood, comman
 def test_every_symbol_names_its_quantity() -> None:
     for name, about in QUANTITIES.items():
         plain = about.symbol.translate(ASCII)
-        ways = [
-            about.symbol,
-            plain,
-            plain.replace(" ", "_"),
-            plain.replace(" ", ""),
-            name,
-            name.replace("_", "-"),
-        ]
-        assert read_names("only", ways, QUANTITIES) == [name] * len(ways)
+        ways = [about.symbol, plain, *(plain.replace(" ", blank) for blank in ("_", "")), name]
+        assert {*read_names("only", [*ways, name.replace("_", "-")], QUANTITIES)} == {name}
 
 
 # Errors
@@ -96,8 +89,7 @@ LONG = [
 ]
 
 
-LINES = (
-    """
+LINES = """
 solve --m1 1 --m2 3 --M {}|solve --m1 1 --m2 3 --wrap {}|solve --m1 1 --m2 3 --I {}|contact --m1 1 --m2 3 --M {}
 sweep --m1 1 --m2 3 --M {}|sweep --m1 1 --m2 3 --M {}:2:3|sweep --m1 1 --m2 3 --M 1:2:{}|sweep --m1 1 --m2 3 --M 1:2:3:{}
 sweep --m1 1 --m2 3 --M 1:2:3 --only {}|sweep --m1 1 --m2 3 --M 1:2:3 --figure {}|sweep --m1 1 --m2 3 --M 1:2:3 -o {}
@@ -105,16 +97,14 @@ sweep --m1 1 --m2 3 --M 1:2:3 --digits {}|{}|solve {}|solve --m1 1 --m2 3 {}|sol
 solve --m1 1 --m2 3 --{}|solve --m1 1 --m2 3 --json={}|solve --m1 1 --m2 3 -{}=1|solve --m1 1 --m2 3 --M --mu={}
 contact --m1 1 --m2 3 --figure {}|batch {}|fit {}|batch - --from {}|batch - --only {}|batch - --accuracy {}
 fit - --find {}|fit - --only {}|fit - --drop {}|tradeoff --family {}
-""".strip()
-    .replace("\n", "|")
-    .split("|")
-)
+"""
 
 
 @pytest.mark.parametrize("long", LONG, ids=lambda word: word[:8])
 def test_no_message_repeats_all_that_was_typed(atwood: Atwood, long: str) -> None:
     """Nor does it take long: an unknown unit of 100 kB took a minute."""
-    for line in (*LINES, *["solve" + " x" * 20_000] * (long == LONG[0])):
+    lines = LINES.strip().replace("\n", "|").split("|")
+    for line in (*lines, *["solve" + " x" * 20_000] * (long == LONG[0])):
         ran = atwood(*(word.format(long) for word in line.split()))
         assert (ran.status in (1, 2), ran.out, ran.err.count("\n")) == (True, "", 1), line
         assert len(ran.err) < 700, line
@@ -134,12 +124,14 @@ def test_version_and_help(atwood: Atwood) -> None:
 def test_only_what_is_needed_is_imported(output: str) -> None:
     loaded = set(process(*PAPER, *output.split(), code=LOADED).err.split())
     ours = {name for name in loaded if name.startswith(("atwood_cli.cli.", "atwood_cli.output."))}
-    assert ours - {"atwood_cli.output.page"} == {
-        f"atwood_cli.{name}"
-        for name in ("cli.options", "cli.solve", "output.files", "output.scene_page", "output.text")
-    }
+    needed = {"cli.options", "cli.solve", "output.files", "output.scene_page", "output.text"}
+    assert ours - {"atwood_cli.output.page"} == {f"atwood_cli.{name}" for name in needed}
     assert "numpy" not in loaded
     assert ("rich" in loaded) == ("atwood_cli.output.page" in ours) == (output == "")
+
+
+def test_the_arc_needs_no_numpy() -> None:
+    assert not {"numpy", "rich"} & set(process("contact", *PAPER[1:], "--csv", code=LOADED).err.split())
 
 
 def test_the_door_opens_before_anything_is_loaded() -> None:
@@ -179,11 +171,8 @@ def test_python_dash_m_and_the_command_are_one() -> None:
     command = Path(sys.executable).with_name("atwood")
     if not command.exists():
         pytest.skip("not installed")
-    words = [str(command), *PAPER, "--json"]
-    assert (
-        subprocess.run(words, capture_output=True, text=True, check=True).stdout
-        == process(*PAPER, "--json").out
-    )
+    ran = subprocess.run([str(command), *PAPER, "--json"], capture_output=True, text=True, check=True)
+    assert ran.stdout == process(*PAPER, "--json").out
 
 
 # As a program
@@ -200,11 +189,11 @@ sys.exit(status)
 """
 
 
-@pytest.mark.parametrize(("words", "status", "out"), [("--only regime", 0, "verge\n"), ("--zzz", 2, "")])
-def test_what_is_left_to_do_at_exit_is_done(words: str, status: int, out: str) -> None:
+def test_what_is_left_to_do_at_exit_is_done() -> None:
     """main freezes what the garbage collector would look through; handlers run and streams are flushed."""
-    ran = process(*PAPER, *words.split(), code=ENDING)
-    assert (ran.status, ran.out) == (status, f"before {out}after at exit\n")
+    for words, status, out in (("--only regime", 0, "verge\n"), ("--zzz", 2, "")):
+        ran = process(*PAPER, *words.split(), code=ENDING)
+        assert (ran.status, ran.out) == (status, f"before {out}after at exit\n")
 
 
 def test_the_program_collects_garbage_and_a_library_is_left_alone() -> None:

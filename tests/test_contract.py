@@ -32,7 +32,7 @@ from .scenes import inputs, table
 USER_SCRIPT = str(Path(__file__).with_name("user_script.py"))
 
 
-# The table of what is given, and its corners: scene | results | what a note says
+# The table of what is given, and its corners
 
 GROUPS = {
     "moving": "acceleration tension_1 tension_2 rim_acceleration",
@@ -40,75 +40,10 @@ GROUPS = {
     "conditions": "least_heavier_mass least_pulley_mass",
     "critical": "critical_pulley_mass",
 }
-CORNERS = """
-m1=1                 | regime=no-slip tension_1=14.709975 tension_2=14.709975 friction=0
-M=10                 | regime=no-slip                                       | Assumed to hold
-mu=0.35              | regime=no-slip moving=None mu_verge=None friction_force=None critical=None | give M
-mu=0.35              | | acceleration from 4.90332 to 0, tension_1 from 14.7100 to 9.80665, tension_2 from
-mu=0.35              | | tension_2 from 14.7100 to 29.4200, mu_verge from 0 to 0.349699
-mu=0.3 M=43.3419     | regime=no-slip critical=43.34192486321087 friction_force=None | Holds
-mu=0.3 M=43.3420     | regime=slip critical=43.34192486321087               | Slips
-mu=0.3 M=0           | regime=no-slip critical=43.34192486321087 friction=0
-mu=0                 | regime=verge critical=0 mu_verge=0 friction_force=0 conditions=None | (36) do not apply
-mu=0 M=10            | regime=slip friction_force=0 rim_acceleration=0 acceleration=4.903325
-mu=0 M=inf           | regime=slip friction_force=0 rim_acceleration=0 acceleration=4.903325
-M=inf mu=0.34969915256605978 | regime=no-slip acceleration=0 rim_acceleration=0 critical_heavier_mass=3 axle_force=None
-M=inf mu=0.34969915256605977 | regime=slip rim_acceleration=0 axle_force=None
-m1=3                 | regime=no-slip acceleration=0 rim_acceleration=0 friction=0 critical=None | At rest
-m1=3 mu=0.2          | regime=no-slip acceleration=0 rim_acceleration=0 friction=0 critical=None | At rest
-m1=3 mu=0            | regime=no-slip acceleration=0 rim_acceleration=0 friction=0 critical=None | At rest
-m1=3 M=inf           | regime=no-slip acceleration=0 tension_1=29.41995 tension_2=29.41995 friction=0 | At rest
-m1=3 M=5 mu=0 R=1    | regime=no-slip torque=0 tension_1=29.41995 tension_2=29.41995 friction=0 | At rest
-m1=0                 | acceleration=9.80665 tension_1=0 tension_2=0 friction=None
-m1=0 M=0             | acceleration=9.80665 tension_1=0 tension_2=0 friction=None
-m1=0 M=2             | acceleration=7.3549875 tension_1=0 tension_2=7.3549875 friction=None
-m1=0 M=inf           | acceleration=0 tension_1=0 tension_2=29.41995 friction=None
-m1=3 m2=0 M=2        | acceleration=-7.3549875 tension_1=7.3549875 tension_2=0
-I=0.2 R=0.2 mu=0.3   | axle_force=None critical=None least_pulley_mass=None | give M, the pulley's mass, beside I
-inertia=1.2 M=1      | | above 1
-I=5 R=1 M=1          | | above 1
-M=10                 | least_wrap=None | least_wrap: give mu
-mu=0.4               | least_wrap=None | give M
-mu=0 M=1             | least_wrap=None | does not exist, as without friction no wrap holds
-m1=0                 | least_wrap=None | least_pulley_mass, least_wrap: not defined for a free end
-axle=5N m2=1.2 mu=0.3 M=1 | critical_pulley_mass=None | the axle holds the difference on any
-axle=5N m2=3 mu=0.05 | critical_pulley_mass=None | slips on any pulley, however light
-axle=5N m2=1.2 mu=0.05 M=1 | critical_pulley_mass=None | slips on any pulley, however light
-axle=5N m2=1.2 mu=0 | least_pulley_mass=None | no condition here, as the friction of the axle
-axle=5N m2=3 mu=0.05 | least_pulley_mass=None | no condition here, as the friction of the axle
-axle=5N m2=3 mu=0.05 | mu_verge=None | give M
-axle=5N m2=3 mu=0.3 M=1 | critical_heavier_mass=None | holds under any heavier mass
-inertia=1.0000000000000000001 M=2 | | I/(M R^2) is 1.0000000000000000001, above 1
-M=50 mu=0.31 mu_k=0.1 digits=6 | | Holds from rest: mu = 0.31, and 0.306 is enough.
-M=50 mu=0.31 mu_k=0.1 digits=6 | | already goes on sliding, as mu_k = 0.1 is below 0.305: the masses then have
-    the acceleration 3.66061 m/s².
-M=50 mu=0.31 mu_k=0.306 | | Holds: mu = 0.31, and 0.306 is enough.
-M=50 mu=0.31 mu_k=0.306 | | mu_k = 0.306 is enough, too: a string that slides already is caught by the pulley.
-mu=0.5 mu_k=0.1 | | Holds on any pulley: the heavier mass, 3 kg, would have to exceed 4.81 kg to slip.
-mu=0.5 mu_k=0.1 | | mu_k has no part in this, which starts from rest; what a sliding string does depends on M.
-mu=0.3 mu_k=0.1 digits=6 | | On the verge of slipping: as M is not given, this is for the critical pulley mass,
-    43.3419 kg. On a heavier pulley the string slips; on one without mass the acceleration is 4.90332 m/s².
-mu=0.3 mu_k=0.1 | | mu_k has no part in this, which starts from rest; what a sliding string does depends on M.
-mu=0.3 M=43.34192486321087 | | Slips: mu = 0.3 is below the 0.301 that would hold it.
-mu=0.3 m1=1t m2=2t  | | Holds on any pulley: the heavier mass, 2000 kg, would have to exceed 2560 kg to slip.
-mu=0.3 M=43 digits=2 | | Holds: mu = 0.3, and 0.2997 is enough.
-mu=0.3 M=43.5 digits=2 | | Slips: mu = 0.3 is below the 0.301 that would hold it.
-mu=0.3 m2=2.566332395208135 | | Holds on any pulley: the heavier mass, 2.566332395208135 kg, would have to exceed
-    2.5663323952081353 kg to slip.
-m2=1.5 mu=2.6e7 wrap=60 digits=40 | | Holds on any pulley, under any mass that can be given
-M=10 mu=0.3 wrap=1e499rad digits=200 | regime=no-slip least_heavier_mass=inf
-M=10 mu=1            | | between friction_force_min and friction_force_max
-M=10 mu=1 wrap=181   | friction_force_min=None friction_force_max=None | up to half a turn of wrap (180 degrees)
-M=10 mu=1 wrap=3.15rad | friction_force_min=None
-M=1e-300 mu=1        | friction_force_min=0
-m1=1e400 m2=2e400    | tension_1=inf acceleration=3.268883333333333 | beyond the range of doubles
-m1=1e-400 m2=2e-400  | tension_1=0 | below the range of doubles
-M=10 mu=1e9          | critical_lighter_mass=0 | not 0 but too small to be written out: about 10^-100000000 or less.
-M=10 mu=1e9 digits=5 | critical_lighter_mass=None | not 0 but too small to be written out: about 10^-100000000 or less.
-"""
+CORNERS = (Path(__file__).parent / "cases" / "corners.md").read_text(encoding="utf-8").split("```")[1]
 
 
-@pytest.mark.parametrize("corner", table(CORNERS))
+@pytest.mark.parametrize("corner", table(CORNERS)[1:])
 def test_what_is_given_decides_what_follows(corner: list[str]) -> None:
     given, expected, note = (*corner, "")[:3]
     solution = solve(**inputs(given))

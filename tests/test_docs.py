@@ -49,13 +49,6 @@ def test_the_python_in_the_pages_runs(name: str) -> None:
     assert result.failed == 0, "".join(report)
 
 
-def test_transcripts_and_python_are_found_in_the_pages() -> None:
-    shown = Counter(kept.file.relative_to(TOP).as_posix() for kept in KEPT)
-    assert shown["README.md"] == 3
-    assert all(shown[f"examples/{page}.md"] >= 4 for page in ("lesson", "laboratory", "hoist", "programs"))
-    assert "examples/programs.md" in PYTHON
-
-
 def anchors(page: Path) -> set[str]:
     headings = re.findall(r"^#+ (.*)", page.read_text(encoding="utf-8"), re.MULTILINE)
     return {re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings}
@@ -85,14 +78,11 @@ def test_the_map_names_every_module() -> None:
     assert named == {module for module in modules if not module.endswith("/__init__")}
 
 
-def test_both_setup_commands_are_there() -> None:
+def test_the_setup_commands_are_what_the_workflow_runs() -> None:
+    """On the oldest and the newest Python of the classifiers."""
     commands = re.findall(r"```sh\n(.*)\n```", README)
     assert [command.split()[-1] for command in commands] == ["0.3", "pytest"]
     assert all(command.startswith("python3 -m venv .venv && .venv/bin/pip install") for command in commands)
-
-
-def test_the_workflow_runs_what_the_project_says() -> None:
-    """The oldest and the newest Python of the classifiers, and the first commands of the README."""
     workflow, project = ((TOP / name).read_text() for name in (".github/workflows/ci.yml", "pyproject.toml"))
     versions = re.findall(r'Python :: (3[.]\d+)"', project)
     assert re.search(r"python: \[(.*)\]", workflow)[1] == f'"{versions[0]}", "{versions[-1]}"'  # type: ignore[index]
@@ -162,6 +152,10 @@ def test_a_page_lists_every_unit() -> None:
 
 
 def test_every_example_is_tested() -> None:
+    shown = Counter(kept.file.relative_to(TOP).as_posix() for kept in KEPT)
+    assert shown["README.md"] == 3
+    assert all(shown[f"examples/{page}.md"] >= 4 for page in ("lesson", "laboratory", "hoist", "programs"))
+    assert "examples/programs.md" in PYTHON
     names = "ci-smoke lift measure-mu paper"
     assert [script.stem for script in SCRIPTS] == names.split()
     outputs = {path for suffix in ("txt", "svg") for path in (TOP / "examples").glob(f"*.{suffix}")}

@@ -28,67 +28,9 @@ from atwood_cli.solver.steps import Explanation, Step, explain
 
 from . import oracle
 from .conftest import examples, many
-from .scenes import FAMILIES, Given, inputs, of_all_kinds, scenes, table
+from .scenes import FAMILIES, KINDS, Given, inputs, of_all_kinds, scenes, table
 
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
-# With c = 5 and g = 9 masses of 1 and 3 have a = 2, and a = 1 beside an axle with 9 N.
-KINDS = """
-massless |
-no mass | M=0
-given pulley | M=10
-hoop | M=10 inertia=hoop g=moon
-a hub | M=10 inertia=2.5 mu=0.1 mu_k=0.05
-locked | M=inf
-equal | m2=1 M=3 mu=0.1 R=1
-nearly equal | m2=1.00000001 M=3 mu=0.1
-equal and missing | m2=1 mu=0.1
-equal on a locked pulley | m2=1 M=inf
-free end | m1=0 M=2
-free end, massless | m1=0
-verge | mu=0.3
-no critical mass | mu=0.4
-kinetic and missing | mu=0.4 mu_k=0.1
-grips | M=10 mu=0.3
-grips on two thirds of a turn | M=10 mu=0.3 wrap=240
-grips on a long wrap | M=10 mu=0.3 wrap=540
-grips on radians | M=10 mu=0.9 wrap=2rad
-caught | M=10 mu=0.3 mu_k=0.25
-slides on | M=10 mu=0.3 mu_k=0.1
-slips | M=100 mu=0.3 mu_k=0.25 R=0.1
-slides without friction | M=100 mu=0.3 mu_k=0
-locked and slips | M=inf mu=0.2 wrap=1rad
-locked and grips | M=inf mu=0.4
-no friction, no pulley | mu=0
-no friction | mu=0 M=5
-massless, rough | M=0 mu=0.2
-mirror | m1=3 m2=1 M=50 mu=0.3 R=0.1
-far apart | m1=1e-30 m2=3e30 M=1e-5 mu=1e3
-inertia | M=50 mu=0.3 R=0.1 I=0.8 wrap=100
-inertia alone | mu=0.3 R=0.1 I=0.3
-inertia beside an axle | I=0.3 R=0.1 axle=1Nm mu=0.4
-an axle alone | axle=5
-an axle that rubs | M=10 axle=5 R=0.1
-an axle that holds | M=10 R=0.1 axle=2.5Nm
-an axle that holds a free end | m1=0 m2=1 axle=12
-an axle of grams | m2=1.1 M=2 mu=0.4 axle=5
-an axle that is a note | m2=50 M=3 mu=0.2 axle=3
-an axle beside a lock | M=inf axle=30
-grips beside an axle | M=10 mu=0.3 axle=5
-slips beside an axle | m1=3 m2=1 M=300 mu=0.2 axle=5
-verge beside an axle | mu=0.2 axle=5
-always slips beside an axle | mu=0.05 axle=5
-slips on an axle that holds | mu=0.05 axle=1.2Nm R=0.05 M=1
-nothing but the axle tells the motion | m2=0.3 mu=3 mu_k=2.5 axle=1e300
-finds the pulley | g=9 drop=9 time=3 R=0.1
-finds gravity | M=10 a=2
-finds gravity beside an axle | M=10 a=1 axle=0.9Nm R=0.1
-finds the heavier mass | m2=None M=10 g=9 a=2
-finds the lighter mass | m1=3 m2=None M=10 g=9 a=-1 axle=9
-finds an equal mass | m2=None M=10 a=0
-finds kinetic friction | M=inf g=10 a=2 drop=4
-finds no kinetic friction | m1=3 m2=1 M=100 mu=0.2 g=10 a=-5
-falls | M=10 g=9 drop=9 mu=0.3
-"""
 SCENES = {kind: inputs(words) for kind, words in table(KINDS)}
 kinds = pytest.mark.parametrize("kind", SCENES)
 
