@@ -10,8 +10,9 @@ import signal
 import subprocess
 import sys
 import time
-from contextlib import chdir
+from contextlib import ExitStack, chdir
 from functools import cache, partial
+from itertools import count, product
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
@@ -28,12 +29,12 @@ SCENE = "--m1 1 --m2 3"
 ENVIRONMENT = around({"PYTHONPATH": str(TOP)})
 
 
-def blown(code: str, *words: str) -> tuple[int, bytes, bytes]:
-    """How code ends that sends itself a signal: status, stdout, stderr."""
-    done = subprocess.run(
-        [sys.executable, "-c", code, *words], capture_output=True, check=False, timeout=HANGS
-    )
-    return done.returncode, done.stdout, done.stderr
+def blown(child: "subprocess.Popen[bytes]", *blows: str, stdin: bytes = b"") -> tuple[int, bytes, bytes]:
+    """How a run ends that gets signals: status, stdout, stderr."""
+    for blow in blows:
+        child.send_signal(signal.Signals[blow])
+    out, err = child.communicate(stdin or None, HANGS)
+    return child.returncode, out, err
 
 
 # Wherever it is, it ends quietly
@@ -66,76 +67,75 @@ def test_what_ends_it_ends_it_quietly(typed: str, blow: str) -> None:
     child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     assert child.stderr is not None
     assert child.stderr.readline() == b"started\n"
-    child.send_signal(signal.Signals[blow])
-    out, err = child.communicate(timeout=HANGS)
-    assert (child.returncode, out, err) == (STATUS[blow], b"", b"")
+    assert blown(child, blow) == (STATUS[blow], b"", b"")
 
 
-DROPPING = """
+# What runs is replaced by what sends a signal to itself where Python can raise nothing, or another error:
+# where an object is dropped, where a class is made and, as modules in C do, while one is imported.
+RUN = """
 import os, signal, sys, time
 from atwood_cli import cli
 from atwood_cli.__main__ import main
+def blow():
+    os.kill(os.getpid(), getattr(signal, sys.argv.pop()))
+{}
+cli.run = run
+sys.exit(main())
+"""
+DROPPING = """
 class Dropped:
     def __del__(self):
-        os.kill(os.getpid(), signal.SIGTERM)
+        blow()
         time.sleep(0)
 def run():
     Dropped()
     while True:
         time.sleep(0.01)
-cli.run = run
-sys.exit(main())
 """
-
-
-def test_a_signal_is_not_lost_where_python_can_raise_nothing() -> None:
-    assert blown(DROPPING) == (143, b"", b"")
-
-
 TURNED = """
-import os, signal, sys, time
-from atwood_cli import cli
 class Part:
     def __set_name__(self, owner, name):
-        os.kill(os.getpid(), getattr(signal, sys.argv.pop()))
+        blow()
         time.sleep(9)
 def run():
     try:
         type("Imported", (), {"part": Part()})
     except KeyboardInterrupt as error:  # since Python 3.12; before, a RuntimeError
         raise ImportError("numpy._core.multiarray failed to import") from error
-cli.run = run
-from atwood_cli.__main__ import main
-sys.exit(main())
 """
 
 
-@pytest.mark.parametrize("blow", ["SIGINT", "SIGTERM", "SIGHUP"])
-def test_a_run_stopped_in_an_import_shows_no_traceback(blow: str) -> None:
-    """Classes that are being made, and modules written in C, turn what stops them into other errors."""
-    assert blown(TURNED, blow) == (STATUS[blow], b"", b"")
+@pytest.mark.parametrize(
+    ("code", "blow"),
+    [(DROPPING, "SIGTERM"), (TURNED, "SIGINT"), (TURNED, "SIGTERM"), (TURNED, "SIGHUP")],
+    ids=count(),
+)
+def test_a_signal_is_not_lost_and_shows_no_traceback(code: str, blow: str) -> None:
+    command = [sys.executable, "-c", RUN.format(code), blow]
+    ended = subprocess.run(command, capture_output=True, check=False, timeout=HANGS)
+    assert (ended.returncode, ended.stdout, ended.stderr) == (STATUS[blow], b"", b"")
 
 
-@pytest.mark.parametrize("kind", ["csv", "parquet"])
-def test_a_pipe_that_brings_nothing_is_waited_for_until_it_is_stopped(tmp_path: Path, kind: str) -> None:
-    os.mkfifo(tmp_path / "in")
-    for blow, is_open in (("SIGTERM", False), ("SIGINT", True)):
-        child = hearing("batch", str(tmp_path / "in"), "--from", kind)
-        writer = os.open(tmp_path / "in", os.O_RDWR) if is_open else None
-        time.sleep(0.5)
-        child.send_signal(signal.Signals[blow])
-        assert child.communicate(timeout=HANGS) == (b"", b"")
-        assert child.returncode == STATUS[blow]
-        if writer is not None:
-            os.close(writer)
+def test_a_pipe_that_brings_nothing_is_waited_for_until_it_is_stopped(tmp_path: Path) -> None:
+    """All at once, as each has to be waited for; one way, nobody has opened the pipe to write."""
+    with ExitStack() as stack:
+        children = {}
+        for kind, blow in product(("csv", "parquet"), ("SIGTERM", "SIGINT")):
+            os.mkfifo(pipe := tmp_path / f"{kind}{blow}")
+            children[hearing("batch", str(pipe), "--from", kind)] = blow
+            if blow == "SIGINT":
+                stack.callback(os.close, os.open(pipe, os.O_RDWR))
+        time.sleep(1)
+        for child, blow in children.items():
+            assert child.poll() is None
+            assert blown(child, blow) == (STATUS[blow], b"", b"")
 
 
 # What it was writing
 
 
 @pytest.mark.parametrize(
-    ("blows", "before"),
-    [("SIGKILL", ""), ("SIGINT", ""), ("SIGTERM", "as it was"), ("SIGHUP", ""), ("SIGINT SIGINT", "")],
+    ("blows", "before"), [("SIGKILL", ""), ("SIGTERM", "as it was"), ("SIGHUP", ""), ("SIGINT SIGINT", "")]
 )
 def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str, before: str) -> None:
     out = tmp_path / "out.csv"
@@ -148,21 +148,17 @@ def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str, before: st
     while not any(path.stat().st_size for path in tmp_path.glob(".atwood-*")):
         assert child.poll() is None
         time.sleep(0.01)
-    for blow in blows.split():
-        child.send_signal(signal.Signals[blow])
-    _, err = child.communicate(timeout=HANGS)
-    assert child.returncode == STATUS[blows.split()[0]]
+    status, _, err = blown(child, *blows.split())
+    assert status == STATUS[blows.split()[0]]
     assert out.exists() == bool(before)
     if blows == "SIGKILL":
         assert err == b""
-    else:
-        assert [path.read_text() for path in tmp_path.iterdir()] == [before] * bool(before)
-        is_left = "stays as it was" if before else "was not written"
-        said = re.fullmatch(
-            rf"atwood: stopped after (\d+) rows; {re.escape(str(out))} {is_left}\n", err.decode()
-        )
-        assert said
-        assert 0 < int(said[1]) <= 300_000
+        return
+    assert [path.read_text() for path in tmp_path.iterdir()] == [before] * bool(before)
+    is_left = "stays as it was" if before else "was not written"
+    said = re.fullmatch(rf"atwood: stopped after (\d+) rows; {re.escape(str(out))} {is_left}\n", err.decode())
+    assert said
+    assert 0 < int(said[1]) <= 300_000
 
 
 def test_what_is_to_outlive_its_terminal_does(tmp_path: Path) -> None:
@@ -171,19 +167,14 @@ def test_what_is_to_outlive_its_terminal_does(tmp_path: Path) -> None:
     child = hearing("batch", "-", "-o", str(tmp_path / "out.csv"), stdin=subprocess.PIPE, preexec_fn=ignore)
     while not list(tmp_path.iterdir()):
         time.sleep(0.01)
-    child.send_signal(signal.SIGHUP)
     said = b"atwood: 1 row: 1 no-slip; no errors.\n"
-    assert child.communicate(b"m1,m2\n1,3\n", HANGS) == (b"", said)
-    assert child.returncode == 0
+    assert blown(child, "SIGHUP", stdin=b"m1,m2\n1,3\n") == (0, b"", said)
 
 
+SWEEP = f"sweep {SCENE} --M 1:100:20"
 RUNS = [
-    "batch in.csv -o out.csv",
-    "batch in.ndjson -o out.ndjson",
-    "batch in.parquet -o out.parquet --accuracy exact",
-    f"sweep {SCENE} --M 1:100:2000 -o out.csv",
-    f"sweep {SCENE} --M 1:100:20 -o out.json",
-    f"sweep {SCENE} --M 1:100:20 --figure out.svg",
+    *(f"batch in.{kind} -o out.{kind}" for kind in ("csv", "ndjson", "parquet")),
+    *(f"{SWEEP}00 -o out.csv", f"{SWEEP} -o out.json", f"{SWEEP} --figure out.svg"),
     f"contact {SCENE} --mu 0.3 --figure out.svg",
 ]
 
