@@ -3,13 +3,14 @@
 import gc
 import os
 import signal
+from pathlib import Path
 
 import pytest
 from hypothesis import HealthCheck, settings
 
 from atwood_cli.cli import run
 
-from .running import HEARD, HOW_TO_PRINT, Atwood, Ran
+from .running import HEARD, HOW_TO_PRINT, Atwood, Batch, Ran
 
 # No test fails where a machine is slow.
 ANYWHERE = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture]
@@ -57,5 +58,18 @@ def atwood(capsys: pytest.CaptureFixture[str]) -> Atwood:
     def call(*arguments: str) -> Ran:
         status = run(list(arguments))
         return Ran(status, *capsys.readouterr())
+
+    return call
+
+
+@pytest.fixture
+def batch(atwood: Atwood, tmp_path: Path) -> Batch:
+    """Run `atwood batch` on a file with that content; in messages the file is called IN, and OUT is another."""
+
+    def call(content: bytes | str, words: str = "", name: str = "in.csv") -> Ran:
+        path = tmp_path / name
+        path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        ran = atwood("batch", str(path), *words.replace("OUT", str(tmp_path / "out")).split())
+        return ran._replace(err=ran.err.replace(str(path), "IN"))
 
     return call

@@ -33,6 +33,7 @@ class Ran(NamedTuple):
 
 
 Atwood = Callable[..., Ran]
+Batch = Callable[..., Ran]
 
 
 HOW_TO_PRINT = ("COLUMNS", "LINES", "FORCE_COLOR", "NO_COLOR")

@@ -7,7 +7,6 @@ import json
 import re
 import subprocess
 import sys
-from collections.abc import Callable
 from contextlib import redirect_stderr, redirect_stdout
 from fractions import Fraction
 from itertools import count
@@ -27,26 +26,11 @@ from atwood_cli.model.units import UNITS
 from atwood_cli.tables import sources
 from atwood_cli.tables.sources import FORMATS
 
-from .running import HANGS, Atwood, Ran, on_real_terminal, on_terminal, plain, process
+from .running import HANGS, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
 
 SEPARATORS = {"csv": ",", "tsv": "\t"}
 TEXT = "m1,m2\n1,3\n"
 ONE = "atwood: 1 row: 1 no-slip; no errors.\n"
-
-Batch = Callable[..., Ran]
-
-
-@pytest.fixture
-def batch(atwood: Atwood, tmp_path: Path) -> Batch:
-    """Run `atwood batch` on a file with that content; in messages the file is called IN."""
-
-    def call(content: bytes | str, words: str = "", name: str = "in.csv") -> Ran:
-        path = tmp_path / name
-        path.write_bytes(content if isinstance(content, bytes) else content.encode())
-        ran = atwood("batch", str(path), *words.replace("OUT", str(tmp_path / "out")).split())
-        return ran._replace(err=ran.err.replace(str(path), "IN"))
-
-    return call
 
 
 def errors_of(ran: Ran) -> list[str]:
