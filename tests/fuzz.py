@@ -7,6 +7,7 @@ import zipfile
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
+from functools import partial
 from math import inf, nan
 from random import Random
 from typing import Any, NamedTuple, TypeVar
@@ -49,6 +50,8 @@ LONG += ["1" + "kg " * 30_000, "--" + "m1" * 50_000, "1(" * 50_000, "m1:" * 30_0
 TEXTS = [*"x µ =1+1 regime tension_1 ' \" , ;".split(), "", "a b", "M (kg)", "m1 ", "\t", *HOSTILE]
 FILES = ["in.csv", "a", *(f"a.{kind}" for kind in (*FORMATS, "svg", "json", "txt")), "-", "no/a.svg", "\x1b.csv"]
 COUNTS = "1 2 5 17 33 40 100 0 -1 10000001 1.5".split()
+WORDS = {"FILE": FILES, "OUT": FILES, "NAME": [*NAMES, *MEASURED, "ordinary", "accel"], "N": COUNTS}
+"""What may stand behind an option, by its metavar, besides numbers."""
 SHAPES = "{} {} {}{u} {}_{u} {}+/-{} {}({}) {}±{} {}:{}:{} {}:{}:5:log {}/{} -{}".split()
 ODD_VALUES: list[Any] = [
     *(None, True, 1 + 2j, "x", b"1", [], [1, 2], {}, object(), nan, inf, -inf, 5e-324, 1e308, 10**400, -1, 0),
@@ -121,19 +124,11 @@ class Dice:
             return [*self.value(command, "FILE"), *self.value(command, "NAME")]
         if self.chance(self.odd / 5):
             return [self.choice([*EDGES, *TEXTS, *LONG])]
-        if metavar in ("FILE", "OUT"):
-            return [self.choice(FILES)]
-        if metavar == "NAME":
-            return [self.choice([*NAMES, *MEASURED, "ordinary", "accel"])]
-        if metavar == "N":
-            return [self.choice(COUNTS)]
-        if "|" in metavar:
-            return [self.choice(metavar.split("|"))]
+        if words := WORDS.get(metavar) or metavar.split("|")[1:] and metavar.split("|"):
+            return [self.choice(words)]
         if command == "sweep" and self.chance(0.3):
-            one, other = (
-                self.with_unit(metavar) if metavar in OF_METAVAR else self.number() for _ in range(2)
-            )
-            return [f"{one}:{other}:{self.choice('1234')}{self.choice(['', ':log'])}"]
+            ends = [self.with_unit(metavar) if metavar in OF_METAVAR else self.number() for _ in range(2)]
+            return [f"{':'.join(ends)}:{self.choice('1234')}{self.choice(['', ':log'])}"]
         if command == "solve" and self.chance(0.5 if metavar == "ANGLE" else 0.05):
             digits = self.draw(st.integers(1, 30))
             return [self.choice(UNCERTAIN if metavar == "ANGLE" else [f"{x}({digits})" for x in GOOD])]
@@ -158,11 +153,8 @@ class Dice:
         columns = [name for name in INPUTS if name in MASSES or self.chance(0.2)]
         columns += [name for name in (*TEXTS, "mu_K", "a", "time") if self.is_odd()]
         columns = self.draw(st.permutations(columns))
-        count = self.choice([1, 0, 2, 5, 30])
-        rows = [
-            [self.number() if name in INPUTS else self.choice(TEXTS) for name in columns]
-            for _ in range(count)
-        ]
+        row = [self.number if name in INPUTS else partial(self.choice, TEXTS) for name in columns]
+        rows = [[cell() for cell in row] for _ in range(self.choice([1, 0, 2, 5, 30]))]
         kind = self.choice(FORMATS) if self.is_odd() else kind
         if kind == "parquet":
             buffer = io.BytesIO()
@@ -182,28 +174,6 @@ class Dice:
         lines = end.join(separator.join(row) for row in rows)
         return self.choice(["", "\ufeff"]) + lines + end * self.choice([1, 0, 2])
 
-    def labelled(self, separator: str) -> str:
-        """Two masses of one digit each, and columns of labels, more or less whole."""
-        columns = self.draw(st.permutations(["m1", "m2", *["n", "p q", '"r\ns"'][: self.choice([1, 0, 3])]]))
-        rows = [columns]
-        for _ in range(self.choice([3, 0, 1, 8])):
-            whole = [self.choice("5203146789") if name in MASSES else "abc" for name in columns]
-            row = [self.choice(LABELS) if self.is_odd() else cell for cell in whole]
-            is_cut = self.chance(self.odd / 5)
-            rows.append(self.choice([row[:-1], row * 2, [], [" "], row[:1]]) if is_cut else row)
-        return self.text(rows, separator)
-
-    def objects(self) -> list[str]:
-        """Lines of NDJSON with two masses, more or less whole."""
-        lines = []
-        for _ in range(self.choice([3, 1, 12])):
-            m1, m2 = (int(self.choice("5203146789")) for _ in MASSES)
-            row: dict[str, object] = {"m1": m1, "n": [{"q": '"}'}], "m2": m2}
-            if self.is_odd():
-                row |= self.choice([{"m1": None}, {"m2": "x"}, {"M": None}])
-            lines.append(self.choice(LINES) if self.is_odd() else json.dumps(row))
-        return lines
-
     def runs(self) -> bytes:
         """A table of runs of one pulley and axle, more or less whole and true."""
         timed = self.chance(0.5)
@@ -220,9 +190,8 @@ class Dice:
             numbers = [*masses, abs(2 / a) ** 0.5 if timed else a, 1.0, 1.0, 1.0][: len(names)]
             spread = true.choice(["", "", "+/-0.01"])
             row = [self.number() if self.is_odd() else f"{cell!r}{spread}" for cell in numbers]
-            rows.append(
-                [self.choice(TEXTS) if name in TEXTS else cell for name, cell in zip(names, row, strict=True)]
-            )
+            pairs = zip(names, row, strict=True)
+            rows.append([self.choice(TEXTS) if name in TEXTS else cell for name, cell in pairs])
         separator = self.choice(",;\t")
         table = [self.choice(AROUND), *(separator.join(row) for row in [names, *rows]), self.choice(AROUND)]
         return "\n".join(filter(None, table)).encode(self.choice(["utf-8"] * 8 + ["cp1252"] * 2), "replace")
@@ -264,17 +233,30 @@ def runs(draw: st.DrawFn, command: str) -> Run:
 
 @st.composite
 def tables(draw: st.DrawFn) -> tuple[str, str, int]:
-    """CSV, its separator, and the bytes that are read at a time."""
+    """CSV of two masses of one digit each and of labels, its separator, and the bytes that are read at a time."""
     dice = Dice(draw, ODD)
     separator = dice.choice(",;\t")
-    return dice.labelled(separator), separator, dice.choice(PIECES)
+    columns = draw(st.permutations(["m1", "m2", *["n", "p q", '"r\ns"'][: dice.choice([1, 0, 3])]]))
+    rows = [columns]
+    for _ in range(dice.choice([3, 0, 1, 8])):
+        whole = [dice.choice("5203146789") if name in MASSES else "abc" for name in columns]
+        row = [dice.choice(LABELS) if dice.is_odd() else cell for cell in whole]
+        is_cut = dice.chance(dice.odd / 5)
+        rows.append(dice.choice([row[:-1], row * 2, [], [" "], row[:1]]) if is_cut else row)
+    return dice.text(rows, separator), separator, dice.choice(PIECES)
 
 
 @st.composite
 def lines(draw: st.DrawFn) -> tuple[list[str], str, int]:
-    """Lines of NDJSON, what is behind them, and the bytes that are read at a time."""
+    """NDJSON of two masses, what is behind it, and the bytes that are read at a time."""
     dice = Dice(draw, ODD)
-    return dice.objects(), "\n" * dice.choice([1, 0, 2]), dice.choice(PIECES)
+    made = []
+    for _ in range(dice.choice([3, 1, 12])):
+        m1, m2 = (int(dice.choice("5203146789")) for _ in MASSES)
+        row: dict[str, object] = {"m1": m1, "n": [{"q": '"}'}], "m2": m2}
+        row |= dice.choice([{"m1": None}, {"m2": "x"}, {"M": None}]) if dice.is_odd() else {}
+        made.append(dice.choice(LINES) if dice.is_odd() else json.dumps(row))
+    return made, "\n" * dice.choice([1, 0, 2]), dice.choice(PIECES)
 
 
 @st.composite
