@@ -35,8 +35,7 @@ def reasons(answers: Answers) -> list[str]:
     if uncertainties is None:
         return said
     unsure = {(f"u_{name}", reason): 1 for name, reason in answers.unsure.items()}
-    shown = {name: u for name, u in answers.spread.items() if name not in answers.unsure}
-    lopsided = uncertainties.lopsided(shown, answers.digits or DOUBLE_DIGITS)
+    lopsided = uncertainties.lopsided(answers.spread, answers.digits or DOUBLE_DIGITS)
     open_ended = map(unmarked, uncertainties.open_ended(answers.open_ended))
     return [*said, *uncertainties.doubts(), *lopsided, *open_ended, *reasons_at(unsure, 1)]
 
