@@ -25,16 +25,12 @@ __all__ = [
 __version__ = "0.1.0"
 
 _HOMES = {
-    "REGIMES": "model.quantities",
-    "STATUSES": "arrays",
-    "Fit": "laboratory",
-    "Scene": "model.scene",
-    "SceneError": "model.scene",
-    "Solution": "api",
-    "fit": "laboratory",
-    "solve": "api",
-    "solve_arrays": "arrays",
-    "solve_table": "batch.frames",
+    "api": ("Solution", "solve"),
+    "arrays": ("STATUSES", "solve_arrays"),
+    "batch.frames": ("solve_table",),
+    "laboratory": ("Fit", "fit"),
+    "model.quantities": ("REGIMES",),
+    "model.scene": ("Scene", "SceneError"),
 }
 
 
@@ -43,12 +39,13 @@ def __getattr__(name: str) -> Any:
 
     So the command line starts before they are there, and can catch Ctrl-C while they load.
     """
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from importlib import import_module
+    for home, names in _HOMES.items():
+        if name in names:
+            from importlib import import_module
 
-    value = globals()[name] = getattr(import_module(f".{_HOMES[name]}", __name__), name)
-    return value
+            value = globals()[name] = getattr(import_module(f".{home}", __name__), name)
+            return value
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 def __dir__() -> set[str]:

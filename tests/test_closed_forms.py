@@ -138,7 +138,7 @@ def test_locked_pulley_is_the_limit() -> None:
         (a, sp.Integer(0)),
         (t_l, l * g),
         (t_h, h * g),
-        (t_h - t_l, physics.difference_of_a_locked_pulley(l, h, g)),
+        (t_h - t_l, physics.difference_of_moving_masses(l, h, 0, g)),
         (physics.excess_ratio(l, h, c, b, sp.Integer(1)), physics.excess_ratio(l, h, c, b, zero)),
     ]
     for value, limit in limits:

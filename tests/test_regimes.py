@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from atwood_cli import solve
 from atwood_cli.model.case import Case
-from atwood_cli.solver.answers import SHOWN_DIGITS
+from atwood_cli.model.digits import SHOWN_DIGITS
 from atwood_cli.sweep.changes import SMALLEST, changes
 from atwood_cli.sweep.ranges import read_sweep, with_value
 

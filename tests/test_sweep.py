@@ -19,9 +19,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve
+from atwood_cli.model.digits import SHOWN_DIGITS
 from atwood_cli.model.quantities import STANDARD
 from atwood_cli.model.scene import INPUTS
-from atwood_cli.solver.answers import SHOWN_DIGITS
 from atwood_cli.sweep.ranges import Row, Sweep, read_list, read_range, read_sweep, solve_rows
 from atwood_cli.sweep.sweep_figure import Curve, picture
 

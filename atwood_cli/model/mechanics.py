@@ -203,7 +203,8 @@ class Mechanics(Generic[N]):
         if case.tensions_equal:
             return self.ar.number(0)
         if case.stands:
-            return self.ar.not_negative(physics.difference_of_a_locked_pulley(self.l, self.h, self.g))
+            rest = self.ar.number(0)
+            return self.ar.not_negative(physics.difference_of_moving_masses(self.l, self.h, rest, self.g))
         c = self._given(case.rim_mass, reasons.NEEDS_M)
         return physics.difference_of_a_pulley(c, self.magnitude, self.f)
 

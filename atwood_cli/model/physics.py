@@ -191,20 +191,11 @@ def rim_acceleration(difference: N, c: N, f: N) -> N:
     return (difference - f) / c
 
 
-def difference_of_a_locked_pulley(l: N, h: N, g: N) -> N:
-    """T_h - T_l (N) of masses at rest: that of their weights.
-
-    >>> difference_of_a_locked_pulley(1, 3, 9)
-    18
-    """
-    return g * (h - l)
-
-
 def difference_of_moving_masses(l: N, h: N, a: N, g: N) -> N:
-    """T_h - T_l (N) of masses with a measured acceleration, from (1): c a + f where the string grips.
+    """T_h - T_l (N) of masses with a known acceleration, from (1): c a + f where the string grips.
 
-    >>> difference_of_moving_masses(1, 3, 2, 9)
-    10
+    >>> difference_of_moving_masses(1, 3, 2, 9), difference_of_moving_masses(1, 3, 0, 9)
+    (10, 18)
     """
     return g * (h - l) - a * (h + l)
 

@@ -92,15 +92,7 @@ NAMES = ("regime", *(name for name in QUANTITIES if name not in MEASURED_NAMES))
 MAIN = ("acceleration", "tension_1", "tension_2", "mu_verge", "friction_force")
 """What every scene is about."""
 
-STANDARD = (
-    "regime",
-    "acceleration",
-    "tension_1",
-    "tension_2",
-    "mu_verge",
-    "friction_force",
-    "critical_pulley_mass",
-)
+STANDARD = ("regime", *MAIN, "critical_pulley_mass")
 """The quantities of many scenes in a table, unless others are named."""
 
 SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"

@@ -14,9 +14,7 @@ from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import EXACT, Irrational
 from ..arithmetic.settling import is_positive, settle
 from ..model.case import Case
-from ..model.digits import DOUBLE_DIGITS as DOUBLE_DIGITS  # others have these from here
-from ..model.digits import SHOWN_DIGITS as SHOWN_DIGITS
-from ..model.digits import Rounding, is_infinite, to_digits, to_double
+from ..model.digits import DOUBLE_DIGITS, SHOWN_DIGITS, Rounding, is_infinite, to_digits, to_double
 from ..model.machine import Machine
 from ..model.quantities import FROM_MOTION, MAIN, NAMES
 from ..model.reasons import Undetermined
@@ -63,6 +61,7 @@ class Answers:
 
     def _round_to(self, digits: int | None) -> None:
         self.digits = digits
+        self._computed = max(digits or 0, DOUBLE_DIGITS)  # so that fewer need no second computation
         self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
         self._values: dict[str, Any] = {}
         self.reasons: dict[str, str] = {}
@@ -97,10 +96,8 @@ class Answers:
     @property
     def found(self) -> tuple[str, ...]:
         """The quantities that were asked for by what is given of the motion, the unknown parameter first."""
-        motion = self.case.motion
-        falls = FROM_MOTION["drop"] if motion.drop is not None else ()
-        by_time = {"fall_time": "acceleration"} if motion.time is not None else {}
-        return (*FROM_MOTION.get(motion.finds, ()), *(by_time.get(name, name) for name in falls))
+        by_time = {"fall_time": "acceleration"} if self.case.motion.time is not None else {}
+        return tuple(by_time.get(name, name) for name in self.names[len(NAMES) :])
 
     @property
     def main(self) -> tuple[str, ...]:
@@ -132,17 +129,16 @@ class Answers:
         if name == "regime":
             return self.case.regime
         if name not in self._values:
-            digits = max(self.digits or 0, DOUBLE_DIGITS)  # so that fewer need no second computation
-            value, reason = self._settled(self._on_machines(attrgetter(name)), self.round, digits)
+            value, reason = self._settled(self._on_machines(attrgetter(name)), self.round)
             if reason:
                 self.reasons[name] = reason
             self._values[name] = value
         return self._values[name]
 
-    def _settled(self, quantity: Quantity, round_: Rounding[Any], digits: int) -> tuple[Any, str]:
+    def _settled(self, quantity: Quantity, round_: Rounding[Any]) -> tuple[Any, str]:
         """The rounded value of a quantity, or None; and if it cannot be shown as it is, why."""
         try:
-            value = settle(quantity, round_, digits)
+            value = settle(quantity, round_, self._computed)
         except Undetermined as undetermined:
             return None, str(undetermined)
         except OverflowError:  # of a denominator
@@ -162,7 +158,7 @@ class Answers:
         if not known.exists(quantity):
             self.open_ended[name] = None
             return None
-        u, reason = self._settled(known.of(quantity), round_ or self.round, self.digits or DOUBLE_DIGITS)
+        u, reason = self._settled(known.of(quantity), round_ or self.round)
         if u is not None:
             self.spread[name] = u
         if reason:
@@ -177,11 +173,11 @@ class Answers:
 
     def budget(self, name: str, round_: Rounding[Any] | None = None) -> dict[str, Any]:
         """The percentage of each uncertain input in the variance of a quantity; empty if that is 0."""
-        known, digits = self.uncertainties, self.digits or DOUBLE_DIGITS
+        known = self.uncertainties
         if known is None or not self.uncertainty(name, to_digits(1)):
             return {}
         percents = {x: known.percent(attrgetter(name), x) for x in known.given}
-        return {x: settle(percent, round_ or self.round, digits) for x, percent in percents.items()}
+        return {x: settle(percent, round_ or self.round, self._computed) for x, percent in percents.items()}
 
     def rounded(self, name: str, round_: Rounding[Decimal]) -> Decimal:
         """The value of a quantity that exists, rounded in another way."""
@@ -189,8 +185,7 @@ class Answers:
 
     def settle(self, quantity: OnMachine, round_: Rounding[Any] | None = None) -> float | Decimal:
         """Anything that a machine has, rounded as quantities are or in another way. Raises Undetermined."""
-        digits = max(self.digits or 0, DOUBLE_DIGITS)  # so that fewer digits need no second computation
-        value: float | Decimal = settle(self._on_machines(quantity), round_ or self.round, digits)
+        value: float | Decimal = settle(self._on_machines(quantity), round_ or self.round, self._computed)
         return value
 
     def exactly(self, quantity: OnMachine) -> Fraction | None:

@@ -15,10 +15,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..arithmetic.interval import LARGEST_EXPONENT
 from ..arithmetic.settling import settle
 from ..arithmetic.symbolic import Formula, Symbol, Symbols, formula
-from ..model.digits import as_typed, is_infinite, text, to_digits
+from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, to_digits
 from ..model.machine import Machine
 from ..model.quantities import QUANTITIES
-from .answers import SHOWN_DIGITS, Answers
+from .answers import Answers
 
 if TYPE_CHECKING:
     from ..arithmetic.rational import Arithmetic, N

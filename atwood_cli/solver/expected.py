@@ -7,11 +7,11 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from ..model.angle import Angle
-from ..model.digits import as_typed, is_infinite, text, to_digits, to_side_of
+from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, to_digits, to_side_of
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, REGIMES, read_name
 from ..model.scene import SceneError
 from ..model.units import STANDARD_GRAVITY, Malformed, Number, in_quotes, read_number
-from .answers import SHOWN_DIGITS, TOO_SMALL, Answers
+from .answers import TOO_SMALL, Answers
 from .messages import unmarked
 
 COMPARISON = re.compile(r"\s*([^<>=]*?)\s*(<=|>=|==|<|>)\s*([^<>=]*)")

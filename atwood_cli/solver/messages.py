@@ -11,10 +11,19 @@ from fractions import Fraction
 from math import inf
 
 from ..model.case import Case
-from ..model.digits import as_typed, is_infinite, text, tidy, to_side_of, to_threshold
+from ..model.digits import (
+    DOUBLE_DIGITS,
+    SHOWN_DIGITS,
+    as_typed,
+    is_infinite,
+    text,
+    tidy,
+    to_side_of,
+    to_threshold,
+)
 from ..model.scene import Scene
 from ..model.units import MAX_MAGNITUDE
-from .answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
+from .answers import Answers
 
 
 def unmarked(words: str) -> str:

@@ -35,10 +35,9 @@ from operator import attrgetter
 from typing import Any, NamedTuple
 
 from ..model.case import Case
-from ..model.digits import tidy, to_digits
+from ..model.digits import SHOWN_DIGITS, tidy, to_digits
 from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
-from ..solver.answers import SHOWN_DIGITS
 from .ranges import LOCKED, Point, Range, about_power, decimal_point, exact_point, with_value
 
 BESIDE = Fraction(1, 10**60)

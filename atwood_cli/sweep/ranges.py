@@ -16,7 +16,16 @@ from math import inf, lcm
 from typing import Any, NamedTuple
 
 from ..arithmetic.interval import decimal_context
-from ..model.digits import as_typed, exact_decimal, exact_or_rounded, text, tidy, to_digits
+from ..model.digits import (
+    DOUBLE_DIGITS,
+    SHOWN_DIGITS,
+    as_typed,
+    exact_decimal,
+    exact_or_rounded,
+    text,
+    tidy,
+    to_digits,
+)
 from ..model.motion import with_number
 from ..model.scene import (
     INPUTS,
@@ -31,7 +40,7 @@ from ..model.scene import (
 )
 from ..model.units import MAX_DIGITS, in_quotes, read_number
 from ..output.text import said_of_scene
-from ..solver.answers import DOUBLE_DIGITS, SHOWN_DIGITS, Answers
+from ..solver.answers import Answers
 
 UNUSUAL = {"rad": "rad", "N m": "Nm"}
 """The units that points carry, as there are others for the same parameter."""

@@ -7,11 +7,10 @@ from fractions import Fraction
 from itertools import groupby, pairwise
 from operator import attrgetter
 
-from ..model.digits import to_digits, to_double
+from ..model.digits import SHOWN_DIGITS, to_digits, to_double
 from ..model.quantities import QUANTITIES, STANDARD
 from ..output.page import Page, aligned, watched
 from ..output.text import VERSION, cell, scene_record
-from ..solver.answers import SHOWN_DIGITS
 from ..solver.messages import reasons_at
 from .changes import changes, regimes
 from .ranges import Row, Sweep, solve_rows
