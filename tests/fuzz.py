@@ -124,7 +124,7 @@ class Dice:
             return [*self.value(command, "FILE"), *self.value(command, "NAME")]
         if self.chance(self.odd / 5):
             return [self.choice([*EDGES, *TEXTS, *LONG])]
-        if words := WORDS.get(metavar) or metavar.split("|")[1:] and metavar.split("|"):
+        if words := WORDS.get(metavar, metavar.split("|") if "|" in metavar else []):
             return [self.choice(words)]
         if command == "sweep" and self.chance(0.3):
             ends = [self.with_unit(metavar) if metavar in OF_METAVAR else self.number() for _ in range(2)]
