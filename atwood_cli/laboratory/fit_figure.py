@@ -54,7 +54,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         rest.set_ylabel("residual (N)")
         rest.set_xlabel("acceleration $a$ (m/s²); numbers are those of rows")
         if not bare:
-            say_above(figure, ", ".join(conditions(fit)), verdict(fit))
+            say_above(figure, conditions(fit), verdict(fit))
 
 
 def _name_points(line: "Axes", fit: Fitted, a: Column, y: Column) -> None:

@@ -1,6 +1,6 @@
 """A fit as tables with sentences, JSON and CSV."""
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ..model.digits import text
@@ -36,7 +36,7 @@ def forms_of(fit: Fitted, only: Sequence[str]) -> Forms:
             return {name: record[name] for name in only}
         absent = dict.fromkeys(QUANTITIES)
         by_name = {name: absent | record[name] for name in ("uncertainty", "interval")}
-        runs = [dict.fromkeys(line) | line | {x: line.get(x) for x in TAKEN} for line in record["runs"]]
+        runs = [line | {x: line.get(x) for x in TAKEN} for line in record["runs"]]
         return {"version": VERSION, **record, **by_name, "runs": runs}
 
     def beside() -> Sequence[str]:
@@ -100,26 +100,25 @@ def _print_page(
 ) -> None:
     """The conditions, the results, the runs, and what there is to say."""
     page = Page()
-    page.say(", ".join(conditions(fit)))
+    page.say(conditions(fit))
     page.say(*above, style="bold")
-    if fit.whole.results:
-        written = {x: published(*one) for x, one in fit.whole.results.items()}
-        table = {
-            "Quantity": list(written),
-            "Value": [value for value, _ in written.values()],
-            "Unit": [QUANTITIES[x].unit for x in written],
-            "Symbol": [QUANTITIES[x].symbol for x in written],
-            "95 % interval": [ends for _, ends in written.values()],
-        }
-        _print_table(page, table, ("Quantity", "Unit", "Symbol"))
-    _print_table(page, _columns(fit, lines), ())
+    written = {x: published(*one) for x, one in fit.whole.results.items()}
+    results = {
+        "Quantity": list(written),
+        "Value": [value for value, _ in written.values()],
+        "Unit": [QUANTITIES[x].unit for x in written],
+        "Symbol": [QUANTITIES[x].symbol for x in written],
+        "95 % interval": [ends for _, ends in written.values()],
+    }
+    for columns in (results, _columns(fit, lines)) if written else (_columns(fit, lines),):
+        page.table(list(columns), [list(zip(*map(aligned, columns.values()), strict=True))])
     u = "u is the standard uncertainty of a run, by all that varies from run to run"
     if (pair := fit.whole.correlation) is not None:
         u += f"; correlation of {pair[0]} and {pair[1]}: {few(pair[2], 2)}"
     page.say(f"{u}.", *said)
 
 
-def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, Sequence[str]]:
+def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
     """Run by run: the measurement, what is expected, and the residual."""
     kind, data = fit.runs.kind, fit.whole.best.data
     odd = {" ".join(map(str, fit.used[i].rows)) for i in fit.odd}
@@ -141,17 +140,11 @@ def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, Seque
     }
 
 
-def _print_table(page: Page, columns: Mapping[str, Sequence[str]], words: Collection[str]) -> None:
-    """A table whose numbers have their points below each other; columns of words are as they are."""
-    cells = (column if name in words else aligned(column) for name, column in columns.items())
-    page.table(list(columns), [list(zip(*cells, strict=True))])
-
-
-def conditions(fit: Fitted) -> list[str]:
+def conditions(fit: Fitted) -> str:
     """What is the same in all runs, in words."""
     inputs = fit.given.inputs
     motion = UNMEASURED._replace(drop=inputs["drop"].value) if "drop" in inputs else UNMEASURED
     uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
     words = inputs_in_words(fit.given.scene, motion, uncertain)
     g = "" if "gravity" in fit.whole.best.names else "g"
-    return [words[x] for x, one in inputs.items() if one.given is not None or x in (g, "drop")]
+    return ", ".join(words[x] for x, one in inputs.items() if one.given is not None or x in (g, "drop"))

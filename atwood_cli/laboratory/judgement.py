@@ -231,7 +231,7 @@ def _why_not(best: Estimate, results: Mapping[str, Result], used: Sequence[Run])
     for x in [x for x in MOST_UNCERTAIN if x in best.names]:
         if results[x].uncertainty > MOST_UNCERTAIN[x] * abs(sizes[x]):
             return undetermined(used, best.names)
-    for x in [x for x in best.names if results[x].sign < 0]:
+    for x in [x for x in best.names if results[x].interval[1] < 0]:
         return NONE_SUCH[x].format(shown(*results[x][:2]))
     return ""
 

@@ -49,12 +49,6 @@ class Result(NamedTuple):
     uncertainty: float
     interval: tuple[float, float]
 
-    @property
-    def sign(self) -> int:
-        """The sign of the whole interval, 0 if it holds 0."""
-        low, high = self.interval
-        return (low > 0) - (high < 0)
-
 
 def published(value: float, uncertainty: float, interval: Sequence[float] = (0, 0)) -> tuple[str, str]:
     """A value ± its uncertainty, and its interval: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator
 from math import isfinite
 
-from scipy.special import chdtrc, fdtrc
+from scipy.special import fdtrc
 
 from ..model.digits import text
 from ..model.scene import parameter_of
@@ -11,6 +11,7 @@ from ..model.units import counted
 from .judgement import Fitted, beyond, common_error, to_vary
 from .published import QUANTITIES, SMALL, USUAL, equation, few
 from .runs import MEASURED
+from .statistics import NORMAL
 
 MUCH = 0.95
 """A correlation beyond which two results can hardly be distinguished."""
@@ -24,7 +25,7 @@ MOST_FAR = 1000
 
 def head(fit: Fitted) -> list[str]:
     """The result in words, and what is odd about the runs: above all tables."""
-    return [verdict(fit), *_oddities(fit)]
+    return [verdict(fit), *(_oddities(fit) if fit.odd else [])]
 
 
 def verdict(fit: Fitted) -> str:
@@ -36,15 +37,14 @@ def verdict(fit: Fitted) -> str:
     elif not fit.whole.best.names:
         said.append("Nothing is left to fit: the pulley and its axle are given.")
     for name in [] if fit.odd else [name for name in USUAL if name in fit.whole.results]:
-        words = _capital(QUANTITIES[name].words)
-        said.append(f"{words} {'is significant' if fit.whole.results[name].sign else 'agrees with 0'}.")
+        low, high = fit.whole.results[name].interval
+        meaning = "agrees with 0" if low <= 0 <= high else "is significant"
+        said.append(f"{_capital(QUANTITIES[name].words)} {meaning}.")
     return " ".join(said)
 
 
 def _oddities(fit: Fitted) -> list[str]:
-    """What is odd about the runs, and the result without it; none if the runs are sound."""
-    if not fit.odd:
-        return []
+    """What is odd about the runs, and the result without it."""
     unit, names = parameter_of(fit.runs.kind).unit, [run.name for run in fit.used]
     repeats = (
         f"In {names[i]}, {text(value)} {unit} is far from its siblings: {_far(size)} standard deviations."
@@ -69,50 +69,38 @@ def _oddities(fit: Fitted) -> list[str]:
 
 def notes(fit: Fitted) -> list[str]:
     """What else there is to say, first how the table was read."""
-    said = [*map(_capital, fit.runs.remarks), *_unused(fit)]
-    return said if fit.whole.reason else [*said, *_assumed(fit), *_spread(fit), *_indistinct(fit)]
-
-
-def _unused(fit: Fitted) -> Iterator[str]:
-    runs = [run for run in fit.runs.runs if run.rows in fit.unusable]
-    yield from (f"{_capital(run.name)} was left out, as asked." for run in runs if run.left_out)
+    said = [_capital(words) for words in fit.runs.remarks]
+    unused = [run for run in fit.runs.runs if run.rows in fit.unusable]
+    said += [f"{_capital(run.name)} was left out, as asked." for run in unused if run.left_out]
+    others = [run for run in unused if not run.left_out]
     cannot = "could not be used"
-    others = [run for run in runs if not run.left_out]
-    why = (f"{_capital(run.name)} {cannot}: {fit.unusable[run.rows]}." for run in others)
-    yield from _some(why, cannot)
+    said += _some((f"{_capital(run.name)} {cannot}: {fit.unusable[run.rows]}." for run in others), cannot)
+    if fit.whole.reason:
+        return said
+    zero = [name for name in USUAL if name not in fit.whole.best.names and name not in fit.given.values]
+    said += [f"{_capital(QUANTITIES[x].words)} is taken to be 0, as it was not to be found." for x in zero]
+    return [*said, _spread(fit), *_indistinct(fit)]
 
 
-def _assumed(fit: Fitted) -> Iterator[str]:
-    """What is taken to be 0, as the user asks for other quantities."""
-    for name in USUAL:
-        if name not in fit.whole.best.names and name not in fit.given.values:
-            yield f"{_capital(QUANTITIES[name].words)} is taken to be 0, as it was not to be found."
-
-
-def _spread(fit: Fitted) -> Iterator[str]:
+def _spread(fit: Fitted) -> str:
     """How the scatter of the runs is known, and how probable it is."""
-    data, chi2, dof = fit.whole.best.data, fit.whole.chi2, fit.whole.best.dof
+    within, chi2, dof = fit.whole.best.data.within, fit.whole.chi2, fit.whole.best.dof
     if chi2 is None:
-        yield f"Nothing but the runs themselves shows the scatter of a single {MEASURED[fit.runs.kind]}."
-        return
-    by = "scatter of repeats" if isfinite(data.within) else "uncertainties stated"
+        return f"Nothing but the runs themselves shows the scatter of a single {MEASURED[fit.runs.kind]}."
+    by = "scatter of repeats" if isfinite(within) else "uncertainties stated"
     if not dof:
-        yield f"As many runs as results: nothing shows whether the runs differ more than by the {by}."
-        return
-    ratio = chi2 / dof
-    above = float(fdtrc(dof, data.within, ratio) if isfinite(data.within) else chdtrc(dof, chi2))
+        return f"As many runs as results: nothing shows whether the runs differ more than by the {by}."
+    above = float(fdtrc(dof, min(within, NORMAL), chi2 / dof))
+    is_small = above >= 1 - RARE
+    share = 1 - above if is_small else above
+    percent = f"{few(100 * share)} %" if share >= 0.001 else "less than 0.1 %"
     said = f"χ² = {few(chi2, 3)} by the {by}, {counted(dof, 'degree')} of freedom"
-    if above < 1 - RARE:
-        between = few((fit.whole.between_runs or 0.0) / SMALL)
-        more = f"; the runs differ by {between} g of mass beyond that" * bool(fit.whole.between_runs)
-        yield f"{said}: chance exceeds it in {_percent(above)} of sets{more}."
-    else:
-        hint = ": the uncertainties stated are probably too large" * (not isfinite(data.within))
-        yield f"{said}: far too small to be chance ({_percent(1 - above)} of sets){hint}."
-
-
-def _percent(share: float) -> str:
-    return f"{few(100 * share)} %" if share >= 0.001 else "less than 0.1 %"
+    if is_small:
+        hint = ": the uncertainties stated are probably too large" * (not isfinite(within))
+        return f"{said}: far too small to be chance ({percent} of sets){hint}."
+    between = fit.whole.between_runs
+    more = f"; the runs differ by {few(between / SMALL)} g of mass beyond that" if between else ""
+    return f"{said}: chance exceeds it in {percent} of sets{more}."
 
 
 def _indistinct(fit: Fitted) -> Iterator[str]:
