@@ -6,7 +6,7 @@ import typer
 
 from ..laboratory.published import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..model.quantities import divided, read_names
-from ..model.scene import INPUTS, read_input, read_whole
+from ..model.scene import read_whole
 from ..output.text import Target, say, show
 from .options import (
     COULD_NOT,
@@ -98,16 +98,14 @@ def fit(
     figure: FigureFile = None,
     bare: Bare = False,
 ) -> int:
-    options = {"M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "g": g}
+    given = {"M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "g": g, "drop": drop}
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
-    rows_left_out = [read_whole("without", word, 1, 10**9) for word in divided(without or [])]
-    inputs = {name: read_input(name, options.get(name)) for name in INPUTS}
-    height = read_input("drop", drop) if drop is not None else None
+    left_out = [read_whole("without", word, 1, 10**9) for word in divided(without or [])]
     check_figure(figure, target.force)
     from ..laboratory import fit_of
     from ..laboratory.fit_page import forms_of
 
-    best = fit_of(table, inputs, height, find or [], label or [], rows_left_out, column or [])
+    best = fit_of(table, given, find or [], label or [], left_out, column or [])
     if figure is not None:
         from ..laboratory.fit_figure import save
 

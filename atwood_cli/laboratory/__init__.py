@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
-from ..model.scene import INPUTS, Given, Input, read_input
+from ..model.scene import INPUTS, Given, read_input
 from ..tables.sources import Unreadable
 from .published import Fit as Fit
 
@@ -58,17 +58,14 @@ def fit(
     """
     from .fit_page import results_of
 
-    given = {"g": g, "M": M, "inertia": inertia, "I": I, "R": R, "axle": axle}
-    inputs = {name: read_input(name, given.get(name)) for name in INPUTS}
-    height = None if drop is None else read_input("drop", drop)
-    words = [find] if isinstance(find, str) else find or ()
-    return results_of(fit_of(runs, inputs, height, words, without=without))
+    given = {"g": g, "M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "drop": drop}
+    names = [find] if isinstance(find, str) else find or ()
+    return results_of(fit_of(runs, given, names, without=without))
 
 
 def fit_of(
     table: Table,
-    inputs: Mapping[str, Input],
-    drop: Input | None,
+    given: Mapping[str, Given | None],
     find: Sequence[str],
     labels: Collection[str] = (),
     without: Collection[int] = (),
@@ -83,14 +80,12 @@ def fit_of(
     from .judgement import conditions_of, fitted, read_find
     from .runs import VOCABULARY, read_runs
 
-    names, given = (
-        read_find(find, inputs),
-        conditions_of(inputs if drop is None else {**inputs, "drop": drop}),
-    )
-    named = read_named(columns, VOCABULARY)
+    known = [x for x, value in given.items() if value is not None]
+    inputs = {x: read_input(x, given.get(x)) for x in dict.fromkeys((*INPUTS, *known))}
+    names, same, named = read_find(find, inputs), conditions_of(inputs), read_named(columns, VOCABULARY)
     try:
-        runs = read_runs(table, labels, drop, without, named)
-        return fitted(runs, given, names)
+        runs = read_runs(table, labels, inputs.get("drop"), without, named)
+        return fitted(runs, same, names)
     except Unreadable as error:
         if not isinstance(table, str | PathLike):
             raise ValueError(f"cannot read the runs: {error}") from None

@@ -19,6 +19,8 @@ SLOWEST = 0.01
 CLOSE, MOST_STEPS = 1e-11, 50
 """The weights follow the values until these change less than this share of what is measured."""
 TINY = 1e-100
+GRAM, DELAY, LARGE = 1e-3, 0.1, 1 / 3
+"""Errors that all runs may share (kg, s), and the share of an interval from which they matter."""
 
 
 class Data(NamedTuple):
@@ -165,6 +167,30 @@ def straight(
 def uncertain_accelerations(data: Data, sigma: Column) -> Column:
     """The standard uncertainties of accelerations, by those of what is measured."""
     return sigma if data.drop is None else sigma * 2 * accelerations(data, data.measured) / data.measured
+
+
+def shared_error(
+    best: Estimate, right: NDArray[np.bool_], widths: Mapping[str, float]
+) -> tuple[str, dict[str, float]]:
+    """An error that all runs may have in common, and how much it would change the values.
+
+    Of the usual ones it is that which changes a value most beside the width of its interval; changes that are
+    small beside that are left out. ``right`` says in which runs m2 is the heavier mass.
+    """
+    data, names = best.data, best.names
+    errors = {"1 g more on the side of m2": data._replace(l=data.l + GRAM * ~right, h=data.h + GRAM * right)}
+    if data.drop is not None and data.measured.min() > 2 * DELAY:
+        errors[f"a delay of {DELAY:g} s in all times"] = data._replace(measured=data.measured - DELAY)
+        errors["1 % more height in all falls"] = data._replace(drop=1.01 * data.drop)
+    u_force = uncertain_accelerations(data, best.sigma) * (data.l + data.h + best.values["rim_mass"])
+    line, *moved = (straight(one, best.values, names, 1 / u_force) for one in (data, *errors.values()))
+    changes = {
+        words: {x: abs(there[x] - line[x]) for x in names} for words, there in zip(errors, moved, strict=True)
+    }
+    worst = max(
+        changes, key=lambda words: max((by / widths[x] for x, by in changes[words].items()), default=0)
+    )
+    return worst, {x: by for x, by in changes[worst].items() if by > LARGE * widths[x]}
 
 
 def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -> Data:

@@ -14,18 +14,7 @@ from ..model.case import Case
 from ..model.quantities import read_names
 from ..model.scene import Input, Scene, SceneError, parameter_of
 from ..tables.sources import Unreadable
-from .fitting import (
-    Estimate,
-    accelerations,
-    as_data,
-    estimate,
-    expected,
-    measurements,
-    slopes,
-    straight,
-    uncertain_accelerations,
-    variances,
-)
+from .fitting import Estimate, accelerations, as_data, estimate, expected, measurements, slopes, variances
 from .published import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, few, shown
 from .runs import BEYOND, Run, Runs, in_range
 from .statistics import Alike, Column, stray_repeats, stray_rows, student
@@ -38,8 +27,6 @@ CHANCE = 0.015
 """The share of sound sets of which a run is said to be odd; of repeats, and then of runs a third of it."""
 FAR = 3.0
 """Standard uncertainties by which most runs are faster than possible."""
-GRAM, DELAY, LARGE = 1e-3, 0.1, 1 / 3
-"""Errors that all runs may share (kg, s), and the share of an interval from which they matter."""
 TOO_FEW = (
     "{} too few for what is to be fitted and its scatter: give more runs, or repeats, or uncertainties (as"
     " 2.05+/-0.02), or what is known (M, axle), or fit one quantity alone (find)"
@@ -234,30 +221,6 @@ def _why_not(best: Estimate, results: Mapping[str, Result], used: Sequence[Run])
     for x in [x for x in best.names if results[x].interval[1] < 0]:
         return NONE_SUCH[x].format(shown(*results[x][:2]))
     return ""
-
-
-def common_error(fit: Fitted) -> tuple[str, dict[str, float]]:
-    """An error that all runs may have in common, and how much it would change results.
-
-    Of the usual ones it is that which changes a result most, if this is more than a third of its interval.
-    """
-    best, right = fit.whole.best, np.array([run.m2.value > run.m1.value for run in fit.used])
-    data = best.data
-    errors = {"1 g more on the side of m2": data._replace(l=data.l + GRAM * ~right, h=data.h + GRAM * right)}
-    if data.drop is not None and data.measured.min() > 2 * DELAY:
-        errors[f"a delay of {DELAY:g} s in all times"] = data._replace(measured=data.measured - DELAY)
-        errors["1 % more height in all falls"] = data._replace(drop=1.01 * data.drop)
-    u_force = uncertain_accelerations(data, best.sigma) * (data.l + data.h + best.values["rim_mass"])
-    line, *moved = (straight(one, best.values, best.names, 1 / u_force) for one in (data, *errors.values()))
-    changes = {
-        words: {x: abs(there[x] - line[x]) for x in best.names}
-        for words, there in zip(errors, moved, strict=True)
-    }
-    widths = {x: float(np.ptp(fit.whole.results[x].interval)) for x in best.names}
-    worst = max(
-        changes, key=lambda words: max((by / widths[x] for x, by in changes[words].items()), default=0)
-    )
-    return worst, {x: by for x, by in changes[worst].items() if by > LARGE * widths[x]}
 
 
 def _odd_repeats(used: Sequence[Run]) -> dict[int, tuple[float, float]]:

@@ -3,12 +3,14 @@
 from collections.abc import Iterable, Iterator
 from math import isfinite
 
+import numpy as np
 from scipy.special import fdtrc
 
 from ..model.digits import text
 from ..model.scene import parameter_of
 from ..model.units import counted
-from .judgement import Fitted, beyond, common_error, to_vary
+from .fitting import shared_error
+from .judgement import Fitted, beyond, to_vary
 from .published import QUANTITIES, SMALL, USUAL, equation, few
 from .runs import MEASURED
 from .statistics import NORMAL
@@ -111,13 +113,13 @@ def _indistinct(fit: Fitted) -> Iterator[str]:
             f"The runs hardly separate {one} from {other} (their correlation is {few(pair[2], 3)}):"
             f" {to_vary(fit.used)}."
         )
-    words, changes = common_error(fit)
-    if changes:
-        sizes = (
-            f"{QUANTITIES[x].words} by about {few(by / SMALL)} {QUANTITIES[x].small_unit}"
-            for x, by in changes.items()
-        )
-        yield f"{_capital(words)} would change {' and '.join(sizes)}."
+    widths = {x: one.interval[1] - one.interval[0] for x, one in fit.whole.results.items()}
+    right = np.array([run.m2.value > run.m1.value for run in fit.used])
+    words, changes = shared_error(fit.whole.best, right, widths)
+    of = {QUANTITIES[x]: few(by / SMALL) for x, by in changes.items()}
+    if of:
+        sizes = " and ".join(f"{x.words} by about {by} {x.small_unit}" for x, by in of.items())
+        yield f"{_capital(words)} would change {sizes}."
 
 
 def _far(size: float) -> str:
