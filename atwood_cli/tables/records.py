@@ -169,7 +169,8 @@ class Csv:
             )
         if "limit" in error:
             return Unreadable(f"{too_long(self._line)}; is a quotation mark left open?")
-        return Unreadable(f"{row} {STRAY_RETURN if 'new-line' in error else STRAY_MARK}")
+        why = STRAY_RETURN if "new-line" in error else STRAY_MARK
+        return Unreadable(f"{row} {why}")
 
     def _too_wide(self, cells: int) -> Unreadable:
         """The error for a row with more cells than there are columns."""
