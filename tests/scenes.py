@@ -43,7 +43,7 @@ equal | m2=1 M=3 mu=0.1 R=1
 nearly equal | m2=1.00000001 M=3 mu=0.1
 equal and missing | m2=1 mu=0.1
 equal on a locked pulley | m2=1 M=inf
-free end | m1=0 M=2
+free end | m1=0 m2=1 M=1
 free end, massless | m1=0
 verge | mu=0.3
 no critical mass | mu=0.4
