@@ -22,7 +22,7 @@ from atwood_cli import solve
 from atwood_cli.model.digits import SHOWN_DIGITS
 from atwood_cli.model.quantities import STANDARD
 from atwood_cli.model.scene import INPUTS
-from atwood_cli.sweep.ranges import Row, Sweep, read_list, read_range, read_sweep, solve_rows
+from atwood_cli.sweep.ranges import Row, read_list, read_range, read_sweep, solve_rows
 from atwood_cli.sweep.sweep_figure import Curve, picture
 
 from .running import Atwood, drawn, misplaced, on_terminal, plain, process
@@ -250,8 +250,9 @@ def test_a_file_is_replaced_only_by_force(atwood: Atwood, tmp_path: Path, words:
 # Curves
 
 
-def curves(swept: Sweep, name: str) -> list[Curve]:
-    (found,) = picture(swept, [name]).panels.values()
+def curves(name: str, mu: str, M: str = "0:50:6", **more: str) -> list[Curve]:
+    """Those of a quantity, in the one panel that it has."""
+    (found,) = picture(read_sweep({"m1": "1", "m2": "3", "M": M, "mu": mu, **more}), [name]).panels.values()
     return found
 
 
@@ -310,15 +311,10 @@ def test_an_axis_starts_at_0_where_no_more_than_half_of_it_is_empty() -> None:
 
 def test_curves_turn_exactly_where_the_regime_changes() -> None:
     """Four curves parted at M = 0 and slipped at 10, 10, 20 and 50: they coincide until then."""
-    swept = read_sweep({"m1": "1", "m2": "3", "M": "0:50:6", "mu": "0.15:0.3:4"})
-    shown = curves(swept, "acceleration")
-    assert [curve.name for curve in shown] == [
-        "μ = 0.15, slips from 5.17 kg",
-        "μ = 0.2, slips from 9.32 kg",
-        "μ = 0.25, slips from 17.8 kg",
-        "μ = 0.3, slips from 43.3 kg",
-    ]
-    for curve, mu in zip(shown, ("0.15", "0.2", "0.25", "0.3"), strict=True):
+    shown = curves("acceleration", "0.15:0.3:4")
+    slips = {"0.15": "5.17", "0.2": "9.32", "0.25": "17.8", "0.3": "43.3"}
+    assert [curve.name for curve in shown] == [f"μ = {mu}, slips from {M} kg" for mu, M in slips.items()]
+    for curve, mu in zip(shown, slips, strict=True):
         exact = solve(m1="1", m2="3", mu=mu)
         ((x, y),) = curve.marks
         assert x == pytest.approx(exact.critical_pulley_mass, rel=1e-6)
@@ -330,17 +326,13 @@ def test_curves_turn_exactly_where_the_regime_changes() -> None:
 
 def test_a_range_that_runs_down_is_drawn_as_one_that_runs_up() -> None:
     """Beside a string that slips from 43.3 kg on stood that it holds from there."""
-    up, down = (
-        curves(read_sweep({"m1": "1", "m2": "3", "M": M, "mu": "0.3"}), "acceleration")
-        for M in ("0:50:6", "50:0:6")
-    )
+    up, down = (curves("acceleration", "0.3", M) for M in ("0:50:6", "50:0:6"))
     assert up == down
     assert down[0].name == "slips from 43.3 kg"
 
 
 def test_a_jump_is_drawn_as_one() -> None:
-    swept = read_sweep({"m1": "1", "m2": "3", "M": "0:50:6", "mu": "0.3", "mu_k": "0.2"})
-    (curve,) = curves(swept, "acceleration")
+    (curve,) = curves("acceleration", "0.3", mu_k="0.2")
     steps = [(b - a, y2 - y1) for (a, y1), (b, y2) in pairwise(zip(curve.xs, curve.heights, strict=True))]
     width, height = max(steps, key=itemgetter(1))
     assert height > 1
@@ -348,8 +340,7 @@ def test_a_jump_is_drawn_as_one() -> None:
 
 
 def test_a_figure_of_friction_has_a_band_where_it_is_not_one_number() -> None:
-    swept = read_sweep({"m1": "1", "m2": "3", "M": "0:50:6", "mu": "0.3"})
-    (curve,) = curves(swept, "friction_force")
+    (curve,) = curves("friction_force", "0.3")
     band, at_ten = [*zip(curve.least, curve.most, strict=True)], curve.xs.index(10.0)
     ys = curve.heights
     assert isnan(ys[at_ten])
@@ -360,10 +351,8 @@ def test_a_figure_of_friction_has_a_band_where_it_is_not_one_number() -> None:
 
 def test_without_its_extra_it_names_the_pip_command(atwood: Atwood, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    for page in ("figure", "page"):  # it is told before anything is solved
-        monkeypatch.delattr(
-            f"atwood_cli.sweep.sweep_{page}.{'Answers' if page == 'figure' else 'solve_rows'}"
-        )
+    for solves in ("sweep_figure.Answers", "sweep_page.solve_rows"):
+        monkeypatch.delattr(f"atwood_cli.sweep.{solves}")  # it is told before anything is solved
     how = "install it with: pip install 'atwood-cli[figure]'"
     ran = atwood(*SWEEP, "--M", "1:2:3", "--figure", "x.svg")
     assert ran == (1, "", f"atwood: this needs matplotlib; {how}\n")
