@@ -21,8 +21,9 @@ WIDE = Context(prec=1000, Emin=-(10**9), Emax=10**9)
 Value = Fraction | Callable[[], flint.arb]
 
 
-def ball(q: Fraction | int) -> flint.arb:
-    return flint.arb(flint.fmpq(q.numerator, q.denominator))
+def rational(q: Any) -> Any:
+    """A number as FLINT has it, where there is one."""
+    return None if q is None else flint.fmpq(q.numerator, q.denominator)
 
 
 def endpoints(value: flint.arb) -> tuple[Fraction, Fraction]:
@@ -88,54 +89,57 @@ def sign(value: Callable[[], flint.arb]) -> int:
 
 def expected(scene: Scene) -> dict[str, Any]:
     """Regime and every quantity, as the contract says; None where undetermined."""
-    m1, m2, g, mu, M = scene.m1, scene.m2, scene.g, scene.mu, scene.M
-    l, h = min(m1, m2), max(m1, m2)
-    s = 1 if m2 > m1 else -1 if m2 < m1 else 0
-    locked = M == inf
-    beta = scene.inertia
-    c: Fraction | None = None
-    mass = M if isinstance(M, Fraction) else None
+    locked = scene.M == inf
+    g, mu, mu_k, R, beta = map(rational, (scene.g, scene.mu, scene.mu_k, scene.R, scene.inertia))
+    mass = None if locked else rational(scene.M)
+    l, h = sorted(map(rational, (scene.m1, scene.m2)))
+    s = (scene.m2 > scene.m1) - (scene.m2 < scene.m1)
+    zero, one, wrap = rational(0), rational(1), rational(scene.wrap.number)
+    c = None
     if scene.I is not None:
-        assert scene.R is not None
-        c = scene.I / scene.R**2
+        c = rational(scene.I) / R**2
         beta = c / mass if mass is not None else None
     elif mass is not None:
-        assert beta is not None
         c = beta * mass
     elif mu is None and not locked:
-        c = mass = Fraction(0)
-    f = Fraction(0)
+        c = mass = zero
+    f = zero
     if scene.axle is not None:
-        f = scene.axle.number if scene.axle.unit == "N" else scene.axle.number / (scene.R or 1)
+        f = rational(scene.axle.number) / (one if scene.axle.unit == "N" else R)
     rests = 0 < (h - l) * g <= f  # the axle holds the pulley
     held = locked or rests
     known = held or c is not None
     equal = s == 0 or (c == 0 and f == 0)
 
-    def phi() -> flint.arb:
-        return flint.arb.pi() * ball(scene.wrap.number) / 180
+    def phi() -> Any:
+        return flint.arb.pi() * wrap / 180
 
-    def k(coefficient: Fraction) -> flint.arb:
-        return (ball(coefficient) * phi()).exp()
+    def of_k(coefficient: Any, formula: Callable[[Any], Any]) -> Any:
+        """A formula with the capstan ratio k, which is 1 without friction."""
+        return formula(one) if coefficient == 0 else lambda: formula((coefficient * phi()).exp())
 
-    def beats(ratio: Fraction) -> bool:
+    def log(ratio: Any) -> flint.arb:
+        return flint.arb(ratio).log()
+
+    def beats(ratio: Any) -> bool:
         """ratio > e^{mu phi}"""
-        assert mu is not None
         if mu == 0 or ratio <= 1:
-            return ratio > 1
-        return sign(lambda: ball(ratio).log() - ball(mu) * phi()) > 0
+            return bool(ratio > 1)
+        return sign(lambda: log(ratio) - mu * phi()) > 0
 
-    # T_h/T_l of a string that grips, from (4) with M/2 = c.
-    grip = None
+    def falls(rim: Any) -> Any:
+        """a of a string that grips, by (1) and (3) with f."""
+        return ((h - l) * g - f) / (h + l + rim)
+
+    def ratio(a: Any) -> Any:
+        """T_h/T_l, by (1)."""
+        return h * (g - a) / (l * (g + a))
+
+    grip = turning = None
     if l and known:
-        grip = h / l if held or c is None else (2 * l + c) * h / ((2 * h + c) * l)
-    turning = None  # of one that turns a pulley without mass against the axle, by (1)
+        grip = h / l if held or c is None else ratio(falls(c))
     if f and l and s and not rests:
-        b = ((h - l) * g - f) / (h + l)
-        turning = h * (g - b) / (l * (g + b))
-        if c is not None and not locked:
-            moves = ((h - l) * g - f) / (h + l + c)
-            grip = h * (g - moves) / (l * (g + moves))
+        turning = ratio(falls(zero))  # of a pulley without mass, against the axle
     always = bool(turning is not None and mu is not None and beats(turning))
     out: dict[str, Any] = dict.fromkeys(NAMES)
     slips_locked = bool(l and s and mu is not None and beats(h / l))
@@ -144,50 +148,38 @@ def expected(scene: Scene) -> dict[str, Any]:
     elif not known:
         regime = ("slip" if always else "verge") if slips_locked else "no-slip"
     else:
-        assert grip is not None
         regime = "slip" if beats(grip) else "no-slip"
     out["regime"] = regime
 
-    state: tuple[Value, Value, Value] | None = None  # |a|, T_l, T_h
-    friction_mu: Value | None = None
+    state: Any = None  # |a|, T_l, T_h
+    friction_mu: Any = None
     if regime == "no-slip":
         if s == 0:
-            state = Fraction(0), l * g, l * g
+            state = zero, l * g, l * g
         elif held:
-            state = Fraction(0), l * g, h * g
-        elif c is not None and f:
-            moves = ((h - l) * g - f) / (h + l + c)
-            state = moves, l * (g + moves), h * (g - moves)
+            state = zero, l * g, h * g
         elif c is not None:
-            total = l + h + c
-            state = (h - l) * g / total, (2 * h + c) * l * g / total, (2 * l + c) * h * g / total
+            a = falls(c)
+            state = a, l * (g + a), h * (g - a)
         if equal and l:
-            friction_mu = Fraction(0)
+            friction_mu = zero
         elif grip is not None and mu is None:
-            friction_mu = lambda: ball(grip).log() / phi()  # noqa: E731
+            friction_mu = lambda: log(grip) / phi()  # noqa: E731
     else:
-        used = mu if regime == "verge" or scene.mu_k is None else scene.mu_k
-        assert used is not None
+        used = mu if regime == "verge" or mu_k is None else mu_k
         friction_mu = used
-        if used == 0:
-            state = (h - l) * g / (h + l), 2 * l * h * g / (l + h), 2 * l * h * g / (l + h)
-        else:
-            # (1) with T_h = k T_l: T_l = m_l (g + a), T_h = m_h (g - a).
-            state = (
-                lambda: ball(g) * (ball(h) - ball(l) * k(used)) / (ball(h) + ball(l) * k(used)),
-                lambda: 2 * ball(l) * ball(h) * ball(g) / (ball(h) + ball(l) * k(used)),
-                lambda: 2 * ball(l) * ball(h) * ball(g) * k(used) / (ball(h) + ball(l) * k(used)),
-            )
+        # (1) with T_h = k T_l: T_l = m_l (g + a), T_h = m_h (g - a).
+        state = (
+            of_k(used, lambda k: g * (h - l * k) / (h + l * k)),
+            of_k(used, lambda k: 2 * l * h * g / (h + l * k)),
+            of_k(used, lambda k: 2 * l * h * g * k / (h + l * k)),
+        )
 
-    def lift(v: Value) -> flint.arb:
-        return ball(v) if isinstance(v, Fraction) else v()
+    def lift(v: Any) -> Any:
+        return v() if callable(v) else v
 
-    def combine(f: Callable[..., Any], *values: Value) -> Value:
-        if all(isinstance(v, Fraction) for v in values):
-            result = f(*values)
-            assert isinstance(result, Fraction)
-            return result
-        return lambda: f(*map(lift, values))
+    def combine(f: Callable[..., Any], *values: Any) -> Any:
+        return (lambda: f(*map(lift, values))) if any(map(callable, values)) else f(*values)
 
     if state is not None:
         a, t_l, t_h = state
@@ -195,11 +187,11 @@ def expected(scene: Scene) -> dict[str, Any]:
         out["acceleration"] = combine(lambda v: s * v, a)
         out["tension_1"], out["tension_2"] = t1, t2
         if friction_mu == 0:
-            out["friction_force"] = out["friction_force_x"] = out["friction_force_y"] = Fraction(0)
+            out["friction_force"] = out["friction_force_x"] = out["friction_force_y"] = zero
         elif friction_mu is not None:
             fm = friction_mu
 
-            def integral(part: str) -> flint.arb:
+            def integral(part: str) -> Any:
                 """Force on the pulley: dT/dtheta along the unit tangent, integrated by parts (28)-(29)."""
                 nu = s * lift(fm)
                 z = flint.acb(nu, 1)
@@ -212,106 +204,72 @@ def expected(scene: Scene) -> dict[str, Any]:
         rim = a
         if regime == "slip":
             # The axle takes f of what turns the pulley, or all of it.
-            left = combine(lambda hi, lo: hi - lo - c_as(hi, f), t_h, t_l)
-            turns = left > 0 if isinstance(left, Fraction) else sign(left) > 0
-            if rests or c is None or (f and not turns):
-                rim = Fraction(0)
-            else:
-                rim = combine(lambda x: x / c_as(x, c), left)
+            left = combine(lambda hi, lo: hi - lo - f, t_h, t_l)
+            turns = sign(left) > 0 if callable(left) else left > 0
+            rim = zero if rests or c is None or (f and not turns) else combine(lambda x: x / c, left)
         out["rim_acceleration"] = combine(lambda v: s * v, rim)
-        if scene.R is not None:
-            R = scene.R
-            out["torque"] = combine(lambda y, x: (y - x) * c_as(y, R), t2, t1)
-            out["angular_acceleration"] = combine(lambda v: s * v / c_as(v, R), rim)
+        if R is not None:
+            out["torque"] = combine(lambda y, x: (y - x) * R, t2, t1)
+            out["angular_acceleration"] = combine(lambda v: s * v / R, rim)
     if regime == "verge":
         out["mu_verge"] = mu
     elif l and equal:
-        out["mu_verge"] = Fraction(0)
+        out["mu_verge"] = zero
     elif grip is not None:
-        out["mu_verge"] = lambda: ball(grip).log() / phi()
+        out["mu_verge"] = lambda: log(grip) / phi()
     if l and equal:
-        out["tension_ratio"] = Fraction(1)
+        out["tension_ratio"] = one
     elif regime != "no-slip":
-        out["tension_ratio"] = combine(lambda t, u: u / t, state[1], state[2])  # type: ignore[index]
+        out["tension_ratio"] = combine(lambda t, u: u / t, state[1], state[2])
     elif l and grip is not None:
         out["tension_ratio"] = grip
     if mu is not None:
-        out["capstan_ratio"] = Fraction(1) if mu == 0 else lambda: k(mu)
+        out["capstan_ratio"] = of_k(mu, lambda k: k)
         if regime == "verge":
-            out["safety_factor"] = Fraction(1) if mu else None
+            out["safety_factor"] = one if mu else None
         elif not equal and grip is not None:
-            out["safety_factor"] = Fraction(0) if mu == 0 else lambda: ball(mu) * phi() / ball(grip).log()
+            out["safety_factor"] = zero if mu == 0 else lambda: mu * phi() / log(grip)
+        # What (1) and (3) with f say at T_h = k T_l, of each mass in turn; z is l (k - 1), and b is f/g.
+        b = f / g
         if locked or (f and (h * g <= f or beats(h * g / (h * g - f)))):
-            out["critical_lighter_mass"] = h if mu == 0 else lambda: ball(h) / k(mu)
-        elif c is not None and f == 0:
-            out["critical_lighter_mass"] = (
-                (h if c else Fraction(0))
-                if mu == 0 or c == 0
-                else lambda: ball(h) * ball(c) / (k(mu) * ball(c) + 2 * ball(h) * (k(mu) - 1))
-            )
+            out["critical_lighter_mass"] = of_k(mu, lambda k: h / k)
         elif c is not None:
-            # (3) with f at T_h = k T_l and (1): h (c + b) = l (c - b + (k - 1) (2h + c - b)).
-            out["critical_lighter_mass"] = lambda: (
-                ball(h) * (ball(c) + ball(f / g)) / (ball(c - f / g) + (k(mu) - 1) * ball(2 * h + c - f / g))
+            out["critical_lighter_mass"] = (
+                of_k(mu, lambda k: h * (c + b) / (c - b + (k - 1) * (2 * h + c - b))) if c or f else zero
             )
         if l and equal:
-            out["least_wrap"] = Fraction(0)
+            out["least_wrap"] = zero
         elif regime == "verge":
-            out["least_wrap"] = scene.wrap.number
+            out["least_wrap"] = wrap
         elif grip is not None and mu:
-            out["least_wrap"] = lambda: ball(grip).log() / ball(mu) * 180 / flint.arb.pi()
-        if f and s:
-            # (1) at T_h = k T_l gives a; (3) with f gives c.
-            def verge_rim_mass() -> flint.arb:
-                z = ball(l) * (k(mu) - 1)
-                a = ball(g) * (ball(h) - ball(l) - z) / (ball(h) + ball(l) + z)
-                return (z * (ball(g) + a) - ball(f)) / a
+            out["least_wrap"] = lambda: log(grip) / mu * 180 / flint.arb.pi()
+        if slips_locked and not always and not rests and beta is not None:
 
-            if slips_locked and not always and not rests and beta is not None:
-                out["critical_pulley_mass"] = lambda: verge_rim_mass() / ball(beta)
-        elif slips_locked and beta is not None:
-            out["critical_pulley_mass"] = (
-                Fraction(0)
-                if mu == 0
-                else lambda: 2 * ball(l) * ball(h) * (k(mu) - 1) / (ball(beta) * (ball(h) - ball(l) * k(mu)))
-            )
+            def critical_pulley_mass(k: Any) -> Any:
+                z = l * (k - 1)
+                a = g * (h - l - z) / (h + l + z)
+                return (z * (g + a) - f) / a / beta
+
+            out["critical_pulley_mass"] = of_k(mu, critical_pulley_mass)
         if mu > 0 or known or f:
-            out["least_heavier_mass"] = l if mu == 0 else lambda: ball(l) * k(mu)
-            if f:
-                if beta is not None and not beats(1 + f / g / l):
-                    out["least_pulley_mass"] = lambda: (
-                        (2 * ball(l) * (k(mu) - 1) - ball(f) / ball(g)) / ball(beta)
-                    )
-            elif beta is not None:
-                out["least_pulley_mass"] = (
-                    Fraction(0) if mu == 0 else lambda: 2 * ball(l) * (k(mu) - 1) / ball(beta)
-                )
-        if locked or (f and beats(1 + f / g / l)):
-            out["critical_heavier_mass"] = l if mu == 0 else lambda: ball(l) * k(mu)
-        elif f and c is not None and beats(1 + (c + f / g) / (2 * l)):
+            out["least_heavier_mass"] = of_k(mu, lambda k: l * k)
+            if beta is not None and not (f and beats(1 + b / l)):
+                out["least_pulley_mass"] = of_k(mu, lambda k: (2 * l * (k - 1) - b) / beta)
+        if locked or (f and beats(1 + b / l)):
+            out["critical_heavier_mass"] = of_k(mu, lambda k: l * k)
+        elif c is not None and l and beats(1 + (c + b) / (2 * l)):
 
-            def verge_heavier_mass() -> flint.arb:
-                z = ball(l) * (k(mu) - 1)
-                a = (z * ball(g) - ball(f)) / (ball(c) - z)  # (3) with f, at T_h = k T_l
-                return ball(l) * k(mu) * (ball(g) + a) / (ball(g) - a)
+            def critical_heavier_mass(k: Any) -> Any:
+                z = l * (k - 1)
+                a = (z * g - f) / (c - z)
+                return l * k * (g + a) / (g - a)
 
-            out["critical_heavier_mass"] = verge_heavier_mass
-        elif f:
-            pass
-        elif c is not None and l and beats(1 + c / (2 * l)):
-            out["critical_heavier_mass"] = (
-                l if mu == 0 else lambda: ball(c) * ball(l) * k(mu) / (ball(c) - 2 * ball(l) * (k(mu) - 1))
-            )
+            out["critical_heavier_mass"] = of_k(mu, critical_heavier_mass)
     if state is not None and not locked and (scene.wrap.number - 180) % 360 == 0:
         pulley = out["critical_pulley_mass"] if regime == "verge" else mass
         if pulley is not None:
-            out["axle_force"] = combine(lambda x, y, p: x + y + p * c_as(p, g), state[1], state[2], pulley)
-    return out
-
-
-def c_as(like: Any, q: Fraction) -> Any:
-    """q as the same kind of number."""
-    return q if isinstance(like, Fraction) else ball(q)
+            out["axle_force"] = combine(lambda x, y, p: x + y + p * g, state[1], state[2], pulley)
+    return {name: Fraction(int(x.p), int(x.q)) if isinstance(x, flint.fmpq) else x for name, x in out.items()}
 
 
 NAMES = """
