@@ -198,7 +198,7 @@ def bounds_hold() -> None:
             (PAIRS, f"loss_of_{of}", 0.0)
             for of in ("constant", "sum", "product", "quotient", "root", "series")
         ),
-        (pairs_, "LARGEST_EXPONENT", 1000.0),
+        (pairs_, "BOUNDED_EXPONENT", 1000.0),
     ],
 )
 def test_a_smaller_constant_does_not_hold(

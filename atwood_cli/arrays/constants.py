@@ -12,7 +12,7 @@ from .pattern import Column
 
 TABLE_STEPS = 16_384
 """The number of equal steps from ln 1 to ln 2 in the table of powers."""
-PRECISE = enclosures(80)
+EIGHTY_DIGITS = enclosures(80)
 """The arithmetic of the constants, in decimals of 80 digits."""
 BINARY_PLACES = 240
 """The bits of a table's numbers after the binary point."""
@@ -21,13 +21,13 @@ BINARY_PLACES = 240
 @cache
 def pi() -> Fraction:
     """π."""
-    return Fraction(PRECISE.pi.lo)
+    return Fraction(EIGHTY_DIGITS.pi.lo)
 
 
 @cache
 def ln2() -> Fraction:
     """ln 2."""
-    return Fraction(PRECISE.log1p(PRECISE.number(1)).lo)
+    return Fraction(EIGHTY_DIGITS.log1p(EIGHTY_DIGITS.number(1)).lo)
 
 
 def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
@@ -35,7 +35,7 @@ def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
     try:
         return EXACT.cos_sin_of_degrees(degrees)
     except Irrational:
-        cos, sin = PRECISE.cos_sin_of_degrees(degrees % 360)
+        cos, sin = EIGHTY_DIGITS.cos_sin_of_degrees(degrees % 360)
         return Fraction(cos.lo), Fraction(sin.lo)
 
 
@@ -63,7 +63,7 @@ def in_parts(q: Fraction, bits: int, count: int) -> tuple[float, ...]:
 def powers() -> tuple[Column, Column]:
     """2^(i/n) - 1 for each step i of the table's n, as the sum of two columns."""
     exact = [0]
-    step = int(Fraction(PRECISE.expm1(PRECISE.number(ln2() / TABLE_STEPS)).lo) * 2**BINARY_PLACES)
+    step = int(Fraction(EIGHTY_DIGITS.expm1(EIGHTY_DIGITS.number(ln2() / TABLE_STEPS)).lo) * 2**BINARY_PLACES)
     for _ in range(TABLE_STEPS - 1):
         exact.append(exact[-1] + step + (exact[-1] * step >> BINARY_PLACES))
     firsts = [float(value) for value in exact]

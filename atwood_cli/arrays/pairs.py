@@ -30,7 +30,7 @@ from .constants import TABLE_STEPS, in_parts, ln2, powers
 from .doubles import UNIT, Doubles, Number, Parts, less, looked_up, maximum, minimum, where
 
 UNIT_SQUARED = UNIT**2
-LARGEST_EXPONENT = 180.0
+BOUNDED_EXPONENT = 180.0
 """The largest x for which e^x has a bound: e^x and its square are doubles then."""
 
 
@@ -127,7 +127,7 @@ class Pairs(Doubles):
     # Functions
 
     def expm1(self, x: Number) -> Number:
-        """k = e^x - 1 for x >= 0, without a bound beyond x = 180 (`LARGEST_EXPONENT`).
+        """k = e^x - 1 for x >= 0, without a bound beyond x = 180 (`BOUNDED_EXPONENT`).
 
         x is split into m ln 2, i steps of ln 2/16384 and a rest r < 4.3e-5, which loses 8 u² of x, as a
         product does. The steps are looked up in a table of a = 2^(i/16384) - 1. The rest gives s = e^r - 1 by
@@ -136,7 +136,7 @@ class Pairs(Doubles):
         nothing cancels.
         """
         first, *others = x.parts
-        high = minimum(first, LARGEST_EXPONENT)
+        high = minimum(first, BOUNDED_EXPONENT)
         count = Formula("floor", high * (TABLE_STEPS / log(2)))
         number = Formula("int", count)
         s = self._small_expm1(_rest(high, others, count))
@@ -148,7 +148,7 @@ class Pairs(Doubles):
         k = k + Number(self, fast_two_sum(power, -1.0))
         doubt = (1.0 + high) * (x.bound + self.loss_of_product)
         doubt = doubt + s.parts[0] * (1.0 + 1.0 / k.parts[0]) * self.loss_of_series
-        return Number(self, k.parts, k.loss, where(less(first, LARGEST_EXPONENT), doubt, inf))
+        return Number(self, k.parts, k.loss, where(less(first, BOUNDED_EXPONENT), doubt, inf))
 
     def _small_expm1(self, r: Parts) -> Number:
         """e^r - 1 = r + r² (1/2 + r (1/6 + ...)) for a small r."""

@@ -34,27 +34,27 @@ def fit(
     """The pulley's inertia and its axle's friction, from runs of a laboratory, by T_h - T_l = c a + f.
 
     Args:
-        runs: A row a run: the path of a CSV or .tsv file, a mapping of columns of equal length, or a polars
-            frame. Columns are named as in a file: m1, m2, and a, or t (t1, t2 and so on for repeats). They
-            are in kg, m/s² and s unless the name has a unit, as "m1 (g)"; a cell may be text, as "2.05(2)".
-            None and NaN are empty cells.
-        drop: The height of fall (m) of all runs, for times.
-        g, M, inertia, I, R, axle: What is the same in all runs, as `solve` takes it: numbers in SI units,
-            or text with a unit or an uncertainty. M, I, axle and g are not fitted if given. R gives the
-            moment of inertia, ``inertia`` the pulley's mass.
+        runs: A table with a row for each run: the path of a CSV or .tsv file, a mapping of columns of equal
+            length, or a polars frame. Columns are named as in a file: m1, m2, and a, or t (t1, t2 and so on
+            for repeats). They are in kg, m/s² and s unless the name has a unit, as "m1 (g)"; a cell may be
+            text, as "2.05(2)". None and NaN are empty cells.
+        drop: The height of fall of all runs, in m, for times.
+        g, M, inertia, I, R, axle: Inputs that all runs share, as `solve` takes them: numbers in SI units, or
+            text with a unit or an uncertainty. M, I, axle and g are not fitted if given. R gives the moment
+            of inertia, ``inertia`` the pulley's mass.
         find: The quantities to fit alone, of "rim_mass", "axle" and "gravity"; if None, the first two unless
             given.
         without: Numbers of rows to leave out, from 1.
 
     Returns:
         `Fit`: values by name in SI units, their standard uncertainties and intervals of 95 %, the runs,
-        and ``notes``, which also name what is odd. As text, a line a result, and the notes.
+        and ``notes``, which also name odd runs. As text it has a line for each result, and the notes.
 
     Raises:
         SceneError: A parameter is not valid (a ValueError).
         ValueError: The columns are no table of runs.
         OSError: The file cannot be read, or is no table of runs.
-        ArithmeticError: The runs are too few, or too alike, to determine what is to be fitted.
+        ArithmeticError: The runs are too few, or too alike, to determine the quantities.
     """
     from .fit_page import results_of
 

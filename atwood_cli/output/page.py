@@ -124,7 +124,7 @@ def aligned(numbers: Iterable[str]) -> list[str]:
     """The numbers with their decimal points below each other; words are left as they are."""
     numbers = list(numbers)
     point = max(map(_integer_part, numbers), default=0)
-    return [" " * (point - _integer_part(one)) + one if _is_number(one) else one for one in numbers]
+    return [" " * (point - _integer_part(cell)) * _is_number(cell) + cell for cell in numbers]
 
 
 def _is_number(value: str) -> bool:
