@@ -204,14 +204,14 @@ class Enclosures:
         opposite signs at both ends of the result, so the search need not be trusted.
         """
 
-        def at(x: Decimal) -> Enclosure:
+        def f_at(x: Decimal) -> Enclosure:
             return f(Enclosure(self, x, x))
 
         near = decimal_context(self.digits, ROUND_HALF_EVEN)
         # A root at 10^-n of the scale of f's terms takes 2n more digits.
         wanted = self.digits + 2 * max(0, -end.lo.adjusted())
         a, b = ZERO, end.lo
-        f_a, f_b = at(a), at(b)
+        f_a, f_b = f_at(a), f_at(b)
         if not f_a.hi < 0 < f_b.lo:
             raise Unsettled(wanted)
         x, f_x, y, f_y, blur = a, f_a.hi, b, f_b.lo, self._width(f_b).hi
@@ -224,7 +224,7 @@ class Enclosures:
                     break
                 secant = near.subtract(y, step)
                 c = secant if a < secant < b else c
-            f_c = at(c)
+            f_c = f_at(c)
             x, f_x, y, f_y, blur = y, f_y, c, f_c.lo, self._width(f_c).hi
             if f_c.lo <= 0 <= f_c.hi:
                 break
@@ -233,7 +233,7 @@ class Enclosures:
         error = near.scaleb(near.add(near.divide(blur, slope), near.scaleb(y, -self.digits)), 1)
         while error < end.lo:
             lo, hi = self.down.subtract(y, error), self.up.add(y, error)
-            if lo > 0 and at(lo).hi < 0 < at(hi).lo:
+            if lo > 0 and f_at(lo).hi < 0 < f_at(hi).lo:
                 return Enclosure(self, lo, hi)
             error = near.scaleb(error, self.digits // 8)
         raise Unsettled(wanted)

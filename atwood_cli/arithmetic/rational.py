@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from fractions import Fraction
 from math import isqrt
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 N = TypeVar("N", bound="Field")
 
 if TYPE_CHECKING:
-    from typing import Any, Protocol, Self
+    from typing import Protocol, Self
 
     class Field(Protocol):
         """A number with + - * and /. Ints may stand on either side of an operation."""
@@ -78,15 +78,6 @@ class Rationals:
     def not_negative(self, x: Fraction) -> Fraction:
         return x
 
-    @property
-    def pi(self) -> Fraction:
-        raise Irrational
-
-    def expm1(self, x: Fraction) -> Fraction:
-        raise Irrational
-
-    exp = log1p = expm1
-
     def sqrt(self, x: Fraction) -> Fraction:
         """Square root of x >= 0, where it is rational."""
         root = Fraction(isqrt(x.numerator), isqrt(x.denominator))
@@ -97,17 +88,15 @@ class Rationals:
     def hypot(self, x: Fraction, y: Fraction | int) -> Fraction:
         return self.sqrt(x * x + y * y)
 
-    def cos_sin(self, x: Fraction) -> tuple[Fraction, Fraction]:
-        raise Irrational
-
     def cos_sin_of_degrees(self, x: Fraction) -> tuple[Fraction, Fraction]:
         if (x / 90).denominator > 1:
             raise Irrational
         cos, sin = ((1, 0), (0, 1), (-1, 0), (0, -1))[x // 90 % 4]
         return Fraction(cos), Fraction(sin)
 
-    def root(self, f: Callable[[Fraction], Fraction], end: Fraction) -> Fraction:
+    def __getattr__(self, name: str) -> Any:
+        """No other function, nor π, stays rational."""
         raise Irrational
 
 
-EXACT = Rationals()
+EXACT: Arithmetic[Fraction] = cast(Any, Rationals())

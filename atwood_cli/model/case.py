@@ -119,9 +119,9 @@ class Case:
         """Whether nothing that the string does turns the pulley."""
         return self.locked or self.axle_holds
 
-    def by_side(self, one: N, other: N) -> tuple[N, N]:
+    def by_side(self, of_m1: N, of_m2: N) -> tuple[N, N]:
         """What belongs to the lighter and the heavier mass from what belongs to m1 and m2, or back."""
-        return (one, other) if self.sign >= 0 else (other, one)
+        return (of_m1, of_m2) if self.sign >= 0 else (of_m2, of_m1)
 
     @property
     def pulley_known(self) -> bool:

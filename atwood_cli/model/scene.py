@@ -348,9 +348,9 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
         return "is a range, not a number; atwood sweep takes ranges"
     number, pointed = word.replace(",", ""), word.replace(",", ".")
     if THOUSANDS.fullmatch(word) and NUMBER.fullmatch(number):
-        other = f" or {shortened(pointed)}, whichever is meant"
-        how = other if NUMBER.fullmatch(pointed) else ", without commas"
-        return f"is not a number; write {shortened(number)}{how}"
+        either = f" or {shortened(pointed)}, whichever is meant"
+        hint = either if NUMBER.fullmatch(pointed) else ", without commas"
+        return f"is not a number; write {shortened(number)}{hint}"
     if pointed != word and NUMBER.fullmatch(pointed):
         return f"is not a number; write it with a decimal point, {shortened(pointed)}"
     names = f", or one of {', '.join(parameter.names)}" if parameter.names else ""

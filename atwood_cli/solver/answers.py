@@ -225,7 +225,7 @@ def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answe
 
         scene, motion = motions.read(inputs)
         scene = motions.completed(scene, motion)
-    uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
+    uncertain = {name: read.uncertainty for name, read in inputs.items() if read.uncertainty}
     return Answers(scene, digits, motion, uncertain)
 
 

@@ -53,7 +53,7 @@ def reasons_at(
     counted: Mapping[tuple[str, str], int], points: int, where: str = "at {} of {} points"
 ) -> list[str]:
     """Why values are missing, and in how many places: a sentence for each reason, without backticks."""
-    return [unmarked(one) for one in missing(counted, points, where)]
+    return [unmarked(sentence) for sentence in missing(counted, points, where)]
 
 
 def missing(counted: Mapping[tuple[str, str], int], points: int = 1, where: str = "") -> list[str]:

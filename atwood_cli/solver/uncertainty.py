@@ -131,12 +131,12 @@ class Uncertainties:
             for x, ends in self.ends.items():
                 for end, other in zip(ends, reversed(ends), strict=True):
                     if why := self._missing(attrgetter(name), end):
-                        at = found.setdefault((_at(self.case, x, end), why), [])
-                        at.append(self._one_sided(name, other))
+                        said = found.setdefault((_at(self.case, x, end), why), [])
+                        said.append(self._one_sided(name, other))
                         break
         return [
-            f"{_listed(said)}: at {at} {'it ' * why.startswith('does')}{why}."
-            for (at, why), said in found.items()
+            f"{_listed(said)}: at {place} {'it ' * why.startswith('does')}{why}."
+            for (place, why), said in found.items()
         ]
 
     def _one_sided(self, name: str, other: End) -> str:

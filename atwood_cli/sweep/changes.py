@@ -80,19 +80,19 @@ def changes(
     for last, other in pairwise(sorted(states)):
         while states[last] != states[other]:
             before = states[last]
-            at, last, first = _between(state, before, last, other, digits or SHOWN_DIGITS, along.suffix)
+            place, last, first = _between(state, before, last, other, digits or SHOWN_DIGITS, along.suffix)
             states.setdefault(first, state(first))
-            yield Change(at, before, states[first], last, first)
+            yield Change(place, before, states[first], last, first)
             last = first
 
 
 def regimes(along: Range, found: Sequence[Change], scene: Scene) -> list[str]:
     """Each regime along a range, and up to where it holds."""
     parts = []
-    for before, one in zip([None, *found], found, strict=False):
-        place = along.in_units(one.at)
-        where = "at" if one.at.exact == (before.at.exact if before else along.ends[0]) else "up to"
-        parts.append(f"{one.before} {where} {f'{along.name} = ' * (before is None)}{place}")
+    for before, change in zip([None, *found], found, strict=False):
+        place = along.in_units(change.at)
+        where = "at" if change.at.exact == (before.at.exact if before else along.ends[0]) else "up to"
+        parts.append(f"{change.before} {where} {f'{along.name} = ' * (before is None)}{place}")
     last = found[-1].after if found else Case(with_value(scene, along.name, along.ends[0])).regime
     parts.append(f"{last} beyond" if found else last)
     if along.locks and (locked := Case(scene._replace(M=inf)).regime) != last:
@@ -125,9 +125,9 @@ def _between(
     while True:
         down, up = (to_digits(digits, way) for way in (ROUND_FLOOR, ROUND_CEILING))
         middle = _middle(last, first)
-        at = next((x for x in map(Fraction, (down(middle), up(middle))) if last < x < first), None)
-        if at is not None:
-            last, first = (at, first) if state(at) == before else (last, at)
+        between = next((x for x in map(Fraction, (down(middle), up(middle))) if last < x < first), None)
+        if between is not None:
+            last, first = (between, first) if state(between) == before else (last, between)
         elif down(last) == last:
             break
         else:
@@ -136,9 +136,9 @@ def _between(
     return decimal_point(place, suffix), last, first
 
 
-def _middle(one: Fraction, other: Fraction) -> Fraction:
+def _middle(last: Fraction, first: Fraction) -> Fraction:
     """A value between two; where their sizes differ much, between their logarithms."""
-    low, high = sorted((one, other))
+    low, high = sorted((last, first))
     if low and high < 16 * low:
         return (low + high) / 2
     return high * about_power(low / high if low else Fraction(1, 2**128), Fraction(1, 2))

@@ -178,20 +178,20 @@ class Sweep(NamedTuple):
         """The scene at each point of the other range, if there is one, and that point."""
         others = [range_ for range_ in self.ranges if range_ is not along]
         for points in product(*(range_.points for range_ in others)):
-            at = dict(zip((range_.name for range_ in others), points, strict=True))
-            yield self.at(at), at
+            place = dict(zip((range_.name for range_ in others), points, strict=True))
+            yield self.at(place), place
 
-    def at(self, at: Mapping[str, Point]) -> Scene:
+    def at(self, place: Mapping[str, Point]) -> Scene:
         """The scene at a point, valid as those at the corners are. What is left out is as in ``scene``."""
         scene = self.scene
         for range_ in self.ranges:
-            if range_.name in at:
-                scene = with_value(scene, range_.name, at[range_.name].exact)
+            if range_.name in place:
+                scene = with_value(scene, range_.name, place[range_.name].exact)
         return scene
 
-    def stated(self, at: Mapping[str, Point]) -> str:
+    def stated(self, place: Mapping[str, Point]) -> str:
         """What tells one place of a sweep from others, in a sentence."""
-        return ", ".join(range_.stated(at[range_.name]) for range_ in self.ranges if range_.name in at)
+        return ", ".join(range_.stated(place[range_.name]) for range_ in self.ranges if range_.name in place)
 
 
 class Row(NamedTuple):
@@ -344,14 +344,14 @@ def scene_at(fixed: Mapping[str, Input], ranges: Sequence[Range], points: Sequen
 
     Raises SceneError.
     """
-    at = list(zip(ranges, points, strict=True))
-    here = {range_.name: read_exactly(range_.name, point.text) for range_, point in at}
+    place = list(zip(ranges, points, strict=True))
+    here = {range_.name: read_exactly(range_.name, point.text) for range_, point in place}
     try:
         return Scene.of({**fixed, **here})
     except SceneError as error:
         if error.parameter in here or error.value is None:
             raise
-        where = ", ".join(f"{range_.name} = {range_.in_units(point)}" for range_, point in at)
+        where = ", ".join(f"{range_.name} = {range_.in_units(point)}" for range_, point in place)
         raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
 
 
