@@ -425,7 +425,7 @@ def test_in_python_it_is_what_json_has() -> None:
         (TOP / "LICENSE", {}, OSError, f"cannot read {TOP / 'LICENSE'}: row 2 has 3 cells, and the header 1; is there a decimal comma (write a point), or one at its end?"),
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' is known by g; leave one of them out"),
         (EQUAL, {"find": "c", "I": 1}, SceneError, "find 'rim_mass' is known by I; leave one of them out"),
-        (EQUAL, {"without": [9]}, SceneError, "without '9' is no row; there are 1 to 2"),
+        (EQUAL, {"without": [0]}, SceneError, "without '0' is no row; there are 1 to 2"),
         (EQUAL, {}, ArithmeticError, "2 runs are too few for what is to be fitted and its scatter: give more runs, or repeats, or uncertainties (as 2.05+/-0.02), or what is known (M, axle), or fit one quantity alone (find)"),
     ],
 )  # fmt: skip

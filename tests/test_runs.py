@@ -111,9 +111,9 @@ def test_cells_of_uncertainties(cell: str, unit: str, uncertainty: str) -> None:
 
 
 def test_commas_that_are_decimal() -> None:
-    cells = (("1,5", ";"), ("1,5", "\t"), ("1,500", ";"), ("1,500", "\t"), ("1,5", ","), ("1.5", ";"))
-    found = [headings.decimal_commas_in([["x,y", cell]], [1], separator) for cell, separator in cells]
-    assert found == [True, True, True, False, False, False]
+    cells = "1,5;|1,5\t|0,500\t|1,500;|1,500\t|1,5,|1.5;".split("|")  # each with its separator behind
+    found = [headings.decimal_commas_in([["x,y", cell[:-1]]], [1], cell[-1]) for cell in cells]
+    assert found == [True, True, True, True, False, False, False]
 
 
 # Runs
