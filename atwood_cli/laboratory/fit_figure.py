@@ -81,11 +81,10 @@ def points(data: Data, gravity: float) -> tuple[Column, Column]:
 
 def coefficients(fit: Fitted) -> str:
     """The slope and the intercept of the line, if they are a result, with symbols as in LaTeX."""
-    lines = []
-    for name, label in zip(USUAL, ("slope $c$", "intercept $f$"), strict=True):
-        if not fit.whole.reason:
-            value = fit.whole.best.values[name]
-            spread = fit.whole.results[name].uncertainty if name in fit.whole.results else None
-            why = "" if spread else ", given" if name in fit.given.values else ", not fitted"
-            lines.append(f"{label} = {shown(value, spread)} {QUANTITIES[name].unit}{why}")
+    lines, labels = [], ("slope $c$", "intercept $f$")
+    for name, label in () if fit.whole.reason else zip(USUAL, labels, strict=True):
+        result = fit.whole.results.get(name)
+        why = "" if result else ", given" if name in fit.given.values else ", not fitted"
+        value = shown(fit.whole.best.values[name], result and result.uncertainty)
+        lines.append(f"{label} = {value} {QUANTITIES[name].unit}{why}")
     return "\n".join(lines)

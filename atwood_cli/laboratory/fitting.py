@@ -120,11 +120,9 @@ def variances(data: Data, values: Mapping[str, float]) -> tuple[Column, Column, 
     return known, shape, np.square(ROUNDING * data.measured)
 
 
-def accelerations(data: Data, measured: Column) -> Column:
+def accelerations(data: Data, measured: Any) -> Any:
     """What is measured, or would be, as accelerations."""
-    a: Any = measured if data.drop is None else physics.acceleration_of_fall(data.drop, measured)
-    found: Column = a
-    return found
+    return measured if data.drop is None else physics.acceleration_of_fall(data.drop, measured)
 
 
 def _least_squares(

@@ -8,6 +8,7 @@ from math import hypot, inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import stdtrit
 
 from ..model import physics
 from ..model.case import Case
@@ -17,7 +18,7 @@ from ..tables.sources import Unreadable
 from .fitting import Estimate, accelerations, as_data, estimate, expected, measurements, slopes, variances
 from .published import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, few, shown
 from .runs import BEYOND, Run, Runs, in_range
-from .statistics import Alike, Column, stray_repeats, stray_rows, student
+from .statistics import NORMAL, Alike, Column, stray_repeats, stray_rows
 
 SAME = 0.01
 """The spread of m1 + m2, as a share of it, below which it counts as constant."""
@@ -144,19 +145,27 @@ def read_find(words: Sequence[str], inputs: Mapping[str, Input]) -> list[str]:
 
 
 def fitted(runs: Runs, given: Conditions, find: Sequence[str]) -> Fitted:
-    """The fit of both usual quantities, or of just ``find``. Raises Unreadable, Alike."""
+    """The fit of both usual quantities, or of just ``find``, and what is odd. Raises Unreadable, Alike."""
     reasons = {run.rows: why for run in runs.runs if (why := _unusable(runs, run, given, find))}
     used = [run for run in runs.runs if run.rows not in reasons]
     if not used:
         raise Unreadable(f"no run can be used: in {runs.runs[0].name}, {next(iter(reasons.values()))}")
     names = find or [x for x in USUAL if x not in given.values]
     whole = outcome(runs, used, given, names)
-    repeats, without = _odd_repeats(used), None
-    left = {i: run for i, run in enumerate(used) if i not in repeats}
-    rows = _odd_rows(runs, left, whole.best) if left else {}
+    values, u, index = measurements(used)
+    repeats = dict[int, tuple[float, float]]()
+    for i, away in stray_repeats(values, np.where(u > 0, u, 1), index, CHANCE).items():
+        repeats.setdefault(int(index[i]), (float(values[i]), away))
+    left, rows, without = [i for i in range(len(used)) if i not in repeats], dict[int, float](), None
+    if left:
+        data, best = as_data(runs, [used[i] for i in left]), whole.best
+        rest, J = data.measured - expected(data, best.values), slopes(data, best.values, names)
+        level = CHANCE / (1 + 2 * (data.times.max() > 1))
+        strays = stray_rows(J, rest, *variances(data, best.values), data.within, level)
+        rows = {left[i]: away for i, away in strays.items()}
     if repeats or rows:
         with suppress(Alike):
-            without = outcome(runs, [run for i, run in left.items() if i not in rows], given, names)
+            without = outcome(runs, [used[i] for i in left if i not in rows], given, names)
     return Fitted(runs, used, reasons, given, whole, repeats, rows, without)
 
 
@@ -177,7 +186,8 @@ def outcome(runs: Runs, used: Sequence[Run], given: Conditions, names: Sequence[
         raise Alike(undetermined(used, names)) from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
-    times, results = student(dof or data.within), dict[str, Result]()
+    times = float(stdtrit(min(dof or data.within, NORMAL), 0.975))  # Student's t
+    results = dict[str, Result]()
     for x, value in _with_derived(best.values, names, given).items():
         steps = (float(np.ptp([value, *(end[x] for end in pair)])) / 2 for pair in ends)
         u = hypot(spread[x], *steps)
@@ -221,24 +231,6 @@ def _why_not(best: Estimate, results: Mapping[str, Result], used: Sequence[Run])
     for x in [x for x in best.names if results[x].interval[1] < 0]:
         return NONE_SUCH[x].format(shown(*results[x][:2]))
     return ""
-
-
-def _odd_repeats(used: Sequence[Run]) -> dict[int, tuple[float, float]]:
-    """By the indices of runs, the repeat that is furthest from its siblings, if it is far, and how far."""
-    values, u, index = measurements(used)
-    repeats = dict[int, tuple[float, float]]()
-    for i, away in stray_repeats(values, np.where(u > 0, u, 1), index, CHANCE).items():
-        repeats.setdefault(int(index[i]), (float(values[i]), away))
-    return repeats
-
-
-def _odd_rows(runs: Runs, left: Mapping[int, Run], best: Estimate) -> dict[int, float]:
-    """The runs that are far from what the others say, by their indices."""
-    data, numbers = as_data(runs, [*left.values()]), [*left]
-    rest, J = data.measured - expected(data, best.values), slopes(data, best.values, best.names)
-    level = CHANCE / (1 + 2 * (data.times.max() > 1))
-    strays = stray_rows(J, rest, *variances(data, best.values), data.within, level)
-    return {numbers[i]: away for i, away in strays.items()}
 
 
 def undetermined(used: Sequence[Run], names: Sequence[str]) -> str:

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
-from scipy.special import stdtr, stdtrit
+from scipy.special import stdtr
 
 Column = NDArray[np.float64]
 NORMAL = 1e8
@@ -88,11 +88,6 @@ def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
     half = rows.T / singular / lengths[:, None]
     solution = half @ (U.T @ b)
     return solution, half @ half.T, sum_of_squares(b - A @ solution)
-
-
-def student(dof: float) -> float:
-    """The standard uncertainties on either side of a value that hold the true one with 95 %."""
-    return float(stdtrit(min(dof, NORMAL), 0.975))
 
 
 def sum_of_squares(column: Any) -> float:
