@@ -8,18 +8,7 @@ from ..laboratory.published import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..model.quantities import divided, read_names
 from ..model.scene import read_whole
 from ..output.text import Target, say, show
-from .options import (
-    COULD_NOT,
-    DONE,
-    OUTPUT,
-    Bare,
-    FigureFile,
-    Labels,
-    check_figure,
-    option,
-    scene_option,
-    takes,
-)
+from .options import COULD_NOT, OUTPUT, Bare, FigureFile, Labels, check_figure, option, scene_option, takes
 
 Table = Annotated[
     str,
@@ -112,4 +101,4 @@ def fit(
         save(best, bare, figure, target.force)
     forms = forms_of(best, names)
     say(*show(forms, target))
-    return COULD_NOT if "" in forms.bare else DONE
+    return COULD_NOT * ("" in forms.bare)

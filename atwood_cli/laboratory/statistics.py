@@ -23,8 +23,6 @@ ALIKE = 1e-7
 """Below this ratio of singular values the runs cannot separate the fitted quantities."""
 ROUNDING = 1e-12
 """The least standard uncertainty of a measured number, as a share of it."""
-
-
 TINY = 1e-300
 MOST_STRAYS = 20
 """Outliers that are looked for; there is at most one for three degrees of freedom."""
