@@ -7,7 +7,7 @@ from fractions import Fraction
 from itertools import pairwise
 from math import pi
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import mpmath
 import numpy as np
@@ -39,46 +39,31 @@ def test_forces_along_the_arc_add_up_and_keep_to_the_limits_of_friction() -> Non
         except SceneError:  # a free end, or a motion that is open
             continue
         kinds[seen.kind] += 1
-        s: Any = solve(**scene, digits=40)
-        t1, t2, radius = (
-            mpmath.mpf(str(s.tension_1)),
-            mpmath.mpf(str(s.tension_2)),
-            Fraction(scene.get("R", 1)),
-        )
-        balance, torque = seen.balance, seen.balance["torque"]
-        largest = max(abs(Fraction(v)) for name in ("friction", "normal") for v in balance[name].values())
-        for axis in "xy":
-            # Three roundings to 30 digits, half a unit each, of numbers no larger than that.
-            assert abs(Fraction(balance["residual"][axis])) <= 2 * largest / 10**29, scene
-        assert abs(Fraction(torque["residual"])) <= abs(Fraction(torque["ends"])) / 10**29
-        ends = (Fraction(s.tension_2) - Fraction(s.tension_1)) * radius
-        assert (
-            abs(Fraction(torque["ends"]) - ends)
-            <= 2 * Fraction(max(s.tension_1, s.tension_2)) * radius / 10**29
-        )
-        low, high, sign = min(t1, t2), max(t1, t2), 1 if t1 <= t2 else -1
-        mu, phi = mpmath.mpf(scene.get("mu", 0)), mpmath.radians(mpmath.mpf(scene.get("wrap", 180)))
+        s, balance = solve(**scene, digits=40), cast(Any, seen.balance)
+        numbers = (s.tension_1, s.tension_2, scene.get("R", 1), scene.get("mu", 0), scene.get("wrap", 180))
+        t1, t2, radius, mu, wrap = (mpmath.mpf(str(number)) for number in numbers)
+        largest = max(abs(force) for name in ("friction", "normal") for force in balance[name].values())
+        # Three roundings to 30 digits, half a unit each, of numbers no larger than that.
+        assert all(abs(balance["residual"][axis]) <= 2 * largest / 10**29 for axis in "xy"), scene
+        torque = {name: mpmath.mpf(str(number)) for name, number in balance["torque"].items()}
+        assert abs(torque["residual"]) <= abs(torque["ends"]) / 10**29
+        assert abs(torque["ends"] - (t2 - t1) * radius) <= 2 * max(t1, t2) * radius / 10**29
+        low, high, sign, phi = min(t1, t2), max(t1, t2), 1 if t1 <= t2 else -1, mpmath.radians(wrap)
         for i, point in enumerate(seen.points):
-            share = mpmath.mpf(i) / 6
-            from_light = share if sign > 0 else 1 - share
+            from_light = mpmath.mpf(i if sign > 0 else 6 - i) / 6
             if seen.kind == "exponential":
                 tension, friction = low * (high / low) ** from_light, mpmath.log(high / low) / phi
             else:
                 creeping = high * mpmath.exp(-mu * phi * (1 - from_light))
                 tension, friction = (creeping, mu) if creeping > low else (low, 0)
-            wanted = (
-                ("angle", mpmath.degrees(phi) * share),
-                ("tension", tension),
-                ("normal_per_radian", tension),
-            )
-            for name, value in (*wanted, ("friction_per_radian", sign * friction * tension)):
-                assert mpmath.almosteq(mpmath.mpf(str(point[name])), value, rel_eps=mpmath.mpf(10) ** -28), (
-                    scene,
-                    name,
-                )
-                if name.endswith("per_radian") and "R" in scene:
-                    metres = mpmath.mpf(str(point[name.replace("radian", "metre")])) * mpmath.mpf(scene["R"])
-                    assert mpmath.almosteq(metres, value, rel_eps=mpmath.mpf(10) ** -28)
+            per_radian = {"normal": tension, "friction": sign * friction * tension}
+            wanted = {"angle": wrap * i / 6, "tension": tension}
+            wanted |= {f"{name}_per_radian": force for name, force in per_radian.items()}
+            if "R" in scene:
+                wanted |= {f"{name}_per_metre": force / radius for name, force in per_radian.items()}
+            for name, value in wanted.items():
+                there = mpmath.mpf(str(point[name]))
+                assert mpmath.almosteq(there, value, rel_eps=mpmath.mpf(10) ** -28), (scene, name)
     assert min(kinds["exponential"], kinds["creep"]) > many(40), kinds
 
 
@@ -200,21 +185,21 @@ def test_least_friction_of_a_hardly_loaded_string_is_found() -> None:
     assert solve(m1=1, m2=3, M="1e-300", mu=1).friction_force_min == 0
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        "mu=1e300 M=10",
-        "mu=0.3 M=10 wrap=1e100",
-        "m1=1e-300 m2=1e300 M=1 mu=1000",
-        "m1=1e307 m2=3e308 M=1e308 mu=4",
-        "mu=0.3 M=10 wrap=1e400rad",
-    ],
-)
+OVERFLOWING = """
+mu=1e300 M=10
+mu=0.3 M=10 wrap=1e100
+m1=1e-300 m2=1e300 M=1 mu=1000
+m1=1e307 m2=3e308 M=1e308 mu=4
+mu=0.3 M=10 wrap=1e400rad
+"""
+
+
+@pytest.mark.parametrize("words", OVERFLOWING.strip().splitlines())
 def test_contact_where_few_digits_overflow(words: str) -> None:
     """The width of an enclosure, times a huge mu, is an infinite e^x until there are digits enough."""
     for digits in (None, 10):
-        seen = arc(points=3, digits=digits, **inputs(words))
-        assert seen.balance["torque"]["contact"] == seen.balance["torque"]["ends"]
+        torque = arc(points=3, digits=digits, **inputs(words)).balance["torque"]
+        assert torque["contact"] == torque["ends"]
 
 
 # The figure
@@ -312,10 +297,7 @@ def test_all_of_a_figure_can_be_read(line: str) -> None:
 @pytest.mark.parametrize(("masses", "sign"), [("--m1 1 --m2 1.5", 1), ("--m1 1.5 --m2 1", -1)])
 @pytest.mark.parametrize("axle", [2, 30])
 def test_what_arrows_show(masses: str, sign: int, axle: int) -> None:
-    """By their colours: forces where they act, to one scale, accelerations, and the axle's, which turns against it.
-
-    An axle that holds the pulley does so too, and then there is no acceleration to be drawn.
-    """
+    """By their colours: forces where they act, to one scale; accelerations; an axle's friction, which may hold."""
     figure = pytest.importorskip("atwood_cli.output.figure")
     from matplotlib.colors import to_hex
 
@@ -324,24 +306,21 @@ def test_what_arrows_show(masses: str, sign: int, axle: int) -> None:
     assert turn.xy[1] == turn.xyann[1] < 0  # below the axle
     assert sign * (turn.xy[0] - turn.xyann[0]) > 0
     arrows: dict[str, list[tuple[complex, complex]]] = {}
-    for drawn_as_one in axes.collections:
-        starts, ways = (a + 1j * b for a, b in (drawn_as_one.XY.T, (drawn_as_one.U, drawn_as_one.V)))
-        arrows.setdefault(to_hex(drawn_as_one.get_facecolor()[0]), []).extend(zip(starts, ways, strict=True))
-    of_masses = {colour: sorted(arrows.pop(colour, []), key=lambda one: one[0].real) for colour in
-                 (figure.INK, figure.GREEN, figure.PURPLE)}  # fmt: skip
+    for alike in axes.collections:
+        starts, ways = alike.XY @ [1, 1j], alike.U + 1j * alike.V
+        arrows.setdefault(to_hex(alike.get_facecolor()[0]), []).extend(zip(starts, ways, strict=True))
+    normal, friction = arrows.pop(figure.BLUE), arrows.pop(figure.RED)
+    up = {
+        colour: [way.imag for _, way in sorted(pairs, key=lambda one: one[0].real)]
+        for colour, pairs in arrows.items()
+    }
     scene = options(f"{masses} --M 10 --mu 0.4 --axle {axle}")
     s: Any = solve(**scene)
-    weights = [float(scene[name]) * 9.80665 for name in ("m1", "m2")]
-    scale = abs(of_masses[figure.INK][0][1]) / s.tension_1
-    assert [way / 1j for _, way in of_masses[figure.INK]] == pytest.approx(
-        [scale * s.tension_1, scale * s.tension_2]
-    )
-    assert [way / -1j for _, way in of_masses[figure.GREEN]] == pytest.approx(
-        [scale * one for one in weights]
-    )
-    assert [np.sign(way.imag) for _, way in of_masses[figure.PURPLE]] == ([sign, -sign] if axle == 2 else [])
-    normal, friction = arrows.pop(figure.BLUE), arrows.pop(figure.RED)
-    assert not arrows
+    scale = up[figure.INK][0] / s.tension_1
+    assert up.pop(figure.INK) == pytest.approx([scale * s.tension_1, scale * s.tension_2])
+    assert up.pop(figure.GREEN) == pytest.approx([-scale * float(scene[m]) * 9.80665 for m in ("m1", "m2")])
+    assert [np.sign(way) for way in up.pop(figure.PURPLE, [])] == ([sign, -sign] if axle == 2 else [])
+    assert up == {}
     inwards = [-(way * start.conjugate()).real / abs(start) for start, way in normal]
     assert inwards == pytest.approx([abs(way) for _, way in normal])
     assert [min(inwards), max(inwards)] == pytest.approx(sorted([scale * s.tension_1, scale * s.tension_2]))

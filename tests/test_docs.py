@@ -111,7 +111,7 @@ from distributed import Client, LocalCluster, wait
 example = runpy.run_path(sys.argv[1])
 cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
 with TemporaryDirectory() as folder, cluster, Client(cluster) as client:
-    example["write_scenes"](folder, 24, 20_000)
+    example["write_scenes"](folder, 24, 5_000)
     parts = example["tasks"](client, Path(folder).iterdir())
     wait(parts, return_when="FIRST_COMPLETED")
     os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
@@ -126,7 +126,7 @@ with TemporaryDirectory() as folder, cluster, Client(cluster) as client:
 def test_a_cluster_that_loses_a_worker_loses_no_row() -> None:
     pytest.importorskip("distributed")
     ran = process(str(TOP / "examples" / "dask_tables.py"), code=WORKER_KILLED, PYTHONPATH=str(TOP))
-    assert (ran.status, ran.out) == (0, "True 480000 480000 0\n"), ran.err
+    assert (ran.status, ran.out) == (0, "True 120000 120000 0\n"), ran.err
 
 
 def test_what_was_measured_is_of_todays_settings() -> None:
