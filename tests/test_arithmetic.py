@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import mpmath
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from atwood_cli import solve
@@ -185,6 +185,15 @@ def test_a_root_is_found_in_few_steps_where_the_function_is_far_from_straight(ra
     assert tight(root, 390)
 
 
+@given(st.fractions(Fraction(1, 100), Fraction(99, 100)))
+def test_a_root_is_enclosed_where_the_function_is_flat(exact: Fraction) -> None:
+    """Signs of (s - r)³, multiplied out, are certain only a third of the digits away from r."""
+    at = enclosures(40)
+    r = at.number(exact)
+    root = at.root(lambda s: s * s * s - 3 * r * s * s + 3 * r * r * s - r * r * r, at.number(1))
+    assert Fraction(root.lo) <= exact <= Fraction(root.hi)
+
+
 def test_a_quantity_that_never_settles_is_an_error_and_no_hang() -> None:
     def undecided(ar: Arithmetic[N]) -> N:
         root = ar.sqrt(ar.number(2))
@@ -226,6 +235,7 @@ def test_a_power_of_ten_stands_behind_numbers_from_1e16_on() -> None:
     assert with_one_power("{:f} ± {:f}", (Decimal("1.0E16"), Decimal("1E15")), 16) == "(1.0 ± 0.1)e16"
 
 
+@example(Fraction(0), Fraction(2), Fraction(1))
 @given(st.fractions(0, 20), st.fractions(0, 6), st.fractions(0, 1))
 def test_functions_of_a_wide_argument_enclose(lo: Fraction, width: Fraction, share: Fraction) -> None:
     """What an argument's width adds is bounded up to 1, and beyond that both ends are evaluated."""

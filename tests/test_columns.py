@@ -13,16 +13,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from atwood_cli import solve_arrays
 from atwood_cli.arithmetic.symbolic import Formula, Term
 from atwood_cli.arrays import doubles as doubles_
 from atwood_cli.arrays import pairs as pairs_
 from atwood_cli.arrays.certified import LIMIT, PROMISE, certified
 from atwood_cli.arrays.constants import powers
-from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, UNIT, Number
+from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, UNIT, Doubles, Number
 from atwood_cli.arrays.pairs import PAIRS, head_of, two_product
 from atwood_cli.arrays.pattern import COLUMN, Pattern, Task
 from atwood_cli.arrays.plan import answering
 from atwood_cli.arrays.program import OPERATIONS, Program
+from atwood_cli.model.quantities import ACCURACIES, Accuracy
 from atwood_cli.model.scene import INPUTS
 
 from . import oracle
@@ -134,17 +136,25 @@ def test_bounds_of_exponentials_hold(level: str) -> None:
     off(ar.log1p(x), lambda x: x.log1p(), SMALL)
 
 
-@pytest.mark.parametrize("level", LEVELS)
-def test_bounds_of_functions_of_doubtful_numbers_hold(level: str) -> None:
-    """Of numbers with the largest error that their column of doubts allows."""
-    ar, (x, y) = LEVELS[level], symbols(LEVELS[level], 2)
-    by = Fraction(1, 2**56)  # and a little more, as bounds are kept in first order
-    doubtful = Number(ar, x.parts, 0.0, x.parts[0] * 0.0 + float(by) * (1 + 2.0**-20))
+def off_if_doubtful(ar: Doubles, by: Fraction, in_all_rows: bool) -> None:
+    """Assert the bounds of functions of numbers that are as far off as their loss, or their doubts, allow."""
+    x, y = symbols(ar, 2)
+    most = float(by) * (1 + 2.0**-20)  # a little more, as bounds are kept in first order
+    loss, doubt = (most, None) if in_all_rows else (0.0, x.parts[0] * 0.0 + most)
+    doubtful = Number(ar, x.parts, loss, doubt)
     off(ar.expm1(doubtful), lambda x: (x * arb(1 + by)).expm1(), rng.uniform(1, 30, 400))
     off(ar.log1p(doubtful), lambda x: (x * arb(1 + by)).log1p(), X)
     off(ar.sqrt(doubtful), lambda x: (x * arb(1 + by)).sqrt(), X)
+    off(doubtful + doubtful * doubtful, lambda x: x * arb(1 + by) + (x * arb(1 + by)) ** 2, X)
     off(doubtful / y - y, lambda x, y: x * arb(1 + by) / y - y, X, Y)
     off(y / doubtful + y, lambda x, y: y / (x * arb(1 + by)) + y, X, Y)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_bounds_of_functions_of_doubtful_numbers_hold(level: str) -> None:
+    for in_all_rows in (False, True):
+        off_if_doubtful(LEVELS[level], Fraction(1, 2**56), in_all_rows)
+        off_if_doubtful(LEVELS[level], Fraction(1, 2**40), in_all_rows)  # beside which rounding is nothing
 
 
 def test_there_is_no_bound_where_an_exponential_is_too_large() -> None:
@@ -389,3 +399,9 @@ def test_programs_do_nothing_twice_and_nothing_in_vain() -> None:
     ]
     assert len(program.between) == 1
     assert program.inputs == ["x0", "x1"]
+
+
+@pytest.mark.parametrize("accuracy", ACCURACIES)
+def test_a_result_that_is_too_small_to_be_written_out_is_0(accuracy: Accuracy) -> None:
+    given: Any = {"M": [10.0], "mu": [1e9], "axle": [1.0], "quantities": ["critical_lighter_mass"]}
+    assert solve_arrays([1.0], [3.0], accuracy=accuracy, **given)["critical_lighter_mass"].tolist() == [0.0]
