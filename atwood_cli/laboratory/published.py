@@ -100,11 +100,11 @@ class Fit(NamedTuple):
     ``rim_mass`` (kg) is the pulley's inertia as a mass at its rim, c = I/R². ``axle`` (N) is the friction of
     its axle as a force at the rim. ``gravity`` (m/s²) is fitted only if asked for. ``pulley_mass`` (kg) needs
     the pulley's shape, and ``moment_of_inertia`` (kg m²) its radius. ``uncertainty`` and ``interval`` (95 %)
-    have the standard uncertainty, and both ends of the interval, of each result. ``correlation`` belongs to the
-    two results that have most of it. ``between_runs`` (kg) is the standard deviation between runs that
-    their own uncertainties do not explain, as a mass. ``chi2`` is χ² by these uncertainties, and ``dof`` the
-    number of degrees of freedom. ``runs`` are the rows of ``--csv``. As text it has a line for each result,
-    and the notes.
+    have the standard uncertainty and both ends of the interval, by the name of the result. ``correlation``
+    belongs to the two results that have most of it. ``between_runs`` (kg) is the standard deviation between
+    runs that their own uncertainties do not explain, as a mass. ``chi2`` is χ² by these uncertainties, and
+    ``dof`` the number of degrees of freedom. ``runs`` are the rows of ``--csv``. As text it has a line for
+    each result, and the notes.
     """
 
     rim_mass: float | None
