@@ -69,7 +69,7 @@ COLUMNS: dict[str, pa.Array] = {
     "half": pa.array([np.float16(1.5), None], pa.float16()),
     "map": pa.array([[("k", 1)], []], pa.map_(pa.string(), pa.int32())),
     "when": pa.array([1, None], pa.timestamp("ns", "Europe/Berlin")),
-    "time": pa.array([1, None], pa.time64("ns")),
+    "time of day": pa.array([1, None], pa.time64("ns")),
     "span": pa.array([1, None], pa.duration("us")),
     "null": pa.nulls(2),
     "truth": pa.array([True, None]),
@@ -81,20 +81,16 @@ COLUMNS: dict[str, pa.Array] = {
     "far date": pa.array([2**31 - 1, None], pa.date32()),
     "structure": pa.array([{"a": 1, "b": "x"}, None]),
 }
-
-
 if hasattr(pa, "json_"):  # from 19
     COLUMNS["json"] = pa.array(["{}", None], pa.json_())
 
 
-@pytest.mark.parametrize("name", COLUMNS)
-def test_columns_of_every_type_pass_through(batch: Batch, tmp_path: Path, name: str) -> None:
-    ran = batch(with_scene(COLUMNS[name]), "-o OUT.parquet")
-    assert ran.status == 0
-    assert ran.err.startswith("atwood: 2 rows: 2 no-slip; no errors.\n")
-    before, after = (pl.read_parquet(tmp_path / f"{name}.parquet")["x"] for name in ("in", "out"))
-    assert before.dtype == after.dtype
-    assert before.equals(after)
+def test_columns_of_every_type_pass_through(batch: Batch, tmp_path: Path) -> None:
+    ran = batch(pa.table({"m1": [1.0, 1.0], "m2": [3, 3], **COLUMNS}), "-o OUT.parquet")
+    assert (ran.status, ran.err.splitlines()[0]) == (0, "atwood: 2 rows: 2 no-slip; no errors.")
+    before, after = (pl.read_parquet(tmp_path / f"{name}.parquet") for name in ("in", "out"))
+    assert before.select(*COLUMNS).schema == after.select(*COLUMNS).schema
+    assert [name for name in COLUMNS if not before[name].equals(after[name])] == []
 
 
 @pytest.mark.parametrize(("kind", "minus"), [(pl.Int64, "-1"), (pl.Float64, "-1.0")])
