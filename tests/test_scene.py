@@ -28,56 +28,19 @@ def error(**given: Any) -> str:
 
 
 NOT_A_NUMBER = "is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1)"
-FINITE, POSITIVE = "must be 0 or more, and finite", "must be above 0, and finite"
-MASSES = "kg, g, mg, ug, t, lb, lbs, oz, st, slug"
-SHAPES = "disk, hoop, ring, sphere, shell"
-ANGLES = "deg, °, turn, rad"
+FINITE = "must be 0 or more, and finite"
 TYPES = "must be text or a number (str, int, float, Decimal, Fraction)"
 TOO_LONG = "is too long; numerator and denominator may have 1500 digits"
-EXPONENT = "has an exponent beyond 500 in magnitude"
-
 RULES: list[tuple[str, list[Any], str]] = [
-    ("m1", ["-1", -1.5, "nan", nan, "inf", inf], FINITE),
-    ("M", ["-1", "-inf", "Infinity"], "must be 0 or more (inf locks the pulley)"),
-    ("mu", ["inf"], FINITE),
-    *((name, ["0", "-1"], POSITIVE) for name in ("g", "R", "inertia", "wrap")),
-    ("wrap", ["0rad", "-pi"], POSITIVE),
-    ("m1", ["1,5,0", "1_000", "1 000", "abc", "0x1F", ".", "1e+", "१", "１"], NOT_A_NUMBER),
-    ("m1", ["1/2/3", "1kg/3", "3g/4", "/3", "1/", "pi"], NOT_A_NUMBER),
-    ("R", ["g/4"], NOT_A_NUMBER),
-    ("m1", ["1/0", "1/-0g"], "divides by 0"),
-    ("wrap", ["1/0", "pi/0", "1/0 pi"], "divides by 0"),
-    ("m1", ["", " "], "is empty; give a value, or leave it out"),
-    ("m1", ["1,000"], "is not a number; write 1000 or 1.000, whichever is meant"),
-    ("m1", ["1,000g"], "is not a number; write 1000g or 1.000g, whichever is meant"),
-    ("wrap", ["180,270,450", "1,000,000", "180,270.5,450"], NOT_A_NUMBER),
-    ("m1", ["1,000.5"], "is not a number; write 1000.5, without commas"),
-    ("m1", ["1,5", np.str_("1,5")], "is not a number; write it with a decimal point, 1.5"),
-    ("m1", ["1e501", "1e-501", "1e99999", "1/1e501"], EXPONENT),
+    ("m1", [-1.5, nan, inf], FINITE),
+    ("m1", [np.str_("1,5")], "is not a number; write it with a decimal point, 1.5"),
     ("m1", ["1" * 1001], "has 1001 digits; at most 1000 are taken"),
     ("m1", [Decimal("1e9999999"), f"1.{'1' * 999}/{'7' * 999}e500"], TOO_LONG),
     ("m1", ["4" * 1000 + "lb"], "has 1008 digits, its unit included; at most 1000 are taken"),
-    ("m1", ["1e500t", "1e-500g"], f"{EXPONENT}, its unit included"),
-    ("m1", [f"1 kg{'*st^9' * 20_000}", f"1{'g' * 13}"], NOT_A_NUMBER),
-    ("mu", ["0.3kg"], "must be a plain number, without the 'kg'"),
+    ("m1", [f"1 kg{'*st^9' * 20_000}"], NOT_A_NUMBER),
     ("m1", [True, b"1", 1j, np.timedelta64(1, "s"), np.timedelta64(1), np.datetime64("2020")], TYPES),
-    *(
-        (name, [f"1 {unit}"], f"has the unit {unit!r}; it takes {units}")
-        for units, name, taken in (
-            (MASSES, "m1", ["kgg", "Mg", "KG", "pounds", "lbf", "kg/m", "cm"]),
-            ("m/s2, m s-2, cm/s2, ft/s2, N/kg", "g", ["m/s", "m/s/s", "km/h2"]),
-            ("kg m2, kg cm2, g cm2, lb ft2, lb in2", "I", ["kg", "N m s2"]),
-            ("deg, °, turn, rad", "wrap", ["cm", "tuns", "rad m/m"]),
-            ("m, km, dm, cm, mm, um, in, ft, yd", "R", ["kg", "inches"]),
-        )
-        for unit in taken
-    ),
-    ("g", ["moo"], f"{NOT_A_NUMBER}, or one of {', '.join(BODIES)}; did you mean moon?"),
-    ("inertia", ["disc"], f"{NOT_A_NUMBER}, or one of {SHAPES}; did you mean disk?"),
-    ("mu_k", ["0.1"], "needs mu, the coefficient that decides whether it slips"),
-    ("I", ["1"], "needs the radius R as well"),
 ]
-"""By parameter, values that it must not have, and why."""
+"""By parameter, values that it must not have, and why; what can be typed stands in cases/inputs.md."""
 
 
 @pytest.mark.parametrize(
@@ -92,23 +55,15 @@ def test_a_value_that_is_refused(name: str, value: Any, rule: str) -> None:
 LONG = "0." + "3" * 500
 ERRORS: list[tuple[dict[str, Any], str]] = [
     ({"m1": None}, "m1 is missing; give both masses, m1 and m2"),
-    ({"m2": None}, "m2 is missing; give both masses, m1 and m2"),
-    ({"m1": "0", "m2": "0"}, "m1 and m2 are both 0; at least one mass must hang"),
-    ({"m1": "0", "mu": "1"}, "m1 '0' is a free end, which friction cannot hold; leave mu out"),
-    ({"m2": "0", "mu": "0"}, "m2 '0' is a free end, which friction cannot hold; leave mu out"),
     ({"m1": Decimal("sNaN")}, f"m1 Decimal('sNaN') {FINITE}"),
     (
         {"mu": LONG, "mu_k": f"{LONG}1"},
         f"mu_k '0.{'3' * 37}...{'3' * 8}1' must not be above mu; exactly, 0.{'3' * 38}...{'3' * 9}1 > 0.{'3' * 38}...{'3' * 10}",
     ),
-    ({"mu": "0.1", "mu_k": "0.2"}, "mu_k '0.2' must not be above mu; exactly, 0.2 > 0.1"),
     (
         {"mu": 0.3, "mu_k": "0.3"},
         "mu_k '0.3' must not be above mu; exactly, 0.3 > 0.299999999999999988897769753748434595763683319091796875",
     ),
-    ({"I": "1", "R": "1", "inertia": "1"}, "I '1' and inertia both describe the pulley; give one of them"),
-    ({"I": "1", "R": "1", "M": "0"}, "I '1' contradicts M = 0; leave one of them out"),
-    ({"I": "1", "R": "1", "M": "inf"}, "I '1' contradicts M = inf; leave one of them out"),
 ]
 
 
