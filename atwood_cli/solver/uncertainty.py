@@ -8,11 +8,11 @@ that a string slips at one end, which no derivative does.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
-from itertools import islice
+from itertools import starmap
 from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -126,17 +126,16 @@ class Uncertainties:
 
     def open_ended(self, names: Iterable[str]) -> list[str]:
         """Sentences on quantities that have no value at an end, and on what they are at the other one."""
-        found: dict[tuple[str, str], list[str]] = {}
+        found: dict[tuple[str, str], list[tuple[str, End]]] = {}
         for name in names:
             for x, ends in self.ends.items():
                 for end, other in zip(ends, reversed(ends), strict=True):
                     if why := self._missing(attrgetter(name), end):
-                        said = found.setdefault((_at(self.case, x, end), why), [])
-                        said.append(self._one_sided(name, other))
+                        found.setdefault((_at(self.case, x, end), why), []).append((name, other))
                         break
         return [
-            f"{_listed(said)}: at {place} {'it ' * why.startswith('does')}{why}."
-            for (place, why), said in found.items()
+            f"{_listed(self._one_sided, without)}: at {place} {'it ' * why.startswith('does')}{why}."
+            for (place, why), without in found.items()
         ]
 
     def _one_sided(self, name: str, other: End) -> str:
@@ -158,14 +157,15 @@ class Uncertainties:
         """
         ar = enclosures(digits + GUARD)
         finite = [name for name, u in spread.items() if u and not is_infinite(u)]
-        sentences = []
-        for x in self.given:
-            names = [name for name in finite if self._is_lopsided(attrgetter(name), x, ar)]
-            said = [self._from_end_to_end(name, x) for name in islice(names, NAMED)]
-            if said:
-                more = f", and so on for {len(names) - NAMED} more" * (len(names) > NAMED)
-                sentences.append(f"{'; '.join(said)}{more}, as {x} is uncertain.")
-        return sentences
+        found = {
+            x: [(name, x) for name in finite if self._is_lopsided(attrgetter(name), x, ar)]
+            for x in self.given
+        }
+        return [
+            f"{_listed(self._from_end_to_end, names)}, as {x} is uncertain."
+            for x, names in found.items()
+            if names
+        ]
 
     def _is_lopsided(self, quantity: OnMachine, x: str, ar: Arithmetic[Enclosure]) -> bool:
         """Whether one step differs from half the range by more than a fifth of the uncertainty, or worse."""
@@ -252,9 +252,10 @@ def _with_unit(name: str, value: Decimal) -> str:
     return f"{text(value)} {QUANTITIES[name].unit}".rstrip()
 
 
-def _listed(said: list[str]) -> str:
-    more = f", and so on for {len(said) - NAMED} more" * (len(said) > NAMED)
-    return "; ".join(said[:NAMED]) + more
+def _listed(say: Callable[..., str], things: Sequence[Iterable[Any]]) -> str:
+    """What is said of the first things, and how many more there are."""
+    more = f", and so on for {len(things) - NAMED} more" * (len(things) > NAMED)
+    return "; ".join(starmap(say, things[:NAMED])) + more
 
 
 def _sum_of_squares(ar: Arithmetic[N], steps: Mapping[str, N]) -> N:
