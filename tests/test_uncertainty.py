@@ -22,6 +22,7 @@ from atwood_cli.model.scene import read_input
 from atwood_cli.solver.answers import Answers, read_answers
 
 from .conftest import many
+from .running import Atwood
 from .scenes import of_all_kinds, with_friction
 
 
@@ -392,3 +393,9 @@ def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:
 
 def test_digits_give_decimals() -> None:
     assert solve(m1="1.000(2)", m2="3", digits=5).uncertainty["acceleration"] == Decimal("0.0073550")
+
+
+def test_a_budget_without_shares_is_left_out(atwood: Atwood) -> None:
+    """Ended in a traceback: at m2 = 0, an uncertainty off, there is no such scene, so nothing has a variance."""
+    given = ["solve", "--m1", "1", "--m2", "0.5+-0.5", "--M", "inf", "--mu", "0"]
+    assert atwood(*given, "--budget") == atwood(*given)

@@ -131,8 +131,10 @@ def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = N
     from .page import Page, aligned
 
     page, names = page or Page(), [name for name in names if name != "regime"]
-    page.say("Each input's share of the variance, in percent:")
     budgets = {name: shares for name in names if (shares := answers.budget(name, to_place(-1)))}
+    if not budgets:
+        return
+    page.say("Each input's share of the variance, in percent:")
     columns = [aligned(str(shares[given]) for shares in budgets.values()) for given in answers.uncertain]
     rows = ([name, *cells] for name, *cells in zip(budgets, *columns, strict=True))
     by_group = groupby(rows, lambda row: QUANTITIES[row[0]].group)
