@@ -434,7 +434,7 @@ def test_in_python_errors_say_what_is_wrong(table: Any, more: Any, kind: type[Ex
         laboratory_fit(table, **more)
     assert str(raised.value) == words
     shown = pydoc.plain(pydoc.render_doc(laboratory_fit))
-    assert all(part in shown for part in ("A row a run", "kg, m/s² and s", kind.__name__))
+    assert all(part in shown for part in ("a row for each run", "kg, m/s² and s", kind.__name__))
 
 
 MANY = table_of((1, 1.1 + i / 40, 0.45 + i / 90) for i in range(20))
