@@ -238,7 +238,7 @@ def tables(draw: st.DrawFn) -> tuple[str, str, int]:
     separator = dice.choice(",;\t")
     columns = draw(st.permutations(["m1", "m2", *["n", "p q", '"r\ns"'][: dice.choice([1, 0, 3])]]))
     rows = [columns]
-    for _ in range(dice.choice([3, 0, 1, 8])):
+    for _ in range(dice.choice([3, 0, 1, 6])):
         whole = [dice.choice("5203146789") if name in MASSES else "abc" for name in columns]
         row = [dice.choice(LABELS) if dice.is_odd() else cell for cell in whole]
         is_cut = dice.chance(dice.odd / 5)
@@ -251,7 +251,7 @@ def lines(draw: st.DrawFn) -> tuple[list[str], str, int]:
     """NDJSON of two masses, what is behind it, and the bytes that are read at a time."""
     dice = Dice(draw, ODD)
     made = []
-    for _ in range(dice.choice([3, 1, 12])):
+    for _ in range(dice.choice([3, 1, 6])):
         m1, m2 = (int(dice.choice("5203146789")) for _ in MASSES)
         row: dict[str, object] = {"m1": m1, "n": [{"q": '"}'}], "m2": m2}
         row |= dice.choice([{"m1": None}, {"m2": "x"}, {"M": None}]) if dice.is_odd() else {}

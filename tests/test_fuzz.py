@@ -190,8 +190,8 @@ def check_call(call: tuple[Callable[..., object], dict[str, Any]]) -> None:
 RUNS = {"solve": 600, "contact": 250, "sweep": 250, "batch": 350, "fit": 350, "tradeoff": 20}
 PROMISES: dict[str, tuple[Any, Callable[[Any], None], int]] = {
     **{command: (fuzz.runs(command), check_run, count) for command, count in RUNS.items()},
-    "cells": (fuzz.tables(), check_cells, 400),
-    "lines": (fuzz.lines(), check_lines, 200),
+    "cells": (fuzz.tables(), check_cells, 300),
+    "lines": (fuzz.lines(), check_lines, 100),
     "Python": (fuzz.calls(), check_call, 400),
 }
 """What is drawn, what is promised of it, and how many are tried with --every-digit; otherwise a quarter."""
