@@ -24,8 +24,8 @@ from .rational import EXACT, Irrational
 LARGEST_EXPONENT = 10**8
 LARGEST_ARGUMENT = LARGEST_EXPONENT * 2_302_585_092 // 10**9  # of an exponential: times ln 10
 ZERO, TWO, INFINITY = Decimal(0), Decimal(2), Decimal("inf")
-KEPT = 256  # values of a function: quantities ask for the same ones
-DOUBLES = 300  # the largest exponent of a number that is taken for a double
+VALUES_KEPT = 256  # values of a function: quantities ask for the same ones
+DOUBLE_EXPONENT = 300  # the largest exponent of a number that is taken for a double
 LOG10_E = Decimal("0.434294481903")  # rounded down, so that the rest of an argument is not negative
 
 
@@ -116,7 +116,7 @@ class Enclosures:
     def number(self, q: Fraction | int) -> Enclosure:
         return self._quotient(q.numerator, q.denominator)
 
-    @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
+    @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _quotient(self, n: int, d: int) -> Enclosure:
         over, under = Decimal(n), Decimal(d)
         return Enclosure(self, self.down.divide(over, under), self.up.divide(over, under))
@@ -169,7 +169,7 @@ class Enclosures:
         (cos, sin), slack = self._cos_sin(x.lo), self._width(x)
         return cos + slack - slack, sin + slack - slack
 
-    @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
+    @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _cos_sin(self, x: Decimal) -> tuple[Enclosure, Enclosure]:
         """Cosine and sine of a number x >= 0.
 
@@ -250,7 +250,7 @@ class Enclosures:
             return Enclosure(self, at_lo.lo, self._expm1(x.hi).hi)
         return Enclosure(self, at_lo.lo, (at_lo + 2 * width * (at_lo + 1)).hi)
 
-    @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
+    @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _expm1(self, x: Decimal) -> Enclosure:
         """e^x - 1 for a number x >= 0, to the relative precision of the result.
 
@@ -287,7 +287,7 @@ class Enclosures:
         at_lo = self._log1p(x.lo)
         return Enclosure(self, at_lo.lo, (at_lo + self._width(x)).hi)
 
-    @lru_cache(maxsize=KEPT)  # noqa: B019 - `enclosures` keeps the object itself
+    @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _log1p(self, y: Decimal) -> Enclosure:
         """ln(1 + y) for a number y >= 0, from a guess y0, with no series.
 
@@ -307,7 +307,7 @@ class Enclosures:
         """ln(1 + y) to about half the digits: each step of `_log1p` doubles them."""
         if self.digits > 28:
             return enclosures(self.digits // 2 + 2)._log1p(y).lo
-        if -DOUBLES < y.adjusted() < DOUBLES:
+        if -DOUBLE_EXPONENT < y.adjusted() < DOUBLE_EXPONENT:
             return Decimal(math.log1p(float(y)))
         return y if y < 1 else decimal_context(self.digits // 2 + 12, ROUND_HALF_EVEN).ln(y)
 
@@ -361,7 +361,7 @@ def _inverse(q: int, sign: int, w: int) -> int:
     return total
 
 
-GUARD = 40
+GUARD_BITS = 40
 # The bits of cached constants are a power of two, at least twice this, so that precisions share them.
 LEAST_BITS = 256
 
@@ -380,10 +380,10 @@ def _constant(*terms: tuple[int, int, int], bits: int) -> int:
     """A sum of factor · `_inverse`(q, sign) for terms (factor, q, sign), right to two units of 2^-bits.
 
     The series have fewer than w terms, each truncated by less than two units of 2^-w, and the factors add up
-    to at most 100. The 40 extra bits (`GUARD`) absorb that up to w = 2^32.
+    to at most 100. The 40 extra bits (`GUARD_BITS`) absorb that up to w = 2^32.
     """
     wide = 1 << max(LEAST_BITS, bits).bit_length()
-    return _wide_constant(terms, wide + GUARD) >> (wide + GUARD - bits)
+    return _wide_constant(terms, wide + GUARD_BITS) >> (wide + GUARD_BITS - bits)
 
 
 @lru_cache

@@ -37,11 +37,11 @@ CLOSEST, ENOUGH = 6000, 6050
 """The digits in which a value must agree with a tie to be taken for it; and a precision that shows them."""
 SUSPECT = 800
 """If a value is not settled at this precision, the next one is `ENOUGH`, as it may be a tie."""
-GUARD = 8
+GUARD_DIGITS = 8
 """Digits beyond the wanted ones in the first computation of a quantity."""
-SIGN = 17 + GUARD
+SIGN_DIGITS = 17 + GUARD_DIGITS
 """Digits of the first computation of a sign."""
-NEAR = decimal_context(CLOSEST - 10, ROUND_HALF_EVEN)
+TO_TIE = decimal_context(CLOSEST - 10, ROUND_HALF_EVEN)
 """Rounds a value that agrees with a tie in `CLOSEST` digits to the tie, as no tie has so many digits."""
 
 
@@ -56,14 +56,14 @@ def settle(quantity: Quantity, round_: Callable[[Fraction | Decimal], T], digits
             raise Unsettled(ENOUGH if value.arithmetic.digits >= SUSPECT else 0)
         if value.lo <= 0 <= value.hi:
             return round_(ZERO)
-        if NEAR.divide(NEAR.subtract(value.hi, value.lo), value.hi).adjusted() > -CLOSEST:
+        if TO_TIE.divide(TO_TIE.subtract(value.hi, value.lo), value.hi).adjusted() > -CLOSEST:
             raise Unsettled
-        return round_(NEAR.plus(value.lo))
+        return round_(TO_TIE.plus(value.lo))
 
     try:
         return round_(quantity(EXACT))
     except Irrational:
-        return _refine(quantity, rounded, digits + GUARD)
+        return _refine(quantity, rounded, digits + GUARD_DIGITS)
 
 
 def is_positive(quantity: Quantity) -> bool:
@@ -72,7 +72,7 @@ def is_positive(quantity: Quantity) -> bool:
     def sign(value: Enclosure) -> bool | None:
         return value.lo > 0 if value.lo > 0 or value.hi < 0 else None
 
-    return _refine(quantity, sign, SIGN)
+    return _refine(quantity, sign, SIGN_DIGITS)
 
 
 def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits: int) -> A:

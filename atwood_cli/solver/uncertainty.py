@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..arithmetic.fingerprint import FINGERPRINTS
 from ..arithmetic.interval import Enclosure, Unsettled, enclosures
 from ..arithmetic.rational import N
-from ..arithmetic.settling import GUARD, settle
+from ..arithmetic.settling import GUARD_DIGITS, settle
 from ..model.case import Case
 from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, tidy, to_digits, to_place, to_threshold
 from ..model.digits import with_uncertainty as with_both
@@ -155,7 +155,7 @@ class Uncertainties:
 
         ``spread`` has the uncertainties shown, by name of the quantity, settled to so many digits.
         """
-        ar = enclosures(digits + GUARD)
+        ar = enclosures(digits + GUARD_DIGITS)
         finite = [name for name, u in spread.items() if u and not is_infinite(u)]
         found = {
             x: [(name, x) for name in finite if self._is_lopsided(attrgetter(name), x, ar)]
