@@ -254,9 +254,9 @@ def _unusable(runs: Runs, run: Run, given: Conditions, find: Sequence[str]) -> s
     held = 0.0 if "gravity" in find else given.values.get("axle", 0.0) / given.values["gravity"]
     reasons = {
         "it was left out": run.left_out,
-        "its masses are equal, and rest": not difference,
+        "the masses are equal, and rest": not difference,
         "nothing moved": not mean,
         "the lighter side falls": runs.signed and (mean > 0) != (difference > 0),
-        "an axle with the friction given holds its masses": abs(difference) <= held,
+        "an axle with the friction given holds the masses": abs(difference) <= held,
     }
     return next((why for why, holds in reasons.items() if holds), "")
