@@ -118,12 +118,13 @@ def number_in_latex(digits: str) -> str:
 
 
 def in_math(words: str) -> str:
-    """A symbol or a plain equation as LaTeX: indices lowered, Greek letters and powers spelled."""
+    """A symbol or a plain equation as LaTeX: indices lowered, Greek letters, powers and functions spelled."""
     words = re.sub(r"(?<=[\d)])e(-?\d+)", r" \\times 10^{\1}", words)
     words = re.sub(r"_(\w+)", r"_{\\mathrm{\1}}", words)
     words = re.sub(r"\b([A-Za-z])(\d)", r"\1_\2", words)
     words = re.sub(r" (min|max)\b", r"_{\\\1}", words)
     words = re.sub(r"\^\(([^()]*)\)", r"^{\1}", words)
+    words = re.sub(r"\b(ln|sin)\(", r"\\\1(", words)
     words = words.replace("*", r"^{\ast}").replace("√", r"\sqrt").replace("∞", r"\infty ")
     words = words.replace("≈", r"\approx ").replace("≤", r"\le ").replace("≥", r"\ge ")
     words = words.replace("±", r"\pm ").replace(" to ", r"~\mathrm{to}~")
