@@ -61,10 +61,11 @@ def test_a_free_end_is_found_where_nothing_else_moves_so() -> None:
 
 def test_a_slide_finds_kinetic_friction_and_moves_as_that_does() -> None:
     """The issue's: 100 g and 400 g over a locked pulley at 2.141 m/s²."""
+    axles = [{"M": "30", "mu": "0.39", "axle": axle} for axle in ("0.3", "2.5")]  # 2.5 N holds the pulley
     found = measured(m1="100g", m2="400g", M="inf", a="2.141", digits=30)
     assert f"{found.mu_k:.3f}" == "0.300"
     for m1, m2, sign in (("100g", "400g", 1), ("400g", "100g", -1)):
-        for more in ({"M": "inf"}, {"M": "inf", "mu": "0.4"}, {"M": "7", "mu": "0.39"}):
+        for more in ({"M": "inf"}, {"M": "inf", "mu": "0.4"}, {"M": "7", "mu": "0.39"}, *axles):
             found = measured(m1=m1, m2=m2, a=Decimal("2.141") * sign, digits=30, **more)
             again: Any = solve(m1=m1, m2=m2, **{"mu": found.mu_k, **more}, mu_k=found.mu_k, digits=25)
             assert again.regime == found.regime == "slip"

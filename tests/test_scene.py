@@ -13,7 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import Scene, SceneError, solve
-from atwood_cli.model.scene import BODIES
+from atwood_cli.model.case import Case
+from atwood_cli.model.scene import BODIES, Axle
 from atwood_cli.model.units import STANDARD_GRAVITY, UNITS
 
 from .running import Atwood, process
@@ -38,6 +39,8 @@ RULES: list[tuple[str, list[Any], str]] = [
     ("m1", [Decimal("1e9999999"), f"1.{'1' * 999}/{'7' * 999}e500"], TOO_LONG),
     ("m1", ["4" * 1000 + "lb"], "has 1008 digits, its unit included; at most 1000 are taken"),
     ("m1", [f"1 kg{'*st^9' * 20_000}"], NOT_A_NUMBER),
+    ("axle", [(1, "N")], TYPES),
+    ("R", [Axle(1)], TYPES),
     ("m1", [True, b"1", 1j, np.timedelta64(1, "s"), np.timedelta64(1), np.datetime64("2020")], TYPES),
 ]
 """By parameter, values that it must not have, and why; what can be typed stands in cases/inputs.md."""
@@ -125,6 +128,12 @@ OTHERS: dict[str, dict[str, Any]] = {
     },
     "inertia": {"Hoop": 1, "ring": 1, "disk": "1/2", "sphere": "2/5", "Shell": "2/3"},
 }
+AXLES: dict[Any, Any] = {
+    "0.0153": "0.0153", "15.3mN": "0.0153", "2 N": 2, "0.001kN": 1, "1kgf": "9.80665", "1 lbf": "4.4482216152605",
+    "0.5Nm": 10, "0.5 N m": 10, "20mNm": "0.4", "20 mN·m": "0.4", "1 lbf in": Fraction("4.4482216152605") * Fraction("0.508"),
+    Decimal("0.5"): "0.5", Axle(Fraction(1, 2), "N m"): 10,
+}
+"""Forces in N at the rim of a pulley of 5 cm."""
 # fmt: on
 
 
@@ -139,6 +148,11 @@ def test_text_means_exactly_itself(text: str, value: Any) -> None:
 def test_units_and_names_as_people_write_them(name: str, text: str, value: Any) -> None:
     scene = Scene.read({"m1": 1, "m2": 1, "R": 1, name: text})
     assert getattr(scene, name) == Fraction(value)
+
+
+@pytest.mark.parametrize(("axle", "newtons"), AXLES.items())
+def test_an_axle_is_a_force_at_the_rim_or_a_torque(axle: Any, newtons: Any) -> None:
+    assert Case(Scene.read({"m1": 1, "m2": 3, "R": "5cm", "axle": axle})).axle_friction == Fraction(newtons)
 
 
 def test_what_was_measured_takes_units_too() -> None:
