@@ -88,21 +88,17 @@ def above(text: str) -> Fraction:
 
 
 def rest(c: Claims, held: str, unit: str, then: str, digits: int) -> None:
-    difference = Fraction(held) / (1000 if unit == "g" else 1)
-    assert c.h - c.l <= difference <= c.b
-    assert c.b < difference + last_place(held) / (1000 if unit == "g" else 1)
+    difference, place = (size / (1000 if unit == "g" else 1) for size in (Fraction(held), last_place(held)))
+    assert c.h - c.l <= difference <= c.b < difference + place
     if match := re.search(f"at least {NUMBER}\\.$|, and {NUMBER} is enough", then):
         c.least_mu(match[1] or match[2])
         assert match[1] or Fraction(match[2]) <= (c.scene.mu or 0)
 
 
 def on_the_verge(c: Claims, critical: str, a: str, digits: int) -> None:
-    answers = c.expected()
-    assert is_shown(critical, answers["critical_pulley_mass"], digits)
+    assert is_shown(critical, c.expected()["critical_pulley_mass"], digits)
     for factor, regime in (("0.99", "no-slip"), ("1.01", "slip")):
-        share = Fraction(factor) if digits > 2 else Fraction(factor) ** 60
-        mass = Fraction(critical) * share
-        assert c.regime(M=mass) == regime
+        assert c.regime(M=Fraction(critical) * Fraction(factor) ** (1 if digits > 2 else 60)) == regime
     assert is_shown(a, c.expected(pulley=Fraction(0), mu=None, mu_k=None)["acceleration"], digits)
 
 
@@ -141,20 +137,21 @@ def holds_on_any(c: Claims, heavy: str, least: str, digits: int) -> None:
 
 def goes_on(c: Claims, mu_k: str, verge: str, a: str, digits: int) -> None:
     assert c.scene.mu_k == Fraction(mu_k) < Fraction(verge)
-    assert c.regime(mu=Fraction(verge)) == "slip"
-    assert c.regime(mu=above(verge)) == "no-slip"
     sliding = c.expected(mu=c.scene.mu_k)
+    assert (c.regime(mu=Fraction(verge)), c.regime(mu=above(verge))) == ("slip", "no-slip")
     assert sliding["regime"] == "slip"
     assert is_shown(a, sliding["acceleration"], digits)
+
+
+OPEN = ("acceleration", "tension_1", "tension_2", "mu_verge")
+"""What has a range of values on a pulley of unknown mass."""
 
 
 def open_range(c: Claims, *numbers: Any) -> None:
     *shown, digits = numbers
     ends = [c.expected(pulley=mass, mu=None, mu_k=None) for mass in (Fraction(0), inf)]
-    names = ("acceleration", "tension_1", "tension_2", "mu_verge")
-    for i, name in enumerate(names):
-        for j, end in enumerate(ends):
-            assert is_shown(shown[2 * i + j], end[name], digits), name
+    values = [end[name] for name in OPEN for end in ends]
+    assert all(is_shown(*pair, digits) for pair in zip(shown, values, strict=True))
 
 
 def may_slip_somewhere(c: Claims) -> bool:
@@ -163,13 +160,8 @@ def may_slip_somewhere(c: Claims) -> bool:
 
 
 def inertia(c: Claims, shown: str, digits: int) -> None:
-    scene = c.scene
-    beta = scene.inertia
-    if beta is None:
-        assert isinstance(scene.M, Fraction)
-        assert scene.I is not None
-        assert scene.R is not None
-        beta = scene.I / scene.M / scene.R**2
+    scene: Any = c.scene
+    beta = scene.I / scene.M / scene.R**2 if scene.inertia is None else scene.inertia
     assert Fraction(shown) > 1
     assert abs(Fraction(shown) / beta - 1) < Fraction(1, 10**5)
 
@@ -186,11 +178,11 @@ def out_of_range(c: Claims, names: str, why: str, digits: int) -> None:
         }[why], name
 
 
-def check(truth: Callable[[Claims], bool]) -> Callable[..., None]:
-    def checked(c: Claims, *_: Any) -> None:
+def claimed(truth: Callable[[Claims], bool]) -> Callable[..., None]:
+    def asserted(c: Claims, *_: Any) -> None:
         assert truth(c)
 
-    return checked
+    return asserted
 
 
 RANGES = "|".join(
@@ -198,9 +190,9 @@ RANGES = "|".join(
 )
 KINETIC = "(, and slides with mu_k = .*)?"
 SENTENCES: dict[str, Callable[..., None]] = {
-    r"At rest: the masses are equal, so no friction is needed\.": check(lambda c: c.scene.m1 == c.scene.m2),
+    r"At rest: the masses are equal, so no friction is needed\.": claimed(lambda c: c.scene.m1 == c.scene.m2),
     rf"At rest: the axle holds up to {NUMBER} (k?g) of difference\.(.*)": rest,
-    r"Slips on any pulley that has mass, for want of friction; the values are for one without\.": check(
+    r"Slips on any pulley that has mass, for want of friction; the values are for one without\.": claimed(
         lambda c: c.any_pulley() == {"slip"} and c.regime(pulley=Fraction(0)) == "no-slip"
     ),
     rf"On the verge of slipping: as M is not given, this is for the critical pulley mass, {NUMBER} kg\. On a"
@@ -209,29 +201,27 @@ SENTENCES: dict[str, Callable[..., None]] = {
     rf" it on one without mass{KINETIC}\.": slips_on_any,
     rf"Slips( over a pulley that its axle holds)?: mu = {NUMBER} is below the {NUMBER} that would hold"
     rf" it{KINETIC}\.": slips,
-    r"Holds: a pulley without mass needs no friction to turn, so both tensions are equal\.": check(
+    r"Holds: a pulley without mass needs no friction to turn, so both tensions are equal\.": claimed(
         lambda c: c.l == 0 or c.expected(pulley=Fraction(0), mu=Fraction(0))["regime"] == "no-slip"
     ),
-    r"Holds: the string's end is fixed to the pulley\.": check(lambda c: c.l == 0),
+    r"Holds: the string's end is fixed to the pulley\.": claimed(lambda c: c.l == 0),
     rf"Assumed to hold, without mu: it does( on a pulley without mass)? if mu is at least {NUMBER}\.": assumed,
     rf"Holds( from rest)?: mu = {NUMBER}, and {NUMBER} is enough\.": holds,
     rf"Holds on any pulley: the heavier mass, {NUMBER} kg, would have to exceed {NUMBER} kg to slip\.": (
         holds_on_any
     ),
-    r"Holds on any pulley, under any mass that can be given in place of the heavier one\.": check(
+    r"Holds on any pulley, under any mass that can be given in place of the heavier one\.": claimed(
         lambda c: c.regime(pulley=inf, h=Fraction(10**500)) == "no-slip"
     ),
-    r"Under a much heavier mass it holds again: .*": check(
+    r"Under a much heavier mass it holds again: .*": claimed(
         lambda c: (c.regime(h=c.l + c.b), c.regime(h=c.h * 10**30)) == ("slip", "no-slip")
     ),
-    r"mu_k has no part in this, .*": check(lambda c: c.scene.M is None),
-    r"mu_k = .* is enough, too: .*": check(lambda c: c.regime(mu=c.scene.mu_k) == "no-slip"),
+    r"mu_k has no part in this, .*": claimed(lambda c: c.scene.M is None),
+    r"mu_k = .* is enough, too: .*": claimed(lambda c: c.regime(mu=c.scene.mu_k) == "no-slip"),
     rf"A string that slides already goes on sliding, as mu_k = {NUMBER} is below {NUMBER}: the masses then"
     rf" have the acceleration {NUMBER} m/s²\.": goes_on,
     "From a massless to a locked pulley: "
-    + ", ".join(
-        f"{name} from {NUMBER} to {NUMBER}" for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
-    )
+    + ", ".join(f"{name} from {NUMBER} to {NUMBER}" for name in OPEN)
     + r"\.": open_range,
     rf"(.*?): ({RANGES})\.": out_of_range,
     rf"The inertia factor I/\(M R\^2\) is {NUMBER}, above 1: .*": inertia,
@@ -260,6 +250,7 @@ REASONS: dict[str, Callable[[Claims], bool]] = {
     reasons.ONE_SIDED: lambda c: (c.scene.wrap.number - 180) % 360 != 0,
 }
 """Why something is missing, and whether that is so."""
+SENTENCES |= {f".*: {re.escape(unmarked(why))}\\.": claimed(truth) for why, truth in REASONS.items()}
 
 
 def drawn(rng: Random) -> dict[str, str]:
@@ -290,18 +281,9 @@ def test_every_sentence_is_true(seed: int) -> None:
         assert all(any(name in sentence for sentence in sentences) for name in missing), words
         for sentence in sentences:
             try:
-                said[hold(claims, sentence, digits or 6)] += 1
+                match = next(filter(None, (re.fullmatch(known, sentence) for known in SENTENCES)))
+                SENTENCES[match.re.pattern](claims, *(group or "" for group in match.groups()), digits or 6)
             except Exception as error:
                 raise AssertionError(f"{words}, digits={digits}: {sentence}") from error
+            said[match.re.pattern] += 1
     assert len(said) > 20, said
-
-
-def hold(claims: Claims, sentence: str, digits: int) -> str:
-    """Hold a sentence to the oracle; the words by which it was known."""
-    for words, truth in SENTENCES.items():
-        if match := re.fullmatch(words, sentence):
-            truth(claims, *(group or "" for group in match.groups()), digits)
-            return words
-    reason = next(reason for reason in REASONS if sentence.endswith(f": {unmarked(reason)}."))
-    assert REASONS[reason](claims)
-    return reason
