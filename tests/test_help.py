@@ -19,16 +19,13 @@ from atwood_cli.tradeoff.measure import FAMILIES
 from .running import TOP, process
 
 GROUP: Any = cli.program()
-ATWOOD = Path(sys.executable).with_name("atwood")
 
 
 def test_help_without_docstrings() -> None:
     """With `python -OO`, which has none, help was a traceback."""
-    optimized = [sys.executable, "-OO", "-m", "atwood_cli", "solve", "-h"]
-    assert (
-        subprocess.run(optimized, capture_output=True, text=True, check=True).stdout
-        == process("solve", "-h").out
-    )
+    words = [sys.executable, "-OO", "-m", "atwood_cli", "solve", "-h"]
+    optimized = subprocess.run(words, capture_output=True, text=True, check=True)
+    assert optimized.stdout == process("solve", "-h").out
     assert process() == process("-h") == process("help")
 
 
@@ -37,8 +34,9 @@ def test_every_option_says_what_it_means_and_in_which_group(command: str) -> Non
     *params, the_help = GROUP.commands[command].get_params(typer.Context(GROUP.commands[command]))
     assert "--help" in the_help.opts
     assert all(param.help.endswith(".") for param in params)
-    groups = "Scene Arc Measured Measurement Output Files".split()
-    assert {param.rich_help_panel for param in params} <= {*groups}
+    assert {param.rich_help_panel for param in params} <= {
+        *"Scene Arc Measured Measurement Output Files".split()
+    }
     assert all(getattr(param, "is_flag", False) or param.metavar for param in params)
 
 
@@ -69,26 +67,26 @@ def test_help_and_completion_import_little(words: str) -> None:
 # Completion
 
 
-OFFERED: list[tuple[str, list[str]]] = [
-    ("s", ["solve", "sweep"]),
-    ("solve --mu", ["--mu", "--mu-k"]),
-    ("solve --m1 1 --m1 2 --cs", ["--csv"]),
-    ("solve --only ten", ["tension_1", "tension_2", "tension_ratio"]),
-    ("solve --only fall", ["fall_time"]),
-    ("sweep --only ", list(NAMES)),
-    ("batch in.csv --only reg", ["regime"]),
-    ("contact --figure a", []),
-    ("solve --g ", list(BODIES)),
-    ("contact --inertia ", list(INERTIA_FACTORS)),
-    ("solve --M ", ["inf"]),
-    ("batch in.csv --accuracy ", list(ACCURACIES)),
-    ("batch in.csv --from ", list(FORMATS)),
-    ("batch ", []),
-    ("fit ", []),
-    ("fit runs.csv --find ", ["rim_mass", "axle", "gravity"]),
-    ("fit runs.csv --only mo", ["moment_of_inertia"]),
-    ("tradeoff --family ", list(FAMILIES)),
-]
+OFFERED = {
+    "s": "solve sweep",
+    "solve --mu": "--mu --mu-k",
+    "solve --m1 1 --m1 2 --cs": "--csv",
+    "solve --only ten": "tension_1 tension_2 tension_ratio",
+    "solve --only fall": "fall_time",
+    "sweep --only ": " ".join(NAMES),
+    "batch in.csv --only reg": "regime",
+    "contact --figure a": "",
+    "solve --g ": " ".join(BODIES),
+    "contact --inertia ": " ".join(INERTIA_FACTORS),
+    "solve --M ": "inf",
+    "batch in.csv --accuracy ": " ".join(ACCURACIES),
+    "batch in.csv --from ": " ".join(FORMATS),
+    "batch ": "",
+    "fit ": "",
+    "fit runs.csv --find ": "rim_mass axle gravity",
+    "fit runs.csv --only mo": "moment_of_inertia",
+    "tradeoff --family ": " ".join(FAMILIES),
+}
 COMPLETING = """
 import os, sys
 from atwood_cli.cli import run
@@ -111,8 +109,7 @@ def completed(shell: str, *lines: str) -> list[str]:
 
 
 def test_completion() -> None:
-    offered = completed("bash", *(words for words, _ in OFFERED))
-    assert [lines.split() for lines in offered] == [words for _, words in OFFERED]
+    assert [" ".join(lines.split()) for lines in completed("bash", *OFFERED)] == [*OFFERED.values()]
 
 
 def test_every_shell_gets_names_with_what_they_mean() -> None:
@@ -131,60 +128,20 @@ def test_fish_is_told_where_files_are_to_be_completed(words: str, status: int) -
     assert process(**asked, _ATWOOD_COMPLETE="complete_fish") == (status, "", "")
 
 
-def in_shell(shell: str, script: str, **environment: str) -> str:
-    """Run a script in a shell that has the program on its path."""
-    if not (ATWOOD.exists() and shutil.which(shell)):
-        pytest.skip(f"needs {shell} and the installed program")
-    env = os.environ | {"PATH": f"{ATWOOD.parent}{os.pathsep}{os.environ['PATH']}"} | environment
-    done = subprocess.run([shell, "-c", script], capture_output=True, text=True, check=True, env=env)
-    assert done.stderr == ""
-    return done.stdout
-
-
-def test_completion_is_typers_own() -> None:
-    """typer looks for the shell among the parents of the process."""
-    assert "_ATWOOD_COMPLETE=complete_" in in_shell("bash", "atwood --show-completion; true")
-
-
 def test_bash_completes() -> None:
+    """So do other shells, by scripts of typer's and by the protocols above."""
+    command, bash = Path(sys.executable).with_name("atwood"), shutil.which("bash")
+    if not (command.exists() and bash):
+        pytest.skip("needs bash and the installed program")
     script = """
     eval "$(_ATWOOD_COMPLETE=source_bash atwood)"
     COMP_WORDS=(atwood solve --only ten) COMP_CWORD=3
     _atwood_completion atwood
     echo "${COMPREPLY[@]}"
     complete -p atwood
+    atwood --show-completion | grep -o complete_bash
     """
-    shown = in_shell("bash", script)
-    assert shown == "tension_1 tension_2 tension_ratio\ncomplete -o default -F _atwood_completion atwood\n"
-
-
-def test_fish_completes(tmp_path: Path) -> None:
-    (tmp_path / "scenes.csv").touch()
-    script = f"""
-    _ATWOOD_COMPLETE=source_fish atwood | source
-    cd {tmp_path}
-    complete -C "atwood solve --only ten"
-    complete -C "atwood batch sc"
-    """
-    shown = in_shell("fish", script, HOME=str(tmp_path))
-    names, file = shown.splitlines()[:3], shown.splitlines()[3:]
-    assert [line.split("\t")[0] for line in names] == ["tension_1", "tension_2", "tension_ratio"]
-    assert file == ["scenes.csv"]
-
-
-def test_zsh_takes_what_it_is_offered(tmp_path: Path) -> None:
-    """Its completion needs a terminal; what it evaluates there is recorded here."""
-    script = """
-    compdef() { }
-    _arguments() { print -r -- "$@" }
-    _files() { print files }
-    eval "$(_ATWOOD_COMPLETE=source_zsh atwood)"
-    words=(atwood solve --only ten) CURRENT=4; _atwood_completion
-    words=(atwood solve --g) CURRENT=3; _atwood_completion
-    words=(atwood batch sc) CURRENT=3; _atwood_completion
-    """
-    shown = in_shell("zsh", script, HOME=str(tmp_path))
-    lines = shown.splitlines()
-    assert "tension_1" in lines[0]
-    assert "--g" in shown
-    assert lines[-1] == "files"
+    env = os.environ | {"PATH": f"{command.parent}{os.pathsep}{os.environ['PATH']}"}
+    ran = subprocess.run([bash, "-c", script], capture_output=True, text=True, check=True, env=env)
+    shown = "tension_1 tension_2 tension_ratio\ncomplete -o default -F _atwood_completion atwood\n"
+    assert (ran.stdout, ran.stderr) == (f"{shown}complete_bash\n", "")
