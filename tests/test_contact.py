@@ -20,7 +20,7 @@ from atwood_cli import Scene, SceneError, solve
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.balance import Contact, contact
 
-from . import oracle
+from . import doors, oracle
 from .conftest import many
 from .regenerate import CASES
 from .running import TOP, called, drawn, misplaced, process
@@ -161,40 +161,10 @@ def test_bounds_to_the_last_digit(words: str) -> None:
                 assert got == oracle.round_exact(Fraction(mantissa) * Fraction(2) ** exponent, digits)
 
 
-def test_least_friction_of_a_hardly_loaded_string_is_found() -> None:
-    """The least force is of second order in the load: 600 digits cancel here."""
-    heavier, lighter = (solve(1, 3, M=M, mu=1, digits=17).friction_force_min for M in ("1e-30", "1e-300"))
-    assert heavier is not None
-    assert lighter == heavier.scaleb(-540)
-    assert solve(m1=1, m2=3, M="1e-300", mu=1).friction_force_min == 0
-
-
-OVERFLOWING = """
-mu=1e300 M=10
-mu=0.3 M=10 wrap=1e100
-m1=1e-300 m2=1e300 M=1 mu=1000
-m1=1e307 m2=3e308 M=1e308 mu=4
-mu=0.3 M=10 wrap=1e400rad
-"""
-
-
-@pytest.mark.parametrize("words", OVERFLOWING.strip().splitlines())
-def test_contact_where_few_digits_overflow(words: str) -> None:
-    """The width of an enclosure, times a huge mu, is an infinite e^x until there are digits enough."""
-    for digits in (None, 10):
-        torque = arc(points=3, digits=digits, **inputs(words)).balance["torque"]
-        assert torque["contact"] == torque["ends"]
-
-
 # The figure
 
 FIGURE = "--m1 1 --m2 3 --M 10 --mu 0.3"
 MIRRORED = "--m1 3 --m2 1 --M 10 --mu 0.3"
-
-
-def options(words: str) -> dict[str, Any]:
-    """What is given on a command line of options that all have values."""
-    return dict(zip(*[iter(words.replace("--", "").split())] * 2, strict=True))
 
 
 DRAWING = """
@@ -264,27 +234,25 @@ def test_all_of_a_figure_can_be_read(line: str) -> None:
         assert np.all((lengths > 0.01) & (lengths < 0.55))
 
 
-@pytest.mark.parametrize(("masses", "sign"), [("--m1 1 --m2 1.5", 1), ("--m1 1.5 --m2 1", -1)])
+@pytest.mark.parametrize(("masses", "sign"), [("m1=1 m2=1.5", 1), ("m1=1.5 m2=1", -1)])
 @pytest.mark.parametrize("axle", [2, 30])
 def test_what_arrows_show(masses: str, sign: int, axle: int) -> None:
     """By their colours: forces where they act, to one scale; accelerations; an axle's friction, which may hold."""
     figure = pytest.importorskip("atwood_cli.output.figure")
     from matplotlib.colors import to_hex
 
-    axes = drawn(f"solve {masses} --M 10 --mu 0.4 --axle {axle}").axes[0]
+    scene = inputs(f"{masses} M=10 mu=0.4 axle={axle}")
+    axes = drawn(" ".join(["solve", *doors.words(scene)])).axes[0]
     (turn,) = (text for text in axes.texts if not text.get_text())
     assert turn.xy[1] == turn.xyann[1] < 0  # below the axle
     assert sign * (turn.xy[0] - turn.xyann[0]) > 0
     arrows: dict[str, list[tuple[complex, complex]]] = {}
     for alike in axes.collections:
-        starts, ways = alike.XY @ [1, 1j], alike.U + 1j * alike.V
-        arrows.setdefault(to_hex(alike.get_facecolor()[0]), []).extend(zip(starts, ways, strict=True))
+        pairs = zip(alike.XY @ [1, 1j], alike.U + 1j * alike.V, strict=True)
+        arrows.setdefault(to_hex(alike.get_facecolor()[0]), []).extend(pairs)
     normal, friction = arrows.pop(figure.BLUE), arrows.pop(figure.RED)
-    up = {
-        colour: [way.imag for _, way in sorted(pairs, key=lambda one: one[0].real)]
-        for colour, pairs in arrows.items()
-    }
-    scene = options(f"{masses} --M 10 --mu 0.4 --axle {axle}")
+    left_to_right = {colour: sorted(pairs, key=lambda pair: pair[0].real) for colour, pairs in arrows.items()}
+    up = {colour: [way.imag for _, way in pairs] for colour, pairs in left_to_right.items()}
     s: Any = solve(**scene)
     scale = up[figure.INK][0] / s.tension_1
     assert up.pop(figure.INK) == pytest.approx([scale * s.tension_1, scale * s.tension_2])
@@ -298,9 +266,10 @@ def test_what_arrows_show(masses: str, sign: int, axle: int) -> None:
     assert sign * np.array(around) == pytest.approx([abs(way) for _, way in friction])
 
 
-@pytest.mark.parametrize("words", [FIGURE, MIRRORED, "--m1 1 --m2 3 --mu 0.3"])
+@pytest.mark.parametrize("words", ["M=10 mu=0.3", "m1=3 m2=1 M=10 mu=0.3", "mu=0.3"])
 def test_curves_are_those_of_the_table_with_a_step_where_the_string_is_stuck(words: str) -> None:
-    axes, scene = drawn(f"contact {words}").axes[1], options(words)
+    scene = inputs(words)
+    axes = drawn(" ".join(["contact", *doors.words(scene)])).axes[1]
     curves = {line.get_label(): line.get_xydata() for line in axes.lines}
     colours = [line.get_color() for line in axes.lines if line.get_label() in ("nR = T(θ)", "fR = dT/dθ")]
     assert len({*colours}) == 2
@@ -317,7 +286,7 @@ def test_curves_are_those_of_the_table_with_a_step_where_the_string_is_stuck(wor
     (grey,) = [patch.get_extents() for patch in axes.patches] if steps else [None]
     if grey:
         edge = axes.transData.inverted().transform([(grey.x0, 0), (grey.x1, 0)])[:, 0]
-        assert 180 * (words == MIRRORED) in edge
+        assert 180 * (scene["m1"] == "3") in edge
 
 
 @pytest.mark.filterwarnings("error")
