@@ -22,7 +22,7 @@ from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Measured, Setting, d
 from atwood_cli.tradeoff.tradeoff_page import LEGEND, in_seconds, percent, short
 
 from . import oracle
-from .running import Atwood, misplaced, pages_seen
+from .running import Atwood, called, misplaced, pages_seen
 
 NAMES = [setting.name for setting in SETTINGS]
 
@@ -30,14 +30,8 @@ NAMES = [setting.name for setting in SETTINGS]
 @pytest.fixture
 def briefly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few repeats of short runs: these tests are about the errors."""
-    monkeypatch.setattr(tradeoff, "REPEATS", 2)
-    monkeypatch.setattr(tradeoff, "RUN_SECONDS", 1e-4)
-    monkeypatch.setattr(tradeoff, "MOST_ROWS", 0)
-
-
-def of(measured: list[Measured], setting: str) -> Measured:
-    (one,) = [one for one in measured if one.setting == setting]
-    return one
+    for name, few in {"REPEATS": 2, "RUN_SECONDS": 1e-4, "MOST_ROWS": 0}.items():
+        monkeypatch.setattr(tradeoff, name, few)
 
 
 # Scenes
@@ -45,42 +39,39 @@ def of(measured: list[Measured], setting: str) -> Measured:
 
 @pytest.mark.parametrize("family", FAMILIES)
 def test_scenes_come_from_the_seed(family: str) -> None:
-    first = draw_scenes(family, 30, 1)
-    assert first == draw_scenes(family, 30, 1)
-    assert first[:7] == draw_scenes(family, 7, 1)
+    first, *again = (draw_scenes(family, count, 1) for count in (30, 30, 7))
+    assert again == [first, first[:7]]
     assert not any(row in first for row in draw_scenes(family, 30, 2))
 
 
 def test_scenes_are_the_same_on_every_platform() -> None:
     """Exponents and mantissas are drawn apart, so that no library's power or logarithm has a say."""
-    (ordinary,), (near,) = (draw_scenes(family, 1, 1) for family in ("ordinary", "near-critical"))
-    doubles = "0.16445123133464037 0.20210789773600948 0.8335547957401686 0.014586684315688787"
-    assert list(ordinary.values()) == [*map(float, doubles.split())]
-    assert list(near.values()) == [8.82546756886875, 1214.438866204906, 513.4088800424233, 0.8413462820148073]
+    ordinary = [0.16445123133464037, 0.20210789773600948, 0.8335547957401686, 0.014586684315688787]
+    near = [8.82546756886875, 1214.438866204906, 513.4088800424233, 0.8413462820148073]
+    for family, wanted in {"ordinary": ordinary, "near-critical": near}.items():
+        assert [[*row.values()] for row in draw_scenes(family, 1, 1)] == [wanted]
 
 
 def test_families_are_what_they_say() -> None:
-    drawn = {family: draw_scenes(family, 300, 1) for family in FAMILIES}
-    for rows in drawn.values():
-        assert all(row["m1"] <= row["m2"] for row in rows)
-    for row in drawn["ordinary"]:
-        assert 0.007 < row["m1"] < 128
-        assert 1.007 < row["m2"] / row["m1"] < 129
-        assert 0.007 < row["M"] < 1024
-    apart = [float(Fraction(row["m2"]) / Fraction(row["m1"]) - 1) for row in drawn["nearly-equal"]]
-    assert 0 < min(apart) < 1e-14
-    assert 1e-3 < max(apart) < 0.01
-    assert 7e-31 < min(row["M"] for row in drawn["light-pulley"]) < 1e-28
-    assert 1e-4 < max(row["M"] for row in drawn["light-pulley"]) < 1e-3
-    exponents = [np.log10(row["m1"]) for row in drawn["whole-range"]]
-    assert min(exponents) < -320 < 250 < max(exponents)
-    near = drawn["near-critical"]
-    m1, m2, M, mu = (np.array([row[name] for row in near]) for name in ("m1", "m2", "M", "mu"))
+    drawn = {
+        family: np.array([[*row.values()] for row in draw_scenes(family, 300, 1)]).T for family in FAMILIES
+    }
+    assert all(np.all(columns[0] <= columns[1]) for columns in drawn.values())
+    m1, m2, M, _ = drawn["ordinary"]
+    for column, low, high in ((m1, 0.007, 128), (m2 / m1, 1.007, 129), (M, 0.007, 1024)):
+        assert low < min(column) < max(column) < high
+    m1, m2, *_ = drawn["nearly-equal"]
+    apart = (m2 - m1) / m1
+    M = drawn["light-pulley"][2]
+    assert 0 < min(apart) < 1e-14 < 1e-3 < max(apart) < 0.01
+    assert 7e-31 < min(M) < 1e-28 < 1e-4 < max(M) < 1e-3
+    m1 = drawn["whole-range"][0]
+    assert min(m1) < 1e-320 < 1e250 < max(m1)
+    m1, m2, M, mu = drawn["near-critical"]
     critical = solve_arrays(m1, m2, mu=mu)["critical_pulley_mass"]
     least = solve_arrays(m1, 2 * m1, mu=mu, quantities=["least_heavier_mass"])["least_heavier_mass"]
     off = np.fmin(abs(M / critical - 1), abs(m2 / least - 1))
-    assert 0 < off.min() < 1e-13
-    assert off.max() < 1.1e-3
+    assert 0 < off.min() < 1e-13 < off.max() < 1.1e-3
 
 
 # Errors
@@ -94,32 +85,30 @@ def test_errors_are_those_against_the_oracle_and_promises_hold(family: str) -> N
     assert [(one.family, one.setting) for one in measured] == [(family, name) for name in NAMES]
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     rights = [oracle.expected(Scene.read({"g": 9.80665, **row})) for row in rows]
+    by_setting = {one.setting: one for one in measured}
     for one, setting in zip(measured, SETTINGS[:-1], strict=False):  # the oracle's balls end before 50 digits
         solved = setting.run(columns)
-        off = [
-            oracle_error(right, {name: solved[name][i] for name in STANDARD})
-            for i, right in enumerate(rights)
-        ]
+        got = zip(*(solved[name] for name in STANDARD), strict=True)
+        off = [*map(oracle_error, rights, got)]
         assert one.seconds > 0
         assert one.share_wrong_regime == pytest.approx(off.count(None) / len(rows))
         assert one.worst_ulp == pytest.approx(max(filter(None, off)), rel=1e-9, abs=1e-12)
     # Half a unit in the last of the digits, of a number whose ulp is at least 2^-53 of it.
     for name, ulps in {"certified": 2e-14 * 2**53, "exact": 0.5, "50 digits": 0.5e-49 * 2**53}.items():
-        assert (of(measured, name).worst_ulp or 0) <= ulps
-        assert of(measured, name).share_wrong_regime == 0
-    assert of(measured, "paper").share_wrong_regime > 0.1
+        assert (by_setting[name].worst_ulp or 0) <= ulps
+        assert by_setting[name].share_wrong_regime == 0
+    assert by_setting["paper"].share_wrong_regime > 0.1
 
 
-def oracle_error(right: dict[str, Any], got: dict[str, Any]) -> float | None:
+def oracle_error(right: dict[str, Any], got: tuple[Any, ...]) -> float | None:
     """The worst error of a scene, in ulps; None where the regime is not right."""
-    if REGIMES[got["regime"]] != right["regime"]:
+    if REGIMES[got[0]] != right["regime"]:
         return None
     worst = 0.0
-    for name in STANDARD[1:]:
+    for name, value in zip(STANDARD[1:], map(float, got[1:]), strict=True):
         if right[name] is not None:
             nearest: Any = oracle.correctly_rounded(right[name], None)
             precise = Fraction(oracle.correctly_rounded(right[name], 60))
-            value = float(got[name])
             if isfinite(nearest) and isfinite(value):
                 worst = max(worst, float(abs(Fraction(value) - precise) / Fraction(ulp(nearest))))
             elif value != nearest:
@@ -129,8 +118,8 @@ def oracle_error(right: dict[str, Any], got: dict[str, Any]) -> float | None:
 
 def test_what_is_lost_is_infinitely_wrong() -> None:
     def columns(value: Any, **others: Any) -> dict[str, Any]:
-        values = dict.fromkeys(STANDARD, value) | {"regime": 0} | others
-        return {name: [shown] for name, shown in values.items()}
+        row = dict.fromkeys(STANDARD, value) | {"regime": 0} | others
+        return {name: [shown] for name, shown in row.items()}
 
     exact = columns(Decimal("1.5"))
     for lost in (inf, -inf, nan):
@@ -218,53 +207,46 @@ def traced_anew() -> Iterator[None]:
     [("log1p", lambda x, out: np.log(1 + x, out)), ("expm1", lambda x, out: np.subtract(np.exp(x), 1, out))],
 )
 def test_plain_functions_show(name: str, broken: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    rows = draw_scenes("nearly-equal", 60, 1)
-    assert (of(measure("nearly-equal", rows), "certified").worst_ulp or 0) < 200
+    def worst_certified() -> float:
+        measured = measure("nearly-equal", draw_scenes("nearly-equal", 60, 1))
+        return next(one.worst_ulp or 0 for one in measured if one.setting == "certified")
+
+    assert worst_certified() < 200
     plan.cache_clear()
     monkeypatch.setitem(OPERATIONS, name, broken)
-    assert (of(measure("nearly-equal", rows), "certified").worst_ulp or 0) > 1e6
+    assert worst_certified() > 1e6
 
 
 # The command
 
 
-@pytest.fixture
-def brief(briefly: None) -> list[str]:
-    return ["tradeoff", "--scenes", "6"]
-
-
-def test_one_table_family_by_setting(
-    atwood: Atwood, brief: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setenv("COLUMNS", "80")
-    ran = atwood(*brief, "--seed", "4")
+@pytest.mark.usefixtures("briefly")
+def test_one_table_family_by_setting() -> None:
+    ran = called(["tradeoff", "--scenes", "6", "--seed", "4"], COLUMNS="80")
     assert (ran.status, ran.err) == (0, "")
     lines = ran.out.splitlines()
     assert lines[0] == "6 scenes of each family, seed 4"
     rows = [[cell.strip() for cell in line.strip("│").split("│")] for line in lines if line.startswith("│")]
-    assert rows[0] == ["Family", *NAMES]
-    assert [row[0] for row in rows[1:]] == [
-        word for name in FAMILIES for word in (name, "error (ulp)", "wrong")
-    ]
+    firsts = ["Family", *(word for name in FAMILIES for word in (name, "error (ulp)", "wrong"))]
+    assert (rows[0][1:], [row[0] for row in rows]) == (NAMES, firsts)
     assert all(re.fullmatch(r"\d+(\.\d+)? (ns|µs|ms|s)", cell) for row in rows[1::3] for cell in row[1:])
     assert all(float(row[NAMES.index("exact") + 1]) <= 0.5 for row in rows[2::3])
     assert all(row[NAMES.index("certified") + 1] == "0 %" for row in rows[3::3])
-    *table, _, _, _ = lines
-    assert max(map(len, table)) <= 80
+    assert max(map(len, lines[:-3])) <= 80
     assert " ".join(" ".join(lines).split()).endswith(" ".join(LEGEND))
 
 
-def test_json(atwood: Atwood, brief: list[str]) -> None:
-    ran = atwood(*brief, "--json", "--seed", "8", "--family", "whole-range", "--family", "ordinary")
-    printed = json.loads(ran.out)
+@pytest.mark.usefixtures("briefly")
+def test_json(atwood: Atwood) -> None:
+    printed, again = (
+        json.loads(atwood(*f"tradeoff --scenes 6 --json --seed 8 {more} --family ordinary".split()).out)
+        for more in ("--family whole-range", "")
+    )
     assert (printed["seed"], printed["scenes"]) == (8, 6)
-    assert [(one["family"], one["setting"]) for one in printed["settings"]] == [
-        (family, name) for family in ("whole-range", "ordinary") for name in NAMES
-    ]
-    assert list(printed["settings"][0]) == list(Measured._fields)
+    found = [(one["family"], one["setting"]) for one in printed["settings"]]
+    assert found == [(family, name) for family in ("whole-range", "ordinary") for name in NAMES]
     lost = printed["settings"][0]
-    assert lost["worst_ulp"] is None  # infinite
-    again = json.loads(atwood(*brief, "--json", "--seed", "8", "--family", "ordinary").out)
+    assert (list(lost), lost["worst_ulp"]) == ([*Measured._fields], None)  # infinite
     for one, other in zip(printed["settings"][len(NAMES) :], again["settings"], strict=True):
         assert {**one, "seconds": 0} == {**other, "seconds": 0}
 
