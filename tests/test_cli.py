@@ -44,11 +44,11 @@ def test_a_solution_shows_itself_as_the_command_does(atwood: Atwood, given: str)
 
 
 def test_a_printed_solution_fits_the_terminal_and_has_no_colours(monkeypatch: pytest.MonkeyPatch) -> None:
-    solution = solve(m1=1, m2=3, M="10(1)")
     monkeypatch.setenv("COLUMNS", "60")
     monkeypatch.setattr(sys.stdout, "isatty", lambda: True, raising=False)
-    assert max(map(len, str(solution).splitlines())) <= 60
-    assert "\x1b" not in str(solution)
+    shown = str(solve(m1=1, m2=3, M="10(1)"))
+    assert max(map(len, shown.splitlines())) <= 60
+    assert "\x1b" not in shown
 
 
 # JSON
@@ -79,16 +79,7 @@ def test_every_symbol_names_its_quantity() -> None:
 # Errors
 
 
-LONG = [
-    "a" * 100_000,
-    "1 kg" + "*st^9" * 20_000,
-    "1" * 100_000,
-    "1," * 20_000 + "1",
-    "x " * 50_000,
-    "-" * 100_000,
-]
-
-
+LONG = ["a" * 10**5, "1 kg" + "*st^9" * 20_000, "1" * 10**5, "1," * 20_000 + "1", "x " * 50_000, "-" * 10**5]
 LINES = """
 solve --m1 1 --m2 3 --M {}|solve --m1 1 --m2 3 --wrap {}|solve --m1 1 --m2 3 --I {}|contact --m1 1 --m2 3 --M {}
 sweep --m1 1 --m2 3 --M {}|sweep --m1 1 --m2 3 --M {}:2:3|sweep --m1 1 --m2 3 --M 1:2:{}|sweep --m1 1 --m2 3 --M 1:2:3:{}
@@ -114,7 +105,7 @@ def test_no_message_repeats_all_that_was_typed(atwood: Atwood, long: str) -> Non
 
 
 def test_version_and_help(atwood: Atwood) -> None:
-    assert re.fullmatch(r"atwood \d+\.\d+\.\d+\n", atwood("--version").out)
+    assert re.fullmatch(r"atwood \d+\.\d+\.\d+(rc\d+)?\n", atwood("--version").out)
     assert atwood("-V") == atwood("--version")
     assert atwood("help", "sweep") == atwood("sweep", "-h") == atwood("sweep", "--help")
     assert atwood("help", "slove").status == 2
@@ -122,16 +113,16 @@ def test_version_and_help(atwood: Atwood) -> None:
 
 @pytest.mark.parametrize("output", ["--json", "--csv", "--only acceleration", ""])
 def test_only_what_is_needed_is_imported(output: str) -> None:
-    loaded = set(process(*PAPER, *output.split(), code=LOADED).err.split())
-    ours = {name for name in loaded if name.startswith(("atwood_cli.cli.", "atwood_cli.output."))}
+    modules = {*process(*PAPER, *output.split(), code=LOADED).err.split()}
+    ours = {name for name in modules if name.startswith(("atwood_cli.cli.", "atwood_cli.output."))}
     needed = {"cli.options", "cli.solve", "output.files", "output.scene_page", "output.text"}
     assert ours - {"atwood_cli.output.page"} == {f"atwood_cli.{name}" for name in needed}
-    assert "numpy" not in loaded
-    assert ("rich" in loaded) == ("atwood_cli.output.page" in ours) == (output == "")
+    assert ("rich" in modules) == ("atwood_cli.output.page" in ours) == (output == "")
+    assert "numpy" not in modules
 
 
 def test_the_arc_needs_no_numpy() -> None:
-    assert not {"numpy", "rich"} & set(process("contact", *PAPER[1:], "--csv", code=LOADED).err.split())
+    assert not {"numpy", "rich"} & {*process("contact", *PAPER[1:], "--csv", code=LOADED).err.split()}
 
 
 def test_the_door_opens_before_anything_is_loaded() -> None:
