@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from contextlib import ExitStack, chdir
 from functools import cache, partial
 from itertools import count, product
@@ -26,92 +27,75 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
 
 STATUS = {"SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129, "SIGKILL": -9}
 SCENE = "--m1 1 --m2 3"
-ENVIRONMENT = around({"PYTHONPATH": str(TOP)})
 
 
-def blown(child: "subprocess.Popen[bytes]", *blows: str, stdin: bytes = b"") -> tuple[int, bytes, bytes]:
-    """How a run ends that gets signals: status, stdout, stderr."""
-    for blow in blows:
+def blown(
+    child: "subprocess.Popen[bytes]", blow: str, delays: Sequence[float] = (0,), stdin: bytes | None = None
+) -> tuple[int, bytes, bytes]:
+    """How a run ends that gets a signal after each delay: status, stdout, stderr."""
+    for delay in delays:
+        time.sleep(delay)
         child.send_signal(signal.Signals[blow])
-    out, err = child.communicate(stdin or None, HANGS)
+    out, err = child.communicate(stdin, HANGS)
     return child.returncode, out, err
 
 
 # Wherever it is, it ends quietly
 
-SLOW = """
-import sys, time
-import atwood_cli.cli.contact, atwood_cli.solver.answers, atwood_cli.sweep.ranges, atwood_cli.batch.run
-from atwood_cli.__main__ import main
-def slow(*_, **__):
-    print("started", file=sys.stderr, flush=True)
-    while True:  # as a signal that comes while Python enters a call is seen only behind it
-        time.sleep(0.01)
-atwood_cli.cli.contact.Answers = atwood_cli.solver.answers.Answers = slow
-atwood_cli.sweep.ranges.Answers = atwood_cli.batch.run.run_batch = slow
-sys.exit(main())
-"""
-
-
-@pytest.mark.parametrize(
-    ("typed", "blow"),
-    [
-        (f"solve {SCENE} --mu 0.3 --json", "SIGHUP"),
-        (f"contact {SCENE} --mu 0.3", "SIGTERM"),
-        (f"sweep {SCENE} --M 0:100:9", "SIGINT"),
-        ("batch -", "SIGINT"),
-    ],
-)
-def test_what_ends_it_ends_it_quietly(typed: str, blow: str) -> None:
-    command = [sys.executable, "-c", SLOW, *typed.split()]
-    child = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    assert child.stderr is not None
-    assert child.stderr.readline() == b"started\n"
-    assert blown(child, blow) == (STATUS[blow], b"", b"")
-
-
-# What runs is replaced by what sends a signal to itself where Python can raise nothing, or another error:
-# where an object is dropped, where a class is made and, as modules in C do, while one is imported.
 RUN = """
 import os, signal, sys, time
 from atwood_cli import cli
 from atwood_cli.__main__ import main
-def blow():
-    os.kill(os.getpid(), getattr(signal, sys.argv.pop()))
+number = getattr(signal, sys.argv.pop(1))
+def blow(*_, **__):
+    os.kill(os.getpid(), number)
+    while True:  # as a signal that comes while Python enters a call is seen only behind it
+        time.sleep(0.01)
 {}
-cli.run = run
 sys.exit(main())
 """
+SOLVING = """
+import atwood_cli.cli.contact, atwood_cli.solver.answers, atwood_cli.sweep.ranges, atwood_cli.batch.run
+atwood_cli.cli.contact.Answers = atwood_cli.solver.answers.Answers = blow
+atwood_cli.sweep.ranges.Answers = atwood_cli.batch.run.run_batch = blow
+"""
+# Where Python can raise nothing, or another error: where an object is dropped, where a class is made and, as
+# modules in C do, while one is imported.
 DROPPING = """
 class Dropped:
-    def __del__(self):
-        blow()
-        time.sleep(0)
+    __del__ = blow
 def run():
     Dropped()
     while True:
         time.sleep(0.01)
+cli.run = run
 """
 TURNED = """
 class Part:
-    def __set_name__(self, owner, name):
-        blow()
-        time.sleep(9)
+    __set_name__ = blow
 def run():
     try:
         type("Imported", (), {"part": Part()})
     except KeyboardInterrupt as error:  # since Python 3.12; before, a RuntimeError
         raise ImportError("numpy._core.multiarray failed to import") from error
+cli.run = run
 """
 
 
 @pytest.mark.parametrize(
-    ("code", "blow"),
-    [(DROPPING, "SIGTERM"), (TURNED, "SIGINT"), (TURNED, "SIGTERM"), (TURNED, "SIGHUP")],
+    ("code", "blow", "typed"),
+    [
+        (SOLVING, "SIGHUP", f"solve {SCENE} --mu 0.3 --json"),
+        (SOLVING, "SIGTERM", f"contact {SCENE} --mu 0.3"),
+        (SOLVING, "SIGINT", f"sweep {SCENE} --M 0:100:9"),
+        (SOLVING, "SIGINT", "batch -"),
+        (DROPPING, "SIGTERM", ""),
+        *((TURNED, blow, "") for blow in ("SIGINT", "SIGTERM", "SIGHUP")),
+    ],
     ids=count(),
 )
-def test_a_signal_is_not_lost_and_shows_no_traceback(code: str, blow: str) -> None:
-    command = [sys.executable, "-c", RUN.format(code), blow]
+def test_a_signal_is_not_lost_and_ends_it_quietly(code: str, blow: str, typed: str) -> None:
+    command = [sys.executable, "-c", RUN.format(code), blow, *typed.split()]
     ended = subprocess.run(command, capture_output=True, check=False, timeout=HANGS)
     assert (ended.returncode, ended.stdout, ended.stderr) == (STATUS[blow], b"", b"")
 
@@ -135,9 +119,9 @@ def test_a_pipe_that_brings_nothing_is_waited_for_until_it_is_stopped(tmp_path: 
 
 
 @pytest.mark.parametrize(
-    ("blows", "before"), [("SIGKILL", ""), ("SIGTERM", "as it was"), ("SIGHUP", ""), ("SIGINT SIGINT", "")]
-)
-def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str, before: str) -> None:
+    ("blow", "times", "before"), [("SIGKILL", 1, ""), ("SIGTERM", 1, "as it was"), ("SIGHUP", 1, ""), ("SIGINT", 2, "")]
+)  # fmt: skip
+def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blow: str, times: int, before: str) -> None:
     out = tmp_path / "out.csv"
     if before:
         out.write_text(before)
@@ -148,10 +132,10 @@ def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blows: str, before: st
     while not any(path.stat().st_size for path in tmp_path.glob(".atwood-*")):
         assert child.poll() is None
         time.sleep(0.01)
-    status, _, err = blown(child, *blows.split())
-    assert status == STATUS[blows.split()[0]]
+    status, _, err = blown(child, blow, [0] * times)
+    assert status == STATUS[blow]
     assert out.exists() == bool(before)
-    if blows == "SIGKILL":
+    if blow == "SIGKILL":
         assert err == b""
         return
     assert [path.read_text() for path in tmp_path.iterdir()] == [before] * bool(before)
@@ -179,24 +163,29 @@ RUNS = [
 ]
 
 
-def start(line: str) -> "subprocess.Popen[bytes]":
-    """A run of the program, here, which hears no signal before its own handlers are there."""
-    scenes = pl.DataFrame({"m1": [1.0] * 50_000, "m2": [3.0] * 50_000, "n": range(50_000)})
-    if "batch" in line:
-        for kind in ("csv", "ndjson", "parquet"):
-            getattr(scenes, f"write_{kind}")(f"in.{kind}")
-    return hearing(*line.split(), "--force", env=ENVIRONMENT)
+def cut(
+    line: str, before: bytes | None = None, blow: str = "", delays: Sequence[float] = ()
+) -> tuple[int, bytes, bytes | None, set[str]]:
+    """How a run ends that is to write a file, what it says, the file, and what else it leaves."""
+    with TemporaryDirectory() as folder, chdir(folder):
+        out = Path(next(word for word in line.split() if word.startswith("out.")))
+        if "batch" in line:
+            scenes = pl.DataFrame({"m1": [1.0] * 50_000, "m2": [3.0] * 50_000, "n": range(50_000)})
+            getattr(scenes, f"write_{out.suffix[1:]}")(f"in{out.suffix}")
+        given = {*Path().iterdir(), out}
+        if before is not None:
+            out.write_bytes(before)
+        child = hearing(*line.split(), "--force", env=around({"PYTHONPATH": str(TOP)}))
+        status, _, said = blown(child, blow, delays)
+        left = {path.name for path in {*Path().iterdir()} - given}
+        return status, said, out.read_bytes() if out.exists() else None, left
 
 
 @cache
-def whole(line: str) -> tuple[bytes, float]:
+def whole(line: str) -> tuple[bytes | None, float]:
     """What a run writes that is left alone, and how long it takes."""
-    with TemporaryDirectory() as folder, chdir(folder):
-        begun = time.perf_counter()
-        start(line).communicate()
-        taken = time.perf_counter() - begun
-        (out,) = Path().glob("out.*")
-        return out.read_bytes(), taken
+    begun = time.perf_counter()
+    return cut(line)[2], time.perf_counter() - begun
 
 
 def kill(run: int) -> None:
@@ -206,21 +195,11 @@ def kill(run: int) -> None:
     whole_file, seconds = whole(line)
     delays = [random.uniform(0, 1.2 * seconds), *random.choice([[], [random.uniform(0, 0.02)]])]
     before = random.choice([None, b"as it was"])
-    with TemporaryDirectory() as folder, chdir(folder):
-        out = Path(next(word for word in line.split() if word.startswith("out.")))
-        if before is not None:
-            out.write_bytes(before)
-        child = start(line)
-        for delay in delays:
-            time.sleep(delay)
-            child.send_signal(signal.Signals[blow])
-        _, said = child.communicate(timeout=HANGS)
-        left = {path.name for path in Path().iterdir()} - {"in.csv", "in.ndjson", "in.parquet", str(out)}
-        after = out.read_bytes() if out.exists() else None
+    status, said, after, left = cut(line, before, blow, delays)
     what = f"run {run}, {line} and {blow} after {delays} s: {said!r}"
-    assert child.returncode in (0, STATUS[blow]), what
+    assert status in (0, STATUS[blow]), what
     assert after in (before, whole_file), what
-    assert child.returncode or after == whole_file, what
+    assert status or after == whole_file is not None, what
     assert not left or (blow == "SIGKILL" and all(name.startswith(".atwood-") for name in left)), what
     assert all(line.startswith(b"atwood: ") for line in said.splitlines()), what
 
