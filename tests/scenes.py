@@ -503,6 +503,14 @@ def gravity_at_an_end_of_the_doubles(rng: Random) -> Row:
 
 
 @danger
+def quotients_that_are_extreme(rng: Random) -> Row:
+    """I/R² and the mass whose weight the axle bears, of numbers that are none."""
+    R, g = _log_uniform(rng, -35, 35), _log_uniform(rng, -35, 35)
+    I, axle = R**2 * _log_uniform(rng, -50, 50), g * _log_uniform(rng, -50, 50)
+    return _masses(rng) | {"R": R, "I": I, "g": g, "axle": axle, "mu": _log_uniform(rng, -2, 0)}
+
+
+@danger
 def tie_or_beside_it(rng: Random) -> Row:
     """With load 6 and drive 3 a tension is 3 g/2, of 54 bits: half-way between two doubles, for an odd g."""
     scale, g = 2.0 ** rng.randint(-20, 20), 9.80665 + 2.0**-49 * rng.randint(0, 100)

@@ -229,6 +229,33 @@ def test_rows_that_are_computed_in_vain_are_not_counted(wraps: Any) -> None:
     assert arrays.solve_and_count(given, "certified", NAMES)[1] == reasons_of(rows)
 
 
+@pytest.mark.parametrize("name", [name for name in INPUTS if name not in ("I", "inertia")])
+def test_rows_that_differ_in_one_input_are_not_alike(name: str) -> None:
+    """Among those that are solved one by one, and once where they are alike."""
+    usual = {
+        "m1": 1.0,
+        "m2": 3.0,
+        "M": 10.0,
+        "mu": 0.4,
+        "mu_k": 0.2,
+        "g": 9.0,
+        "R": 0.1,
+        "wrap": 170.0,
+        "axle": 1.0,
+    }
+    given: dict[str, Any] = {x: np.full(3, value) for x, value in usual.items()}
+    given[name][1] *= 0.75
+    results = solve_arrays(**given, quantities=["friction_force_max", "torque"], accuracy="exact")
+    for i, row in enumerate((usual, usual | {name: usual[name] * 0.75}, usual)):
+        assert_is_solve(results, i, row, "exact")
+
+
+def test_missing_values_of_rows_that_are_alike_are_counted_for_each() -> None:
+    row = {"m1": 1.0, "m2": 3.0, "M": 1e300, "mu": 0.9}
+    given = {name: [value] * 5 for name, value in row.items()}
+    assert arrays.solve_and_count(given, "exact", NAMES)[1] == reasons_of([row] * 5)
+
+
 def test_a_quantity_without_a_program_is_not_traced_for_long() -> None:
     """Of 50 patterns it took 8 to 12 s."""
     rng = np.random.default_rng(8)
@@ -458,6 +485,8 @@ def test_either_inertia_or_moment_of_inertia_in_a_row() -> None:
         accuracy="exact",
     )
     assert found["status"].tolist() == [0, 0, 0, STATUSES.index("I and inertia"), 0]
+    locked = solve_arrays(1, 3, [8, inf, 0], I=0.08, R=0.1)
+    assert [STATUSES[i] for i in locked["status"]] == ["valid", *["I with M = 0 or inf"] * 2]
     assert found["acceleration"][:3].tolist() == [solve(m1=1, m2=3, M=8, inertia=1, g=G).acceleration] * 3
     assert found["acceleration"][4] == G / 2
 
