@@ -11,8 +11,8 @@ import re
 import signal
 import sys
 import warnings
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import chdir, contextmanager
+from collections.abc import Callable, Sequence
+from contextlib import chdir
 from fractions import Fraction
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -37,41 +37,16 @@ STATUSES = (0, 1, 2, 130)
 MARK = "\ufeff"
 
 
-@contextmanager
-def limited() -> Iterator[None]:
-    """Raise TimeoutError in what takes more processor time than BUSY, where the system has alarms."""
-    if not hasattr(signal, "setitimer"):
-        yield
-        return
-
-    def ring(*_: object) -> None:
-        raise TimeoutError(f"it takes more than {BUSY} s of processor time")
-
-    before = signal.signal(signal.SIGPROF, ring)
-    signal.setitimer(signal.ITIMER_PROF, BUSY)
-    try:
-        yield
-    finally:
-        signal.setitimer(signal.ITIMER_PROF, 0)
-        signal.signal(signal.SIGPROF, before)
-
-
 # What is typed
 
 
-@contextmanager
-def at(run: fuzz.Run) -> Iterator[None]:
+def check_run(run: fuzz.Run) -> None:
     """In a folder with the file of the run, where measurements are short and every warning is shown."""
     short = patch.multiple(measure, RUN_SECONDS=1e-5, REPEATS=1, MOST_SCENES=20, MOST_ROWS=2)
-    with TemporaryDirectory() as folder, chdir(folder), short, warnings.catch_warnings(), limited():
+    with TemporaryDirectory() as folder, chdir(folder), short, warnings.catch_warnings():
         warnings.simplefilter("always")
         Path("in.csv").touch()
         Path(run.source).write_bytes(run.content)
-        yield
-
-
-def check_run(run: fuzz.Run) -> None:
-    with at(run):
         check(run.words, called(run.words, Path("in.csv").read_bytes()))
 
 
@@ -96,7 +71,7 @@ def check(words: Sequence[str], ran: Ran) -> None:
 
 def batch(content: bytes, kind: str, piece: int) -> Ran:
     """Accelerations of a table that is read in pieces of that size."""
-    with patch.object(sources, "BLOCK_BYTES", piece), patch.object(records, "BLOCK_BYTES", piece), limited():
+    with patch.object(sources, "BLOCK_BYTES", piece), patch.object(records, "BLOCK_BYTES", piece):
         return called(["batch", "-", "--from", kind, "--only", "a"], content)
 
 
@@ -123,9 +98,8 @@ def rows_of(text: str, separator: str) -> list[tuple[str, list[str]]] | None:
         place = found.end()
         cells = re.findall(rf"(?:\A|{separator})({cell})", found[1])
         if found[1].strip() or len(cells) > 1:
-            rows.append(
-                (found[1], [re.sub('"(.?)', r"\1", word) if word[:1] == '"' else word for word in cells])
-            )
+            cells = [re.sub('"(.?)', r"\1", word) if word[:1] == '"' else word for word in cells]
+            rows.append((found[1], cells))
     return rows
 
 
@@ -146,9 +120,7 @@ def check_cells(table: tuple[str, str, int]) -> None:
         right = None if lacking else acceleration([cells[columns.index(name)] for name in ("m1", "m2")])
         assert printed.startswith(record + separator * (lacking + 1))
         assert kept == [*cells, *[""] * lacking]
-        decimal = (
-            result if separator == "," else result.replace(",", ".")
-        )  # results have the mark of the table
+        decimal = result if separator == "," else result.replace(",", ".")  # as the table has decimal commas
         assert decimal == ("" if right is None else repr(right))
         assert bool(error) == (right is None)
 
@@ -177,14 +149,13 @@ def check_lines(table: tuple[list[str], str, int]) -> None:
 
 def check_call(call: tuple[Callable[..., object], dict[str, Any]]) -> None:
     function, arguments = call
-    with limited():
-        try:
-            function(**arguments)
-        except SceneError as error:
-            str(error)
-        except ValueError as error:
-            if "broadcast" not in str(error):
-                raise
+    try:
+        function(**arguments)
+    except SceneError as error:
+        str(error)
+    except ValueError as error:
+        if "broadcast" not in str(error):
+            raise
 
 
 RUNS = {"solve": 600, "contact": 250, "sweep": 250, "batch": 350, "fit": 350, "tradeoff": 20}
@@ -197,13 +168,26 @@ PROMISES: dict[str, tuple[Any, Callable[[Any], None], int]] = {
 """What is drawn, what is promised of it, and how many are tried with --every-digit; otherwise a quarter."""
 
 
+def too_slow(*_: object) -> None:
+    raise AssertionError(f"it takes more than {BUSY} s of processor time")
+
+
 def try_many(kind: str, count: int) -> None:
     drawn, promise, _ = PROMISES[kind]
 
     @settings(max_examples=count)
     @given(drawn)
     def is_kept(example: object) -> None:
-        promise(example)
+        if not hasattr(signal, "setitimer"):  # a system without such alarms
+            promise(example)
+            return
+        before = signal.signal(signal.SIGPROF, too_slow)
+        signal.setitimer(signal.ITIMER_PROF, BUSY)
+        try:
+            promise(example)
+        finally:
+            signal.setitimer(signal.ITIMER_PROF, 0)
+            signal.signal(signal.SIGPROF, before)
 
     is_kept()
 
@@ -216,14 +200,10 @@ def test_nothing_that_is_typed_read_or_given_breaks_a_promise(kind: str) -> None
 @pytest.mark.parametrize(
     ("status", "out", "err"),
     [
-        (1, "1\n", "atwood: an error\n"),
-        *((2, "", ""), (120, "", "")),
-        (0, "", "x.py:1: UserWarning: log\n"),
-        (2, "", "atwood: \x1b[31m\n"),
-        *((0, "a\x9bm\n", ""), (0, "a\u202eb\n", "")),
-        (2, "", f"atwood: {'x' * 2000}\n"),
+        *((1, "1\n", "atwood: an error\n"), (2, "", ""), (120, "", ""), (0, "", "x.py:1: UserWarning: log\n")),
+        *((2, "", "atwood: \x1b[31m\n"), (2, "", f"atwood: {'x' * 2000}\n"), (0, "a\x9bm\n", ""), (0, "a\u202eb\n", "")),
     ],
-)
+)  # fmt: skip
 def test_what_breaks_a_promise(status: int, out: str, err: str) -> None:
     with pytest.raises(AssertionError):
         check(["solve"], Ran(status, out, err))
