@@ -43,6 +43,10 @@ def equations(found: Explanation) -> list[Equation]:
     return [part for step in found.steps for part in step.body if isinstance(part, Equation)]
 
 
+def sentences(found: Explanation) -> list[str]:
+    return [*found.answer, *(part for step in found.steps for part in step.body if isinstance(part, str))]
+
+
 # Each line gives its result: read as a person reads it, and worked out with another library
 
 FUNCTIONS = {"ln": mp.log, "sqrt": mp.sqrt, "sin": mp.sin, "N": mp.mpf}
@@ -109,14 +113,9 @@ def check_results(found: Explanation, scene: Scene, digits: int) -> None:
         if not words.startswith("- "):  # what a simpler model gives
             stated += re.findall(rf"`([^`]+)` = ({NUMBER})", words)
     for symbol, shown in stated:
-        value = expected.get(VALUES.get(symbol, ""))
-        if value is not None:
+        if (value := expected.get(VALUES.get(symbol, ""))) is not None:
             right = oracle.correctly_rounded(value, digits)
             assert Decimal(shown) == (abs(right) if symbol == "|a|" else right), symbol
-
-
-def sentences(found: Explanation) -> list[str]:
-    return [*found.answer, *(part for step in found.steps for part in step.body if isinstance(part, str))]
 
 
 @kinds
@@ -153,13 +152,13 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     mp.mp.dps = 60
     case = read_answers(SCENES[kind], None).case
     scene, motion, wrap = case.scene, case.motion, exact(case.scene.wrap.number)
-    known = {{"mu": "μ", "mu_k": "μ_k"}.get(name, name): q for name, q in scene._asdict().items()}
+    names = {"mu": "μ", "mu_k": "μ_k", "drop": "s", "time": "t"}
+    known = {
+        names.get(name, name): q for name, q in (scene._asdict() | motion._asdict()).items() if q is not None
+    }
     known |= {"M": case.pulley_mass or Fraction(0), "c": case.rim_mass, "β": case.beta, "b": case.axle_mass}
     known |= {"f_axle": case.axle_friction, "τ_axle": scene.axle and scene.axle.number}
-    known |= {"a": Fraction(0)} | {
-        name: q for name, q in zip("sta", (motion.drop, motion.time, motion.a), strict=True) if q is not None
-    }
-    env = {name: exact(q) for name, q in known.items() if isinstance(q, Fraction)}
+    env = {name: exact(q) for name, q in ({"a": Fraction(0)} | known).items() if isinstance(q, Fraction)}
     env |= {"π": +mp.pi, "φ": wrap if scene.wrap.unit == "rad" else mp.radians(wrap), "|a|": abs(env["a"])}
     if scene.mu == 0 or scene.mu_k == 0:
         k, z = ("k", "z") if scene.mu == 0 else ("k_kin", "z_kin")
@@ -170,7 +169,7 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
         value = work_out(spelled(chain(equation)[0][2:]), **{spelled(name): x for name, x in env.items()})
         assert mp.almosteq(value, mp.mpf(equation.result), rel_eps=mp.mpf(10) ** -45), equation.left
         left = equation.left
-        env[left.removesuffix(" - 1")] = mp.mpf(equation.result) + (1 if left.endswith(" - 1") else 0)
+        env[left.removesuffix(" - 1")] = mp.mpf(equation.result) + left.endswith(" - 1")
         if " - T" in left:
             env[heavier] = env[lighter] + mp.mpf(equation.result)
         elif left == lighter:  # what is shown of equal tensions
@@ -197,13 +196,12 @@ def check_laws(found: Explanation, case: Case, env: dict[str, Any]) -> None:
         words = spelled(law_in_text(part) if isinstance(part, Law) else chain(part)[0])
         enters = part.label and re.search(r"\b(b|f_axle)\b", words)
         assert part.label.endswith("+b") == bool(enters), words
+        in_letters_only = isinstance(part, Law) and isinstance(part.words, str)
         # Of what stands in letters, (1) and what kinetic friction makes of (26) is of this scene alone.
-        if not isinstance(part, Law) or (
-            isinstance(part.words, str) and not re.search("g - T|- m. g|k_kin", words)
-        ):
+        if not isinstance(part, Law) or (in_letters_only and not re.search("g - T|- m. g|k_kin", words)):
             continue
         on_the_verge: list[dict[str, Any]] = [{}]
-        if isinstance(part.words, str):
+        if in_letters_only:
             if "T1" not in env:  # the motion is open
                 continue
         elif not re.search(r"\w_crit|^T\d/T\d = ", words):
@@ -251,9 +249,8 @@ def known_numbers(given: Given) -> list[Decimal]:
     others += [{"M": "0", "I": None}, {"M": "0", "I": None, **none}, {"M": "inf", "I": None, **none}]
     solved = [Answers(Scene.read({**given, **other}), 40) for other in others]
     values: list[Any] = [answers[name] for answers in solved for name in NAMES[1:]]
-    beta, b = Case(scene).beta, Case(scene).axle_mass or 0
+    beta, b, angle = Case(scene).beta, Case(scene).axle_mass or 0, mp.radians(exact(scene.wrap.number))
     inputs = [scene.m1, scene.m2, scene.M, scene.mu, scene.mu_k, beta, b, 1000 * b, scene.wrap.number]
-    angle = mp.radians(exact(scene.wrap.number))
     values += [to_digits(40)(q) for q in inputs if isinstance(q, Fraction)]
     return [Decimal(str(x)) for x in (*values, 1, 0, angle, mp.sin(angle / 2)) if x is not None]
 
@@ -294,9 +291,8 @@ def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str) -> None:
         assert all(len(line) <= width or re.fullmatch(r" *(\S*\d )?\S+", line) for line in lines)
         words = " ".join(lines).split()
         for equation in equations(found):
-            numbers = [str(number).lower().replace("e+", "e") for number in (equation.numbers or {}).values()]
-            for number in (equation.result, *numbers):
-                assert any(number in word for word in words)
+            for number in (equation.result, *(equation.numbers or {}).values()):
+                assert any(str(number).lower().replace("e+", "e") in word for word in words)
         assert not re.search("[\xa0`]", "".join(lines))
         assert not any(re.search(r"^=|\w =$", line) for line in lines)
 
@@ -305,9 +301,8 @@ def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str) -> None:
 
 
 MATHEMATICS = """
-    frac sqrt ln sin cdot times approx begin end mathrm qquad ast infty min max mu pi varphi theta alpha beta tau
-    le ge
-""".split()
+frac sqrt ln sin cdot times approx begin end mathrm qquad ast infty min max mu pi varphi theta alpha beta tau le ge
+"""
 IN_MATHEMATICS = re.compile(r"\$\$.*?\$\$|\$.*?\$", re.DOTALL)
 
 
@@ -327,7 +322,7 @@ def check_handout(page: str) -> None:
         assert formula.isascii()
         assert formula.count("{") == formula.count("}")
         assert formula.count(r"\begin{aligned}") == formula.count(r"\end{aligned}") <= 1
-        assert set(re.findall(r"\\([a-zA-Z]+)", formula)) <= set(MATHEMATICS)
+        assert set(re.findall(r"\\([a-zA-Z]+)", formula)) <= {*MATHEMATICS.split()}
         assert not re.search(r"`|_\{mathrm|(?<!\\)\b(sin|ln)\(", formula)
     titles = re.findall("^#.*", page, re.MULTILINE)
     assert titles[0] == "# Atwood's machine, step by step"
@@ -365,13 +360,14 @@ def test_pandoc_makes_other_pages_of_a_handout_without_complaint(tmp_path: Path)
     pypandoc = pytest.importorskip("pypandoc")
     page = "\n\n".join(handout(SCENES[kind]) for kind in ("grips", "an axle alone", "finds the pulley"))
     strictly = ["--fail-if-warnings", "--standalone", "--metadata=title:Atwood"]
-    html = pypandoc.convert_text(
-        page, "html", format="markdown-auto_identifiers", extra_args=[*strictly, "--mathml"]
-    )
+
+    def converted(to: str, *more: str, **how: str) -> str:
+        return str(pypandoc.convert_text(page, to, "markdown-auto_identifiers", [*strictly, *more], **how))
+
+    html, latex = converted("html", "--mathml"), converted("latex")
     assert html.count("<math") == len(IN_MATHEMATICS.findall(page))
-    latex = pypandoc.convert_text(page, "latex", format="markdown", extra_args=strictly)
     assert "textbackslash" not in latex
     word = tmp_path / "handout.docx"
-    pypandoc.convert_text(page, "docx", format="markdown", extra_args=strictly, outputfile=str(word))
+    converted("docx", outputfile=str(word))
     with zipfile.ZipFile(word) as files:
         assert files.read("word/document.xml").count(b"<m:oMath>") == html.count("<math")
