@@ -49,8 +49,6 @@ OTHER_NAMES = {
 # fmt: on
 """The inputs that other headings could be meant for, in small ASCII letters."""
 GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
-LARGEST_POWER = 22
-"""The largest power of ten that is a double."""
 LONG_CELL = 100
 """The characters up to which any text of a nonzero double is within the limits of digits and exponents."""
 
@@ -244,7 +242,7 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
 
     factor = heading.factor
     power = len(str(max(factor, 1 / factor))) - 1
-    if power > LARGEST_POWER or max(factor, 1 / factor) != 10**power:
+    if max(factor, 1 / factor) != 10**power:
         return pl.repeat(None, len(cells), dtype=pl.Float64, eager=True)
     if cells.dtype != pl.String:
         doubles = cells.cast(pl.Float64, strict=False)
