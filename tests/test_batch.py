@@ -8,6 +8,7 @@ import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
 from fractions import Fraction
+from functools import partial
 from itertools import count
 from pathlib import Path
 from random import Random
@@ -26,7 +27,6 @@ from atwood_cli.tables.sources import FORMATS
 
 from .running import HANGS, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
 
-SEPARATORS = {"csv": ",", "tsv": "\t"}
 TEXT = "m1,m2\n1,3\n"
 ONE = "atwood: 1 row: 1 no-slip; no errors.\n"
 
@@ -35,24 +35,16 @@ def errors_of(ran: Ran) -> list[str]:
     return [row["error"] for row in csv.DictReader(io.StringIO(ran.out, newline=""))]
 
 
-def written(frame: pl.DataFrame, kind: str, path: Path) -> Path:
-    if kind in SEPARATORS:
-        frame.write_csv(path, separator=SEPARATORS[kind])
-    else:
-        getattr(frame, f"write_{kind}")(path)
-    return path
-
-
-def read_back(path: Path, kind: str) -> pl.DataFrame:
-    if kind in SEPARATORS:
-        return pl.read_csv(path, separator=SEPARATORS[kind])
-    if kind == "parquet":
-        return pl.read_parquet(path)
-    return pl.read_ndjson(path, infer_schema_length=None, schema_overrides={"error": pl.String})
-
-
 # Formats
 
+AS_LINES: Any = {"infer_schema_length": None, "schema_overrides": {"error": pl.String}}
+KINDS: dict[str, tuple[Any, Any]] = {
+    "csv": (pl.DataFrame.write_csv, pl.read_csv),
+    "tsv": (partial(pl.DataFrame.write_csv, separator="\t"), partial(pl.read_csv, separator="\t")),
+    "ndjson": (pl.DataFrame.write_ndjson, partial(pl.read_ndjson, **AS_LINES)),
+    "parquet": (pl.DataFrame.write_parquet, pl.read_parquet),
+}
+"""How another library writes and reads a table of each kind."""
 SCENES = """m1,m2,M,mu,mu_k,g,inertia,R,wrap
 1,3,,0.3,,,,,
 1,3,10,,,,,,
@@ -69,10 +61,11 @@ SUMMARY = "atwood: 6 rows: 4 no-slip, 1 verge, 1 slip; no errors.\n"
 def test_every_format(atwood: Atwood, tmp_path: Path, kind: str) -> None:
     frame = pl.read_csv(SCENES.encode(), infer_schema=False)
     frame = frame.cast(pl.Float64) if kind == "parquet" else frame
-    start, out = written(frame, kind, tmp_path / f"in.{kind}"), tmp_path / f"out.{kind}"
-    ran = atwood("batch", str(start), "-o", str(out), "--only", "regime")
-    assert (ran.status, ran.out, ran.err) == (0, "", SUMMARY)
-    result = read_back(out, kind)
+    start, out = (tmp_path / f"{name}.{kind}" for name in ("in", "out"))
+    write, read = KINDS[kind]
+    write(frame, start)
+    assert atwood("batch", str(start), "-o", str(out), "--only", "regime") == (0, "", SUMMARY)
+    result = read(out)
     assert result.columns == [*frame.columns, "regime", "error"]
     assert result["regime"].to_list() == REGIMES
     assert result["error"].null_count() == 6
@@ -83,24 +76,23 @@ def test_every_format(atwood: Atwood, tmp_path: Path, kind: str) -> None:
 @pytest.mark.parametrize(
     "line",
     [
-        "atwood batch <(cat IN) --only regime > OUT",
-        "cat IN | atwood batch /dev/stdin -o /dev/stdout --only regime | cat > OUT",
-        "cat IN | atwood batch - --from parquet --only regime > OUT",
+        "atwood batch <(cat in) --only regime > out",
+        "cat in | atwood batch /dev/stdin -o /dev/stdout --only regime | cat > out",
+        "cat in | atwood batch - --from parquet --only regime > out",
     ],
 )
 def test_streams(tmp_path: Path, line: str) -> None:
     """A pipe by any name is CSV, if nothing else is said."""
-    kind = "parquet" if "parquet" in line else "csv"
-    path = written(pl.DataFrame({"m1": [1.0], "m2": [3.0]}), kind, tmp_path / "in")
-    ran = process(shell=line.replace("IN", str(path)).replace("OUT", str(tmp_path / "out")))
-    assert (ran.status, ran.err) == (0, ONE)
-    assert read_back(tmp_path / "out", kind).rows() == [(1.0, 3.0, "no-slip", None)]
+    write, read = KINDS["parquet" if "parquet" in line else "csv"]
+    write(pl.DataFrame({"m1": [1.0], "m2": [3.0]}), tmp_path / "in")
+    assert process(shell=f"cd {tmp_path}; {line}") == (0, "", ONE)
+    assert read(tmp_path / "out").rows() == [(1.0, 3.0, "no-slip", None)]
 
 
 @pytest.mark.parametrize("kind", ["csv", "ndjson", "parquet"])
 def test_compressed_files_are_unpacked_by_their_suffix(batch: Batch, tmp_path: Path, kind: str) -> None:
-    frame = pl.DataFrame({"m1": [1.0, -2.0], "m2": [3.0, 1.0]})
-    content = written(frame, kind, tmp_path / "frame").read_bytes()
+    KINDS[kind][0](pl.DataFrame({"m1": [1.0, -2.0], "m2": [3.0, 1.0]}), tmp_path / "frame")
+    content = (tmp_path / "frame").read_bytes()
     packed = gzip.compress(content)
     ran = batch(content, f"-o OUT.{kind} --force", f"in.{kind}")
     whole = (tmp_path / f"out.{kind}").read_bytes()
@@ -122,8 +114,8 @@ def test_a_pipe_of_ndjson_is_answered_row_by_row() -> None:
         wrong = "'x' is not a line of NDJSON: Expecting value at character 1"
         answers = {"x": f'{{"regime":null,"error":"{wrong}"}}'}
         answers |= {f"{{{row}}}": f'{{{row},"regime":"no-slip","error":null}}' for row in masses}
-        *_, last = answers
-        for line in [line for line in answers if line != last]:
+        *first, last = answers
+        for line in first:
             child.stdin.write(f"{line}\n")
             child.stdin.flush()
             assert child.stdout.readline() == f"{answers[line]}\n"
@@ -233,14 +225,10 @@ def test_what_a_unit_takes_beyond_the_doubles_is_an_error_of_the_row() -> None:
 
 
 def test_the_accuracy_is_handed_on(batch: Batch) -> None:
-    for words, accuracy in {
-        "--accuracy certified": "certified",
-        "--accuracy exact": "exact",
-        "": "exact",
-    }.items():
+    for accuracy in ("certified", "exact", ""):
         with patch.object(arrays, "solve_and_count", wraps=arrays.solve_and_count) as solve_and_count:
-            assert batch(TEXT, words).status == 0
-        assert solve_and_count.mock_calls[0].args[1] == accuracy
+            assert batch(TEXT, f"--accuracy {accuracy}" * bool(accuracy)).status == 0
+        assert solve_and_count.mock_calls[0].args[1] == (accuracy or "exact")
 
 
 @pytest.mark.skipif(not Path("/proc/self/mem").exists(), reason="needs a file that cannot be read")
@@ -287,7 +275,7 @@ def test_a_reader_that_leaves_early_ends_it_quietly(tmp_path: Path) -> None:
 
 def test_a_closed_stdin_is_an_error() -> None:
     ran = process(shell="atwood batch - <&-")
-    assert (ran.status, ran.err) == (1, "atwood: cannot read stdin: it is closed\n")
+    assert ran == (1, "", "atwood: cannot read stdin: it is closed\n")
 
 
 BAR = """
