@@ -127,6 +127,13 @@ sys.exit(main())
 """The program as if no second went by: on a slow machine it would show bars."""
 
 
+LOADED = """
+import atexit, sys
+from atwood_cli.cli import run
+atexit.register(lambda: print(*sys.modules, file=sys.stderr))
+run()
+"""
+"""The program, which names at its end on stderr what it has imported."""
 END = b"\0the end"
 
 

@@ -14,14 +14,10 @@ from atwood_cli import solve
 from atwood_cli.__main__ import main
 from atwood_cli.model.quantities import ASCII, QUANTITIES, read_names
 
-from .running import PAPER, Atwood, process
+from .running import LOADED, PAPER, Atwood, process
 from .scenes import inputs
 
-LOADED = "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
-
-
 # The table
-
 
 SHOWN = """
 m1=1 m2=3 mu=0.3
@@ -121,8 +117,11 @@ def test_only_what_is_needed_is_imported(output: str) -> None:
     assert "numpy" not in modules
 
 
-def test_the_arc_needs_no_numpy() -> None:
-    assert not {"numpy", "rich"} & {*process("contact", *PAPER[1:], "--csv", code=LOADED).err.split()}
+@pytest.mark.parametrize("words", ["contact --csv", "sweep --M 1:2:2 --only tension_1 --csv"])
+def test_lines_for_programs_need_neither_numpy_nor_rich(words: str) -> None:
+    ran = process(*words.split(), *PAPER[1:], code=LOADED)
+    assert ran.out
+    assert not {"rich", "numpy", "matplotlib"} & {*ran.err.split()}
 
 
 def test_the_door_opens_before_anything_is_loaded() -> None:

@@ -16,7 +16,7 @@ from atwood_cli.model.scene import BODIES, INERTIA_FACTORS
 from atwood_cli.tables.sources import FORMATS
 from atwood_cli.tradeoff.measure import FAMILIES
 
-from .running import TOP, process
+from .running import LOADED, TOP, process
 
 GROUP: Any = cli.program()
 
@@ -53,12 +53,8 @@ def test_help_fits_a_screen() -> None:
 
 @pytest.mark.parametrize("words", ["batch -h", "solve --only te", "sweep --only a"])
 def test_help_and_completion_import_little(words: str) -> None:
-    code = (
-        "import sys, atexit; from atwood_cli.cli import run;"
-        " atexit.register(lambda: print(*sys.modules, file=sys.stderr)); run()"
-    )
     asked = {"COMP_WORDS": f"atwood {words}", "COMP_CWORD": "3", "_ATWOOD_COMPLETE": "complete_bash"}
-    ran = process(*words.split(), code=code, **({} if "-h" in words else asked))
+    ran = process(*words.split(), code=LOADED, **({} if "-h" in words else asked))
     assert ran.out
     assert "atwood_cli.cli" in ran.err
     assert not {"rich", "numpy", "polars"} & set(ran.err.split())

@@ -118,14 +118,6 @@ def test_only_what_is_asked_for_is_computed() -> None:
     assert list(row.values) == ["tension_1"]
 
 
-def test_only_what_is_needed_is_imported() -> None:
-    code = (
-        "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
-    )
-    words = [*HELD, "--M", "1:2:2", "--only", "tension_1", "--csv"]
-    assert not {"rich", "numpy", "matplotlib"} & set(process(*words, code=code).err.split())
-
-
 def test_every_row_and_every_column_is_shown() -> None:
     """Of 12 rows the six in the middle were left out, and columns went into a table below."""
     words = [*HELD, "--mu", "0:0.33:12"]

@@ -2,8 +2,6 @@
 
 import json
 import re
-import subprocess
-import sys
 from collections.abc import Callable, Mapping
 from decimal import Decimal, localcontext
 from fractions import Fraction
@@ -22,7 +20,7 @@ from atwood_cli.model.scene import read_input
 from atwood_cli.solver.answers import Answers, read_answers
 
 from .conftest import many
-from .running import Atwood
+from .running import LOADED, Atwood, process
 from .scenes import of_all_kinds, with_friction
 
 
@@ -375,18 +373,10 @@ def test_numbers_of_every_size(numbers: str) -> None:
 
 
 def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:
-    code = (
-        "import sys; from atwood_cli.cli import run; run(sys.argv[1:]); print(*sys.modules, file=sys.stderr)"
-    )
-    for words, loaded in ((["--m1", "1"], False), (["--m1", "1(1)"], True)):
-        done = subprocess.run(
-            [sys.executable, "-c", code, "solve", *words, "--m2", "3", "--json"],
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        assert ("atwood_cli.solver.uncertainty" in done.stderr.split()) == loaded
-        assert (json.loads(done.stdout)["uncertainty"] is not None) == loaded
+    for m1, loaded in (("1", False), ("1(1)", True)):
+        ran = process("solve", "--m1", m1, "--m2", "3", "--json", code=LOADED)
+        assert ("atwood_cli.solver.uncertainty" in ran.err.split()) == loaded
+        assert (json.loads(ran.out)["uncertainty"] is not None) == loaded
     assert solve(m1="1", m2="3").uncertainty == {}
     assert hash(solve(m1="1", m2="3")) == hash(solve(m1="1", m2="3.0"))
 
