@@ -25,8 +25,9 @@ from atwood_cli.tables.sources import FORMATS
 
 T = TypeVar("T")
 COMMANDS: dict[str, Any] = cli.program().commands
-RARE = {"--figure": 0.02, "--help": 0.01, "--explain": 0.1, "--digits": 0.3}
-OFTEN = {"--wrap": 0.2, "--m1": 0.97, "--m2": 0.97, "--M": 0.6, "--mu": 0.6}
+SHARES = {"--figure": 0.02, "--help": 0.01, "--explain": 0.1, "--digits": 0.3, "--wrap": 0.2}
+SHARES |= {"--m1": 0.97, "--m2": 0.97, "--M": 0.6, "--mu": 0.6}
+"""The shares of runs with an option."""
 
 GOOD = "1 3 2 0.3 10 0.25 1.5e-3 100 0.1 90 180 4 0.5".split()
 FREE = "1 3 2.5 0.3 1e-300 1e300 1.0000000000000001 0.99 1e-9 7e463".split()
@@ -38,10 +39,8 @@ EDGES = [
     *("9" * 1000, "9" * 1001, "1" * 100_000, "1 kg" + "*st^9" * 20_000),
 ]
 SOME_UNITS = "kg g lb t mg µg m cm mm in ft deg rad turn ° % s ms N m/s2 m/s² x µ kgg".split()
-OF_METAVAR = {
-    **{name.split()[-1].upper(): list(units) for name, units in UNITS.items()},
-    "FORCE": [*UNITS["force"], *UNITS["torque"]],
-}
+OF_METAVAR = {name.split()[-1].upper(): list(units) for name, units in UNITS.items()}
+OF_METAVAR["FORCE"] += UNITS["torque"]
 """Units by the metavar of an option."""
 UNCERTAIN = "175(7)|180(3)|90+/-2|540±0.5|1.5(1)rad|0.5(1)turn|1(1)|179.9(2)|360(1)|0.1(1)".split("|")
 HOSTILE = ["\x1b[31mRED", "\x1b]0;a\x07", "\x9b31mred", "a\x85b", "\u202edrow", "\u2066a", "a\u2028b", "\x7f"]
@@ -59,19 +58,14 @@ ODD_VALUES: list[Any] = [
     *(np.datetime64("2020"), np.timedelta64(1, "s"), np.ma.masked, np.array(2.0), np.array([1.0, nan, 0.0])),
     *(np.ma.array([1.0, 2.0, 3.0], mask=[False, True, False]), np.array([(1.0,)], dtype=[("a", float)]), [[1], [2, 3]]),
 ]
-HEADINGS = (
-    'M|time 2|a1|m1 (g)|t/s|u(a)|±|u (%)|Δm|m1+m2|h_cm|Team|T1||Run 1: Time (s)|a (m/s²) Run #1|"m1\n(g)"|u(((|'
-    "u(u(a))|+/-|/|a/(|Zeit"
-).split("|")
+HEADINGS = 'M|time 2|a1|m1 (g)|t/s|u(a)|±|u (%)|Δm|m1+m2|h_cm|Team|T1||Run 1: Time (s)|a (m/s²) Run #1|"m1\n(g)"'.split("|")
+HEADINGS += "u(((|u(u(a))|+/-|/|a/(|Zeit".split("|")
 AROUND = '||||# about|Lab 3|sep=;|sep=,|;;;|,,|5" drop|Mean,,'.split("|")
 LABELS = [
     *('"', '""', '"""', '"a"', '"a""b"', '"x,y;z\tw"', '"p\nq"', '"p\r\nq"', '"\n"', "a\rb", "\r", 'a"', '5" d', '"a"b'),
     *("", "", "", " ", "x", "µ", "\u2028", "\x00", "a,b", "\t", ";", "\x85", "#", "m1", "NA"),
 ]
-LINES = [
-    *("", " ", "[1]", "x", "{}", "null", '{"m1":1', '{"m1":1,"m1":2,"m2":3}', '{"m1":NaN,"m2":3}', '{"m1":1,"m2":3}}'),
-    "\xff",
-]
+LINES = ["", " ", "[1]", "x", "{}", "null", '{"m1":1', '{"m1":1,"m1":2,"m2":3}', '{"m1":NaN,"m2":3}', '{"m1":1,"m2":3}}', "\xff"]
 # fmt: on
 ODD = [0.03, 0.1, 0.4]
 """The shares of cells or lines that are odd, where these are what is tried."""
@@ -115,11 +109,9 @@ class Dice:
         return shape.format(text, self.choice(GOOD), self.choice(GOOD), u=self.choice(SOME_UNITS))
 
     def with_unit(self, metavar: str) -> str:
-        """A number with a unit of what is measured."""
         return self.choice(GOOD) + self.choice(["", " "]) + self.choice(OF_METAVAR[metavar])
 
     def value(self, command: str, metavar: str) -> list[str]:
-        """What may stand behind an option."""
         if metavar == "FILE NAME":
             return [*self.value(command, "FILE"), *self.value(command, "NAME")]
         if self.chance(self.odd / 5):
@@ -137,22 +129,21 @@ class Dice:
         return [self.number()]
 
     def options(self, command: str) -> list[list[str]]:
-        """Options of a command, with what stands behind them, some of them twice."""
-        words = []
+        words = []  # some options are there twice
         for param in COMMANDS[command].get_params(typer.Context(COMMANDS[command])):
             flag = self.choice(param.opts)
             behind = "" if getattr(param, "is_flag", False) else param.metavar or ""
             if param.param_type_name == "option":
-                times = self.chance(OFTEN.get(param.opts[0], RARE.get(param.opts[0], self.given)))
-                for _ in range(times * (1 + self.chance(0.2 if param.multiple else 0.01))):
+                is_given = self.chance(SHARES.get(param.opts[0], self.given))
+                for _ in range(is_given * (1 + self.chance(0.2 if param.multiple else 0.01))):
                     words.append([flag, *(self.value(command, behind) if behind else [])])
         return words
 
     def scenes(self, kind: str) -> bytes:
         """A table of scenes, more or less whole."""
-        columns = [name for name in INPUTS if name in MASSES or self.chance(0.2)]
-        columns += [name for name in (*TEXTS, "mu_K", "a", "time") if self.is_odd()]
-        columns = self.draw(st.permutations(columns))
+        inputs = [name for name in INPUTS if name in MASSES or self.chance(0.2)]
+        others = [name for name in (*TEXTS, "mu_K", "a", "time") if self.is_odd()]
+        columns = self.draw(st.permutations(inputs + others))
         row = [self.number if name in INPUTS else partial(self.choice, TEXTS) for name in columns]
         rows = [[cell() for cell in row] for _ in range(self.choice([1, 0, 2, 5, 30]))]
         kind = self.choice(FORMATS) if self.is_odd() else kind
@@ -169,7 +160,6 @@ class Dice:
         return self.text([columns, *rows], separator).encode("utf-8", "replace")
 
     def text(self, rows: Sequence[Sequence[str]], separator: str) -> str:
-        """Rows of cells as they may be written."""
         end = self.choice(["\r", "\n\n"]) if self.is_odd() else self.choice(["\n", "\n", "\r\n"])
         lines = end.join(separator.join(row) for row in rows)
         return self.choice(["", "\ufeff"]) + lines + end * self.choice([1, 0, 2])
@@ -239,8 +229,8 @@ def tables(draw: st.DrawFn) -> tuple[str, str, int]:
     columns = draw(st.permutations(["m1", "m2", *["n", "p q", '"r\ns"'][: dice.choice([1, 0, 3])]]))
     rows = [columns]
     for _ in range(dice.choice([3, 0, 1, 6])):
-        whole = [dice.choice("5203146789") if name in MASSES else "abc" for name in columns]
-        row = [dice.choice(LABELS) if dice.is_odd() else cell for cell in whole]
+        row = [dice.choice("5203146789") if name in MASSES else "abc" for name in columns]
+        row = [dice.choice(LABELS) if dice.is_odd() else cell for cell in row]
         is_cut = dice.chance(dice.odd / 5)
         rows.append(dice.choice([row[:-1], row * 2, [], [" "], row[:1]]) if is_cut else row)
     return dice.text(rows, separator), separator, dice.choice(PIECES)
@@ -269,8 +259,7 @@ def calls(draw: st.DrawFn) -> tuple[Callable[..., object], dict[str, Any]]:
             return dice.choice([float, str, Decimal])(dice.choice(GOOD))
         return dice.choice([*ODD_VALUES, *EDGES, [1.0, 0.3, 10.0]])
 
-    functions: list[Callable[..., object]] = [solve, solve_arrays]
-    function = dice.choice(functions)
+    function: Any = dice.choice([solve, solve_arrays])
     names = [*INPUTS, *MEASURED] if function is solve else [*INPUTS]
     arguments = {name: given() for name in names if name in MASSES or dice.chance(0.3)}
     if function is solve:
