@@ -2,11 +2,12 @@
 
 import json
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
 from math import inf, isfinite, nan, nextafter, ulp
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -132,30 +133,22 @@ def test_what_is_lost_is_infinitely_wrong() -> None:
 # Measuring
 
 
-Passes = Callable[[float], None]
-
-
 @pytest.fixture
-def passes(monkeypatch: pytest.MonkeyPatch) -> Passes:
-    """Sets a clock forward that runs only as it is told to."""
-    now = 0.0
-
-    def forward(seconds: float) -> None:
-        nonlocal now
-        now += seconds
-
-    monkeypatch.setattr(tradeoff, "perf_counter", lambda: now)
-    return forward
+def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """It runs only as it is told to."""
+    clock = SimpleNamespace(now=0.0)
+    monkeypatch.setattr(tradeoff, "perf_counter", lambda: clock.now)
+    return clock
 
 
 @pytest.mark.parametrize("interrupted", [None, 0, 1, 2, 5000, 20_000])
-def test_an_interruption_does_not_count(interrupted: int | None, passes: Passes) -> None:
+def test_an_interruption_does_not_count(interrupted: int | None, clock: SimpleNamespace) -> None:
     """One made so few calls be timed that it was the first call that counted."""
     calls = 0
 
     def run() -> None:
         nonlocal calls
-        passes(1e-6 + (calls == interrupted))
+        clock.now += 1e-6 + (calls == interrupted)
         calls += 1
 
     (seconds,) = timed([run])
@@ -164,13 +157,15 @@ def test_an_interruption_does_not_count(interrupted: int | None, passes: Passes)
 
 
 @pytest.mark.parametrize("seconds", [1e-7, 1e-5, 1e-3, 0.02, 1.0])
-def test_rows_that_take_long_are_few(seconds: float, passes: Passes, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rows_that_take_long_are_few(
+    seconds: float, clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A table of 10,000 rows of 20 ms each was run eight times: half an hour."""
     sizes: list[int] = []
 
     def run(columns: Any) -> Any:
         sizes.append(len(columns["m1"]))
-        passes(sizes[-1] * seconds)
+        clock.now += sizes[-1] * seconds
         return dict.fromkeys(STANDARD, [0] * sizes[-1])
 
     monkeypatch.setattr(tradeoff, "SETTINGS", [Setting("slow", run)])
