@@ -188,8 +188,8 @@ def whole(line: str) -> tuple[bytes | None, float]:
     return cut(line)[2], time.perf_counter() - begun
 
 
-def kill(run: int) -> None:
-    """Send a run its signals, and look at what is left."""
+@pytest.mark.parametrize("run", range(3))
+def test_what_is_killed_at_any_instant_leaves_its_file_whole_or_as_it_was(run: int) -> None:
     random = Random(run)
     line, blow = random.choice(RUNS), random.choice(list(STATUS))
     whole_file, seconds = whole(line)
@@ -204,11 +204,6 @@ def kill(run: int) -> None:
     assert all(line.startswith(b"atwood: ") for line in said.splitlines()), what
 
 
-@pytest.mark.parametrize("run", range(3))
-def test_what_is_killed_at_any_instant_leaves_its_file_whole_or_as_it_was(run: int) -> None:
-    kill(run)
-
-
 if __name__ == "__main__":
-    for number in range(int(sys.argv[1])):
-        kill(number)
+    for run in range(int(sys.argv[1])):
+        test_what_is_killed_at_any_instant_leaves_its_file_whole_or_as_it_was(run)
