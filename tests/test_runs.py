@@ -15,8 +15,10 @@ import pytest
 
 from atwood_cli.laboratory.runs import VOCABULARY, Runs, read_runs
 from atwood_cli.model.scene import INPUTS, read_input
-from atwood_cli.tables import headings
+from atwood_cli.tables import headings, sources
 from atwood_cli.tables.sources import Unreadable
+
+from .running import Batch
 
 # Headings and cells: the grammar that `fit` and `batch` share
 
@@ -214,3 +216,24 @@ def test_columns_are_as_a_file_of_them(read: Any, tmp_path: Path) -> None:
     pairs = [("m1 (g)", [1000]), ("±", [100]), ("m2", ["2"]), ("±", [0.2]), ("a", [3])]
     pandas = SimpleNamespace(items=lambda: iter(pairs))  # in which several columns may have one heading
     assert numbers(read_runs(pandas)) == exactly("1 2 3 0.1 0.2 0")
+
+
+@pytest.mark.parametrize(
+    ("last", "why"),
+    [
+        (b'"p"q,3\n', "the row that begins in line 22 has a quotation mark"),
+        (b"1,2,3\n", "line 22 has 3 cells"),
+        (b"1,\x81\n", "line 22"),
+    ],
+)
+def test_lines_are_counted_through_all_pieces(
+    batch: Batch, monkeypatch: pytest.MonkeyPatch, last: bytes, why: str
+) -> None:
+    monkeypatch.setattr(sources, "BLOCK_BYTES", 8)
+    ran = batch(b"m1,m2\n" + b"1,3\n" * 20 + last, "--only regime")
+    assert why in ran.err
+
+
+def test_1024_columns_are_taken(batch: Batch) -> None:
+    many = ",".join(["m1", "m2", *(f"x{i}" for i in range(1022))])
+    assert batch(f"{many}\n1,3\n", "--only regime").err.startswith("atwood: 1 row")
