@@ -86,8 +86,9 @@ def of_explanations(scenes: Sequence[Given]) -> Iterator[Values]:
     """What stands in the line below the verdict."""
     symbols = {"a": "acceleration", "T1": "tension_1", "T2": "tension_2"}
     for given in scenes:
-        [line] = re.findall(r"^a = [^.].*?\.$|$", out_of("solve", given, "--explain"), re.MULTILINE)[:1]
-        yield {symbols[symbol]: Decimal(value) for symbol, value in re.findall(r"(\w+) = ([-\d.e]+)", line)}
+        line = re.search(r"^a = .*\.$", out_of("solve", given, "--explain"), re.MULTILINE)
+        found = re.findall(r"(\w+) = ([-\d.e]+)", line[0]) if line else []
+        yield {symbols[symbol]: Decimal(value) for symbol, value in found}
 
 
 def of_csv(text: str) -> Iterator[Values]:

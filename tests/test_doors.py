@@ -23,16 +23,19 @@ from .scenes import DANGERS, FAMILIES, ON_AN_AXLE, Given, as_doubles, scenes
 BOUNDS = ("friction_force_min", "friction_force_max")
 """They have no closed form: test_contact checks those of `solve`, with which the other doors must agree."""
 USUAL = [f"{family}{axle}" for axle in ("", ON_AN_AXLE) for family in FAMILIES]
+INFINITE = (inf, -inf)
 PARTS = 4  # of a family, so that no test takes long
 
 
 def right(door: Door, got: Any, want: float | Decimal | None) -> bool:
-    if want is None or (door.on_paper and abs(want) == inf):
+    if want is None or (door.on_paper and want in INFINITE):
         return got is None
     if isinstance(want, float) and got is not None:
-        near = door.certified and abs(want) != inf and abs(got - want) <= 2e-14 * abs(want) + 0.5 * ulp(want)
+        near = (
+            door.certified and want not in INFINITE and abs(got - want) <= 2e-14 * abs(want) + 0.5 * ulp(want)
+        )
         return near or repr(float(got)) == repr(want + 0.0)  # never -0.0
-    whole = not want or abs(want) == inf or len(got.as_tuple().digits) == door.digits
+    whole = not want or want in INFINITE or len(got.as_tuple().digits) == door.digits
     return bool(got == want and whole)
 
 
@@ -44,7 +47,7 @@ def check(door: Door, tried: Sequence[Given], truths: Sequence[Mapping[str, Any]
             got = values[name]
             assert got == want if name == "regime" else right(door, got, want), (given, name, got, want)
             checked[name] += got is not None
-    assert checked["acceleration"] or checked["tension_1"] or len(tried) < 10
+    assert checked["acceleration"] or checked["tension_1"] or len(tried) < 4
 
 
 def truth(given: Given) -> dict[str, Any]:
