@@ -128,8 +128,8 @@ def by_scipy(kind: Kind, l: Any, h: Any, measured: Any, names: Any = USUAL, **kn
         return expected(kind, l, h, x["rim_mass"], x["axle"], x["gravity"], x["drop"])
 
     start = [{"rim_mass": 0.03, "axle": 0.01, "gravity": G}[name] for name in names]
-    tight: Any = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-14)
-    found = optimize.curve_fit(ideal, l, measured, start, known["sigma"], maxfev=20_000, **tight)
+    tight: Any = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15) | {"jac": "3-point", "x_scale": "jac"}
+    found = optimize.curve_fit(ideal, l, measured, start, known["sigma"], method="trf", **tight)
     return found[0], found[1]
 
 
