@@ -11,7 +11,7 @@ from functools import cache
 from math import inf, isfinite, isnan, nan, ulp
 from random import Random
 from threading import Barrier
-from time import process_time
+from time import process_time, sleep
 from typing import Any
 from unittest.mock import Mock
 
@@ -33,7 +33,7 @@ from atwood_cli.solver.answers import Answers
 from .conftest import examples
 from .doors import columns_of, solve_any
 from .running import HANGS
-from .scenes import DANGERS, ON_AN_AXLE, G, Given, Row, as_doubles, scenes
+from .scenes import DANGERS, ON_AN_AXLE, Given, Row, as_doubles, scenes
 
 Columns = dict[str, Any]
 
@@ -45,7 +45,7 @@ def within_promise(got: float, nearest: float) -> bool:
 
 def assert_is_solve(results: Any, i: int, row: Row, accuracy: str) -> None:
     """A row's results are those of `solve`: to the bit if exact, within 2e-14 if certified."""
-    one = solve_any(**{"g": G} | row)
+    one = solve_any(**row)
     for name, column in results.items():
         got, value = column[i].item(), getattr(one, name, 0)
         want = nan if value is None else value
@@ -194,17 +194,17 @@ def test_a_number_is_a_column_of_it(accuracy: Any) -> None:
 
 def reasons_of(rows: list[Row]) -> Counter[tuple[str, str]]:
     """Why quantities have no value, as each row's own scene says it, counted."""
-    solved = [Answers(Scene.read({"g": G} | row)) for row in rows]
+    solved = [Answers(Scene.read(row)) for row in rows]
     return Counter((name, one.reasons[name]) for name in NAMES for one in solved if one[name] is None)
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)
-@pytest.mark.parametrize("block", [7, arrays.BLOCK_ROWS])
+@pytest.mark.parametrize("chunk", [7, arrays.CHUNK_ROWS])
 def test_why_values_are_missing_is_counted(
-    accuracy: Any, block: int, monkeypatch: pytest.MonkeyPatch
+    accuracy: Any, chunk: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Whichever rows are solved together."""
-    monkeypatch.setattr(arrays, "BLOCK_ROWS", block)
+    monkeypatch.setattr(arrays, "CHUNK_ROWS", chunk)
     rng = Random(5)
     numbers = {"m1": (1, 2, 0), "m2": (1, 2, 3), "M": (None, 0, 1, 100, inf), "mu": (None, 0, 0.1, 1)}
     numbers |= {"R": (None, 1), "wrap": (90, 180, 360, 540), "axle": (*[None] * 4, 0, 10)}
@@ -269,31 +269,54 @@ def test_a_quantity_without_a_program_is_not_traced_for_long() -> None:
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)
-def test_blocks_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_chunks_and_tiles_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     given = columns_of(alike("ordinary", 100) + alike("near_critical", 100))
     whole = solve_arrays(**given, accuracy=accuracy)
     every_other: dict[str, Any] = {name: np.repeat(c, 2)[::2] for name, c in given.items()}
     strided = solve_arrays(**every_other, accuracy=accuracy)
-    monkeypatch.setattr(arrays, "BLOCK_ROWS", 7)
-    monkeypatch.setattr(arrays.rows, "FEWEST_TILE_ROWS", 3)
-    monkeypatch.setattr(arrays.rows, "TILE_BYTES", 0)
-    in_blocks = solve_arrays(**given, accuracy=accuracy)
+    monkeypatch.setattr(arrays, "CHUNK_ROWS", 70)
+    monkeypatch.setattr(arrays.rows, "TILE_ROWS", 3)
+    in_chunks = solve_arrays(**given, accuracy=accuracy)
     for name in whole:
-        np.testing.assert_array_equal(whole[name], in_blocks[name])
+        if accuracy == "exact":
+            np.testing.assert_array_equal(whole[name], in_chunks[name])
+        np.testing.assert_allclose(whole[name], in_chunks[name], 4e-14, 0)
         np.testing.assert_array_equal(whole[name], strided[name])
 
 
-def test_blocks_are_the_same_on_any_number_of_processors(monkeypatch: pytest.MonkeyPatch) -> None:
-    """And so is which rows are solved together: the last place could depend on it."""
-    monkeypatch.setattr(arrays, "BLOCK_ROWS", 7)
-    on_threads = Mock(wraps=arrays._on_threads)
-    monkeypatch.setattr(arrays, "_on_threads", on_threads)
-    for count in (None, 1, 3, 16):
+@pytest.mark.parametrize("accuracy", ACCURACIES)
+def test_the_bytes_are_the_same_on_any_number_of_processors(
+    accuracy: Any, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(arrays, "CHUNK_ROWS", 50)
+    given = columns_of(alike("ordinary", 200) + alike("near_critical", 200))
+    results = []
+    for count in (None, 1, 2, 8):
         monkeypatch.setattr("os.cpu_count", Mock(return_value=count))
-        solve_arrays(np.ones(100), 3.0, 10.0, 0.3)
-    first, *others = (call.args[1] for call in on_threads.call_args_list if call.args[1])
-    assert len(first) == 16
-    assert others == [first] * 3
+        results.append({name: c.tobytes() for name, c in solve_arrays(**given, accuracy=accuracy).items()})
+    assert results == results[:1] * 4
+
+
+def test_one_chunk_starts_no_thread(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(arrays, "CHUNK_ROWS", 100)
+    monkeypatch.setattr(arrays, "ThreadPoolExecutor", Mock(side_effect=AssertionError))
+    solve_arrays(np.ones(100), 3.0, 10.0, 0.3)
+    with pytest.raises(AssertionError):
+        solve_arrays(np.ones(101), 3.0, 10.0, 0.3)
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError])
+def test_an_error_in_a_chunk_cancels_those_that_wait(
+    error: type[BaseException], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """So does Ctrl-C, which is raised where the results of chunks are awaited."""
+    monkeypatch.setattr(arrays, "CHUNK_ROWS", 1)
+    monkeypatch.setattr("os.cpu_count", Mock(return_value=1))
+    begun = Mock(side_effect=[None, error, *[None] * 998])
+    monkeypatch.setattr(arrays, "_solve", lambda *_: (sleep(0.01), begun()))
+    with pytest.raises(error):
+        solve_arrays(np.ones(1000), 3.0)
+    assert begun.call_count < 10
 
 
 def memory_of(run: Callable[[], Any]) -> tuple[int, int]:
@@ -333,16 +356,17 @@ def test_many_rows_beside_the_least_mass_that_slips_are_solved() -> None:
         assert_is_solve(results, i, given | {"m2": float(given["m2"][i]), "mu": float(mu[i])}, "exact")
 
 
-def test_rows_of_the_next_level_are_solved_wherever_they_wait(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Many are solved with their block, few with those of all blocks; and some need two more levels."""
+@pytest.mark.parametrize("few", [0, 1, 4, 1000])
+def test_rows_of_the_next_level_are_solved_together_or_one_by_one(
+    few: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And some need two more levels."""
     given = columns_of(alike("ordinary", 200) + alike("near_critical", 800))
     exact = solve_arrays(**given, accuracy="exact")
-    monkeypatch.setattr(arrays, "BLOCK_ROWS", 100)
-    for leave in (0, 1, 10, 1000):
-        monkeypatch.setattr(arrays.rows, "ROWS_LEFT", leave)
-        results = solve_arrays(**given)
-        for name in exact:
-            np.testing.assert_allclose(results[name], exact[name], 2e-14, 0)
+    monkeypatch.setattr(arrays.rows, "ROWS_ONE_BY_ONE", few)
+    results = solve_arrays(**given)
+    for name in exact:
+        np.testing.assert_allclose(results[name], exact[name], 2e-14, 0)
 
 
 def test_a_weight_that_is_a_tie_is_settled_in_columns(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -480,15 +504,15 @@ def test_either_inertia_or_moment_of_inertia_in_a_row() -> None:
     found = solve_arrays(
         *(1, 3, [8, None, 8, None, None]),
         inertia=[1, None, None, 1, None],
-        I=[None, 0.08, 0.08, 0.08, None],
-        R=0.1,
+        I=[None, 0.125, 0.125, 0.125, None],
+        R=0.125,
         accuracy="exact",
     )
     assert found["status"].tolist() == [0, 0, 0, STATUSES.index("I and inertia"), 0]
     locked = solve_arrays(1, 3, [8, inf, 0], I=0.08, R=0.1)
     assert [STATUSES[i] for i in locked["status"]] == ["valid", *["I with M = 0 or inf"] * 2]
-    assert found["acceleration"][:3].tolist() == [solve(m1=1, m2=3, M=8, inertia=1, g=G).acceleration] * 3
-    assert found["acceleration"][4] == G / 2
+    assert found["acceleration"][:3].tolist() == [solve(m1=1, m2=3, M=8, inertia=1).acceleration] * 3
+    assert found["acceleration"][4] == 9.80665 / 2
 
 
 def test_status_codes_are_a_contract() -> None:
@@ -516,7 +540,7 @@ def test_sums_of_negative_forces() -> None:
     row = {"m1": 1.7564649058808377, "m2": 865.29649231545, "mu": 0.7514867515890271, "wrap": 270.0}
     for accuracy in ACCURACIES:
         results = solve_arrays(**row, accuracy=accuracy, quantities=NAMES)
-        one = solve_any(**row, g=9.80665)
+        one = solve_any(**row)
         for name in ("friction_force_x", "friction_force_y"):
             assert abs(results[name].item() - getattr(one, name)) <= (0 if accuracy == "exact" else 1e-12)
 

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
 from math import inf, ulp
+from random import Random
 from typing import Any
 
 import pytest
@@ -72,12 +73,25 @@ def test_values_of_what_is_typed(family: str, part: int) -> None:
 
 @pytest.mark.parametrize("family", [*USUAL, *DANGERS])
 def test_values_of_doubles(family: str) -> None:
-    """In columns, where rows that are alike are solved together."""
+    """In columns, where rows that are alike are solved together. In every other one gravity is not given."""
     drawn = map(as_doubles, scenes(family, max(48, count_of(family) // 2), seed=1))
-    tried = [row for row in drawn if row is not None]
+    tried: list[Given] = [row for row in drawn if row is not None]
+    tried[::2] = [{name: text for name, text in row.items() if name != "g"} for row in tried[::2]]
     truths = [truth(given) for given in tried]
     for given, found in zip(tried, truths, strict=True):
         one = {name: getattr(solve_any(**given), name) for name in BOUNDS}
         found |= {name: value and Fraction(value) for name, value in one.items() if value not in (0, inf)}
     for door in DOUBLES.values():
         check(door, tried, truths)
+
+
+def test_whole_numbers_have_one_answer_at_every_door() -> None:
+    """They are the same as texts and as doubles, and gravity is exact wherever it is not given."""
+    rng = Random(43)
+    tried: list[Given] = [
+        {name: str(rng.randint(1, 20)) for name in ("m1", "m2", "M")} | {"mu": rng.choice(["0.25", "0.5", "2"])}
+        for _ in range(many(200))
+    ]
+    truths = [truth(given) for given in tried]
+    for door in (TEXTS | DOUBLES).values():
+        check(door, tried[:: door.every], truths[:: door.every])

@@ -79,7 +79,7 @@ def acceleration(masses: Sequence[object]) -> float | None:
     if not all(re.fullmatch(r"\s*\d\s*", str(mass)) for mass in masses):
         return None
     m1, m2 = map(int, map(str, masses))
-    return float(Fraction(9.80665) * (m2 - m1) / (m1 + m2)) if m1 or m2 else None
+    return float(Fraction("9.80665") * (m2 - m1) / (m1 + m2)) if m1 or m2 else None
 
 
 def rows_of(text: str, separator: str) -> list[tuple[str, list[str]]] | None:

@@ -1,4 +1,4 @@
-"""Many scenes at once: arrays in, arrays out, block by block, on threads.
+"""Many scenes at once: arrays in, arrays out.
 
 `inputs` checks the inputs of each row and groups the rows by what is given. `rows` solves a group. `plan`
 shows by an example how results are certified.
@@ -8,7 +8,7 @@ from __future__ import annotations  # help() shows types by the names written he
 
 import os
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from math import nan, prod
 from typing import Any
@@ -18,16 +18,14 @@ from numpy.typing import NDArray
 
 from ..model.quantities import Accuracy, read_accuracy, read_quantities
 from ..model.scene import INPUTS, MASSES, MISSING_MASS, SceneError
-from .inputs import DEFAULT_DOUBLES, GivenColumn, Numbers, groups, input_columns, read_column
+from .inputs import GivenColumn, Numbers, groups, input_columns, read_column
 from .inputs import STATUSES as STATUSES
-from .pattern import Index, Task
+from .pattern import Task
 from .plan import LEVELS
 from .rows import Rows
 
-BLOCK_ROWS = 131_072
-"""The most rows of a block; this number was measured to be fast."""
-THREADS = 4
-"""The most threads; more would wait for the interpreter's lock."""
+CHUNK_ROWS = 1 << 20
+"""The most rows that one thread solves by itself; fewer rows share their programs with fewer others."""
 CODE_TYPES = {"regime": np.int8, "status": np.int8}
 """The types of results that are codes; all others are doubles."""
 
@@ -39,11 +37,11 @@ def solve_arrays(
     mu: Numbers | None = None,
     mu_k: Numbers | None = None,
     *,
-    g: Numbers = DEFAULT_DOUBLES["g"],
+    g: Numbers | None = None,
     inertia: Numbers | None = None,
     I: Numbers | None = None,
     R: Numbers | None = None,
-    wrap: Numbers = DEFAULT_DOUBLES["wrap"],
+    wrap: Numbers | None = None,
     axle: Numbers | None = None,
     accuracy: Accuracy = "certified",
     quantities: Sequence[str] | None = None,
@@ -58,10 +56,10 @@ def solve_arrays(
         m1, m2: The masses, in kg.
         M: The pulley's mass, in kg; inf locks it.
         mu, mu_k: The coefficients of static and of kinetic friction.
-        g: Gravity, in m/s².
+        g: Gravity, in m/s²; exactly 9.80665 in rows where it is not given.
         inertia: I/(M R²); 0.5, a disk's, in rows where neither it nor I is given.
         I, R: The moment of inertia, in kg m², and the radius, in m.
-        wrap: The angle that the string wraps, in degrees.
+        wrap: The angle that the string wraps, in degrees; 180 in rows where it is not given.
         axle: The friction of the axle as a force at the rim, in N.
         accuracy: "certified" (every regime right, every value proven within 2e-14 of itself), whose last
             places may depend on NumPy's build and on the other rows; or "exact" (the nearest double), which
@@ -92,36 +90,25 @@ def solve_and_count(
     inputs, shape = _read(given)
     results = {name: np.empty(shape, CODE_TYPES.get(name, np.float64)) for name in (*names, "status")}
     flat = {name: column.reshape(-1) for name, column in results.items()}
-    left: dict[Task, list[NDArray[np.intp]]] = {}
-    counters: list[Counter[tuple[str, str]]] = []
+    size = prod(shape)
 
-    def rows_at(index: Index) -> tuple[Rows, dict[str, GivenColumn]]:
-        cut = {name: column.cut(shape, index) for name, column in inputs.items()}
-        doubles = {name: column.doubles for name, column in cut.items()}
-        rows = Rows(doubles, {name: flat[name][index] for name in results}, accuracy)
-        counters.append(rows.reasons)
-        return rows, cut
+    def solve_chunk(start: int) -> Counter[tuple[str, str]]:
+        """Solve a chunk of rows, and count its rows without a value."""
+        chunk = slice(start, min(start + CHUNK_ROWS, size))
+        given_columns = {name: column.cut(shape, chunk) for name, column in inputs.items()}
+        doubles = {name: column.doubles for name, column in given_columns.items()}
+        rows = Rows(doubles, {name: flat[name][chunk] for name in results}, accuracy)
+        with np.errstate(all="ignore"):
+            _solve(rows, given_columns, names)
+        return rows.reasons
 
-    def solve_block(block: slice) -> None:
-        """Solve all rows of a block, but for the tasks that are left for the end."""
-        rows, cut = rows_at(block)
-        rows.left = {} if len(blocks) > 1 else None
-        _solve(rows, cut, names)
-        for task, selections in (rows.left or {}).items():
-            left.setdefault(task, []).extend(index + block.start for index in selections)
-
-    def solve_left(index: NDArray[np.intp], task: Task) -> None:
-        """Solve the rows of all blocks that are left with a task."""
-        rows, _ = rows_at(index)
-        rows.solve(slice(0, index.size), task)
-        for name in task.names:
-            flat[name][index] = rows.results[name]
-
-    blocks = _blocks(prod(shape))
-    _on_threads(solve_block, [(block,) for block in blocks])
-    # Rows are sorted, so that the digits are the same whichever thread was first.
-    _on_threads(solve_left, [(np.sort(np.concatenate(rows)), task) for task, rows in left.items()])
-    return results, sum(counters, Counter())
+    # Chunks have a fixed size, so that no digit depends on the number of cores.
+    starts = range(0, size, CHUNK_ROWS)
+    if len(starts) < 2:
+        return results, sum(map(solve_chunk, starts), Counter())
+    # NumPy releases the interpreter's lock. At an error or Ctrl-C, `map` cancels the chunks that wait.
+    with ThreadPoolExecutor(min(len(starts), os.cpu_count() or 1)) as pool:
+        return results, sum(pool.map(solve_chunk, starts), Counter())
 
 
 def _read(given: Mapping[str, Numbers | None]) -> tuple[dict[str, GivenColumn], tuple[int, ...]]:
@@ -139,35 +126,6 @@ def _read(given: Mapping[str, Numbers | None]) -> tuple[dict[str, GivenColumn], 
             rule = f"of shape {doubles.shape} does not broadcast with {before}"
             raise SceneError(name, None, rule) from None
     return inputs, shape
-
-
-def _blocks(size: int) -> list[slice]:
-    """Slices of nearly the same length; if there are several, threads can share them evenly.
-
-    The number of processors plays no part, as the digits must not depend on it.
-    """
-    count = -(-size // BLOCK_ROWS)
-    count = -(-count // THREADS) * THREADS if count > 1 else count
-    return [slice(size * i // count, size * (i + 1) // count) for i in range(count)]
-
-
-def _on_threads(work: Callable[..., None], parts: Sequence[tuple[Any, ...]]) -> None:
-    """Do the parts of the work on threads, which run at once as NumPy releases the interpreter's lock."""
-
-    def without_warnings(part: tuple[Any, ...]) -> None:
-        with np.errstate(all="ignore"):
-            work(*part)
-
-    if len(parts) < 2:
-        for part in parts:
-            without_warnings(part)
-        return
-    pool = ThreadPoolExecutor(min(THREADS, os.cpu_count() or 1))
-    try:
-        for future in [pool.submit(without_warnings, part) for part in parts]:
-            future.result()
-    finally:
-        pool.shutdown(cancel_futures=True)  # some wait still if one has failed, or at Ctrl-C
 
 
 def _solve(rows: Rows, given: Mapping[str, GivenColumn], names: tuple[str, ...]) -> None:

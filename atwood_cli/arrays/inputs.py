@@ -12,16 +12,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..model.scene import INPUTS, MASSES, SceneError
+from ..model.scene import DEFAULTS as SCENE_DEFAULTS
+from ..model.scene import INERTIA_FACTORS, INPUTS, MASSES, SceneError
 from .doubles import WINDOW
 from .pattern import COLUMN, Column, Index, Pattern
 
 Numbers = ArrayLike | Sequence[str | float | Decimal | Fraction | None]
 """The types that a column may have: whatever NumPy makes an array of. A polars column is one too."""
-DEFAULT_DOUBLES = {"g": 9.80665, "inertia": 0.5, "wrap": 180.0}
-"""The values of inputs that always have one, in SI units and degrees."""
-WHERE_ABSENT = DEFAULT_DOUBLES | {"axle": 0.0}
-"""The doubles that stand for an input in rows where it is not given; NaN stands for the other inputs."""
+DISK = INERTIA_FACTORS["disk"]
+DEFAULTS = {name: Fraction(default) for name, default in {**SCENE_DEFAULTS, "inertia": DISK}.items()}
+"""The exact values of inputs that always have one, in SI units and degrees."""
+WHERE_ABSENT = {**{name: float(default) for name, default in DEFAULTS.items()}, "axle": 0.0}
+"""The doubles in columns of inputs at rows where they are not given; for other inputs it is NaN."""
 BUILT_IN = ("inertia", "wrap")
 """Inputs whose common value is built into a program: with 1/2 and π it is simpler than with a column."""
 REAL_KINDS = "iufOSU"
@@ -238,6 +240,8 @@ def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool) -> str:
 
 def _in_pattern(name: str, kind: int, doubles: Column) -> Fraction | float | str | None:
     """An input in the `Pattern` of a row."""
-    if kind in SAME_IN_ALL and not (kind == Kind.ABSENT and name in DEFAULT_DOUBLES):
+    if kind == Kind.ABSENT and name in DEFAULTS:
+        return DEFAULTS[name]  # exact, where the doubles have the nearest one
+    if kind in SAME_IN_ALL:
         return None if name == "axle" else SAME_IN_ALL[kind]  # an axle without friction is none
     return Fraction(float(doubles)) if name in BUILT_IN and not doubles.ndim else COLUMN

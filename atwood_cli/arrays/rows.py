@@ -22,14 +22,10 @@ from .pattern import Column, Index, Task, select, size_of
 from .plan import LEVELS, Plan, answering, condition_of, nearest_double, plan
 from .program import Program, columns_for
 
-TILE_BYTES = 2_000_000
-"""The most bytes of a tile's columns, which then fit the cache."""
-FEWEST_TILE_ROWS, MOST_TILE_ROWS = 8_192, 32_768
-"""The fewest rows of a tile, however many columns it has, and the most."""
-ROWS_ONE_BY_ONE = 24
+TILE_ROWS = 65_536
+"""The most rows of a tile: the columns of a program's intermediate values have as many."""
+ROWS_ONE_BY_ONE = 4
 """The most rows that are solved sooner one by one than by a program that is yet to be made."""
-ROWS_LEFT = 2_000
-"""The most rows of a block that are solved sooner together with rows of other blocks."""
 
 Flags = NDArray[np.bool_]
 
@@ -42,8 +38,6 @@ class Rows:
     ) -> None:
         self.inputs, self.results, self.accuracy = inputs, results, accuracy
         self.levels = LEVELS[accuracy]
-        self.left: dict[Task, list[NDArray[np.intp]]] | None = None
-        """The rows of tasks that few rows have, kept until all blocks are done; None where none are kept."""
         self.reasons: Counter[tuple[str, str]] = Counter()
         """The number of rows in which a quantity has no value, by its name and the reason."""
 
@@ -69,14 +63,10 @@ class Rows:
             self.results[name][rows] = nan
             self.reasons[name, reason] += size_of(rows)
         flags = self._run_plan(plan_, rows)
-        # A quantity that is not certified in a row goes to the next level: now, or with rows of other blocks.
+        # A quantity that is not certified in a row goes to the next level.
         for name in plan_.conditional:
             failed = select(rows, np.flatnonzero(~flags[condition_of(name)]))
-            next_task = task._replace(names=(name,), level=task.level + 1)
-            if self.left is None or failed.size > ROWS_LEFT:
-                yield failed, next_task
-            elif failed.size:
-                self.left.setdefault(next_task, []).append(failed)
+            yield failed, task._replace(names=(name,), level=task.level + 1)
         # A quantity that no program gives goes to the last level at once.
         if plan_.alone:
             yield rows, task._replace(names=plan_.alone, level=len(self.levels))
@@ -105,7 +95,7 @@ class Rows:
         """Run a program tile by tile. ``flags`` are columns for those results that are no quantities."""
         adjoin, size = isinstance(rows, slice), size_of(rows)
         types = [np.float64] * (len(program.inputs) + len(quantities)) + program.between
-        tile_size = min(max(FEWEST_TILE_ROWS, TILE_BYTES // (8 * len(types))), MOST_TILE_ROWS, size)
+        tile_size = min(TILE_ROWS, size)
         scratch = columns_for(program.between if adjoin else types, tile_size)
         for start in range(0, size, tile_size):
             places = slice(start, min(start + tile_size, size))

@@ -146,7 +146,7 @@ def in_numpy(given: Columns) -> Columns:
 def in_digits(digits: int, given: Columns) -> Columns:
     """`solve`, a scene at a time."""
     rows = zip(*(column.tolist() for column in given.values()), strict=True)
-    solutions = [solve(**dict(zip(given, row, strict=True)), g=G, digits=digits) for row in rows]
+    solutions = [solve(**dict(zip(given, row, strict=True)), digits=digits) for row in rows]
     columns = {name: [getattr(solution, name) for solution in solutions] for name in STANDARD}
     return columns | {"regime": [REGIMES.index(regime) for regime in columns["regime"]]}
 
