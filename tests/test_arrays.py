@@ -313,7 +313,12 @@ def test_an_error_in_a_chunk_cancels_those_that_wait(
     monkeypatch.setattr(arrays, "CHUNK_ROWS", 1)
     monkeypatch.setattr("os.cpu_count", Mock(return_value=1))
     begun = Mock(side_effect=[None, error, *[None] * 998])
-    monkeypatch.setattr(arrays, "_solve", lambda *_: (sleep(0.01), begun()))
+
+    def solve_chunk(*_: Any) -> None:
+        sleep(0.01)
+        begun()
+
+    monkeypatch.setattr(arrays, "_solve", solve_chunk)
     with pytest.raises(error):
         solve_arrays(np.ones(1000), 3.0)
     assert begun.call_count < 10

@@ -4,6 +4,7 @@ import csv
 import gzip
 import io
 import json
+import re
 import subprocess
 import sys
 from contextlib import redirect_stderr, redirect_stdout
@@ -18,7 +19,7 @@ from unittest.mock import patch
 import polars as pl
 import pytest
 
-from atwood_cli import SceneError, arrays, solve, solve_table
+from atwood_cli import SceneError, solve, solve_table
 from atwood_cli.batch import solving
 from atwood_cli.cli import run
 from atwood_cli.model.units import UNITS
@@ -112,7 +113,7 @@ def test_a_pipe_of_ndjson_is_answered_row_by_row() -> None:
         assert child.stdout
         masses = [f'"m1":1,"m2":{m2}' for m2 in range(4)]
         wrong = "'x' is not a line of NDJSON: Expecting value at character 1"
-        answers = {"x": f'{{"regime":null,"error":"{wrong}"}}'}
+        answers = {"x": f'{{"unreadable":"x","regime":null,"error":"{wrong}"}}'}
         answers |= {f"{{{row}}}": f'{{{row},"regime":"no-slip","error":null}}' for row in masses}
         *first, last = answers
         for line in first:
@@ -135,7 +136,7 @@ def test_a_cell_is_a_number_where_solve_takes_it_for_one(batch: Batch) -> None:
     words += ["1 e5", "\xa01", "1\u2009", f"0.{'0' * 600}1e600", "1" * 1001, f"{'0' * 1001}1"]
     words += [f"1.{'0' * 1000}", f"1{'0' * 300}e-501"]
     words += ["".join(rng.choices("0159.e-+ _", k=rng.randint(1, 9))).strip() or "0" for _ in range(3000)]
-    ran = batch("\n".join(["m1,m2,M", *(f"1,3,{word}" for word in words), ""]), "--accuracy certified")
+    ran = batch("\n".join(["m1,m2,M", *(f"1,3,{word}" for word in words), ""]))
     for word, error in zip(words, errors_of(ran), strict=True):
         try:
             solve(m1=1, m2=3, M=word)
@@ -224,13 +225,6 @@ def test_what_a_unit_takes_beyond_the_doubles_is_an_error_of_the_row() -> None:
 # Usage and files
 
 
-def test_the_accuracy_is_handed_on(batch: Batch) -> None:
-    for accuracy in ("certified", "exact", ""):
-        with patch.object(arrays, "solve_and_count", wraps=arrays.solve_and_count) as solve_and_count:
-            assert batch(TEXT, f"--accuracy {accuracy}" * bool(accuracy)).status == 0
-        assert solve_and_count.mock_calls[0].args[1] == (accuracy or "exact")
-
-
 @pytest.mark.skipif(not Path("/proc/self/mem").exists(), reason="needs a file that cannot be read")
 def test_what_reading_runs_into_is_said(atwood: Atwood) -> None:
     why = "cannot read /proc/self/mem: Input/output error"
@@ -291,8 +285,9 @@ main()
 
 def test_a_bar_on_a_terminal_after_a_second(tmp_path: Path) -> None:
     (tmp_path / "in.csv").write_text(TEXT + "1,3\n" * 99)
-    words = ["batch", f"{tmp_path}/in.csv", "--force", "-o", f"{tmp_path}/out.csv"]
+    words = ["batch", f"{tmp_path}/in.csv", "--force", "-o", f"{tmp_path}/out.csv", "--only", "a"]
     said = "atwood: 100 rows: 100 no-slip; no errors.\n"
     bar, end = plain(on_real_terminal(*words, columns=80, program=BAR)).split(said)
     assert ("━" in bar, "%" in bar, end) == (True, True, "")
+    assert re.search(r"[1-9]\d? rows ", bar)
     assert on_terminal(*words, columns=80) == said

@@ -11,7 +11,7 @@ import pytest
 import typer
 
 from atwood_cli import cli
-from atwood_cli.model.quantities import ACCURACIES, NAMES
+from atwood_cli.model.quantities import NAMES
 from atwood_cli.model.scene import BODIES, INERTIA_FACTORS
 from atwood_cli.tables.sources import FORMATS
 from atwood_cli.tradeoff.measure import FAMILIES
@@ -75,7 +75,6 @@ OFFERED = {
     "solve --g ": " ".join(BODIES),
     "contact --inertia ": " ".join(INERTIA_FACTORS),
     "solve --M ": "inf",
-    "batch in.csv --accuracy ": " ".join(ACCURACIES),
     "batch in.csv --from ": " ".join(FORMATS),
     "batch ": "",
     "fit ": "",

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from ..model.quantities import Accuracy, read_accuracy, read_quantities
 from ..model.scene import INPUTS, MASSES, MISSING_MASS, SceneError
-from .inputs import GivenColumn, Numbers, groups, input_columns, read_column
 from .inputs import STATUSES as STATUSES
+from .inputs import GivenColumn, Numbers, groups, input_columns, read_column
 from .pattern import Task
 from .plan import LEVELS
 from .rows import Rows
@@ -41,7 +41,7 @@ def solve_arrays(
     inertia: Numbers | None = None,
     I: Numbers | None = None,
     R: Numbers | None = None,
-    wrap: Numbers | None = None,
+    wrap: Numbers = 180.0,
     axle: Numbers | None = None,
     accuracy: Accuracy = "certified",
     quantities: Sequence[str] | None = None,
@@ -59,7 +59,7 @@ def solve_arrays(
         g: Gravity, in m/s²; exactly 9.80665 in rows where it is not given.
         inertia: I/(M R²); 0.5, a disk's, in rows where neither it nor I is given.
         I, R: The moment of inertia, in kg m², and the radius, in m.
-        wrap: The angle that the string wraps, in degrees; 180 in rows where it is not given.
+        wrap: The angle that the string wraps, in degrees.
         axle: The friction of the axle as a force at the rim, in N.
         accuracy: "certified" (every regime right, every value proven within 2e-14 of itself), whose last
             places may depend on NumPy's build and on the other rows; or "exact" (the nearest double), which

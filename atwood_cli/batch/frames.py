@@ -11,22 +11,22 @@ from io import TextIOWrapper
 from queue import SimpleQueue
 from typing import IO, TYPE_CHECKING, Any, TypeVar
 
-from ..model.quantities import Accuracy, read_quantities
+from ..model.quantities import read_quantities
 from ..tables.sources import Unreadable
-from .solving import Layout, Question, Tally, read_inputs, solve_cells
+from .solving import Layout, Question, Tally, read_layout, solve_cells
 
 if TYPE_CHECKING:
     import polars as pl
 
 Table = TypeVar("Table", "pl.DataFrame", "pl.LazyFrame")
-Watch = Callable[[Iterator[Any], int | None, Callable[[Any], int]], Iterator[Any]]
+Watch = Callable[[Iterator[Any], int | None, Callable[[Any], int], Callable[[Any], int]], Iterator[Any]]
 """A function that passes parts on, and may show progress. It takes the parts, their whole size if that is
-known, and a function that gives the size of a part."""
+known, and functions that give the size and the rows of a part."""
 GROUP_ROWS, GROUP_CELLS = 1 << 16, 1 << 20
 """The most rows, and the most cells, of a row group that is written."""
 
 
-def solve_table(table: Table, quantities: Sequence[str] | None = None, accuracy: Accuracy = "exact") -> Table:
+def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
     """Append its results to each row of a table of scenes, as `atwood batch` does.
 
     Args:
@@ -36,27 +36,26 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None, accuracy:
             its row, and a text that is no number is, too.
         quantities: The names or symbols of quantities, as "acceleration" or "a"; if None, the names in
             `quantities.STANDARD`.
-        accuracy: "exact" (the nearest double) or "certified" (faster; every regime is right, and every value
-            within 2e-14 of itself).
 
     Returns:
         A table with the same rows, eager or lazy as the other was. Behind the columns of that table it has
-        a column for each quantity, in SI units, null where a value does not exist or is beyond the doubles;
-        and ``error``, a sentence on each bad row, null in the others.
+        a column for each quantity, the nearest double in SI units, null where a value does not exist or is
+        beyond the doubles; and ``error``, a sentence on each bad row, null in the others.
 
     Raises:
-        SceneError: A quantity or an accuracy is not known (a ValueError).
+        SceneError: A quantity is not known (a ValueError).
         ValueError: The table is no frame of polars, lacks a mass, or has a column that could be meant for an
             input, holds no numbers, or is named as a result.
     """
     import polars as pl
 
     if not isinstance(table, pl.DataFrame | pl.LazyFrame):
-        raise ValueError(f"a table is a data frame of polars, eager or lazy, not {type(table).__name__}")
-    asked = Question(read_quantities(quantities), accuracy)
+        what = f"the table is of type {type(table).__name__}"
+        raise ValueError(f"{what}; give a polars frame, as by pl.from_pandas(frame)")
+    asked = Question(read_quantities(quantities))
     schema = table.collect_schema()
     try:
-        solve = partial(with_results, layout=Layout(read_inputs(schema.names(), asked)), asked=asked)
+        solve = partial(with_results, layout=read_layout(schema.names(), asked), asked=asked)
         if isinstance(table, pl.DataFrame):
             return solve(table)
         return table.map_batches(solve, schema=solve(pl.DataFrame(schema=schema)).schema, streamable=True)
@@ -86,14 +85,14 @@ def solve_parquet(
         table = pl.scan_parquet(source)
         schema = table.collect_schema()
         total = int(table.select(pl.len()).collect().item())
-        layout = Layout(read_inputs(schema.names(), asked))
+        layout = read_layout(schema.names(), asked)
         head = with_results(pl.DataFrame(schema=schema), layout, asked)
         rows = max(1, min(GROUP_ROWS, GROUP_CELLS // head.width))
         groups = table.collect_batches(maintain_order=True)
         frames = (
             with_results(frame, layout, asked, tally) for group in groups for frame in group.iter_slices(rows)
         )
-        written = _write(frames, head.schema, target, rows, lambda counts: watch(counts, total, int))
+        written = _write(frames, head.schema, target, rows, lambda counts: watch(counts, total, int, int))
     if written != total:
         raise Unreadable(f"it is damaged: it should have {total} rows, and has {written}")
     return layout

@@ -6,20 +6,22 @@ import stat
 import sys
 from contextlib import ExitStack
 from io import BytesIO
+from operator import attrgetter
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any, NamedTuple
 
 from ..model.scene import SceneError
 from ..output.files import STDOUT, Stdout, written_beside
-from ..tables.headings import Heading, decimal_commas_in, read_as, recognised
+from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream, opened
 from .frames import Watch, solve_parquet
-from .solving import ERROR, VOCABULARY, Layout, Question, Tally, read_inputs, solve_cells
+from .solving import ERROR, VOCABULARY, Layout, Question, Tally, read_layout, solve_cells
 
 if TYPE_CHECKING:
     import polars as pl
 
+SIZE, ROWS = attrgetter("size"), attrgetter("rows")
 SEPARATORS = {"csv": ",", "tsv": "\t"}
 
 
@@ -82,10 +84,10 @@ def _solve_csv(
     """Solve rows of cells: results follow with the separator and the decimal mark of the table."""
     usual, asked = SEPARATORS[job.kind], job.asked
     table = Csv(blocks_of(source), usual, lambda columns: recognised(columns, VOCABULARY, asked.named))
-    layout = Layout(read_inputs(table.columns, asked))
+    layout = read_layout(table.columns, asked)
     is_first = True
     head = table.separator.join([table.header, *asked.names, ERROR]) + table.line_end
-    for piece in watch(table.pieces(layout.headings), _size(job, source), lambda piece: piece.size):
+    for piece in watch(table.pieces(layout.headings), _size(job, source), SIZE, ROWS):
         if is_first:
             rows = piece.cells.iter_rows()
             comma = decimal_commas_in(rows, range(piece.cells.width), table.separator)
@@ -127,11 +129,11 @@ def _solve_ndjson(
 
     def headings(keys: Any) -> list[Heading]:
         nonlocal layout
-        layout = Layout(read_inputs(keys, job.asked, whole=False))
+        layout = read_layout(keys, job.asked, whole=False)
         return list(layout.headings)
 
     pieces = read_ndjson(blocks_of(source), headings)
-    for piece in watch(pieces, _size(job, source), lambda piece: piece.size):
+    for piece in watch(pieces, _size(job, source), SIZE, ROWS):
         results = solve_cells(piece.cells, layout, job.asked, tally, piece.errors)
         target.write(_ndjson(piece, results))
         target.flush()
@@ -167,4 +169,5 @@ def _remarks(layout: Layout, separator: str, usual: str, tally: Tally) -> list[s
     """Sentences on how a table was read, if not as usual."""
     not_given = [f"{' and '.join(sorted(tally.not_given))} as not given"] if tally.not_given else []
     headings = [heading for heading in layout.headings if heading.place >= 0]
-    return read_as(headings, separator, usual, layout.comma, not_given)
+    not_read = [f"not read: {listed(layout.not_read)}."] if layout.not_read else []
+    return [*read_as(headings, separator, usual, layout.comma, not_given), *not_read]

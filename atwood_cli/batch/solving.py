@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
 from ..model.digits import to_double
-from ..model.quantities import NAMES, REGIMES, Accuracy
+from ..model.quantities import NAMES, REGIMES
 from ..model.scene import (
     INPUTS,
     MASSES,
@@ -24,7 +24,7 @@ from ..model.scene import (
     read_value,
 )
 from ..model.units import Malformed, counted, in_quotes, read_unit, shortened
-from ..solver.messages import reasons_at
+from ..solver.messages import reasons_at, unmarked
 from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
 from ..tables.sources import Unreadable
 
@@ -37,9 +37,10 @@ VOCABULARY = Vocabulary({name.replace("_", ""): name for name in INPUTS})
 # fmt: off
 OTHER_NAMES = {
     **{"mass1": "m1", "mass_1": "m1", "mass2": "m2", "mass_2": "m2"},
-    **dict.fromkeys(("m", "mp", "m_p", "m_pulley", "pulley", "pulley_mass", "mass_pulley"), "M"),
-    **dict.fromkeys(("mu_s", "mus", "mu_static", "friction", "static_friction"), "mu"),
-    **dict.fromkeys(("friction_coefficient", "coefficient_of_friction"), "mu"),
+    **dict.fromkeys(("m", "mp", "m_p", "m_pulley", "pulley", "pulley_mass", "mass_pulley", "mass"), "M"),
+    **dict.fromkeys(("mass_of_pulley", "mass_of_the_pulley"), "M"),
+    **dict.fromkeys(("mu_s", "mus", "mu_static", "static_friction", "friction", "coefficient"), "mu"),
+    **dict.fromkeys(("friction_coefficient", "coefficient_of_friction", "friction_coeff", "coeff"), "mu"),
     **dict.fromkeys(("muk", "mu_kinetic", "kinetic_friction"), "mu_k"),
     **{"gravity": "g", "beta": "inertia", "inertia_factor": "inertia", "moment_of_inertia": "I"},
     **dict.fromkeys(("axle_friction", "bearing_friction"), "axle"),
@@ -54,32 +55,32 @@ LONG_CELL = 100
 
 
 class Question(NamedTuple):
-    """A question about a table: the quantities wanted, their accuracy, and remarks of the user on columns.
+    """A question about a table: the quantities wanted, and remarks of the user on columns.
 
     ``labels`` are columns that hold no input, whatever they look like. ``named`` maps headings to inputs.
     """
 
     names: Sequence[str]
-    accuracy: Accuracy
     labels: Collection[str] = ()
     named: Mapping[str, str] = {}
 
 
 class Layout(NamedTuple):
-    """The columns of inputs, and whether commas in their cells are decimal."""
+    """The columns of inputs, the headings of all that are not read, and whether commas are decimal."""
 
     headings: Sequence[Heading]
+    not_read: Sequence[str] = ()
     comma: bool = False
 
 
 # Columns
 
 
-def read_inputs(columns: Sequence[str], asked: Question, whole: bool = True) -> list[Heading]:
-    """The columns of inputs. A table that is not ``whole`` may lack masses, whose cells are empty then.
+def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> Layout:
+    """Find the inputs among the columns. If the table is not ``whole``, a mass without a column has no cells.
 
-    Raises Unreadable where a column is named as a result, or could be meant for an input and is neither an
-    input nor a label.
+    Raises Unreadable if a column has the name of a result, or may mean an input and is neither an input nor a
+    label.
     """
     if clash := [column for column in columns if column in (*asked.names, ERROR)]:
         raise Unreadable(
@@ -91,16 +92,18 @@ def read_inputs(columns: Sequence[str], asked: Question, whole: bool = True) -> 
     doubtful = {column: name for column in columns if column not in passed and (name := _meant(column))}
     for column, name in doubtful.items():
         if name in INPUTS and name not in inputs:
-            way = f"say so by --column {name}={in_quotes(column)}"
-            raise refused(column, f"could be meant for {name}; rename it, or {way}")
+            way = f"give --column {name}={in_quotes(column)}"
+            raise refused(column, f"may mean {name}; rename it, or {way}")
     missing = [mass for mass in MASSES if mass not in inputs]
     if missing and whole:
-        way = f"there are {listed(columns)}; or name one by --column {missing[0]}=HEADING"
-        raise Unreadable(f"column {missing[0]} is missing; {way}")
+        lacking = f"column {missing[0]} is" if len(missing) == 1 else "columns m1 and m2 are"
+        way = " ".join(f"--column {mass}=HEADING" for mass in missing)
+        raise Unreadable(f"{lacking} missing; there are {listed(columns)}; or give {way}")
     for column, name in doubtful.items():
         if name in MEASURED:
-            raise refused(column, "tells of a motion, which only solve takes")
-    return [*headings, *(Heading(-1, mass, mass) for mass in missing)]
+            raise refused(column, "has measurements, which only solve takes")
+    not_read = [column for column in columns if column not in passed]
+    return Layout([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read)
 
 
 def _meant(column: str) -> str | None:
@@ -150,8 +153,11 @@ class Tally:
             self.errors += bad
         self.rows += results.height
 
-    def lines(self) -> list[str]:
-        """The messages: the summary, reasons for missing results of valid rows, and the first error."""
+    def lines(self, every_reason: bool) -> list[str]:
+        """The messages: the summary, why valid rows lack results, and the first error.
+
+        Without ``every_reason`` only the most frequent reason is named.
+        """
         parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
         counts = [", ".join(parts)] if parts else []
         counts.append(counted(self.errors, "error") if self.errors else "no errors")
@@ -164,8 +170,15 @@ class Tally:
             (name, reason), count = counted
             return -count, NAMES.index(name), reason
 
-        reasons = sorted(self.reasons.items(), key=rank)  # as threads count in any order
-        return [summary, *reasons_at(dict(reasons), self.rows, "in {} of {} rows"), *first]
+        reasons = sorted(self.reasons.items(), key=rank)
+        if every_reason or not reasons:
+            lacking = reasons_at(dict(reasons), self.rows, "in {} of {} rows")
+        else:
+            (name, why), most = reasons[0]
+            others = sum(reason == why and count == most for (_, reason), count in reasons) - 1
+            names = f"{name} and {others} more" if others else name
+            lacking = [unmarked(f"{counted(most, 'row')} {'lacks' if most == 1 else 'lack'} {names}: {why}.")]
+        return [summary, *lacking, *first]
 
 
 def solve_cells(
@@ -183,7 +196,7 @@ def solve_cells(
     doubles, errors, not_given = _doubles(cells, layout)
     errors |= unread
     doubles["m1"].scatter(list(errors), None)  # such a row has no results
-    solved, reasons = solve_and_count(doubles, asked.accuracy, ["regime", *asked.names])
+    solved, reasons = solve_and_count(doubles, "exact", ["regime", *asked.names])
     regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
     bad = [row for row in regimes.is_null().arg_true() if row not in errors]
     errors |= dict(zip(bad, _reasons(cells[bad], layout), strict=True))

@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from ..model.quantities import ACCURACIES, STANDARD, read_accuracy, read_names
+from ..model.quantities import STANDARD, read_names
 from ..model.scene import INPUTS
 from ..model.units import LONGEST_NAME, counted, shortened
 from ..output.text import say
@@ -36,9 +36,6 @@ FromFormat = Annotated[
     str | None,
     option("Files", "--from", metavar="|".join(FORMATS), help="Format of IN, if not that of its suffix."),
 ]
-Accuracy = Annotated[
-    str, option("Output", metavar="|".join(ACCURACIES), help="How accurate results are; exact, if not given.")
-]
 Headings = Annotated[
     list[str] | None,
     option(
@@ -51,21 +48,22 @@ Headings = Annotated[
 AllowErrors = Annotated[bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")]
 
 
-HELP = f"""Solve a table of scenes: the same table, with results.
+HELP = f"""Solve a table of scenes and append the results.
 
 \b
 Examples:
   atwood batch scenes.csv -o results.csv
-  atwood batch scenes.parquet -o results.parquet --accuracy certified
+  atwood batch scenes.parquet -o results.parquet
   atwood batch scenes.csv --only regime --only acceleration | head
   generate | atwood batch - --from ndjson --allow-errors
 
 Columns {", ".join(INPUTS)} are the options of solve, in SI units or
 in those of the heading, as m1 (g), M [kg] or R/cm; axle is a force, not a torque. An empty cell, NA, NULL or
-null is not given. Other columns stay as they are, but what could be meant for an input, like radius, is
-refused. Each row stays as it came, and its results follow, with semicolons or tabs between them and decimal
-commas where the table has these. A pipe is answered as it comes. A cell is read as the double nearest to it,
-as is g: so a result can differ in the last digit from solve, which takes 0.1 for a tenth.
+null is not given. Other columns stay as they are and are named as not read, but one that may mean an input,
+like radius, is refused. Each row stays as it came, and its results follow, with semicolons or tabs between
+them and decimal commas if the table has these. Piped rows are solved as they come. Results are the nearest
+doubles for cells that are read as doubles: the last digit can differ from that of solve, which reads 0.1 as
+exactly 1/10.
 """
 
 
@@ -77,7 +75,6 @@ def batch(
     column: Headings = None,
     label: Labels = None,
     only: Columns = None,
-    accuracy: Accuracy = "exact",
     allow_errors: AllowErrors = False,
     force: Force = False,
 ) -> int:
@@ -90,24 +87,22 @@ def batch(
     kind = read_format(from_, table)
     check_format(output, kind)
     named = read_named(column or (), VOCABULARY)
-    job = Job(table, kind, output, force, Question(names, read_accuracy(accuracy), label or (), named))
+    job = Job(table, kind, output, force, Question(names, label or (), named))
     tally = Tally(set(names))
     before = _stamp(output)
     try:
         remarks = run_batch(job, watched, tally)
     except KeyboardInterrupt:
+        stopped = f"stopped after {counted(tally.rows, 'row')}"
         if not is_stream(output) and _stamp(output) == before:
-            _say_stopped(tally.rows, output, "stays as it was" if before else "was not written")
+            is_left = "stays as it was" if before else "was not written"
+            say(f"{stopped}; {shortened(output, LONGEST_NAME)} {is_left}")
+        elif tally.rows:
+            say(stopped)
         raise
-    if not only:
-        tally.reasons.clear()  # nobody asked for these quantities
-    say(*remarks, *tally.lines())
+    say(*remarks, *tally.lines(every_reason=bool(only)))
     missing = only and tally.missing and tally.rows > tally.errors
     return COULD_NOT if missing or (tally.errors and not allow_errors) else DONE
-
-
-def _say_stopped(rows: int, output: str, is_left: str) -> None:
-    say(f"stopped after {counted(rows, 'row')}; {shortened(output, LONGEST_NAME)} {is_left}")
 
 
 def _stamp(path: str) -> tuple[int, int] | None:

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 from ..model.quantities import read_names
 from ..model.scene import read_digits
+from ..model.units import counted
 from ..output.text import Forms, Target, say, show
 from ..sweep.ranges import read_sweep
 from ..sweep.sweep_figure import drawable, save
@@ -45,6 +46,11 @@ def sweep(
     if figure is not None:
         save(swept, drawn, figure, target.force, bare)
     forms = SweepPage(swept, names, precision)
-    aside = show(Forms(forms.json, forms.records, forms.page, forms.notes), target)
+    try:
+        aside = show(Forms(forms.json, forms.records, forms.page, forms.notes), target)
+    except KeyboardInterrupt:
+        if forms.done:
+            say(f"stopped after {forms.done} of {counted(swept.total, 'row')}")
+        raise
     say(*aside or [f"{name} has no value in any row" for name in names if name in forms.missing])
     return COULD_NOT if forms.missing else DONE

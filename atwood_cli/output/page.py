@@ -8,6 +8,7 @@ from shutil import get_terminal_size
 from time import monotonic
 from typing import TYPE_CHECKING, TypeVar
 
+from ..model.units import counted
 from ..solver.answers import Answers
 from ..solver.messages import unmarked, verdict
 from .files import printable
@@ -135,14 +136,26 @@ def _integer_part(value: str) -> int:
     return len(value.partition(" ")[0].partition(".")[0].partition("e")[0]) if _is_number(value) else 0
 
 
+def one(_: object) -> int:
+    """Return 1, the size of a part if only their number counts."""
+    return 1
+
+
 def watched(
-    parts: Iterator[Part], total: int | None, size: Callable[[Part], int] = lambda _: 1
+    parts: Iterator[Part],
+    total: int | None,
+    size: Callable[[Part], int] = one,
+    rows: Callable[[Part], int] | None = None,
 ) -> Iterator[Part]:
-    """The parts, with a bar on a terminal's stderr once they take longer than a second."""
-    start, done = monotonic(), 0
+    """Pass the parts on, with a bar on a terminal's stderr once they take longer than a second.
+
+    The bar shows the share of ``total`` by the ``size`` of parts, and counts their ``rows`` if they have any.
+    """
+    start, done, count = monotonic(), 0, 0
     for part in parts:
         yield part
         done += size(part)
+        count += rows(part) if rows else 0
         if monotonic() - start > 1 and sys.stderr.isatty():
             break
     else:
@@ -151,7 +164,10 @@ def watched(
     from rich.progress import Progress
 
     with Progress(console=Console(stderr=True), transient=True, redirect_stdout=False) as bar:
-        task = bar.add_task("", total=total, completed=done)
+        task = bar.add_task(counted(count, "row") if rows else "", total=total, completed=done)
         for part in parts:
+            if rows:
+                bar.update(task, description=counted(count, "row"))
+                count += rows(part)
             yield part
             bar.advance(task, size(part))

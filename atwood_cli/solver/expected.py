@@ -14,7 +14,7 @@ from ..model.units import STANDARD_GRAVITY, Malformed, Number, in_quotes, read_n
 from .answers import TOO_SMALL, Answers
 from .messages import unmarked
 
-COMPARISON = re.compile(r"\s*([^<>=]*?)\s*(<=|>=|==|<|>)\s*([^<>=]*)")
+COMPARISON = re.compile("([^<>=]*)(<=|>=|==|<|>)([^<>=]*)")
 OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     "<": operator.lt,
     "<=": operator.le,
@@ -52,7 +52,7 @@ def read_condition(typed: str) -> Condition:
         return Condition(typed, typed.strip())
     if not (match := COMPARISON.fullmatch(typed)):
         raise SceneError("expect", typed, f"must be {FORMS}")
-    word, sign, number = match.groups()
+    word, sign, number = map(str.strip, match.groups())
     name = read_name("expect", word, (*NAMES[1:], *MEASURED_NAMES))
     try:
         value = read_number(number, DIMENSIONS.get(QUANTITIES[name].unit))

@@ -9,7 +9,7 @@ from operator import attrgetter
 
 from ..model.digits import SHOWN_DIGITS, to_digits, to_double
 from ..model.quantities import QUANTITIES, STANDARD
-from ..output.page import Page, aligned, watched
+from ..output.page import Page, aligned, one, watched
 from ..output.text import VERSION, cell, scene_record
 from ..solver.messages import reasons_at
 from .changes import changes, regimes
@@ -29,14 +29,17 @@ class SweepPage:
         # Where a sentence tells the regimes, they have a column only if it is asked for.
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
         self.reasons: Counter[tuple[str, str]] = Counter()
+        self.done = 0
+        """The rows that are solved and, as JSON or CSV, written."""
 
     def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
         """The rows; on the way, reasons for missing values are counted."""
         rows = solve_rows(self.sweep, names, digits)
-        for row in watched(rows, self.sweep.total) if watch else rows:
+        for row in watched(rows, self.sweep.total, rows=one) if watch else rows:
             self.reasons.update(row.reasons.items())
             self.missing = {name for name in self.missing if not cell(row.values[name])}
             yield row
+            self.done += 1
 
     def notes(self) -> list[str]:
         """The reasons for missing values that were asked for, with the number of points, after all rows."""

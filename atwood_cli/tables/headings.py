@@ -16,7 +16,7 @@ from ..model.scene import Input, SceneError, parameter_of, read_input
 from ..model.units import PERCENT, Malformed, in_quotes, read_unit, symbol_of, without_blanks
 from .sources import Unreadable
 
-PARTED_BY = {",": "commas", "\t": "tabs", ";": "semicolons"}
+SEPARATOR_NAMES = {",": "commas", "\t": "tabs", ";": "semicolons"}
 NO_UNIT = ("", "-", "1")
 EMPTY = ("", "NA", "NULL", "null")
 """The texts of cells without a number: R and databases write a word."""
@@ -203,7 +203,7 @@ def refused(column: str, why: str) -> Unreadable:
 
 
 def _let_pass(column: str) -> str:
-    return f"; or let it pass by --label {in_quotes(column)}"
+    return f"; or keep it with --label {in_quotes(column)}"
 
 
 def listed(names: Sequence[str], most: int = 12) -> str:
@@ -216,7 +216,7 @@ def read_as(
     headings: Iterable[Heading], separator: str, usual: str, comma: bool, others: Iterable[str] = ()
 ) -> list[str]:
     """A line that says how a table was read, if it was not as usual."""
-    parts = [f"cells parted by {PARTED_BY[separator]}"] if separator != usual else []
+    parts = [f"cells separated by {SEPARATOR_NAMES[separator]}"] if separator != usual else []
     parts += ["decimal commas"] if comma else []
     read = {own.place: (own.column, own.name, own.unit) for own in headings}
     read |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit) for own in headings if own.u}

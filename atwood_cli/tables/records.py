@@ -6,17 +6,23 @@ A record of CSV is a row, which may have several lines. A record of NDJSON is a 
 import csv
 import json
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from contextlib import suppress
 from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..model.units import counted, in_quotes
-from .headings import PARTED_BY, Heading
-from .sources import BLOCK_BYTES, LONGEST_RECORD, Unreadable, decoded, too_long, whole_lines
+from . import sources
+from .headings import SEPARATOR_NAMES, Heading
+from .sources import LONGEST_RECORD, Unreadable, decoded, too_long, whole_lines
 
 if TYPE_CHECKING:
     import polars as pl
 
 MOST_COLUMNS = 1024
+MOST_LINES = 50
+"""The most lines of a cell: a note has fewer, and a quotation mark that is left open makes more."""
+UNREADABLE = "unreadable"
+"""The member that has the text of a line of NDJSON that cannot be read."""
 BYTE_ORDER_MARK = "\ufeff"
 STRAY_MARK = 'has a quotation mark out of place; write it "like ""this"""'
 STRAY_RETURN = (
@@ -36,9 +42,13 @@ class Piece(NamedTuple):
     size: int
     """The length of the piece in the file, to show progress."""
 
+    @property
+    def rows(self) -> int:
+        return len(self.texts)
+
 
 class Csv:
-    """A table of cells parted by a separator, under a header.
+    """A table of cells with a separator between them, under a header.
 
     Records without a quotation mark, and with as many cells as the header, are split at the separators in
     bulk. Elsewhere Python's `csv` splits them, and is strict about quotation marks.
@@ -65,7 +75,7 @@ class Csv:
             cells = _first_row(self._text, separator)
             return len(known(cells)), len(cells)
 
-        self.separator = max((usual, *PARTED_BY), key=score)
+        self.separator = max((usual, *SEPARATOR_NAMES), key=score)
         header, self.columns = next(self._records(), ("", []))
         if not header:
             raise Unreadable("it is empty")
@@ -118,16 +128,16 @@ class Csv:
             return Piece(pl.Series(texts, dtype=pl.String), frame, errors, size)
 
         for record, cells in self._records():
-            lacking = width - len(cells)
-            if lacking < 0:
-                raise self._too_wide(len(cells))
-            if lacking:
-                errors[len(texts)] = f"the row has {counted(len(cells), 'cell')}, and the header {width}"
-            texts.append(record.rstrip("\r\n") + self.separator * lacking)
+            text, lacking = record.rstrip("\r\n"), width - len(cells)
+            if error := self._error_of(record, cells):
+                errors[len(texts)] = error
+            if lacking < 0:  # the last cell takes the rest, so that results stand in their columns
+                text = self._written([*cells[: width - 1], self.separator.join(cells[width - 1 :])])
+            texts.append(text + self.separator * lacking)
             cells += [""] * lacking
             rows.append([cells[heading.place] for heading in headings])
             size += len(record)
-            if size > BLOCK_BYTES:
+            if size > sources.BLOCK_BYTES:
                 yield piece()
                 texts, rows, errors, size = [], [], {}, 0
         if texts:
@@ -164,18 +174,34 @@ class Csv:
         """The error for a row whose quotation marks are wrong, by the error of `csv`."""
         row = f"the row that begins in line {self._line}"
         if "end of data" in error:
-            return Unreadable(
-                f"it ends within quotation marks, in {row}: it is truncated, or one is left open"
-            )
+            return Unreadable(f"a quotation mark is left open in {row}, or the file is truncated")
         if "limit" in error:
             return Unreadable(f"{too_long(self._line)}; is a quotation mark left open?")
         why = STRAY_RETURN if "new-line" in error else STRAY_MARK
         return Unreadable(f"{row} {why}")
 
-    def _too_wide(self, cells: int) -> Unreadable:
-        """The error for a row with more cells than there are columns."""
-        hint = "; is there a decimal comma (write a point), or one at its end?" * (self.separator == ",")
-        return Unreadable(f"line {self._line} has {cells} cells, and the header {len(self.columns)}{hint}")
+    def _error_of(self, record: str, cells: Sequence[str]) -> str | None:
+        """Say what is wrong with the row that was read last; None if nothing is."""
+        if record.count("\n") > MOST_LINES:
+            line = self._line
+            for cell in cells:
+                if (lines := cell.count("\n") + 1) > MOST_LINES:
+                    most = f"the most is {MOST_LINES}; is a quotation mark left open?"
+                    return f"the cell that begins in line {line} has {lines} lines, and {most}"
+                line += lines - 1
+        width = len(self.columns)
+        if len(cells) == width:
+            return None
+        error = f"the row has {counted(len(cells), 'cell')}; the header has {width}"
+        if len(cells) > width and self.separator == ",":
+            error += ": write decimal points, and no comma at its end"
+        return error
+
+    def _written(self, cells: Sequence[str]) -> str:
+        """Cells as a row of the table, in quotation marks where they need them."""
+        buffer = StringIO()
+        csv.writer(buffer, delimiter=self.separator, lineterminator="").writerow(cells)
+        return buffer.getvalue()
 
 
 def _first_row(text: str, separator: str) -> list[str]:
@@ -193,7 +219,9 @@ def _first_row(text: str, separator: str) -> list[str]:
 def read_ndjson(
     blocks: Iterator[bytes], headings: Callable[[Sequence[str]], Sequence[Heading]]
 ) -> Iterator[Piece]:
-    """The lines that are not blank. A line that is no object is an error of its record. Raises Unreadable.
+    """Read the lines that are not blank. Raises Unreadable.
+
+    A line that cannot be read is an error of its record, which has the line's text as its only member.
 
     ``headings`` finds the quantities among the keys, and is called again when there are more keys.
     """
@@ -213,7 +241,7 @@ def read_ndjson(
                 row = _object(raw, line)
             except Unreadable as error:
                 errors[len(lines)] = str(error)
-                line, row = "{}", {}
+                line, row = _COMPACT.encode({UNREADABLE: line}), {}
             lines.append(line)
             objects.append(row)
             keys.update(row)
@@ -266,16 +294,17 @@ def _no_number(word: str) -> str:
 _DECODER = json.JSONDecoder(
     object_pairs_hook=_members, parse_float=str, parse_int=str, parse_constant=_no_number
 )
+_COMPACT = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"))
 
 
 def _column(values: Sequence[object]) -> "pl.Series":
-    """Values as texts. A value that is neither a text nor null is written as JSON."""
+    """Return values as texts. A value that is neither a text nor null is written as JSON."""
     import polars as pl
 
-    try:
-        return pl.Series(values, dtype=pl.String, strict=True)
-    except (TypeError, UnicodeEncodeError):  # halves of surrogate pairs, which UTF-8 does not have
-        return pl.Series(map(_text, values), dtype=pl.String)
+    if all(value is None or type(value) is str for value in values):  # polars takes long for nested lists
+        with suppress(UnicodeEncodeError):  # halves of surrogate pairs, which UTF-8 does not have
+            return pl.Series(values, dtype=pl.String, strict=True)
+    return pl.Series(map(_text, values), dtype=pl.String)
 
 
 def _text(value: object) -> str | None:

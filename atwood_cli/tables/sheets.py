@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..model.units import in_quotes
-from .headings import PARTED_BY, Vocabulary, recognised
+from .headings import SEPARATOR_NAMES, Vocabulary, recognised
 from .sources import Unreadable, blocks_of, opened, whole_lines
 
 MOST_ABOVE = 40
@@ -84,11 +84,11 @@ def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mappin
     lines = re.sub(r'\A"?sep=[,;\t]"?\r?\n', "", text, flags=re.IGNORECASE).split("\n")
     for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
         bare = lines[i].lstrip("# \t")  # NumPy writes headings so
-        is_header = max(header(bare, mark)[0] for mark in PARTED_BY) > 1
+        is_header = max(header(bare, mark)[0] for mark in SEPARATOR_NAMES) > 1
         lines[i] = bare if is_header else ""
         remarks += [] if is_header or COMMENTS in remarks else [COMMENTS]
     text = "\n".join(lines)
-    separator = max((usual, *PARTED_BY), key=lambda mark: header(text, mark)[:2])
+    separator = max((usual, *SEPARATOR_NAMES), key=lambda mark: header(text, mark)[:2])
     start = header(text, separator)[2]
     remarks += ["lines above the headings left out"] * (start > 0)
     return Sheet(*_rows(text, separator, start), separator, usual, remarks)

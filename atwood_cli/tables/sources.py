@@ -50,7 +50,7 @@ def read_format(given: str | None, path: str) -> str:
     """
     if given is not None:
         if given not in FORMATS:
-            raise SceneError("from", given, f"is no format; there are {', '.join(FORMATS)}")
+            raise SceneError("from", given, f"is not a format; there are {', '.join(FORMATS)}")
         return given
     name = Path(path).with_suffix("") if is_packed(path) else Path(path)
     if suffix := SUFFIXES.get(name.suffix.lower()):
@@ -61,10 +61,12 @@ def read_format(given: str | None, path: str) -> str:
 
 
 def check_format(path: str, kind: str) -> None:
-    """Refuse an output whose suffix belongs to another format. Raises SceneError."""
-    suffix = Path(path).suffix.lower()
-    if suffix == PACKED or SUFFIXES.get(suffix, kind) != kind:
-        raise SceneError("output", path, f"ends in {suffix}; results are in the format of the table, {kind}")
+    """Refuse a file whose suffix does not fit the format of the table. Raises SceneError."""
+    file = Path(path)
+    if file.suffix and SUFFIXES.get(file.suffix.lower()) != kind and not is_stream(path):
+        bare = file.with_suffix("") if is_packed(path) else file
+        fitting = in_quotes(str(bare.with_suffix(f".{kind}")))
+        raise SceneError("output", path, f"does not match the table, which is {kind}; name it {fitting}")
 
 
 def is_stream(path: str) -> bool:
