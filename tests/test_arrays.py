@@ -85,7 +85,7 @@ def hostile() -> list[tuple[Columns, Columns]]:
 @pytest.mark.parametrize("limit", [5e-16, 2e-15, 5e-15, 2e-14])
 def test_errors_are_within_any_limit_that_bounds_are(limit: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Not only within the promise, from which most are far: so a bound that is too small shows."""
-    monkeypatch.setattr(arrays.certified, "LIMIT", limit)
+    monkeypatch.setattr(arrays.doubles, "LIMIT", limit)
     plan.cache_clear()
     worst = 0.0
     for inputs, exact in hostile():

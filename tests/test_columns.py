@@ -18,9 +18,8 @@ from atwood_cli import solve_arrays
 from atwood_cli.arithmetic.symbolic import Formula, Term
 from atwood_cli.arrays import doubles as doubles_
 from atwood_cli.arrays import pairs as pairs_
-from atwood_cli.arrays.certified import LIMIT, PROMISE, certified
 from atwood_cli.arrays.constants import powers
-from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, UNIT, Doubles, Number
+from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, LIMIT, PROMISE, UNIT, Doubles, Number, certified
 from atwood_cli.arrays.pairs import PAIRS, head_of, two_product
 from atwood_cli.arrays.pattern import COLUMN, Pattern, Task
 from atwood_cli.arrays.plan import answering

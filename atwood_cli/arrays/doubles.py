@@ -21,7 +21,7 @@ The proof. Let u = 2^-53.
   large. So no operation on a certified value leaves the normal doubles, but for squares that are negligible
   beside the term to which they are added.
 - Bounds are of first order: products of two bounds are left out. They are below 1e-27, and the limit that
-  bounds are compared with is 5e-16 below the promise (`certified.LIMIT`).
+  bounds are compared with is 5e-16 below the promise (`LIMIT`).
 """
 
 from __future__ import annotations
@@ -35,6 +35,7 @@ import numpy as np
 
 from ..arithmetic.lazy import lazy
 from ..arithmetic.symbolic import Formula, Term, formula
+from ..model.quantities import Accuracy
 from .constants import pi, precise_cos_sin
 
 UNIT = 2.0**-53
@@ -43,6 +44,12 @@ LIBRARY = 4 * UNIT
 """The largest relative error that is assumed of NumPy's functions."""
 WINDOW = 2.0**-120, 2.0**120
 """The range of inputs for which the bounds hold, in SI units."""
+PROMISE = 2e-14
+"""The largest relative error of a value that is certified."""
+LIMIT = PROMISE - 5e-16
+"""The largest bound that is certified. Bounds leave out products of two, and the rounding of a pair."""
+END_ERROR = 2.0**-104
+"""A bound on the relative rounding error of the ends between which a value lies."""
 
 Parts = tuple[Any, ...]
 
@@ -299,3 +306,24 @@ SIGNS = np.array([1.0, -1.0, -1.0, 1.0]), np.array([1.0, 1.0, -1.0, -1.0])
 """The signs of cosine and sine, by the number of quarter turns."""
 
 DOUBLES = Doubles()
+
+
+# When a double is right: within the promise of `certified`, or nearest to the exact value
+
+
+def certified(value: Number, accuracy: Accuracy) -> tuple[Term, Formula | None]:
+    """A value as a double, and the condition under which it is right in a row; None if it always is."""
+    double: Any = value.parts[0] if value.positive else value.parts[0] + 0.0  # 0.0 makes 0 of -0
+    if accuracy == "exact":
+        return double, is_nearest(value)
+    if value.doubt is None and value.loss <= LIMIT:
+        return double, None
+    return double, at_most(value.bound, LIMIT)
+
+
+def is_nearest(value: Number) -> Formula:
+    """Whether the first part is the double nearest to the exact value: both ends of the bound round to it."""
+    first, second = (*value.parts, 0.0)[:2]
+    error = absolute(first) * (value.bound + END_ERROR)
+    ends_round_to_it = both(equal(first + (second - error), first), equal(first + (second + error), first))
+    return either(ends_round_to_it, equal(value.bound, 0.0))

@@ -41,8 +41,7 @@ from ..model.digits import to_double
 from ..model.machine import Machine
 from ..model.quantities import REGIMES, Accuracy
 from ..model.reasons import Undetermined
-from .certified import certified
-from .doubles import DOUBLES, Doubles, NoProgram, equal, less
+from .doubles import DOUBLES, Doubles, NoProgram, certified, equal, less
 from .pairs import PAIRS
 from .pattern import Decisions, Pattern, Task
 from .program import Program
