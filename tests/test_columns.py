@@ -19,7 +19,7 @@ from atwood_cli.arithmetic.symbolic import Formula, Term
 from atwood_cli.arrays import doubles as doubles_
 from atwood_cli.arrays import pairs as pairs_
 from atwood_cli.arrays.constants import powers
-from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, LIMIT, PROMISE, UNIT, Doubles, Number, certified
+from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, LIMIT, PROMISE, UNIT, Bounded, Doubles, certified
 from atwood_cli.arrays.pairs import PAIRS, head_of, two_product
 from atwood_cli.arrays.pattern import COLUMN, Pattern, Task
 from atwood_cli.arrays.plan import answering
@@ -60,7 +60,7 @@ def symbols(ar: Any, count: int) -> list[Any]:
     return [ar.number(Formula("symbol", f"x{i}")) for i in range(count)]
 
 
-def values(number: Number, *columns: Any) -> tuple[list[Fraction], list[float]]:
+def values(number: Bounded, *columns: Any) -> tuple[list[Fraction], list[float]]:
     """The exact values of a number's rows, and their bounds, which are NaN where the value is."""
     *parts, bounds = worked_out(
         [*number.parts, number.bound + 0.0 * number.parts[0]],
@@ -73,7 +73,7 @@ def values(number: Number, *columns: Any) -> tuple[list[Fraction], list[float]]:
     return exact, bounds.tolist()
 
 
-def off(number: Number, exact: Callable[..., flint.arb], *columns: Any, sure: float = 1.0) -> None:
+def off(number: Bounded, exact: Callable[..., flint.arb], *columns: Any, sure: float = 1.0) -> None:
     """Assert that each row is within its bound, and that at least a share ``sure`` of the rows has one."""
     flint.ctx.prec = 1400
     exactly, bounds = values(number, *columns)
@@ -137,11 +137,11 @@ def test_bounds_of_exponentials_hold(level: str) -> None:
 
 
 def off_if_doubtful(ar: Doubles, by: Fraction, in_all_rows: bool) -> None:
-    """Assert the bounds of functions of numbers that are as far off as their loss, or their doubts, allow."""
+    """Assert the bounds of functions of numbers that are as far off as their fixed_error, or their row_errors, allow."""
     x, y = symbols(ar, 2)
     most = float(by) * (1 + 2.0**-20)  # a little more, as bounds are kept in first order
-    loss, doubt = (most, None) if in_all_rows else (0.0, x.parts[0] * 0.0 + most)
-    doubtful = Number(ar, x.parts, loss, doubt)
+    fixed_error, row_error = (most, None) if in_all_rows else (0.0, x.parts[0] * 0.0 + most)
+    doubtful = Bounded(ar, x.parts, fixed_error, row_error)
     off(ar.expm1(doubtful), lambda x: (x * arb(1 + by)).expm1(), rng.uniform(1, 30, 400))
     off(ar.log1p(doubtful), lambda x: (x * arb(1 + by)).log1p(), X)
     off(ar.sqrt(doubtful), lambda x: (x * arb(1 + by)).sqrt(), X)
@@ -187,8 +187,8 @@ def _straight(half_turns: flint.arb) -> flint.arb:
     return flint.arb.sin_pi(half_turns)
 
 
-def _without_amplification(x: Number) -> Number:
-    return Number(DOUBLES, (Formula("expm1", x.parts[0]),), LIBRARY, 0.0 * x.parts[0] + x.bound)
+def _without_amplification(x: Bounded) -> Bounded:
+    return Bounded(DOUBLES, (Formula("expm1", x.parts[0]),), LIBRARY, 0.0 * x.parts[0] + x.bound)
 
 
 def bounds_hold() -> None:
@@ -205,13 +205,13 @@ def bounds_hold() -> None:
     ("where", "name", "wrong"),
     [
         *(
-            (DOUBLES, f"loss_of_{of}", UNIT / 2)
+            (DOUBLES, f"error_of_{of}", UNIT / 2)
             for of in ("constant", "sum", "product", "quotient", "root", "doubles")
         ),
         (doubles_, "LIBRARY", UNIT / 2),
         (DOUBLES, "expm1", _without_amplification),
         *(
-            (PAIRS, f"loss_of_{of}", 0.0)
+            (PAIRS, f"error_of_{of}", 0.0)
             for of in ("constant", "sum", "product", "quotient", "root", "series")
         ),
         (pairs_, "BOUNDED_EXPONENT", 1000.0),
@@ -242,7 +242,7 @@ def test_bounds_of_pairs_are_hardly_larger_than_errors(name: str) -> None:
     mpmath.mp.dps = 60
     operation, digits = FAR[name]
     parts = [float.fromhex(part) for part in digits.split()]
-    x, y = (Number(PAIRS, tuple(Formula("symbol", f"x{i}") for i in some)) for some in ((0, 1), (2, 3)))
+    x, y = (Bounded(PAIRS, tuple(Formula("symbol", f"x{i}") for i in some)) for some in ((0, 1), (2, 3)))
     number = PAIRS.sqrt(x) if name == "root" else operation(x, y)
     ((got,), (bound,)) = values(number, *(np.array([part]) for part in parts))
     exact = operation(*(mpmath.mpf(first) + mpmath.mpf(rest) for first, rest in (parts[:2], parts[2:])))
@@ -307,15 +307,15 @@ def test_tables_are_what_they_say() -> None:
         assert abs(arb(got) - (arb(Fraction(i, 16_384)) * arb(2).log()).expm1()) <= 2.0**-106
 
 
-@pytest.mark.parametrize(("loss", "doubt", "right"), [(1.9e-14, None, True), (9e-15, 9e-15, True), (9e-15, 1.1e-14, False), (2e-14, None, False)])  # fmt: skip
+@pytest.mark.parametrize(("fixed_error", "row_error", "right"), [(1.9e-14, None, True), (9e-15, 9e-15, True), (9e-15, 1.1e-14, False), (2e-14, None, False)])  # fmt: skip
 def test_what_may_be_off_by_more_than_promised_is_not_certified(
-    loss: float, doubt: float | None, right: bool
+    fixed_error: float, row_error: float | None, right: bool
 ) -> None:
     (x,) = symbols(DOUBLES, 1)
-    column = None if doubt is None else x.parts[0] * doubt
-    _, condition = certified(Number(DOUBLES, x.parts, loss, column), "certified")
+    column = None if row_error is None else x.parts[0] * row_error
+    _, condition = certified(Bounded(DOUBLES, x.parts, fixed_error, column), "certified")
     if condition is None:
-        assert (right, doubt) == (True, None)
+        assert (right, row_error) == (True, None)
     else:
         assert [bool(one[0]) for one in worked_out([condition], x0=np.ones(1))] == [right]
 
@@ -334,8 +334,8 @@ def test_exact_takes_a_double_just_where_both_ends_of_the_bound_round_to_it() ->
     bound = np.where((rng.random(count) < 0.2) & (to_the_boundary > 0), to_the_boundary, bound)
     bound = rng.choice([1.0, 0.0, np.inf, np.nan], count, p=[0.9, 0.05, 0.025, 0.025]) * bound
     columns = [first, second, bound]
-    *parts, doubt = (Formula("symbol", f"x{i}") for i in range(3))
-    value = Number(PAIRS, parts, 0.0, doubt, False)
+    *parts, row_error = (Formula("symbol", f"x{i}") for i in range(3))
+    value = Bounded(PAIRS, parts, 0.0, row_error, False)
     double, condition = certified(value, "exact")
     assert condition is not None
     doubles, sure = worked_out([double, condition], **{f"x{i}": x for i, x in enumerate(columns)})

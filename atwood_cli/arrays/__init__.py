@@ -112,7 +112,7 @@ def solve_and_count(
 
 
 def _read(given: Mapping[str, Numbers | None]) -> tuple[dict[str, GivenColumn], tuple[int, ...]]:
-    """The inputs as columns, and the shape to which they are broadcast. Raises SceneError."""
+    """Return the inputs as columns, and the shape to which they are broadcast. Raises SceneError."""
     for mass in MASSES:
         if given.get(mass) is None:
             raise SceneError(mass, None, MISSING_MASS)

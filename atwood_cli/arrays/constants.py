@@ -31,7 +31,7 @@ def ln2() -> Fraction:
 
 
 def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
-    """Cosine and sine to 70 digits; exact where rational."""
+    """Return cosine and sine to 70 digits; exact if they are rational."""
     try:
         return EXACT.cos_sin_of_degrees(degrees)
     except Irrational:
@@ -50,7 +50,7 @@ def cos_sin_in_doubles(degrees: float) -> tuple[float, ...]:
 
 @cache
 def in_parts(q: Fraction, bits: int, count: int) -> tuple[float, ...]:
-    """A number as a sum of ``count`` parts of so many bits, whose small multiples are exact, and the rest."""
+    """Split a number into ``count`` parts of so many bits and a rest; small multiples of parts are exact."""
     parts, rest = [], q
     for _ in range(count):
         mantissa, exponent = frexp(float(rest))

@@ -1,8 +1,8 @@
 """Doubles in columns, each with a proven bound on its error: the first level of `certified`.
 
-Each operation on columns gives a `Number`: formulas of doubles, and a bound on the relative error of their
-sum. The bound has two parts. Its *loss* is the same in all rows and is known before any row is computed; its
-*doubt* is a column. Here a number is one double; in `pairs` it is the sum of two.
+Each operation on columns gives a `Bounded`: formulas of doubles, and a bound on the relative error of their
+sum. The bound has two parts. The *fixed error* is the same in all rows and is known before any row is
+computed. The *row error* is a column. Here a number is one double; in `pairs` it is the sum of two.
 
 The proof. Let u = 2^-53.
 
@@ -11,9 +11,9 @@ The proof. Let u = 2^-53.
 - NumPy's expm1, log1p, sin and cos are off by at most 4 u (`LIBRARY`) of the result. (The tests measure 1.2.)
 - In a product or quotient the bounds of both operands add up, and a root halves the bound. A sum of two
   numbers that are never negative has at most the larger bound of the two.
-- In any other sum the terms may cancel. Their absolute errors are added and divided by the size of the sum,
-  row by row: that is the doubt. A sum that cannot be negative may come out negative; its doubt is 1 or more
-  then.
+- In any other sum the terms may cancel. The row error is the sum of their absolute errors, divided by the
+  size of the sum, row by row. A sum that cannot be negative may come out negative; its row error is then 1
+  or more.
 - An error of x counts (1 + x) times in e^x - 1, as x e^x < (1 + x) (e^x - 1), at most once in ln(1 + x), and
   at most once in the sine and cosine of an angle that is folded to 45° or less.
 - Inputs are 0 or within 2^±120 (`WINDOW`). I/R² and f/g are, too, which stand for I and the axle's friction.
@@ -55,7 +55,7 @@ Parts = tuple[Any, ...]
 
 
 class NoProgram(ArithmeticError):
-    """No arithmetic of columns has an operation: each row is to be solved alone."""
+    """No arithmetic of columns has an operation: each row is to be solved by itself."""
 
 
 # Operations that formulas of columns have beside + - * /
@@ -67,79 +67,81 @@ def _operation(op: str) -> Callable[[Term, Term], Formula]:
 
 maximum, minimum, equal, both, either = map(_operation, ("maximum", "minimum", "==", "and", "or"))
 less, at_most = map(_operation, ("<", "<="))
-"""x < y and x <= y, which are false where either is NaN."""
+"""x < y and x <= y, which are false if either is NaN."""
 
 
 def absolute(x: Term) -> Any:
-    """The size of x."""
+    """Return the size of x."""
     return Formula("abs", x) if isinstance(x, Formula) else abs(x)
 
 
 def where(condition: Formula, x: Term, y: Term) -> Formula:
-    """x where the condition holds, else y."""
+    """Take x if the condition holds, else y."""
     return Formula("where", condition, formula(x), formula(y))
 
 
 def looked_up(table: Any, index: Formula) -> Formula:
-    """The entries of a table of doubles at a column of indices; beyond an end, the entry at that end."""
+    """Return entries of a table at a column of indices; an index beyond an end gives the entry there."""
     return Formula("take", index, table)
 
 
 def joined(x: Term | None, y: Term | None) -> Any:
-    """The sum of two columns, where None stands for 0."""
-    return y if x is None else x if y is None else x + y
+    """Return the sum of two columns; None stands for 0."""
+    if x is None:
+        return y
+    return x if y is None else x + y
 
 
-class Number:
-    """A column of numbers: sums of ``parts``, whose relative error is at most ``loss`` + ``doubt``.
+class Bounded:
+    """A column of numbers with a bound on their relative error: ``fixed_error`` + ``row_error``.
 
-    ``loss`` is the same in all rows. ``doubt`` is a column, or None; it is NaN or infinite in rows without a
-    bound. ``positive`` says that no row is negative.
+    A number is the sum of its ``parts``. ``fixed_error`` is the same in all rows. ``row_error`` is a column,
+    or None; it is NaN or infinite in rows without a bound. ``positive`` says that no row is negative.
     """
 
     def __init__(
         self,
         arithmetic: Doubles,
         parts: Sequence[Term],
-        loss: float = 0.0,
-        doubt: Term | None = None,
+        fixed_error: float = 0.0,
+        row_error: Term | None = None,
         positive: bool = True,
     ) -> None:
         self.arithmetic, self.parts = arithmetic, tuple(parts)
-        self.loss, self.doubt, self.positive = loss, doubt, positive
+        self.fixed_error, self.row_error, self.positive = fixed_error, row_error, positive
 
     @property
     def bound(self) -> Any:
-        return self.loss if self.doubt is None else self.doubt + self.loss
+        return self.fixed_error if self.row_error is None else self.row_error + self.fixed_error
 
     @property
     def size(self) -> Any:
         """The absolute value, to a double."""
-        return self.parts[0] if self.positive and self.doubt is None else absolute(self.parts[0])
+        return self.parts[0] if self.positive and self.row_error is None else absolute(self.parts[0])
 
     @property
     def power(self) -> float:
         """The value if it is ±2^n, a factor that causes no rounding; else 0."""
         (first, *others) = self.parts
-        if others or isinstance(first, Formula) or self.loss or abs(frexp(first)[0]) != 0.5:
+        if others or isinstance(first, Formula) or self.fixed_error or abs(frexp(first)[0]) != 0.5:
             return 0.0
         return first
 
     @property
     def exact(self) -> bool:
         """Whether each row is a double without an error."""
-        return len(self.parts) == 1 and self.loss == 0 and self.doubt is None
+        return len(self.parts) == 1 and self.fixed_error == 0 and self.row_error is None
 
-    def __add__(self, other: Number | int) -> Number:
+    def __add__(self, other: Bounded | int) -> Bounded:
         return self._plus(other, 1.0)
 
     __radd__ = __add__
 
-    def __sub__(self, other: Number | int) -> Number:
+    def __sub__(self, other: Bounded | int) -> Bounded:
         return self._plus(other, -1.0)
 
-    def _plus(self, other: Number | int, sign: float) -> Number:
-        """The sum, or the difference for sign -1."""
+    def _plus(self, other: Bounded | int, sign: float) -> Bounded:
+        """Return the sum, or the difference for sign -1."""
         ar, left, right = self.arithmetic, self, self.arithmetic.number(other)
         if ar.is_zero(right):
             return left
@@ -148,15 +150,17 @@ class Number:
         positive = sign > 0 and left.positive and right.positive
         parts = ar.sum(left.parts, right.parts, sign, positive)
         if left.exact and right.exact:
-            return Number(ar, parts, ar.loss_of_doubles, None, positive)
-        if positive and (ar.roughly or (left.doubt is None and right.doubt is None)):
-            doubts = [term.doubt for term in (left, right) if term.doubt is not None]
-            doubt = maximum(*doubts) if len({*map(id, doubts)}) == 2 else doubts[0] if doubts else None
-            return Number(ar, parts, max(left.loss, right.loss) + ar.loss_of_sum, doubt)
+            return Bounded(ar, parts, ar.error_of_doubles, None, positive)
+        if positive and (ar.roughly or (left.row_error is None and right.row_error is None)):
+            row_errors = [term.row_error for term in (left, right) if term.row_error is not None]
+            row_error = None
+            if row_errors:
+                row_error = row_errors[0] if row_errors[0] is row_errors[-1] else maximum(*row_errors)
+            return Bounded(ar, parts, max(left.fixed_error, right.fixed_error) + ar.error_of_sum, row_error)
         error = joined(ar.error(left), ar.error(right))
-        return Number(ar, parts, ar.loss_of_doubles, error / absolute(parts[0]), positive)
+        return Bounded(ar, parts, ar.error_of_doubles, error / absolute(parts[0]), positive)
 
-    def __mul__(self, other: Number | Fraction | float) -> Number:
+    def __mul__(self, other: Bounded | Fraction | float) -> Bounded:
         ar, left, right = self.arithmetic, self, self.arithmetic.number(other)
         if left.power or ar.is_zero(right):
             left, right = right, left
@@ -164,47 +168,51 @@ class Number:
             return left
         if right.power:
             return left._scaled(right.power)
-        loss = ar.loss_of_doubles if left.exact and right.exact else ar.loss_of_product
-        return left._joined(right, ar.multiply, loss)
+        fixed_error = ar.error_of_doubles if left.exact and right.exact else ar.error_of_product
+        return left._joined(right, ar.multiply, fixed_error)
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Number | int) -> Number:
+    def __truediv__(self, other: Bounded | int) -> Bounded:
         ar, two = self.arithmetic, self.arithmetic.number(other)
         if ar.is_zero(self):
             return self
-        return self._scaled(1 / two.power) if two.power else self._joined(two, ar.divide, ar.loss_of_quotient)
+        return (
+            self._scaled(1 / two.power) if two.power else self._joined(two, ar.divide, ar.error_of_quotient)
+        )
 
-    def __rtruediv__(self, other: int) -> Number:
-        dividend: Number = self.arithmetic.number(other)
+    def __rtruediv__(self, other: int) -> Bounded:
+        dividend: Bounded = self.arithmetic.number(other)
         return dividend / self
 
-    def _scaled(self, factor: float) -> Number:
+    def _scaled(self, factor: float) -> Bounded:
         """This number times ±2^n."""
         if factor == 1:
             return self
         parts = [part * factor for part in self.parts]
-        return Number(self.arithmetic, parts, self.loss, self.doubt, self.positive and factor > 0)
+        return Bounded(self.arithmetic, parts, self.fixed_error, self.row_error, self.positive and factor > 0)
 
-    def _joined(self, other: Number, operation: Any, loss: float) -> Number:
-        """A product or quotient: the bounds add up."""
-        parts, doubt = operation(self.parts, other.parts), joined(self.doubt, other.doubt)
+    def _joined(self, other: Bounded, operation: Any, fixed_error: float) -> Bounded:
+        """Return a product or quotient: the bounds add up."""
+        parts, row_error = operation(self.parts, other.parts), joined(self.row_error, other.row_error)
         positive = self.positive and other.positive
-        return Number(self.arithmetic, parts, self.loss + other.loss + loss, doubt, positive)
+        return Bounded(
+            self.arithmetic, parts, self.fixed_error + other.fixed_error + fixed_error, row_error, positive
+        )
 
 
 class Doubles:
     """The arithmetic of numbers that are one double."""
 
-    loss_of_constant = loss_of_sum = loss_of_product = loss_of_quotient = loss_of_root = UNIT
+    error_of_constant = error_of_sum = error_of_product = error_of_quotient = error_of_root = UNIT
     """The relative errors of operations, and of a constant that is no double."""
-    loss_of_doubles = UNIT
+    error_of_doubles = UNIT
     """The relative error of a sum of two doubles, whatever cancels, and of a product of two doubles."""
     roughly = True
-    """Whether the larger doubt of two terms is taken for the doubt of their sum, as this takes less time."""
+    """Whether the row error of a sum is the larger one of its terms: a weaker bound that takes less time."""
 
-    def error(self, x: Number) -> Any:
-        """The absolute error of a term that may cancel, and of adding it; None if there is none."""
+    def error(self, x: Bounded) -> Any:
+        """Return the absolute error of a term that may cancel, and of adding it; None if there is none."""
         return None if x.exact else x.size * x.bound
 
     # Parts, without bounds
@@ -227,57 +235,57 @@ class Doubles:
 
     # Numbers
 
-    def number(self, q: Any) -> Number:
-        """The number of a fraction, or of a column of exact doubles."""
-        if isinstance(q, Number):
+    def number(self, q: Any) -> Bounded:
+        """Return the number of a fraction, or of a column of exact doubles."""
+        if isinstance(q, Bounded):
             return q
         if isinstance(q, Formula):
-            return Number(self, (q,))
+            return Bounded(self, (q,))
         exact = Fraction(q)
         parts = self.constant(exact)
-        loss = 0.0 if sum(map(Fraction, parts)) == exact else self.loss_of_constant
-        return Number(self, parts, loss, positive=exact >= 0)
+        fixed_error = 0.0 if sum(map(Fraction, parts)) == exact else self.error_of_constant
+        return Bounded(self, parts, fixed_error, positive=exact >= 0)
 
-    def is_zero(self, x: Number) -> bool:
+    def is_zero(self, x: Bounded) -> bool:
         return x.parts == (0.0,)
 
-    def not_negative(self, x: Number) -> Number:
+    def not_negative(self, x: Bounded) -> Bounded:
         x.positive = True
         return x
 
-    def sqrt(self, x: Number) -> Number:
+    def sqrt(self, x: Bounded) -> Bounded:
         """√x for x >= 0."""
-        doubt = None if x.doubt is None else 0.5 * x.doubt
-        return Number(self, self.root_of(x.parts), x.loss / 2 + self.loss_of_root, doubt)
+        row_error = None if x.row_error is None else 0.5 * x.row_error
+        return Bounded(self, self.root_of(x.parts), x.fixed_error / 2 + self.error_of_root, row_error)
 
-    def hypot(self, x: Number, y: Number | int) -> Number:
+    def hypot(self, x: Bounded, y: Bounded | int) -> Bounded:
         return self.sqrt(x * x + y * y)
 
     @lazy
-    def pi(self) -> Number:
+    def pi(self) -> Bounded:
         return self.number(pi())
 
-    def exp(self, x: Number) -> Number:
+    def exp(self, x: Bounded) -> Bounded:
         return self.expm1(x) + 1
 
-    def expm1(self, x: Number) -> Number:
+    def expm1(self, x: Bounded) -> Bounded:
         """e^x - 1 for x >= 0."""
         first = formula(x.parts[0])
-        return Number(self, (Formula("expm1", first),), LIBRARY, (1.0 + first) * x.bound)
+        return Bounded(self, (Formula("expm1", first),), LIBRARY, (1.0 + first) * x.bound)
 
-    def log1p(self, x: Number) -> Number:
+    def log1p(self, x: Bounded) -> Bounded:
         """ln(1 + x) for x >= 0."""
-        return Number(self, (Formula("log1p", formula(x.parts[0])),), LIBRARY + x.loss, x.doubt)
+        return Bounded(self, (Formula("log1p", formula(x.parts[0])),), LIBRARY + x.fixed_error, x.row_error)
 
-    def cos_sin_of_degrees(self, angle: Any) -> tuple[Number, Number]:
+    def cos_sin_of_degrees(self, angle: Any) -> tuple[Bounded, Bounded]:
         """Cosine and sine of an angle in degrees, or of a column of exact angles."""
         if isinstance(angle, Fraction):
             cos, sin = map(self.number, precise_cos_sin(angle))
             return cos, sin
         return self.cos_sin_of_column(angle.parts[0])
 
-    def cos_sin_of_column(self, degrees: Formula) -> tuple[Number, Number]:
-        """The cosine and the sine of angles in degrees, which are exact.
+    def cos_sin_of_column(self, degrees: Formula) -> tuple[Bounded, Bounded]:
+        """Return the cosine and the sine of angles in degrees, which are exact.
 
         The quarter turns of an angle are taken off, exactly. Their number says whether the two are exchanged,
         and which signs they have.
@@ -286,14 +294,14 @@ class Doubles:
         quarters = Formula("rint", degrees / 90)
         number = Formula("int", quarters)
         odd = equal(Formula("bits", number, 1), 1.0)
-        angle = Number(self, (degrees - 90 * quarters,), positive=False) * (self.pi / 180)
+        angle = Bounded(self, (degrees - 90 * quarters,), positive=False) * (self.pi / 180)
         cos, sin = (Formula(name, angle.parts[0]) for name in ("cos", "sin"))
         folded = where(odd, sin, cos), where(odd, cos, sin)
         signed = (
             value * looked_up(signs, Formula("bits", number, 3))
             for value, signs in zip(folded, SIGNS, strict=True)
         )
-        x, y = (Number(self, (value,), LIBRARY + angle.loss, positive=False) for value in signed)
+        x, y = (Bounded(self, (value,), LIBRARY + angle.fixed_error, positive=False) for value in signed)
         return x, y
 
     def cos_sin(self, *_: Any) -> Any:
@@ -311,18 +319,18 @@ DOUBLES = Doubles()
 # When a double is right: within the promise of `certified`, or nearest to the exact value
 
 
-def certified(value: Number, accuracy: Accuracy) -> tuple[Term, Formula | None]:
-    """A value as a double, and the condition under which it is right in a row; None if it always is."""
+def certified(value: Bounded, accuracy: Accuracy) -> tuple[Term, Formula | None]:
+    """Return a value as a double, and the condition that it is right in a row; None if it always is."""
     double: Any = value.parts[0] if value.positive else value.parts[0] + 0.0  # 0.0 makes 0 of -0
     if accuracy == "exact":
         return double, is_nearest(value)
-    if value.doubt is None and value.loss <= LIMIT:
+    if value.row_error is None and value.fixed_error <= LIMIT:
         return double, None
     return double, at_most(value.bound, LIMIT)
 
 
-def is_nearest(value: Number) -> Formula:
-    """Whether the first part is the double nearest to the exact value: both ends of the bound round to it."""
+def is_nearest(value: Bounded) -> Formula:
+    """Tell if the first part is the double nearest to the exact value: both ends of the bound round to it."""
     first, second = (*value.parts, 0.0)[:2]
     error = absolute(first) * (value.bound + END_ERROR)
     ends_round_to_it = both(equal(first + (second - error), first), equal(first + (second + error), first))

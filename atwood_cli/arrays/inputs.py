@@ -23,7 +23,7 @@ DISK = INERTIA_FACTORS["disk"]
 DEFAULTS = {name: Fraction(default) for name, default in {**SCENE_DEFAULTS, "inertia": DISK}.items()}
 """The exact values of inputs that always have one, in SI units and degrees."""
 WHERE_ABSENT = {**{name: float(default) for name, default in DEFAULTS.items()}, "axle": 0.0}
-"""The doubles in columns of inputs at rows where they are not given; for other inputs it is NaN."""
+"""The doubles in columns of inputs for rows in which they are not given; for other inputs it is NaN."""
 BUILT_IN = ("inertia", "wrap")
 """Inputs whose common value is built into a program: with 1/2 and π it is simpler than with a column."""
 REAL_KINDS = "iufOSU"
@@ -58,7 +58,7 @@ def _cut(column: NDArray[Any], shape: tuple[int, ...], rows: Index) -> NDArray[A
 
 
 def read_column(name: str, value: Numbers | None) -> GivenColumn:
-    """An input as doubles.
+    """Return an input as doubles.
 
     Raises SceneError for what is no real number, and for another number than 0 or inf that would round to one
     of these.
@@ -94,7 +94,7 @@ def read_column(name: str, value: Numbers | None) -> GivenColumn:
 
 
 def _absent(value: Any, array: NDArray[Any]) -> NDArray[np.bool_] | None:
-    """Whether each item is not given, as masked ones, None and nulls of polars; None where all are given."""
+    """Tell which items are not given: masked ones, None and nulls of polars. Return None if all are given."""
     absent: Any = None
     if isinstance(value, np.ma.MaskedArray):
         absent = np.ma.getmaskarray(value)
@@ -116,7 +116,9 @@ class Kind(IntEnum):
 
 
 OUTSIDE = {
-    name: {Kind.NEGATIVE, *[Kind.ZERO] * (not domain.zero), *[Kind.INFINITE] * (not domain.inf)}
+    name: {Kind.NEGATIVE}
+    | (set() if domain.zero else {Kind.ZERO})
+    | (set() if domain.inf else {Kind.INFINITE})
     for name, domain in INPUTS.items()
 }
 """The kinds of numbers that are outside the domain of an input, by its name."""
@@ -145,12 +147,12 @@ class Group(NamedTuple):
 
 
 def input_columns(given: Mapping[str, GivenColumn]) -> dict[str, InputColumn]:
-    """The inputs of a block, with the kinds of their numbers."""
+    """Return the inputs of a block, with the kinds of their numbers."""
     return {name: InputColumn(column.doubles, _kinds(name, given)) for name, column in given.items()}
 
 
 def _kinds(name: str, given: Mapping[str, GivenColumn]) -> int | NDArray[np.int_]:
-    """The kind of each number of an input, or the one kind of all.
+    """Return the kind of each number of an input, or the one kind of all.
 
     The equations take I as the mass I/R² and the axle's friction as the mass f/g. So these must be within the
     window, too.
@@ -181,7 +183,7 @@ def _kinds(name: str, given: Mapping[str, GivenColumn]) -> int | NDArray[np.int_
 
 
 def groups(inputs: Mapping[str, InputColumn], size: int) -> Iterator[Group]:
-    """The rows of a block, grouped by their status and pattern."""
+    """Yield the rows of a block, grouped by their status and pattern."""
     m1, m2, mu, mu_k = (inputs[name].doubles for name in ("m1", "m2", "mu", "mu_k"))
     # Rows differ by the digits of a key, each with its base: kinds, the heavier mass, a mu_k above mu.
     digits: list[tuple[int, NDArray[Any]]] = [
@@ -214,12 +216,12 @@ def groups(inputs: Mapping[str, InputColumn], size: int) -> Iterator[Group]:
 
 
 def _number(column: NDArray[Any], row: int) -> Any:
-    """The number in a row of a column, or the single number that is the same in all rows."""
+    """Return the number in a row of a column, or the single number that is the same in all rows."""
     return column[row] if column.ndim else column[()]
 
 
 def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool) -> str:
-    """The first fault of inputs of these kinds: whether they are in their domains and go together."""
+    """Return the first fault of inputs of these kinds: whether they are in their domains and go together."""
     given = {name for name, kind in kinds.items() if kind != Kind.ABSENT}
     zero = {name for name, kind in kinds.items() if kind == Kind.ZERO}
     faults = [
@@ -239,9 +241,9 @@ def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool) -> str:
 
 
 def _in_pattern(name: str, kind: int, doubles: Column) -> Fraction | float | str | None:
-    """An input in the `Pattern` of a row."""
+    """Return an input in the `Pattern` of a row."""
     if kind == Kind.ABSENT and name in DEFAULTS:
-        return DEFAULTS[name]  # exact, where the doubles have the nearest one
+        return DEFAULTS[name]  # exact; the doubles have the nearest one
     if kind in SAME_IN_ALL:
         return None if name == "axle" else SAME_IN_ALL[kind]  # an axle without friction is none
     return Fraction(float(doubles)) if name in BUILT_IN and not doubles.ndim else COLUMN

@@ -1,6 +1,6 @@
 """Sums of two doubles with a proven error bound, in columns: to about 2^-100.
 
-A `Number` stands for the sum of its parts, of which the second is at most u = 2^-53 of the first. What the
+A `Bounded` stands for the sum of its parts, of which the second is at most u = 2^-53 of the first. What the
 operations lose is counted in u² of the result, or of both terms in a difference:
 
 - a constant, 1: its second part is rounded;
@@ -27,7 +27,7 @@ from typing import Any
 
 from ..arithmetic.symbolic import Formula, Term, formula
 from .constants import TABLE_STEPS, in_parts, ln2, powers
-from .doubles import UNIT, Doubles, Number, Parts, less, looked_up, maximum, minimum, where
+from .doubles import UNIT, Bounded, Doubles, Parts, less, looked_up, maximum, minimum, where
 
 UNIT_SQUARED = UNIT**2
 BOUNDED_EXPONENT = 180.0
@@ -45,7 +45,7 @@ def two_sum(x: Term, y: Term) -> tuple[Any, Any]:
 
 
 def fast_two_sum(x: Term, y: Term) -> tuple[Any, Any]:
-    """x + y, rounded, and its exact error, where |y| <= |x| in every row (T. J. Dekker)."""
+    """x + y, rounded, and its exact error, for |y| <= |x| in every row (T. J. Dekker)."""
     total = x + y
     return total, (x - total) + y
 
@@ -63,7 +63,7 @@ def two_product(x: Term, y: Term) -> tuple[Any, Any]:
 
 
 def head_of(x: Term) -> Any:
-    """Each double rounded to 26 bits; a tie is rounded away from 0."""
+    """Return each double rounded to 26 bits; a tie is rounded away from 0."""
     if isinstance(x, Formula):
         return Formula("head", x)
     mantissa, exponent = frexp(x)
@@ -73,13 +73,13 @@ def head_of(x: Term) -> Any:
 class Pairs(Doubles):
     """The arithmetic of numbers that are the sum of two doubles."""
 
-    loss_of_constant, loss_of_sum, loss_of_product = UNIT_SQUARED, 4 * UNIT_SQUARED, 8 * UNIT_SQUARED
-    loss_of_quotient, loss_of_root, loss_of_doubles = 13 * UNIT_SQUARED, 8 * UNIT_SQUARED, 0.0
-    loss_of_series = 256 * UNIT_SQUARED
+    error_of_constant, error_of_sum, error_of_product = UNIT_SQUARED, 4 * UNIT_SQUARED, 8 * UNIT_SQUARED
+    error_of_quotient, error_of_root, error_of_doubles = 13 * UNIT_SQUARED, 8 * UNIT_SQUARED, 0.0
+    error_of_series = 256 * UNIT_SQUARED
     roughly = False
 
-    def error(self, x: Number) -> Any:
-        return x.size * (x.bound + self.loss_of_sum)
+    def error(self, x: Bounded) -> Any:
+        return x.size * (x.bound + self.error_of_sum)
 
     # Parts, without bounds
 
@@ -107,7 +107,7 @@ class Pairs(Doubles):
         return fast_two_sum(product, rest)
 
     def divide(self, x: Parts, y: Parts) -> Parts:
-        """The rounded quotient, and the quotient of the remainder that it leaves."""
+        """Return the rounded quotient, and the quotient of the remainder that it leaves."""
         quotient = x[0] / y[0]
         remainder = _remainder(x, quotient, y[0])
         for part in y[1:]:
@@ -115,7 +115,7 @@ class Pairs(Doubles):
         return fast_two_sum(quotient, remainder / y[0])
 
     def root_of(self, x: Parts) -> Parts:
-        """The rounded root, and a step of Newton's from the remainder that its square leaves."""
+        """Return the rounded root, and a step of Newton's from the remainder that its square leaves."""
         root = Formula("sqrt", formula(x[0]))
         return fast_two_sum(root, _remainder(x, root, root) / (2.0 * root))
 
@@ -126,7 +126,7 @@ class Pairs(Doubles):
 
     # Functions
 
-    def expm1(self, x: Number) -> Number:
+    def expm1(self, x: Bounded) -> Bounded:
         """k = e^x - 1 for x >= 0, without a bound beyond x = 180 (`BOUNDED_EXPONENT`).
 
         x is split into m ln 2, i steps of ln 2/16384 and a rest r < 4.3e-5, which loses 8 u² of x, as a
@@ -141,39 +141,40 @@ class Pairs(Doubles):
         number = Formula("int", count)
         s = self._small_expm1(_rest(high, others, count))
         step = Formula("bits", number, TABLE_STEPS - 1)
-        a = Number(self, [looked_up(column, step) for column in powers()], self.loss_of_constant)
+        a = Bounded(self, [looked_up(column, step) for column in powers()], self.error_of_constant)
         k = a + s + a * s
         power = Formula("power", Formula(">>", number, TABLE_STEPS.bit_length() - 1))
-        k = Number(self, [part * power for part in k.parts], k.loss)
-        k = k + Number(self, fast_two_sum(power, -1.0))
-        doubt = (1.0 + high) * (x.bound + self.loss_of_product)
-        doubt = doubt + s.parts[0] * (1.0 + 1.0 / k.parts[0]) * self.loss_of_series
-        return Number(self, k.parts, k.loss, where(less(first, BOUNDED_EXPONENT), doubt, inf))
+        k = Bounded(self, [part * power for part in k.parts], k.fixed_error)
+        k = k + Bounded(self, fast_two_sum(power, -1.0))
+        row_error = (1.0 + high) * (x.bound + self.error_of_product)
+        row_error = row_error + s.parts[0] * (1.0 + 1.0 / k.parts[0]) * self.error_of_series
+        return Bounded(self, k.parts, k.fixed_error, where(less(first, BOUNDED_EXPONENT), row_error, inf))
 
-    def _small_expm1(self, r: Parts) -> Number:
+    def _small_expm1(self, r: Parts) -> Bounded:
         """e^r - 1 = r + r² (1/2 + r (1/6 + ...)) for a small r."""
-        x, tail = Number(self, r), ((r[0] * (1 / 720) + 1 / 120) * r[0] + 1 / 24) * r[0]
-        factor = self.number(Fraction(1, 6)) + Number(self, (tail,))
-        return Number(self, (x + x * x * (factor * x + self.number(Fraction(1, 2)))).parts)
+        x, tail = Bounded(self, r), ((r[0] * (1 / 720) + 1 / 120) * r[0] + 1 / 24) * r[0]
+        factor = self.number(Fraction(1, 6)) + Bounded(self, (tail,))
+        return Bounded(self, (x + x * x * (factor * x + self.number(Fraction(1, 2)))).parts)
 
-    def log1p(self, x: Number) -> Number:
+    def log1p(self, x: Bounded) -> Bounded:
         """ln(1 + x) for x >= 0, as a double y and a correction.
 
         The correction is ln(1 + δ) for δ = (1 + x)/e^y - 1, by two terms of its series. As y is below 180 and
         off by a few u of it, δ is below 2^-43.
         """
-        y = Number(self, (Formula("log1p", formula(x.parts[0])),))
+        y = Bounded(self, (Formula("log1p", formula(x.parts[0])),))
         guess = self.expm1(y)
         off = (x - guess) / (guess + 1)
         result = y + off - off * off / 2
         result.positive = True
         return result
 
-    def cos_sin_of_column(self, degrees: Formula) -> tuple[Number, Number]:
-        """Each angle that occurs is computed once, to 70 digits."""
+    def cos_sin_of_column(self, degrees: Formula) -> tuple[Bounded, Bounded]:
+        """Return each angle that occurs is computed once, to 70 digits."""
         columns = [Formula(op, degrees) for op in ("cos°", "rest of cos°", "sin°", "rest of sin°")]
         x, y = (
-            Number(self, parts, self.loss_of_constant, positive=False) for parts in (columns[:2], columns[2:])
+            Bounded(self, parts, self.error_of_constant, positive=False)
+            for parts in (columns[:2], columns[2:])
         )
         return x, y
 

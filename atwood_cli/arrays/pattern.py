@@ -30,7 +30,7 @@ class Pattern(NamedTuple):
     inputs: tuple[Fraction | float | str | None, ...]
 
     def scene(self, column: Callable[[str], Any]) -> Scene:
-        """The scene of a row, or of all rows; ``column`` gives the number of an input that is a column."""
+        """Return the scene of a row, or of all rows; ``column`` gives the number of an input by its name."""
         fields: dict[str, Any] = {
             name: column(name) if value == COLUMN else value
             for name, value in zip(INPUTS, self.inputs, strict=True)
@@ -54,12 +54,12 @@ class Task(NamedTuple):
 
 
 def size_of(index: Index) -> int:
-    """The number of rows of a selection."""
+    """Return the number of rows of a selection."""
     return index.stop - index.start if isinstance(index, slice) else index.size
 
 
 def select(index: Any, places: Any) -> Any:
-    """The rows at places of a selection, which are a slice, an array or the number of one place."""
+    """Return the rows at places of a selection, which are a slice, an array or the number of one place."""
     if not isinstance(index, slice):
         return index[places]
     if isinstance(places, slice):

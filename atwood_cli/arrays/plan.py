@@ -10,8 +10,9 @@ Take the row m1 = 1, m2 = 3, M = 100, mu = 0.3, and its acceleration, certified.
    (see `doubles`). For this row it gives 0.764026672247107, off by at most 6e-15 of that. The bound is below
    2e-14, so the value is certified.
 4. Another row of the group, M = 1e6, mu = 0.34969, hardly slips: m2 - e^{μφ} m1 = 8.6e-5 has lost too many
-   digits, and the bound is 3e-11. This row alone, and this quantity alone, go to the next level of precision:
-   sums of two doubles (see `pairs`) are off by at most 3e-26 of the value.
+   digits, and the bound is 3e-11. This quantity of this row goes to the next level of precision: sums of two
+   doubles (see `pairs`) are off by at most 3e-26 of the value. Up to four such rows are solved one by one
+   instead, exactly, as `solve` does it.
 
 What each accuracy promises, and why it holds:
 
@@ -54,11 +55,11 @@ KEPT_PLANS = 256
 """The number of plans that are kept: enough for ten patterns."""
 
 
-class Asked(Exception):
-    """A question that the rows have not answered yet: it stops the model in the middle.
+class Undecided(Exception):
+    """The model needs the answer to a question that is not among the decisions of a group of rows.
 
-    `plan` takes the question up, and the program of the plan answers it. The model then runs anew for the
-    rows of either answer, with that answer among their decisions.
+    `plan` catches it, and the program of the plan answers the question in each row. The model then runs again
+    for the rows with either answer, which is then among their decisions.
     """
 
 
@@ -71,12 +72,12 @@ class _GroupCase(Case):
 
     @lazy
     def rim_mass(self) -> Any:
-        """A pulley without mass has none at its rim, even where its inertia factor is a column."""
+        """A pulley without mass has none at its rim, even if its inertia factor is a column."""
         return self.pulley_mass if is_zero(self.pulley_mass) else super().rim_mass
 
     def _decided(self, question: str) -> bool:
         if question not in self._decisions:
-            raise Asked(question)
+            raise Undecided(question)
         return self._decisions[question]
 
     @lazy
@@ -116,8 +117,8 @@ class Plan(NamedTuple):
     """Values that are the same in all rows, by quantity."""
     missing: dict[str, str]
     """The reasons of quantities without a value."""
-    alone: tuple[str, ...]
-    """Quantities that no program gives: each row is solved alone."""
+    row_by_row: tuple[str, ...]
+    """Quantities that no program gives: rows are solved one by one."""
     question: str
     """A question, or "". The program gives each row's "answer" to it, and whether that is "sure"."""
     asking: tuple[str, ...]
@@ -125,32 +126,32 @@ class Plan(NamedTuple):
 
 
 def condition_of(name: str) -> str:
-    """The name of a program's result that says whether a quantity is certified."""
+    """Return the name of a program's result that says whether a quantity is certified."""
     return f"{name} is certified"
 
 
 @lru_cache(KEPT_PLANS)
 def plan(task: Task, accuracy: Accuracy) -> Plan:
-    """The plan for a task, made by running the model on columns, quantity by quantity."""
+    """Return the plan for a task, made by running the model on columns, quantity by quantity."""
     machine = _machine_of_columns(task, LEVELS[accuracy][task.level])
     values: dict[str, Term] = {}
     conditions: dict[str, Formula] = {}
     constants: dict[str, float] = {}
     missing: dict[str, str] = {}
-    alone, asking, question = [], [], ""
+    row_by_row, asking, question = [], [], ""
     for name in task.names:
         try:
             if name == "regime":
                 constants[name] = REGIMES.index(machine.case.regime)
                 continue
             values[name], condition = certified(getattr(machine, name), accuracy)
-        except Asked as asked:
-            question = question or str(asked)
+        except Undecided as undecided:
+            question = question or str(undecided)
             asking.append(name)
         except Undetermined as undetermined:
             missing[name] = str(undetermined)
         except NoProgram:
-            alone.append(name)
+            row_by_row.append(name)
         else:
             if condition is not None:
                 conditions[name] = condition
@@ -159,13 +160,13 @@ def plan(task: Task, accuracy: Accuracy) -> Plan:
         formulas |= _answer(task, question, DOUBLES)
     program = Program(formulas) if formulas else None
     return Plan(
-        program, (*values,), (*conditions,), constants, missing, tuple(alone), question, tuple(asking)
+        program, (*values,), (*conditions,), constants, missing, tuple(row_by_row), question, tuple(asking)
     )
 
 
 @lru_cache(KEPT_PLANS)
 def answering(task: Task, question: str, ar: Doubles) -> Program:
-    """The program that gives each row's "answer" to a question, and whether that is "sure"."""
+    """Return the program that gives each row's "answer" to a question, and whether that is "sure"."""
     return Program(_answer(task, question, ar))
 
 
@@ -186,9 +187,9 @@ def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
 
 
 def nearest_double(task: Task, name: str, number: Callable[[str], Fraction]) -> float | None:
-    """A quantity of a single row, exactly, by the decisions of its group; None if they do not suffice."""
+    """Solve one quantity of one row exactly, by its group's decisions; None if they do not suffice."""
     case = _GroupCase(task.pattern, task.decisions, number)
     try:
         return settle(lambda ar: getattr(Machine(case, ar), name), to_double, ENOUGH_DIGITS)
-    except (Asked, Undetermined, OverflowError):
+    except (Undecided, Undetermined, OverflowError):
         return None

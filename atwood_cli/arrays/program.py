@@ -58,7 +58,7 @@ def _power(exponent: NDArray[np.intp], out: Column) -> None:
 
 
 def _of_degrees(which: int) -> Operation:
-    """One of the doubles of `cos_sin_in_doubles`: each angle that occurs is computed once, to 70 digits."""
+    """Return the operation for one double of `cos_sin_in_doubles`; it computes equal angles once."""
 
     def operation(degrees: Column, out: Column) -> None:
         angles, places = np.unique(degrees, return_inverse=True)
@@ -159,7 +159,7 @@ class Program:
     def _operations(
         self, values: _Values, leaves: set[int], slots: dict[int, int], first_between: int
     ) -> Iterator[tuple[Operation, tuple[int, ...]]]:
-        """The operations with their slots: operands first, the result last."""
+        """Yield the operations with their slots: operands first, the result last."""
         fixed, free = set(slots), dict[type[Any], list[int]]()
         operations = [value for value in range(len(values.all)) if value not in leaves]
         last_use = {part: value for value in operations for part in values.all[value][1]}
@@ -206,7 +206,7 @@ class _Values:
         self._of: dict[Formula, int] = {}
 
     def number(self, root: Formula) -> int:
-        """The number of a formula's value. Formulas are too deep for recursion."""
+        """Return the number of a formula's value. Formulas are too deep for recursion."""
         numbers, waiting = self._of, [root]
         while waiting:
             top = waiting[-1]
@@ -221,7 +221,7 @@ class _Values:
         return numbers[root]
 
     def _numbered(self, node: Formula) -> int:
-        """The number of a formula's value, where its operands have theirs."""
+        """Return the number of a formula's value, whose operands have theirs."""
         if node.op == "symbol":
             return self._kept("symbol", node.parts)
         if node.op == "number":

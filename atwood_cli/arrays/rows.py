@@ -68,8 +68,8 @@ class Rows:
             failed = select(rows, np.flatnonzero(~flags[condition_of(name)]))
             yield failed, task._replace(names=(name,), level=task.level + 1)
         # A quantity that no program gives goes to the last level at once.
-        if plan_.alone:
-            yield rows, task._replace(names=plan_.alone, level=len(self.levels))
+        if plan_.row_by_row:
+            yield rows, task._replace(names=plan_.row_by_row, level=len(self.levels))
         # The question splits the rows: either part goes on, with its answer and the quantities that asked.
         if plan_.question:
             answers, unsure = flags["answer"], np.flatnonzero(~flags["sure"])
@@ -119,7 +119,7 @@ class Rows:
                     self.results[name][tile] = results[name]
 
     def _ask(self, rows: NDArray[np.intp], task: Task, question: str) -> Flags:
-        """Each row's answer to a question that doubles leave open."""
+        """Return each row's answer to a question that doubles leave open."""
         answers, sure = np.empty((2, rows.size), np.bool_)
         sure[:] = False
         # Pairs may decide it. They are not worth a program for few rows.
@@ -163,7 +163,7 @@ class Rows:
                     self.reasons[name, answers.reasons[name]] += len(rows)
 
     def _number(self, row: int) -> Callable[[str], Fraction]:
-        """The inputs of a row, exactly, by their names."""
+        """Return the inputs of a row, exactly, by their names."""
 
         def number(name: str) -> Fraction:
             column = self.inputs[name]
@@ -173,5 +173,5 @@ class Rows:
 
 
 def _gathered(column: Column, rows: NDArray[np.intp], out: Column) -> Column:
-    """The rows of a column, copied to ``out``; a single number stays single."""
+    """Return the rows of a column, copied to ``out``; a single number stays single."""
     return column.take(rows, out=out, mode="clip") if column.ndim else column

@@ -67,7 +67,7 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
 def with_results(
     frame: "pl.DataFrame", layout: Layout, asked: Question, tally: Tally | None = None
 ) -> "pl.DataFrame":
-    """A frame of scenes with their results. Raises Unreadable for a column that holds no numbers."""
+    """Return a frame of scenes with their results. Raises Unreadable for a column that holds no numbers."""
     cells = frame.select(frame[heading.column].alias(heading.name) for heading in layout.headings)
     return frame.hstack(solve_cells(cells, layout, asked, tally or Tally(set())))
 

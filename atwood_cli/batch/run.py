@@ -74,7 +74,7 @@ def _check_apart(job: Job) -> None:
 
 
 def _size(job: Job, source: IO[bytes]) -> int | None:
-    """The bytes of the input, None if they are not known."""
+    """Return the bytes of the input, None if they are not known."""
     return None if is_stream(job.source) or is_packed(job.source) else os.fstat(source.fileno()).st_size
 
 

@@ -107,7 +107,7 @@ def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> 
 
 
 def _meant(column: str) -> str | None:
-    """The input that a heading could be meant for: with other letters, another name, or a unit after it."""
+    """Return the input that a heading may mean: in other letters, by another name or with a unit behind."""
     *_, (name, _) = divisions(column)
     letters = normalize("NFKC", name).casefold().translate(GREEK_SPELLED)
     words = [word for word in re.split("[^0-9a-z]+", letters) if word]
@@ -118,7 +118,7 @@ def _meant(column: str) -> str | None:
 
 
 def _is_unit(word: str, name: str) -> bool:
-    """Whether an input may be given in that unit."""
+    """Return whether an input may be given in that unit."""
     dimension = parameter_of(name).dimension
     try:
         return dimension is not None and bool(read_unit(word, dimension))
@@ -154,7 +154,7 @@ class Tally:
         self.rows += results.height
 
     def lines(self, every_reason: bool) -> list[str]:
-        """The messages: the summary, why valid rows lack results, and the first error.
+        """Return the messages: the summary, why valid rows lack results, and the first error.
 
         Without ``every_reason`` only the most frequent reason is named.
         """
@@ -184,7 +184,7 @@ class Tally:
 def solve_cells(
     cells: "pl.DataFrame", layout: Layout, asked: Question, tally: Tally, unread: Mapping[int, str] = {}
 ) -> "pl.DataFrame":
-    """The columns to append to rows with these cells: the results, and the errors of bad rows.
+    """Return the columns to append to rows with these cells: the results, and the errors of bad rows.
 
     ``unread`` has the errors of rows that could not be read. Raises Unreadable for a column without numbers.
     """
@@ -217,7 +217,7 @@ def solve_cells(
 def _doubles(
     cells: "pl.DataFrame", layout: Layout
 ) -> "tuple[dict[str, pl.Series], dict[int, str], set[str]]":
-    """The inputs by name, the first error of each bad row, and the words that stand for empty cells.
+    """Return the inputs by name, the first error of each bad row, and the words that stand for empty cells.
 
     An input is null where its cell is empty or wrong.
     """
@@ -250,7 +250,7 @@ def _doubles(
 
 
 def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
-    """The double nearest to each cell of a column, in SI units; null where only `_double` can tell."""
+    """Return the double nearest to each cell of a column, in SI units; null if only `_double` can tell."""
     import polars as pl
 
     factor = heading.factor
@@ -270,7 +270,7 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
 
 
 def _odd_cells(cells: "pl.Series", doubles: "pl.Series") -> dict[int, Any]:
-    """The cells, by row, that may not be equal to the doubles that polars read."""
+    """Return the cells, by row, that may not be equal to the doubles that polars read."""
     import polars as pl
 
     text = cells.dtype == pl.String
@@ -284,12 +284,12 @@ def _odd_cells(cells: "pl.Series", doubles: "pl.Series") -> dict[int, Any]:
 
 
 def _double(heading: Heading, cell: str | float, comma: bool) -> float:
-    """A cell as the double nearest to it, in SI units. Raises SceneError."""
+    """Return a cell as the double nearest to it, in SI units. Raises SceneError."""
     name = heading.name
     if isinstance(cell, str):
         exact = read_plain(name, cell, pointed(name, cell, comma))
     else:
-        read_value(name, cell)  # raises where it is NaN, or infinite and must not be
+        read_value(name, cell)  # raises if it is NaN, or infinite and must not be
         exact = Fraction(cell) if isfinite(cell) else inf
     if exact == inf and parameter_of(name).inf:
         return inf
@@ -300,13 +300,13 @@ def _double(heading: Heading, cell: str | float, comma: bool) -> float:
 
 
 def _reasons(cells: "pl.DataFrame", layout: Layout) -> list[str]:
-    """The errors of rows that are no scenes."""
+    """Return the errors of rows that are no scenes."""
     why = cache(partial(_why, layout))  # as many rows may be alike
     return [why(row) for row in cells.iter_rows()]
 
 
 def _why(layout: Layout, row: Sequence[Any]) -> str:
-    """The error of a row, in the words of `solve`. It quotes numbers as they were typed."""
+    """Return the error of a row, in the words of `solve`. It quotes numbers as they were typed."""
     cells: dict[str, Given | None] = {}
     for heading, cell in zip(layout.headings, row, strict=True):
         text = pointed(heading.name, cell, layout.comma) if isinstance(cell, str) else cell

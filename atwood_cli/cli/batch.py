@@ -106,7 +106,7 @@ def batch(
 
 
 def _stamp(path: str) -> tuple[int, int] | None:
-    """The identity of a file and the time of its last change; None if there is no file."""
+    """Return the identity of a file and the time of its last change; None if there is no file."""
     try:
         about = os.stat(path)
         return about.st_ino, about.st_mtime_ns

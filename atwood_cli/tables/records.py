@@ -86,7 +86,7 @@ class Csv:
         self._line += header.count("\n")
 
     def pieces(self, headings: Sequence[Heading]) -> Iterator[Piece]:
-        """The records below the header. Raises Unreadable."""
+        """Yield the records below the header. Raises Unreadable."""
         while text := self._text[self._at :] or next(self._texts, ""):
             self._text, self._at = text, 0
             if piece := self._in_bulk(headings):
@@ -97,7 +97,7 @@ class Csv:
                 yield from self._by_csv(headings)
 
     def _in_bulk(self, headings: Sequence[Heading]) -> Piece | None:
-        """The records of the text if all of them are plain, else None."""
+        """Return the records of the text if all of them are plain, else None."""
         import polars as pl
 
         text = self._text
@@ -113,7 +113,7 @@ class Csv:
         return Piece(lines, frame, {}, len(text))
 
     def _by_csv(self, headings: Sequence[Heading]) -> Iterator[Piece]:
-        """The records from here to the first that ends where a text ends."""
+        """Yield the records from here to the first that ends where a text ends."""
         import polars as pl
 
         width = len(self.columns)
@@ -144,7 +144,7 @@ class Csv:
             yield piece()
 
     def _records(self) -> Iterator[tuple[str, list[str]]]:
-        """The rows that are not blank, with their cells, up to the first that ends where a text ends."""
+        """Yield rows that are not blank, with their cells, up to the first that ends where a text ends."""
         taken: list[str] = []
 
         def lines() -> Iterator[str]:
@@ -171,7 +171,7 @@ class Csv:
             raise self._refused(str(error)) from None
 
     def _refused(self, error: str) -> Unreadable:
-        """The error for a row whose quotation marks are wrong, by the error of `csv`."""
+        """Return the error for a row whose quotation marks are wrong, by the error of `csv`."""
         row = f"the row that begins in line {self._line}"
         if "end of data" in error:
             return Unreadable(f"a quotation mark is left open in {row}, or the file is truncated")
@@ -198,14 +198,14 @@ class Csv:
         return error
 
     def _written(self, cells: Sequence[str]) -> str:
-        """Cells as a row of the table, in quotation marks where they need them."""
+        """Cells as a row of the table, in quotation marks if they need them."""
         buffer = StringIO()
         csv.writer(buffer, delimiter=self.separator, lineterminator="").writerow(cells)
         return buffer.getvalue()
 
 
 def _first_row(text: str, separator: str) -> list[str]:
-    """The cells of the first row that is not blank, if the table has that separator."""
+    """Return the cells of the first row that is not blank, if the table has that separator."""
     rows = csv.reader(StringIO(text, newline="\n"), delimiter=separator)
     try:
         return next((cells for cells in rows if len(cells) > 1 or "".join(cells).strip()), [])
@@ -260,7 +260,7 @@ def read_ndjson(
 
 
 def _object(raw: bytes, line: str) -> dict[str, object]:
-    """The object in a line, with its numbers as texts. Raises Unreadable."""
+    """Return the object in a line, with its numbers as texts. Raises Unreadable."""
     why = "it is no object"
     try:
         raw.decode()

@@ -44,7 +44,7 @@ class Unreadable(Exception):
 
 
 def read_format(given: str | None, path: str) -> str:
-    """The format named, or else the format of the suffix; CSV for a stream, a pipe or a device.
+    """Return the format named, or else the format of the suffix; CSV for a stream, a pipe or a device.
 
     A packed file has two suffixes, of which the first counts. Raises SceneError.
     """
@@ -70,17 +70,17 @@ def check_format(path: str, kind: str) -> None:
 
 
 def is_stream(path: str) -> bool:
-    """Whether the path leads to stdin, stdout, a pipe or a device, not to a file."""
+    """Return whether the path leads to stdin, stdout, a pipe or a device, not to a file."""
     return path == STDIN or (os.path.exists(path) and not (os.path.isfile(path) or os.path.isdir(path)))
 
 
 def is_packed(path: str) -> bool:
-    """Whether a file is compressed, by its suffix."""
+    """Return whether a file is compressed, by its suffix."""
     return Path(path).suffix.lower() == PACKED
 
 
 def opened(source: str, stack: ExitStack) -> IO[bytes]:
-    """The file of that name, unpacked if it is compressed, or stdin. Raises Unreadable."""
+    """Return the file of that name, unpacked if it is compressed, or stdin. Raises Unreadable."""
     if source == STDIN:
         if sys.stdin is None:
             raise Unreadable("it is closed")
@@ -94,12 +94,12 @@ def opened(source: str, stack: ExitStack) -> IO[bytes]:
 
 
 def cannot_read(source: str, why: Unreadable) -> OSError:
-    """The error for a file, or stdin, that is no table."""
+    """Return the error for a file, or stdin, that is no table."""
     return OSError(f"cannot read {'stdin' if source == STDIN else shortened(source, LONGEST_NAME)}: {why}")
 
 
 def blocks_of(file: IO[bytes]) -> Iterator[bytes]:
-    """The bytes of a file or a pipe in blocks; bytes of a pipe wait a moment at most. Raises Unreadable."""
+    """Yield the bytes of a file or a pipe in blocks; a pipe waits a moment at most. Raises Unreadable."""
     read = file.read if file.seekable() else partial(_what_comes, file)
     while True:
         try:
@@ -113,7 +113,7 @@ def blocks_of(file: IO[bytes]) -> Iterator[bytes]:
 
 
 def _what_comes(pipe: Any, most: int) -> bytes:
-    """The bytes that come through a pipe within a moment, after the first; none at its end."""
+    """Return the bytes that come through a pipe within a moment, after the first; none at its end."""
     block: bytes = pipe.read1(most)
     end = monotonic() + MOMENT
     with suppress(OSError):  # on Windows, only sockets can be asked
@@ -147,14 +147,14 @@ def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[tuple[bytes, i
 
 
 def too_long(line: int) -> Unreadable:
-    """The error for a row that is too long, as an open quotation mark makes it."""
+    """Return the error for a row that is too long, as an open quotation mark makes it."""
     return Unreadable(
         f"the row that begins in line {line} is longer than {LONGEST_RECORD >> 20} MB, the most taken"
     )
 
 
 def decoded(text: bytes, line: int) -> str:
-    """The text of bytes that begin in that line of the file. Raises Unreadable."""
+    """Return the text of bytes that begin in that line of the file. Raises Unreadable."""
     try:
         return text.decode()
     except UnicodeDecodeError as error:
