@@ -146,6 +146,13 @@ def test_a_cell_is_a_number_where_solve_takes_it_for_one(batch: Batch) -> None:
         assert taken == (not error) or error.endswith(BEYOND) or "carries an uncertainty" in error, word
 
 
+def test_a_number_too_small_for_a_double_is_no_0(batch: Batch) -> None:
+    """As 0 it would make another scene, in silence."""
+    cells = [f"{digit}e-400" for digit in range(10)]
+    errors = errors_of(batch("\n".join(["m1,m2,M", *(f"1,3,{cell}" for cell in cells), ""])))
+    assert errors == ["", *(f"M '{cell}' {BEYOND}" for cell in cells[1:])]
+
+
 # Tables that are none
 
 
