@@ -16,27 +16,38 @@ from .running import HEARD, HOW_TO_PRINT, Atwood, Batch, Ran
 ANYWHERE = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture]
 settings.register_profile("every-digit", deadline=None, suppress_health_check=ANYWHERE)
 settings.register_profile("usual", settings.get_profile("every-digit"), max_examples=25)
+settings.register_profile("quick", settings.get_profile("every-digit"), max_examples=4)
+SLOW = (
+    "arrays columns contact explain fit fuzz kills parquet sweep terminal ties tradeoff uncertainty".split()
+)
+"""What --quick leaves out: transcripts and doors see most faults that these modules see, and sooner."""
 
 
 def many(most: int) -> int:
-    """That many with --every-digit, and otherwise a quarter of them."""
+    """That many with --every-digit, a quarter of them usually, and a twenty-fifth with --quick."""
     return most * settings().max_examples // 100
 
 
 def examples(most: int) -> settings:
     """So many examples of what Hypothesis draws."""
-    return settings(max_examples=many(most))
+    return settings(max_examples=max(1, many(most)))
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--every-digit", action="store_true", help="Try all scenes, rows and examples, not a quarter of them."
     )
+    parser.addoption("--quick", action="store_true", help="Try few of them, and leave out what is slow.")
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    return True if config.getoption("quick") and collection_path.stem.removeprefix("test_") in SLOW else None
 
 
 def pytest_configure(config: pytest.Config) -> None:
     """What the suite starts depends on nothing that a shell has set: PYTHONUNBUFFERED hides what users meet."""
-    settings.load_profile("every-digit" if config.getoption("every_digit") else "usual")
+    profiles = [name for name in ("every-digit", "quick") if config.getoption(name.replace("-", "_"))]
+    settings.load_profile(next(iter(profiles), "usual"))
     told = [name for name in os.environ if name.startswith("PYTHON") and name != "PYTHONPATH"]
     for name in {*told, *HOW_TO_PRINT} & {*os.environ}:
         del os.environ[name]
