@@ -1,5 +1,6 @@
 """The outputs that are kept in files, and what prints each: python -m tests.regenerate brings them up to date.
 
+It stops if the exit status of a transcript has changed, or if it prints nothing any more, until told `--accept`.
 `python -m tests.regenerate measured` measures the table and the picture of `examples/tradeoff.md` anew, in minutes.
 """
 
@@ -164,14 +165,42 @@ def measure() -> None:
     page.write_text(fresh, encoding="utf-8", newline="\n")
 
 
+def ends_otherwise(before: str, after: str) -> bool:
+    """Whether the exit status of a transcript has changed, or nothing is printed any more."""
+
+    def end(text: str) -> tuple[list[str], bool]:
+        statuses = re.findall(r"^(?:\[|status )(\d+)\]?$", text, re.MULTILINE)
+        return statuses, bool(re.sub(r"^\$ .*\n|^\[\d+\]\n", "", text, flags=re.MULTILINE).strip())
+
+    return before.count("\n") > 1 and end(before) != end(after)
+
+
+def regenerate(accept: bool) -> int:
+    """Write what has changed, unless a transcript ends otherwise and nobody has accepted that; returns a status."""
+    changed = [
+        (kept, fresh)
+        for kept in KEPT
+        if not kept.lacks and essence(fresh := kept.today()) != essence(kept.text)
+    ]
+    doubtful = [fresh for kept, fresh in changed if ends_otherwise(kept.text, fresh)]
+    if doubtful and not accept:
+        print(
+            *doubtful,
+            "Their exit status has changed, or they print nothing: mend them, or give --accept.",
+            sep="\n",
+        )
+        return 1
+    for kept, fresh in changed:
+        page = kept.file.read_text(encoding="utf-8") if kept.file.exists() else ""
+        kept.file.write_text(page.replace(kept.text, fresh, 1), encoding="utf-8", newline="\n")
+        print(kept.file.relative_to(TOP))
+    for file, lacks in {kept.file: kept.lacks for kept in KEPT if kept.lacks}.items():
+        print(f"{file.relative_to(TOP)}: left as it was, without {lacks}")
+    return 0
+
+
 if __name__ == "__main__":
     if sys.argv[1:] == ["measured"]:
         measure()
-    for kept in [] if sys.argv[1:] else KEPT:
-        name = kept.file.relative_to(TOP)
-        if kept.lacks:
-            print(f"{name}: left as it was, without {kept.lacks}")
-        elif essence(fresh := kept.today()) != essence(kept.text):
-            page = kept.file.read_text(encoding="utf-8") if kept.file.exists() else ""
-            kept.file.write_text(page.replace(kept.text, fresh, 1), encoding="utf-8", newline="\n")
-            print(name)
+    else:
+        sys.exit(regenerate("--accept" in sys.argv[1:]))

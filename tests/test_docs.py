@@ -14,7 +14,7 @@ from atwood_cli.model.units import UNITS
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS
 from atwood_cli.tradeoff.tradeoff_page import LEGEND
 
-from .regenerate import KEPT, SCRIPTS, TOP, Kept, essence
+from .regenerate import CASES, KEPT, SCRIPTS, TOP, Kept, ends_otherwise, essence
 from .running import labels, process
 
 PAGES = {
@@ -40,6 +40,21 @@ def test_what_is_kept_is_what_is_printed_today(kept: Kept) -> None:
     assert essence(kept.today()) == essence(kept.text), "after a look: python -m tests.regenerate"
 
 
+@pytest.mark.parametrize("page", CASES, ids=lambda page: page.stem)
+def test_a_transcript_ends_as_its_words_say(page: Path) -> None:
+    """Wrong usage prints nothing on stdout, what fails is said in a sentence, and what is done has no error."""
+    for kept in (kept for kept in KEPT if kept.file == page):
+        line, *shown = kept.text.splitlines()
+        status = re.fullmatch(r"\[(\d+)\]", shown[-1]) if shown else None
+        said = [words for words in shown if words.startswith("atwood: ")]
+        if status is None:
+            assert not any(words.startswith("atwood: cannot") for words in said), line
+        elif status[1] == "2":
+            assert said == shown[:-1], line
+        else:
+            assert said, line
+
+
 @pytest.mark.parametrize("name", PYTHON)
 def test_the_python_in_the_pages_runs(name: str) -> None:
     examples = doctest.DocTestParser().get_doctest(PYTHON[name], {}, name, name, 0)
@@ -47,6 +62,20 @@ def test_the_python_in_the_pages_runs(name: str) -> None:
     report: list[str] = []
     result = doctest.DocTestRunner().run(examples, out=report.append)
     assert result.failed == 0, "".join(report)
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "otherwise"),
+    [
+        ("$ a\nx\n[1]\n", "$ a\ny\n[1]\n", False),
+        ("$ a\nx\n[1]\n", "$ a\nx\n[2]\n", True),
+        ("$ a\nx\n[1]\n", "$ a\n", True),
+        ("$ a\nx\nstatus 1\n", "$ a\nx\nstatus 0\n", True),
+        ("$ a\n", "$ a\nx\n[1]\n", False),  # a command that was just written
+    ],
+)
+def test_what_ends_otherwise_is_not_written_unasked(before: str, after: str, otherwise: bool) -> None:
+    assert ends_otherwise(before, after) == otherwise
 
 
 def anchors(page: Path) -> set[str]:
