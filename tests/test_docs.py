@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from atwood_cli.model.scene import BODIES
 from atwood_cli.model.units import UNITS
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS
 from atwood_cli.tradeoff.tradeoff_page import LEGEND
@@ -178,6 +179,8 @@ def test_a_page_lists_every_unit() -> None:
         assert re.search(
             rf"^\| an? {name}.*? \| {', '.join(units)}[ ,]", PAGES["examples/hoist.md"], re.MULTILINE
         ), name
+    words = " ".join(PAGES["examples/hoist.md"].split())
+    assert ", ".join(f"{body} {gravity}" for body, gravity in BODIES.items()) in words
 
 
 def test_every_example_is_tested() -> None:
