@@ -114,6 +114,8 @@ class Formulas:
 class Symbols(Formulas):
     """The part of `Arithmetic` that the derivations need; inputs are symbols."""
 
+    pi = Formula("symbol", Symbol("π", "ar.pi"))
+
     def __init__(self, inputs: Sequence[Symbol]) -> None:
         self.inputs = inputs
 
