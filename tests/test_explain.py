@@ -229,7 +229,7 @@ def check_laws(found: Explanation, case: Case, env: dict[str, Any]) -> None:
 def check_lesson(answers: Answers, names: tuple[str, ...]) -> None:
     """Each quantity that exists is derived; each symbol is given, or derived above or by its law; no more."""
     full, lesson = explain(answers), explain(answers, names)
-    known = {symbol.name for symbol in Derivation(answers).inputs if symbol.name not in derived(full)}
+    known = {*Derivation(answers).inputs} - derived(full)
     known |= {"π", "φ"} | {side for one in all_equations(full) for side in [symbol_of(one)] if not one.needs}
     known |= {"c"} if answers.case.locked else set()  # (33) is solved for it
     labels = {one.label for one in all_equations(lesson)}

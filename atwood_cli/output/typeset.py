@@ -1,4 +1,4 @@
-"""A derivation is set in type: plain text for a terminal, Markdown with LaTeX for a handout.
+"""Set a derivation in type: plain text for a terminal, Markdown with LaTeX for a handout.
 
 The first half writes formulas, with symbols or with numbers. The second half makes a page of sentences and
 equations.
@@ -138,12 +138,8 @@ def as_text(given: Iterable[str], explanation: Explanation, width: int) -> Itera
     """
     labels = [part.label for step in explanation.steps for part in step.body if isinstance(part, Equation)]
     label_width = max(map(len, labels), default=0)
-    above = [
-        (scene(given), ""),
-        *((words, "bold") for words in explanation.answer),
-        (explanation.reading, ""),
-    ]
-    for words, style in above:
+    for words in (scene(given), *explanation.answer, explanation.reading):
+        style = "bold" if words in explanation.answer else ""
         yield from ((line, style) for line in wrapped(in_text(words), width))
     for number, step in enumerate(explanation.steps, 1):
         yield "", ""
@@ -179,7 +175,7 @@ def chain(equation: Equation, latex: bool = False) -> list[str]:
     unit, result = equation.unit, equation.result
     before, after = list(equation.signs)
     if latex:
-        unit = unit and rf"\ \mathrm{{{unit.translate(UNITS_IN_LATEX)}}}"
+        unit = rf"\ \mathrm{{{unit.translate(UNITS_IN_LATEX)}}}" if unit else ""
         before, after, result = in_math(before), in_math(after), number_in_latex(result)
     elif unit:
         unit = f" {unit}"
@@ -211,7 +207,7 @@ def _equation_lines(equation: Equation, width: int, label: str) -> list[str]:
 
 def as_markdown(given: Iterable[str], explanation: Explanation) -> Iterator[str]:
     """Yield a page of Markdown, its mathematics in LaTeX between dollars."""
-    yield f"# {explanation.title}"
+    yield "# Atwood's machine, step by step"
     for words in (scene(given), *explanation.answer, explanation.reading):
         yield ""
         yield in_markdown(words)

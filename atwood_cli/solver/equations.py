@@ -1,7 +1,6 @@
-"""The equations of a scene, each as the model has it, with numbers put in.
+"""Write the equations of a scene, each as the model has it, with numbers put in.
 
-No equation is written here and nothing is computed: an equation is what the model does with symbols
-(`symbolic`), and the numbers are the solver's.
+An equation is what the model does with symbols (`symbolic`), and the numbers are the solver's.
 """
 
 from __future__ import annotations
@@ -55,14 +54,10 @@ Part = str | Equation
 MOTION = ("acceleration", "tension_1", "tension_2")
 """Quantities that a derivation gives first, and by which simpler models are compared."""
 UNITS = {
-    name: unit
-    for unit, names in {
-        "kg": "transfer limiting_transfer drive limiting_drive M c b",
-        "N": "light_tension heavy_tension difference f_axle",
-        "m/s²": "magnitude a |a| g",
-        "rad": "phi alpha",
-    }.items()
-    for name in names.split()
+    **dict.fromkeys(("transfer", "limiting_transfer", "drive", "limiting_drive", "M", "c", "b"), "kg"),
+    **dict.fromkeys(("light_tension", "heavy_tension", "difference", "f_axle"), "N"),
+    **dict.fromkeys(("magnitude", "a", "|a|", "g"), "m/s²"),
+    **dict.fromkeys(("phi", "alpha"), "rad"),
 }
 """Units of the model's intermediate values, by name, and of inputs, by symbol."""
 INTERMEDIATE_SYMBOLS = {
@@ -77,13 +72,8 @@ INTERMEDIATE_SYMBOLS = {
     "critical_pulley_mass": "M*",
 }
 """Symbols of what equations refer to, by the model's names."""
-LABELS = {
-    "acceleration": "",
-    "light_tension": "(1)",
-    "tension_ratio": "",
-    "k1": "(26)",
-    "massless_verge": "(27)",
-}
+LABELS = {"acceleration": "", "light_tension": "(1)", "tension_ratio": "", "massless_verge": "(27)"}
+LABELS |= dict.fromkeys(("k1", "limiting_k1"), "(26)")
 """Numbers of equations that the table of quantities does not have."""
 WITHOUT_AXLE_FRICTION = {"f": 0, "b": 0, "D": 1}
 """Values of letters of `physics` if the axle has no friction."""
@@ -102,8 +92,7 @@ class Derivation:
         self.shown: set[str] = set()
         self.light, self.heavy = ("2", "1") if self.case.sign < 0 else ("1", "2")
         self.symbols = self._symbols()
-        values = self._values()
-        self.inputs = [Symbol(name, value) for name, value in values.items() if value is not None]
+        self.inputs = {name: Symbol(name, x) for name, x in self._values().items() if x is not None}
         motion = self.case.motion
         self.found = {"c", "M"} if motion.finds == "M" else {motion.finds}
         if motion.time is not None:
@@ -157,12 +146,11 @@ class Derivation:
 
     def letter(self, letter: str) -> Formula:
         """Return the symbol for a letter of `physics`, or its value without axle friction."""
-        called = {"l": f"m{self.light}", "h": f"m{self.heavy}", "a": self.symbols["magnitude"], "f": "f_axle"}
-        name = called.get(letter, letter)
-        given = {symbol.name: symbol for symbol in self.inputs}
-        if letter in WITHOUT_AXLE_FRICTION and name not in given:
+        masses = {"l": f"m{self.light}", "h": f"m{self.heavy}"}
+        name = {**masses, "a": self.symbols["magnitude"], "f": "f_axle"}.get(letter, letter)
+        if letter in WITHOUT_AXLE_FRICTION and name not in self.inputs:
             return formula(WITHOUT_AXLE_FRICTION[letter])
-        return Formula("symbol", given.get(name) or Symbol(name, name))
+        return Formula("symbol", self.inputs.get(name, Symbol(name, name)))
 
     def record(self, law: Callable[..., Any], letters: str) -> Formula:
         """Return the formula that an equation of `physics` gives on symbols."""
@@ -171,37 +159,27 @@ class Derivation:
 
     def _formula(self, name: str) -> Formula:
         """Return the model's formula for a quantity, in the symbols of inputs and of other quantities."""
-        arithmetic: Any = Symbols(self.inputs)
-        known = {
-            other: Formula("symbol", Symbol(symbol, other))
-            for other, symbol in self.symbols.items()
-            if other != name
-        }
+        arithmetic: Any = Symbols([*self.inputs.values()])
+        known = {other: Formula("symbol", Symbol(symbol, other)) for other, symbol in self.symbols.items()}
+        known.pop(name, None)
         recorded: Formula = getattr(Machine(self.case, arithmetic, known), name)
         return recorded
 
     def _label(self, name: str) -> str:
         """Return the paper's number for an equation in this regime."""
         case, motion = self.case, QUANTITIES["acceleration"]
-        grips = case.regime == "no-slip"
-        if name == "magnitude":
-            return motion.equation if grips else motion.equation_in_slip or ""
-        if name == "difference" and grips:
-            return "(1)" if case.stands else "(3)"
-        if name == "difference" or (name == "limiting_k1" and not case.slide_measured):
-            return "(26)"
-        if name == "limiting_k1":
-            return "(1)"
+        labels = {**LABELS, "magnitude": motion.equation_in_slip or "", "difference": "(26)"}
+        if case.regime == "no-slip":
+            labels |= {"magnitude": motion.equation, "difference": "(1)" if case.stands else "(3)"}
+        if case.slide_measured:
+            labels["limiting_k1"] = "(1)"
         if name == "critical_heavier_mass" and self.slips_at_rest:
-            name = "least_heavier_mass"
-        if name in LABELS or name not in QUANTITIES:
-            return LABELS.get(name, "")
-        return QUANTITIES[name].equation
+            labels["critical_heavier_mass"] = QUANTITIES["least_heavier_mass"].equation
+        return labels.get(name, QUANTITIES[name].equation if name in QUANTITIES else "")
 
     def by(self, name: str, law: Callable[..., Any], letters: str, label: str = "") -> Equation:
         """Return the equation of an input that follows from others, or of a quantity, by a law."""
-        given = {symbol.name: symbol for symbol in self.inputs}
-        result = given.get(name) or Symbol(self.symbol(name), name)
+        result = self.inputs[name] if name in self.inputs else Symbol(self.symbol(name), name)
         return self._worked_out(result, self.record(law, letters), label)
 
     def _worked_out(self, result: Symbol, recorded: Formula, label: str) -> Equation:

@@ -1,4 +1,4 @@
-"""The derivation for a scene, step by step in the paper's order.
+"""Derive what a scene determines, step by step in the paper's order.
 
 `derivation.md` has the sentences, with the equations below them. Here its conditions are decided, and each
 paragraph that applies is filled in. `typeset` puts it on a page.
@@ -21,7 +21,6 @@ from operator import mul, truediv
 from typing import Any, NamedTuple
 
 from ..model import physics
-from ..model.digits import SHOWN_DIGITS
 from .answers import Answers
 from .equations import GUARD_DIGITS, MOTION, Derivation, Equation, Part
 from .messages import remarks, verdict
@@ -34,21 +33,20 @@ class Step(NamedTuple):
     body: list[Part]
 
 
+class Paragraph(NamedTuple):
+    """Sentences of a step, and the equations that they introduce."""
+
+    title: str
+    sentences: list[str]
+    equations: list[Equation]
+
+
 class Explanation(NamedTuple):
     """The answer, how to read what follows, and the steps to the answer."""
 
     answer: list[str]
     reading: str
     steps: list[Step]
-    title: str = "Atwood's machine, step by step"
-
-
-class Paragraph(NamedTuple):
-    """Sentences, and the equations that they introduce."""
-
-    title: str
-    sentences: list[str]
-    equations: list[Equation]
 
 
 def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
@@ -57,34 +55,34 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
     Digits are those of ``answers``, or as many as tables show.
     """
     answers = answers.shown
-    derivation, digits = Derivation(answers), answers.digits or SHOWN_DIGITS
-    paragraphs = [*_paragraphs(derivation)]
-    names, notes = [name for name in only if name != "regime"], []
+    derivation = Derivation(answers)
+    digits, paragraphs = derivation.digits, [*_paragraphs(derivation)]
+    names = [name for name in only if name != "regime"]
     if only:
-        wanted = {SHOWN_BY.get(name, name) for name in names if answers[name] is not None}
+        wanted = [name for name in names if derivation.exists(name)]
         if "regime" in only:
-            wanted |= (
-                {"mu_verge"} if derivation.case.pulley_known else {"least_heavier_mass", "massless_verge"}
+            wanted += (
+                ["mu_verge"] if derivation.case.pulley_known else ["least_heavier_mass", "massless_verge"]
             )
         paragraphs = _needed(paragraphs, {*map(derivation.symbol, wanted)})
     else:
         names = [*answers.found, *(name for name in MOTION if name not in answers.found)]
-        notes = remarks(answers)
-    values = [derivation.say(name) for name in names if derivation.exists(name)]
+    answer = [verdict(answers)]
+    if values := [derivation.say(name) for name in names if derivation.exists(name)]:
+        answer.append(f"{', '.join(values)}.")
+    if not only:
+        answer += remarks(answers)
     reading = (
         f"The sign = is exact; ≈ means rounded to {digits} significant digits, or {digits + GUARD_DIGITS}"
         " for numbers put in. Equation numbers are those of de Oliveira and Lemos, Force and torque of a"
         " string on a pulley, arXiv:1706.10139."
     )
-    answer = [verdict(answers), *([f"{', '.join(values)}."] if values else []), *notes]
     steps: dict[str, list[Part]] = {}
     for title, sentences, equations in paragraphs:
         steps.setdefault(title, []).extend([*sentences, *equations])
     return Explanation(answer, reading, [Step(title, body) for title, body in steps.items()])
 
 
-SHOWN_BY = {"acceleration": "magnitude"}
-"""The name of what is derived for a quantity if its own symbol is in no equation."""
 CITATION = re.compile(r"\(\d+\)")
 LINE = re.compile(r"^( *)(?:\[(.*?)\] )?(.+)$", re.MULTILINE)
 LAW = re.compile(r"([a-z_]{3,})\((.*)\)")
@@ -148,9 +146,9 @@ def _equation(derivation: Derivation, line: str) -> Iterator[Equation]:
     if not right:
         yield from derivation.values(left, follows)
     elif law := LAW.fullmatch(right):
-        yield derivation.by(left, _function(law[1]), law[2], label)
+        yield derivation.by(left, FUNCTIONS[law[1]], law[2], label)
     elif law := LAW.fullmatch(left):
-        yield Equation(label, derivation.letter(right), derivation.record(_function(law[1]), law[2]))
+        yield Equation(label, derivation.letter(right), derivation.record(FUNCTIONS[law[1]], law[2]))
     else:
         yield Equation(label, left, right, follows)
 
@@ -160,17 +158,13 @@ def _holds(condition: str, conditions: Mapping[str, bool]) -> bool:
     return conditions[condition.removeprefix("not ")] != condition.startswith("not ")
 
 
-def _function(name: str) -> Callable[..., Any]:
-    """Return the function of `physics`, or of `FUNCTIONS`."""
-    return FUNCTIONS[name] if name in FUNCTIONS else getattr(physics, name)
-
-
 FUNCTIONS: Mapping[str, Callable[..., Any]] = {
+    **vars(physics),
     "product": mul,
     "quotient": truediv,
     "inertia_at_the_rim": lambda I, R: I / (R * R),
 }
-"""Functions for equations that `physics` does not have."""
+"""Functions that equations of `derivation.md` name."""
 
 
 def _titles(derivation: Derivation) -> list[str]:
@@ -239,9 +233,7 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
         "mu is positive": bool(scene.mu),
         "time is given": motion.time is not None,
         "drop is given": motion.drop is not None,
-        "finds M": motion.finds == "M",
-        "finds g": motion.finds == "g",
-        "finds mu_k": case.slide_measured,
+        **{f"finds {name}": motion.finds == name for name in ("M", "g", "mu_k")},
         "finds the heavier mass": motion.finds == f"m{derivation.heavy}",
         "finds the lighter mass": motion.finds == f"m{derivation.light}",
     }
@@ -280,19 +272,18 @@ def _behaviour(derivation: Derivation) -> dict[str, bool]:
 def _critical_masses(derivation: Derivation) -> dict[str, bool]:
     """Decide which critical masses exist, and at which of them the pulley is at rest."""
     case, answers = derivation.case, derivation.answers
-    names = {"M*": "critical_pulley_mass", "m*": "critical_heavier_mass", "l*": "critical_lighter_mass"}
-    exists = {
-        symbol: case.scene.mu is not None and answers[name] is not None for symbol, name in names.items()
-    }
-    exists["l*"] = exists["l*"] and not case.turns_freely
-    at_rest = {
-        "m*": exists["m*"] and derivation.slips_at_rest,
-        "l*": exists["l*"] and case.stands_until_it_slips,
-    }
+    names = [f"critical_{name}_mass" for name in ("pulley", "heavier", "lighter")]
+    pulley, heavier, lighter = (answers[name] is not None for name in names)
+    lighter = lighter and not case.turns_freely
+    heavier_at_rest = heavier and derivation.slips_at_rest
+    lighter_at_rest = lighter and case.stands_until_it_slips
     return {
-        **{f"{symbol} exists": there for symbol, there in exists.items()},
-        **{f"{symbol} at rest": rests for symbol, rests in at_rest.items()},
-        "verge by the ratio": any(there and not at_rest.get(symbol) for symbol, there in exists.items()),
+        "M* exists": pulley,
+        "m* exists": heavier,
+        "l* exists": lighter,
+        "m* at rest": heavier_at_rest,
+        "l* at rest": lighter_at_rest,
+        "verge by the ratio": pulley or heavier != heavier_at_rest or lighter != lighter_at_rest,
     }
 
 
