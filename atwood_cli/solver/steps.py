@@ -98,12 +98,17 @@ def _needed(paragraphs: Sequence[Paragraph], wanted: set[str]) -> list[Paragraph
     for i, paragraph in enumerate(paragraphs):
         for equation in paragraph.equations:
             first.setdefault(equation.label, i)
+    values = {
+        equation.left for paragraph in paragraphs for equation in paragraph.equations if equation.result
+    }
     kept, before = dict[tuple[int, int], Equation](), -1
     while len(kept) > before:
         before = len(kept)
         for i, (_, sentences, equations) in enumerate(paragraphs):
             for j, equation in enumerate(equations):
-                if equation.left in wanted or (first[equation.label] == i and equation.label in wanted):
+                is_law = not equation.result and equation.left in values
+                is_cited = first[equation.label] == i and equation.label in wanted
+                if is_cited or (equation.left in wanted and not is_law):
                     kept[i, j] = equation
                     wanted |= equation.needs.union(CITATION.findall(" ".join([equation.label, *sentences])))
     chosen = (
