@@ -138,7 +138,9 @@ def test_every_line_gives_its_result(kind: str) -> None:
 @given(st.sampled_from(sorted(FAMILIES)), st.integers(0, 10**9), st.sampled_from([None, 2, 17]))
 def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits: int | None) -> None:
     scene = Scene.read(next(scenes(family, 1, seed)))
-    found = explain(Answers(scene, digits))
+    answers = Answers(scene, digits)
+    found = explain(answers)
+    check_lesson(answers, (NAMES[seed % len(NAMES)], "tension_1"))
     check_results(found, scene, digits or 6)
     for equation in equations(found):
         check_numbers(equation, digits or 6)

@@ -3,9 +3,8 @@
 `derivation.md` has the sentences, with the equations below them. Here its conditions are decided, and each
 paragraph that applies is filled in. `typeset` puts it on a page.
 
-A paragraph of `derivation.md` is sentences, each in a line, and indented equations. Words in brackets before
-either are conditions, which must all hold (`_conditions`). A paragraph with equations goes if none is left.
-An equation is one of
+A paragraph of `derivation.md` is sentences, each in a line, and indented equations. Words in brackets are
+conditions, which must all hold. A paragraph with equations goes if none is left. An equation is one of
 - `tension_ratio`: a value of the model, with its formula and numbers, if it exists and was not shown;
 - `half_sine from φ`: a value without its formula, and the symbols that it rests on;
 - `(4) c = rim_mass(l h a g b)`: an input that follows by a function of `physics`, with numbers put in;
@@ -54,9 +53,8 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
 
     Digits are those of ``answers``, or as many as tables show.
     """
-    answers = answers.shown
-    derivation = Derivation(answers)
-    digits, paragraphs = derivation.digits, [*_paragraphs(derivation)]
+    derivation = Derivation(answers.shown)
+    answers, digits, paragraphs = answers.shown, derivation.digits, [*_paragraphs(derivation)]
     names = [name for name in only if name != "regime"]
     if only:
         wanted = [name for name in names if derivation.exists(name)]
@@ -92,28 +90,25 @@ def _needed(paragraphs: Sequence[Paragraph], wanted: set[str]) -> list[Paragraph
     """Keep the equations that give the symbols wanted, and all that these rest on.
 
     An equation rests on its symbols, and on the equations whose numbers its label or the sentences before
-    it cite: a number refers to the first paragraph that has it.
+    it cite: a number refers to the first paragraph that has it. A law gives a symbol if no value does.
     """
     first: dict[str, int] = {}
     for i, paragraph in enumerate(paragraphs):
         for equation in paragraph.equations:
             first.setdefault(equation.label, i)
-    values = {
-        equation.left for paragraph in paragraphs for equation in paragraph.equations if equation.result
-    }
+    valued = {equation.left for _, _, equations in paragraphs for equation in equations if equation.result}
     kept, before = dict[tuple[int, int], Equation](), -1
     while len(kept) > before:
         before = len(kept)
         for i, (_, sentences, equations) in enumerate(paragraphs):
             for j, equation in enumerate(equations):
-                is_law = not equation.result and equation.left in values
-                is_cited = first[equation.label] == i and equation.label in wanted
-                if is_cited or (equation.left in wanted and not is_law):
+                gives = equation.left in wanted and (equation.result or equation.left not in valued)
+                if gives or (first[equation.label] == i and equation.label in wanted):
                     kept[i, j] = equation
                     wanted |= equation.needs.union(CITATION.findall(" ".join([equation.label, *sentences])))
     chosen = (
-        paragraph._replace(equations=[each for j, each in enumerate(paragraph.equations) if (i, j) in kept])
-        for i, paragraph in enumerate(paragraphs)
+        Paragraph(title, sentences, [kept[i, j] for j in range(len(equations)) if (i, j) in kept])
+        for i, (title, sentences, equations) in enumerate(paragraphs)
     )
     return [paragraph for paragraph in chosen if paragraph.equations]
 
