@@ -1,7 +1,7 @@
-"""Formulas as an arithmetic: run on symbols, the equations of the model give expression trees.
+"""Record operations: run on symbols, the equations of the model give expression trees.
 
-The same functions that give a number in fractions or enclosures give a `Formula` here, which records the
-operations. It can be written out, with symbols or with numbers.
+The same functions that give a number in fractions or enclosures give a `Formula` here. It can be written
+out, with symbols or with numbers.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Formula:
         return formula(other) / self
 
     def symbols(self) -> set[Symbol]:
-        """The symbols in the formula."""
+        """Return the symbols in the formula."""
         if self.op in ("symbol", "number"):
             return {self.parts[0]} if self.op == "symbol" else set()
         return set().union(*(part.symbols() for part in self.parts))
@@ -72,19 +72,19 @@ Term = Formula | float
 
 
 def formula(part: Term | Fraction) -> Formula:
-    """The formula itself, or the formula of a number."""
+    """Return the formula itself, or the formula of a number."""
     if isinstance(part, Formula):
         return part
     return Formula("number", float(part) if isinstance(part, Fraction) else part)
 
 
 def is_number(part: Term, number: int) -> bool:
-    """Whether a formula is that number, which stands for a limit: a 0 that is added is not written."""
+    """Decide whether a formula is that number, which means a limit: a 0 that is added is not written."""
     return isinstance(part, Formula) and part.op == "number" and bool(part.parts[0] == number)
 
 
 def factors(f: Formula) -> tuple[list[Formula], list[Formula]]:
-    """The factors of a product or quotient, whole numbers first, and those that divide it."""
+    """Return the factors of a product or quotient, whole numbers first, and those that divide it."""
     if f.op not in ("*", "/"):
         return [f], []
     (a, b), (c, d) = map(factors, f.parts)
@@ -97,7 +97,7 @@ def _recorded(function: str) -> Callable[[Any, Formula], Formula]:
 
 
 class Formulas:
-    """The arithmetic of formulas: each function is recorded under its name."""
+    """Record each function under its name, as the arithmetic of formulas."""
 
     def not_negative(self, x: Formula) -> Formula:
         return x
@@ -112,16 +112,17 @@ class Formulas:
 
 
 class Symbols(Formulas):
-    """The part of `Arithmetic` that the derivations need; inputs are symbols."""
+    """Do the part of `Arithmetic` that derivations need, with symbols for inputs."""
+
+    pi = Formula("symbol", Symbol("π", "ar.pi"))
 
     def __init__(self, inputs: Sequence[Symbol]) -> None:
-        self.inputs = inputs
+        self.symbols = {id(symbol.of): symbol for symbol in reversed(inputs)}  # two may be equal
 
     def number(self, q: Fraction | int) -> Formula:
-        """The symbol of an input, found by identity, as two inputs may be equal; or 0 or 1, of a limit."""
-        for symbol in self.inputs:
-            if symbol.of is q:
-                return Formula("symbol", symbol)
+        """Return the symbol of an input, or the 0 or 1 of a limit."""
+        if id(q) in self.symbols:
+            return Formula("symbol", self.symbols[id(q)])
         assert q in (0, 1), f"{q} is no input with a symbol"
         return formula(int(q))
 

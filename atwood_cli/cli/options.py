@@ -259,6 +259,8 @@ def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
         return asked
     if form and not asked:
         return form
+    if options.get("explain") and not asked and page == ".txt":
+        raise SceneError("output", file, f"would hold text; name it {name}.txt, or add --markdown")
     if not asked and page == ".txt":
         raise SceneError("output", file, f"must end in one of {', '.join(forms)}")
     right = name + (FORMS[asked].suffix if asked else page)

@@ -1,6 +1,6 @@
 """`atwood solve`: one scene, as a table, JSON, CSV, bare values, or with its derivation."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Annotated
 
 from ..model.quantities import MEASURED_NAMES, NAMES, read_names
@@ -9,7 +9,7 @@ from ..output.scene_page import beside_bare, csv_record, print_budget, print_tab
 from ..output.text import Forms, Target, cell, said_of_scene, say, show
 from ..solver.answers import Answers, read_answers
 from ..solver.expected import failure, read_condition
-from ..solver.messages import unmarked
+from ..solver.messages import reasons_at, unmarked
 from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Digits, option, quantities, scene_option, takes
 
 
@@ -41,7 +41,7 @@ Budget = Annotated[
     bool, option("Output", "--budget", help="Also print each uncertain input's share of the variance.")
 ]
 Explain = Annotated[
-    bool, option("Output", "--explain", help="Instead, show how it follows, with the numbers put in.")
+    bool, option("Output", "--explain", help="Show the derivation instead, with numbers put in.")
 ]
 Figure = Annotated[
     str | None,
@@ -64,7 +64,7 @@ Any number may carry its standard uncertainty; results then have theirs.
 @takes(
     SCENE,
     OUTPUT,
-    no_effect={"explain": "json csv only budget", "all": "json csv only explain"},
+    no_effect={"explain": "json csv budget", "all": "json csv only explain"},
     needs={"markdown": "explain", "bare": "figure"},
 )
 def solve(
@@ -93,26 +93,33 @@ def solve(
         raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
     if figure is not None:
         _draw(answers, figure, bare, target.force)
+    values = [cell(answers[name]) for name in names]
     forms = Forms(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
-        page=lambda: _explain(answers, markdown) if explain else print_table(answers, all, budget),
+        page=lambda: _explain(answers, names, markdown) if explain else print_table(answers, all, budget),
         notes=lambda: beside_bare(answers, names, values=not target.form),
-        bare=[cell(answers[name]) for name in names],
+        bare=[] if explain else values,
         below=lambda: print_budget(answers, names) if budget else None,
     )
-    aside = show(forms, target)
+    aside = [*show(forms, target), *(_lacking(answers, names) if explain else [])]
     failures = [why for condition in conditions if (why := failure(answers, condition))]
     say(*aside, *failures)
-    return COULD_NOT if "" in forms.bare or failures else DONE
+    return COULD_NOT if "" in values or failures else DONE
 
 
-def _explain(answers: Answers, markdown: bool) -> None:
+def _lacking(answers: Answers, names: Sequence[str]) -> list[str]:
+    """Return why quantities have no value."""
+    lacking = {(name, answers.reasons[name]): 1 for name in names if not cell(answers[name])}
+    return reasons_at(lacking, 1)
+
+
+def _explain(answers: Answers, names: Sequence[str], markdown: bool) -> None:
     from ..output.page import print_explanation
     from ..solver.steps import explain
 
     given = said_of_scene(answers.case.scene, answers.case.motion)
-    print_explanation([*given.values()], explain(answers), markdown)
+    print_explanation([*given.values()], explain(answers, names), markdown)
 
 
 def _draw(answers: Answers, path: str, bare: bool, force: bool) -> None:

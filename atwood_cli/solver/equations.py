@@ -1,7 +1,6 @@
-"""The equations of a scene, each as the model has it, with numbers put in.
+"""Write the equations of a scene, each as the model has it, with numbers put in.
 
-No equation is written here and nothing is computed: an equation is what the model does with symbols
-(`symbolic`), and the numbers are the solver's.
+An equation is what the model does with symbols (`symbolic`), and the numbers are the solver's.
 """
 
 from __future__ import annotations
@@ -10,69 +9,58 @@ from collections.abc import Callable, Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-from ..arithmetic.interval import LARGEST_EXPONENT
-from ..arithmetic.settling import settle
 from ..arithmetic.symbolic import Formula, Symbol, Symbols, formula
 from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, to_digits
 from ..model.machine import Machine
 from ..model.quantities import QUANTITIES
 from .answers import Answers
 
-if TYPE_CHECKING:
-    from ..arithmetic.rational import Arithmetic, N
-
-DOUBT = 3
-"""Significant digits of a relative error (%)."""
-TYPED = 17
+INPUT_DIGITS = 17
 """Digits up to which an input is put in as it was typed."""
-GUARD = 2
+GUARD_DIGITS = 2
 """Digits that a number put in has beyond those of the result."""
 
 
-class Law(NamedTuple):
-    """An equation that no number is put into: in letters, or as its two sides."""
-
-    label: str
-    words: str | tuple[Formula, Formula]
-
-
 class Equation(NamedTuple):
-    """An equation worked out: symbols, the numbers put in, the result.
+    """An equation with the paper's number: a law, or a value worked out.
 
-    ``numbers`` is None where they are too large to write. ``signs``, = or ≈, stand before the numbers
-    and before the result.
+    A side is a formula, or letters. A law has no ``result``. A value has ``numbers`` to put in unless its
+    formula is not shown; ``signs``, = or ≈, stand before the numbers and before the result. ``follows``
+    are symbols that it rests on besides those of its formulas.
     """
 
     label: str
-    left: str
-    formula: Formula
-    numbers: Mapping[Symbol, Decimal] | None
-    signs: str
-    result: str
-    unit: str
+    left: str | Formula
+    right: str | Formula | None
+    follows: tuple[str, ...] = ()
+    numbers: Mapping[Symbol, Decimal] | None = None
+    signs: str = "=="
+    result: str = ""
+    unit: str = ""
+
+    @property
+    def needs(self) -> set[str]:
+        """Return the symbols that the equation rests on."""
+        formulas = [side for side in (self.left, self.right) if isinstance(side, Formula)]
+        symbols = {symbol.name for side in formulas for symbol in side.symbols()}
+        return symbols.union(self.follows)
 
 
-Part = str | Law | Equation
-
+Part = str | Equation
+"""A sentence or an equation. In sentences symbols stand between backticks."""
 
 MOTION = ("acceleration", "tension_1", "tension_2")
-"""What a scene answers first, and what simpler models are compared by."""
+"""Quantities that a derivation gives first, and by which simpler models are compared."""
 UNITS = {
-    name: unit
-    for unit, names in {
-        "kg": "transfer limiting_transfer drive limiting_drive M c b",
-        "N": "light_tension heavy_tension difference f_axle",
-        "m/s²": "magnitude a |a| g",
-        "rad": "phi alpha",
-    }.items()
-    for name in names.split()
+    **dict.fromkeys(("transfer", "limiting_transfer", "drive", "limiting_drive", "M", "c", "b"), "kg"),
+    **dict.fromkeys(("light_tension", "heavy_tension", "difference", "f_axle"), "N"),
+    **dict.fromkeys(("magnitude", "a", "|a|", "g"), "m/s²"),
+    **dict.fromkeys(("phi", "alpha"), "rad"),
 }
-"""Of what is not in the registry: of what the model computes by its name, of inputs by their symbols."""
-
-
-NAMED = {
+"""Units of the model's intermediate values, by name, and of inputs, by symbol."""
+INTERMEDIATE_SYMBOLS = {
     "half_sine": "sin(φ/2)",
     "excess": "x",
     "massless_verge": "μ_0",
@@ -83,36 +71,35 @@ NAMED = {
     "alpha": "φ_lim",
     "critical_pulley_mass": "M*",
 }
-"""Symbols of what the model computes on the way, in every scene."""
-LIMITS = {"f": 0, "b": 0, "D": 1}
-"""What letters of `physics` stand for unless the axle rubs."""
+"""Symbols of what equations refer to, by the model's names."""
+LABELS = {"acceleration": "", "light_tension": "(1)", "tension_ratio": "", "massless_verge": "(27)"}
+LABELS |= dict.fromkeys(("k1", "limiting_k1"), "(26)")
+"""Numbers of equations that the table of quantities does not have."""
+WITHOUT_AXLE_FRICTION = {"f": 0, "b": 0, "D": 1}
+"""Values of letters of `physics` if the axle has no friction."""
 
 
 class Derivation:
-    """The equations of a scene, each as the model has it, with the solver's numbers.
+    """Write the equations of a scene, each once, with the solver's numbers.
 
-    ``symbols`` are by the names that the model or `physics` has for them; those of inputs hold their values.
-    ``found`` are those of inputs that follow from a measured motion. ``light`` and ``heavy`` are the
-    indices of the masses. ``shown`` are the equations written so far, by name, ``explained`` the quantities
-    whose absence has been explained.
+    ``inputs`` are the symbols with their values, ``found`` those that follow from a measured motion.
+    ``light`` and ``heavy`` are the indices of the masses. ``shown`` are the names of equations written.
     """
 
     def __init__(self, answers: Answers) -> None:
         self.answers, self.case, self.scene = answers, answers.case, answers.case.scene
         self.digits = answers.digits or SHOWN_DIGITS
         self.shown: set[str] = set()
-        self.explained: set[str] = set()
         self.light, self.heavy = ("2", "1") if self.case.sign < 0 else ("1", "2")
-        self.computed = self._symbols_of_the_machine()
-        values = self._values()
-        self.inputs = [Symbol(name, value) for name, value in values.items() if value is not None]
+        self.symbols = self._symbols()
+        self.inputs = {name: Symbol(name, x) for name, x in self._values().items() if x is not None}
         motion = self.case.motion
         self.found = {"c", "M"} if motion.finds == "M" else {motion.finds}
         if motion.time is not None:
-            self.found.add(self.computed["magnitude"])
+            self.found.add(self.symbols["magnitude"])
 
     def _values(self) -> dict[str, Fraction | None]:
-        """What is given or found, by the symbols of equations."""
+        """Return what is given or found, by symbol."""
         case, scene, motion = self.case, self.scene, self.case.motion
         return {
             "m1": scene.m1,
@@ -127,16 +114,16 @@ class Derivation:
             "R": scene.R,
             "f_axle": case.axle_friction if case.rubs else None,
             "b": case.axle_mass if case.rubs else None,
-            self.computed["magnitude"]: case.measured_acceleration if motion.finds else None,
+            self.symbols["magnitude"]: case.measured_acceleration if motion.finds else None,
             "s": motion.drop,
             "t": motion.time,
             "τ_axle": scene.axle.number if scene.axle and scene.axle.unit == "N m" else None,
         }
 
-    def _symbols_of_the_machine(self) -> dict[str, str]:
-        """The symbols of what the model computes in this scene."""
+    def _symbols(self) -> dict[str, str]:
+        """Return the symbols that are not in the table of quantities, or differ from it in this scene."""
         case, scene = self.case, self.scene
-        symbols = NAMED | {
+        symbols = INTERMEDIATE_SYMBOLS | {
             "phi": "π" if scene.wrap.is_half_turn else "φ",
             "magnitude": "a" if case.sign >= 0 else "|a|",
             "light_tension": f"T{self.light}",
@@ -145,97 +132,71 @@ class Derivation:
             "tension_ratio": f"T{self.heavy}/T{self.light}",
             "rim_acceleration": "a_rim" if case.regime == "slip" else "a",
         }
-        if case.regime != "verge":  # there it is the coefficient given
+        if case.regime != "verge":  # on the verge it is the coefficient given
             symbols["mu_verge"] = "μ*"
         if case.slide_measured:
             symbols |= {"limiting_k1": "x_kin", "mu_k": "μ_k"}
         elif case.regime == "slip" and scene.mu_k is not None:
-            kinetic = {"limiting_k1": "k_kin - 1", "limiting_transfer": "z_kin", "limiting_drive": "d_kin"}
-            symbols |= kinetic
+            symbols |= {"limiting_k1": "k_kin - 1", "limiting_transfer": "z_kin", "limiting_drive": "d_kin"}
         return symbols
 
     def symbol(self, name: str) -> str:
-        """What equations write for a quantity."""
-        return self.computed.get(name) or plain(QUANTITIES[name].symbol)
-
-    def formula(self, name: str, expanded: str = "") -> Formula:
-        """The model's formula for a quantity, in the symbols of the inputs and of what else has a name.
-
-        What is ``expanded`` is put in by its own formula.
-        """
-        arithmetic: Any = Symbols(self.inputs)
-        known = {
-            other: Formula("symbol", Symbol(symbol, other))
-            for other, symbol in self.computed.items()
-            if other not in (name, expanded)
-        }
-        formula: Formula = getattr(Machine(self.case, arithmetic, known), name)
-        return formula
+        """Return the symbol of a quantity."""
+        return self.symbols.get(name) or plain(QUANTITIES[name].symbol)
 
     def letter(self, letter: str) -> Formula:
-        """The symbol for a letter of `physics`, or the number that it is in the limit at hand."""
-        called = {
-            "l": f"m{self.light}",
-            "h": f"m{self.heavy}",
-            "a": self.computed["magnitude"],
-            "f": "f_axle",
-        }
-        name = called.get(letter, letter)
-        given = {symbol.name: symbol for symbol in self.inputs}
-        if letter in LIMITS and name not in given:
-            return formula(LIMITS[letter])
-        return Formula("symbol", given.get(name) or Symbol(name, name))
+        """Return the symbol for a letter of `physics`, or its value without axle friction."""
+        masses = {"l": f"m{self.light}", "h": f"m{self.heavy}"}
+        name = {**masses, "a": self.symbols["magnitude"], "f": "f_axle"}.get(letter, letter)
+        if letter in WITHOUT_AXLE_FRICTION and name not in self.inputs:
+            return formula(WITHOUT_AXLE_FRICTION[letter])
+        return Formula("symbol", self.inputs.get(name, Symbol(name, name)))
 
     def record(self, law: Callable[..., Any], letters: str) -> Formula:
-        """The formula that an equation of `physics` gives on symbols."""
+        """Return the formula that an equation of `physics` gives on symbols."""
         recorded: Formula = law(*map(self.letter, letters.split()))
         return recorded
 
-    def equation(self, name: str) -> Equation:
-        """The equation of anything that the scene determines."""
-        case, grips = self.case, self.case.regime == "no-slip"
-        labels = {
-            "magnitude": "(4)" if grips else "(1), (26)",
-            "light_tension": "(1)",
-            "difference": "(26)" if not grips else "(1)" if case.stands else "(3)",
-            "tension_ratio": "",
-            "k1": "(26)",
-            "limiting_k1": "(1)" if case.slide_measured else "(26)",
-            "massless_verge": "(27)",
-        }
+    def _formula(self, name: str) -> Formula:
+        """Return the model's formula for a quantity, in the symbols of inputs and of other quantities."""
+        arithmetic: Any = Symbols([*self.inputs.values()])
+        known = {other: Formula("symbol", Symbol(symbol, other)) for other, symbol in self.symbols.items()}
+        known.pop(name, None)
+        recorded: Formula = getattr(Machine(self.case, arithmetic, known), name)
+        return recorded
+
+    def _label(self, name: str) -> str:
+        """Return the paper's number for an equation in this regime."""
+        case, motion = self.case, QUANTITIES["acceleration"]
+        labels = {**LABELS, "magnitude": motion.equation_in_slip or "", "difference": "(26)"}
+        if case.regime == "no-slip":
+            labels |= {"magnitude": motion.equation, "difference": "(1)" if case.stands else "(3)"}
+        if case.slide_measured:
+            labels["limiting_k1"] = "(1)"
         if name == "critical_heavier_mass" and self.slips_at_rest:
-            labels[name] = QUANTITIES["least_heavier_mass"].equation
-        label = QUANTITIES[name].equation if name in QUANTITIES else ""
-        return self.worked_out(Symbol(self.symbol(name), name), self.formula(name), labels.get(name, label))
+            labels["critical_heavier_mass"] = QUANTITIES["least_heavier_mass"].equation
+        return labels.get(name, QUANTITIES[name].equation if name in QUANTITIES else "")
 
     def by(self, name: str, law: Callable[..., Any], letters: str, label: str = "") -> Equation:
-        """The equation of an input that follows from others, or of a quantity, as ``law`` gives it."""
-        given = {symbol.name: symbol for symbol in self.inputs}
-        result = given.get(name) or Symbol(self.symbol(name), name)
-        return self.worked_out(result, self.record(law, letters), label)
+        """Return the equation of an input that follows from others, or of a quantity, by a law."""
+        result = self.inputs[name] if name in self.inputs else Symbol(self.symbol(name), name)
+        return self._worked_out(result, self.record(law, letters), label)
 
-    def worked_out(self, result: Symbol, formula: Formula, label: str) -> Equation:
-        """The equation with numbers put in, unless they would be too large to write.
-
-        The paper's number is marked where the friction of the axle enters its equation.
-        """
-        symbols = sorted(formula.symbols())
-        if label and {"b", "f_axle"} & {symbol.name for symbol in symbols}:
-            label = self.cite(label)
-        left, unit = result.name, unit_of(result.of if isinstance(result.of, str) else result.name)
+    def _worked_out(self, result: Symbol, recorded: Formula, label: str) -> Equation:
+        """Return the equation with numbers put in."""
         value, exact = self.number(result, self.digits)
-        if is_infinite(value):
-            return Equation(label, left, formula, None, "=>", f"10^{LARGEST_EXPONENT}", unit)
-        rounded = {symbol: self.number(symbol, self.digits + GUARD, TYPED) for symbol in symbols}
+        rounded = {
+            symbol: self.number(symbol, self.digits + GUARD_DIGITS, INPUT_DIGITS)
+            for symbol in sorted(recorded.symbols())
+        }
         numbers = {symbol: number for symbol, (number, _) in rounded.items()}
-        if any(map(is_infinite, numbers.values())):
-            return Equation(label, left, formula, None, "=≈", text(value), unit)
         put_in = "=" if all(is_exact for _, is_exact in rounded.values()) else "≈"
         signs = put_in + ("=" if exact and (put_in == "=" or not value) else "≈")
-        return Equation(label, left, formula, numbers, signs, text(value), unit)
+        unit = unit_of(result.of if isinstance(result.of, str) else result.name)
+        return Equation(label, result.name, recorded, (), numbers, signs, text(value), unit)
 
     def number(self, symbol: Symbol, digits: int, typed: int = 0) -> tuple[Decimal, bool]:
-        """The number to put in for a symbol, and whether it is exact.
+        """Return the number to put in for a symbol, and whether it is exact.
 
         An exact one of no more digits than wanted stays as it is, else it is correctly rounded to ``digits``.
         More than ``digits`` are wanted of an input, up to ``typed``.
@@ -251,68 +212,57 @@ class Derivation:
             return to_digits(digits)(symbol.of), False
         return Decimal(self.answers.to(digits).settle(attrgetter(symbol.of))), False
 
-    def cite(self, label: str) -> str:
-        """The number of an equation of the paper, marked if the axle rubs, which it does not there."""
-        return f"{label}+b" if self.case.rubs else label
-
     @property
     def slips_at_rest(self) -> bool:
-        """Whether the critical heavier mass makes the string slip on a pulley that stands."""
+        """Whether the critical heavier mass makes the string slip on a pulley that is at rest."""
         return self.case.locked or self.case.slips_once_it_moves
 
-    def lines(self, *names: str) -> Iterator[Equation]:
-        """The equations of those that exist and have not been shown yet."""
-        for name in names:
-            if name in self.shown or (name in QUANTITIES and self.answers[name] is None):
-                continue
-            self.shown.add(name)
-            yield self.equation(name)
+    def exists(self, name: str) -> bool:
+        """Decide whether the scene determines a value that can be written out."""
+        if name in QUANTITIES and self.answers[name] is None:
+            return False
+        return not is_infinite(self.number(Symbol("", name), self.digits)[0])
 
-    def motion(self, *names: str) -> Iterator[Part]:
-        """The equations that end with the acceleration's magnitude, and its sign where it is negative."""
-        yield from self.lines(*names)
-        if self.case.sign < 0:
-            yield f"`a` is positive when `m2` descends, so here it is negative, {self.say('acceleration')}."
+    def values(self, name: str, follows: tuple[str, ...] = ()) -> Iterator[Equation]:
+        """Yield the equation of a value that exists, can be written out and has not been shown yet.
 
-    def compared(self, other: Answers) -> Iterator[Part]:
-        """What another scene gives in place of this one, and by how much that is off."""
+        Only the result is shown if it is said from which symbols it ``follows``.
+        """
+        if name in self.shown or not self.exists(name):
+            return
+        self.shown.add(name)
+        symbol = Symbol(self.symbol(name), name)
+        value, exact = self.number(symbol, self.digits)
+        label, recorded = self._label(name), None if follows else self._formula(name)
+        if recorded is None or recorded.op == "number":
+            sign = "=" if exact or not value else "≈"
+            yield Equation(label, symbol.name, None, follows, None, sign * 2, text(value), unit_of(name))
+        else:
+            yield self._worked_out(symbol, recorded, label)
+
+    def compared(self, other: Answers) -> Iterator[str]:
+        """Yield what another scene gives instead of this one."""
         for name in MOTION:
             here, there = (in_words(name, answers[name]) for answers in (self.answers, other))
-            value = self.answers[name]
-            off = f" ({self.off(other, name)} %)" if value else ""
-            yield f"- `{plain(QUANTITIES[name].symbol)}` = {there} in place of {here}{off}"
-
-    def off(self, other: Answers, name: str) -> str:
-        """The relative error (%) of another scene's quantity, with its sign."""
-        of = "magnitude" if name == "acceleration" else name
-
-        def error(ar: Arithmetic[N]) -> N:
-            here, there = (getattr(Machine(one.case, ar), of) for one in (self.answers, other))
-            percent: N = 100 * (there - here) / here
-            return percent
-
-        shown = text(settle(error, to_digits(DOUBT), DOUBT))
-        return shown if shown.startswith("-") else f"+{shown}"
+            yield f"`{plain(QUANTITIES[name].symbol)}` would be {there} instead of {here}."
 
     def say(self, name: str) -> str:
-        """A symbol with its value, for a sentence."""
-        known = name in QUANTITIES
-        value = self.answers[name] if known else self.number(Symbol("", name), self.digits)[0]
-        return f"`{self.symbol(name)}` = {in_words(name, value)}"
+        """Return a quantity's symbol with its value, for a sentence."""
+        return f"`{self.symbol(name)}` = {in_words(name, self.answers[name])}"
 
 
 def unit_of(name: str) -> str:
-    """The unit of a quantity, of what else the model computes, or of an input."""
+    """Return the unit of a quantity, an intermediate value or an input."""
     return QUANTITIES[name].unit if name in QUANTITIES else UNITS.get(name, "")
 
 
 def in_words(name: str, value: Any) -> str:
-    """A value with its unit."""
+    """Return a value with its unit."""
     return f"{text(value)} {unit_of(name)}".rstrip()
 
 
 def plain(symbol: str) -> str:
-    """The registry's symbol in plain letters, as equations write it."""
+    """Return a symbol of the table of quantities in plain letters, as equations write it."""
     letters = {"T₁": "T1", "T₂": "T2", "m₁": "m1", "m₂": "m2", "μ kin": "μ_k"}
     letters |= {"a rim": "a_rim", "Fx": "F_x", "Fy": "F_y"}
     return letters.get(symbol, symbol)
