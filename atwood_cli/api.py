@@ -114,24 +114,22 @@ class Solution(Answered, Generic[T]):
             """A field that was not read yet."""
             if name not in self.__dataclass_fields__:
                 return object.__getattribute__(self, name)  # raises the usual error
-            values = _computed(name, self._answers)
-            for field, value in values.items():
-                object.__setattr__(self, field, value)
-            return values[name]
+            value = _computed(name, self._answers)
+            object.__setattr__(self, name, value)
+            return value
 
     def to_dict(self) -> dict[str, Any]:
         """The record that ``--json`` prints, ready for `json`: Decimals are text, infinite values None."""
         from .output.scene_page import record
         from .output.text import for_json
 
-        answers = Answers(*self._answers.given)
-        return {name: for_json(value, answers.digits) for name, value in record(answers).items()}
+        return {name: for_json(value, self._answers.digits) for name, value in record(self._answers).items()}
 
     def __str__(self) -> str:
         """The page that ``atwood solve`` prints, without colours."""
         from .output.scene_page import as_text
 
-        return as_text(Answers(*self._answers.given))
+        return as_text(self._answers)
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -145,18 +143,16 @@ class Solution(Answered, Generic[T]):
         return _solved, self._answers.given
 
 
-def _computed(name: str, answers: Answers) -> dict[str, Any]:
-    """The value of a field, by its name. The notes come with all other fields, as they are on all of them."""
-    if name == "scene":
-        return {name: answers.case.scene}
-    if name == "uncertainty":
-        return {name: answers.standard_uncertainties(answers.names)}
-    if name != "notes":
-        return {name: answers[name] if name in answers.names else None}
-    answers = Answers(*answers.given)  # asked in the order of the names, whichever were read before
-    values = {name: answers[name] for name in answers.names}
-    uncertainty = answers.standard_uncertainties(answers.names)
-    return {**values, "uncertainty": uncertainty, "notes": tuple(notes(answers))}
+def _computed(name: str, answers: Answers) -> Any:
+    """Return the value of a field, by its name."""
+    match name:
+        case "scene":
+            return answers.case.scene
+        case "uncertainty":
+            return answers.standard_uncertainties(answers.names)
+        case "notes":
+            return tuple(notes(answers, answers.names))
+    return answers[name] if name in answers.names else None
 
 
 def _solved(*given: Any) -> Solution[Any]:

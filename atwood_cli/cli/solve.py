@@ -5,7 +5,7 @@ from typing import Annotated
 
 from ..model.quantities import MEASURED_NAMES, NAMES, read_names
 from ..model.scene import SceneError, read_digits
-from ..output.scene_page import beside_bare, csv_record, print_budget, print_table, record
+from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_table, record
 from ..output.text import Forms, Target, cell, said_of_scene, say, show
 from ..solver.answers import Answers, read_answers
 from ..solver.expected import failure, read_condition
@@ -97,7 +97,7 @@ def solve(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
         page=lambda: _explain(answers, markdown) if explain else print_table(answers, all, budget),
-        notes=lambda: beside_bare(answers, names, values=not target.form),
+        notes=lambda: notes_on_stderr(answers, names, values=not target.form),
         bare=[cell(answers[name]) for name in names],
         below=lambda: print_budget(answers, names) if budget else None,
     )
@@ -121,6 +121,6 @@ def _draw(answers: Answers, path: str, bare: bool, force: bool) -> None:
     from ..solver.balance import kind_of
 
     if answers["tension_1"] is None:
-        why = unmarked(answers.reasons["tension_1"])
+        why = unmarked(answers.answer("tension_1").reason)
         raise SceneError("figure", path, f"draws the tensions, which are not known: {why}")
     save(answers, kind_of(answers.case) if answers.case.light else None, path, force, bare)

@@ -68,7 +68,7 @@ class Case:
         """The pulley's inertia as a mass at the rim, c = βM; none where it is locked or not known."""
         scene, mass = self.scene, self.pulley_mass
         if scene.I is not None and scene.R is not None:
-            return scene.I / (scene.R * scene.R)
+            return physics.rim_mass_of_inertia(scene.I, scene.R)
         if mass is None or scene.inertia is None:
             return mass
         return scene.inertia * mass
@@ -181,12 +181,7 @@ class Case:
     @lazy
     def measured_acceleration(self) -> Fraction:
         """The acceleration that was measured (m/s²), positive when the heavier mass descends."""
-        motion = self.motion
-        if motion.a is not None:
-            return self.sign * motion.a
-        assert motion.drop is not None
-        assert motion.time is not None
-        return physics.acceleration_of_fall(motion.drop, motion.time)
+        return self.motion.acceleration(self.sign)
 
     @property
     def frictionless(self) -> bool:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Generic
 
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import N
-from . import arc, physics, reasons
+from . import arc, physics, quantities
 from .case import Case, is_zero
-from .reasons import Undetermined
+from .quantities import Undetermined
 
 if TYPE_CHECKING:
     from ..arithmetic.rational import Arithmetic
@@ -50,7 +50,7 @@ class Mechanics(Generic[N]):
     @property
     def mu(self) -> N:
         """Coefficient of static friction, which a free end does not take."""
-        return self._given(self.scene.mu, reasons.FREE_END if self.case.free_end else reasons.NEEDS_MU)
+        return self._given(self.scene.mu, quantities.FREE_END if self.case.free_end else quantities.NEEDS_MU)
 
     def _capstan_excess(self, given: Fraction | None, mu: N) -> N:
         """e^{μφ} - 1; without friction no exponential is asked for."""
@@ -120,7 +120,7 @@ class Mechanics(Generic[N]):
             return self.ar.number(0)
         else:
             drive = self.gripping_drive
-            load = physics.load(l, h, self._given(case.rim_mass, reasons.NEEDS_M))
+            load = physics.load(l, h, self._given(case.rim_mass, quantities.NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
     @lazy
@@ -132,7 +132,7 @@ class Mechanics(Generic[N]):
             return self.ar.number(self.case.limiting_mu)
         if self.scene.mu is None or self.case.tensions_equal or not self.case.pulley_known:
             return self.mu_verge
-        raise Undetermined(reasons.NOT_BOUNDED if self.case.long_wrap else reasons.NOT_DEFINITE)
+        raise Undetermined(quantities.NOT_BOUNDED if self.case.long_wrap else quantities.NOT_DEFINITE)
 
     @lazy
     def friction_vector(self) -> tuple[N, N]:
@@ -205,7 +205,7 @@ class Mechanics(Generic[N]):
         if case.stands:
             rest = self.ar.number(0)
             return self.ar.not_negative(physics.difference_of_moving_masses(self.l, self.h, rest, self.g))
-        c = self._given(case.rim_mass, reasons.NEEDS_M)
+        c = self._given(case.rim_mass, quantities.NEEDS_M)
         return physics.difference_of_a_pulley(c, self.magnitude, self.f)
 
     @property
@@ -216,13 +216,13 @@ class Mechanics(Generic[N]):
     def _bounded(self) -> bool:
         """Whether the friction force is bounded by more than 0; raises where it has no bounds."""
         if self.case.regime != "no-slip":
-            raise Undetermined(reasons.DEFINITE)
+            raise Undetermined(quantities.DEFINITE)
         _ = self.mu_verge  # raises where there is none
         if self.case.tensions_equal:
             return False
         _ = self.mu  # raises if it is not given
         if self.case.long_wrap:
-            raise Undetermined(reasons.LONG_WRAP)
+            raise Undetermined(quantities.LONG_WRAP)
         return True
 
     # The quantities
@@ -253,13 +253,13 @@ class Mechanics(Generic[N]):
     def mu_verge(self) -> N:
         case = self.case
         if case.free_end:
-            raise Undetermined(reasons.FREE_END)
+            raise Undetermined(quantities.FREE_END)
         if case.tensions_equal:
             return self.ar.number(0)
         if not case.pulley_known:
             if case.regime == "verge":
                 return self.ar.number(case.limiting_mu)
-            raise Undetermined(reasons.NEEDS_M)
+            raise Undetermined(quantities.NEEDS_M)
         phi = self.phi  # first, as fractions give up on π sooner than on the ratio
         return physics.verge_coefficient(self.log_ratio, phi)
 
@@ -267,7 +267,7 @@ class Mechanics(Generic[N]):
     def safety_factor(self) -> N:
         mu = self.mu
         if self.case.tensions_equal or (self.case.regime == "verge" and is_zero(self.scene.mu)):
-            raise Undetermined(reasons.NO_NEED)
+            raise Undetermined(quantities.NO_NEED)
         return physics.safety_factor(mu, self.mu_verge)
 
     @lazy
@@ -275,11 +275,11 @@ class Mechanics(Generic[N]):
         if self.case.regime != "no-slip":
             return self.limiting_k1 + 1
         if self.case.free_end:
-            raise Undetermined(reasons.FREE_END)
+            raise Undetermined(quantities.FREE_END)
         if self.case.tensions_equal:
             return self.ar.number(1)
         if not self.case.pulley_known:
-            raise Undetermined(reasons.NEEDS_M)
+            raise Undetermined(quantities.NEEDS_M)
         return self.excess + 1
 
     @lazy
@@ -317,7 +317,7 @@ class Mechanics(Generic[N]):
 
     @lazy
     def torque(self) -> N:
-        return self.tension_difference * self._given(self.scene.R, reasons.NEEDS_R)
+        return self.tension_difference * self._given(self.scene.R, quantities.NEEDS_R)
 
     @lazy
     def rim_acceleration(self) -> N:
@@ -325,17 +325,17 @@ class Mechanics(Generic[N]):
             return self.acceleration
         if self.case.rim_stands:
             return self.ar.number(0)
-        c = self._given(self.case.rim_mass, reasons.NEEDS_M)
+        c = self._given(self.case.rim_mass, quantities.NEEDS_M)
         return physics.rim_acceleration(self.difference, c, self.f) * self.case.sign
 
     @lazy
     def angular_acceleration(self) -> N:
-        return self.rim_acceleration / self._given(self.scene.R, reasons.NEEDS_R)
+        return self.rim_acceleration / self._given(self.scene.R, quantities.NEEDS_R)
 
     @lazy
     def mu_k(self) -> N:
         if not self.case.slide_measured:
-            raise Undetermined(reasons.NEEDS_A_OF_A_SLIDE)
+            raise Undetermined(quantities.NEEDS_A_OF_A_SLIDE)
         return physics.verge_coefficient(self.ar.log1p(self.limiting_k1), self.phi)
 
     @lazy

@@ -126,6 +126,15 @@ def slide_excess(l: N, h: N, a: N, g: N) -> N:
     return difference_of_moving_masses(l, h, a, g) / light_tension(l, a, g)
 
 
+def rim_mass_of_inertia(I: N, R: N) -> N:
+    """c (kg) of a pulley of radius R (m), from its moment of inertia (kg m²).
+
+    >>> rim_mass_of_inertia(20, 2)
+    5.0
+    """
+    return I / (R * R)
+
+
 def moment_of_inertia(c: N, R: N) -> N:
     """Moment of inertia (kg m²) of a pulley of radius R (m), from its c as a mass at the rim.
 

@@ -1,7 +1,9 @@
 """What is given: words and numbers in, an exact and valid `Scene` out. Nothing is computed."""
 
+from __future__ import annotations
+
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
@@ -10,7 +12,8 @@ from numbers import Rational, Real
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from ..arithmetic.rational import OfFloat
-from .angle import Angle
+from ..arithmetic.settling import is_positive
+from . import physics
 from .digits import as_typed, to_double
 from .units import (
     MAX_DIGITS,
@@ -33,6 +36,61 @@ from .units import (
 )
 
 
+class Angle:
+    """A number of degrees, or of radians: kept as it was given, since no rational angle is both.
+
+    ``number`` is a Fraction; in arrays, a column of degrees. An angle in degrees equals its number.
+    """
+
+    __slots__ = ("number", "unit")
+
+    def __init__(self, number: Any, unit: Literal["°", "rad"] = "°") -> None:
+        self.number, self.unit = number, unit
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Angle):
+            return bool((self.number, self.unit) == (other.number, other.unit))
+        return bool(self.unit == "°" and self.number == other)
+
+    def __hash__(self) -> int:
+        return hash(self.number if self.unit == "°" else (self.number, self.unit))
+
+    def __repr__(self) -> str:
+        return f"Angle({self.number!r}, {self.unit!r})"
+
+    def radians(self, ar: Arithmetic[N]) -> N:
+        """The angle in radians."""
+        if self.unit == "rad":
+            return ar.number(self.number)
+        return ar.pi * ar.number(self.number / 180)
+
+    def degrees(self, ar: Arithmetic[N], share: Any = 1) -> N:
+        """A share of the angle in degrees; none of it is exactly 0."""
+        number = ar.number(share * self.number)
+        return number * 180 / ar.pi if self.unit == "rad" and share else number
+
+    def cos_sin(self, ar: Arithmetic[N], parts: int = 1) -> tuple[N, N]:
+        """Cosine and sine of an equal part of the angle; exact at multiples of 90°."""
+        if self.unit == "rad":
+            return ar.cos_sin(ar.number(self.number) / parts)
+        return ar.cos_sin_of_degrees(self.number / parts)
+
+    @property
+    def is_half_turn(self) -> bool:
+        return self == 180
+
+    @property
+    def is_beyond_half_turn(self) -> bool:
+        if self.unit == "°":
+            return bool(self.number > 180)
+        return is_positive(lambda ar: self.radians(ar) - ar.pi)
+
+    @property
+    def ends_hang_down(self) -> bool:
+        """Whether both ends of the string leave the pulley downwards: half a turn, and whole turns more."""
+        return bool(self.unit == "°" and (self.number - 180) % 360 == 0)
+
+
 class Axle(NamedTuple):
     """The friction of an axle: a force at the rim (N), or a torque (N m); kept so, as R may be uncertain."""
 
@@ -46,6 +104,8 @@ class Axle(NamedTuple):
 
 if TYPE_CHECKING:
     from numpy import floating, integer
+
+    from ..arithmetic.rational import Arithmetic, N
 
     OfNumPy = integer[Any] | floating[Any]
 else:
@@ -150,15 +210,9 @@ def parameter_of(name: str) -> Parameter:
     return INPUTS.get(name) or MEASURED[name]
 
 
-def in_units(name: str, value: str) -> str:
-    """A value of a parameter, with its unit."""
-    unit = parameter_of(name).unit
-    return f"{value}{' ' * (unit not in ('', '°'))}{unit}"
-
-
-def stated(name: str, value: str) -> str:
-    """A parameter with its value and unit, for a sentence."""
-    return f"{name} = {in_units(name, value)}"
+def with_unit(value: str, unit: str) -> str:
+    """Return a number with its unit: 1 kg, 90°, 0.3."""
+    return f"{value}{unit}" if unit in ("", "°") else f"{value} {unit}"
 
 
 class Input(NamedTuple):
@@ -192,46 +246,60 @@ class Scene(NamedTuple):
     axle: Axle | None = None
 
     @classmethod
-    def read(cls, given: Mapping[str, Given | None]) -> "Scene":
-        """The scene given, by parameter; absent or None is not given. Raises SceneError."""
+    def read(cls, given: Mapping[str, Given | None]) -> Scene:
+        """Read a scene, by parameter; absent or None is not given. Raises SceneError."""
         return cls.of({name: read_exactly(name, given.get(name)) for name in INPUTS})
 
     @classmethod
-    def of(cls, inputs: Mapping[str, Input]) -> "Scene":
-        """The scene of inputs that were read one by one. Raises SceneError if they do not go together."""
-        values = {name: inputs[name].value for name in INPUTS}
-        for mass in MASSES:
-            if values[mass] is None:
-                raise SceneError(mass, None, MISSING_MASS)
-        if values["inertia"] is None and values["I"] is None:
-            values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
-        elif values["inertia"] is not None and values["I"] is not None:
-            raise SceneError("I", inputs["I"].given, "and inertia both describe the pulley; give one of them")
-        scene = cls(**values)
-        if scene.m1 == scene.m2 == 0:
-            raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
-        for name, rule in scene._contradictions(inputs["M"].given):
-            raise SceneError(name, inputs[name].given, rule)
-        return scene
+    def of(cls, inputs: Mapping[str, Input]) -> Scene:
+        """Make a scene of inputs that were read one by one. Raises SceneError if they contradict another."""
+        return cls(**checked(inputs))
 
-    def _contradictions(self, M: Given | None) -> Iterator[tuple[str, str]]:
-        """Inputs that do not go with others, and why; ``M`` is the pulley's mass as it was given."""
-        if self.mu is not None and 0 in (self.m1, self.m2):
-            free = "m1" if self.m1 == 0 else "m2"
-            yield free, "is a free end, which friction cannot hold; leave mu out"
-        if self.mu_k is not None and self.mu is None:
-            yield "mu_k", "needs mu, the coefficient that decides whether it slips"
-        if self.mu_k is not None and self.mu is not None and self.mu_k > self.mu:
-            alike = to_double(self.mu_k) == to_double(self.mu)  # then a float's digits are the point
-            both = [Fraction(mu) if alike else mu for mu in (self.mu_k, self.mu)]
-            sizes = " > ".join(shortened(as_typed(mu, inf)) for mu in both)
-            yield "mu_k", f"must not be above mu; exactly, {sizes}"
-        if self.I is not None and self.R is None:
-            yield "I", "needs the radius R as well"
-        if self.axle is not None and self.axle.unit == "N m" and self.R is None:
-            yield "axle", "is a torque, which needs the radius R as well"
-        if self.I is not None and self.M is not None and not 0 < self.M < inf:
-            yield "I", f"contradicts M = {shortened(str(M))}; leave one of them out"
+
+def checked(inputs: Mapping[str, Input], unknown: str = "") -> dict[str, Any]:
+    """Return the values of inputs that do not contradict each other. Raises SceneError.
+
+    ``unknown`` is a mass that is to be found.
+    """
+    values = {name: inputs[name].value for name in INPUTS}
+    for mass in MASSES:
+        if values[mass] is None and mass != unknown:
+            raise SceneError(mass, None, MISSING_MASS)
+    if values["inertia"] is None and values["I"] is None:
+        values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
+    elif values["inertia"] is not None and values["I"] is not None:
+        raise SceneError("I", inputs["I"].given, "and inertia both describe the pulley; give one of them")
+    if values["m1"] == values["m2"] == 0:
+        raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
+    name, rule = _contradiction(inputs["M"].given, **values)
+    if rule:
+        raise SceneError(name, inputs[name].given, rule)
+    return values
+
+
+def _contradiction(
+    given: Given | None, /, m1: Any, m2: Any, M: Any, mu: Any, mu_k: Any, I: Any, R: Any, axle: Any, **_: Any
+) -> tuple[str, str]:
+    """Return an input that contradicts others, and why; two empty texts if none does.
+
+    ``given`` is the pulley's mass as it was given.
+    """
+    if mu is not None and 0 in (m1, m2):
+        return "m1" if m1 == 0 else "m2", "is a free end, which friction cannot hold; leave mu out"
+    if mu_k is not None and mu is None:
+        return "mu_k", "needs mu, the coefficient that decides whether it slips"
+    if mu_k is not None and mu_k > mu:
+        alike = to_double(mu_k) == to_double(mu)  # then a float's digits are the point
+        both = [Fraction(x) if alike else x for x in (mu_k, mu)]
+        sizes = " > ".join(shortened(as_typed(x, inf)) for x in both)
+        return "mu_k", f"must not be above mu; exactly, {sizes}"
+    if I is not None and R is None:
+        return "I", "needs the radius R as well"
+    if axle is not None and axle.unit == "N m" and R is None:
+        return "axle", "is a torque, which needs the radius R as well"
+    if I is not None and M is not None and not 0 < M < inf:
+        return "I", f"contradicts M = {shortened(str(given))}; leave one of them out"
+    return "", ""
 
 
 class Motion(NamedTuple):
@@ -244,6 +312,14 @@ class Motion(NamedTuple):
     drop: Fraction | None = None
     time: Fraction | None = None
     finds: str | None = None
+
+    def acceleration(self, sign: int) -> Fraction:
+        """Return the measured acceleration (m/s²) of the heavier mass: m2 if its sign is 1, m1 if -1."""
+        if self.a is not None:
+            return sign * self.a
+        assert self.drop is not None
+        assert self.time is not None
+        return physics.acceleration_of_fall(self.drop, self.time)
 
 
 UNMEASURED = Motion()

@@ -56,12 +56,15 @@ class Page:
 
         self.console.print(Text(printable(words), style), soft_wrap=True)
 
-    def head(self, answers: Answers, found: Sequence[str] = ()) -> None:
-        """The scene, sentences on the quantities found from a motion, and the verdict."""
+    def head(self, answers: Answers, found: str = "") -> None:
+        """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
         self.say(describe(answers.case.scene, answers.case.motion, answers.uncertain))
-        self.say(*found, style="bold")
-        bold = "bold " * (not found)
-        self.say(unmarked(verdict(answers)), style=f"{bold}{REGIME_STYLES[answers.case.regime]}")
+        style = REGIME_STYLES[answers.case.regime]
+        if found:
+            self.say(found, style="bold")
+        else:
+            style = f"bold {style}"
+        self.say(unmarked(verdict(answers)), style=style)
 
     def table(self, columns: Sequence[str], groups: Groups) -> None:
         """A table, with a line between groups of rows.

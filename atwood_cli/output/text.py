@@ -10,9 +10,8 @@ from fractions import Fraction
 from math import inf
 from typing import Any, NamedTuple, TextIO
 
-from ..model.angle import Angle
 from ..model.digits import Rounding, as_typed, exact_or_rounded, is_infinite, text, to_double
-from ..model.scene import MEASURED, UNMEASURED, Axle, Motion, Scene, stated
+from ..model.scene import MEASURED, UNMEASURED, Angle, Axle, Motion, Scene, parameter_of, with_unit
 from .files import Stdout, printable, stdout_into
 
 
@@ -268,8 +267,11 @@ def inputs_in_words(
     for name, (value, unit) in _given(scene, motion).items():
         u = as_typed(uncertain[name]) if name in uncertain else ""
         if isinstance(value, Fraction):
-            number = f"{_as_fine(as_typed(value), u)}{f' ± {u}' * bool(u)}"
-            parts[name] = f"{name} = {number}{unit}" if unit else stated(name, number)
+            number = _as_fine(as_typed(value), u)
+            if u:
+                number = f"{number} ± {u}"
+            in_units = f"{number}{unit}" if unit else with_unit(number, parameter_of(name).unit)
+            parts[name] = f"{name} = {in_units}"
         elif value is not None:
             parts[name] = f"{name} = {value}"
     return parts

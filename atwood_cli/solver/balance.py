@@ -17,7 +17,7 @@ from ..model.arc import Kind
 from ..model.case import Case
 from ..model.digits import is_infinite
 from ..model.machine import Machine
-from ..model.reasons import FREE_END, NEEDS_M
+from ..model.quantities import FREE_END, NEEDS_M
 from ..model.scene import SceneError, read_whole
 from .answers import Answers
 from .messages import unmarked
@@ -174,8 +174,8 @@ def about(case: Case, kind: Kind) -> str:
 def _notes(answers: Answers, kind: Kind, balance: dict[str, dict[str, Number]]) -> list[str]:
     notes = [about(answers.case, kind)]
     for name in ("tension_1", "tension_2"):
-        if answers[name] is not None and name in answers.reasons:
-            notes.append(f"{name}: {answers.reasons[name]}.")
+        if answers[name] is not None and answers.answer(name).reason:
+            notes.append(f"{name}: {answers.answer(name).reason}.")
     if any(balance[name][part] for name, part in RESIDUALS):
         notes.append(ROUNDING)
     return notes

@@ -6,10 +6,9 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..model.angle import Angle
 from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, to_digits, to_side_of
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, REGIMES, read_name
-from ..model.scene import SceneError
+from ..model.scene import Angle, SceneError, with_unit
 from ..model.units import STANDARD_GRAVITY, Malformed, Number, in_quotes, read_number
 from .answers import TOO_SMALL, Answers
 from .messages import unmarked
@@ -69,8 +68,10 @@ def failure(answers: Answers, expected: Condition) -> str:
     if expected.name in REGIMES:
         if expected.name != case.regime:
             return f"expected {expected.typed}; it is {case.regime}"
-        return f"expected {expected.typed}; it is assumed, as mu is not given" * is_assumed(answers)
-    value, reason = answers[expected.name], answers.reasons.get(expected.name, "")
+        if is_assumed(answers):
+            return f"expected {expected.typed}; it is assumed, as mu is not given"
+        return ""
+    value, reason, *_ = answers.answer(expected.name)
     if value is None or reason == TOO_SMALL:
         return unmarked(f"expected {expected.typed}; {expected.name} has no value: {reason}")
     side = answers.settle(
@@ -84,8 +85,7 @@ def failure(answers: Answers, expected: Condition) -> str:
     else:
         value = answers.rounded(expected.name, to_side_of(given, answers.digits or SHOWN_DIGITS))
         shown = "too large to be written out" if is_infinite(value) else text(value)
-    unit = QUANTITIES[expected.name].unit
-    return f"expected {expected.typed}; it is {shown}{' ' * (unit != '°')}{unit}".rstrip()
+    return f"expected {expected.typed}; it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
 
 
 def is_assumed(answers: Answers) -> bool:

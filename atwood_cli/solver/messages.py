@@ -5,22 +5,12 @@ In sentences, as in the reasons of `Undetermined`, names of inputs and quantitie
 puts symbols for the names, for a page of mathematics.
 """
 
-from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import inf
 
 from ..model.case import Case
-from ..model.digits import (
-    DOUBLE_DIGITS,
-    SHOWN_DIGITS,
-    as_typed,
-    is_infinite,
-    text,
-    tidy,
-    to_side_of,
-    to_threshold,
-)
+from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, tidy, to_side_of, to_threshold
 from ..model.scene import Scene
 from ..model.units import MAX_MAGNITUDE
 from .answers import Answers
@@ -31,22 +21,28 @@ def unmarked(words: str) -> str:
     return words.replace("`", "")
 
 
-def notes(answers: Answers) -> list[str]:
-    """Sentences on the regime and why, on what is missing and what is in doubt."""
+def notes(answers: Answers, names: Sequence[str]) -> list[str]:
+    """Return sentences on the regime and why, and on the quantities named, as `reasons`."""
     said = [verdict(answers), *remarks(answers.shown)]
-    return [*map(unmarked, said), *reasons(answers)]
+    return [*map(unmarked, said), *reasons(answers, names)]
 
 
-def reasons(answers: Answers) -> list[str]:
-    """Sentences on the values asked for so far: why some are missing, what is in doubt."""
-    said = reasons_at(Counter(answers.reasons.items()), 1)
+def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
+    """Return sentences on why quantities or their uncertainties are missing or doubtful."""
+    found = {name: answers.answer(name) for name in names if name != "regime"}
+    said = reasons_at({(name, one.reason): 1 for name, one in found.items() if one.reason}, 1)
     uncertainties = answers.uncertainties
     if uncertainties is None:
         return said
-    unsure = {(f"u_{name}", reason): 1 for name, reason in answers.unsure.items()}
-    lopsided = uncertainties.lopsided(answers.spread, answers.digits or DOUBLE_DIGITS)
-    open_ended = map(unmarked, uncertainties.open_ended(answers.open_ended))
-    return [*said, *uncertainties.doubts(), *lopsided, *open_ended, *reasons_at(unsure, 1)]
+    beyond = {name: one.uncertainty_reason for name, one in found.items() if one.uncertainty_reason}
+    without = [name for name, one in found.items() if one.uncertainty is None and one.value is not None]
+    return [
+        *said,
+        *uncertainties.doubts(),
+        *uncertainties.lopsided([name for name, one in found.items() if one.uncertainty]),
+        *map(unmarked, uncertainties.open_ended(without)),
+        *reasons_at({(f"u_{name}", reason): 1 for name, reason in beyond.items()}, 1),
+    ]
 
 
 def reasons_at(

@@ -15,7 +15,7 @@ from ..model.quantities import QUANTITIES
 from .answers import Answers
 from .critical import critical, fallen, found, in_the_paper
 from .equations import MOTION, Derivation, Law, Part
-from .messages import holding_again, kinetic, missing, odd_inertia, open_range, verdict
+from .messages import holding_again, kinetic, odd_inertia, open_range, verdict
 
 
 class Step(NamedTuple):
@@ -52,8 +52,6 @@ def explain(answers: Answers) -> Explanation:
     limits = [_limits] if case.scene.mu and case.sign else []
     first = [Step(TITLES[body], [*body(derivation)]) for body in (_masses, _pulley, *middle, *limits)]
     model = Step("What is modelled", [*_model(derivation)])
-    reasons = {one: 1 for one in answers.reasons.items() if one[0] not in derivation.explained}
-    lacking: list[Part] = [*missing(reasons)]
 
     def values(names: Iterable[str]) -> str:
         return ", ".join(derivation.say(name) for name in names if answers[name] is not None)
@@ -64,7 +62,7 @@ def explain(answers: Answers) -> Explanation:
         "After = both sides are exactly equal, after ≈ the result is rounded to"
         f" {derivation.digits} significant digits; numbers put in have two more. Numbers of equations are"
         " those of de Oliveira and Lemos, Force and torque of a string on a pulley, arXiv:1706.10139.",
-        [*first, *_simpler(derivation), model, *[Step("What has no value", lacking)] * bool(lacking)],
+        [*first, *_simpler(derivation), model],
     )
 
 
@@ -343,8 +341,8 @@ def _friction(derivation: Derivation) -> Iterator[Part]:
     else:
         derivation.explained.add("friction_force")
         yield (
-            f"The {QUANTITIES['friction_force'].meaning} is {answers.reasons['friction_force']}. (So the"
-            " paper says after (17), as `T(θ)` is not known.)"
+            f"The {QUANTITIES['friction_force'].meaning} is {answers.answer('friction_force').reason}. (So"
+            " the paper says after (17), as `T(θ)` is not known.)"
         )
         if answers["friction_force_max"] is not None:
             yield (

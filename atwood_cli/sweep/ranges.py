@@ -33,10 +33,11 @@ from ..model.scene import (
     Input,
     Scene,
     SceneError,
-    in_units,
+    parameter_of,
     read_exactly,
     read_value,
     read_whole,
+    with_unit,
 )
 from ..model.units import MAX_DIGITS, in_quotes, read_number
 from ..output.text import said_of_scene
@@ -151,7 +152,8 @@ class Range(NamedTuple):
 
     def in_units(self, point: Point) -> str:
         """A point with the unit of its parameter."""
-        return point.text if self.suffix or point == LOCKED else in_units(self.name, point.text)
+        bare = self.suffix or point == LOCKED
+        return point.text if bare else with_unit(point.text, parameter_of(self.name).unit)
 
     def stated(self, point: Point) -> str:
         """What tells a point from others, in a sentence: M = 10 kg, or disk."""
@@ -386,5 +388,5 @@ def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterat
         answers = Answers(sweep.at(place), digits)
         found = {name: unchanged.get(name, answers) for name in ["regime", *names]}
         values = {name: found[name][name] for name in names}
-        reasons = {name: found[name].reasons[name] for name in names if name in found[name].reasons}
+        reasons = {name: reason for name in names if (reason := found[name].answer(name).reason)}
         yield Row(place, found["regime"]["regime"], values, reasons)

@@ -9,6 +9,7 @@ from operator import attrgetter
 
 from ..model.digits import SHOWN_DIGITS, to_digits, to_double
 from ..model.quantities import QUANTITIES, STANDARD
+from ..model.scene import with_unit
 from ..output.page import Page, aligned, watched
 from ..output.text import VERSION, cell, scene_record
 from ..solver.messages import reasons_at
@@ -78,7 +79,9 @@ class SweepPage:
         above = [", ".join(sweep.inputs.values()), *_regimes(sweep, rows, self.digits)]
         if PULLEY not in same and any(row.regime == "verge" for row in rows):
             above.append(PULLEYS)
-        if shared := [_stated(name, value) for name, value in same.items() if name != "regime"]:
+        units = {name: QUANTITIES[name].unit for name in same if name != "regime"}
+        if units:
+            shared = (f"{name} = {with_unit(same[name], unit)}" for name, unit in units.items())
             above.append(f"In all rows: {', '.join(shared)}.")
         notes = self.notes()
         page.say(*above)
@@ -122,10 +125,6 @@ def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[
             known = {Fraction(row.at[along.name].exact): row.regime for pair in pairs for row in pair}
             words = ", ".join(regimes(along, list(changes(scene, along, digits, known)), scene))
             yield f"{sweep.stated(points) or 'Regimes'}: {words}."
-
-
-def _stated(name: str, value: str) -> str:
-    return f"{name} = {value} {QUANTITIES[name].unit}".rstrip()
 
 
 def _in_brackets(unit: str) -> str:
