@@ -1,4 +1,4 @@
-"""Every quantity by its name: the masses at which the string begins to slip, and what a motion tells.
+"""Every quantity by its name: limiting masses, and inputs found from a measured motion.
 
 `Machine` is the model of a `Case` in one arithmetic. It computes nothing that is not asked for, and a
 quantity that the scene does not determine raises `Undetermined` with the reason.
@@ -52,7 +52,7 @@ class Machine(Mechanics[N]):
 
     @lazy
     def critical_lighter_mass(self) -> N:
-        """Lighter mass below which the string slips (kg); 0 where it holds under any."""
+        """Lighter mass below which the string slips (kg); 0 if it slips under none."""
         k1, h = self.k1, self.h
         if self.case.stands_until_it_slips:
             return physics.lightest_held(h, self.capstan_ratio)
@@ -76,7 +76,7 @@ class Machine(Mechanics[N]):
         return physics.least_pulley_mass(transfer, beta, self.b)
 
     def _check_applicable(self) -> None:
-        """Raise Undetermined where (36) has no meaning: where the critical pulley has no mass."""
+        """Raise Undetermined if the critical pulley has no mass, so that (36) has no meaning."""
         if is_zero(self.scene.mu) and not self.case.pulley_known and not self.case.rubs:
             raise Undetermined(quantities.NOT_APPLICABLE)
 
@@ -94,7 +94,7 @@ class Machine(Mechanics[N]):
         return self.alpha * 180 / self.ar.pi
 
     def _found(self, name: str, otherwise: str) -> N:
-        """What follows from the measured acceleration, by the name of the input."""
+        """Return the input that follows from the measured acceleration, if it is this one."""
         if self.case.motion.finds != name:
             raise Undetermined(otherwise)
         return self.ar.number(getattr(self.scene, name))
@@ -105,7 +105,7 @@ class Machine(Mechanics[N]):
 
     @property
     def moment_of_inertia(self) -> N:
-        _ = self.pulley_mass  # raises if nothing tells of the pulley
+        _ = self.pulley_mass  # raises unless it follows from the motion
         R = self._given(self.scene.R, quantities.NEEDS_R)
         return physics.moment_of_inertia(self._given(self.case.rim_mass, quantities.NEEDS_M), R)
 
@@ -130,7 +130,7 @@ class Machine(Mechanics[N]):
         return physics.final_speed(*self._fall(), self.ar.sqrt)
 
     def _fall(self) -> tuple[N, N]:
-        """The height fallen, and the acceleration."""
+        """Return the height fallen (m), and the acceleration (m/s²)."""
         drop = self._given(self.case.motion.drop, quantities.NEEDS_DROP)
         if self.ar.is_zero(self.magnitude):
             raise Undetermined(quantities.AT_REST)

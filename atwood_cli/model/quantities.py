@@ -10,21 +10,21 @@ from .units import nearest
 
 
 class Undetermined(Exception):
-    """The scene does not determine the quantity; the reason says why and what to give.
+    """The scene does not determine a quantity; the message says why and what to give.
 
-    What a page of mathematics writes in another way stands between backticks: names of inputs and of
-    quantities, and the word "give". `solver.messages` says who takes the backticks out.
+    Backticks mark names, and the word "give", which LaTeX output replaces by symbols and words. Other output
+    takes them out (`solver.messages.unmarked`).
     """
 
 
 REGIMES = ("no-slip", "verge", "slip")
 Accuracy = Literal["certified", "exact"]
 ACCURACIES: tuple[Accuracy, ...] = get_args(Accuracy)
-"""How accurate the quantities of many scenes are."""
+"""The accuracies of arrays."""
 
 
 class About(NamedTuple):
-    """How a quantity is shown, and the paper's equation for it, if it has one."""
+    """How a quantity is shown, and the paper's equation for it, "" if it has none."""
 
     group: str
     symbol: str
@@ -75,15 +75,15 @@ AXLE_ENTERS = {
     *("critical_pulley_mass", "critical_heavier_mass", "least_pulley_mass"),
     *("pulley_mass", "gravity", "m1", "m2"),
 }
-"""The quantities into whose equation the friction of an axle comes, which the paper does not have."""
+"""The quantities whose equation has an additional term if the axle has friction."""
 
 
 def cited(name: str, slips: bool, rubs: bool) -> str:
-    """The paper's equation for a quantity in a regime; +b marks one that an axle's friction enters."""
+    """Return the paper's equation for a quantity in a regime, with +b if axle friction adds a term."""
     about = QUANTITIES[name]
     if slips and about.equation_in_slip is not None:
         return about.equation_in_slip
-    return about.equation + "+b" * (rubs and name in AXLE_ENTERS)
+    return f"{about.equation}+b" if rubs and name in AXLE_ENTERS else about.equation
 
 
 FROM_MOTION: dict[str | None, tuple[str, ...]] = {
@@ -94,12 +94,12 @@ FROM_MOTION: dict[str | None, tuple[str, ...]] = {
     "mu_k": ("mu_k",),
     "drop": ("fall_time", "final_speed"),
 }
-"""Quantities that only some scenes have, by the parameter that is found there, or given."""
+"""The quantities that only a measurement gives: by the input that it finds, or by the height of fall."""
 MEASURED_NAMES = tuple(chain.from_iterable(FROM_MOTION.values()))
 NAMES = ("regime", *(name for name in QUANTITIES if name not in MEASURED_NAMES))
-"""What every scene has."""
+"""The quantities that every scene has."""
 MAIN = ("acceleration", "tension_1", "tension_2", "mu_verge", "friction_force")
-"""What every scene is about."""
+"""The quantities that every table of a scene shows."""
 
 STANDARD = ("regime", *MAIN, "critical_pulley_mass")
 """The quantities of many scenes in a table, unless others are named."""
@@ -141,11 +141,11 @@ AT_REST = "does not exist, as nothing moves"
 
 SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
 ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
-"""How symbols are typed."""
+"""The letters to type for those of symbols."""
 
 
 def _plain(symbol: str) -> str:
-    """A symbol or a name as it may be typed: F min is Fmin, as F_min is, and mu_k is muk, as mu-k is."""
+    """Return a symbol or a name without blanks and dashes, so that Fmin and F_min are the same as F min."""
     return re.sub("[ _-]", "", symbol.translate(ASCII))
 
 
@@ -159,12 +159,12 @@ def read_names(
     kind: str = "quantity",
     symbols: Mapping[str, str] = SYMBOLS,
 ) -> list[str]:
-    """The names meant; a word may hold several with commas between. Raises SceneError."""
+    """Read names; a word may hold several with commas between. Raises SceneError."""
     return [read_name(parameter, word, known, kind, symbols) for word in divided(typed)]
 
 
 def read_quantities(words: Sequence[str] | None) -> list[str]:
-    """The quantities that a program names, each once: by default the standard ones. Raises SceneError."""
+    """Read the quantities that a program names, each once; by default the standard ones. Raises SceneError."""
     typed = [words] if isinstance(words, str) else STANDARD if words is None else words
     return list(dict.fromkeys(read_names("quantities", map(str, typed))))
 
@@ -176,7 +176,7 @@ def read_name(
     kind: str = "quantity",
     symbols: Mapping[str, str] = SYMBOLS,
 ) -> str:
-    """The name meant, of those ``known``: itself, or its symbol as tables show it. Raises SceneError."""
+    """Read one of the names ``known``, or its symbol as tables show it. Raises SceneError."""
     if word in known:
         return word
     if (name := symbols.get(_plain(word), "")) in known:
@@ -191,7 +191,7 @@ def read_name(
 
 
 def read_accuracy(word: object) -> Accuracy:
-    """The accuracy of that name. Raises SceneError."""
+    """Read the name of an accuracy. Raises SceneError."""
     if word == "fast":
         raise SceneError("accuracy", word, "is no longer there, as certified takes hardly longer; take that")
     known = read_name("accuracy", str(word), ACCURACIES, "accuracy")
@@ -199,5 +199,5 @@ def read_accuracy(word: object) -> Accuracy:
 
 
 def divided(typed: Iterable[str]) -> list[str]:
-    """The words of a repeatable option, of which one may hold several with commas between."""
+    """Return the words of a repeatable option, each of which may hold several with commas between."""
     return [word.strip() for words in typed for word in words.split(",")]

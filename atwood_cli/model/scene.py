@@ -1,4 +1,4 @@
-"""What is given: words and numbers in, an exact and valid `Scene` out. Nothing is computed."""
+"""Read what is given, words and numbers, into an exact and valid `Scene`. Nothing is computed."""
 
 from __future__ import annotations
 
@@ -37,9 +37,10 @@ from .units import (
 
 
 class Angle:
-    """A number of degrees, or of radians: kept as it was given, since no rational angle is both.
+    """An angle of wrap, exact: a number of degrees or of radians, as it was given.
 
-    ``number`` is a Fraction; in arrays, a column of degrees. An angle in degrees equals its number.
+    No rational number of degrees is a rational number of radians. ``number`` is a Fraction; in arrays, a
+    column of degrees. An angle in degrees equals its number.
     """
 
     __slots__ = ("number", "unit")
@@ -59,18 +60,18 @@ class Angle:
         return f"Angle({self.number!r}, {self.unit!r})"
 
     def radians(self, ar: Arithmetic[N]) -> N:
-        """The angle in radians."""
+        """Return the angle in radians."""
         if self.unit == "rad":
             return ar.number(self.number)
         return ar.pi * ar.number(self.number / 180)
 
     def degrees(self, ar: Arithmetic[N], share: Any = 1) -> N:
-        """A share of the angle in degrees; none of it is exactly 0."""
+        """Return a share of the angle in degrees; a share of 0 is exactly 0."""
         number = ar.number(share * self.number)
         return number * 180 / ar.pi if self.unit == "rad" and share else number
 
     def cos_sin(self, ar: Arithmetic[N], parts: int = 1) -> tuple[N, N]:
-        """Cosine and sine of an equal part of the angle; exact at multiples of 90°."""
+        """Return cosine and sine of one of equal parts of the angle; exact at multiples of 90°."""
         if self.unit == "rad":
             return ar.cos_sin(ar.number(self.number) / parts)
         return ar.cos_sin_of_degrees(self.number / parts)
@@ -87,18 +88,21 @@ class Angle:
 
     @property
     def ends_hang_down(self) -> bool:
-        """Whether both ends of the string leave the pulley downwards: half a turn, and whole turns more."""
+        """Whether both ends of the string hang down: half a turn of wrap, plus whole turns."""
         return bool(self.unit == "°" and (self.number - 180) % 360 == 0)
 
 
 class Axle(NamedTuple):
-    """The friction of an axle: a force at the rim (N), or a torque (N m); kept so, as R may be uncertain."""
+    """The friction of an axle as it was given: a force at the rim (N) or a torque (N m).
+
+    A torque is not converted when it is read, as R may be uncertain.
+    """
 
     number: Any
     unit: Literal["N", "N m"] = "N"
 
     def force(self, R: Any) -> Any:
-        """The friction as a force at the rim (N) of a pulley of radius R (m)."""
+        """Return the friction as a force at the rim (N) of a pulley of radius R (m)."""
         return self.number / R if self.unit == "N m" else self.number
 
 
@@ -128,8 +132,8 @@ BODIES = {
     "neptune": "11.15",
     "pluto": "0.62",
 }
-"""Gravity (m/s²) by NASA's planetary fact sheets, without what rotation takes from it: the mean at the
-surface, and of giants that at the equator where the pressure is 1 bar; of earth, standard gravity."""
+"""Gravity (m/s²) by NASA's planetary fact sheets, without the effect of rotation: the mean at the surface, of
+giants at the equator where the pressure is 1 bar. Earth has standard gravity."""
 
 MASSES = ("m1", "m2")
 DEFAULTS = {"g": STANDARD_GRAVITY, "wrap": "180"}
@@ -137,7 +141,7 @@ MISSING_MASS = "is missing; give both masses, m1 and m2"
 
 
 class SceneError(ValueError):
-    """An input that is not a valid scene: ``parameter``, its ``value`` as given, the ``rule``."""
+    """An error of an input: the ``parameter``, its ``value`` as given, and the ``rule`` that it breaks."""
 
     def __init__(self, parameter: str, value: object, rule: str) -> None:
         super().__init__(parameter, value, rule)
@@ -147,7 +151,7 @@ class SceneError(ValueError):
         return self.describe(self.parameter)
 
     def describe(self, name: str) -> str:
-        """The message, with the parameter called ``name`` (an option, a column)."""
+        """Return the message, with the parameter called ``name`` (an option, a column)."""
         if self.value is None:
             return f"{name} {self.rule}"
         try:
@@ -158,7 +162,7 @@ class SceneError(ValueError):
 
 
 class Parameter(NamedTuple):
-    """What an input may be."""
+    """An input: its meaning, its unit, and the values that it may have."""
 
     meaning: str
     unit: str = ""
@@ -173,7 +177,7 @@ class Parameter(NamedTuple):
         if self.signed:
             return "must be finite"
         bound = "0 or more" if self.zero else "above 0"
-        return f"must be {bound}{' (inf locks the pulley)' if self.inf else ', and finite'}"
+        return f"must be {bound} (inf locks the pulley)" if self.inf else f"must be {bound}, and finite"
 
 
 INPUTS = {
@@ -194,7 +198,7 @@ INPUTS = {
         dimension="torque or force",
     ),
 }
-"""What a scene is made of, and what the columns of arrays and of tables may be."""
+"""The inputs of a scene, which columns of arrays and of tables may have, too."""
 MEASURED = {
     "a": Parameter(
         "measured acceleration, positive when m2 descends", "m/s²", dimension="acceleration", signed=True
@@ -202,11 +206,11 @@ MEASURED = {
     "drop": Parameter("height that the heavier mass falls from rest", "m", dimension="length"),
     "time": Parameter("measured time in which it does", "s", dimension="time"),
 }
-"""What may be known of the motion, beside the scene or in place of a part of it; see `motion`."""
+"""Measurements of the motion, in addition to a scene or instead of one of its inputs; see `motion`."""
 
 
 def parameter_of(name: str) -> Parameter:
-    """What an input may be, of the scene or of the motion."""
+    """Return an input of the scene or a measurement by its name."""
     return INPUTS.get(name) or MEASURED[name]
 
 
@@ -218,7 +222,7 @@ def with_unit(value: str, unit: str) -> str:
 class Input(NamedTuple):
     """An input as it was read: its exact value in SI units, its standard uncertainty, and what was given.
 
-    ``value`` is a Fraction; or inf for a locked pulley, an `Angle` for the wrap, an `Axle`, and None where
+    ``value`` is a Fraction, inf for a locked pulley, an `Angle` for the wrap, or an `Axle`; it is None if
     nothing was given and there is no default. The uncertainty is in the unit of the value.
     """
 
@@ -228,9 +232,9 @@ class Input(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """A valid scene in SI units, exact; None where not given.
+    """A valid scene in SI units, exact; an input that is not given is None.
 
-    ``M`` is a float only where it is infinite: a locked pulley.
+    ``M`` is a float only if it is infinite, for a locked pulley.
     """
 
     m1: Fraction
@@ -303,9 +307,9 @@ def _contradiction(
 
 
 class Motion(NamedTuple):
-    """What was measured of the motion, in SI units, exact; None where not given.
+    """Measurements of the motion in SI units, exact; one that is not given is None.
 
-    ``finds`` is the parameter, such as "M" or "g", that follows from it and was not given.
+    ``finds`` is the input, such as "M" or "g", that was not given and follows from them.
     """
 
     a: Fraction | None = None
@@ -326,46 +330,47 @@ UNMEASURED = Motion()
 
 
 def read_input(name: str, given: Given | None) -> Input:
-    """One parameter, whose text may carry a standard uncertainty. Raises SceneError."""
+    """Read one input, whose text may carry a standard uncertainty. Raises SceneError."""
     if given is None:
         return _default(name)
     if isinstance(given, str):
         number = _read_text(name, given, given)
     elif (isinstance(given, Angle) and name == "wrap") or (isinstance(given, Axle) and name == "axle"):
-        number = Number(_read_number(name, given.number), given.unit)
+        number = Number(_exact_number(name, given.number), given.unit)
     else:
-        number = Number(_read_number(name, given))
+        number = Number(_exact_number(name, given))
     return Input(_checked(name, given, number), number.uncertainty, given)
 
 
 @cache
 def _default(name: str) -> Input:
-    """A parameter that is not given."""
+    """Return an input that is not given."""
     default = DEFAULTS.get(name)
-    return Input(default and read_value(name, default), Fraction(0), None)
+    value = read_value(name, default) if default else None
+    return Input(value, Fraction(0), None)
 
 
 def read_exactly(name: str, given: Given | None) -> Input:
-    """One parameter, without an uncertainty. Raises SceneError."""
+    """Read one input, which must carry no uncertainty. Raises SceneError."""
     if isinstance(given, str) and is_uncertain(given):
         raise SceneError(name, given, NO_UNCERTAINTY)
     return read_input(name, given)
 
 
 def read_value(name: str, given: Given | None) -> Any:
-    """The exact value of one parameter, as `Input` has it. Raises SceneError."""
+    """Read the exact value of one input, as `Input` has it. Raises SceneError."""
     return read_exactly(name, given).value
 
 
 def read_plain(name: str, given: str, text: str) -> Fraction | float:
-    """The number that a cell of a table stands for, by a text without unit or name. Raises SceneError."""
+    """Read the number in a cell of a table, as ``text``, which has no unit or name. Raises SceneError."""
     if is_uncertain(text):
         raise SceneError(name, given, NO_UNCERTAINTY)
     return _read_text(name, given, text, INPUTS[name]._replace(dimension=None, names={})).value
 
 
 def read_whole(name: str, given: int | str, least: int, most: int) -> int:
-    """A whole number within bounds. Raises SceneError."""
+    """Read a whole number within bounds. Raises SceneError."""
     whole = given
     if isinstance(given, str) and given.isascii() and given.isdigit() and len(given) <= len(str(most)):
         whole = int(given)
@@ -375,12 +380,12 @@ def read_whole(name: str, given: int | str, least: int, most: int) -> int:
 
 
 def read_digits(given: int | str | None) -> int | None:
-    """How many significant digits are asked for. Raises SceneError."""
+    """Read how many significant digits are asked for. Raises SceneError."""
     return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
 
 
 def _checked(name: str, given: Given, number: Number) -> Any:
-    """The number as the parameter's value: an angle or an axle, if it is one. Raises SceneError."""
+    """Return a number as the value of an input: an angle or an axle, if it is one. Raises SceneError."""
     parameter, (value, unit, _) = parameter_of(name), number
     if (
         (value < 0 and not parameter.signed)
@@ -396,7 +401,7 @@ def _checked(name: str, given: Given, number: Number) -> Any:
 
 
 def _read_text(name: str, given: Given, text: str, parameter: Parameter | None = None) -> Number:
-    """The number that a text, or part of it, stands for; errors show all that was given."""
+    """Read the number in a text that is all or part of what was given; errors show all. Raises SceneError."""
     parameter = parameter or parameter_of(name)
     word = without_blanks(text).lower()
     if parameter.inf and word == "inf":
@@ -412,7 +417,7 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
 
 NO_UNCERTAINTY = "carries an uncertainty, which only solve takes; give the value alone"
 THOUSANDS = re.compile(r"[+-]?\d{1,3},\d{3}[^,]*", re.ASCII)
-"""With more commas it may as well be a list."""
+"""A number with one comma before three digits; with more commas it may be a list."""
 
 
 def _not_a_number(parameter: Parameter, word: str) -> str:
@@ -434,11 +439,11 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
 
 
 def _longest(number: Decimal) -> int:
-    """The digits before the point, or behind it, whichever are more."""
+    """Return the number of digits before the point, or behind it if they are more."""
     return max(abs(number.adjusted()), -int(number.as_tuple().exponent))
 
 
-def _read_number(name: str, given: object) -> Fraction | float:
+def _exact_number(name: str, given: object) -> Fraction | float:
     is_duration = getattr(getattr(given, "dtype", None), "kind", "") == "m"  # NumPy's pass for integers
     if isinstance(given, bool) or is_duration or not isinstance(given, Real | Decimal):
         raise SceneError(name, given, "must be text or a number (str, int, float, Decimal, Fraction)")

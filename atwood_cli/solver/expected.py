@@ -1,4 +1,4 @@
-"""What a script expects of a scene, decided exactly: a regime, or a quantity compared with a number."""
+"""Decide exactly what a script expects: a regime, or a quantity compared with a number."""
 
 import operator
 import re
@@ -33,11 +33,11 @@ DIMENSIONS = {
     "°": "angle",
     "s": "time",
 }
-"""Of what a quantity is, by its unit."""
+"""The dimension of a quantity, by its unit."""
 
 
 class Condition(NamedTuple):
-    """What is expected, as it was typed; a regime has no number."""
+    """What is expected: the text that was typed, a regime, or a quantity with a comparison and a number."""
 
     typed: str
     name: str
@@ -46,7 +46,7 @@ class Condition(NamedTuple):
 
 
 def read_condition(typed: str) -> Condition:
-    """The condition that a text is. Raises SceneError."""
+    """Read a condition. Raises SceneError."""
     if typed.strip() in REGIMES:
         return Condition(typed, typed.strip())
     if not (match := COMPARISON.fullmatch(typed)):
@@ -63,7 +63,7 @@ def read_condition(typed: str) -> Condition:
 
 
 def failure(answers: Answers, expected: Condition) -> str:
-    """What is so in place of what is expected; empty if that holds."""
+    """Say what holds instead of what is expected, "" if that holds."""
     case = answers.case
     if expected.name in REGIMES:
         if expected.name != case.regime:
@@ -89,17 +89,17 @@ def failure(answers: Answers, expected: Condition) -> str:
 
 
 def is_assumed(answers: Answers) -> bool:
-    """Whether the string is only assumed to hold, as there is no coefficient of friction."""
+    """Decide whether the string is only assumed to hold, as mu is not given."""
     return answers.case.mu_assumed and bool(answers.case.light)
 
 
 def _in_scene(scene: Any, number: Number) -> Fraction:
-    """The number in SI units; a multiple of g is one of the scene's."""
+    """Return the number in SI units; a multiple of g is one of the scene's g."""
     return Fraction(number.value) * (scene.g / Fraction(STANDARD_GRAVITY) if number.unit == "g" else 1)
 
 
 def _bound(machine: Any, number: Number) -> Any:
-    """The number in the arithmetic of a machine; an angle in degrees."""
+    """Return the number in the arithmetic of a machine; an angle in degrees."""
     if number.unit == "rad":
         return Angle(number.value, "rad").degrees(machine.ar)
     return machine.ar.number(_in_scene(machine.scene, number))
