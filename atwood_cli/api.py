@@ -1,9 +1,11 @@
 """The Python interface to one scene: `solve`, and the `Solution` that it returns."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from inspect import Parameter, Signature
+from math import isinf
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, overload
 
 from .model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
@@ -121,9 +123,14 @@ class Solution(Answered, Generic[T]):
     def to_dict(self) -> dict[str, Any]:
         """Return the record that ``--json`` prints, for `json`: Decimals are text, infinite values None."""
         from .output.scene_page import record
-        from .output.text import for_json
+        from .output.text import VERSION, as_json
 
-        return {name: for_json(value, self._answers.digits) for name, value in record(self._answers).items()}
+        def number(typed: str) -> str | float:
+            value = float(typed)
+            return typed if self._answers.digits or isinf(value) else value
+
+        printed = "".join(as_json(record(self._answers)))
+        return {**json.loads(printed, parse_float=number, parse_int=number), "version": VERSION}
 
     def __str__(self) -> str:
         """Return the page that ``atwood solve`` prints, without colours."""

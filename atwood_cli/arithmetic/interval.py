@@ -324,7 +324,7 @@ def _bits(digits: int) -> int:
 
 
 def _expm1_series(x: int, halvings: int, w: int) -> int:
-    """Return e^x - 1 by the series at x/2^halvings and as many doublings; x and the result in units of 2^-w."""
+    """Return e^x - 1 by the series at x/2^halvings and as many doublings; both in units of 2^-w."""
     r = x >> halvings
     total, term, n = 0, r, 1
     while term:
@@ -377,7 +377,7 @@ def _ln10(bits: int) -> int:
 
 
 def _constant(*terms: tuple[int, int, int], bits: int) -> int:
-    """Return the sum of factor · `_inverse`(q, sign) for terms (factor, q, sign), right to two units of 2^-bits.
+    """Return the sum of factor · `_inverse`(q, sign) for terms (factor, q, sign), to two units of 2^-bits.
 
     The series have fewer than w terms, each truncated by less than two units of 2^-w, and the factors add up
     to at most 100. The 40 extra bits (`GUARD_BITS`) absorb that up to w = 2^32.

@@ -10,11 +10,22 @@ from ..output.text import Forms, Target, cell, said_of_scene, say, show
 from ..solver.answers import Answers, read_answers
 from ..solver.expected import failure, read_condition
 from ..solver.messages import unmarked
-from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Digits, option, quantities, scene_option, takes
+from .options import (
+    COULD_NOT,
+    DONE,
+    OUTPUT,
+    SCENE,
+    Bare,
+    Digits,
+    option,
+    quantity_meanings,
+    scene_option,
+    takes,
+)
 
 
 def _askable() -> Mapping[str, str]:
-    return {**quantities(), **dict.fromkeys(MEASURED_NAMES, "found from what was measured")}
+    return {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from what was measured")}
 
 
 Acceleration = Annotated[str | None, scene_option("a", "Measured")]
@@ -116,7 +127,7 @@ def _explain(answers: Answers, markdown: bool) -> None:
 
 
 def _draw(answers: Answers, path: str, bare: bool, force: bool) -> None:
-    """Draw the machine. Raises SceneError where the scene leaves its tensions open, OSError."""
+    """Draw the machine. Raises SceneError if the scene does not determine its tensions, OSError."""
     from ..output.scene_figure import save
     from ..solver.balance import kind_of
 

@@ -28,7 +28,7 @@ REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 
 
 class Page:
-    """Where tables and sentences go: the terminal, or a pipe that takes any width."""
+    """A printer of tables and sentences, to a terminal or to a pipe, which takes any width."""
 
     def __init__(self, console: "Console | None" = None) -> None:
         from rich.console import Console
@@ -42,16 +42,16 @@ class Page:
         self.width = self.room or PIPE_WIDTH
 
     def say(self, *sentences: str, style: str = "") -> None:
-        """Sentences, in lines no longer than the terminal is wide, or than a page in a pipe."""
+        """Print sentences, in lines no longer than the terminal is wide, or than a page in a pipe."""
         for line in self.lines(*sentences):
             self.line(line, style)
 
     def lines(self, *sentences: str) -> list[str]:
-        """Sentences in lines, as `say` prints them."""
+        """Return sentences in lines, as `say` prints them."""
         return [line for words in sentences for line in wrapped(printable(words), self.width)]
 
     def line(self, words: str, style: str = "") -> None:
-        """A line as it is, however long."""
+        """Print a line as it is, however long."""
         from rich.text import Text
 
         self.console.print(Text(printable(words), style), soft_wrap=True)
@@ -67,9 +67,9 @@ class Page:
         self.say(unmarked(verdict(answers)), style=style)
 
     def table(self, columns: Sequence[str], groups: Groups) -> None:
-        """A table, with a line between groups of rows.
+        """Print a table, with a line between groups of rows.
 
-        Words are folded where the terminal is narrow. Numbers and heads are not: a table that has no room for
+        Words are folded if the terminal is narrow. Numbers and heads are not: a table that has no room for
         them is wider than the terminal.
         """
         from rich import box
@@ -83,7 +83,8 @@ class Page:
             heads = [re.sub("_(?=[a-z])", "_\n", head) for head in heads]
         whole = [fits or any(map(_is_number, column)) for column in cells]
         least = [
-            _widest(head, column * fixed) for head, column, fixed in zip(heads, cells, whole, strict=True)
+            _widest(head, column if fixed else ())
+            for head, column, fixed in zip(heads, cells, whole, strict=True)
         ]
         self.console.width = max(self.console.width, _width(least))
         table = Table(box=box.ROUNDED)
@@ -101,7 +102,7 @@ class Page:
 
 
 def print_explanation(given: Sequence[str], explanation: "Explanation", markdown: bool) -> None:
-    """A derivation, step by step: on a terminal in its columns, or as Markdown."""
+    """Print a derivation, step by step: in the columns of a terminal, or as Markdown."""
     from .typeset import as_markdown, as_text
 
     if markdown:
@@ -115,7 +116,7 @@ def print_explanation(given: Sequence[str], explanation: "Explanation", markdown
 
 
 def _width(columns: Iterable[int]) -> int:
-    """The width of a table with columns of these widths."""
+    """Return the width of a table with columns of these widths."""
     return 1 + sum(3 + width for width in columns)
 
 
@@ -124,10 +125,10 @@ def _widest(head: str, cells: Iterable[str]) -> int:
 
 
 def aligned(numbers: Iterable[str]) -> list[str]:
-    """The numbers with their decimal points below each other; words are left as they are."""
+    """Return numbers with their decimal points below each other; words are left as they are."""
     numbers = list(numbers)
     point = max(map(_integer_part, numbers), default=0)
-    return [" " * (point - _integer_part(cell)) * _is_number(cell) + cell for cell in numbers]
+    return [" " * (point - _integer_part(cell)) + cell if _is_number(cell) else cell for cell in numbers]
 
 
 def _is_number(value: str) -> bool:
@@ -141,7 +142,7 @@ def _integer_part(value: str) -> int:
 def watched(
     parts: Iterator[Part], total: int | None, size: Callable[[Part], int] = lambda _: 1
 ) -> Iterator[Part]:
-    """The parts, with a bar on a terminal's stderr once they take longer than a second."""
+    """Yield the parts, with a progress bar on a terminal's stderr once they take longer than a second."""
     start, done = monotonic(), 0
     for part in parts:
         yield part

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> dict[str, object]:
-    """The record for JSON: all quantities with scene and notes, or the quantities named alone."""
+    """Return the record for JSON: all quantities with scene and notes, or only the quantities named."""
     names = only or answers.names
     results: dict[str, object] = {name: answers[name] for name in names}
     uncertainty = answers.standard_uncertainties(names) or None
@@ -43,7 +43,7 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
 
 
 def csv_record(answers: Answers, names: Sequence[str], budget: bool = False) -> dict[str, object]:
-    """The record for CSV: values, then uncertainties, then each input's share of the variances."""
+    """Return the record for CSV: values, then uncertainties, then each input's share of the variances."""
     values = {name: answers[name] for name in names}
     uncertain = {f"u_{name}": u for name, u in answers.standard_uncertainties(names).items()}
     inputs = answers.uncertain if budget else ()
@@ -72,7 +72,7 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 AT_LIMIT = ("friction_force", "friction_force_x", "friction_force_y")
-"""Quantities that are one number only where friction is at its limit."""
+"""The quantities that have a single value only if friction is at its limit."""
 
 
 def print_table(
@@ -96,7 +96,7 @@ def print_table(
 
 
 def as_text(answers: Answers) -> str:
-    """The same page as text without colours, in the width and the characters of standard output."""
+    """Return the page as text without colours, in the width and the characters of standard output."""
     from shutil import get_terminal_size
 
     from rich.console import Console
@@ -110,7 +110,7 @@ def as_text(answers: Answers) -> str:
 
 
 def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
-    """The cells of the table: a row for each quantity that exists, by group."""
+    """Return the cells of the table: a row for each quantity that exists, by group."""
     from .page import aligned
 
     values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
@@ -127,12 +127,12 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
 
 
 def _stated(answers: Answers, name: str) -> str:
-    """A quantity with its value, uncertainty and unit."""
+    """Say a quantity with its value, uncertainty and unit."""
     return f"{name} = {with_unit(_with_uncertainty(answers, name), QUANTITIES[name].unit)}"
 
 
 def _with_uncertainty(answers: Answers, name: str) -> str:
-    """A value, and its uncertainty if it has one; empty if it does not exist."""
+    """Return a value, with its uncertainty if it has one; "" if it has no value."""
     shown = cell(answers[name])
     if not (shown and answers.uncertainties and answers.answer(name).uncertainty):
         return shown
@@ -141,7 +141,7 @@ def _with_uncertainty(answers: Answers, name: str) -> str:
 
 
 def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = None) -> None:
-    """Each uncertain input's share of the variance of each quantity."""
+    """Print each uncertain input's share of the variance of each quantity."""
     from .page import Page, aligned
 
     page, names = page or Page(), [name for name in names if name != "regime"]
@@ -168,7 +168,7 @@ COLUMN_UNITS = {
 
 
 def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
-    """The record for JSON."""
+    """Return the record of an arc for JSON."""
     return {
         "version": VERSION,
         "scene": scene_record(answers.case.scene, round_=answers.round),
@@ -181,7 +181,7 @@ def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
 
 
 def print_contact(answers: Answers, arc: Contact) -> None:
-    """The scene, the verdict, the points along the arc, the balance of forces, and the notes."""
+    """Print the scene, the verdict, the points along the arc, the balance of forces, and the notes."""
     from .page import Page, aligned
 
     page = Page()

@@ -209,7 +209,7 @@ def kinetic(answers: Answers) -> list[str]:
 
 
 def _sliding(answers: Answers) -> Answers | None:
-    """Return the answers if the string slid already in a scene that holds from rest; None if it would stop."""
+    """Return the answers if the string slid already, though it holds from rest; None if it would stop."""
     scene = answers.case.scene
     if scene.mu_k is None or not answers.case.pulley_known:
         return None

@@ -19,7 +19,7 @@ from .sweep_figure import MAX_CURVES
 
 
 class SweepPage:
-    """A sweep in the forms in which it may be asked for. Rows of JSON and CSV are written as they come."""
+    """A sweep as a page, JSON and CSV. Rows of JSON and CSV are written as they come."""
 
     def __init__(self, sweep: Sweep, names: Sequence[str], digits: int | None) -> None:
         self.sweep, self.digits = sweep, digits
@@ -27,12 +27,12 @@ class SweepPage:
         self.missing = set(names)
         """The quantities that were asked for and that no row has."""
         self.names = names or STANDARD
-        # Where a sentence tells the regimes, they have a column only if it is asked for.
+        # If a sentence says the regimes, they have a column only if it is asked for.
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
         self.reasons: Counter[tuple[str, str]] = Counter()
 
     def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
-        """The rows; on the way, reasons for missing values are counted."""
+        """Yield the rows, and count the reasons for missing values."""
         rows = solve_rows(self.sweep, names, digits)
         for row in watched(rows, self.sweep.total) if watch else rows:
             self.reasons.update(row.reasons.items())
@@ -40,12 +40,12 @@ class SweepPage:
             yield row
 
     def notes(self) -> list[str]:
-        """The reasons for missing values that were asked for, with the number of points, after all rows."""
+        """Say why values that were asked for are missing, with the number of points, after all rows."""
         asked = {key: points for key, points in self.reasons.items() if key[0] in self.asked}
         return reasons_at(asked, self.sweep.total)
 
     def _all_notes(self) -> Iterator[str]:
-        """The reasons for all missing values: an iterator that begins after all rows."""
+        """Say why any values are missing: an iterator that begins after all rows."""
         yield from reasons_at(self.reasons, self.sweep.total)
 
     def json(self) -> Mapping[str, object]:
@@ -109,9 +109,9 @@ PULLEYS = "As M is not given, each row that is on the verge has a pulley of its 
 
 
 def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:
-    """The regimes along one range, in a sentence for each point of the other range, if these are few.
+    """Say the regimes along one range, for each point of the other range, if these are few.
 
-    The range is the one that varies fast, if two come into question.
+    Of two ranges of the same rank, it is the one that varies fast.
     """
     along = max(reversed(sweep.ranges), key=attrgetter("rank"))
     if len({row.regime for row in rows}) == 1 and sweep.ranges[1:]:
