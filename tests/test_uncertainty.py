@@ -15,7 +15,8 @@ import pytest
 
 from atwood_cli import SceneError, solve, solve_arrays
 from atwood_cli.model.digits import to_digits, to_place, with_uncertainty
-from atwood_cli.model.scene import Angle, read_input
+from atwood_cli.model.scene import read_input
+from atwood_cli.model.units import Angle
 from atwood_cli.solver.answers import Answers, read_answers
 
 from .conftest import many

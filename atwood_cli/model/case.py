@@ -49,6 +49,23 @@ def is_zero(value: object) -> bool:
     return hasattr(value, "numerator") and not value
 
 
+def rim_mass(inputs: Any, mass: Fraction | None) -> Fraction | None:
+    """Return the inertia of a pulley of that mass as a mass at the rim (kg), c = βM; None if it is not known.
+
+    ``inputs`` has I, R and inertia.
+    """
+    if inputs.I is not None and inputs.R is not None:
+        c: Fraction = inputs.I / (inputs.R * inputs.R)
+        return c
+    return mass if mass is None or inputs.inertia is None else inputs.inertia * mass
+
+
+def axle_force(inputs: Any) -> Fraction:
+    """Return the axle's friction as a force at the rim, f (N). ``inputs`` has axle and R."""
+    force: Fraction = ZERO if inputs.axle is None else inputs.axle.force(inputs.R)
+    return force
+
+
 class Case:
     """The decisions about a scene, and the inputs seen from the lighter and the heavier mass.
 
@@ -95,13 +112,8 @@ class Case:
 
     @lazy
     def rim_mass(self) -> Fraction | None:
-        """The pulley's inertia as a mass at the rim (kg), c = βM; None if it is locked or not known."""
-        scene, mass = self.scene, self.pulley_mass
-        if scene.I is not None and scene.R is not None:
-            return physics.rim_mass_of_inertia(scene.I, scene.R)
-        if mass is None or scene.inertia is None:
-            return mass
-        return scene.inertia * mass
+        """The pulley's inertia as a mass at the rim, c (kg); None if it is locked or not known."""
+        return rim_mass(self.scene, self.pulley_mass)
 
     @lazy
     def beta(self) -> Fraction | None:
@@ -113,11 +125,7 @@ class Case:
     @lazy
     def axle_friction(self) -> Fraction:
         """The axle's friction as a force at the rim, f (N)."""
-        axle = self.scene.axle
-        if axle is None:
-            return ZERO
-        force: Fraction = axle.force(self.scene.R)
-        return force
+        return axle_force(self.scene)
 
     @property
     def rubs(self) -> bool:

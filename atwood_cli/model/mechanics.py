@@ -276,7 +276,7 @@ class Mechanics(Generic[N]):
         mu = self.mu
         if self.case.tensions_equal or (self.case.regime == "verge" and is_zero(self.scene.mu)):
             raise Undetermined(quantities.NO_NEED)
-        return physics.safety_factor(mu, self.mu_verge)
+        return mu / self.mu_verge
 
     @lazy
     def tension_ratio(self) -> N:
@@ -305,7 +305,7 @@ class Mechanics(Generic[N]):
         if self.ar.is_zero(mu):
             return self.ar.number(0)
         if self.case.ends_hang_down:
-            force = physics.half_turn_resultant(self.light_tension, self.heavy_tension)
+            force = self.light_tension + self.heavy_tension  # (20)
         else:
             force = self._resultant(self.half_sine)
         return physics.friction_magnitude(mu, force, self.ar.hypot)

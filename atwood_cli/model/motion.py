@@ -8,17 +8,19 @@ from collections.abc import Callable, Mapping
 from fractions import Fraction
 from functools import partial
 from math import inf
+from types import SimpleNamespace
 from typing import Any
 
 from ..arithmetic.rational import EXACT
 from . import physics
-from .case import ZERO, Case
+from .case import ZERO, Case, axle_force, rim_mass
 from .digits import SHOWN_DIGITS, as_typed, text, tidy, to_digits, to_double, to_threshold
 from .quantities import Undetermined
-from .scene import INPUTS, MASSES, MEASURED, Angle, Axle, Input, Motion, Scene, SceneError, checked
+from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError, checked
+from .units import Angle
 
-Values = Mapping[str, Any]
-"""Exact inputs of a scene by name; None if one is not given, or is to be found."""
+Values = Any
+"""The exact values of inputs as attributes; one is None if it is not given, or is to be found."""
 
 
 def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
@@ -30,18 +32,18 @@ def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     unknown = missing[0] if measured and len(missing) == 1 else ""
     if unknown and inputs["M"].value is None is inputs["I"].value:
         raise SceneError(unknown, None, f"is missing; give it, or M, beside which {name} finds it")
-    values = checked(inputs, unknown)
+    values = SimpleNamespace(**checked(inputs, unknown))
     if time is not None and drop is None:
         raise SceneError("time", inputs["time"].given, "needs drop, the height fallen in it")
     if time is not None and a is not None:
         raise SceneError("time", inputs["time"].given, "and a both tell the acceleration; give one of them")
     if not measured:
-        return Scene(**values), Motion(a, drop, time)
+        return Scene(**vars(values)), Motion(a, drop, time)
     motion = Motion(a, drop, time, unknown or _unknown(values))
     rule = _contradiction(values, motion, inputs["g"].given is not None)
     if not rule:
         try:
-            scene = find(values, motion)
+            scene = Scene(**{**vars(values), **found_inputs(values, motion)})
             rule = _impossible(scene, motion)
         except Undetermined as undetermined:
             rule = str(undetermined)
@@ -52,14 +54,14 @@ def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
 
 def _unknown(values: Values) -> str:
     """Return the input that an acceleration finds if both masses are given."""
-    if values["M"] == inf or (values["mu"] is not None and values["M"] is not None):
+    if values.M == inf or (values.mu is not None and values.M is not None):
         return "mu_k"
-    return "M" if values["M"] is None and values["I"] is None else "g"
+    return "M" if values.M is None and values.I is None else "g"
 
 
 def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
     """Return why an acceleration contradicts the other inputs, "" if it does not."""
-    m1, m2, M, mu, finds = values["m1"], values["m2"], values["M"], values["mu"], motion.finds
+    m1, m2, M, mu, finds = values.m1, values.m2, values.M, values.mu, motion.finds
     if mu is not None and finds != "mu_k":
         why = "a string that slips moves alike on any pulley"
         if finds in MASSES:
@@ -68,15 +70,15 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
     if finds in MASSES:
         if M == inf:
             return "has no place beside M = inf, which lets nothing move; leave one of them out"
-        if not motion.a and values["axle"] is not None:
+        if not motion.a and values.axle is not None:
             return f"tells nothing of {finds}, as the axle holds a difference at rest; leave one of them out"
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a in its place, positive when m2 descends"
         known = m1 if finds == "m2" else m2
-        if not known and not _rim_mass(values):
+        if not known and not rim_mass(values, values.M):
             return f"tells nothing of {finds}, which falls freely; give the other mass or M above 0"
         return ""
-    if finds == "M" and m1 != m2 and abs(m1 - m2) <= _axle_mass(values):
+    if finds == "M" and m1 != m2 and abs(m1 - m2) <= physics.axle_mass(axle_force(values), values.g):
         return "has no place beside an axle whose friction holds the masses at rest; leave one of them out"
     if finds == "g" and g_given:
         pulley = "I" if M is None else "M"
@@ -85,9 +87,9 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
         return "tells nothing of equal masses, which rest on any pulley; leave it out"
     if finds == "mu_k" and not m1 * m2:
         return "has no place beside M = inf and a free end, which is fixed to the pulley; leave it out"
-    if values["mu_k"] is not None:
+    if values.mu_k is not None:
         return "and mu_k both tell how the string slides; leave one of them out"
-    if mu is not None and not Case(Scene(**values)).slips:
+    if mu is not None and not Case(Scene(**vars(values))).slips:
         return f"has no place beside mu = {as_typed(mu)}, with which the string does not slip; leave mu out"
     return ""
 
@@ -138,40 +140,22 @@ def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scen
 # The unknown input, from the others
 
 
-def find(values: Values, motion: Motion) -> Scene:
-    """Return the scene with the input that follows from a motion, which may be below 0. Raises Undetermined.
+def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
+    """Return the input that follows from a motion, by its name; it may be below 0. Raises Undetermined.
 
-    Kinetic friction is no rational number and stays out: the machine computes it.
+    Kinetic friction is no rational number: the machine computes it.
     """
+    if motion.finds is None:
+        return {}
     if motion.finds == "mu_k":
         _moving(values, motion)
-    elif motion.finds is not None:
-        values = {**values, motion.finds: FINDERS[motion.finds](values, motion)}
-    return Scene(**values)
-
-
-def _rim_mass(values: Values) -> Fraction:
-    """Return the inertia of a pulley that is known, as a mass at the rim (kg)."""
-    I, R = values["I"], values["R"]
-    c: Fraction = values["inertia"] * values["M"] if I is None else physics.rim_mass_of_inertia(I, R)
-    return c
-
-
-def _axle_force(values: Values) -> Fraction:
-    """Return the axle's friction as a force at the rim (N)."""
-    f: Fraction = ZERO if values["axle"] is None else values["axle"].force(values["R"])
-    return f
-
-
-def _axle_mass(values: Values) -> Fraction:
-    """Return the axle's friction as a mass (kg)."""
-    g: Fraction = values["g"]
-    return physics.axle_mass(_axle_force(values), g)
+        return {}
+    return {motion.finds: FINDERS[motion.finds](values, motion)}
 
 
 def _moving(values: Values, motion: Motion) -> tuple[Fraction, Fraction, Fraction]:
     """Return the lighter and the heavier mass, and the acceleration of the latter. Raises Undetermined."""
-    m1, m2 = values["m1"], values["m2"]
+    m1, m2 = values.m1, values.m2
     a = motion.acceleration((m2 > m1) - (m2 < m1))
     if a <= 0:
         heavier, side = ("m2", "above") if m2 > m1 else ("m1", "below")
@@ -181,26 +165,29 @@ def _moving(values: Values, motion: Motion) -> tuple[Fraction, Fraction, Fractio
 
 def _pulley_mass(values: Values, motion: Motion) -> Fraction:
     l, h, a = _moving(values, motion)
-    c = physics.rim_mass(l, h, a, values["g"], _axle_mass(values))
-    mass: Fraction = c / values["inertia"]
+    c = physics.rim_mass(l, h, a, values.g, physics.axle_mass(axle_force(values), values.g))
+    mass: Fraction = c / values.inertia
     return mass
 
 
 def _gravity(values: Values, motion: Motion) -> Fraction:
     l, h, a = _moving(values, motion)
-    return physics.gravity(l, h, _rim_mass(values), a, _axle_force(values))
+    c = rim_mass(values, values.M)
+    assert c is not None
+    return physics.gravity(l, h, c, a, axle_force(values))
 
 
 def _mass(unknown: str, values: Values, motion: Motion) -> Fraction:
     """Return the mass that moves with the measured acceleration. Raises Undetermined beyond free fall."""
-    known: Fraction = values["m1" if unknown == "m2" else "m2"]
-    g: Fraction = values["g"]
+    known: Fraction = values.m1 if unknown == "m2" else values.m2
+    g: Fraction = values.g
     a = motion.acceleration(1)
     down = a if unknown == "m2" else -a
     if down >= g:
         side, limit = ("below", g) if unknown == "m2" else ("above", -g)
         raise Undetermined(f"must be {side} {text(to_double(limit))} m/s², that of free fall")
-    c, f = _rim_mass(values), _axle_force(values)
+    c, f = rim_mass(values, values.M), axle_force(values)
+    assert c is not None
     if down > 0:
         return physics.heavier_mass(known, c, down, g, f)
     return physics.lighter_mass(known, c, -down, g, f)

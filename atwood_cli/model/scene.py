@@ -12,7 +12,6 @@ from numbers import Rational, Real
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from ..arithmetic.rational import OfFloat
-from ..arithmetic.settling import is_positive
 from . import physics
 from .digits import as_typed, to_double
 from .units import (
@@ -23,6 +22,7 @@ from .units import (
     STANDARD_GRAVITY,
     TOO_LONG,
     UNITS,
+    Angle,
     Malformed,
     NotANumber,
     Number,
@@ -34,62 +34,6 @@ from .units import (
     shortened,
     without_blanks,
 )
-
-
-class Angle:
-    """An angle of wrap, exact: a number of degrees or of radians, as it was given.
-
-    No rational number of degrees is a rational number of radians. ``number`` is a Fraction; in arrays, a
-    column of degrees. An angle in degrees equals its number.
-    """
-
-    __slots__ = ("number", "unit")
-
-    def __init__(self, number: Any, unit: Literal["°", "rad"] = "°") -> None:
-        self.number, self.unit = number, unit
-
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, Angle):
-            return bool((self.number, self.unit) == (other.number, other.unit))
-        return bool(self.unit == "°" and self.number == other)
-
-    def __hash__(self) -> int:
-        return hash(self.number if self.unit == "°" else (self.number, self.unit))
-
-    def __repr__(self) -> str:
-        return f"Angle({self.number!r}, {self.unit!r})"
-
-    def radians(self, ar: Arithmetic[N]) -> N:
-        """Return the angle in radians."""
-        if self.unit == "rad":
-            return ar.number(self.number)
-        return ar.pi * ar.number(self.number / 180)
-
-    def degrees(self, ar: Arithmetic[N], share: Any = 1) -> N:
-        """Return a share of the angle in degrees; a share of 0 is exactly 0."""
-        number = ar.number(share * self.number)
-        return number * 180 / ar.pi if self.unit == "rad" and share else number
-
-    def cos_sin(self, ar: Arithmetic[N], parts: int = 1) -> tuple[N, N]:
-        """Return cosine and sine of one of equal parts of the angle; exact at multiples of 90°."""
-        if self.unit == "rad":
-            return ar.cos_sin(ar.number(self.number) / parts)
-        return ar.cos_sin_of_degrees(self.number / parts)
-
-    @property
-    def is_half_turn(self) -> bool:
-        return self == 180
-
-    @property
-    def is_beyond_half_turn(self) -> bool:
-        if self.unit == "°":
-            return bool(self.number > 180)
-        return is_positive(lambda ar: self.radians(ar) - ar.pi)
-
-    @property
-    def ends_hang_down(self) -> bool:
-        """Whether both ends of the string hang down: half a turn of wrap, plus whole turns."""
-        return bool(self.unit == "°" and (self.number - 180) % 360 == 0)
 
 
 class Axle(NamedTuple):
@@ -108,8 +52,6 @@ class Axle(NamedTuple):
 
 if TYPE_CHECKING:
     from numpy import floating, integer
-
-    from ..arithmetic.rational import Arithmetic, N
 
     OfNumPy = integer[Any] | floating[Any]
 else:

@@ -11,17 +11,8 @@ from math import inf
 from typing import Any, NamedTuple, TextIO
 
 from ..model.digits import Rounding, as_typed, exact_or_rounded, is_infinite, text, to_double
-from ..model.scene import (
-    INERTIA_FACTORS,
-    MEASURED,
-    UNMEASURED,
-    Angle,
-    Axle,
-    Motion,
-    Scene,
-    parameter_of,
-    with_unit,
-)
+from ..model.scene import INERTIA_FACTORS, MEASURED, UNMEASURED, Axle, Motion, Scene, parameter_of, with_unit
+from ..model.units import Angle
 from .files import Stdout, printable, stdout_into
 
 

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 
 from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, to_digits, to_side_of
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, REGIMES, read_name
-from ..model.scene import Angle, SceneError, with_unit
-from ..model.units import STANDARD_GRAVITY, Malformed, Number, in_quotes, read_number
+from ..model.scene import SceneError, with_unit
+from ..model.units import STANDARD_GRAVITY, Angle, Malformed, Number, in_quotes, read_number
 from .answers import TOO_SMALL, Answers
 from .messages import unmarked
 

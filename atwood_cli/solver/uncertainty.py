@@ -30,7 +30,7 @@ from ..model.digits import (
     to_threshold,
     with_uncertainty,
 )
-from ..model.motion import find, number_of, with_number
+from ..model.motion import found_inputs, number_of, with_number
 from ..model.quantities import QUANTITIES, Undetermined
 from ..model.scene import Motion, Scene, parameter_of, with_unit
 
@@ -124,7 +124,7 @@ class Uncertainties:
             return End(number, None, NO_SCENE)
         try:
             scene, motion = with_number(scene, motion, x, number)
-            there = find(scene._asdict(), motion)
+            there = scene._replace(**found_inputs(scene, motion))
             if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
                 return End(number, None, NO_SCENE)
             answers = self._solve(there, DIGITS, motion)
