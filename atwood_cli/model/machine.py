@@ -55,7 +55,7 @@ class Machine(Mechanics[N]):
         """Lighter mass below which the string slips (kg); 0 if it slips under none."""
         k1, h = self.k1, self.h
         if self.case.stands_until_it_slips:
-            return physics.lightest_held(h, self.capstan_ratio)
+            return physics.lighter_mass_at_rest(h, self.capstan_ratio)
         c = self._given(self.case.rim_mass, quantities.NEEDS_M)
         if self.case.turns_freely:
             return self.ar.number(0)

@@ -15,7 +15,7 @@ The light side hangs in its weight and what accelerates it, (1): T_l = l (g + a)
 - No slip (4): d = h - l - b and s = h + l + c, or all rests if h - l <= b. T_h - T_l = c a + f turns the
   pulley (3). In the paper, b = f = 0.
 - Verge and slip, (1) with (26): friction at its limit lets l count k-fold, d = h - l k and s = h + l k, and
-  T_h - T_l = (k - 1) T_l. The *transfer* z = l (k - 1) is the mass that friction adds.
+  T_h - T_l = (k - 1) T_l. The *friction mass* z = l (k - 1) is what friction adds to both masses' load.
 
 Divisions come before products that could leave the range of doubles though the result does not.
 Most examples are of l = 1, h = 3, c = 5 and g = 9, so that a = 2, T_l = 11 and T_h = 21.
@@ -264,10 +264,10 @@ def critical_lighter_mass(h: N, c: N, k1: N, b: N) -> N:
     return h * ((c + b) / (c - b + k1 * (2 * h + c - b)))
 
 
-def lightest_held(h: N, k: N) -> N:
+def lighter_mass_at_rest(h: N, k: N) -> N:
     """Return the lighter mass (kg) below which the string slips on a pulley at rest, from (26).
 
-    >>> lightest_held(3, 2)
+    >>> lighter_mass_at_rest(3, 2)
     1.5
     """
     return h / k

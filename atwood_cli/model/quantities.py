@@ -149,7 +149,9 @@ def _plain(symbol: str) -> str:
     return re.sub("[ _-]", "", symbol.translate(ASCII))
 
 
-SYMBOLS = {_plain(typed): name for name, about in QUANTITIES.items() for typed in (name, about.symbol)}
+NAMES_BY_SYMBOL = {
+    _plain(typed): name for name, about in QUANTITIES.items() for typed in (name, about.symbol)
+}
 
 
 def read_names(
@@ -157,7 +159,7 @@ def read_names(
     typed: Iterable[str],
     known: Collection[str] = NAMES,
     kind: str = "quantity",
-    symbols: Mapping[str, str] = SYMBOLS,
+    symbols: Mapping[str, str] = NAMES_BY_SYMBOL,
 ) -> list[str]:
     """Read names; a word may hold several with commas between. Raises SceneError."""
     return [read_name(parameter, word, known, kind, symbols) for word in divided(typed)]
@@ -174,7 +176,7 @@ def read_name(
     word: str,
     known: Collection[str] = NAMES,
     kind: str = "quantity",
-    symbols: Mapping[str, str] = SYMBOLS,
+    symbols: Mapping[str, str] = NAMES_BY_SYMBOL,
 ) -> str:
     """Read one of the names ``known``, or its symbol as tables show it. Raises SceneError."""
     if word in known:

@@ -25,7 +25,7 @@ from .units import (
     Angle,
     Malformed,
     NotANumber,
-    Number,
+    TypedNumber,
     in_quotes,
     is_uncertain,
     limited,
@@ -278,9 +278,9 @@ def read_input(name: str, given: Given | None) -> Input:
     if isinstance(given, str):
         number = _read_text(name, given, given)
     elif (isinstance(given, Angle) and name == "wrap") or (isinstance(given, Axle) and name == "axle"):
-        number = Number(_exact_number(name, given.number), given.unit)
+        number = TypedNumber(_exact_number(name, given.number), given.unit)
     else:
-        number = Number(_exact_number(name, given))
+        number = TypedNumber(_exact_number(name, given))
     return Input(_checked(name, given, number), number.uncertainty, given)
 
 
@@ -326,7 +326,7 @@ def read_digits(given: int | str | None) -> int | None:
     return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
 
 
-def _checked(name: str, given: Given, number: Number) -> Any:
+def _checked(name: str, given: Given, number: TypedNumber) -> Any:
     """Return a number as the value of an input: an angle or an axle, if it is one. Raises SceneError."""
     parameter, (value, unit, _) = parameter_of(name), number
     if (
@@ -342,12 +342,12 @@ def _checked(name: str, given: Given, number: Number) -> Any:
     return value
 
 
-def _read_text(name: str, given: Given, text: str, parameter: Parameter | None = None) -> Number:
+def _read_text(name: str, given: Given, text: str, parameter: Parameter | None = None) -> TypedNumber:
     """Read the number in a text that is all or part of what was given; errors show all. Raises SceneError."""
     parameter = parameter or parameter_of(name)
     word = without_blanks(text).lower()
     if parameter.inf and word == "inf":
-        return Number(inf)
+        return TypedNumber(inf)
     try:
         return read_number(parameter.names.get(word, text), parameter.dimension)
     except NotANumber:

@@ -91,7 +91,7 @@ class NotANumber(Malformed):
     """The text does not look like a number."""
 
 
-class Number(NamedTuple):
+class TypedNumber(NamedTuple):
     """A number as it was typed: exact, with its standard uncertainty, in SI units, degrees or radians.
 
     ``unit`` is the symbol of the unit, "" if there is none. The value is a float only if it is infinite.
@@ -187,19 +187,19 @@ def is_uncertain(text: str) -> bool:
     return any(mark in text for mark in UNCERTAIN)
 
 
-def read_number(text: str, dimension: str | None) -> Number:
+def read_number(text: str, dimension: str | None) -> TypedNumber:
     """Read a number, with its unit and its uncertainty if it has them. Raises Malformed.
 
     ``dimension`` is one of `UNITS`, or two with an "or" between, or None for a number that takes no unit.
     """
     text = without_blanks(text)
     if not is_uncertain(text):
-        return Number(*_value_and_unit(text, dimension))
+        return TypedNumber(*_value_and_unit(text, dimension))
     typed, u = _split_uncertainty(text)
     value, unit = _value_and_unit(typed, dimension)
     if u.endswith(PERCENT):
-        return Number(value, unit, _value_and_unit(u.removesuffix(PERCENT), None)[0] * abs(value) / 100)
-    return Number(value, unit, _value_and_unit(u, dimension)[0])
+        return TypedNumber(value, unit, _value_and_unit(u.removesuffix(PERCENT), None)[0] * abs(value) / 100)
+    return TypedNumber(value, unit, _value_and_unit(u, dimension)[0])
 
 
 def _split_uncertainty(text: str) -> tuple[str, str]:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, to_digits, to_side_of
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, REGIMES, read_name
 from ..model.scene import SceneError, with_unit
-from ..model.units import STANDARD_GRAVITY, Angle, Malformed, Number, in_quotes, read_number
+from ..model.units import STANDARD_GRAVITY, Angle, Malformed, TypedNumber, in_quotes, read_number
 from .answers import TOO_SMALL, Answers
 from .messages import unmarked
 
@@ -42,7 +42,7 @@ class Condition(NamedTuple):
     typed: str
     name: str
     sign: str = ""
-    number: Number = Number(Fraction(0))
+    number: TypedNumber = TypedNumber(Fraction(0))
 
 
 def read_condition(typed: str) -> Condition:
@@ -93,12 +93,12 @@ def is_assumed(answers: Answers) -> bool:
     return answers.case.mu_assumed and bool(answers.case.light)
 
 
-def _in_scene(scene: Any, number: Number) -> Fraction:
+def _in_scene(scene: Any, number: TypedNumber) -> Fraction:
     """Return the number in SI units; a multiple of g is one of the scene's g."""
     return Fraction(number.value) * (scene.g / Fraction(STANDARD_GRAVITY) if number.unit == "g" else 1)
 
 
-def _bound(machine: Any, number: Number) -> Any:
+def _bound(machine: Any, number: TypedNumber) -> Any:
     """Return the number in the arithmetic of a machine; an angle in degrees."""
     if number.unit == "rad":
         return Angle(number.value, "rad").degrees(machine.ar)

@@ -356,7 +356,7 @@ def scene_at(fixed: Mapping[str, Input], ranges: Sequence[Range], points: Sequen
         raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
 
 
-class _Watched:
+class _RecordingScene:
     """A scene that records which of its inputs are read."""
 
     def __init__(self, scene: Scene) -> None:
@@ -371,10 +371,10 @@ def _unchanged(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterat
     """Yield the quantities that do not read a swept input, and so are the same at all points."""
     fixed = set(INPUTS) - {range_.name for range_ in sweep.ranges}
     for name in names:
-        watched: Any = _Watched(sweep.scene)
-        answers = Answers(watched, digits)
+        recording: Any = _RecordingScene(sweep.scene)
+        answers = Answers(recording, digits)
         _ = answers[name]
-        if watched.read <= fixed:
+        if recording.read <= fixed:
             yield name, answers
 
 
