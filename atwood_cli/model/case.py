@@ -1,7 +1,8 @@
 """Decide exactly which side is heavier and whether the string slips.
 
-A string slips where the tension ratio r = T_h/T_l that it would have if it gripped exceeds e^{μφ}. The regime
-is the result of the first line below that answers. What r is compared at is a `Place`, from the table behind.
+A string slips if the tension ratio r = T_h/T_l that it would have if it gripped exceeds e^{μφ}. The regime is
+the result of the first line below that answers. The second table has the scenes of which r is taken, each a
+`Place`.
 
     question                                             decided by                          result
     does kinetic friction follow from a measured a?      motion.finds == "mu_k"              slip
@@ -13,14 +14,11 @@ is the result of the first line below that answers. What r is compared at is a `
     does it slip on every pulley, however light?         (33) at "massless"                  slip
     else it slips on a heavy enough pulley               (34)                                verge
 
-    place            pulley, masses                      decides
-    scene            as given                            whether the string slips
-    locked           D = 0                               whether it slips on any pulley
-    massless         c = 0                               whether it slips on every pulley; whether the rim
-                                                         of a pulley stays at rest under a string that slips
-    heaviest         h = ∞                               whether it slips under some heavier mass
-    most_held        c = 0, h = l + b                    whether it slips as soon as the axle turns
-    lightest_held    c = 0, l = h - b                    whether the pulley is at rest at the critical l
+    scene, locked, massless    as given; D = 0; c = 0    see above
+    massless                   in slip                   is the rim at rest under the string that slips?
+    heaviest                   h = ∞                     does it slip under some heavier mass?
+    most_held                  c = 0, h = l + b          does it slip as soon as the axle turns?
+    lightest_held              c = 0, l = h - b          is the pulley at rest at the critical lighter mass?
 
 With an axle that holds the difference, h - l <= b, the pulley is at rest like a locked one. If one mass is 0,
 friction cannot be given, and only the first three lines apply.
@@ -192,7 +190,8 @@ class Case:
     @lazy
     def slips(self) -> bool:
         """Whether the string slips on a pulley that is known and friction that is given."""
-        self._known_to_slip = not self.tensions_equal and self.slips_at("locked" if self.stands else "scene")
+        place: Place = "locked" if self.stands else "scene"
+        self._known_to_slip = not self.tensions_equal and self.slips_at(place)
         return self._known_to_slip
 
     @property

@@ -58,7 +58,8 @@ class Mechanics(Generic[N]):
     @property
     def mu(self) -> N:
         """Coefficient of static friction; not given if one mass is 0."""
-        return self._given(self.scene.mu, quantities.FREE_END if self.case.free_end else quantities.NEEDS_MU)
+        reason = quantities.FREE_END if self.case.free_end else quantities.NEEDS_MU
+        return self._given(self.scene.mu, reason)
 
     def _capstan_excess(self, given: Fraction | None, mu: N) -> N:
         """Return e^{μφ} - 1, exactly 0 without friction."""
@@ -297,7 +298,8 @@ class Mechanics(Generic[N]):
     @lazy
     def massless_verge(self) -> N:
         """Friction coefficient at which the string is on the verge over a massless pulley."""
-        return physics.verge_coefficient(self.ar.log1p(self.case.excess("massless", self.ar)), self.phi)
+        excess = self.case.excess("massless", self.ar)
+        return physics.verge_coefficient(self.ar.log1p(excess), self.phi)
 
     @lazy
     def friction_force(self) -> N:

@@ -7,7 +7,7 @@ column, mpmath, SymPy); exp, log and roots are handed in by the arithmetic.
 Symbols: ``l`` and ``h`` are the lighter and the heavier mass (kg), ``c`` = βM the pulley's inertia as a mass
 at the rim (kg; half the pulley's mass in the paper), ``g`` gravity (m/s²), ``phi`` the angle of wrap (rad; π
 in the paper), ``f`` the axle's friction as a force at the rim (N), ``b`` = f/g the same as a mass (kg), and
-``k`` = e^{μφ} the capstan ratio, which comes in as ``k1`` = k - 1, so that weak friction loses no digits.
+``k`` = e^{μφ} the capstan ratio. It comes in as ``k1`` = k - 1, so that weak friction loses no digits.
 
 One form of the motion serves every regime, Newton's: a *drive* d (kg) sets a *load* s (kg) moving, a = g d/s.
 The light side hangs in its weight and what accelerates it, (1): T_l = l (g + a).

@@ -187,10 +187,8 @@ def print_contact(answers: Answers, arc: Contact) -> None:
     page = Page()
     page.head(answers)
     heads = [f"{name.partition('_per_')[0]} ({COLUMN_UNITS[name]})" for name in arc.points[0]]
-    columns = [
-        aligned(cell(tidy(Decimal(point[name])) if name == "angle" else point[name]) for point in arc.points)
-        for name in arc.points[0]
-    ]
+    rows = [{**point, "angle": tidy(Decimal(point["angle"]))} for point in arc.points]
+    columns = [aligned(cell(row[name]) for row in rows) for name in arc.points[0]]
     page.table(heads, [list(zip(*columns, strict=True))])
     forces = {name: row for name, row in arc.balance.items() if "x" in row}
     xs, ys = (aligned(cell(force[axis]) for force in forces.values()) for axis in "xy")

@@ -90,9 +90,9 @@ def verdict(answers: Answers) -> str:
     least = answers.rounded("least_heavier_mass", to_threshold(up=False, given=case.heavy))
     if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
         return "Holds on any pulley, under any mass that can be given in place of the heavier one."
-    heavy = as_typed(case.heavy)
+    heavy, least_heavy = as_typed(case.heavy), text(least)
     return (
-        f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {text(least)} kg to slip."
+        f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {least_heavy} kg to slip."
     )
 
 

@@ -1,8 +1,8 @@
 """Find the values along a range at which the regime changes, exactly.
 
 The regime is decided at a few values, between which each condition that it depends on changes at most once.
-If it differs at two of them, it changes at one of these, or is decided between them, exactly by `Case`, until
-it changes between two neighbouring decimals.
+If it differs at two of them, it changes at one of these, or is decided between them, exactly by `Case`,
+until it changes between two neighbouring decimals.
 
 **Why no change is missed.** With friction given, the string slips where ln r > μφ. By (1), and (3) with the
 friction of the axle, the tension ratio of a string that grips is

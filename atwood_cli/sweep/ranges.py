@@ -195,7 +195,8 @@ class Sweep(NamedTuple):
 
     def stated(self, place: Mapping[str, Point]) -> str:
         """Return a place of a sweep in a sentence."""
-        return ", ".join(range_.stated(place[range_.name]) for range_ in self.ranges if range_.name in place)
+        ranges = (range_ for range_ in self.ranges if range_.name in place)
+        return ", ".join(range_.stated(place[range_.name]) for range_ in ranges)
 
 
 class Row(NamedTuple):
