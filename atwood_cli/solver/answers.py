@@ -74,6 +74,7 @@ class Answers:
         self.digits = digits
         self._computed = max(digits or 0, DOUBLE_DIGITS)  # so that fewer need no second computation
         self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
+        self._too_large = ABOVE_DOUBLES if digits is None else TOO_LARGE
         self._answers: dict[str, Answer] = {}
 
     def to(self, digits: int | None) -> Answers:
@@ -136,26 +137,23 @@ class Answers:
             return Answer(self.case.regime)
         if name not in self._answers:
             value, reason = self._settled(attrgetter(name))
-            self._answers[name] = Answer(value, reason, *self._uncertainty(name, value, reason))
+            uncertainty = self._uncertainty(name, value, reason) if self.uncertainties else ()
+            self._answers[name] = Answer(value, reason, *uncertainty)
         return self._answers[name]
 
     def _settled(self, quantity: OnMachine) -> tuple[Any, str]:
         """Return the rounded value of a quantity, or None, and why it cannot be shown as it is."""
+        on_machines = self._on_machines(quantity)
         try:
-            value = self.settle(quantity)
+            value = settle(on_machines, self.round, self._computed)
         except Undetermined as undetermined:
             return None, str(undetermined)
         except OverflowError:  # of a denominator
             return 0.0 if self.digits is None else None, TOO_SMALL
-        if value == 0 and self.digits is None and self.settle(quantity, to_digits(1)):
-            return value, BELOW_DOUBLES
-        return value, self._beyond(value)
-
-    def _beyond(self, value: float | Decimal) -> str:
-        """Return why a number is infinite, "" if it is not."""
-        if not is_infinite(value):
-            return ""
-        return ABOVE_DOUBLES if self.digits is None else TOO_LARGE
+        if is_infinite(value):
+            return value, self._too_large
+        below = value == 0 and self.digits is None and settle(on_machines, to_digits(1), DOUBLE_DIGITS)
+        return value, BELOW_DOUBLES if below else ""
 
     def _uncertainty(self, name: str, value: Any, reason: str) -> tuple[Any, str]:
         """Return the rounded uncertainty of a quantity, or None, and why it cannot be shown as it is."""
@@ -167,7 +165,7 @@ class Answers:
         shown = to_double(u) if self.digits is None else u
         if u and not shown:
             return shown, BELOW_DOUBLES
-        return shown, self._beyond(shown)
+        return shown, self._too_large if is_infinite(shown) else ""
 
     def standard_uncertainties(self, names: Iterable[str]) -> dict[str, Any]:
         """Return the standard uncertainties of the quantities named, {} if all inputs are exact."""

@@ -386,7 +386,7 @@ def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterat
     for points in product(*(range_.points for range_ in sweep.ranges)):
         place = dict(zip(swept, points, strict=True))
         answers = Answers(sweep.at(place), digits)
-        found = {name: unchanged.get(name, answers) for name in ["regime", *names]}
-        values = {name: found[name][name] for name in names}
-        reasons = {name: reason for name in names if (reason := found[name].answer(name).reason)}
-        yield Row(place, found["regime"]["regime"], values, reasons)
+        found = {name: unchanged.get(name, answers).answer(name) for name in ["regime", *names]}
+        values = {name: found[name].value for name in names}
+        reasons = {name: found[name].reason for name in names if found[name].reason}
+        yield Row(place, found["regime"].value, values, reasons)
