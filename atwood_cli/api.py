@@ -213,7 +213,7 @@ def solve(
         SceneError: An input is not valid; it names the input, the value and the rule (a ValueError).
         TypeError: There is no such input.
     """
-    inputs = SIGNATURE.bind(m1, m2, **given).arguments  # raises TypeError where there is no such input
+    inputs = SIGNATURE.bind(m1, m2, **given).arguments  # raises TypeError if there is no such input
     return _solved(*read_answers(inputs, read_digits(digits)).given)
 
 

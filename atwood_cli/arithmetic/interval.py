@@ -38,7 +38,7 @@ class Unsettled(ArithmeticError):
 
 
 def decimal_context(digits: int, rounding: str) -> Context:
-    """A context that does not depend on the caller's, with an ample range of exponents."""
+    """Return a context that does not depend on the caller's, with an ample range of exponents."""
     limit = 2 * LARGEST_EXPONENT
     return Context(prec=digits, rounding=rounding, Emin=-limit, Emax=limit, traps=[])
 
@@ -83,7 +83,7 @@ class Enclosure:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Enclosure | int) -> Enclosure:
-        """The quotient by a positive number, as every denominator of the equations is positive.
+        """Return the quotient by a positive number, as every denominator of the equations is.
 
         Raises Unsettled for a denominator that may be zero, ZeroDivisionError for one that is.
         Raises OverflowError for one beyond 10^LARGEST_EXPONENT, which is infinity: a quotient would be 0.
@@ -367,7 +367,7 @@ LEAST_BITS = 256
 
 
 def _pi(bits: int) -> int:
-    """π in units of 2^-bits (J. Machin, 1706)."""
+    """Return π in units of 2^-bits (J. Machin, 1706)."""
     return _constant((16, 5, -1), (-4, 239, -1), bits=bits)
 
 

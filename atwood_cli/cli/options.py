@@ -149,11 +149,6 @@ def _check(options: Mapping[str, Any], no_effect: Rules, needs: Rules) -> None:
 # A scene
 
 
-def _read_scene(options: Mapping[str, Any]) -> dict[str, str | None]:
-    """Return the inputs as they were typed."""
-    return {name: options[name] for name in INPUTS}
-
-
 def _ask_about_radians(wrap: str | None) -> None:
     if wrap and _may_be_radians(wrap):
         typed = f"--wrap {shortened(wrap)}"
@@ -172,8 +167,11 @@ def _may_be_radians(typed: str) -> bool:
     return not any(angle.unit for angle in angles) and least < max(angle.value for angle in angles) < most
 
 
-SCENE_OPTIONS = {name: Annotated[str | None, scene_option(name)] for name in INPUTS}
-SCENE = Shared("given", SCENE_OPTIONS, _read_scene)
+SCENE = Shared(
+    "given",
+    {name: Annotated[str | None, scene_option(name)] for name in INPUTS},
+    lambda options: {name: options[name] for name in INPUTS},
+)
 
 
 def quantity_meanings() -> Mapping[str, str]:

@@ -39,7 +39,7 @@ class Knot(NamedTuple, Generic[N]):
 
 
 class Arc(NamedTuple, Generic[N]):
-    """A piece of the arc over which T grows as e^{μθ}; ``mu`` is 0 where the string is stuck."""
+    """A piece of the arc over which T grows as e^{μθ}; ``mu`` is 0 if the string is stuck over it."""
 
     mu: N
     stuck: bool

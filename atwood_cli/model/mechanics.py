@@ -92,7 +92,7 @@ class Mechanics(Generic[N]):
 
     @lazy
     def limiting_k1(self) -> N:
-        """T_h/T_l - 1 on the verge and in slip, where friction is at its limit."""
+        """T_h/T_l - 1 on the verge and in slip, as friction is at its limit."""
         if self.case.slide_measured:
             return self.case.slide_excess(self.ar)
         if self.case.at_static_limit:

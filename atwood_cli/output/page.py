@@ -1,4 +1,4 @@
-"""Tables and sentences on the terminal or in a pipe, by rich, which is imported where it is needed."""
+"""Tables and sentences on the terminal or in a pipe, by rich, which is imported only when it is needed."""
 
 import re
 import sys
@@ -94,7 +94,7 @@ class Page:
         left = iter(rows)
         for group in groups:
             lines = list(islice(left, len(group)))
-            # Rows are joined where none is folded, as rich takes five times as long over single ones.
+            # Rows are joined if none is folded, as rich takes five times as long over single ones.
             for part in [lines] if fits else [[line] for line in lines]:
                 joined = (Text("\n".join(column)) for column in zip(*part, strict=True))
                 table.add_row(*joined, end_section=part[-1] is lines[-1])

@@ -100,7 +100,14 @@ def _write_json(forms: Forms) -> None:
 
 
 def _write_csv(forms: Forms) -> None:
-    print_csv(forms.records())
+    """Print a line of names, and a line for each record when it comes."""
+    from csv import writer
+
+    table = writer(Stdout(), lineterminator="\n")
+    for number, record in enumerate(forms.records()):
+        if not number:
+            table.writerow(record)
+        table.writerow(map(cell, record.values()))
 
 
 FORMS = {
@@ -164,17 +171,6 @@ def as_json(value: object, indent: str = "\n") -> Iterator[str]:
             yield cell(value) or "null"
         case _:
             yield json.dumps(value)
-
-
-def print_csv(records: Iterable[Mapping[str, object]]) -> None:
-    """Print a line of names, and a line for each record when it comes."""
-    from csv import writer
-
-    table = writer(Stdout(), lineterminator="\n")
-    for number, record in enumerate(records):
-        if not number:
-            table.writerow(record)
-        table.writerow(map(cell, record.values()))
 
 
 def cell(value: object) -> str:

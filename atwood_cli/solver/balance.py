@@ -48,18 +48,13 @@ class Contact(NamedTuple):
     notes: list[str]
 
 
-def check_arc(case: Case) -> None:
-    """Raise SceneError if one mass is 0, as the string is then fixed to the pulley and touches no arc."""
-    if not case.light:
-        raise SceneError("m1" if case.scene.m1 == 0 else "m2", 0, f"leaves no arc: {FREE_END}")
-
-
 def kind_of(case: Case) -> Kind:
     """Return the profile of the tension along the arc: with friction to spare, the string creeps.
 
     Raises SceneError if the scene does not determine the arc.
     """
-    check_arc(case)
+    if not case.light:
+        raise SceneError("m1" if case.scene.m1 == 0 else "m2", 0, f"leaves no arc: {FREE_END}")
     if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
         raise SceneError("M", None, f"is missing: {unmarked(NEEDS_M)}")
     spare = case.regime == "no-slip" and case.scene.mu is not None and not case.tensions_equal

@@ -51,18 +51,14 @@ def reasons_at(
 
     ``counted`` says at how many of the ``points`` a quantity is missing for a reason.
     """
-    return [unmarked(sentence) for sentence in missing(counted, points, where)]
-
-
-def missing(counted: Mapping[tuple[str, str], int], points: int = 1, where: str = "") -> list[str]:
-    """Return the sentences of `reasons_at`, with backticks."""
     names: dict[tuple[str, int], list[str]] = {}
     for (name, reason), times in counted.items():
-        names.setdefault((reason, times), []).append(f"`{name}`")
-    return [
-        f"{', '.join(group)}: {reason}{'' if times == points else f' ({where.format(times, points)})'}."
-        for (reason, times), group in names.items()
-    ]
+        names.setdefault((reason, times), []).append(name)
+    said = []
+    for (reason, times), group in names.items():
+        place = "" if times == points else f" ({where.format(times, points)})"
+        said.append(f"{', '.join(group)}: {unmarked(reason)}{place}.")
+    return said
 
 
 def verdict(answers: Answers) -> str:

@@ -83,18 +83,12 @@ class End(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """A quantity in the scene, and by input at both ends; and the step of each input that changes it."""
+    """A quantity in the scene and at both ends of each input, the steps that are not 0, and the variance."""
 
     here: Decimal
     ends: Mapping[str, Sequence[Value]]
     steps: Mapping[str, Decimal]
-
-    @property
-    def variance(self) -> Decimal:
-        total = ZERO
-        for step in self.steps.values():
-            total = EXACT.fma(step, step, total)
-        return total
+    variance: Decimal
 
 
 class Uncertainties:
@@ -137,20 +131,21 @@ class Uncertainties:
         """Compute a quantity at all ends, once; None if it has no finite value in the scene."""
         if name not in self._spreads:
             here = self._here.value(name).number
-            exists = here is not None and not is_infinite(here)
-            self._spreads[name] = self._measure(name, here) if exists and here is not None else None
+            self._spreads[name] = None if here is None or is_infinite(here) else self._measure(name, here)
         return self._spreads[name]
 
     def _measure(self, name: str, here: Decimal) -> Spread:
         ends = {x: [end.value(name) for end in pair] for x, pair in self._ends.items()}
-        steps = {}
+        steps, variance = {}, ZERO
         for x, values in ends.items():
             numbers = [here, *(value.number for value in values if value.number is not None)]
             least, most = min(numbers), max(numbers)
             size = EXACT.subtract(most, least)
-            if size > EXACT.multiply(NEGLIGIBLE, max(abs(least), abs(most))) or is_infinite(size):
+            scale = max(least.copy_abs(), most.copy_abs())
+            if size > EXACT.multiply(NEGLIGIBLE, scale) or is_infinite(size):
                 steps[x] = EXACT.divide(size, Decimal(2))
-        return Spread(here, ends, steps)
+                variance = EXACT.fma(steps[x], steps[x], variance)
+        return Spread(here, ends, steps, variance)
 
     def of(self, name: str, digits: int | None = None) -> Decimal | None:
         """Return the standard uncertainty of a quantity, to `RIGHT_DIGITS` digits or to fewer.
@@ -167,9 +162,9 @@ class Uncertainties:
         spread = self._spread(name)
         if spread is None or not spread.steps or is_infinite(spread.variance):
             return {}
-        round_, whole = to_digits(RIGHT_DIGITS), spread.variance
-        squares = {x: EXACT.multiply(step, step) for x, step in spread.steps.items()}
-        return {x: round_(EXACT.divide(100 * squares.get(x, ZERO), whole)) for x in self.given}
+        steps = {x: spread.steps.get(x, ZERO) for x in self.given}
+        shares = {x: EXACT.divide(EXACT.multiply(step, step), spread.variance) for x, step in steps.items()}
+        return {x: to_digits(RIGHT_DIGITS)(share.scaleb(2, EXACT)) for x, share in shares.items()}
 
     # In sentences
 
@@ -220,8 +215,10 @@ class Uncertainties:
             if value.case and _otherwise(self.case, value.case):
                 return True
             if value.number is not None:
-                uneven = abs(EXACT.subtract(spread.here, value.number)) - spread.steps[x]
-                if value.number * spread.here < 0 or abs(uneven) > UNEVEN_SHARE * u:
+                changes_sign = EXACT.multiply(value.number, spread.here) < 0
+                change = EXACT.subtract(spread.here, value.number).copy_abs()
+                uneven = EXACT.subtract(change, spread.steps[x]).copy_abs()
+                if changes_sign or uneven > EXACT.multiply(UNEVEN_SHARE, u):
                     return True
         return False
 
