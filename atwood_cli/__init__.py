@@ -49,5 +49,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> set[str]:
-    """The names that a shell completes: all names above, whether they were used or not."""
+    """Return the names that a shell completes: all names above, whether they were used or not."""
     return {*globals(), *__all__}

@@ -1,9 +1,11 @@
-"""The door for Python: `solve`, and the `Solution` that it returns."""
+"""The Python interface to one scene: `solve`, and the `Solution` that it returns."""
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from inspect import Parameter, Signature
+from math import isinf
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, overload
 
 from .model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
@@ -13,7 +15,7 @@ from .solver.messages import notes
 
 
 class Inputs(TypedDict, total=False):
-    """The inputs of `solve` beside masses and ``digits``. An input that is None or left out is not given."""
+    """The inputs of `solve` other than masses and ``digits``. One that is None or left out is not given."""
 
     M: Given | None
     mu: Given | None
@@ -33,7 +35,7 @@ T = TypeVar("T", float, Decimal)
 
 
 def _described(names: Sequence[str]) -> str:
-    """The registry's lines on quantities, for a docstring."""
+    """Return lines on quantities for a docstring: name, meaning, unit, equation."""
     width = max(map(len, names))
     lines = []
     for name in names:
@@ -44,7 +46,7 @@ def _described(names: Sequence[str]) -> str:
 
 
 class Answered:
-    """A solution's source of values."""
+    """The answers from which a solution reads its fields. They are no field of it."""
 
     __slots__ = ("_answers",)
     _answers: Answers
@@ -56,8 +58,8 @@ class Solution(Answered, Generic[T]):
 
     ``scene`` has the inputs. ``regime`` is "no-slip", "verge" or "slip". ``notes`` give the reasons for the
     regime, and for each value that is None. ``uncertainty`` has the standard uncertainty of every quantity
-    by name, and is empty if all inputs are exact; an uncertainty is None, with a note, where the value is
-    missing with an input an uncertainty off. Each field is computed when it is first read, and kept.
+    by name, to at most 15 digits, and is empty if all inputs are exact; an uncertainty is None, with a note,
+    if the value is missing with an input an uncertainty off. Each field is computed when it is first read.
 
     Forces are on the pulley, with x from the axle to the place where m1's string meets it, and y up.
     Accelerations, torque and angles are positive when m2 descends. The quantities, with their units and the
@@ -111,27 +113,30 @@ class Solution(Answered, Generic[T]):
     if not TYPE_CHECKING:  # which would take any name for a field
 
         def __getattr__(self, name: str) -> Any:
-            """A field that was not read yet."""
+            """Compute a field that was not read yet, and keep it."""
             if name not in self.__dataclass_fields__:
                 return object.__getattribute__(self, name)  # raises the usual error
-            values = _computed(name, self._answers)
-            for field, value in values.items():
-                object.__setattr__(self, field, value)
-            return values[name]
+            value = _computed(name, self._answers)
+            object.__setattr__(self, name, value)
+            return value
 
     def to_dict(self) -> dict[str, Any]:
-        """The record that ``--json`` prints, ready for `json`: Decimals are text, infinite values None."""
+        """Return the record that ``--json`` prints, for `json`: Decimals are text, infinite values None."""
         from .output.scene_page import record
-        from .output.text import for_json
+        from .output.text import VERSION, as_json
 
-        answers = Answers(*self._answers.given)
-        return {name: for_json(value, answers.digits) for name, value in record(answers).items()}
+        def number(typed: str) -> str | float:
+            value = float(typed)
+            return typed if self._answers.digits or isinf(value) else value
+
+        printed = "".join(as_json(record(self._answers)))
+        return {**json.loads(printed, parse_float=number, parse_int=number), "version": VERSION}
 
     def __str__(self) -> str:
-        """The page that ``atwood solve`` prints, without colours."""
+        """Return the page that ``atwood solve`` prints, without colours."""
         from .output.scene_page import as_text
 
-        return as_text(Answers(*self._answers.given))
+        return as_text(self._answers)
 
     def __eq__(self, other: object) -> bool:
         if type(other) is not type(self):
@@ -145,22 +150,20 @@ class Solution(Answered, Generic[T]):
         return _solved, self._answers.given
 
 
-def _computed(name: str, answers: Answers) -> dict[str, Any]:
-    """The value of a field, by its name. The notes come with all other fields, as they are on all of them."""
-    if name == "scene":
-        return {name: answers.case.scene}
-    if name == "uncertainty":
-        return {name: answers.standard_uncertainties(answers.names)}
-    if name != "notes":
-        return {name: answers[name] if name in answers.names else None}
-    answers = Answers(*answers.given)  # asked in the order of the names, whichever were read before
-    values = {name: answers[name] for name in answers.names}
-    uncertainty = answers.standard_uncertainties(answers.names)
-    return {**values, "uncertainty": uncertainty, "notes": tuple(notes(answers))}
+def _computed(name: str, answers: Answers) -> Any:
+    """Return the value of a field, by its name."""
+    match name:
+        case "scene":
+            return answers.case.scene
+        case "uncertainty":
+            return answers.standard_uncertainties(answers.names)
+        case "notes":
+            return tuple(notes(answers, answers.names))
+    return answers[name] if name in answers.names else None
 
 
 def _solved(*given: Any) -> Solution[Any]:
-    """The solution for these inputs. A copied or pickled solution is computed again when it is read."""
+    """Return the solution for these inputs. A copied or pickled one is computed again when it is read."""
     return Solution(Answers(*given))
 
 
@@ -178,7 +181,7 @@ def solve(
 def solve(
     m1: Mass = None, m2: Mass = None, *, digits: int | str | None = None, **given: Unpack[Inputs]
 ) -> Any:
-    """The state of Atwood's machine: m1 and m2 on a rough string over a pulley.
+    """Solve Atwood's machine: m1 and m2 on a rough string over a pulley.
 
     The inputs decide the model. Without M the pulley is massless; with mu and without M it is the pulley that
     brings the string to the verge of slipping. An input is a number in the unit below, or a text, which may
@@ -210,7 +213,7 @@ def solve(
         SceneError: An input is not valid; it names the input, the value and the rule (a ValueError).
         TypeError: There is no such input.
     """
-    inputs = SIGNATURE.bind(m1, m2, **given).arguments  # raises TypeError where there is no such input
+    inputs = SIGNATURE.bind(m1, m2, **given).arguments  # raises TypeError if there is no such input
     return _solved(*read_answers(inputs, read_digits(digits)).given)
 
 
@@ -223,4 +226,5 @@ SIGNATURE = Signature(
         ),
     ]
 )
-solve.__dict__["__signature__"] = SIGNATURE  # for help() and editors: the inputs by name
+# help() and editors show the inputs by this attribute, which type checkers do not know of a function.
+solve.__dict__["__signature__"] = SIGNATURE

@@ -195,7 +195,7 @@ def test_a_number_is_a_column_of_it(accuracy: Any) -> None:
 def reasons_of(rows: list[Row]) -> Counter[tuple[str, str]]:
     """Why quantities have no value, as each row's own scene says it, counted."""
     solved = [Answers(Scene.read(row)) for row in rows]
-    return Counter((name, one.reasons[name]) for name in NAMES for one in solved if one[name] is None)
+    return Counter((name, one.answer(name).reason) for name in NAMES for one in solved if one[name] is None)
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)

@@ -59,17 +59,7 @@ import atwood_cli.cli.contact, atwood_cli.solver.answers, atwood_cli.sweep.range
 atwood_cli.cli.contact.Answers = atwood_cli.solver.answers.Answers = blow
 atwood_cli.sweep.ranges.Answers = atwood_cli.batch.run.run_batch = blow
 """
-# Where Python can raise nothing, or another error: where an object is dropped, where a class is made and, as
-# modules in C do, while one is imported.
-DROPPING = """
-class Dropped:
-    __del__ = blow
-def run():
-    Dropped()
-    while True:
-        time.sleep(0.01)
-cli.run = run
-"""
+# Modules in C may turn the interrupt into another error while they are imported.
 TURNED = """
 class Part:
     __set_name__ = blow
@@ -89,12 +79,11 @@ cli.run = run
         (SOLVING, "SIGTERM", f"contact {SCENE} --mu 0.3"),
         (SOLVING, "SIGINT", f"sweep {SCENE} --M 0:100:9"),
         (SOLVING, "SIGINT", "batch -"),
-        (DROPPING, "SIGTERM", ""),
-        *((TURNED, blow, "") for blow in ("SIGINT", "SIGTERM", "SIGHUP")),
+        (TURNED, "SIGTERM", ""),
     ],
     ids=count(),
 )
-def test_a_signal_is_not_lost_and_ends_it_quietly(code: str, blow: str, typed: str) -> None:
+def test_a_signal_ends_it_quietly(code: str, blow: str, typed: str) -> None:
     command = [sys.executable, "-c", RUN.format(code), blow, *typed.split()]
     ended = subprocess.run(command, capture_output=True, check=False, timeout=HANGS)
     assert (ended.returncode, ended.stdout, ended.stderr) == (STATUS[blow], b"", b"")

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from atwood_cli import solve
 from atwood_cli.model.case import Case
 from atwood_cli.model.digits import SHOWN_DIGITS
-from atwood_cli.sweep.changes import SMALLEST, changes
+from atwood_cli.sweep.changes import LEAST_INPUT, changes
 from atwood_cli.sweep.ranges import read_sweep, with_value
 
 from . import oracle
@@ -49,7 +49,7 @@ def check_with_oracle(words: dict[str, str], *places: float) -> int:
     for change in said:
         assert change.at.exact in (change.last, change.first)
         a_digit = change.first / 10 ** (SHOWN_DIGITS - 1)
-        assert 0 < change.first - change.last <= max(a_digit, SMALLEST), (words, change)
+        assert 0 < change.first - change.last <= max(a_digit, LEAST_INPUT), (words, change)
     for (start, stop), there in zip(stretches[::2], in_turn, strict=True):
         values = [start + (stop - start) * Fraction(i, 5) for i in range(6)]
         for value in [*values, *(Fraction(x) for x in places if start < x < stop)]:

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from atwood_cli.model import reasons
+from atwood_cli.model import quantities as reasons
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver import answers as answers_
 from atwood_cli.solver.answers import Answers
@@ -277,7 +277,7 @@ def test_every_sentence_is_true(seed: int) -> None:
             continue
         answers, claims = Answers(scene, digits), Claims(scene)
         missing = [name for name in answers.names if answers[name] is None]
-        sentences = notes(answers)
+        sentences = notes(answers, answers.names)
         assert all(any(name in sentence for sentence in sentences) for name in missing), words
         for sentence in sentences:
             try:

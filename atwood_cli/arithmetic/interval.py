@@ -1,4 +1,4 @@
-"""Interval arithmetic in decimals: enclosures lo <= value <= hi that are certain to hold the true value.
+"""Interval arithmetic in decimals: enclosures lo <= value <= hi, which certainly contain the true value.
 
 Sums, products and quotients round lo down and hi up, which the standard library's `decimal` does correctly on
 every platform. So the true value always lies in the enclosure; cancellation only makes it wider. `settling`
@@ -38,7 +38,7 @@ class Unsettled(ArithmeticError):
 
 
 def decimal_context(digits: int, rounding: str) -> Context:
-    """A context that does not depend on the caller's, with an ample range of exponents."""
+    """Return a context that does not depend on the caller's, with an ample range of exponents."""
     limit = 2 * LARGEST_EXPONENT
     return Context(prec=digits, rounding=rounding, Emin=-limit, Emax=limit, traps=[])
 
@@ -83,7 +83,7 @@ class Enclosure:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Enclosure | int) -> Enclosure:
-        """The quotient by a positive number, as every denominator of the equations is positive.
+        """Return the quotient by a positive number, as every denominator of the equations is.
 
         Raises Unsettled for a denominator that may be zero, ZeroDivisionError for one that is.
         Raises OverflowError for one beyond 10^LARGEST_EXPONENT, which is infinity: a quotient would be 0.
@@ -128,17 +128,17 @@ class Enclosures:
         return x
 
     def _fixed(self, value: int, error: int, bits: int) -> Enclosure:
-        """The enclosure value ± error, both in units of 2^-bits."""
+        """Return the enclosure value ± error, both in units of 2^-bits."""
         unit = Decimal(1 << bits)
         lo, hi = Decimal(value - error), Decimal(value + error)
         return Enclosure(self, self.down.divide(lo, unit), self.up.divide(hi, unit))
 
     def _from_zero(self, x: Enclosure) -> Enclosure:
-        """The enclosure cut off below 0, for a value that is known not to be negative."""
+        """Return the enclosure without its part below 0, for a value that is known not to be negative."""
         return x if x.lo >= 0 else Enclosure(self, ZERO, x.hi)
 
     def _width(self, x: Enclosure) -> Enclosure:
-        """The enclosure of how far a value in x can be above its lower end."""
+        """Return the enclosure of how far a value in x can be above its lower end."""
         return Enclosure(self, ZERO, self.up.subtract(x.hi, x.lo))
 
     @lazy
@@ -147,7 +147,7 @@ class Enclosures:
         return self._fixed(_pi(bits), 2, bits)
 
     def sqrt(self, x: Enclosure) -> Enclosure:
-        """Square root of x >= 0, exact where it can be.
+        """Return the square root of x >= 0, exact if it is a decimal of so many digits.
 
         `decimal` rounds the root correctly, so one step outwards encloses it. The square of an end shows
         whether the step is needed.
@@ -158,11 +158,11 @@ class Enclosures:
         return Enclosure(self, lo, hi if self.down.multiply(hi, hi) >= x.hi else self.up.next_plus(hi))
 
     def hypot(self, x: Enclosure, y: Enclosure | int) -> Enclosure:
-        """√(x² + y²)."""
+        """Return √(x² + y²)."""
         return self.sqrt(x * x + y * y)
 
     def cos_sin(self, x: Enclosure) -> tuple[Enclosure, Enclosure]:
-        """Cosine and sine of x >= 0."""
+        """Return cosine and sine of x >= 0."""
         x = self._from_zero(x)
         if self.is_zero(x):
             return self.number(1), x
@@ -171,7 +171,7 @@ class Enclosures:
 
     @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _cos_sin(self, x: Decimal) -> tuple[Enclosure, Enclosure]:
-        """Cosine and sine of a number x >= 0.
+        """Return cosine and sine of a number x >= 0.
 
         n quarter turns are taken off, which leaves an angle within ±π/4. The series are summed for this angle
         divided by 2^s, and the angle is doubled s times. 4 (w + n) units cover the error of the series, as in
@@ -190,7 +190,7 @@ class Enclosures:
         return self._fixed(c, error, w), self._fixed(s, error, w)
 
     def cos_sin_of_degrees(self, x: Fraction) -> tuple[Enclosure, Enclosure]:
-        """Cosine and sine of x >= 0, exact at multiples of 90°."""
+        """Return cosine and sine of x >= 0, exact at multiples of 90°."""
         try:
             cos, sin = EXACT.cos_sin_of_degrees(x)
         except Irrational:
@@ -198,7 +198,7 @@ class Enclosures:
         return self.number(cos), self.number(sin)
 
     def root(self, f: Callable[[Enclosure], Enclosure], end: Enclosure) -> Enclosure:
-        """The root of f between 0 and ``end``, where f is negative before it and positive after.
+        """Return the root of f between 0 and ``end``; f is negative before it and positive after.
 
         Secants find it, with bisection where they fail (T. J. Dekker, 1969). In the end f is checked to have
         opposite signs at both ends of the result, so the search need not be trusted.
@@ -239,11 +239,11 @@ class Enclosures:
         raise Unsettled(wanted)
 
     def exp(self, x: Enclosure) -> Enclosure:
-        """e^x for x >= 0."""
+        """Return e^x for x >= 0."""
         return self.expm1(x) + 1
 
     def expm1(self, x: Enclosure) -> Enclosure:
-        """e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
+        """Return e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
         x = self._from_zero(x)
         at_lo, width = self._expm1(x.lo), self._width(x)
         if width.hi > 1 or at_lo.lo == INFINITY:
@@ -252,7 +252,7 @@ class Enclosures:
 
     @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _expm1(self, x: Decimal) -> Enclosure:
-        """e^x - 1 for a number x >= 0, to the relative precision of the result.
+        """Return e^x - 1 for a number x >= 0, to the relative precision of the result.
 
         All is computed in integers, in units of 2^-w. x - n ln 10 is in [0, 2.4), off by at most 2n + 2
         units. It is divided by 2^s, which gives r, and e^r - 1 = r + r²/2 + ... is summed. Then s doublings
@@ -280,7 +280,7 @@ class Enclosures:
         return Enclosure(self, self.down.scaleb(k.lo, tens), self.up.scaleb(k.hi, tens)) - 1
 
     def log1p(self, x: Enclosure) -> Enclosure:
-        """ln(1 + x) for x > -1; one that may be 0 is taken not to be negative."""
+        """Return ln(1 + x) for x > -1; an x that may be 0 is taken not to be negative."""
         if x.hi < 0:
             return -1 * self.log1p(-1 * x / (x + 1))
         x = self._from_zero(x)
@@ -289,7 +289,7 @@ class Enclosures:
 
     @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
     def _log1p(self, y: Decimal) -> Enclosure:
-        """ln(1 + y) for a number y >= 0, from a guess y0, with no series.
+        """Return ln(1 + y) for a number y >= 0, from a guess y0, with no series.
 
         ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
         That encloses the value for any guess, and tightly for a good one.
@@ -304,7 +304,7 @@ class Enclosures:
         return Enclosure(self, (middle + inner).lo, (middle + delta).hi)
 
     def _log1p_guess(self, y: Decimal) -> Decimal:
-        """ln(1 + y) to about half the digits: each step of `_log1p` doubles them."""
+        """Return ln(1 + y) to about half the digits: each step of `_log1p` doubles them."""
         if self.digits > 28:
             return enclosures(self.digits // 2 + 2)._log1p(y).lo
         if -DOUBLE_EXPONENT < y.adjusted() < DOUBLE_EXPONENT:
@@ -314,17 +314,17 @@ class Enclosures:
 
 @lru_cache(maxsize=64)
 def enclosures(digits: int) -> Enclosures:
-    """The arithmetic of enclosures with that many digits; always the same object, which keeps π."""
+    """Return the arithmetic of enclosures with so many digits; always the same object, which keeps π."""
     return Enclosures(digits)
 
 
 def _bits(digits: int) -> int:
-    """The bits for so many digits, and a few more."""
+    """Return the number of bits for so many digits, and a few more."""
     return digits * 10 // 3 + 8
 
 
 def _expm1_series(x: int, halvings: int, w: int) -> int:
-    """e^x - 1 by the series at x/2^halvings and as many doublings; x and the result in units of 2^-w."""
+    """Return e^x - 1 by the series at x/2^halvings and as many doublings; both in units of 2^-w."""
     r = x >> halvings
     total, term, n = 0, r, 1
     while term:
@@ -337,7 +337,7 @@ def _expm1_series(x: int, halvings: int, w: int) -> int:
 
 
 def _cos_sin_series(x: int, halvings: int, w: int) -> tuple[int, int]:
-    """Cosine and sine by the series at x/2^halvings and as many doublings; all in units of 2^-w."""
+    """Return cosine and sine by the series at x/2^halvings and as many doublings; all in units of 2^-w."""
     r = x >> halvings
     sums, term, n = [0, 0, 0, 0], 1 << w, 0
     while term:
@@ -351,7 +351,7 @@ def _cos_sin_series(x: int, halvings: int, w: int) -> tuple[int, int]:
 
 
 def _inverse(q: int, sign: int, w: int) -> int:
-    """atan(1/q) for sign -1, atanh(1/q) for sign 1, in units of 2^-w."""
+    """Return atan(1/q) for sign -1, atanh(1/q) for sign 1, in units of 2^-w."""
     power = (1 << w) // q
     total, n = power, 1
     while power:
@@ -367,17 +367,17 @@ LEAST_BITS = 256
 
 
 def _pi(bits: int) -> int:
-    """π in units of 2^-bits (J. Machin, 1706)."""
+    """Return π in units of 2^-bits (J. Machin, 1706)."""
     return _constant((16, 5, -1), (-4, 239, -1), bits=bits)
 
 
 def _ln10(bits: int) -> int:
-    """ln 10 in units of 2^-bits: 10 = (32/30)^23 (50/48)^17 (162/160)^10."""
+    """Return ln 10 in units of 2^-bits: 10 = (32/30)^23 (50/48)^17 (162/160)^10."""
     return _constant((46, 31, 1), (34, 49, 1), (20, 161, 1), bits=bits)
 
 
 def _constant(*terms: tuple[int, int, int], bits: int) -> int:
-    """A sum of factor · `_inverse`(q, sign) for terms (factor, q, sign), right to two units of 2^-bits.
+    """Return the sum of factor · `_inverse`(q, sign) for terms (factor, q, sign), to two units of 2^-bits.
 
     The series have fewer than w terms, each truncated by less than two units of 2^-w, and the factors add up
     to at most 100. The 40 extra bits (`GUARD_BITS`) absorb that up to w = 2^32.

@@ -8,12 +8,11 @@ if TYPE_CHECKING or sys.version_info >= (3, 12):
     lazy = cached_property
 else:
 
-    class lazy(cached_property):  # noqa: N801 - a decorator
+    class Lazy(cached_property):
         """An attribute that is computed when it is first asked for, and kept.
 
-        This is `cached_property` of Python 3.12. Before 3.12 it held a lock for all objects of a class.
-        Threads that each solve a block then waited for each other, and for ever where two attributes may
-        need each other (`Case.slips` and `Case.can_slip`).
+        This is `cached_property` of Python 3.12. Before 3.12 it held a lock for all objects of a class, so
+        that threads which each solve a block waited for each other.
         """
 
         def __get__(self, instance: Any, owner: Any = None) -> Any:
@@ -21,3 +20,5 @@ else:
                 return self
             value = instance.__dict__[self.attrname] = self.func(instance)
             return value
+
+    lazy = Lazy

@@ -1,4 +1,4 @@
-"""What equations ask of a number and of its arithmetic; and exact fractions, which every input is.
+"""What equations need of a number and of its arithmetic; and exact fractions, as which inputs are read.
 
 The protocols exist only for the type checker, as creating them would slow every start of the program.
 Modules that name them in annotations leave those unevaluated (`from __future__ import annotations`).
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
         def number(self, q: Fraction | int) -> N: ...
         def is_zero(self, x: N) -> bool: ...
         def not_negative(self, x: N) -> N:
-            """x itself, stated not to be negative, which saves work in columns."""
+            """Return x, which is known not to be negative; that saves work in columns."""
             ...
 
         @property
@@ -54,11 +54,11 @@ if TYPE_CHECKING:
 
 
 class Irrational(ArithmeticError):
-    """An operation leaves the rational numbers: compute in enclosures, or in floating point."""
+    """The result of an operation is not rational: compute in enclosures, or in floating point."""
 
 
 class OfFloat(Fraction):
-    """The exact value of a float, which texts show as the float: 0.3, without the 54 digits that it has."""
+    """The exact value of a float, which is shown as the float: 0.3, without the 54 digits that it has."""
 
     __slots__ = ()
 
@@ -67,7 +67,7 @@ class OfFloat(Fraction):
 
 
 class Rationals:
-    """The arithmetic of exact fractions; an operation that may leave them raises `Irrational`."""
+    """The arithmetic of exact fractions. An operation whose result may not be one raises `Irrational`."""
 
     def number(self, q: Fraction | int) -> Fraction:
         return Fraction(q) if isinstance(q, int) else q
@@ -79,7 +79,7 @@ class Rationals:
         return x
 
     def sqrt(self, x: Fraction) -> Fraction:
-        """Square root of x >= 0, where it is rational."""
+        """Return the square root of x >= 0, if it is rational."""
         root = Fraction(isqrt(x.numerator), isqrt(x.denominator))
         if root * root != x:
             raise Irrational
@@ -95,7 +95,7 @@ class Rationals:
         return Fraction(cos), Fraction(sin)
 
     def __getattr__(self, name: str) -> Any:
-        """No other function, nor π, stays rational."""
+        """Raise Irrational for every other function and for π."""
         raise Irrational
 
 

@@ -8,9 +8,9 @@ Rounding is monotonic: if both ends of an enclosure round to the same double, or
 the true value between them. If they differ, the precision is doubled and the quantity computed again (Ziv's
 strategy). This ends, because the width tends to zero, unless the true value is a tie between two results, or
 0. Most values not computed in fractions are transcendental and so no ties: e^q and ln q are for rational q
-other than 0 and 1, and e^{πq} is (A. O. Gelfond). But sin 30° and cos 60° are rational, and e^{μφ} can
-cancel. So a value that agrees with a tie in `CLOSEST` digits is taken for the tie, and a difference that is 0
-in so many digits of its terms for 0. Inputs have too few digits (1500) for another value so close.
+other than 0 and 1, and e^{πq} is (A. O. Gelfond, 1929). But sin 30° and cos 60° are rational, and e^{μφ} can
+cancel. So a value that agrees with a tie in `TIE_DIGITS` digits is taken for the tie, and a difference that
+is 0 in so many digits of its terms for 0. Inputs have too few digits (1500) for another value so close.
 
 A comparison, such as μφ against ln(T_h/T_l), is decided once the enclosure of the difference excludes zero.
 """
@@ -33,32 +33,32 @@ T = TypeVar("T", bound=float | Decimal)
 
 # Far more than any valid input was found to need (about 6000): a bug must not become a hang.
 LARGEST_PRECISION = 50_000
-CLOSEST, ENOUGH = 6000, 6050
-"""The digits in which a value must agree with a tie to be taken for it; and a precision that shows them."""
-SUSPECT = 800
-"""If a value is not settled at this precision, the next one is `ENOUGH`, as it may be a tie."""
+TIE_DIGITS = 6000
+"""A value that agrees with a tie in so many digits is the tie."""
+TO_TIE = decimal_context(TIE_DIGITS, ROUND_HALF_EVEN)
+"""Rounds both ends of an enclosure that is narrow enough to the tie in it, as no tie has so many digits."""
 GUARD_DIGITS = 8
 """Digits beyond the wanted ones in the first computation of a quantity."""
 SIGN_DIGITS = 17 + GUARD_DIGITS
 """Digits of the first computation of a sign."""
-TO_TIE = decimal_context(CLOSEST - 10, ROUND_HALF_EVEN)
-"""Rounds a value that agrees with a tie in `CLOSEST` digits to the tie, as no tie has so many digits."""
 
 
 def settle(quantity: Quantity, round_: Callable[[Fraction | Decimal], T], digits: int) -> T:
-    """The correctly rounded value of a quantity; ``digits`` is about the number of digits wanted."""
+    """Return the correctly rounded value of a quantity; ``digits`` is about the number of digits wanted."""
 
-    def rounded(value: Enclosure) -> T:
+    def rounded(value: Enclosure) -> T | None:
         lo, hi = round_(value.lo), round_(value.hi)
         if lo == hi:
             return lo
-        if value.arithmetic.digits < CLOSEST:
-            raise Unsettled(ENOUGH if value.arithmetic.digits >= SUSPECT else 0)
+        precision = value.arithmetic.digits
+        if precision < TIE_DIGITS // 8:
+            return None
+        if precision < TIE_DIGITS:  # it may be a tie, which more digits than that show
+            raise Unsettled(TIE_DIGITS + 4 * GUARD_DIGITS)
         if value.lo <= 0 <= value.hi:
             return round_(ZERO)
-        if TO_TIE.divide(TO_TIE.subtract(value.hi, value.lo), value.hi).adjusted() > -CLOSEST:
-            raise Unsettled
-        return round_(TO_TIE.plus(value.lo))
+        near_lo, near_hi = TO_TIE.plus(value.lo), TO_TIE.plus(value.hi)
+        return round_(near_lo) if near_lo == near_hi else None
 
     try:
         return round_(quantity(EXACT))
@@ -67,7 +67,11 @@ def settle(quantity: Quantity, round_: Callable[[Fraction | Decimal], T], digits
 
 
 def is_positive(quantity: Quantity) -> bool:
-    """Whether a quantity is positive that is known to be irrational, so not zero."""
+    """Decide whether a quantity is positive that is irrational, and so not zero.
+
+    By the theorem of Gelfond, e^{πq} is transcendental for rational q other than 0, and so is every rational
+    function of it that is not constant.
+    """
 
     def sign(value: Enclosure) -> bool | None:
         return value.lo > 0 if value.lo > 0 or value.hi < 0 else None

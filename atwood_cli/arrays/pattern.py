@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.angle import Angle
 from ..model.scene import INPUTS, Axle, Scene
+from ..model.units import Angle
 
 Column = NDArray[np.float64]
 Index = slice | NDArray[np.intp]

@@ -40,8 +40,7 @@ from ..arithmetic.symbolic import Formula, Term, formula
 from ..model.case import Case, Place, is_zero
 from ..model.digits import to_double
 from ..model.machine import Machine
-from ..model.quantities import REGIMES, Accuracy
-from ..model.reasons import Undetermined
+from ..model.quantities import REGIMES, Accuracy, Undetermined
 from .doubles import DOUBLES, Doubles, NoProgram, certified, equal, less
 from .pairs import PAIRS
 from .pattern import Decisions, Pattern, Task

@@ -160,7 +160,7 @@ class Rows:
                 value = answers[name]
                 self.results[name][rows] = nan if value is None else float(value)
                 if value is None:
-                    self.reasons[name, answers.reasons[name]] += len(rows)
+                    self.reasons[name, answers.answer(name).reason] += len(rows)
 
     def _number(self, row: int) -> Callable[[str], Fraction]:
         """Return the inputs of a row, exactly, by their names."""

@@ -1,4 +1,4 @@
-"""The command line: its commands, each in a module, and its errors, each a sentence."""
+"""The command line: its commands, each in a module of its name, and its errors, each a sentence."""
 
 import io
 import os
@@ -15,11 +15,9 @@ from ..model.scene import SceneError
 from ..model.units import LONGEST_NAME, shortened
 from ..output.files import ClosedStdout
 from ..output.text import drop, finish, say
-from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag
+from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag, write_options
 
 COMMANDS = ("solve", "sweep", "contact", "fit", "batch", "quantities", "tradeoff")
-OTHER_MODULES = {"quantities": "listing"}
-"""The modules of commands that have another name than their command."""
 EXTRAS = {"matplotlib": "figure", "polars": "batch", "scipy": "fit"}
 """The extras that bring optional packages."""
 HELP = """Atwood's machine, its pulley massive and its string rough, every digit right.
@@ -35,17 +33,14 @@ Examples:
 """
 
 DASHES = "-–—"
-
-# The parent of all of typer's usage errors, of which typer exports only this child.
+# The parent of all usage errors, which typer does not export.
 UsageError: Any = typer.BadParameter.__mro__[1]
-
-
 ON_CTRL_C = 130
 """The status that typer returns for a command that was interrupted."""
 
 
 class Command(TyperCommand):
-    """A command with our help, and with hints at two slips that typer would misunderstand."""
+    """A command with help by group, and with hints at two slips that typer would misunderstand."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
         options = {flag: param for param in self.get_params(ctx) for flag in param.opts}
@@ -64,12 +59,10 @@ class Command(TyperCommand):
         return super().parse_args(ctx, args)
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
-        from .help import write_options
-
         write_options(self, ctx, formatter)
 
     def collect_usage_pieces(self, ctx: Any) -> list[str]:
-        """`[OPTIONS] RUNS`, the same in all versions of typer."""
+        """Return `[OPTIONS] RUNS`, the same in all versions of typer."""
         arguments = [param for param in self.params if param.param_type_name == "argument"]
         return ["[OPTIONS]", *(str(param.metavar) for param in arguments)]
 
@@ -86,13 +79,13 @@ Version = Annotated[
 
 
 def root(context: typer.Context, version: Version = False) -> None:
-    """Print the help where no command is named."""
+    """Print the help if no command is named."""
     if context.invoked_subcommand is None:
         print(context.get_help())
 
 
 def program(names: Iterable[str] = COMMANDS) -> Any:
-    """The program with these commands; a command takes a while to import."""
+    """Return the program with these commands; each takes a while to import."""
     app = typer.Typer(
         name="atwood",
         help=HELP,
@@ -103,19 +96,19 @@ def program(names: Iterable[str] = COMMANDS) -> Any:
     )
     app.callback()(root)
     for name in names:
-        module = import_module(f".{OTHER_MODULES.get(name, name)}", __name__)
+        module = import_module(f".{name}", __name__)
         app.command(name, cls=Command, help=module.HELP)(getattr(module, name))
     return typer.main.get_command(app)
 
 
 def _needed(arguments: list[str]) -> tuple[str, ...]:
-    """The command named, or all commands where help, completion or a hint must know them."""
+    """Return the command named, or all commands if help, completion or a hint must know them."""
     first = next(iter(arguments), "")
     return (first,) if first in COMMANDS and COMPLETING not in os.environ else COMMANDS
 
 
 def run(arguments: list[str] | None = None) -> int:
-    """Run the command line; every error is a sentence on stderr and an exit status."""
+    """Run the command line. Every error ends in a sentence on stderr and an exit status."""
     # A stream that the caller has closed is None. Lost results are an error; lost messages are not.
     sys.stdout, sys.stderr = sys.stdout or cast(Any, ClosedStdout()), sys.stderr or io.StringIO()
     if isinstance(sys.stdout, io.TextIOWrapper):
@@ -157,7 +150,7 @@ def run(arguments: list[str] | None = None) -> int:
 
 
 def _why(error: Exception) -> str:
-    """The reason of an error, in a sentence."""
+    """Return the reason of an error, as a sentence."""
     if isinstance(error, ModuleNotFoundError):
         package = str(error.name).partition(".")[0]
         if package not in EXTRAS:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from typing import Annotated
 
 from ..model.scene import Scene, read_digits
-from ..output.arc_page import print_table, record
+from ..output.scene_page import contact_record, print_contact
 from ..output.text import Forms, Target, say, show
 from ..solver.answers import Answers
 from ..solver.balance import contact as solve_contact
@@ -49,9 +49,9 @@ def contact(
 
         save(answers, arc.kind, figure, target.force, bare, curves=True)
     forms = Forms(
-        json=lambda: record(answers, arc),
+        json=lambda: contact_record(answers, arc),
         records=lambda: arc.points,
-        page=lambda: print_table(answers, arc),
+        page=lambda: print_contact(answers, arc),
         notes=lambda: arc.notes,
     )
     say(*show(forms, target))

@@ -1,4 +1,4 @@
-"""The options of a scene, and other options that several commands share."""
+"""The options of a scene, other options that several commands share, and help on all."""
 
 import inspect
 import os
@@ -17,7 +17,7 @@ from ..output.files import STDOUT, check_free
 from ..output.text import FORMS, Target, say
 
 COMPLETING = "_ATWOOD_COMPLETE"
-"""The environment variable by which a shell asks for the completions of a word."""
+"""The environment variable by which a shell asks for completions of a word."""
 DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 """The exit statuses of commands."""
 
@@ -38,22 +38,23 @@ REMARKS = {
 
 
 def flag(name: str) -> str:
-    """A name as an option is typed: mu_k is --mu-k."""
+    """Return a name as an option is typed: mu_k is --mu-k."""
     return f"--{name.replace('_', '-')}"
 
 
 Words = Callable[[], Mapping[str, str]]
-"""A function that returns words that a shell may complete, with their meanings."""
+"""A function that returns the words that a shell may complete, with their meanings."""
 
 
 def option(group: str, *flags: str, metavar: str = "", words: Words | None = None, **more: Any) -> Any:
-    """An option, with the ``group`` in which help shows it, and the words that it takes.
+    """Return an option, with the ``group`` in which help shows it, and the words that it takes.
 
     If there are no ``words``, it takes the words of a metavar a|b, or any text.
     """
 
     def complete(incomplete: str) -> list[tuple[str, str]]:
-        return list((words() if words else dict.fromkeys(metavar.split("|"), "")).items())
+        known = words() if words else dict.fromkeys(metavar.split("|"), "")
+        return list(known.items())
 
     return typer.Option(
         *flags,
@@ -67,25 +68,27 @@ def option(group: str, *flags: str, metavar: str = "", words: Words | None = Non
 
 
 def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> Any:
-    """The option for a parameter of a scene or a motion, with a remark that a command may replace."""
+    """Return the option for an input of a scene or a motion, with a remark that a command may replace."""
     parameter = parameter_of(name)
     flags = [flag(name), *ALIASES.get(name, [])]
     unit = f" ({parameter.unit})" if parameter.unit not in ("", "°") else ""
     meaning = f"{parameter.meaning[0].upper()}{parameter.meaning[1:]}"
     text = f"{meaning}{unit}{REMARKS.get(name, '') if remark is None else remark}."
     metavar = (parameter.dimension or "number").split()[-1].upper()
-    words = {**parameter.names, **({"inf": "a locked pulley"} if parameter.inf else {})}
+    words = dict(parameter.names)
+    if parameter.inf:
+        words["inf"] = "a locked pulley"
     return option(group, *flags, help=text, metavar=metavar, words=(lambda: words) if words else None)
 
 
 Command = Callable[..., int]
 Rules = Mapping[str, str]
-"""The names of other options, by the name of an option."""
+"""The names of other options, with blanks between, by the name of an option."""
 NO_RULES: Rules = {}
 
 
 class Shared(NamedTuple):
-    """Options that several commands have, and the argument that a command gets in their place."""
+    """Options that several commands have, and the argument that a command gets instead of them."""
 
     argument: str
     options: Mapping[str, Any]
@@ -95,7 +98,7 @@ class Shared(NamedTuple):
 def takes(
     *shared: Shared, no_effect: Rules = NO_RULES, needs: Rules = NO_RULES
 ) -> Callable[[Command], Command]:
-    """Give a command shared options: typer sees each option, the command the arguments read from them.
+    """Give a command groups of options: typer sees each option, the command the arguments read from them.
 
     An option in ``no_effect`` excludes each option named there. An option in ``needs`` needs an option named
     there.
@@ -114,6 +117,7 @@ def takes(
 
         first, *others = ([_parameter(*named) for named in group.options.items()] for group in shared)
         parameters = sorted([*first, *own, *chain(*others)], key=attrgetter("kind"))
+        # typer reads this attribute, which type checkers do not know of a function.
         run.__dict__["__signature__"] = inspect.Signature(parameters)
         run.__annotations__ = {given.name: given.annotation for given in parameters}
         run.__name__ = command.__name__
@@ -128,10 +132,12 @@ def _parameter(name: str, annotation: Any) -> inspect.Parameter:
 
 
 def _check(options: Mapping[str, Any], no_effect: Rules, needs: Rules) -> None:
-    """Raises SceneError where an option that is given excludes another, or lacks an option that it needs."""
+    """Raise SceneError if an option that is given excludes another, or lacks one that it needs."""
     given = {name: value for name, value in options.items() if value not in (None, False, [], ())}
     for name, value in given.items():
-        shown = value[0] if isinstance(value, list | tuple) else None if value is True else value
+        shown = value[0] if isinstance(value, list | tuple) else value
+        if shown is True:
+            shown = None
         for other in no_effect.get(name, "").split():
             if other in given:
                 raise SceneError(name, shown, f"has no effect with {flag(other)}; leave one of them out")
@@ -143,11 +149,6 @@ def _check(options: Mapping[str, Any], no_effect: Rules, needs: Rules) -> None:
 # A scene
 
 
-def _read_scene(options: Mapping[str, Any]) -> dict[str, str | None]:
-    """The inputs as they were typed."""
-    return {name: options[name] for name in INPUTS}
-
-
 def _ask_about_radians(wrap: str | None) -> None:
     if wrap and _may_be_radians(wrap):
         typed = f"--wrap {shortened(wrap)}"
@@ -155,23 +156,26 @@ def _ask_about_radians(wrap: str | None) -> None:
 
 
 LIKE_RADIANS = (0.3, 12.6)
-"""The range of numbers that would be few degrees, and in radians the wrap of a pulley, up to two turns."""
+"""The range of numbers that are probably radians: few degrees, but up to two turns in radians."""
 
 
 def _may_be_radians(typed: str) -> bool:
-    """Whether a valid angle, a range or a list has numbers without a unit, of the size of radians."""
+    """Decide whether an angle, a range or a list has numbers without a unit, of the size of radians."""
     least, most = LIKE_RADIANS
     words = typed.split(":")[:2] if ":" in typed else typed.split(",")
     angles = [read_number(word, "angle") for word in words]
     return not any(angle.unit for angle in angles) and least < max(angle.value for angle in angles) < most
 
 
-SCENE_OPTIONS = {name: Annotated[str | None, scene_option(name)] for name in INPUTS}
-SCENE = Shared("given", SCENE_OPTIONS, _read_scene)
+SCENE = Shared(
+    "given",
+    {name: Annotated[str | None, scene_option(name)] for name in INPUTS},
+    lambda options: {name: options[name] for name in INPUTS},
+)
 
 
-def quantities() -> Mapping[str, str]:
-    """The quantities that every scene has, with their meanings."""
+def quantity_meanings() -> Mapping[str, str]:
+    """Return the quantities that every scene has, with their meanings."""
     return {"regime": "no-slip, verge or slip", **{name: QUANTITIES[name].meaning for name in NAMES[1:]}}
 
 
@@ -186,7 +190,7 @@ Columns = Annotated[
         "Output",
         "--only",
         metavar="NAME",
-        words=quantities,
+        words=quantity_meanings,
         help="A column for this quantity, not for the usual seven; repeatable, or a,b.",
     ),
 ]
@@ -213,7 +217,7 @@ Force = Annotated[bool, option("Files", "--force", help="Replace a file that is 
 
 
 def results(*forms: str) -> Shared:
-    """The options that choose among these forms of a result, and name the file that it goes to."""
+    """Return the options that choose the form of a result among these, and the file that it goes to."""
     suffixes = ", ".join(f"{FORMS[form].suffix}" for form in forms)
     options = {
         **{form: Annotated[bool, option("Output", flag(form), help=FORMS[form].help)] for form in forms},
@@ -233,13 +237,15 @@ def results(*forms: str) -> Shared:
 
 
 def _read_target(options: Mapping[str, Any]) -> Target:
-    """The form and the file of a result. Raises SceneError, FileExistsError."""
+    """Read the form and the file of a result. Raises SceneError, FileExistsError."""
     asked = [form for form in FORMS if options.get(form)]
     if asked[1:]:
         raise SceneError(asked[0], None, f"has no effect with {flag(asked[1])}; leave one of them out")
     form, file, force = "".join(asked), options["output"], options["force"]
     if force and not (file or options.get("figure")):
-        raise SceneError("force", None, f"needs --output{' or --figure' * ('figure' in options)}")
+        raise SceneError(
+            "force", None, "needs --output or --figure" if "figure" in options else "needs --output"
+        )
     if file in (None, STDOUT):
         return Target(form, None, force)
     if (figure := options.get("figure")) and os.path.realpath(figure) == os.path.realpath(file):
@@ -250,7 +256,7 @@ def _read_target(options: Mapping[str, Any]) -> Target:
 
 
 def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
-    """The form of a file: as asked for, or by its suffix. Raises SceneError where the two disagree."""
+    """Return the form of a file, as asked for or by its suffix. Raises SceneError if the two disagree."""
     name, suffix = os.path.splitext(file)
     page = ".md" if options.get("markdown") else ".txt"
     known = [] if options.get("explain") else [form for form in FORMS if form in options]
@@ -272,8 +278,33 @@ OUTPUT = results(*FORMS)
 
 
 def check_figure(figure: str | None, force: bool) -> None:
-    """Raise errors of a picture before anything is solved: SceneError, OSError, ImportError."""
+    """Raise the errors of a picture before anything is solved: SceneError, OSError, ImportError."""
     if figure is not None:
         from ..output.figure import check_file
 
         check_file(figure, force)
+
+
+# Help
+
+BRIEF_COMMANDS = ("sweep", "contact")
+"""The commands whose help only names the options of a scene, which the help of solve explains."""
+LAST_GROUPS = ("Output", "Files")
+"""The groups of options that come after a command's own groups."""
+
+
+def write_options(command: Any, context: Any, formatter: Any) -> None:
+    """Write the help on the options of a command by group, with typer's formatter."""
+    groups: dict[str, list[tuple[str, str]]] = {}
+    for param in command.get_params(context):
+        record = param.get_help_record(context)
+        if param.param_type_name == "argument":
+            record = (param.metavar, record[1])  # typer 0.29 adds its type
+        groups.setdefault(getattr(param, "rich_help_panel", None) or "Output", []).append(record)
+    for panel in sorted(groups, key=lambda panel: LAST_GROUPS.index(panel) if panel in LAST_GROUPS else -1):
+        with formatter.section(panel):
+            if panel == "Scene" and command.name in BRIEF_COMMANDS:
+                names = " ".join(param.opts[0] for param in command.params if param.rich_help_panel == panel)
+                formatter.write_text(f"{names}, as in atwood solve -h")
+            else:
+                formatter.write_dl(groups[panel], col_max=25)

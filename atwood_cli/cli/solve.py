@@ -5,16 +5,27 @@ from typing import Annotated
 
 from ..model.quantities import MEASURED_NAMES, NAMES, read_names
 from ..model.scene import SceneError, read_digits
-from ..output.scene_page import beside_bare, csv_record, print_budget, print_table, record
+from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_table, record
 from ..output.text import Forms, Target, cell, said_of_scene, say, show
 from ..solver.answers import Answers, read_answers
 from ..solver.expected import failure, read_condition
 from ..solver.messages import reasons_at, unmarked
-from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Digits, option, quantities, scene_option, takes
+from .options import (
+    COULD_NOT,
+    DONE,
+    OUTPUT,
+    SCENE,
+    Bare,
+    Digits,
+    option,
+    quantity_meanings,
+    scene_option,
+    takes,
+)
 
 
 def _askable() -> Mapping[str, str]:
-    return {**quantities(), **dict.fromkeys(MEASURED_NAMES, "found from what was measured")}
+    return {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from what was measured")}
 
 
 Acceleration = Annotated[str | None, scene_option("a", "Measured")]
@@ -98,7 +109,7 @@ def solve(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
         page=lambda: _explain(answers, names, markdown) if explain else print_table(answers, all, budget),
-        notes=lambda: beside_bare(answers, names, values=not target.form),
+        notes=lambda: notes_on_stderr(answers, names, values=not target.form),
         bare=[] if explain else values,
         below=lambda: print_budget(answers, names) if budget else None,
     )
@@ -110,7 +121,7 @@ def solve(
 
 def _lacking(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return why quantities have no value."""
-    lacking = {(name, answers.reasons[name]): 1 for name in names if not cell(answers[name])}
+    lacking = {(name, answers.answer(name).reason): 1 for name in names if not cell(answers[name])}
     return reasons_at(lacking, 1)
 
 
@@ -123,11 +134,11 @@ def _explain(answers: Answers, names: Sequence[str], markdown: bool) -> None:
 
 
 def _draw(answers: Answers, path: str, bare: bool, force: bool) -> None:
-    """Draw the machine. Raises SceneError where the scene leaves its tensions open, OSError."""
+    """Draw the machine. Raises SceneError if the scene does not determine its tensions, OSError."""
     from ..output.scene_figure import save
     from ..solver.balance import kind_of
 
     if answers["tension_1"] is None:
-        why = unmarked(answers.reasons["tension_1"])
+        why = unmarked(answers.answer("tension_1").reason)
         raise SceneError("figure", path, f"draws the tensions, which are not known: {why}")
     save(answers, kind_of(answers.case) if answers.case.light else None, path, force, bare)

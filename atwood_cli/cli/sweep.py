@@ -1,4 +1,4 @@
-"""`atwood sweep`: ranges and lists of scenes, as a table with its regimes, JSON, CSV or a figure."""
+"""`atwood sweep`: ranges and lists of scenes, as a table with its regimes, JSON, CSV or a picture."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""`atwood tradeoff`: time beside error on this machine."""
+"""`atwood tradeoff`: the time and the error of each way to solve scenes, on this computer."""
 
 from collections.abc import Mapping
 from itertools import chain

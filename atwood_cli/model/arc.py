@@ -1,15 +1,15 @@
-"""How the tension runs along the arc of contact, in any arithmetic.
+"""The tension along the arc of contact, in any arithmetic.
 
-Everything is seen from the lighter mass: the angle starts where its string meets the pulley, and
-the tension grows from T_l to T_h = T_l e^{μα}. Friction at its limit takes the arc α for that. If
-the arc of contact is longer, the string is stuck over the rest, δ = φ - α, and what differs between
-the profiles is only where: after a *lead* s of limiting arc.
+The arc is seen from the lighter mass: the angle starts where its string meets the pulley, and the tension
+grows from T_l to T_h = T_l e^{μα}. Friction at its limit needs the arc α for that. If the arc of contact φ is
+longer, the string is stuck over the rest, δ = φ - α, which begins after a *lead* s of limiting arc. The
+profiles differ in s:
 
-- exponential: α = φ, nothing is stuck. The verge, slip, and the least μ that holds.
+- exponential: α = φ, nothing is stuck. On the verge, in slip, and with the least μ that holds.
 - creep: s = 0. A slightly elastic string creeps over one arc, on the side where it leaves the pulley
-  (O. Reynolds, 1875; F. Grashof, 1883), which is the heavier mass's. This has the greatest net
-  friction of all profiles in which friction nowhere opposes the rest.
-- least: the s with the least net friction, found as the root of `physics.least_friction_slope`.
+  (O. Reynolds, 1875; F. Grashof, 1883), the heavier mass's. Of all profiles in which friction acts one way,
+  this has the greatest net friction.
+- least: the s with the least net friction, the root of `physics.least_friction_slope`.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ class Knot(NamedTuple, Generic[N]):
 
 
 class Arc(NamedTuple, Generic[N]):
-    """A piece of the arc over which T grows as e^{μθ}; ``mu`` is 0 where the string is stuck."""
+    """A piece of the arc over which T grows as e^{μθ}; ``mu`` is 0 if the string is stuck over it."""
 
     mu: N
     stuck: bool
@@ -48,7 +48,7 @@ class Arc(NamedTuple, Generic[N]):
 
 
 def arcs(ar: Arithmetic[N], kind: Kind, mu: N, lengths: Sequence[N], light: N, end: Knot[N]) -> list[Arc[N]]:
-    """The pieces with their lengths as arcs, from the light end with its tension to ``end``."""
+    """Return pieces of these lengths (rad) as arcs, from the light end with its tension (N) to ``end``."""
     zero, one = ar.number(0), ar.number(1)
     knots = [Knot(zero, one, zero, light)]
     for length, stuck in list(zip(lengths, STUCK[kind], strict=True))[:-1]:
@@ -64,7 +64,7 @@ def arcs(ar: Arithmetic[N], kind: Kind, mu: N, lengths: Sequence[N], light: N, e
 
 
 def least_lead(ar: Arithmetic[N], mu: N, alpha: N, stuck: N, light: N, end: Knot[N]) -> N:
-    """The lead s of the profile with the least net friction; φ <= π."""
+    """Return the lead s (rad) of the profile with the least net friction; needs φ <= π."""
     _, half_sine = ar.cos_sin(stuck / 2)
     chord = 2 * light * half_sine
     dx, dy = end.tension * end.cos - light, end.tension * end.sin
@@ -85,12 +85,12 @@ def _differences(arc: Arc[N]) -> tuple[N, N]:
 
 
 def friction(pieces: Sequence[Arc[N]]) -> tuple[N, N]:
-    """Net friction force on the pulley (N), (x, y)."""
+    """Return the net friction force on the pulley (N), (x, y)."""
     return _sum([physics.friction_vector(arc.mu, *_differences(arc)) for arc in pieces])
 
 
 def normal(pieces: Sequence[Arc[N]]) -> tuple[N, N]:
-    """Net normal force on the pulley (N), (x, y)."""
+    """Return the net normal force on the pulley (N), (x, y)."""
     return _sum([physics.normal_vector(arc.mu, *_differences(arc)) for arc in pieces])
 
 
@@ -102,7 +102,7 @@ def _sum(vectors: Sequence[tuple[N, N]]) -> tuple[N, N]:
 
 
 def torque_per_radius(ar: Arithmetic[N], pieces: Sequence[Arc[N]]) -> N:
-    """∫ dT/dθ dθ (N), the friction's torque on the pulley over its radius, arc by arc; (22)."""
+    """Return ∫ dT/dθ dθ (N), the torque of friction on the pulley over its radius, arc by arc; (22)."""
     total = ar.number(0)
     for arc in pieces:
         if not arc.stuck:
@@ -111,7 +111,7 @@ def torque_per_radius(ar: Arithmetic[N], pieces: Sequence[Arc[N]]) -> N:
 
 
 def tension(ar: Arithmetic[N], arc: Arc[N], angle: N) -> N:
-    """T (N) at an angle within the arc; also nR, the normal force per radian (13)."""
+    """Return T (N) at an angle within the arc; also nR, the normal force per radian (13)."""
     if arc.stuck:
         return arc.start.tension
     return arc.start.tension * ar.exp(arc.mu * (angle - arc.start.angle))

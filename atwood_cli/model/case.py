@@ -1,4 +1,28 @@
-"""What is decided about a scene before anything is computed, exactly: the heavier side, grip or slip."""
+"""Decide exactly which side is heavier and whether the string slips.
+
+A string slips if the tension ratio r = T_h/T_l that it would have if it gripped exceeds e^{μφ}. The regime is
+the result of the first line below that answers. The second table has the scenes of which r is taken, each a
+`Place`.
+
+    question                                             decided by                          result
+    does kinetic friction follow from a measured a?      motion.finds == "mu_k"              slip
+    is mu not given?                                                                         no-slip, assumed
+    are both tensions equal without friction?            m1 = m2, or c = 0 and f = 0         no-slip
+    is the pulley known, or at rest?                     rim_mass; locked; h - l <= b
+      does the string slip on it?                        (33) at "scene", "locked" at rest   slip, or no-slip
+    can it slip on no pulley, however heavy?             (36) at "locked"                    no-slip
+    does it slip on every pulley, however light?         (33) at "massless"                  slip
+    else it slips on a heavy enough pulley               (34)                                verge
+
+    scene, locked, massless    as given; D = 0; c = 0    see above
+    massless                   in slip                   is the rim at rest under the string that slips?
+    heaviest                   h = ∞                     does it slip under some heavier mass?
+    most_held                  c = 0, h = l + b          does it slip as soon as the axle turns?
+    lightest_held              c = 0, l = h - b          is the pulley at rest at the critical lighter mass?
+
+With an axle that holds the difference, h - l <= b, the pulley is at rest like a locked one. If one mass is 0,
+friction cannot be given, and only the first three lines apply.
+"""
 
 from __future__ import annotations
 
@@ -19,15 +43,36 @@ Place = Literal["scene", "locked", "massless", "heaviest", "most_held", "lightes
 
 
 def is_zero(value: object) -> bool:
-    """Whether an input is exactly 0. Columns are not: rows with a zero are solved apart."""
+    """Decide whether an input is exactly 0. A column is not: rows with a zero are a group of their own."""
     return hasattr(value, "numerator") and not value
 
 
+def rim_mass(inputs: Any, mass: Fraction | None) -> Fraction | None:
+    """Return the inertia of a pulley of that mass as a mass at the rim (kg), c = βM; None if it is not known.
+
+    ``inputs`` has I, R and inertia.
+    """
+    if inputs.I is not None and inputs.R is not None:
+        c: Fraction = inputs.I / (inputs.R * inputs.R)
+        return c
+    return mass if mass is None or inputs.inertia is None else inputs.inertia * mass
+
+
+def axle_force(inputs: Any) -> Fraction:
+    """Return the axle's friction as a force at the rim, f (N). ``inputs`` has axle and R."""
+    force: Fraction = ZERO if inputs.axle is None else inputs.axle.force(inputs.R)
+    return force
+
+
 class Case:
-    """What is decided about a scene before anything is computed, exactly."""
+    """The decisions about a scene, and the inputs seen from the lighter and the heavier mass.
+
+    Each is made when it is asked for, once.
+    """
 
     def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
         self.scene, self.motion = scene, motion
+        self._known_to_slip = False
         self._excesses: dict[tuple[Place, Arithmetic[Any]], Any] = {}
 
     @lazy
@@ -47,7 +92,7 @@ class Case:
 
     @property
     def free_end(self) -> bool:
-        """Whether nothing hangs from one end, or where an uncertain motion finds a mass, less than that."""
+        """Whether one mass is 0; or below, as a mass that is found with an uncertain acceleration may be."""
         return hasattr(self.light, "numerator") and self.light <= 0
 
     @lazy
@@ -57,7 +102,7 @@ class Case:
 
     @lazy
     def pulley_mass(self) -> Fraction | None:
-        """The pulley's mass; none where it is locked, and 0 where nothing is said of the pulley."""
+        """The pulley's mass (kg): None if it is locked or not known, 0 if nothing tells that it has one."""
         M, scene = self.scene.M, self.scene
         if M is None and scene.mu is None and scene.I is None:
             return Fraction(0)
@@ -65,29 +110,20 @@ class Case:
 
     @lazy
     def rim_mass(self) -> Fraction | None:
-        """The pulley's inertia as a mass at the rim, c = βM; none where it is locked or not known."""
-        scene, mass = self.scene, self.pulley_mass
-        if scene.I is not None and scene.R is not None:
-            return scene.I / (scene.R * scene.R)
-        if mass is None or scene.inertia is None:
-            return mass
-        return scene.inertia * mass
+        """The pulley's inertia as a mass at the rim, c (kg); None if it is locked or not known."""
+        return rim_mass(self.scene, self.pulley_mass)
 
     @lazy
     def beta(self) -> Fraction | None:
-        """The inertia factor; none where I is given and M is not."""
+        """The inertia factor; None if I is given and M is not."""
         if self.scene.I is None:
             return self.scene.inertia
         return self.rim_mass / self.pulley_mass if self.rim_mass and self.pulley_mass else None
 
     @lazy
     def axle_friction(self) -> Fraction:
-        """The axle's friction as a force at the rim (N), f."""
-        axle = self.scene.axle
-        if axle is None:
-            return ZERO
-        force: Fraction = axle.force(self.scene.R)
-        return force
+        """The axle's friction as a force at the rim, f (N)."""
+        return axle_force(self.scene)
 
     @property
     def rubs(self) -> bool:
@@ -96,12 +132,12 @@ class Case:
 
     @lazy
     def axle_mass(self) -> Fraction:
-        """That friction as a mass, b = f/g."""
+        """The axle's friction as a mass, b = f/g (kg)."""
         return physics.axle_mass(self.axle_friction, self.scene.g) if self.rubs else ZERO
 
     @lazy
     def axle_holds(self) -> bool:
-        """Whether the axle holds the difference of unequal masses, and so the pulley at rest."""
+        """Whether the axle's friction holds unequal masses at rest, h - l <= b."""
         return self.rubs and self.sign != 0 and not self.moves_axle("difference")
 
     @property
@@ -110,27 +146,27 @@ class Case:
         return self.heavy - self.light
 
     def moves_axle(self, which: Literal["difference", "heavy"]) -> bool:
-        """Whether the difference, or the heavier mass alone, is more than the axle holds."""
+        """Decide whether the difference, or the heavier mass alone, exceeds what the axle holds, b."""
         mass: Fraction = getattr(self, which)
         return mass * self.scene.g > self.axle_friction
 
     @property
     def stands(self) -> bool:
-        """Whether nothing that the string does turns the pulley."""
+        """Whether the pulley is at rest, as it is locked or its axle holds it."""
         return self.locked or self.axle_holds
 
     def by_side(self, of_m1: N, of_m2: N) -> tuple[N, N]:
-        """What belongs to the lighter and the heavier mass from what belongs to m1 and m2, or back."""
+        """Return (of m1, of m2) as (of the lighter mass, of the heavier mass); or the other way round."""
         return (of_m1, of_m2) if self.sign >= 0 else (of_m2, of_m1)
 
     @property
     def pulley_known(self) -> bool:
-        """Whether the pulley is known enough for the motion of a string that grips."""
+        """Whether the motion of a string that grips is known: the pulley's inertia is, or it is at rest."""
         return self.stands or self.rim_mass is not None
 
     @property
     def turns_freely(self) -> bool:
-        """Whether the pulley turns without friction: it has no mass, and its axle does not rub."""
+        """Whether the pulley has neither mass nor friction in its axle."""
         return is_zero(self.rim_mass) and not self.rubs
 
     @property
@@ -140,7 +176,7 @@ class Case:
 
     @lazy
     def regime(self) -> Literal["no-slip", "verge", "slip"]:
-        """What the string does; it is assumed to grip where nothing is said of friction."""
+        """What the string does, by the table at the head of the module."""
         if self.slide_measured:
             return "slip"
         if self.scene.mu is None or self.tensions_equal:
@@ -154,39 +190,35 @@ class Case:
     @lazy
     def slips(self) -> bool:
         """Whether the string slips on a pulley that is known and friction that is given."""
-        return not self.tensions_equal and self.slips_at("locked" if self.stands else "scene")
+        place: Place = "locked" if self.stands else "scene"
+        self._known_to_slip = not self.tensions_equal and self.slips_at(place)
+        return self._known_to_slip
 
     @property
     def limiting_mu(self) -> Fraction:
-        """The coefficient that friction is at on the verge (static) and in slip (kinetic), if it is given."""
-        mu, mu_k = self.scene.mu, self.scene.mu_k
-        limit = mu if mu_k is None or self.regime == "verge" else mu_k
-        return Fraction(0) if limit is None else limit
+        """The coefficient of friction at its limit: static on the verge, kinetic in slip; 0 if not given."""
+        limit = self.scene.mu if self.at_static_limit else self.scene.mu_k
+        return ZERO if limit is None else limit
 
     @property
     def mu_assumed(self) -> bool:
-        """Whether the friction force is the one at the least coefficient that holds, as none is given."""
+        """Whether friction is that with the least coefficient that holds the string, as mu is not given."""
         return self.regime == "no-slip" and self.scene.mu is None and not self.tensions_equal
 
     @property
     def at_static_limit(self) -> bool:
-        """Whether the friction that acts, where it is at its limit, is static friction's."""
-        return not self.slide_measured and self.limiting_mu is self.scene.mu
+        """Whether friction at its limit is static (mu) or kinetic (mu_k)."""
+        return not self.slide_measured and (self.scene.mu_k is None or self.regime == "verge")
 
     @property
     def slide_measured(self) -> bool:
-        """Whether kinetic friction follows from the acceleration of a string that slides."""
+        """Whether kinetic friction follows from a measured acceleration."""
         return self.motion.finds == "mu_k"
 
     @lazy
     def measured_acceleration(self) -> Fraction:
-        """The acceleration that was measured (m/s²), positive when the heavier mass descends."""
-        motion = self.motion
-        if motion.a is not None:
-            return self.sign * motion.a
-        assert motion.drop is not None
-        assert motion.time is not None
-        return physics.acceleration_of_fall(motion.drop, motion.time)
+        """The measured acceleration (m/s²), positive when the heavier mass descends."""
+        return self.motion.acceleration(self.sign)
 
     @property
     def frictionless(self) -> bool:
@@ -198,22 +230,23 @@ class Case:
     @lazy
     def can_slip(self) -> bool:
         """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
-        # Whatever slips on a pulley slips on a heavier one. If that is not known, the pulley is not read.
-        return vars(self).get("slips", False) or self.slips_at("locked")
+        # A string that slips on this pulley slips on a heavier one. If that was not asked, the pulley's mass
+        # is not read: so a sweep of it computes what depends on this once.
+        return self._known_to_slip or self.slips_at("locked")
 
     @lazy
     def always_slips(self) -> bool:
-        """Whether the string slips on any pulley, however light, for the friction of its axle."""
+        """Whether axle friction makes the string slip on any pulley, however light."""
         return self.rubs and self.slips_at("locked" if self.axle_holds else "massless")
 
     @lazy
     def slips_once_it_moves(self) -> bool:
-        """Whether the string slips under the greatest difference that the axle holds, on any pulley."""
+        """Whether the string slips under the greatest difference that the axle holds."""
         return self.rubs and self.slips_at("most_held")
 
     @property
     def stands_until_it_slips(self) -> bool:
-        """Whether the pulley stands under the lightest mass that the string holds against the heavier."""
+        """Whether the pulley is at rest when the lighter mass is the least that the string holds."""
         if self.locked or not self.rubs:
             return self.locked
         return not self.moves_axle("heavy") or self.slips_at("lightest_held")
@@ -225,17 +258,17 @@ class Case:
 
     @lazy
     def holds_again(self) -> bool:
-        """Whether it slips under such a mass, but holds under much heavier ones: the axle outweighs c."""
+        """Whether the string slips under some heavier mass, but not under much heavier ones, as b > c."""
         return self.rim_mass is not None and self.slips_once_it_moves and not self.slips_at("heaviest")
 
     @lazy
     def rim_stands(self) -> bool:
-        """Whether the pulley stands still while the string slips over it."""
+        """Whether the pulley is at rest while the string slips over it."""
         if self.stands:
             return True
         if not self.rubs:
             return False
-        # On a pulley without mass the axle takes all that friction makes up.
+        # T_h - T_l then does not exceed f, as on a massless pulley that is about to turn.
         if self.slide_measured:
             return not self.slide_excess(EXACT) > self.excess("massless", EXACT)
         return self.slides_at("massless")
@@ -250,14 +283,10 @@ class Case:
         """Whether both ends of the string leave the pulley downwards."""
         return self.scene.wrap.ends_hang_down
 
-    # Where the string slips
+    # The tension ratio of a string that grips, against e^{μφ}
 
     def excess(self, place: Place, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 of a string that grips, kept: decisions and quantities ask for it.
-
-        The place is the scene, or what differs from it in the pulley ("locked", "massless"), in the heavier
-        mass (the "heaviest", the "most_held" by the axle) or in the lighter one (the "lightest_held").
-        """
+        """Return T_h/T_l - 1 of a string that grips, at a place of the table at the head; it is kept."""
         if (place, ar) not in self._excesses:
             self._excesses[place, ar] = self._excess(place, ar)
         excess: N = self._excesses[place, ar]
@@ -279,15 +308,19 @@ class Case:
         return physics.excess_ratio(*map(ar.number, (l, h, c, b, ONE)))
 
     def slips_at(self, place: Place) -> bool:
-        """Whether static friction holds no string there."""
+        """Decide whether the string slips at a place, as static friction cannot hold it."""
         return self.exceeds(lambda ar: self.excess(place, ar), self.scene.mu)
 
     def slides_at(self, place: Place) -> bool:
-        """The same of the friction that acts, where it is at its limit: kinetic in slip."""
+        """Decide whether the string goes on sliding at a place, with the friction that acts in its regime."""
         return self.exceeds(lambda ar: self.excess(place, ar), self.limiting_mu)
 
     def exceeds(self, excess: Quantity, mu: Fraction | None) -> bool:
-        """Whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed."""
+        """Decide whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed.
+
+        For μ > 0, e^{μφ} is transcendental by Gelfond's theorem if φ is a rational multiple of π, and by
+        Lindemann's if φ is rational. A rational ratio never equals it, so the enclosure's sign decides.
+        """
         if not mu:
             return excess(EXACT) > 0
 
@@ -297,6 +330,6 @@ class Case:
         return is_positive(margin)
 
     def slide_excess(self, ar: Arithmetic[N]) -> N:
-        """T_h/T_l - 1 of a string that slides with the measured acceleration."""
+        """Return T_h/T_l - 1 of a string that slides with the measured acceleration."""
         a = self.measured_acceleration
         return physics.slide_excess(*map(ar.number, (self.light, self.heavy, a, self.scene.g)))

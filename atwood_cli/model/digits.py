@@ -15,15 +15,15 @@ T = TypeVar("T", bound=float | Decimal)
 Rounding = Callable[[Fraction | Decimal], T]
 
 DOUBLE_DIGITS, SHOWN_DIGITS, THRESHOLD_DIGITS = 17, 6, 3
-"""Significant digits: that tell doubles apart; of tables and sentences; of thresholds in sentences."""
-WIDE = 5000  # digits, more than any two numbers shown side by side differ in size
-
-WHOLE = decimal_context(WIDE, ROUND_HALF_EVEN)
+"""Significant digits: of doubles, of tables and sentences, of thresholds in sentences."""
+MOST_DIGITS = 5000
+"""More digits than any two numbers that are shown side by side differ in size."""
+ALL_DIGITS = decimal_context(MOST_DIGITS, ROUND_HALF_EVEN)
 """Keeps all digits of numbers that are shown."""
 
 
 def to_double(x: Fraction | Decimal) -> float:
-    """The nearest double, half to even; ±inf beyond the range, never -0."""
+    """Return the nearest double, half to even; ±inf beyond the range, never -0."""
     try:
         return float(x) + 0.0
     except OverflowError:
@@ -31,12 +31,12 @@ def to_double(x: Fraction | Decimal) -> float:
 
 
 def is_infinite(value: float | Decimal) -> bool:
-    """Whether a value is infinite. (math.isinf would convert a Decimal to a double first.)"""
+    """Decide whether a value is infinite. (math.isinf would convert a Decimal to a double first.)"""
     return value.is_infinite() if isinstance(value, Decimal) else isinf(value)
 
 
 def to_digits(digits: int, rounding: str = ROUND_HALF_EVEN) -> Rounding[Decimal]:
-    """Rounding to that many significant digits, half to even, trailing zeros kept, never -0."""
+    """Return a function that rounds to so many significant digits, with trailing zeros, never -0."""
     context = decimal_context(digits, rounding)
 
     def round_(x: Fraction | Decimal) -> Decimal:
@@ -54,20 +54,20 @@ def to_digits(digits: int, rounding: str = ROUND_HALF_EVEN) -> Rounding[Decimal]
 
 
 def to_threshold(up: bool, given: Fraction | None = None) -> Rounding[Decimal]:
-    """Rounding of a threshold up or down, to as many digits as are worth typing back: 0.350, 4810."""
+    """Return a function that rounds a threshold up or down to three digits, or to an integer: 0.350, 4810."""
     round_ = to_side_of(given, THRESHOLD_DIGITS, ROUND_CEILING if up else ROUND_FLOOR)
     return lambda x: tidy(value) if (value := round_(x)).adjusted() >= THRESHOLD_DIGITS else value
 
 
 def to_side_of(given: Fraction | None, digits: int, rounding: str = ROUND_HALF_EVEN) -> Rounding[Decimal]:
-    """Rounding to that many digits, or to more if the side of a given number would not show."""
+    """Return a function that rounds to so many digits, or more until the order with a number is kept."""
 
     def round_(x: Fraction | Decimal) -> Decimal:
         shown = to_digits(digits, rounding)(x)
-        if given is None or not shown.is_finite() or abs(shown.adjusted()) > WIDE:
+        if given is None or not shown.is_finite() or abs(shown.adjusted()) > MOST_DIGITS:
             return shown  # its fraction might have millions of digits
         exact = Fraction(x)
-        for kept in range(digits, WIDE):
+        for kept in range(digits, MOST_DIGITS):
             near = to_digits(kept, rounding)(x)
             if (Fraction(near) > given, Fraction(near) < given) == (exact > given, exact < given):
                 return near
@@ -77,21 +77,21 @@ def to_side_of(given: Fraction | None, digits: int, rounding: str = ROUND_HALF_E
 
 
 def to_place(place: int) -> Rounding[Decimal]:
-    """Rounding to a multiple of 10^place, half to even, never -0."""
+    """Return a function that rounds to a multiple of 10^place, half to even, never -0."""
     unit = Decimal((0, (1,), place))
 
     def round_(x: Fraction | Decimal) -> Decimal:
         if isinstance(x, Fraction):  # round to an integer number of units first, which is exact
-            x = WHOLE.multiply(Decimal(round(x / Fraction(10) ** place)), unit)
-        value = WHOLE.quantize(x, unit) if x.is_finite() else x
+            x = ALL_DIGITS.multiply(Decimal(round(x / Fraction(10) ** place)), unit)
+        value = ALL_DIGITS.quantize(x, unit) if x.is_finite() else x
         return value if value else value.copy_abs()
 
     return round_
 
 
 def exact_decimal(q: Fraction) -> Decimal | None:
-    """The decimal that a rational number is, without the zeros of a huge one; None if it is none."""
-    context = decimal_context(WIDE, ROUND_HALF_EVEN)
+    """Return a rational number as a decimal, without the zeros of a huge one; None if it is none."""
+    context = decimal_context(MOST_DIGITS, ROUND_HALF_EVEN)
     value = context.divide(Decimal(q.numerator), Decimal(q.denominator))
     if context.flags[Inexact]:
         return None
@@ -99,9 +99,9 @@ def exact_decimal(q: Fraction) -> Decimal | None:
 
 
 def as_typed(q: Fraction, longest: float = 16) -> str:
-    """The exact decimal of a rational number; where it has none n/d, rounded if that is too long to read.
+    """Return the exact decimal of a rational number; else n/d, rounded if that is too long to read.
 
-    A float is as it is written.
+    Floats print as Python prints them.
     """
     if isinstance(q, OfFloat):
         return text(float(q))
@@ -112,38 +112,37 @@ def as_typed(q: Fraction, longest: float = 16) -> str:
 
 
 def exact_or_rounded(q: Fraction, round_: Rounding[T]) -> T | Decimal:
-    """The exact number if it is a decimal, else the rounded one."""
+    """Return the exact number if it is a decimal, else the rounded one."""
     value = exact_decimal(q)
     return round_(q) if value is None else value
 
 
-def with_uncertainty(cut: Callable[[int], Decimal], u: Decimal) -> str:
-    """A value and its standard uncertainty u > 0, both cut at the second digit of u: 0.764 ± 0.012.
+def with_uncertainty(round_to: Callable[[int], Decimal], u: Decimal) -> str:
+    """Return a value and its standard uncertainty u > 0, rounded at the second digit of u: 0.764 ± 0.012.
 
-    ``cut`` rounds the value to a multiple of a power of ten, as `to_place` does.
+    ``round_to`` returns the value rounded to a multiple of 10^place, as `to_place` does.
     """
     place = to_digits(2)(u).adjusted() - 1
-    pair = cut(place), to_place(place)(u)
+    pair = round_to(place), to_place(place)(u)
     return with_one_power("{:f} ± {:f}", pair, max(x.adjusted() for x in pair if x))
 
 
 def with_one_power(form: str, numbers: Sequence[Decimal], power: int) -> str:
-    """Numbers in a form, with one power of ten behind them where they are unreadable without."""
+    """Return numbers in a form, with a common power of ten behind them if they are hard to read without."""
     if -4 <= power < 16:
         return form.format(*numbers)
-    return f"({form.format(*(WHOLE.scaleb(x, -power) for x in numbers))})e{power}"
+    return f"({form.format(*(ALL_DIGITS.scaleb(x, -power) for x in numbers))})e{power}"
 
 
 def tidy(value: Decimal) -> Decimal:
-    """The same number without trailing zeros, and without an exponent where it is readable without."""
-    short = WHOLE.normalize(value)
-    return (
-        WHOLE.quantize(short, Decimal(1)) if len(short.as_tuple().digits) <= short.adjusted() < 16 else short
-    )
+    """Return a number without trailing zeros, and without an exponent if that would have few zeros."""
+    short = ALL_DIGITS.normalize(value)
+    is_short_integer = len(short.as_tuple().digits) <= short.adjusted() < 16
+    return ALL_DIGITS.quantize(short, Decimal(1)) if is_short_integer else short
 
 
 def text(value: float | Decimal) -> str:
-    """The shortest text that reads back to the same double; all the digits of a decimal."""
+    """Return the shortest text that reads back to the same double; all the digits of a decimal."""
     mantissa, _, exponent = str(value).lower().partition("e")
     if isinstance(value, float):
         mantissa = mantissa.removesuffix(".0")

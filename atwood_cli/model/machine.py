@@ -1,4 +1,4 @@
-"""Every quantity by its name: the masses at which the string begins to slip, and what a motion tells.
+"""Every quantity by its name: limiting masses, and inputs found from a measured motion.
 
 `Machine` is the model of a `Case` in one arithmetic. It computes nothing that is not asked for, and a
 quantity that the scene does not determine raises `Undetermined` with the reason.
@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import N
-from . import physics, reasons
+from . import physics, quantities
 from .case import is_zero
 from .mechanics import Mechanics
-from .reasons import Undetermined
+from .quantities import Undetermined
 
 
 class Machine(Mechanics[N]):
@@ -20,24 +20,24 @@ class Machine(Mechanics[N]):
     @lazy
     def axle_force(self) -> N:
         if not self.case.ends_hang_down:
-            raise Undetermined(reasons.ONE_SIDED)
+            raise Undetermined(quantities.ONE_SIDED)
         if self.case.locked:
-            raise Undetermined(reasons.LOCKED_AXLE)
+            raise Undetermined(quantities.LOCKED_AXLE)
         if self.case.regime == "verge":
             mass = self.critical_pulley_mass
         else:
-            mass = self._given(self.case.pulley_mass, reasons.NEEDS_M)
+            mass = self._given(self.case.pulley_mass, quantities.NEEDS_M)
         return physics.axle_force(self.tension_1, self.tension_2, mass, self.g)
 
     @lazy
     def critical_pulley_mass(self) -> N:
         _ = self.mu  # raises if it is not given
         if not self.case.can_slip:
-            raise Undetermined(reasons.AXLE_HOLDS if self.case.axle_holds else reasons.NO_CRITICAL_MASS)
+            raise Undetermined(quantities.AXLE_HOLDS if self.case.axle_holds else quantities.NO_CRITICAL_MASS)
         if self.case.always_slips:
-            raise Undetermined(reasons.ALWAYS_SLIPS)
+            raise Undetermined(quantities.ALWAYS_SLIPS)
         transfer = self.transfer
-        beta = self._given(self.case.beta, reasons.UNKNOWN_SHAPE)
+        beta = self._given(self.case.beta, quantities.UNKNOWN_SHAPE)
         return physics.critical_pulley_mass(self.l, self.h, transfer, self.drive, beta, self.b)
 
     @lazy
@@ -45,18 +45,18 @@ class Machine(Mechanics[N]):
         transfer = self.transfer
         if self.case.locked or self.case.slips_once_it_moves:
             return self.least_heavier_mass
-        c = self._given(self.case.rim_mass, reasons.NEEDS_M)
+        c = self._given(self.case.rim_mass, quantities.NEEDS_M)
         if not self.case.can_be_made_slip:
-            raise Undetermined(reasons.NO_CRITICAL_HEAVIER_MASS)
+            raise Undetermined(quantities.NO_CRITICAL_HEAVIER_MASS)
         return physics.critical_heavier_mass(self.l, c, transfer, self.b)
 
     @lazy
     def critical_lighter_mass(self) -> N:
-        """Lighter mass below which the string slips (kg); 0 where it holds under any."""
+        """Lighter mass below which the string slips (kg); 0 if it slips under none."""
         k1, h = self.k1, self.h
         if self.case.stands_until_it_slips:
-            return physics.lightest_held(h, self.capstan_ratio)
-        c = self._given(self.case.rim_mass, reasons.NEEDS_M)
+            return physics.lighter_mass_at_rest(h, self.capstan_ratio)
+        c = self._given(self.case.rim_mass, quantities.NEEDS_M)
         if self.case.turns_freely:
             return self.ar.number(0)
         return physics.critical_lighter_mass(h, c, k1, self.b)
@@ -71,14 +71,14 @@ class Machine(Mechanics[N]):
         self._check_applicable()
         transfer = self.transfer
         if self.case.slips_once_it_moves:
-            raise Undetermined(reasons.AXLE_ENOUGH)
-        beta = self._given(self.case.beta, reasons.UNKNOWN_SHAPE)
+            raise Undetermined(quantities.AXLE_ENOUGH)
+        beta = self._given(self.case.beta, quantities.UNKNOWN_SHAPE)
         return physics.least_pulley_mass(transfer, beta, self.b)
 
     def _check_applicable(self) -> None:
-        """Raise Undetermined where (36) has no meaning: where the critical pulley has no mass."""
+        """Raise Undetermined if the critical pulley has no mass, so that (36) has no meaning."""
         if is_zero(self.scene.mu) and not self.case.pulley_known and not self.case.rubs:
-            raise Undetermined(reasons.NOT_APPLICABLE)
+            raise Undetermined(quantities.NOT_APPLICABLE)
 
     @lazy
     def least_wrap(self) -> N:
@@ -88,38 +88,38 @@ class Machine(Mechanics[N]):
         if not self.case.pulley_known:
             if self.case.regime == "verge":
                 return self.scene.wrap.degrees(self.ar)
-            raise Undetermined(reasons.NEEDS_M)
+            raise Undetermined(quantities.NEEDS_M)
         if is_zero(self.scene.mu):
-            raise Undetermined(reasons.NO_WRAP)
+            raise Undetermined(quantities.NO_WRAP)
         return self.alpha * 180 / self.ar.pi
 
     def _found(self, name: str, otherwise: str) -> N:
-        """What follows from the measured acceleration, by the name of the input."""
+        """Return the input that follows from the measured acceleration, if it is this one."""
         if self.case.motion.finds != name:
             raise Undetermined(otherwise)
         return self.ar.number(getattr(self.scene, name))
 
     @property
     def pulley_mass(self) -> N:
-        return self._found("M", reasons.NEEDS_A)
+        return self._found("M", quantities.NEEDS_A)
 
     @property
     def moment_of_inertia(self) -> N:
-        _ = self.pulley_mass  # raises if nothing tells of the pulley
-        R = self._given(self.scene.R, reasons.NEEDS_R)
-        return physics.moment_of_inertia(self._given(self.case.rim_mass, reasons.NEEDS_M), R)
+        _ = self.pulley_mass  # raises unless it follows from the motion
+        R = self._given(self.scene.R, quantities.NEEDS_R)
+        return physics.moment_of_inertia(self._given(self.case.rim_mass, quantities.NEEDS_M), R)
 
     @property
     def gravity(self) -> N:
-        return self._found("g", reasons.NEEDS_A_BESIDE_M)
+        return self._found("g", quantities.NEEDS_A_BESIDE_M)
 
     @property
     def m1(self) -> N:
-        return self._found("m1", reasons.NEEDS_A_AND_M.format("m1"))
+        return self._found("m1", quantities.NEEDS_A_AND_M.format("m1"))
 
     @property
     def m2(self) -> N:
-        return self._found("m2", reasons.NEEDS_A_AND_M.format("m2"))
+        return self._found("m2", quantities.NEEDS_A_AND_M.format("m2"))
 
     @property
     def fall_time(self) -> N:
@@ -130,8 +130,8 @@ class Machine(Mechanics[N]):
         return physics.final_speed(*self._fall(), self.ar.sqrt)
 
     def _fall(self) -> tuple[N, N]:
-        """The height fallen, and the acceleration."""
-        drop = self._given(self.case.motion.drop, reasons.NEEDS_DROP)
+        """Return the height fallen (m), and the acceleration (m/s²)."""
+        drop = self._given(self.case.motion.drop, quantities.NEEDS_DROP)
         if self.ar.is_zero(self.magnitude):
-            raise Undetermined(reasons.AT_REST)
+            raise Undetermined(quantities.AT_REST)
         return drop, self.magnitude

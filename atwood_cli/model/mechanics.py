@@ -1,4 +1,4 @@
-"""What moves and what pulls, written once for every number type."""
+"""The motion, the tensions and the friction, written once for every number type."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Generic
 
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import N
-from . import arc, physics, reasons
+from . import arc, physics, quantities
 from .case import Case, is_zero
-from .reasons import Undetermined
+from .quantities import Undetermined
 
 if TYPE_CHECKING:
     from ..arithmetic.rational import Arithmetic
@@ -19,7 +19,14 @@ if TYPE_CHECKING:
 class Mechanics(Generic[N]):
     """The motion, the tensions and the friction of a case in one arithmetic.
 
-    ``known`` are quantities known beforehand, by name: they are taken as they are and not computed.
+    ``known`` has values by the names of attributes, which are then not computed.
+
+    The acceleration is a = g d/s, with a drive d and a load s (see `physics`):
+
+        state            drive d                                   load s
+        no slip          h - l - b        `gripping_drive`         h + l + c
+        verge            h - l - z        `drive`                  h + l + z, z = l (k - 1)    `transfer`
+        slip             the same with μ_k: `limiting_drive`       `limiting_transfer`
     """
 
     def __init__(self, case: Case, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:
@@ -28,11 +35,12 @@ class Mechanics(Generic[N]):
         # The axle's friction as a force at the rim (N), and as a mass (kg).
         self.f, self.b = map(ar.number, (case.axle_friction, case.axle_mass))
         self._arcs: dict[arc.Kind, list[arc.Arc[N]]] = {}
-        vars(self).update(known)
+        for name, value in known.items():
+            setattr(self, name, value)
 
     @lazy
     def g(self) -> N:
-        """Gravity (m/s²), read where it enters: a sweep of it computes the rest once."""
+        """Gravity (m/s²). It is read only where it enters, so that a sweep of it computes the rest once."""
         return self.ar.number(self.scene.g)
 
     @lazy
@@ -40,7 +48,7 @@ class Mechanics(Generic[N]):
         """The angle of wrap φ (rad)."""
         return self.scene.wrap.radians(self.ar)
 
-    # What the quantities are made of
+    # Intermediate values
 
     def _given(self, value: Fraction | None, otherwise: str) -> N:
         if value is None:
@@ -49,21 +57,22 @@ class Mechanics(Generic[N]):
 
     @property
     def mu(self) -> N:
-        """Coefficient of static friction, which a free end does not take."""
-        return self._given(self.scene.mu, reasons.FREE_END if self.case.free_end else reasons.NEEDS_MU)
+        """Coefficient of static friction; not given if one mass is 0."""
+        reason = quantities.FREE_END if self.case.free_end else quantities.NEEDS_MU
+        return self._given(self.scene.mu, reason)
 
     def _capstan_excess(self, given: Fraction | None, mu: N) -> N:
-        """e^{μφ} - 1; without friction no exponential is asked for."""
+        """Return e^{μφ} - 1, exactly 0 without friction."""
         return self.ar.number(0) if is_zero(given) else self.ar.expm1(mu * self.phi)
 
     @lazy
     def k1(self) -> N:
-        """Excess k - 1 of the capstan ratio of static friction."""
+        """k - 1 = e^{μφ} - 1 of static friction."""
         return self._capstan_excess(self.scene.mu, self.mu)
 
     @lazy
     def excess(self) -> N:
-        """T_h/T_l - 1 of a string that grips."""
+        """T_h/T_l - 1 of a string that grips, (33)."""
         return self.ar.not_negative(self.case.excess("scene", self.ar))
 
     @lazy
@@ -73,17 +82,17 @@ class Mechanics(Generic[N]):
 
     @lazy
     def transfer(self) -> N:
-        """Transfer z at the limit of static friction (kg); see `physics`."""
+        """z = l (k - 1) of static friction (kg)."""
         return physics.transfer_at_limit(self.l, self.k1)
 
     @lazy
     def drive(self) -> N:
-        """Drive d at the limit of static friction (kg); see `physics`."""
+        """Drive at the limit of static friction (kg)."""
         return self.ar.not_negative(physics.drive(self.l, self.h, self.transfer))
 
     @lazy
     def limiting_k1(self) -> N:
-        """The excess of the tension ratio in a regime where friction is at its limit."""
+        """T_h/T_l - 1 on the verge and in slip, as friction is at its limit."""
         if self.case.slide_measured:
             return self.case.slide_excess(self.ar)
         if self.case.at_static_limit:
@@ -93,21 +102,21 @@ class Mechanics(Generic[N]):
 
     @lazy
     def limiting_transfer(self) -> N:
-        """Transfer z at the limit of the friction that acts, kinetic in slip (kg)."""
+        """z on the verge and in slip (kg)."""
         if self.case.at_static_limit:
             return self.transfer
         return physics.transfer_at_limit(self.l, self.limiting_k1)
 
     @lazy
     def limiting_drive(self) -> N:
-        """Drive d at the limit of the friction that acts, kinetic in slip (kg)."""
+        """Drive on the verge and in slip (kg)."""
         if self.case.at_static_limit:
             return self.drive
         return self.ar.not_negative(physics.drive(self.l, self.h, self.limiting_transfer))
 
     @lazy
     def gripping_drive(self) -> N:
-        """Drive d of a string that grips and moves (kg); see `physics`."""
+        """Drive of a string that grips and moves (kg)."""
         return self.ar.not_negative(physics.drive(self.l, self.h, self.b))
 
     @lazy
@@ -120,19 +129,19 @@ class Mechanics(Generic[N]):
             return self.ar.number(0)
         else:
             drive = self.gripping_drive
-            load = physics.load(l, h, self._given(case.rim_mass, reasons.NEEDS_M))
+            load = physics.load(l, h, self._given(case.rim_mass, quantities.NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
     @lazy
     def friction_mu(self) -> N:
-        """The μ with which T(θ) = T1 e^{±μθ}, where that is so."""
+        """The μ of T(θ) = T1 e^{±μθ}. Raises Undetermined if the string grips with friction to spare."""
         if self.case.slide_measured:
             return self.mu_k
         if self.case.regime != "no-slip":
             return self.ar.number(self.case.limiting_mu)
         if self.scene.mu is None or self.case.tensions_equal or not self.case.pulley_known:
             return self.mu_verge
-        raise Undetermined(reasons.NOT_BOUNDED if self.case.long_wrap else reasons.NOT_DEFINITE)
+        raise Undetermined(quantities.NOT_BOUNDED if self.case.long_wrap else quantities.NOT_DEFINITE)
 
     @lazy
     def friction_vector(self) -> tuple[N, N]:
@@ -140,17 +149,17 @@ class Mechanics(Generic[N]):
         return self.seen_from_m1(arc.friction(self.arcs("exponential")))
 
     def seen_from_m1(self, vector: tuple[N, N]) -> tuple[N, N]:
-        """A vector as it is where m1, not the lighter mass, is at the start of the arc."""
+        """Return a vector that is given from the lighter mass's end of the arc as seen from m1's end."""
         return vector if self.case.sign >= 0 else physics.mirrored(*vector, *self._direction)
 
     @lazy
     def alpha(self) -> N:
-        """The arc (rad) that friction at its limit needs, where the string grips with some to spare."""
+        """The arc (rad) over which friction at its limit makes up the ratio of the tensions."""
         mu = self.mu
         return physics.limiting_arc(self.log_ratio, mu)
 
     def arcs(self, kind: arc.Kind) -> list[arc.Arc[N]]:
-        """The arc of contact from the light end, in pieces: limiting, stuck or both (see `arc`)."""
+        """Return the arc of contact from the light end, in limiting and stuck pieces (see `arc`)."""
         if kind not in self._arcs:
             self._arcs[kind] = self._arrange(kind)
         return self._arcs[kind]
@@ -171,7 +180,7 @@ class Mechanics(Generic[N]):
         return arc.arcs(ar, kind, mu, [lead, stuck, self.alpha - lead], light, end)
 
     def arc_mu(self, kind: arc.Kind) -> N:
-        """The coefficient that the friction of a profile is at, where it is at its limit."""
+        """Return the coefficient of a profile's friction at its limit."""
         return self.friction_mu if kind == "exponential" else self.mu
 
     def _end(self, angle: N) -> arc.Knot[N]:
@@ -179,7 +188,7 @@ class Mechanics(Generic[N]):
 
     @lazy
     def resultant_vector(self) -> tuple[N, N]:
-        """The force (N) that T1 and T2 would exert on the pulley, x and y."""
+        """The force (N), (x, y), that T1 and T2 would exert on the pulley."""
         cos, sin = self._direction
         dx, dy = self.heavy_tension * cos - self.light_tension, self.heavy_tension * sin
         return self.seen_from_m1(physics.resultant_vector(dx, dy))
@@ -205,7 +214,7 @@ class Mechanics(Generic[N]):
         if case.stands:
             rest = self.ar.number(0)
             return self.ar.not_negative(physics.difference_of_moving_masses(self.l, self.h, rest, self.g))
-        c = self._given(case.rim_mass, reasons.NEEDS_M)
+        c = self._given(case.rim_mass, quantities.NEEDS_M)
         return physics.difference_of_a_pulley(c, self.magnitude, self.f)
 
     @property
@@ -214,15 +223,15 @@ class Mechanics(Generic[N]):
         return self.difference * self.case.sign
 
     def _bounded(self) -> bool:
-        """Whether the friction force is bounded by more than 0; raises where it has no bounds."""
+        """Decide whether the friction force has bounds above 0. Raises Undetermined if it has none."""
         if self.case.regime != "no-slip":
-            raise Undetermined(reasons.DEFINITE)
-        _ = self.mu_verge  # raises where there is none
+            raise Undetermined(quantities.DEFINITE)
+        _ = self.mu_verge  # raises if there is none
         if self.case.tensions_equal:
             return False
         _ = self.mu  # raises if it is not given
         if self.case.long_wrap:
-            raise Undetermined(reasons.LONG_WRAP)
+            raise Undetermined(quantities.LONG_WRAP)
         return True
 
     # The quantities
@@ -253,13 +262,13 @@ class Mechanics(Generic[N]):
     def mu_verge(self) -> N:
         case = self.case
         if case.free_end:
-            raise Undetermined(reasons.FREE_END)
+            raise Undetermined(quantities.FREE_END)
         if case.tensions_equal:
             return self.ar.number(0)
         if not case.pulley_known:
             if case.regime == "verge":
                 return self.ar.number(case.limiting_mu)
-            raise Undetermined(reasons.NEEDS_M)
+            raise Undetermined(quantities.NEEDS_M)
         phi = self.phi  # first, as fractions give up on π sooner than on the ratio
         return physics.verge_coefficient(self.log_ratio, phi)
 
@@ -267,19 +276,19 @@ class Mechanics(Generic[N]):
     def safety_factor(self) -> N:
         mu = self.mu
         if self.case.tensions_equal or (self.case.regime == "verge" and is_zero(self.scene.mu)):
-            raise Undetermined(reasons.NO_NEED)
-        return physics.safety_factor(mu, self.mu_verge)
+            raise Undetermined(quantities.NO_NEED)
+        return mu / self.mu_verge
 
     @lazy
     def tension_ratio(self) -> N:
         if self.case.regime != "no-slip":
             return self.limiting_k1 + 1
         if self.case.free_end:
-            raise Undetermined(reasons.FREE_END)
+            raise Undetermined(quantities.FREE_END)
         if self.case.tensions_equal:
             return self.ar.number(1)
         if not self.case.pulley_known:
-            raise Undetermined(reasons.NEEDS_M)
+            raise Undetermined(quantities.NEEDS_M)
         return self.excess + 1
 
     @lazy
@@ -288,8 +297,9 @@ class Mechanics(Generic[N]):
 
     @lazy
     def massless_verge(self) -> N:
-        """Friction coefficient at which a string that turns an axle without a pulley is on the verge."""
-        return physics.verge_coefficient(self.ar.log1p(self.case.excess("massless", self.ar)), self.phi)
+        """Friction coefficient at which the string is on the verge over a massless pulley."""
+        excess = self.case.excess("massless", self.ar)
+        return physics.verge_coefficient(self.ar.log1p(excess), self.phi)
 
     @lazy
     def friction_force(self) -> N:
@@ -297,13 +307,13 @@ class Mechanics(Generic[N]):
         if self.ar.is_zero(mu):
             return self.ar.number(0)
         if self.case.ends_hang_down:
-            force = physics.half_turn_resultant(self.light_tension, self.heavy_tension)
+            force = self.light_tension + self.heavy_tension  # (20)
         else:
             force = self._resultant(self.half_sine)
         return physics.friction_magnitude(mu, force, self.ar.hypot)
 
     def _resultant(self, sin_half: N) -> N:
-        """The force (N) of both tensions on an arc, by the sine of its half."""
+        """Return the force (N) of both tensions on an arc, by the sine of its half."""
         light, heavy, ar = self.light_tension, self.heavy_tension, self.ar
         return physics.resultant(light, heavy, self.difference, sin_half, ar.sqrt, ar.hypot)
 
@@ -317,7 +327,7 @@ class Mechanics(Generic[N]):
 
     @lazy
     def torque(self) -> N:
-        return self.tension_difference * self._given(self.scene.R, reasons.NEEDS_R)
+        return self.tension_difference * self._given(self.scene.R, quantities.NEEDS_R)
 
     @lazy
     def rim_acceleration(self) -> N:
@@ -325,22 +335,22 @@ class Mechanics(Generic[N]):
             return self.acceleration
         if self.case.rim_stands:
             return self.ar.number(0)
-        c = self._given(self.case.rim_mass, reasons.NEEDS_M)
+        c = self._given(self.case.rim_mass, quantities.NEEDS_M)
         return physics.rim_acceleration(self.difference, c, self.f) * self.case.sign
 
     @lazy
     def angular_acceleration(self) -> N:
-        return self.rim_acceleration / self._given(self.scene.R, reasons.NEEDS_R)
+        return self.rim_acceleration / self._given(self.scene.R, quantities.NEEDS_R)
 
     @lazy
     def mu_k(self) -> N:
         if not self.case.slide_measured:
-            raise Undetermined(reasons.NEEDS_A_OF_A_SLIDE)
+            raise Undetermined(quantities.NEEDS_A_OF_A_SLIDE)
         return physics.verge_coefficient(self.ar.log1p(self.limiting_k1), self.phi)
 
     @lazy
     def friction_force_min(self) -> N:
-        """Least net friction force (N) of a string that grips, if friction nowhere opposes the rest."""
+        """Least net friction force (N) of a string that grips, if all friction acts one way."""
         if not self._bounded():
             return self.ar.number(0)
         x, y = arc.friction(self.arcs("least"))
@@ -348,7 +358,7 @@ class Mechanics(Generic[N]):
 
     @lazy
     def friction_force_max(self) -> N:
-        """Greatest net friction force (N) of a string that grips, if friction nowhere opposes the rest."""
+        """Greatest net friction force (N) of a string that grips, if all friction acts one way."""
         if not self._bounded():
             return self.ar.number(0)
         _, sin_half = self.ar.cos_sin(self.alpha / 2)

@@ -1,110 +1,111 @@
 """From a measured acceleration back to what was not given; all of it is rational, but kinetic friction.
 
-Without slip a = g d/s, with the load s = l + h + c: what of M, g and a mass is not given follows from a. In
-slip the pulley's mass has no part in the motion, so that a tells nothing of it, but of the friction.
+Without slip a = g d/s, with the load s = l + h + c: whichever of M, g and a mass is not given follows from a.
+In slip the pulley's mass does not enter the motion, so that a gives the kinetic friction instead.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from fractions import Fraction
+from functools import partial
 from math import inf
+from types import SimpleNamespace
 from typing import Any
 
 from ..arithmetic.rational import EXACT
 from . import physics
-from .angle import Angle
-from .case import Case
+from .case import ZERO, Case, axle_force, rim_mass
 from .digits import SHOWN_DIGITS, as_typed, text, tidy, to_digits, to_double, to_threshold
-from .reasons import Undetermined
-from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError
+from .quantities import Undetermined
+from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError, checked
+from .units import Angle
+
+Values = Any
+"""The exact values of inputs as attributes; one is None if it is not given, or is to be found."""
 
 
-def read(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
-    """The scene, without what is to be found, and what was measured. Raises SceneError."""
+def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
+    """Return the scene, with the input that follows from what was measured, and that. Raises SceneError."""
     a, drop, time = (inputs[name].value for name in MEASURED)
-    motion, measured = Motion(a, drop, time), a is not None or time is not None
+    measured = a is not None or time is not None
     missing = [mass for mass in MASSES if inputs[mass].value is None]
     name = "a" if time is None else "time"
-    if measured and len(missing) == 1:
-        if inputs["M"].value is None is inputs["I"].value:
-            raise SceneError(missing[0], None, f"is missing; give it, or M, beside which {name} finds it")
-        motion = motion._replace(finds=missing[0])
-        inputs = {**inputs, missing[0]: SOME_MASS}
-    scene = Scene.of(inputs)
+    unknown = missing[0] if measured and len(missing) == 1 else ""
+    if unknown and inputs["M"].value is None is inputs["I"].value:
+        raise SceneError(unknown, None, f"is missing; give it, or M, beside which {name} finds it")
+    values = SimpleNamespace(**checked(inputs, unknown))
     if time is not None and drop is None:
         raise SceneError("time", inputs["time"].given, "needs drop, the height fallen in it")
     if time is not None and a is not None:
         raise SceneError("time", inputs["time"].given, "and a both tell the acceleration; give one of them")
     if not measured:
-        return scene, motion
-    motion = motion._replace(finds=motion.finds or _what_follows(scene))
-    rule = _contradiction(scene, motion, inputs["g"].given is not None)
-    if rule := rule or _refused(scene, motion):
+        return Scene(**vars(values)), Motion(a, drop, time)
+    motion = Motion(a, drop, time, unknown or _unknown(values))
+    rule = _contradiction(values, motion, inputs["g"].given is not None)
+    if not rule:
+        try:
+            scene = Scene(**{**vars(values), **found_inputs(values, motion)})
+            rule = _impossible(scene, motion)
+        except Undetermined as undetermined:
+            rule = str(undetermined)
+    if rule:
         raise SceneError(name, inputs[name].given, rule)
     return scene, motion
 
 
-SOME_MASS = Input(Fraction(1), Fraction(0), None)
-"""Stands for the mass that is to be found."""
-
-
-def _what_follows(scene: Scene) -> str:
-    """The parameter that an acceleration tells of, where both masses are given."""
-    if scene.M == inf or (scene.mu is not None and scene.M is not None):
+def _unknown(values: Values) -> str:
+    """Return the input that an acceleration finds if both masses are given."""
+    if values.M == inf or (values.mu is not None and values.M is not None):
         return "mu_k"
-    return "M" if scene.M is None and scene.I is None else "g"
+    return "M" if values.M is None and values.I is None else "g"
 
 
-def _contradiction(scene: Scene, motion: Motion, g_given: bool) -> str:
-    """Why an acceleration contradicts the other inputs; empty if it does not."""
-    finds, pulley = motion.finds, "M" if scene.M is not None else "I"
-    if scene.mu is not None and finds != "mu_k":
+def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
+    """Return why an acceleration contradicts the other inputs, "" if it does not."""
+    m1, m2, M, mu, finds = values.m1, values.m2, values.M, values.mu, motion.finds
+    if mu is not None and finds != "mu_k":
         why = "a string that slips moves alike on any pulley"
         if finds in MASSES:
             why = f"whether the string slips depends on {finds}"
         return f"has no place beside mu, as {why}; leave mu out"
     if finds in MASSES:
-        if scene.M == inf:
+        if M == inf:
             return "has no place beside M = inf, which lets nothing move; leave one of them out"
-        if not motion.a and scene.axle is not None:
+        if not motion.a and values.axle is not None:
             return f"tells nothing of {finds}, as the axle holds a difference at rest; leave one of them out"
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a in its place, positive when m2 descends"
-        known = scene.m1 if finds == "m2" else scene.m2
-        if not known and not Case(scene).rim_mass:
+        known = m1 if finds == "m2" else m2
+        if not known and not rim_mass(values, values.M):
             return f"tells nothing of {finds}, which falls freely; give the other mass or M above 0"
         return ""
-    if finds == "M" and Case(scene).axle_holds:
+    if finds == "M" and m1 != m2 and abs(m1 - m2) <= physics.axle_mass(axle_force(values), values.g):
         return "has no place beside an axle whose friction holds the masses at rest; leave one of them out"
     if finds == "g" and g_given:
+        pulley = "I" if M is None else "M"
         return f"leaves nothing to find beside both {pulley} and g; leave one of them out"
-    if scene.m1 == scene.m2:
+    if m1 == m2:
         return "tells nothing of equal masses, which rest on any pulley; leave it out"
-    if finds == "mu_k" and not scene.m1 * scene.m2:
+    if finds == "mu_k" and not m1 * m2:
         return "has no place beside M = inf and a free end, which is fixed to the pulley; leave it out"
-    if scene.mu_k is not None:
+    if values.mu_k is not None:
         return "and mu_k both tell how the string slides; leave one of them out"
-    if scene.mu is not None and not Case(scene).slips:
-        mu = as_typed(scene.mu)
-        return f"has no place beside mu = {mu}, with which the string does not slip; leave mu out"
+    if mu is not None and not Case(Scene(**vars(values))).slips:
+        return f"has no place beside mu = {as_typed(mu)}, with which the string does not slip; leave mu out"
     return ""
 
 
-def _refused(scene: Scene, motion: Motion) -> str:
-    """Why what follows from the motion makes no scene; empty if it does."""
+def _impossible(scene: Scene, motion: Motion) -> str:
+    """Return why the scene that follows from a motion is none, "" if it is one."""
     finds, case = str(motion.finds), Case(scene, motion)
-    try:
-        found = completed(scene, motion)
-    except Undetermined as undetermined:
-        return str(undetermined)
     if finds == "mu_k":
         if case.slide_excess(EXACT) < 0:
             return "is too large for any friction: without it the acceleration is " + _free_slide(case)
         if scene.mu is not None and case.exceeds(case.slide_excess, scene.mu):
             return "is that of a string with more kinetic friction than mu; check both"
         return ""
-    if found.m1 == found.m2 == 0:
+    if scene.m1 == scene.m2 == 0:
         return "implies that both masses are 0"
-    value, domain = getattr(found, finds), INPUTS[finds]
+    value, domain = getattr(scene, finds), INPUTS[finds]
     if value >= 0:  # 0 is a mass
         return ""
     shown = text(tidy(to_digits(SHOWN_DIGITS)(value)))
@@ -112,60 +113,90 @@ def _refused(scene: Scene, motion: Motion) -> str:
 
 
 def _free_slide(case: Case) -> str:
-    """The acceleration of a slide without friction, in a sentence."""
+    """Return the acceleration of a slide without friction, for a sentence."""
     l, h = case.light, case.heavy
-    none = Fraction(0)
-    most = physics.acceleration(physics.drive(l, h, none), physics.load(l, h, none), case.scene.g)
+    most = physics.acceleration(physics.drive(l, h, ZERO), physics.load(l, h, ZERO), case.scene.g)
     return f"{text(to_threshold(up=case.sign < 0)(case.sign * most))} m/s²"
 
 
 def number_of(scene: Scene, motion: Motion, x: str) -> Any:
-    """The number given for an input, in the unit that it was given in."""
+    """Return the number given for an input, in the unit that it was given in."""
     value = getattr(scene if x in Scene._fields else motion, x)
     return getattr(value, "number", value)
 
 
 def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scene, Motion]:
-    """The scene, and what was measured, with another number for an input, in the same unit."""
-    of_scene = x in Scene._fields
-    value = getattr(scene if of_scene else motion, x)
-    if isinstance(value, Angle | Axle):
-        number = type(value)(number, value.unit)  # type: ignore[arg-type]
-    if of_scene:
-        return scene._replace(**{x: number}), motion
-    return scene, motion._replace(**{x: number})
+    """Return the scene, and what was measured, with another number for an input, in the same unit."""
+    if x not in Scene._fields:
+        return scene, motion._replace(**{x: number})
+    value = getattr(scene, x)
+    if isinstance(value, Angle):
+        number = Angle(number, value.unit)
+    elif isinstance(value, Axle):
+        number = Axle(number, value.unit)
+    return scene._replace(**{x: number}), motion
 
 
-def completed(scene: Scene, motion: Motion) -> Scene:
-    """The scene with what follows from the motion in it, which may be below 0. Raises Undetermined."""
+# The unknown input, from the others
+
+
+def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
+    """Return the input that follows from a motion, by its name; it may be below 0. Raises Undetermined.
+
+    Kinetic friction is no rational number: the machine computes it.
+    """
     if motion.finds is None:
-        return scene
-    case = Case(scene, motion)
-    if motion.finds in MASSES:
-        mass = _mass(case, motion.finds)
-        return scene._replace(m1=mass) if motion.finds == "m1" else scene._replace(m2=mass)
-    l, h, a = case.light, case.heavy, case.measured_acceleration
-    if a <= 0:
-        heavier, side = ("m2", "above") if case.sign > 0 else ("m1", "below")
-        raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass")
-    if motion.finds == "g":
-        assert case.rim_mass is not None
-        return scene._replace(g=physics.gravity(l, h, case.rim_mass, a, case.axle_friction))
+        return {}
     if motion.finds == "mu_k":
-        return scene
-    assert scene.inertia is not None
-    return scene._replace(M=physics.rim_mass(l, h, a, scene.g, case.axle_mass) / scene.inertia)
+        _moving(values, motion)
+        return {}
+    return {motion.finds: FINDERS[motion.finds](values, motion)}
 
 
-def _mass(case: Case, unknown: str) -> Fraction:
-    """The mass that moves with the measured acceleration. Raises Undetermined beyond its free fall."""
-    known, g, a = case.scene.m1 if unknown == "m2" else case.scene.m2, case.scene.g, case.motion.a
-    assert a is not None
-    assert case.rim_mass is not None
+def _moving(values: Values, motion: Motion) -> tuple[Fraction, Fraction, Fraction]:
+    """Return the lighter and the heavier mass, and the acceleration of the latter. Raises Undetermined."""
+    m1, m2 = values.m1, values.m2
+    a = motion.acceleration((m2 > m1) - (m2 < m1))
+    if a <= 0:
+        heavier, side = ("m2", "above") if m2 > m1 else ("m1", "below")
+        raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass")
+    return min(m1, m2), max(m1, m2), a
+
+
+def _pulley_mass(values: Values, motion: Motion) -> Fraction:
+    l, h, a = _moving(values, motion)
+    c = physics.rim_mass(l, h, a, values.g, physics.axle_mass(axle_force(values), values.g))
+    mass: Fraction = c / values.inertia
+    return mass
+
+
+def _gravity(values: Values, motion: Motion) -> Fraction:
+    l, h, a = _moving(values, motion)
+    c = rim_mass(values, values.M)
+    assert c is not None
+    return physics.gravity(l, h, c, a, axle_force(values))
+
+
+def _mass(unknown: str, values: Values, motion: Motion) -> Fraction:
+    """Return the mass that moves with the measured acceleration. Raises Undetermined beyond free fall."""
+    known: Fraction = values.m1 if unknown == "m2" else values.m2
+    g: Fraction = values.g
+    a = motion.acceleration(1)
     down = a if unknown == "m2" else -a
     if down >= g:
         side, limit = ("below", g) if unknown == "m2" else ("above", -g)
         raise Undetermined(f"must be {side} {text(to_double(limit))} m/s², that of free fall")
+    c, f = rim_mass(values, values.M), axle_force(values)
+    assert c is not None
     if down > 0:
-        return physics.heavier_mass(known, case.rim_mass, down, g, case.axle_friction)
-    return physics.lighter_mass(known, case.rim_mass, -down, g, case.axle_friction)
+        return physics.heavier_mass(known, c, down, g, f)
+    return physics.lighter_mass(known, c, -down, g, f)
+
+
+FINDERS: dict[str, Callable[[Values, Motion], Fraction]] = {
+    "M": _pulley_mass,
+    "g": _gravity,
+    "m1": partial(_mass, "m1"),
+    "m2": partial(_mass, "m2"),
+}
+"""The functions that find an unknown input, by its name."""

@@ -1,29 +1,24 @@
 """The equations of Atwood's machine with a massive pulley, each written once.
 
-Numbers in parentheses are equations of T. R. de Oliveira and N. A. Lemos, "Force and torque of a
-string on a pulley". Every function is plain arithmetic on whatever number type comes in (float,
-Fraction, enclosure, column, mpmath, SymPy); exp, log and roots are handed in by the arithmetic.
+Numbers in parentheses are equations of T. R. de Oliveira and N. A. Lemos, "Force and torque of a string on a
+pulley". Every function is plain arithmetic on whatever number type comes in (float, Fraction, enclosure,
+column, mpmath, SymPy); exp, log and roots are handed in by the arithmetic.
 
-Symbols: ``l`` and ``h`` are the lighter and the heavier mass (kg), ``c`` = βM is the pulley's
-inertia as a mass at the rim (kg; half the pulley's mass in the paper), ``g`` the gravity (m/s²),
-``phi`` the angle of wrap (rad; π in the paper), ``k`` = e^{μφ} the capstan ratio, which always
-comes in as its excess ``k1`` = k - 1, so that weak friction loses no digits.
+Symbols: ``l`` and ``h`` are the lighter and the heavier mass (kg), ``c`` = βM the pulley's inertia as a mass
+at the rim (kg; half the pulley's mass in the paper), ``g`` gravity (m/s²), ``phi`` the angle of wrap (rad; π
+in the paper), ``f`` the axle's friction as a force at the rim (N), ``b`` = f/g the same as a mass (kg), and
+``k`` = e^{μφ} the capstan ratio. It comes in as ``k1`` = k - 1, so that weak friction loses no digits.
 
-One form of the motion serves every regime, Newton's: a *drive* d (kg) sets a *load* s (kg) moving,
-a = g d/s, the light side hangs in its weight and what accelerates it, and the heavy side in the light
-side's tension and what friction makes up. What differs between regimes is only where d and s come from:
+One form of the motion serves every regime, Newton's: a *drive* d (kg) sets a *load* s (kg) moving, a = g d/s.
+The light side hangs in its weight and what accelerates it, (1): T_l = l (g + a).
 
-- no slip (4): d = h - l and s = h + l + c; friction turns the pulley, T_h - T_l = c a (3);
-- verge and slip, (1) with (26): friction at its limit lets l count k-fold, d = h - l k and s = h + l k,
-  and T_h - T_l = (k - 1) T_l. The *transfer* z = l (k - 1) is the mass that friction adds.
+- No slip (4): d = h - l - b and s = h + l + c, or all rests if h - l <= b. T_h - T_l = c a + f turns the
+  pulley (3). In the paper, b = f = 0.
+- Verge and slip, (1) with (26): friction at its limit lets l count k-fold, d = h - l k and s = h + l k, and
+  T_h - T_l = (k - 1) T_l. The *friction mass* z = l (k - 1) is what friction adds to both masses' load.
 
-An axle that rubs takes a constant force f at the rim from what turns the pulley, so (3) becomes
-T_h - T_l = c a + f. As a mass it is ``b`` = f/g: without slip d = h - l - b, and for h - l <= b all rests.
-With f = b = 0, no friction in the axle, the equations are the paper's.
-
-Divisions come before products where a product could leave the range of doubles and the result not.
-
-Most examples are of l = 1, h = 3, c = 5 and g = 9, where a = 2, T_l = 11 and T_h = 21.
+Divisions come before products that could leave the range of doubles though the result does not.
+Most examples are of l = 1, h = 3, c = 5 and g = 9, so that a = 2, T_l = 11 and T_h = 21.
 """
 
 from collections.abc import Callable
@@ -35,7 +30,7 @@ Hypot = Callable[[N, N | int], N]
 
 
 def transfer_at_limit(l: N, k1: N) -> N:
-    """Transfer z = l (k - 1) (kg) of a string whose friction is at its limit all along, from (26).
+    """Return z = l (k - 1) (kg), the mass that friction at its limit adds, from (26).
 
     >>> transfer_at_limit(1, 1)
     1
@@ -44,9 +39,9 @@ def transfer_at_limit(l: N, k1: N) -> N:
 
 
 def drive(l: N, h: N, taken: N) -> N:
-    """Drive d = h - l (kg), less what friction takes of it: the transfer at its limit, b in an axle.
+    """Return the drive d = h - l (kg) less what friction takes: z at its limit, b in an axle.
 
-    At the limit of friction, d = h - l k is positive where a heavy enough pulley makes the string slip.
+    At the limit of friction, d = h - l k is positive if a heavy enough pulley makes the string slip.
 
     >>> drive(1, 3, 0), drive(1, 3, 1)
     (2, 1)
@@ -55,7 +50,7 @@ def drive(l: N, h: N, taken: N) -> N:
 
 
 def axle_mass(f: N, g: N) -> N:
-    """The axle's friction f at the rim (N) as a mass b (kg): what the axle just holds of a difference.
+    """Return the axle's friction f as a mass b (kg): the greatest difference of masses that it holds.
 
     >>> axle_mass(9, 9)
     1.0
@@ -64,7 +59,7 @@ def axle_mass(f: N, g: N) -> N:
 
 
 def load(l: N, h: N, added: N) -> N:
-    """Load s (kg) that the drive sets moving; friction adds the pulley's c, or at its limit the transfer.
+    """Return the load s (kg) that the drive sets moving; ``added`` is c, or z at the limit of friction.
 
     >>> load(1, 3, 5)
     9
@@ -73,7 +68,7 @@ def load(l: N, h: N, added: N) -> N:
 
 
 def acceleration(drive: N, load: N, g: N) -> N:
-    """Magnitude of the masses' acceleration (m/s²): (4), and (1) with (26).
+    """Return the magnitude of the masses' acceleration (m/s²): (4), and (1) with (26).
 
     >>> acceleration(2, 9, 9)
     2.0
@@ -82,7 +77,7 @@ def acceleration(drive: N, load: N, g: N) -> N:
 
 
 def rim_mass(l: N, h: N, a: N, g: N, b: N) -> N:
-    """c (kg) of the pulley on which the masses have a measured acceleration a; (4) solved for it.
+    """Return c (kg) of the pulley on which masses have a measured acceleration a; (4) solved for it.
 
     >>> rim_mass(1, 3, 2, 9, 0), rim_mass(1, 3, 1, 9, 1)
     (5.0, 5.0)
@@ -91,7 +86,7 @@ def rim_mass(l: N, h: N, a: N, g: N, b: N) -> N:
 
 
 def gravity(l: N, h: N, c: N, a: N, f: N) -> N:
-    """Gravity (m/s²) under which the masses have a measured acceleration a; (4) solved for it.
+    """Return the gravity (m/s²) under which masses have a measured acceleration a; (4) solved for it.
 
     >>> gravity(1, 3, 5, 2, 0), gravity(1, 3, 5, 1, 9)
     (9.0, 9.0)
@@ -100,7 +95,7 @@ def gravity(l: N, h: N, c: N, a: N, f: N) -> N:
 
 
 def heavier_mass(l: N, c: N, a: N, g: N, f: N) -> N:
-    """Mass (kg) that descends with a measured acceleration a against a lighter one; from (1) with (3).
+    """Return the mass (kg) that descends with a measured acceleration a against a lighter one; (1) with (3).
 
     >>> heavier_mass(1, 5, 2, 9, 0), heavier_mass(1, 5, 1, 9, 9)
     (3.0, 3.0)
@@ -109,7 +104,7 @@ def heavier_mass(l: N, c: N, a: N, g: N, f: N) -> N:
 
 
 def lighter_mass(h: N, c: N, a: N, g: N, f: N) -> N:
-    """Mass (kg) that rises with a measured acceleration a against a heavier one; from (1) with (3).
+    """Return the mass (kg) that rises with a measured acceleration a against a heavier one; (1) with (3).
 
     >>> lighter_mass(3, 5, 2, 9, 0), lighter_mass(3, 5, 1, 9, 9)
     (1.0, 1.0)
@@ -118,7 +113,7 @@ def lighter_mass(h: N, c: N, a: N, g: N, f: N) -> N:
 
 
 def slide_excess(l: N, h: N, a: N, g: N) -> N:
-    """T_h/T_l - 1 under which the masses have a measured acceleration, from (1).
+    """Return T_h/T_l - 1 of masses with a measured acceleration, from (1).
 
     >>> slide_excess(1, 3, 2, 10)
     1.0
@@ -127,7 +122,7 @@ def slide_excess(l: N, h: N, a: N, g: N) -> N:
 
 
 def moment_of_inertia(c: N, R: N) -> N:
-    """Moment of inertia (kg m²) of a pulley of radius R (m), from its c as a mass at the rim.
+    """Return the moment of inertia (kg m²) of a pulley of radius R (m), from its c as a mass at the rim.
 
     >>> moment_of_inertia(5, 2)
     20
@@ -136,7 +131,7 @@ def moment_of_inertia(c: N, R: N) -> N:
 
 
 def acceleration_of_fall(drop: N, time: N) -> N:
-    """Constant acceleration (m/s²) that covers the height ``drop`` (m) from rest in ``time`` (s).
+    """Return the constant acceleration (m/s²) that covers the height ``drop`` (m) from rest in ``time`` (s).
 
     >>> acceleration_of_fall(9, 3)
     2.0
@@ -145,27 +140,25 @@ def acceleration_of_fall(drop: N, time: N) -> N:
 
 
 def fall_time(drop: N, a: N, sqrt: Function[N]) -> N:
-    """Time (s) to fall the height ``drop`` (m) from rest with the acceleration ``a`` (m/s²).
+    """Return the time (s) to fall the height ``drop`` (m) from rest with the acceleration ``a`` (m/s²).
 
-    >>> from math import sqrt
-    >>> fall_time(9, 2, sqrt)
+    >>> fall_time(9, 2, lambda x: x**0.5)
     3.0
     """
     return sqrt(2 * drop / a)
 
 
 def final_speed(drop: N, a: N, sqrt: Function[N]) -> N:
-    """Speed (m/s) after falling the height ``drop`` (m) from rest with the acceleration ``a`` (m/s²).
+    """Return the speed (m/s) after a fall of ``drop`` (m) from rest with the acceleration ``a`` (m/s²).
 
-    >>> from math import sqrt
-    >>> final_speed(9, 2, sqrt)
+    >>> final_speed(9, 2, lambda x: x**0.5)
     6.0
     """
     return sqrt(2 * drop * a)
 
 
 def light_tension(l: N, a: N, g: N) -> N:
-    """Tension on the lighter mass (N), from (1): its weight and what accelerates it.
+    """Return the tension on the lighter mass (N), from (1): its weight and what accelerates it.
 
     >>> light_tension(1, 2, 9)
     11
@@ -174,7 +167,7 @@ def light_tension(l: N, a: N, g: N) -> N:
 
 
 def difference_of_a_pulley(c: N, a: N, f: N) -> N:
-    """T_h - T_l (N) that turns a pulley whose rim has the acceleration a, against the axle's f (N) (3).
+    """Return T_h - T_l (N) that turns a pulley whose rim has the acceleration a, against f (3).
 
     >>> difference_of_a_pulley(5, 2, 0), difference_of_a_pulley(5, 1, 9)
     (10, 14)
@@ -183,7 +176,7 @@ def difference_of_a_pulley(c: N, a: N, f: N) -> N:
 
 
 def rim_acceleration(difference: N, c: N, f: N) -> N:
-    """Acceleration (m/s²) of the rim of a pulley that T_h - T_l turns, against the axle's f (N) (3).
+    """Return the acceleration (m/s²) of the rim of a pulley that T_h - T_l turns, against f (3).
 
     >>> rim_acceleration(10, 5, 0), rim_acceleration(14, 5, 9)
     (2.0, 1.0)
@@ -192,7 +185,7 @@ def rim_acceleration(difference: N, c: N, f: N) -> N:
 
 
 def difference_of_moving_masses(l: N, h: N, a: N, g: N) -> N:
-    """T_h - T_l (N) of masses with a known acceleration, from (1): c a + f where the string grips.
+    """Return T_h - T_l (N) of masses with a known acceleration, from (1): c a + f if the string grips.
 
     >>> difference_of_moving_masses(1, 3, 2, 9), difference_of_moving_masses(1, 3, 0, 9)
     (10, 18)
@@ -201,7 +194,7 @@ def difference_of_moving_masses(l: N, h: N, a: N, g: N) -> N:
 
 
 def difference_of_friction(light: N, k1: N) -> N:
-    """T_h - T_l (N) where friction is at its limit (26); ``light`` = T_l.
+    """Return T_h - T_l (N) if friction is at its limit (26); ``light`` = T_l.
 
     >>> difference_of_friction(12, 1)
     12
@@ -210,10 +203,10 @@ def difference_of_friction(light: N, k1: N) -> N:
 
 
 def excess_ratio(l: N, h: N, c: N, b: N, D: N) -> N:
-    """T_h/T_l - 1 of a string that grips, by (33), without cancellation.
+    """Return T_h/T_l - 1 of a string that grips, by (33), without cancellation.
 
-    The pulley's inertia is c/D, so that limits are points like others: D = 0 is a pulley that stands, as it
-    is locked or its axle holds it (h - l <= b), and c = 0 is one without mass.
+    The pulley's inertia is c/D, so that limits are points like others: D = 0 is a pulley at rest, as it is
+    locked or its axle holds it (h - l <= b), and c = 0 is one without mass.
 
     >>> excess_ratio(1, 3, 6, 0, 1), excess_ratio(1, 3, 5, 1, 1)
     (1.0, 1.4)
@@ -224,7 +217,7 @@ def excess_ratio(l: N, h: N, c: N, b: N, D: N) -> N:
 
 
 def heaviest_excess(l: N, c: N, b: N) -> N:
-    """The same under a heavier mass beyond all bounds, the limit h = ∞ of a pulley that turns.
+    """Return the limit of `excess_ratio` for h = ∞, on a pulley that turns.
 
     >>> heaviest_excess(1, 5, 1)
     3.0
@@ -233,7 +226,7 @@ def heaviest_excess(l: N, c: N, b: N) -> N:
 
 
 def verge_coefficient(log_ratio: N, phi: N) -> N:
-    """Friction coefficient at which the string is on the verge (27); log_ratio = ln(T_h/T_l).
+    """Return the friction coefficient at which the string is on the verge (27); log_ratio = ln(T_h/T_l).
 
     >>> verge_coefficient(0.75, 3)
     0.25
@@ -242,7 +235,7 @@ def verge_coefficient(log_ratio: N, phi: N) -> N:
 
 
 def critical_pulley_mass(l: N, h: N, transfer: N, drive: N, beta: N, b: N) -> N:
-    """Pulley mass (kg) above which the string slips (34); transfer and drive at the limit of friction.
+    """Return the pulley mass (kg) above which the string slips (34); z and d at the limit of friction.
 
     >>> z = 1.56633  # e^{0.3 π} - 1, the paper's example
     >>> round(critical_pulley_mass(1, 3, z, drive(1, 3, z), 0.5, 0))
@@ -254,7 +247,7 @@ def critical_pulley_mass(l: N, h: N, transfer: N, drive: N, beta: N, b: N) -> N:
 
 
 def critical_heavier_mass(l: N, c: N, transfer: N, b: N) -> N:
-    """Heavier mass (kg) above which the string slips (35); needs c > b and c + b > 2 l (k - 1).
+    """Return the heavier mass (kg) above which the string slips (35); needs c > b and c + b > 2 l (k - 1).
 
     >>> critical_heavier_mass(1, 4, 1, 0), critical_heavier_mass(1, 6, 2, 1)
     (4.0, 5.0)
@@ -263,7 +256,7 @@ def critical_heavier_mass(l: N, c: N, transfer: N, b: N) -> N:
 
 
 def critical_lighter_mass(h: N, c: N, k1: N, b: N) -> N:
-    """Lighter mass (kg) below which the string slips: (33) solved for it, as (34) and (35) are for theirs.
+    """Return the lighter mass (kg) below which the string slips: (33) solved for it, like (34) and (35).
 
     >>> critical_lighter_mass(3, 6, 1, 0), critical_lighter_mass(3, 6, 1, 3)
     (1.0, 2.25)
@@ -271,17 +264,17 @@ def critical_lighter_mass(h: N, c: N, k1: N, b: N) -> N:
     return h * ((c + b) / (c - b + k1 * (2 * h + c - b)))
 
 
-def lightest_held(h: N, k: N) -> N:
-    """Lighter mass (kg) below which the string slips where the pulley stands, from (26).
+def lighter_mass_at_rest(h: N, k: N) -> N:
+    """Return the lighter mass (kg) below which the string slips on a pulley at rest, from (26).
 
-    >>> lightest_held(3, 2)
+    >>> lighter_mass_at_rest(3, 2)
     1.5
     """
     return h / k
 
 
 def ratio_in_the_paper(l: N, h: N, M: N) -> N:
-    """T_h/T_l of a string that grips a disk of mass M, as (33) has it; 1 + `excess_ratio`.
+    """Return T_h/T_l of a string that grips a disk of mass M, as (33) has it; 1 + `excess_ratio`.
 
     >>> ratio_in_the_paper(1, 3, 12)
     2.0
@@ -290,7 +283,7 @@ def ratio_in_the_paper(l: N, h: N, M: N) -> N:
 
 
 def pulley_mass_in_the_paper(l: N, h: N, k: N) -> N:
-    """Mass (kg) of a disk above which the string slips, as (34) has it; `critical_pulley_mass`.
+    """Return the mass (kg) of a disk above which the string slips, as (34) has it; `critical_pulley_mass`.
 
     >>> pulley_mass_in_the_paper(1, 3, 2)
     12.0
@@ -299,7 +292,7 @@ def pulley_mass_in_the_paper(l: N, h: N, k: N) -> N:
 
 
 def heavier_mass_in_the_paper(l: N, M: N, k: N) -> N:
-    """Heavier mass (kg) at which the string is on the verge, as (35) has it; `critical_heavier_mass`.
+    """Return the heavier mass (kg) on the verge, as (35) has it; `critical_heavier_mass`.
 
     >>> heavier_mass_in_the_paper(1, 12, 2)
     3.0
@@ -308,7 +301,7 @@ def heavier_mass_in_the_paper(l: N, M: N, k: N) -> N:
 
 
 def least_heavier_mass(l: N, transfer: N) -> N:
-    """What the heavier mass (kg) must exceed for any pulley to slip, l k: first condition of (36).
+    """Return the heavier mass (kg) above which the string slips on some pulley, l k: first condition of (36).
 
     >>> least_heavier_mass(1, 1)
     2
@@ -317,7 +310,7 @@ def least_heavier_mass(l: N, transfer: N) -> N:
 
 
 def least_pulley_mass(transfer: N, beta: N, b: N) -> N:
-    """What the pulley's mass (kg) must exceed for any mass to slip: second condition of (36); z >= b.
+    """Return the pulley mass (kg) above which some mass makes the string slip: second of (36); z >= b.
 
     >>> least_pulley_mass(1, 0.5, 0), least_pulley_mass(2, 0.5, 1)
     (4.0, 6.0)
@@ -325,26 +318,8 @@ def least_pulley_mass(transfer: N, beta: N, b: N) -> N:
     return (2 * transfer - b) / beta
 
 
-def half_turn_resultant(t1: N, t2: N) -> N:
-    """Magnitude (N) of the force of T1 and T2 where both pull the same way (20).
-
-    >>> half_turn_resultant(11, 21)
-    32
-    """
-    return t1 + t2
-
-
-def safety_factor(mu: N, mu_verge: N) -> N:
-    """How many times the friction is there that a string which grips needs.
-
-    >>> safety_factor(0.3, 0.15)
-    2.0
-    """
-    return mu / mu_verge
-
-
 def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N], hypot: Hypot[N]) -> N:
-    """Magnitude (N) of the force of T1 and T2 on any arc of contact.
+    """Return the magnitude (N) of the force of T1 and T2 on any arc of contact.
 
     ``difference`` = T2 - T1 and ``sin_half``, the sine of half the arc, keep what is nearly equal
     from cancelling in T1² + T2² - 2 T1 T2 cos φ.
@@ -357,7 +332,7 @@ def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N], hypot
 
 
 def friction_magnitude(mu: N, resultant: N, hypot: Hypot[N]) -> N:
-    """Net friction force (N) where T grows as e^{μθ} all along the arc (32).
+    """Return the net friction force (N) if T grows as e^{μθ} all along the arc (32).
 
     >>> from math import hypot
     >>> friction_magnitude(0.75, 35, hypot)
@@ -367,10 +342,10 @@ def friction_magnitude(mu: N, resultant: N, hypot: Hypot[N]) -> N:
 
 
 def friction_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
-    """Friction force on the pulley (N), (x, y), of an arc where T grows as e^{μθ}; (31).
+    """Return the friction force on the pulley (N), (x, y), of an arc over which T grows as e^{μθ}; (31).
 
     ``dx + i dy`` is T e^{iθ} at the arc's end less that at its start; θ grows with the tension, and μ
-    is 0 where the string is stuck without friction. The integrals (28)-(29) give
+    is 0 if the string is stuck without friction. The integrals (28)-(29) give
     μ (1 + iμ)/(1 + μ²) times that difference.
 
     >>> friction_vector(1, -32, 0)
@@ -381,7 +356,7 @@ def friction_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
 
 
 def normal_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
-    """Normal force on the pulley (N), (x, y), where T grows as e^{μθ}: -∫ T e^{iθ} dθ, from (18).
+    """Return the normal force on the pulley (N), (x, y), of such an arc: -∫ T e^{iθ} dθ, from (18).
 
     >>> normal_vector(1, -32, 0)
     (16.0, -16.0)
@@ -391,7 +366,7 @@ def normal_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
 
 
 def resultant_vector(dx: N, dy: N) -> tuple[N, N]:
-    """The force on the pulley (N), (x, y), that friction and normal force add up to; (19)-(20).
+    """Return the force on the pulley (N), (x, y), that friction and normal force add up to; (19)-(20).
 
     >>> resultant_vector(-32, 0)
     (0, -32)
@@ -400,7 +375,7 @@ def resultant_vector(dx: N, dy: N) -> tuple[N, N]:
 
 
 def mirrored(x: N, y: N, cos_phi: N, sin_phi: N) -> tuple[N, N]:
-    """A vector of the machine seen from behind: θ there is φ - θ here.
+    """Return a vector of the machine seen from behind: θ there is φ - θ here.
 
     >>> mirrored(2, 5, -1, 0)
     (-2, 5)
@@ -409,7 +384,7 @@ def mirrored(x: N, y: N, cos_phi: N, sin_phi: N) -> tuple[N, N]:
 
 
 def limiting_arc(log_ratio: N, mu: N) -> N:
-    """Arc (rad) over which friction at its limit makes up ln(T_h/T_l), from (26).
+    """Return the arc (rad) over which friction at its limit makes up ln(T_h/T_l), from (26).
 
     >>> limiting_arc(0.5, 0.25)
     2.0
@@ -418,7 +393,7 @@ def limiting_arc(log_ratio: N, mu: N) -> N:
 
 
 def least_friction_slope(mu: N, chord: N, growth: N, cos: N, sin: N, dx: N, dy: N) -> N:
-    """Slope of the net friction force with the lead s, up to a positive factor; 0 where the force is least.
+    """Return a positive multiple of the slope of the net friction force with the lead s; 0 at its minimum.
 
     A string that grips with friction at its limit on arcs s and α - s at the ends, and stuck over
     δ = φ - α between, has the net friction μ/√(1 + μ²) |T_l e^{(μ+i)s} (1 - e^{iδ}) + dx + i dy|.
@@ -432,9 +407,9 @@ def least_friction_slope(mu: N, chord: N, growth: N, cos: N, sin: N, dx: N, dy: 
 
 
 def axle_force(t1: N, t2: N, pulley_mass: N, g: N) -> N:
-    """Force (N) on the axle of a pulley with half a turn of wrap: (20) and the pulley's weight.
+    """Return the force (N) on the axle of a pulley with half a turn of wrap: (20) and the pulley's weight.
 
     >>> axle_force(11, 21, 10, 9)
     122
     """
-    return half_turn_resultant(t1, t2) + pulley_mass * g
+    return t1 + t2 + pulley_mass * g

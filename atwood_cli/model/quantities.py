@@ -1,4 +1,4 @@
-"""The registry: every quantity's name, symbol, unit, equation and meaning, once; and names as typed."""
+"""Every quantity, once: name, symbol, unit, equation, meaning; why one has no value; names as typed."""
 
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
@@ -8,14 +8,23 @@ from typing import Literal, NamedTuple, get_args
 from .scene import INPUTS, SceneError
 from .units import nearest
 
+
+class Undetermined(Exception):
+    """The scene does not determine a quantity; the message says why and what to give.
+
+    Backticks mark names, and the word "give", which LaTeX output replaces by symbols and words. Other output
+    takes them out (`solver.messages.unmarked`).
+    """
+
+
 REGIMES = ("no-slip", "verge", "slip")
 Accuracy = Literal["certified", "exact"]
 ACCURACIES: tuple[Accuracy, ...] = get_args(Accuracy)
-"""How accurate the quantities of many scenes are."""
+"""The accuracies of arrays."""
 
 
 class About(NamedTuple):
-    """How a quantity is shown, and the paper's equation for it, if it has one."""
+    """How a quantity is shown, and the paper's equation for it, "" if it has none."""
 
     group: str
     symbol: str
@@ -66,15 +75,15 @@ AXLE_ENTERS = {
     *("critical_pulley_mass", "critical_heavier_mass", "least_pulley_mass"),
     *("pulley_mass", "gravity", "m1", "m2"),
 }
-"""The quantities into whose equation the friction of an axle comes, which the paper does not have."""
+"""The quantities whose equation has an additional term if the axle has friction."""
 
 
 def cited(name: str, slips: bool, rubs: bool) -> str:
-    """The paper's equation for a quantity in a regime; +b marks one that an axle's friction enters."""
+    """Return the paper's equation for a quantity in a regime, with +b if axle friction adds a term."""
     about = QUANTITIES[name]
     if slips and about.equation_in_slip is not None:
         return about.equation_in_slip
-    return about.equation + "+b" * (rubs and name in AXLE_ENTERS)
+    return f"{about.equation}+b" if rubs and name in AXLE_ENTERS else about.equation
 
 
 FROM_MOTION: dict[str | None, tuple[str, ...]] = {
@@ -85,27 +94,64 @@ FROM_MOTION: dict[str | None, tuple[str, ...]] = {
     "mu_k": ("mu_k",),
     "drop": ("fall_time", "final_speed"),
 }
-"""Quantities that only some scenes have, by the parameter that is found there, or given."""
+"""The quantities that only a measurement gives: by the input that it finds, or by the height of fall."""
 MEASURED_NAMES = tuple(chain.from_iterable(FROM_MOTION.values()))
 NAMES = ("regime", *(name for name in QUANTITIES if name not in MEASURED_NAMES))
-"""What every scene has."""
+"""The quantities that every scene has."""
 MAIN = ("acceleration", "tension_1", "tension_2", "mu_verge", "friction_force")
-"""What every scene is about."""
+"""The quantities that every table of a scene shows."""
 
 STANDARD = ("regime", *MAIN, "critical_pulley_mass")
 """The quantities of many scenes in a table, unless others are named."""
 
+# Why a scene does not determine a quantity, and what to give.
+
+NEEDS_MU = "`give` `mu`, the friction coefficient"
+NEEDS_M = "`give` `M`, the pulley's mass, which decides here"
+NEEDS_R = "`give` `R`, the pulley's radius"
+UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, beside `I`"
+FREE_END = "not defined for a free end: the string is fixed to the pulley and no friction holds it"
+NOT_BOUNDED = "not one number while the string grips with friction to spare"
+NOT_DEFINITE = (
+    "between `friction_force_min` and `friction_force_max` while the string grips"
+    " (atwood quantities says when)"
+)
+DEFINITE = "bounds are for a string that grips with friction to spare; here `friction_force` is definite"
+LONG_WRAP = "bounds are known for up to half a turn of wrap (180 degrees)"
+NO_CRITICAL_MASS = "does not exist, as the string holds on any pulley, however heavy"
+NO_CRITICAL_HEAVIER_MASS = "does not exist, as the string holds under any heavier mass"
+AXLE_HOLDS = "does not exist, as the axle holds the difference on any pulley"
+ALWAYS_SLIPS = "does not exist, as for the friction of the axle the string slips on any pulley, however light"
+AXLE_ENOUGH = "no condition here, as the friction of the axle is enough to make the string slip on any pulley"
+NO_NEED = "does not exist, as no friction is needed"
+NO_WRAP = "does not exist, as without friction no wrap holds"
+NOT_APPLICABLE = "conditions (36) do not apply without friction"
+LOCKED_AXLE = "not defined for a locked pulley: `M` = `inf` is not its weight"
+ONE_SIDED = "defined for half a turn of wrap (and whole turns more), where both ends pull downwards"
+NEEDS_A = "`give` `a`, a measured acceleration, in place of `M`"
+NEEDS_A_BESIDE_M = "`give` `a`, a measured acceleration, beside `M` and in place of `g`"
+NEEDS_A_AND_M = "`give` `a`, a measured acceleration, and `M` in place of `{}`"
+NEEDS_A_OF_A_SLIDE = (
+    "`give` `a`, a measured acceleration, beside `M` = `inf`, or beside `M` and a `mu` that is too small"
+)
+NEEDS_DROP = "`give` `drop`, the height that the heavier mass falls from rest"
+AT_REST = "does not exist, as nothing moves"
+
+# Names as they are typed
+
 SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
 ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
-"""How symbols are typed."""
+"""The letters to type for those of symbols."""
 
 
 def _plain(symbol: str) -> str:
-    """A symbol or a name as it may be typed: F min is Fmin, as F_min is, and mu_k is muk, as mu-k is."""
+    """Return a symbol or a name without blanks and dashes, so that Fmin and F_min are the same as F min."""
     return re.sub("[ _-]", "", symbol.translate(ASCII))
 
 
-SYMBOLS = {_plain(typed): name for name, about in QUANTITIES.items() for typed in (name, about.symbol)}
+NAMES_BY_SYMBOL = {
+    _plain(typed): name for name, about in QUANTITIES.items() for typed in (name, about.symbol)
+}
 
 
 def read_names(
@@ -113,14 +159,14 @@ def read_names(
     typed: Iterable[str],
     known: Collection[str] = NAMES,
     kind: str = "quantity",
-    symbols: Mapping[str, str] = SYMBOLS,
+    symbols: Mapping[str, str] = NAMES_BY_SYMBOL,
 ) -> list[str]:
-    """The names meant; a word may hold several with commas between. Raises SceneError."""
+    """Read names; a word may hold several with commas between. Raises SceneError."""
     return [read_name(parameter, word, known, kind, symbols) for word in divided(typed)]
 
 
 def read_quantities(words: Sequence[str] | None) -> list[str]:
-    """The quantities that a program names, each once: by default the standard ones. Raises SceneError."""
+    """Read the quantities that a program names, each once; by default the standard ones. Raises SceneError."""
     typed = [words] if isinstance(words, str) else STANDARD if words is None else words
     return list(dict.fromkeys(read_names("quantities", map(str, typed))))
 
@@ -130,9 +176,9 @@ def read_name(
     word: str,
     known: Collection[str] = NAMES,
     kind: str = "quantity",
-    symbols: Mapping[str, str] = SYMBOLS,
+    symbols: Mapping[str, str] = NAMES_BY_SYMBOL,
 ) -> str:
-    """The name meant, of those ``known``: itself, or its symbol as tables show it. Raises SceneError."""
+    """Read one of the names ``known``, or its symbol as tables show it. Raises SceneError."""
     if word in known:
         return word
     if (name := symbols.get(_plain(word), "")) in known:
@@ -147,7 +193,7 @@ def read_name(
 
 
 def read_accuracy(word: object) -> Accuracy:
-    """The accuracy of that name. Raises SceneError."""
+    """Read the name of an accuracy. Raises SceneError."""
     if word == "fast":
         raise SceneError("accuracy", word, "is no longer there, as certified takes hardly longer; take that")
     known = read_name("accuracy", str(word), ACCURACIES, "accuracy")
@@ -155,5 +201,5 @@ def read_accuracy(word: object) -> Accuracy:
 
 
 def divided(typed: Iterable[str]) -> list[str]:
-    """The words of a repeatable option, of which one may hold several with commas between."""
+    """Return the words of a repeatable option, each of which may hold several with commas between."""
     return [word.strip() for words in typed for word in words.split(",")]

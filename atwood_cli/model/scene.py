@@ -1,7 +1,9 @@
-"""What is given: words and numbers in, an exact and valid `Scene` out. Nothing is computed."""
+"""Read what is given, words and numbers, into an exact and valid `Scene`. Nothing is computed."""
+
+from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from decimal import Decimal
 from fractions import Fraction
 from functools import cache
@@ -10,7 +12,7 @@ from numbers import Rational, Real
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from ..arithmetic.rational import OfFloat
-from .angle import Angle
+from . import physics
 from .digits import as_typed, to_double
 from .units import (
     MAX_DIGITS,
@@ -20,9 +22,10 @@ from .units import (
     STANDARD_GRAVITY,
     TOO_LONG,
     UNITS,
+    Angle,
     Malformed,
     NotANumber,
-    Number,
+    TypedNumber,
     in_quotes,
     is_uncertain,
     limited,
@@ -34,13 +37,16 @@ from .units import (
 
 
 class Axle(NamedTuple):
-    """The friction of an axle: a force at the rim (N), or a torque (N m); kept so, as R may be uncertain."""
+    """The friction of an axle as it was given: a force at the rim (N) or a torque (N m).
+
+    A torque is not converted when it is read, as R may be uncertain.
+    """
 
     number: Any
     unit: Literal["N", "N m"] = "N"
 
     def force(self, R: Any) -> Any:
-        """The friction as a force at the rim (N) of a pulley of radius R (m)."""
+        """Return the friction as a force at the rim (N) of a pulley of radius R (m)."""
         return self.number / R if self.unit == "N m" else self.number
 
 
@@ -68,8 +74,8 @@ BODIES = {
     "neptune": "11.15",
     "pluto": "0.62",
 }
-"""Gravity (m/s²) by NASA's planetary fact sheets, without what rotation takes from it: the mean at the
-surface, and of giants that at the equator where the pressure is 1 bar; of earth, standard gravity."""
+"""Gravity (m/s²) by NASA's planetary fact sheets, without the effect of rotation: the mean at the surface, of
+giants at the equator where the pressure is 1 bar. Earth has standard gravity."""
 
 MASSES = ("m1", "m2")
 DEFAULTS = {"g": STANDARD_GRAVITY, "wrap": "180"}
@@ -77,7 +83,7 @@ MISSING_MASS = "is missing; give both masses, m1 and m2"
 
 
 class SceneError(ValueError):
-    """An input that is not a valid scene: ``parameter``, its ``value`` as given, the ``rule``."""
+    """An error of an input: the ``parameter``, its ``value`` as given, and the ``rule`` that it breaks."""
 
     def __init__(self, parameter: str, value: object, rule: str) -> None:
         super().__init__(parameter, value, rule)
@@ -87,7 +93,7 @@ class SceneError(ValueError):
         return self.describe(self.parameter)
 
     def describe(self, name: str) -> str:
-        """The message, with the parameter called ``name`` (an option, a column)."""
+        """Return the message, with the parameter called ``name`` (an option, a column)."""
         if self.value is None:
             return f"{name} {self.rule}"
         try:
@@ -98,7 +104,7 @@ class SceneError(ValueError):
 
 
 class Parameter(NamedTuple):
-    """What an input may be."""
+    """An input: its meaning, its unit, and the values that it may have."""
 
     meaning: str
     unit: str = ""
@@ -113,7 +119,7 @@ class Parameter(NamedTuple):
         if self.signed:
             return "must be finite"
         bound = "0 or more" if self.zero else "above 0"
-        return f"must be {bound}{' (inf locks the pulley)' if self.inf else ', and finite'}"
+        return f"must be {bound} (inf locks the pulley)" if self.inf else f"must be {bound}, and finite"
 
 
 INPUTS = {
@@ -134,7 +140,7 @@ INPUTS = {
         dimension="torque or force",
     ),
 }
-"""What a scene is made of, and what the columns of arrays and of tables may be."""
+"""The inputs of a scene, which columns of arrays and of tables may have, too."""
 MEASURED = {
     "a": Parameter(
         "measured acceleration, positive when m2 descends", "m/s²", dimension="acceleration", signed=True
@@ -142,29 +148,23 @@ MEASURED = {
     "drop": Parameter("height that the heavier mass falls from rest", "m", dimension="length"),
     "time": Parameter("measured time in which it does", "s", dimension="time"),
 }
-"""What may be known of the motion, beside the scene or in place of a part of it; see `motion`."""
+"""Measurements of the motion, in addition to a scene or instead of one of its inputs; see `motion`."""
 
 
 def parameter_of(name: str) -> Parameter:
-    """What an input may be, of the scene or of the motion."""
+    """Return an input of the scene or a measurement by its name."""
     return INPUTS.get(name) or MEASURED[name]
 
 
-def in_units(name: str, value: str) -> str:
-    """A value of a parameter, with its unit."""
-    unit = parameter_of(name).unit
-    return f"{value}{' ' * (unit not in ('', '°'))}{unit}"
-
-
-def stated(name: str, value: str) -> str:
-    """A parameter with its value and unit, for a sentence."""
-    return f"{name} = {in_units(name, value)}"
+def with_unit(value: str, unit: str) -> str:
+    """Return a number with its unit: 1 kg, 90°, 0.3."""
+    return f"{value}{unit}" if unit in ("", "°") else f"{value} {unit}"
 
 
 class Input(NamedTuple):
     """An input as it was read: its exact value in SI units, its standard uncertainty, and what was given.
 
-    ``value`` is a Fraction; or inf for a locked pulley, an `Angle` for the wrap, an `Axle`, and None where
+    ``value`` is a Fraction, inf for a locked pulley, an `Angle` for the wrap, or an `Axle`; it is None if
     nothing was given and there is no default. The uncertainty is in the unit of the value.
     """
 
@@ -174,9 +174,9 @@ class Input(NamedTuple):
 
 
 class Scene(NamedTuple):
-    """A valid scene in SI units, exact; None where not given.
+    """A valid scene in SI units, exact; an input that is not given is None.
 
-    ``M`` is a float only where it is infinite: a locked pulley.
+    ``M`` is a float only if it is infinite, for a locked pulley.
     """
 
     m1: Fraction
@@ -192,52 +192,66 @@ class Scene(NamedTuple):
     axle: Axle | None = None
 
     @classmethod
-    def read(cls, given: Mapping[str, Given | None]) -> "Scene":
-        """The scene given, by parameter; absent or None is not given. Raises SceneError."""
+    def read(cls, given: Mapping[str, Given | None]) -> Scene:
+        """Read a scene, by parameter; absent or None is not given. Raises SceneError."""
         return cls.of({name: read_exactly(name, given.get(name)) for name in INPUTS})
 
     @classmethod
-    def of(cls, inputs: Mapping[str, Input]) -> "Scene":
-        """The scene of inputs that were read one by one. Raises SceneError if they do not go together."""
-        values = {name: inputs[name].value for name in INPUTS}
-        for mass in MASSES:
-            if values[mass] is None:
-                raise SceneError(mass, None, MISSING_MASS)
-        if values["inertia"] is None and values["I"] is None:
-            values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
-        elif values["inertia"] is not None and values["I"] is not None:
-            raise SceneError("I", inputs["I"].given, "and inertia both describe the pulley; give one of them")
-        scene = cls(**values)
-        if scene.m1 == scene.m2 == 0:
-            raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
-        for name, rule in scene._contradictions(inputs["M"].given):
-            raise SceneError(name, inputs[name].given, rule)
-        return scene
+    def of(cls, inputs: Mapping[str, Input]) -> Scene:
+        """Make a scene of inputs that were read one by one. Raises SceneError if they contradict another."""
+        return cls(**checked(inputs))
 
-    def _contradictions(self, M: Given | None) -> Iterator[tuple[str, str]]:
-        """Inputs that do not go with others, and why; ``M`` is the pulley's mass as it was given."""
-        if self.mu is not None and 0 in (self.m1, self.m2):
-            free = "m1" if self.m1 == 0 else "m2"
-            yield free, "is a free end, which friction cannot hold; leave mu out"
-        if self.mu_k is not None and self.mu is None:
-            yield "mu_k", "needs mu, the coefficient that decides whether it slips"
-        if self.mu_k is not None and self.mu is not None and self.mu_k > self.mu:
-            alike = to_double(self.mu_k) == to_double(self.mu)  # then a float's digits are the point
-            both = [Fraction(mu) if alike else mu for mu in (self.mu_k, self.mu)]
-            sizes = " > ".join(shortened(as_typed(mu, inf)) for mu in both)
-            yield "mu_k", f"must not be above mu; exactly, {sizes}"
-        if self.I is not None and self.R is None:
-            yield "I", "needs the radius R as well"
-        if self.axle is not None and self.axle.unit == "N m" and self.R is None:
-            yield "axle", "is a torque, which needs the radius R as well"
-        if self.I is not None and self.M is not None and not 0 < self.M < inf:
-            yield "I", f"contradicts M = {shortened(str(M))}; leave one of them out"
+
+def checked(inputs: Mapping[str, Input], unknown: str = "") -> dict[str, Any]:
+    """Return the values of inputs that do not contradict each other. Raises SceneError.
+
+    ``unknown`` is a mass that is to be found.
+    """
+    values = {name: inputs[name].value for name in INPUTS}
+    for mass in MASSES:
+        if values[mass] is None and mass != unknown:
+            raise SceneError(mass, None, MISSING_MASS)
+    if values["inertia"] is None and values["I"] is None:
+        values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
+    elif values["inertia"] is not None and values["I"] is not None:
+        raise SceneError("I", inputs["I"].given, "and inertia both describe the pulley; give one of them")
+    if values["m1"] == values["m2"] == 0:
+        raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
+    name, rule = _contradiction(inputs["M"].given, **values)
+    if rule:
+        raise SceneError(name, inputs[name].given, rule)
+    return values
+
+
+def _contradiction(
+    given: Given | None, /, m1: Any, m2: Any, M: Any, mu: Any, mu_k: Any, I: Any, R: Any, axle: Any, **_: Any
+) -> tuple[str, str]:
+    """Return an input that contradicts others, and why; two empty texts if none does.
+
+    ``given`` is the pulley's mass as it was given.
+    """
+    if mu is not None and 0 in (m1, m2):
+        return "m1" if m1 == 0 else "m2", "is a free end, which friction cannot hold; leave mu out"
+    if mu_k is not None and mu is None:
+        return "mu_k", "needs mu, the coefficient that decides whether it slips"
+    if mu_k is not None and mu_k > mu:
+        alike = to_double(mu_k) == to_double(mu)  # then a float's digits are the point
+        both = [Fraction(x) if alike else x for x in (mu_k, mu)]
+        sizes = " > ".join(shortened(as_typed(x, inf)) for x in both)
+        return "mu_k", f"must not be above mu; exactly, {sizes}"
+    if I is not None and R is None:
+        return "I", "needs the radius R as well"
+    if axle is not None and axle.unit == "N m" and R is None:
+        return "axle", "is a torque, which needs the radius R as well"
+    if I is not None and M is not None and not 0 < M < inf:
+        return "I", f"contradicts M = {shortened(str(given))}; leave one of them out"
+    return "", ""
 
 
 class Motion(NamedTuple):
-    """What was measured of the motion, in SI units, exact; None where not given.
+    """Measurements of the motion in SI units, exact; one that is not given is None.
 
-    ``finds`` is the parameter, such as "M" or "g", that follows from it and was not given.
+    ``finds`` is the input, such as "M" or "g", that was not given and follows from them.
     """
 
     a: Fraction | None = None
@@ -245,51 +259,60 @@ class Motion(NamedTuple):
     time: Fraction | None = None
     finds: str | None = None
 
+    def acceleration(self, sign: int) -> Fraction:
+        """Return the measured acceleration (m/s²) of the heavier mass: m2 if its sign is 1, m1 if -1."""
+        if self.a is not None:
+            return sign * self.a
+        assert self.drop is not None
+        assert self.time is not None
+        return physics.acceleration_of_fall(self.drop, self.time)
+
 
 UNMEASURED = Motion()
 
 
 def read_input(name: str, given: Given | None) -> Input:
-    """One parameter, whose text may carry a standard uncertainty. Raises SceneError."""
+    """Read one input, whose text may carry a standard uncertainty. Raises SceneError."""
     if given is None:
         return _default(name)
     if isinstance(given, str):
         number = _read_text(name, given, given)
     elif (isinstance(given, Angle) and name == "wrap") or (isinstance(given, Axle) and name == "axle"):
-        number = Number(_read_number(name, given.number), given.unit)
+        number = TypedNumber(_exact_number(name, given.number), given.unit)
     else:
-        number = Number(_read_number(name, given))
+        number = TypedNumber(_exact_number(name, given))
     return Input(_checked(name, given, number), number.uncertainty, given)
 
 
 @cache
 def _default(name: str) -> Input:
-    """A parameter that is not given."""
+    """Return an input that is not given."""
     default = DEFAULTS.get(name)
-    return Input(default and read_value(name, default), Fraction(0), None)
+    value = read_value(name, default) if default else None
+    return Input(value, Fraction(0), None)
 
 
 def read_exactly(name: str, given: Given | None) -> Input:
-    """One parameter, without an uncertainty. Raises SceneError."""
+    """Read one input, which must carry no uncertainty. Raises SceneError."""
     if isinstance(given, str) and is_uncertain(given):
         raise SceneError(name, given, NO_UNCERTAINTY)
     return read_input(name, given)
 
 
 def read_value(name: str, given: Given | None) -> Any:
-    """The exact value of one parameter, as `Input` has it. Raises SceneError."""
+    """Read the exact value of one input, as `Input` has it. Raises SceneError."""
     return read_exactly(name, given).value
 
 
 def read_plain(name: str, given: str, text: str) -> Fraction | float:
-    """The number that a cell of a table stands for, by a text without unit or name. Raises SceneError."""
+    """Read the number in a cell of a table, as ``text``, which has no unit or name. Raises SceneError."""
     if is_uncertain(text):
         raise SceneError(name, given, NO_UNCERTAINTY)
     return _read_text(name, given, text, INPUTS[name]._replace(dimension=None, names={})).value
 
 
 def read_whole(name: str, given: int | str, least: int, most: int) -> int:
-    """A whole number within bounds. Raises SceneError."""
+    """Read a whole number within bounds. Raises SceneError."""
     whole = given
     if isinstance(given, str) and given.isascii() and given.isdigit() and len(given) <= len(str(most)):
         whole = int(given)
@@ -299,12 +322,12 @@ def read_whole(name: str, given: int | str, least: int, most: int) -> int:
 
 
 def read_digits(given: int | str | None) -> int | None:
-    """How many significant digits are asked for. Raises SceneError."""
+    """Read how many significant digits are asked for. Raises SceneError."""
     return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
 
 
-def _checked(name: str, given: Given, number: Number) -> Any:
-    """The number as the parameter's value: an angle or an axle, if it is one. Raises SceneError."""
+def _checked(name: str, given: Given, number: TypedNumber) -> Any:
+    """Return a number as the value of an input: an angle or an axle, if it is one. Raises SceneError."""
     parameter, (value, unit, _) = parameter_of(name), number
     if (
         (value < 0 and not parameter.signed)
@@ -319,12 +342,12 @@ def _checked(name: str, given: Given, number: Number) -> Any:
     return value
 
 
-def _read_text(name: str, given: Given, text: str, parameter: Parameter | None = None) -> Number:
-    """The number that a text, or part of it, stands for; errors show all that was given."""
+def _read_text(name: str, given: Given, text: str, parameter: Parameter | None = None) -> TypedNumber:
+    """Read the number in a text that is all or part of what was given; errors show all. Raises SceneError."""
     parameter = parameter or parameter_of(name)
     word = without_blanks(text).lower()
     if parameter.inf and word == "inf":
-        return Number(inf)
+        return TypedNumber(inf)
     try:
         return read_number(parameter.names.get(word, text), parameter.dimension)
     except NotANumber:
@@ -336,7 +359,7 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
 
 NO_UNCERTAINTY = "carries an uncertainty, which only solve takes; give the value alone"
 THOUSANDS = re.compile(r"[+-]?\d{1,3},\d{3}[^,]*", re.ASCII)
-"""With more commas it may as well be a list."""
+"""A number with one comma before three digits; with more commas it may be a list."""
 
 
 def _not_a_number(parameter: Parameter, word: str) -> str:
@@ -358,11 +381,11 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
 
 
 def _longest(number: Decimal) -> int:
-    """The digits before the point, or behind it, whichever are more."""
+    """Return the number of digits before the point, or behind it if they are more."""
     return max(abs(number.adjusted()), -int(number.as_tuple().exponent))
 
 
-def _read_number(name: str, given: object) -> Fraction | float:
+def _exact_number(name: str, given: object) -> Fraction | float:
     is_duration = getattr(getattr(given, "dtype", None), "kind", "") == "m"  # NumPy's pass for integers
     if isinstance(given, bool) or is_duration or not isinstance(given, Real | Decimal):
         raise SceneError(name, given, "must be text or a number (str, int, float, Decimal, Fraction)")

@@ -1,13 +1,19 @@
-"""Numbers as people type them, exactly: 1.5e-3, 1/3, 250g, 9.81 m/s2, 3pi/2, 1.000(2), (250±1)g."""
+"""Read numbers as people type them, exactly: 1.5e-3, 1/3, 250g, 9.81 m/s2, 3pi/2, 1.000(2), (250±1)g."""
+
+from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
 from decimal import ROUND_FLOOR, Decimal
 from fractions import Fraction
 from math import inf
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
+from ..arithmetic.settling import is_positive
 from .digits import as_typed, to_digits
+
+if TYPE_CHECKING:
+    from ..arithmetic.rational import Arithmetic, N
 
 STANDARD_GRAVITY = "9.80665"
 """m/s², exact by definition: 3rd General Conference on Weights and Measures, 1901."""
@@ -43,7 +49,7 @@ A unit may also have no blank, or a dot, a star, ^2 or ².
 """
 
 MAX_DIGITS, MAX_EXPONENT = 1000, 500
-"""Of a number as it is typed, and of the number that it is in SI units."""
+"""The limits of a number, as it is typed and in SI units."""
 # No text within those limits is longer as a numerator or denominator.
 MAX_MAGNITUDE = MAX_DIGITS + MAX_EXPONENT
 _LARGEST = 10**MAX_MAGNITUDE
@@ -78,18 +84,17 @@ NOT_UNCERTAIN = (
 
 
 class Malformed(ValueError):
-    """A text that is no such number; the message is the rule it breaks."""
+    """The text is no number that is allowed here; the message is the rule that it breaks."""
 
 
 class NotANumber(Malformed):
-    """A text that does not look like a number at all."""
+    """The text does not look like a number."""
 
 
-class Number(NamedTuple):
+class TypedNumber(NamedTuple):
     """A number as it was typed: exact, with its standard uncertainty, in SI units, degrees or radians.
 
-    ``unit`` is the symbol of the unit, and is empty if there is none.
-    The value is a float only where it is infinite.
+    ``unit`` is the symbol of the unit, "" if there is none. The value is a float only if it is infinite.
     """
 
     value: Fraction | float
@@ -97,53 +102,108 @@ class Number(NamedTuple):
     uncertainty: Fraction = Fraction(0)
 
 
+class Angle:
+    """An angle of wrap, exact: a number of degrees or of radians, as it was given.
+
+    No rational number of degrees is a rational number of radians. ``number`` is a Fraction; in arrays, a
+    column of degrees. An angle in degrees equals its number.
+    """
+
+    __slots__ = ("number", "unit")
+
+    def __init__(self, number: Any, unit: Literal["°", "rad"] = "°") -> None:
+        self.number, self.unit = number, unit
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Angle):
+            return bool((self.number, self.unit) == (other.number, other.unit))
+        return bool(self.unit == "°" and self.number == other)
+
+    def __hash__(self) -> int:
+        return hash(self.number if self.unit == "°" else (self.number, self.unit))
+
+    def __repr__(self) -> str:
+        return f"Angle({self.number!r}, {self.unit!r})"
+
+    def radians(self, ar: Arithmetic[N]) -> N:
+        """Return the angle in radians."""
+        if self.unit == "rad":
+            return ar.number(self.number)
+        return ar.pi * ar.number(self.number / 180)
+
+    def degrees(self, ar: Arithmetic[N], share: Any = 1) -> N:
+        """Return a share of the angle in degrees; a share of 0 is exactly 0."""
+        number = ar.number(share * self.number)
+        return number * 180 / ar.pi if self.unit == "rad" and share else number
+
+    def cos_sin(self, ar: Arithmetic[N], parts: int = 1) -> tuple[N, N]:
+        """Return cosine and sine of one of equal parts of the angle; exact at multiples of 90°."""
+        if self.unit == "rad":
+            return ar.cos_sin(ar.number(self.number) / parts)
+        return ar.cos_sin_of_degrees(self.number / parts)
+
+    @property
+    def is_half_turn(self) -> bool:
+        return self == 180
+
+    @property
+    def is_beyond_half_turn(self) -> bool:
+        if self.unit == "°":
+            return bool(self.number > 180)
+        return is_positive(lambda ar: self.radians(ar) - ar.pi)
+
+    @property
+    def ends_hang_down(self) -> bool:
+        """Whether both ends of the string hang down: half a turn of wrap, plus whole turns."""
+        return bool(self.unit == "°" and (self.number - 180) % 360 == 0)
+
+
 LONGEST_NAME = 255
 """The most characters of a file name that a message shows."""
 
 
 def shortened(text: str, most: int = 60) -> str:
-    """The text as a message shows it: where it is longer than that, only how it begins and ends."""
+    """Return the text as a message shows it: if it is too long, only its beginning and its end."""
     return text if len(text) <= most else f"{text[: most - 20]}...{text[-10:]}"
 
 
 def in_quotes(value: object) -> str:
-    """What was typed or read, as a message shows it."""
+    """Return what was typed or read, as a message shows it."""
     return shortened(repr(str(value) if isinstance(value, str) else value))  # not np.str_("hoop")
 
 
 def counted(count: int, thing: str) -> str:
-    """A count with its noun: 1 row, 2 rows."""
-    return f"{count} {thing}{'s' * (count != 1)}"
+    """Return a count with its noun: 1 row, 2 rows."""
+    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
 
 
 def without_blanks(text: str) -> str:
-    """The text without blanks around it, and with plain single ones within: a no-break space is a blank."""
+    """Return the text without blanks around it, and with single spaces within."""
     return " ".join(text.split())
 
 
 def is_uncertain(text: str) -> bool:
-    """Whether the text is meant to carry an uncertainty."""
+    """Decide whether the text is meant to carry an uncertainty."""
     return any(mark in text for mark in UNCERTAIN)
 
 
-def read_number(text: str, dimension: str | None) -> Number:
-    """The number that a text is, with its unit and its uncertainty if it has them.
+def read_number(text: str, dimension: str | None) -> TypedNumber:
+    """Read a number, with its unit and its uncertainty if it has them. Raises Malformed.
 
-    ``dimension`` is one of `UNITS`, or two with an "or" between, or None for a number that takes no
-    unit. Raises Malformed.
+    ``dimension`` is one of `UNITS`, or two with an "or" between, or None for a number that takes no unit.
     """
     text = without_blanks(text)
     if not is_uncertain(text):
-        return Number(*_read_exactly(text, dimension))
+        return TypedNumber(*_value_and_unit(text, dimension))
     typed, u = _split_uncertainty(text)
-    value, unit = _read_exactly(typed, dimension)
+    value, unit = _value_and_unit(typed, dimension)
     if u.endswith(PERCENT):
-        return Number(value, unit, _read_exactly(u.removesuffix(PERCENT), None)[0] * abs(value) / 100)
-    return Number(value, unit, _read_exactly(u, dimension)[0])
+        return TypedNumber(value, unit, _value_and_unit(u.removesuffix(PERCENT), None)[0] * abs(value) / 100)
+    return TypedNumber(value, unit, _value_and_unit(u, dimension)[0])
 
 
 def _split_uncertainty(text: str) -> tuple[str, str]:
-    """The texts of a value and of its uncertainty: 0.25(12)g is 0.25g and 0.12g, 55g±1% is 55g and 1%.
+    """Return the texts of a value and of its uncertainty: 0.25(12)g is 0.25g and 0.12g, 55g±1% 55g and 1%.
 
     Raises Malformed.
     """
@@ -162,13 +222,14 @@ def _split_uncertainty(text: str) -> tuple[str, str]:
     return match[1] + match[4], match[3] + match[4]
 
 
-def _read_exactly(text: str, dimension: str | None) -> tuple[Fraction, str]:
-    """The value of a number without an uncertainty, and its unit. Raises Malformed."""
+def _value_and_unit(text: str, dimension: str | None) -> tuple[Fraction, str]:
+    """Return the value of a number without an uncertainty, and its unit. Raises Malformed."""
     pattern, constant, worth = MULTIPLES.get(dimension or "", ("", "", Fraction(0)))
     if pattern and (multiple := re.fullmatch(pattern, text, re.ASCII)):
         times, parts = multiple.groups(default="1")
-        one = "1" * (not times.strip("+-"))
-        return limited(_quotient(times + one) * worth * _quotient(f"1/{parts}")), constant
+        if not times.strip("+-"):
+            times += "1"
+        return limited(_quotient(times) * worth * _quotient(f"1/{parts}")), constant
     match = NUMBER.fullmatch(text)
     if not match:
         raise NotANumber(NOT_A_NUMBER)
@@ -190,7 +251,7 @@ def _read_exactly(text: str, dimension: str | None) -> tuple[Fraction, str]:
 
 
 def _quotient(text: str) -> Fraction:
-    """The value of a decimal or a quotient of two. Raises Malformed."""
+    """Return the value of a decimal or of a quotient of two. Raises Malformed."""
     over, slash, under = text.partition("/")
     if not slash:
         return _decimal(text)
@@ -200,20 +261,21 @@ def _quotient(text: str) -> Fraction:
 
 
 def _decimal(text: str) -> Fraction:
-    """The value of a decimal. Raises Malformed."""
+    """Return the value of a decimal. Raises Malformed."""
     mantissa = re.split("[eE]", text)[0]
     _check_size(len(re.sub("[^0-9]", "", mantissa)), _power(text))
     return Fraction(f"{mantissa}e{_power(text)}")
 
 
 def _power(decimal: str) -> int:
-    """The power of ten that a decimal is written with; of one beyond all bounds, its first digits."""
+    """Return the power of ten that a decimal is written with; of a very long one, its first digits."""
     exponent = decimal.lower().partition("e")[2]
-    return int(f"{'-' * exponent.startswith('-')}{exponent.lstrip('+-0')[:5] or 0}")
+    power = int(exponent.lstrip("+-0")[:5] or 0)
+    return -power if exponent.startswith("-") else power
 
 
 def _check_size(digits: int, exponent: int, how: str = "") -> None:
-    """Refuse a decimal that would take long. Raises Malformed."""
+    """Raise Malformed if a decimal has too many digits or too large an exponent to be solved quickly."""
     if digits > MAX_DIGITS:
         raise Malformed(f"has {digits} digits{how}; at most {MAX_DIGITS} are taken")
     if abs(exponent) > MAX_EXPONENT:
@@ -221,14 +283,14 @@ def _check_size(digits: int, exponent: int, how: str = "") -> None:
 
 
 def limited(value: Fraction) -> Fraction:
-    """The same number, refused where it would take long. Raises Malformed."""
+    """Return the number. Raises Malformed if it is too long to be solved quickly."""
     if max(abs(value.numerator), value.denominator) >= _LARGEST:
         raise Malformed(TOO_LONG)
     return value
 
 
 def read_unit(unit: str, wanted: str) -> Fraction:
-    """The factor from a unit to the SI, or to degrees. Raises Malformed if there is no such unit."""
+    """Return the factor from a unit to the SI, or to degrees. Raises Malformed if there is no such unit."""
     units = {symbol: factor for one in wanted.split(" or ") for symbol, factor in UNITS[one].items()}
     if (symbol := symbol_of(unit)) not in units:
         raise Malformed(f"has the unit {in_quotes(unit)}; it takes {', '.join(units)}")
@@ -236,12 +298,12 @@ def read_unit(unit: str, wanted: str) -> Fraction:
 
 
 def symbol_of(unit: str) -> str:
-    """The unit as the table has it, empty if it is none of them."""
+    """Return the symbol of a unit as the table has it, "" if it is none of them."""
     return _SYMBOLS.get(unit.translate(_PLAIN), "")
 
 
 def near(word: str, words: Iterable[str]) -> str:
-    """The word that was probably meant, empty if none is near."""
+    """Return the word that was probably meant, "" if none is near."""
     from difflib import get_close_matches
 
     words = list(words) if word else []
@@ -250,6 +312,6 @@ def near(word: str, words: Iterable[str]) -> str:
 
 
 def nearest(word: str, words: Iterable[str]) -> str:
-    """A hint at the word that was probably meant, empty if none is near."""
+    """Return a hint at the word that was probably meant, "" if none is near."""
     meant = near(word, words)
     return f"; did you mean {meant}?" if meant else ""

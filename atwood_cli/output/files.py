@@ -17,9 +17,9 @@ STEERING = re.compile("[\0-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u
 
 
 def printable(words: str, keep: str = "\n") -> str:
-    """The words with escapes for characters that could steer a terminal, except for the ones to ``keep``.
+    """Return words with escapes for characters that could steer a terminal, but those to ``keep``.
 
-    All text that the program did not make itself goes through here on its way to a terminal.
+    All text that the program did not make itself passes through this on its way to a terminal.
     """
     return STEERING.sub(lambda found: found[0] if found[0] in keep else ascii(found[0])[1:-1], words)
 
@@ -42,7 +42,7 @@ class Stdout:
 
 
 class ClosedStdout(TextIOBase):
-    """A stand-in for a standard output that the caller has closed: nothing can be written to it."""
+    """A stand-in for a standard output that the caller has closed: writing to it is an error."""
 
     @property
     def buffer(self) -> "ClosedStdout":
@@ -53,13 +53,13 @@ class ClosedStdout(TextIOBase):
 
 
 def check_free(path: Path, force: bool) -> None:
-    """Raises FileExistsError if there is a file and ``force`` does not let it be replaced."""
+    """Raise FileExistsError if there is a file and ``force`` does not let it be replaced."""
     if path.is_file() and not force:
         raise FileExistsError(errno.EEXIST, "it exists already; --force replaces it", str(path))
 
 
 def is_stdout(path: str) -> bool:
-    """Whether standard output goes to that file, by any name."""
+    """Decide whether standard output goes to that file, by any name."""
     try:
         return os.path.isfile(path) and os.path.samestat(os.stat(path), os.fstat(sys.stdout.fileno()))
     except (OSError, ValueError, AttributeError):  # stdout is closed, or the file not there yet
@@ -68,7 +68,7 @@ def is_stdout(path: str) -> bool:
 
 @contextmanager
 def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
-    """A file to write beside ``path``, which takes that name when all went well. Raises OSError.
+    """Yield a file to write beside ``path``, and rename it to that when all went well. Raises OSError.
 
     A run that fails or is killed leaves ``path`` as it was. An existing file, also one that appears
     meanwhile, is replaced only with ``force``, and its mode is kept. A device or a pipe is written to

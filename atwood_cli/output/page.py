@@ -1,4 +1,4 @@
-"""Tables and sentences on the terminal or in a pipe, by rich, which is imported where it is needed."""
+"""Tables and sentences on the terminal or in a pipe, by rich, which is imported only when it is needed."""
 
 import re
 import sys
@@ -29,7 +29,7 @@ REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 
 
 class Page:
-    """Where tables and sentences go: the terminal, or a pipe that takes any width."""
+    """A printer of tables and sentences, to a terminal or to a pipe, which takes any width."""
 
     def __init__(self, console: "Console | None" = None) -> None:
         from rich.console import Console
@@ -43,31 +43,34 @@ class Page:
         self.width = self.room or PIPE_WIDTH
 
     def say(self, *sentences: str, style: str = "") -> None:
-        """Sentences, in lines no longer than the terminal is wide, or than a page in a pipe."""
+        """Print sentences, in lines no longer than the terminal is wide, or than a page in a pipe."""
         for line in self.lines(*sentences):
             self.line(line, style)
 
     def lines(self, *sentences: str) -> list[str]:
-        """Sentences in lines, as `say` prints them."""
+        """Return sentences in lines, as `say` prints them."""
         return [line for words in sentences for line in wrapped(printable(words), self.width)]
 
     def line(self, words: str, style: str = "") -> None:
-        """A line as it is, however long."""
+        """Print a line as it is, however long."""
         from rich.text import Text
 
         self.console.print(Text(printable(words), style), soft_wrap=True)
 
-    def head(self, answers: Answers, found: Sequence[str] = ()) -> None:
-        """The scene, sentences on the quantities found from a motion, and the verdict."""
+    def head(self, answers: Answers, found: str = "") -> None:
+        """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
         self.say(describe(answers.case.scene, answers.case.motion, answers.uncertain))
-        self.say(*found, style="bold")
-        bold = "bold " * (not found)
-        self.say(unmarked(verdict(answers)), style=f"{bold}{REGIME_STYLES[answers.case.regime]}")
+        style = REGIME_STYLES[answers.case.regime]
+        if found:
+            self.say(found, style="bold")
+        else:
+            style = f"bold {style}"
+        self.say(unmarked(verdict(answers)), style=style)
 
     def table(self, columns: Sequence[str], groups: Groups) -> None:
-        """A table, with a line between groups of rows.
+        """Print a table, with a line between groups of rows.
 
-        Words are folded where the terminal is narrow. Numbers and heads are not: a table that has no room for
+        Words are folded if the terminal is narrow. Numbers and heads are not: a table that has no room for
         them is wider than the terminal.
         """
         from rich import box
@@ -81,7 +84,8 @@ class Page:
             heads = [re.sub("_(?=[a-z])", "_\n", head) for head in heads]
         whole = [fits or any(map(_is_number, column)) for column in cells]
         least = [
-            _widest(head, column * fixed) for head, column, fixed in zip(heads, cells, whole, strict=True)
+            _widest(head, column if fixed else ())
+            for head, column, fixed in zip(heads, cells, whole, strict=True)
         ]
         self.console.width = max(self.console.width, _width(least))
         table = Table(box=box.ROUNDED)
@@ -91,7 +95,7 @@ class Page:
         left = iter(rows)
         for group in groups:
             lines = list(islice(left, len(group)))
-            # Rows are joined where none is folded, as rich takes five times as long over single ones.
+            # Rows are joined if none is folded, as rich takes five times as long over single ones.
             for part in [lines] if fits else [[line] for line in lines]:
                 joined = (Text("\n".join(column)) for column in zip(*part, strict=True))
                 table.add_row(*joined, end_section=part[-1] is lines[-1])
@@ -99,7 +103,7 @@ class Page:
 
 
 def print_explanation(given: Sequence[str], explanation: "Explanation", markdown: bool) -> None:
-    """A derivation, step by step: on a terminal in its columns, or as Markdown."""
+    """Print a derivation, step by step: in the columns of a terminal, or as Markdown."""
     from .typeset import as_markdown, as_text
 
     if markdown:
@@ -113,7 +117,7 @@ def print_explanation(given: Sequence[str], explanation: "Explanation", markdown
 
 
 def _width(columns: Iterable[int]) -> int:
-    """The width of a table with columns of these widths."""
+    """Return the width of a table with columns of these widths."""
     return 1 + sum(3 + width for width in columns)
 
 
@@ -122,10 +126,10 @@ def _widest(head: str, cells: Iterable[str]) -> int:
 
 
 def aligned(numbers: Iterable[str]) -> list[str]:
-    """The numbers with their decimal points below each other; words are left as they are."""
+    """Return numbers with their decimal points below each other; words are left as they are."""
     numbers = list(numbers)
     point = max(map(_integer_part, numbers), default=0)
-    return [" " * (point - _integer_part(cell)) * _is_number(cell) + cell for cell in numbers]
+    return [" " * (point - _integer_part(cell)) + cell if _is_number(cell) else cell for cell in numbers]
 
 
 def _is_number(value: str) -> bool:

@@ -1,15 +1,18 @@
-"""A solved scene as tables and JSON show it."""
+"""A solved scene, and the forces along its arc, as tables and JSON show them."""
 
 import sys
 from collections.abc import Sequence
+from decimal import Decimal
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from ..model.digits import to_digits, to_place, with_uncertainty
+from ..model.digits import tidy, to_place, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, QUANTITIES, cited
+from ..model.scene import with_unit
 from ..solver.answers import Answers
+from ..solver.balance import Contact
 from ..solver.expected import is_assumed
-from ..solver.messages import notes, reasons, remarks, unmarked
+from ..solver.messages import notes, reasons, remarks, unmarked, verdict
 from .text import VERSION, cell, scene_record
 
 if TYPE_CHECKING:
@@ -19,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> dict[str, object]:
-    """The record for JSON: all quantities with scene and notes, or the quantities named alone."""
+    """Return the record for JSON: all quantities with scene and notes, or only the quantities named."""
     names = only or answers.names
     results: dict[str, object] = {name: answers[name] for name in names}
     uncertainty = answers.standard_uncertainties(names) or None
@@ -35,12 +38,12 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
         **absent,
         **results,
         **{key: values and absent | values for key, values in uncertain.items()},
-        "notes": notes(answers),
+        "notes": notes(answers, answers.names),
     }
 
 
 def csv_record(answers: Answers, names: Sequence[str], budget: bool = False) -> dict[str, object]:
-    """The record for CSV: values, then uncertainties, then each input's share of the variances."""
+    """Return the record for CSV: values, then uncertainties, then each input's share of the variances."""
     values = {name: answers[name] for name in names}
     uncertain = {f"u_{name}": u for name, u in answers.standard_uncertainties(names).items()}
     inputs = answers.uncertain if budget else ()
@@ -53,16 +56,23 @@ def csv_record(answers: Answers, names: Sequence[str], budget: bool = False) -> 
     return values | uncertain | shares
 
 
-def beside_bare(answers: Answers, only: Sequence[str], values: bool) -> list[str]:
-    """Sentences that CSV and bare values leave out: assumptions, reasons, and uncertain ``values``."""
-    assumed = ["regime: assumed, as mu is not given."] if "regime" in only and is_assumed(answers) else []
-    uncertain = [name for name in only if values and answers.standard_uncertainties([name]).get(name)]
-    return [*assumed, *(_stated(answers, name) for name in uncertain), *reasons(answers)]
+def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> list[str]:
+    """Return the sentences that CSV and bare values leave out on the quantities named, or on all.
+
+    With ``values``, uncertain ones are said with their uncertainties.
+    """
+    assumed = ["regime: assumed, as mu is not given."] if "regime" in names and is_assumed(answers) else []
+    uncertain = [name for name in names if values and answers.answer(name).uncertainty]
+    return [
+        *assumed,
+        *(_stated(answers, name) for name in uncertain),
+        *reasons(answers, names or answers.names),
+    ]
 
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 AT_LIMIT = ("friction_force", "friction_force_x", "friction_force_y")
-"""Quantities that are one number only where friction is at its limit."""
+"""The quantities that have a single value only if friction is at its limit."""
 
 
 def print_table(
@@ -75,16 +85,18 @@ def print_table(
     names = answers.names[1:] if whole else answers.main
     groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *answers.found)])
     found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
-    page.head(answers, [f"Found: {', '.join(found)}."] * bool(found))
+    page.head(answers, f"Found: {', '.join(found)}." if found else "")
     if groups:
         page.table(COLUMNS, groups)
-    page.say(*map(unmarked, remarks(answers)), *reasons(answers))
+    page.say(
+        *map(unmarked, remarks(answers)), *reasons(answers, list(dict.fromkeys([*names, *answers.found])))
+    )
     if budget:
         print_budget(answers, names, page)
 
 
 def as_text(answers: Answers) -> str:
-    """The same page as text without colours, in the width and the characters of standard output."""
+    """Return the page as text without colours, in the width and the characters of standard output."""
     from shutil import get_terminal_size
 
     from rich.console import Console
@@ -98,7 +110,7 @@ def as_text(answers: Answers) -> str:
 
 
 def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
-    """The cells of the table: a row for each quantity that exists, by group."""
+    """Return the cells of the table: a row for each quantity that exists, by group."""
     from .page import aligned
 
     values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
@@ -108,26 +120,28 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     for name, value in zip(values, aligned(values.values()), strict=True):
         about, case = QUANTITIES[name], answers.case
         equation = cited(name, case.regime == "slip", case.rubs)
-        condition = " at mu_verge" * (name in AT_LIMIT and case.mu_assumed)
-        row = [f"{name}{condition}", value, about.unit, about.symbol, equation]
+        shown = f"{name} at mu_verge" if name in AT_LIMIT and case.mu_assumed else name
+        row = [shown, value, about.unit, about.symbol, equation]
         groups.setdefault(about.group, []).append(row)
     return list(groups.values())
 
 
 def _stated(answers: Answers, name: str) -> str:
-    """A quantity with its value, uncertainty and unit."""
-    return f"{name} = {_with_uncertainty(answers, name)} {QUANTITIES[name].unit}".rstrip()
+    """Say a quantity with its value, uncertainty and unit."""
+    return f"{name} = {with_unit(_with_uncertainty(answers, name), QUANTITIES[name].unit)}"
 
 
 def _with_uncertainty(answers: Answers, name: str) -> str:
-    """A value, and its uncertainty if it has one; empty if it does not exist."""
+    """Return a value, with its uncertainty if it has one; "" if it has no value."""
     shown = cell(answers[name])
-    u = answers.uncertainty(name, to_digits(2)) if shown else None
+    if not (shown and answers.uncertainties and answers.answer(name).uncertainty):
+        return shown
+    u = answers.uncertainties.of(name, 2)
     return with_uncertainty(lambda place: answers.rounded(name, to_place(place)), u) if u else shown
 
 
 def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = None) -> None:
-    """Each uncertain input's share of the variance of each quantity."""
+    """Print each uncertain input's share of the variance of each quantity."""
     from .page import Page, aligned
 
     page, names = page or Page(), [name for name in names if name != "regime"]
@@ -139,3 +153,49 @@ def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = N
     rows = ([name, *cells] for name, *cells in zip(budgets, *columns, strict=True))
     by_group = groupby(rows, lambda row: QUANTITIES[row[0]].group)
     page.table(["Quantity", *answers.uncertain], [list(group) for _, group in by_group])
+
+
+# The arc of contact
+
+COLUMN_UNITS = {
+    "angle": "°",
+    "tension": "N",
+    "normal_per_radian": "N/rad",
+    "friction_per_radian": "N/rad",
+    "normal_per_metre": "N/m",
+    "friction_per_metre": "N/m",
+}
+
+
+def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
+    """Return the record of an arc for JSON."""
+    return {
+        "version": VERSION,
+        "scene": scene_record(answers.case.scene, round_=answers.round),
+        "regime": answers.case.regime,
+        "profile": arc.kind,
+        "points": [{name: point.get(name) for name in COLUMN_UNITS} for point in arc.points],
+        "balance": arc.balance,
+        "notes": [unmarked(verdict(answers)), *arc.notes],
+    }
+
+
+def print_contact(answers: Answers, arc: Contact) -> None:
+    """Print the scene, the verdict, the points along the arc, the balance of forces, and the notes."""
+    from .page import Page, aligned
+
+    page = Page()
+    page.head(answers)
+    heads = [f"{name.partition('_per_')[0]} ({COLUMN_UNITS[name]})" for name in arc.points[0]]
+    rows = [{**point, "angle": tidy(Decimal(point["angle"]))} for point in arc.points]
+    columns = [aligned(cell(row[name]) for row in rows) for name in arc.points[0]]
+    page.table(heads, [list(zip(*columns, strict=True))])
+    forces = {name: row for name, row in arc.balance.items() if "x" in row}
+    xs, ys = (aligned(cell(force[axis]) for force in forces.values()) for axis in "xy")
+    force_rows = list(zip(forces, xs, ys, strict=True))
+    page.table(["Force on the pulley", "x (N)", "y (N)"], [force_rows[:2], force_rows[2:]])
+    unit = "N m" if answers.case.scene.R is not None else "N, per unit radius"
+    torques = aligned(map(cell, arc.balance["torque"].values()))
+    kinds = ("friction along the arc", "R (T2 - T1)", "residual")
+    page.table([f"Torque on the pulley ({unit})", ""], [list(zip(kinds, torques, strict=True))])
+    page.say(*arc.notes)

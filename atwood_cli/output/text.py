@@ -1,4 +1,4 @@
-"""Results as text, without rich: cells, JSON, CSV, sentences on stderr."""
+"""Results as text, without rich: cells, JSON, CSV, and sentences on stderr."""
 
 import json
 import os
@@ -10,14 +10,14 @@ from fractions import Fraction
 from math import inf
 from typing import Any, NamedTuple, TextIO
 
-from ..model.angle import Angle
 from ..model.digits import Rounding, as_typed, exact_or_rounded, is_infinite, text, to_double
-from ..model.scene import MEASURED, UNMEASURED, Axle, Motion, Scene, stated
+from ..model.scene import INERTIA_FACTORS, MEASURED, UNMEASURED, Axle, Motion, Scene, parameter_of, with_unit
+from ..model.units import Angle
 from .files import Stdout, printable, stdout_into
 
 
 def say(*messages: str) -> None:
-    """Print each message on stderr, a line for each, under the name of the program."""
+    """Print each message on stderr, on a line that begins with the name of the program."""
     for message in messages:
         line = f"atwood: {printable(message, keep='')}"
         if sys.stderr.isatty():
@@ -30,11 +30,11 @@ def say(*messages: str) -> None:
 
 A_UNIT = r"kg|g|m/s²|rad/s²|m/s\^2|m|[mnµ]?s|m?Nm?|ulp"
 UNBROKEN = rf" (?=[±=])|(?<=[±=]) |(?<=[\d)]) (?=(?:{A_UNIT})\b)|(?<=\bN) (?=m\b)|(?<=\bkg) (?=m[²^])"
-"""The blanks at which no line breaks: they join a name, its value, its uncertainty and its unit."""
+"""The blanks at which no line breaks, as they join a name, its value, its uncertainty and its unit."""
 
 
 def wrapped(words: str, width: int, first: str = "", later: str = "") -> list[str]:
-    """The words in lines of at most that width; a number that is longer with its unit has a line of its own.
+    """Return words in lines of at most that width; a number too long for it has a line of its own.
 
     ``first`` stands before the first line, and ``later`` before every other line.
     """
@@ -49,7 +49,7 @@ def wrapped(words: str, width: int, first: str = "", later: str = "") -> list[st
 
 
 def finish() -> None:
-    """Flush both streams now: an error as Python closes them would change the exit status."""
+    """Flush both streams now, as an error while Python closes them would change the exit status."""
     for stream in (sys.stdout, sys.stderr):
         try:
             stream.flush()
@@ -66,13 +66,12 @@ def drop(stream: TextIO) -> None:
         os.close(nowhere)
 
 
-DISK = Fraction(1, 2)
 VERSION = 2
-"""The version of JSON's keys (see `examples/json.md`); it grows when a key goes or changes its meaning."""
+"""The version of JSON's keys (see `examples/json.md`), which grows when a key goes or changes its meaning."""
 
 
 class Forms(NamedTuple):
-    """A result in the forms in which it may be asked for; a form is made when it is asked for.
+    """A result in all forms that may be asked for. Each is made when it is asked for.
 
     ``json`` returns the record, and ``records`` the lines of CSV. ``page`` prints the page. ``bare`` are the
     values that --only names, and ``below`` prints the lines after them. ``notes`` are for forms without any.
@@ -87,7 +86,7 @@ class Forms(NamedTuple):
 
 
 class Form(NamedTuple):
-    """A form for programs: the suffix of its files, the help of its option, and its printer."""
+    """A form for programs: its files' suffix, its option's help, its printer, whether it has the notes."""
 
     suffix: str
     help: str
@@ -101,7 +100,14 @@ def _write_json(forms: Forms) -> None:
 
 
 def _write_csv(forms: Forms) -> None:
-    print_csv(forms.records())
+    """Print a line of names, and a line for each record when it comes."""
+    from csv import writer
+
+    table = writer(Stdout(), lineterminator="\n")
+    for number, record in enumerate(forms.records()):
+        if not number:
+            table.writerow(record)
+        table.writerow(map(cell, record.values()))
 
 
 FORMS = {
@@ -122,7 +128,7 @@ class Target(NamedTuple):
 def show(forms: Forms, target: Target) -> Sequence[str]:
     """Print a result in a form, as bare values or as a page, whole or not at all. Raises OSError.
 
-    Returns the notes if the form has no place for them: CSV and bare values. They are to be said on
+    Returns the notes if the form has no place for them, as CSV and bare values: they are to be said on
     stderr, after the result, which is flushed by then.
     """
     form = FORMS.get(target.form)
@@ -140,17 +146,19 @@ def show(forms: Forms, target: Target) -> Sequence[str]:
 
 
 def as_json(value: object, indent: str = "\n") -> Iterator[str]:
-    """A value as JSON, piece by piece, so that the items of an iterator are written as they come.
+    """Yield a value as JSON, piece by piece, so that the items of an iterator are written as they come.
 
-    Numbers are printed as everywhere. A number that no double can hold is null.
+    An infinite number is null.
     """
     inner = indent + "  "
     match value:
         case Mapping():
             yield "{"
-            for i, (key, item) in enumerate(value.items()):
-                yield f"{',' * bool(i)}{inner}{json.dumps(key)}: "
+            comma = ""
+            for key, item in value.items():
+                yield f"{comma}{inner}{json.dumps(key)}: "
                 yield from as_json(item, inner)
+                comma = ","
             yield f"{indent}}}"
         case list() | Iterator():
             start = "["
@@ -165,36 +173,8 @@ def as_json(value: object, indent: str = "\n") -> Iterator[str]:
             yield json.dumps(value)
 
 
-def for_json(value: Any, digits: int | None) -> Any:
-    """A value as the `json` module takes it, so that it writes what `as_json` writes.
-
-    Numbers are doubles. With ``digits``, and beyond the range of doubles, a decimal is text.
-    """
-    match value:
-        case Mapping():
-            return {key: for_json(item, digits) for key, item in value.items()}
-        case list():
-            return [for_json(item, digits) for item in value]
-        case float() | Decimal():
-            if is_infinite(value):
-                return None
-            return text(value) if digits or is_infinite(float(value)) else float(value)
-    return value
-
-
-def print_csv(records: Iterable[Mapping[str, object]]) -> None:
-    """Print a line of names, and a line for each record when it comes."""
-    from csv import writer
-
-    table = writer(Stdout(), lineterminator="\n")
-    for number, record in enumerate(records):
-        if not number:
-            table.writerow(record)
-        table.writerow(map(cell, record.values()))
-
-
 def cell(value: object) -> str:
-    """A value as bare text; empty if it does not exist or no double can hold it."""
+    """Return a value as bare text, "" if there is none or it is infinite."""
     match value:
         case float() | Decimal():
             return "" if is_infinite(value) else text(value)
@@ -206,7 +186,7 @@ def cell(value: object) -> str:
 def scene_record(
     scene: Scene, motion: Motion = UNMEASURED, round_: Rounding[Any] = to_double
 ) -> dict[str, object]:
-    """The inputs for JSON, in SI units and degrees: numbers, or text where JSON has no number.
+    """Return the inputs for JSON, in SI units and degrees: numbers, or text with a unit.
 
     A number that is a finite decimal is exact. Others are rounded as results are.
     """
@@ -221,7 +201,7 @@ def scene_record(
 
 
 def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
-    """The inputs by name, each with its unit if this is not the usual one."""
+    """Return the inputs by name, each with its unit if this is not the usual one."""
     given: dict[str, Any] = scene._asdict() | {name: getattr(motion, name) for name in MEASURED}
     if motion.finds:
         given[motion.finds] = None
@@ -235,7 +215,7 @@ def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
 
 
 def describe(scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}) -> str:
-    """The scene in one line, as understood, with uncertainties."""
+    """Say the scene in one line, as understood, with uncertainties."""
     return ", ".join(said_of_scene(scene, motion, uncertain).values())
 
 
@@ -245,16 +225,20 @@ def said_of_scene(
     uncertain: Mapping[str, Fraction] = {},
     varied: Container[str] = (),
 ) -> dict[str, str]:
-    """Each input in words, without defaults on which nothing that is shown depends.
+    """Say each input. Hide the default inertia and wrap if no result depends on them.
 
-    A disk is one where the pulley has no mass or stands still. Half a turn is one where nothing rubs.
+    The inertia has no effect on a pulley without mass or at rest, the wrap none without friction.
     """
-    rubs = scene.mu is not None or "mu" in varied or motion.finds is not None
+    has_friction = scene.mu is not None or "mu" in varied or motion.finds is not None
     heavy = scene.M not in (None, 0) or scene.I is not None or "M" in varied or "I" in varied
     idle = set()
-    if scene.inertia == DISK and not rubs and (not heavy or scene.M == inf):
+    if (
+        scene.inertia == Fraction(INERTIA_FACTORS["disk"])
+        and not has_friction
+        and (not heavy or scene.M == inf)
+    ):
         idle.add("inertia")
-    if scene.wrap == 180 and not (rubs or heavy or scene.axle is not None or "axle" in varied):
+    if scene.wrap == 180 and not (has_friction or heavy or scene.axle is not None or "axle" in varied):
         idle.add("wrap")
     in_words = inputs_in_words(scene, motion, uncertain)
     return {name: words for name, words in in_words.items() if name not in idle or name in uncertain}
@@ -263,21 +247,25 @@ def said_of_scene(
 def inputs_in_words(
     scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}
 ) -> dict[str, str]:
-    """Each input in words, as m1 = 1 kg."""
+    """Say each input, as m1 = 1 kg."""
     parts = {}
     for name, (value, unit) in _given(scene, motion).items():
         u = as_typed(uncertain[name]) if name in uncertain else ""
         if isinstance(value, Fraction):
-            number = f"{_as_fine(as_typed(value), u)}{f' ± {u}' * bool(u)}"
-            parts[name] = f"{name} = {number}{unit}" if unit else stated(name, number)
+            number = _as_fine(as_typed(value), u)
+            if u:
+                number = f"{number} ± {u}"
+            in_units = f"{number}{unit}" if unit else with_unit(number, parameter_of(name).unit)
+            parts[name] = f"{name} = {in_units}"
         elif value is not None:
             parts[name] = f"{name} = {value}"
     return parts
 
 
 def _as_fine(number: str, uncertainty: str) -> str:
-    """The number with at least as many decimals as its uncertainty: 3 beside 0.02 is 3.00."""
+    """Return the number with at least as many decimals as its uncertainty: 3 with 0.02 is 3.00."""
     decimals = len(uncertainty.partition(".")[2]) - len(number.partition(".")[2])
     if decimals <= 0 or set("e/") & {*number, *uncertainty}:
         return number
-    return f"{number}{'' if '.' in number else '.'}{'0' * decimals}"
+    pointed = number if "." in number else f"{number}."
+    return pointed + "0" * decimals

@@ -1,9 +1,9 @@
-"""What acts along the arc of contact, and that it adds up: the paper's sections 2 to 4 for a scene.
+"""The forces along the arc of contact, and their sum: the paper's sections 2 to 4 for a scene.
 
 The string acts on the pulley only along the arc: with the normal force nR = T (13) and the friction
-fR = dT/dθ (12), both per radian. Integrated, they are what T1 and T2 would be if they acted on the
-pulley themselves: a force (20) and a torque (23). Here both sides are computed, each rounded
-correctly, and the residuals are exact differences of the printed numbers.
+fR = dT/dθ (12), both per radian. Their integrals equal the force (20) and the torque (23) that T1 and T2
+would exert if they acted on the pulley themselves. Both sides are computed here, each rounded correctly, and
+the residuals are exact differences of the printed numbers.
 """
 
 from collections.abc import Callable
@@ -17,12 +17,12 @@ from ..model.arc import Kind
 from ..model.case import Case
 from ..model.digits import is_infinite
 from ..model.machine import Machine
-from ..model.reasons import FREE_END, NEEDS_M
+from ..model.quantities import FREE_END, NEEDS_M
 from ..model.scene import SceneError, read_whole
 from .answers import Answers
 from .messages import unmarked
 
-Number = float | Decimal
+Rounded = float | Decimal
 
 MAX_POINTS = 100_000
 
@@ -40,26 +40,21 @@ WITHOUT_FRICTION = "Both tensions are equal: there is no friction."
 
 
 class Contact(NamedTuple):
-    """The arc of contact: the profile, its points by column, and the balance."""
+    """The arc of contact: its profile, its points with their columns, the balance of forces, and notes."""
 
     kind: Kind
-    points: list[dict[str, Number]]
-    balance: dict[str, dict[str, Number]]
+    points: list[dict[str, Rounded]]
+    balance: dict[str, dict[str, Rounded]]
     notes: list[str]
 
 
-def check_arc(case: Case) -> None:
-    """Raises SceneError where the string touches nothing, as one of its ends is free."""
+def kind_of(case: Case) -> Kind:
+    """Return the profile of the tension along the arc: with friction to spare, the string creeps.
+
+    Raises SceneError if the scene does not determine the arc.
+    """
     if not case.light:
         raise SceneError("m1" if case.scene.m1 == 0 else "m2", 0, f"leaves no arc: {FREE_END}")
-
-
-def kind_of(case: Case) -> Kind:
-    """How the tension runs along the arc: where friction is to spare, as the string creeps.
-
-    Raises SceneError where the scene does not determine the arc.
-    """
-    check_arc(case)
     if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
         raise SceneError("M", None, f"is missing: {unmarked(NEEDS_M)}")
     spare = case.regime == "no-slip" and case.scene.mu is not None and not case.tensions_equal
@@ -67,9 +62,9 @@ def kind_of(case: Case) -> Kind:
 
 
 def contact(answers: Answers, points: int | str = 13) -> Contact:
-    """The arc of contact of a scene at so many equally spaced angles.
+    """Solve the arc of contact of a scene at so many equally spaced angles.
 
-    Raises SceneError where the scene does not determine the arc.
+    Raises SceneError if the scene does not determine the arc.
     """
     kind = kind_of(answers.case)
     last = read_whole("points", points, 2, MAX_POINTS) - 1
@@ -78,15 +73,15 @@ def contact(answers: Answers, points: int | str = 13) -> Contact:
     return Contact(kind, rows, balance, _notes(answers, kind, balance))
 
 
-def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
-    """The columns at the fraction q of the arc, counted from m1's end."""
+def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Rounded]:
+    """Return the columns at the fraction q of the arc, counted from m1's end."""
     scene, sign = answers.case.scene, answers.case.sign
     from_light = q if sign >= 0 else 1 - q
     piece = _piece(answers, kind, from_light)
     stuck = arc.STUCK[kind][piece] or answers.case.frictionless
 
     def tension(machine: Machine[Any]) -> Any:
-        # Both ends are exact, and so is the string stuck to the pulley from the light end on.
+        # Tensions at both ends are exact, and so is that of a piece stuck from the light end on.
         if from_light == 0 or (piece == 0 and stuck):
             return machine.light_tension
         if from_light == 1:
@@ -97,7 +92,7 @@ def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
     def friction(machine: Machine[Any]) -> Any:
         return machine.ar.number(0) if stuck else machine.arc_mu(kind) * tension(machine) * sign
 
-    def per_metre(of: Callable[[Machine[Any]], Any]) -> Number:
+    def per_metre(of: Callable[[Machine[Any]], Any]) -> Rounded:
         return answers.settle(lambda machine: of(machine) / _radius(machine))
 
     row = {
@@ -112,7 +107,7 @@ def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
 
 
 def _piece(answers: Answers, kind: Kind, from_light: Fraction) -> int:
-    """Which piece of the profile holds the point at that fraction of the arc from the light end."""
+    """Return the piece of the profile that has the point at a fraction of the arc from the light end."""
     last = len(arc.STUCK[kind]) - 1
     for piece in range(last):
 
@@ -125,10 +120,10 @@ def _piece(answers: Answers, kind: Kind, from_light: Fraction) -> int:
     return last
 
 
-def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Number]]:
-    """The forces on the pulley (N) and torques (N m, or N per unit radius), along the arc and by the ends."""
+def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Rounded]]:
+    """Return forces on the pulley (N) and torques (N m, or N per unit radius), by the arc and by T1, T2."""
 
-    def vector(of: Callable[[Any], tuple[Any, Any]]) -> dict[str, Number]:
+    def vector(of: Callable[[Any], tuple[Any, Any]]) -> dict[str, Rounded]:
         return {"x": answers.settle(lambda m: of(m)[0]), "y": answers.settle(lambda m: of(m)[1])}
 
     friction = vector(lambda m: m.seen_from_m1(arc.friction(m.arcs(kind))))
@@ -157,25 +152,28 @@ def _radius(machine: Machine[Any]) -> Any:
     return machine.ar.number(machine.scene.R or Fraction(1))
 
 
-def _sum(answers: Answers, a: Number, b: Number, sign: int = 1) -> Number:
-    """a + sign·b of two printed numbers, exact but for its own rounding; infinite where one of them is."""
+def _sum(answers: Answers, a: Rounded, b: Rounded, sign: int = 1) -> Rounded:
+    """Return a + sign·b of two printed numbers, rounded once; infinite if one of them is."""
     if is_infinite(a) or is_infinite(b):
         return inf
-    value: Number = answers.round(Fraction(a) + sign * Fraction(b))
+    value: Rounded = answers.round(Fraction(a) + sign * Fraction(b))
     return value
 
 
 def about(case: Case, kind: Kind) -> str:
-    """How the tension runs along the arc, in a sentence."""
-    without_mu = case.regime == "no-slip" and case.scene.mu is None
-    return WITHOUT_FRICTION if case.frictionless else WITHOUT_MU if without_mu else ABOUT_KIND[kind]
+    """Return the sentence on a profile of the tension."""
+    if case.frictionless:
+        return WITHOUT_FRICTION
+    if case.regime == "no-slip" and case.scene.mu is None:
+        return WITHOUT_MU
+    return ABOUT_KIND[kind]
 
 
-def _notes(answers: Answers, kind: Kind, balance: dict[str, dict[str, Number]]) -> list[str]:
+def _notes(answers: Answers, kind: Kind, balance: dict[str, dict[str, Rounded]]) -> list[str]:
     notes = [about(answers.case, kind)]
     for name in ("tension_1", "tension_2"):
-        if answers[name] is not None and name in answers.reasons:
-            notes.append(f"{name}: {answers.reasons[name]}.")
+        if answers[name] is not None and answers.answer(name).reason:
+            notes.append(f"{name}: {answers.answer(name).reason}.")
     if any(balance[name][part] for name, part in RESIDUALS):
         notes.append(ROUNDING)
     return notes

@@ -1,4 +1,4 @@
-"""What a script expects of a scene, decided exactly: a regime, or a quantity compared with a number."""
+"""Decide exactly what a script expects: a regime, or a quantity compared with a number."""
 
 import operator
 import re
@@ -6,11 +6,10 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..model.angle import Angle
 from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, to_digits, to_side_of
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, REGIMES, read_name
-from ..model.scene import SceneError
-from ..model.units import STANDARD_GRAVITY, Malformed, Number, in_quotes, read_number
+from ..model.scene import SceneError, with_unit
+from ..model.units import STANDARD_GRAVITY, Angle, Malformed, TypedNumber, in_quotes, read_number
 from .answers import TOO_SMALL, Answers
 from .messages import unmarked
 
@@ -34,20 +33,20 @@ DIMENSIONS = {
     "°": "angle",
     "s": "time",
 }
-"""Of what a quantity is, by its unit."""
+"""The dimension of a quantity, by its unit."""
 
 
 class Condition(NamedTuple):
-    """What is expected, as it was typed; a regime has no number."""
+    """What is expected: the text that was typed, a regime, or a quantity with a comparison and a number."""
 
     typed: str
     name: str
     sign: str = ""
-    number: Number = Number(Fraction(0))
+    number: TypedNumber = TypedNumber(Fraction(0))
 
 
 def read_condition(typed: str) -> Condition:
-    """The condition that a text is. Raises SceneError."""
+    """Read a condition. Raises SceneError."""
     if typed.strip() in REGIMES:
         return Condition(typed, typed.strip())
     if not (match := COMPARISON.fullmatch(typed)):
@@ -64,13 +63,15 @@ def read_condition(typed: str) -> Condition:
 
 
 def failure(answers: Answers, expected: Condition) -> str:
-    """What is so in place of what is expected; empty if that holds."""
+    """Say what holds instead of what is expected, "" if that holds."""
     case = answers.case
     if expected.name in REGIMES:
         if expected.name != case.regime:
             return f"expected {expected.typed}; it is {case.regime}"
-        return f"expected {expected.typed}; it is assumed, as mu is not given" * is_assumed(answers)
-    value, reason = answers[expected.name], answers.reasons.get(expected.name, "")
+        if is_assumed(answers):
+            return f"expected {expected.typed}; it is assumed, as mu is not given"
+        return ""
+    value, reason, *_ = answers.answer(expected.name)
     if value is None or reason == TOO_SMALL:
         return unmarked(f"expected {expected.typed}; {expected.name} has no value: {reason}")
     side = answers.settle(
@@ -84,22 +85,21 @@ def failure(answers: Answers, expected: Condition) -> str:
     else:
         value = answers.rounded(expected.name, to_side_of(given, answers.digits or SHOWN_DIGITS))
         shown = "too large to be written out" if is_infinite(value) else text(value)
-    unit = QUANTITIES[expected.name].unit
-    return f"expected {expected.typed}; it is {shown}{' ' * (unit != '°')}{unit}".rstrip()
+    return f"expected {expected.typed}; it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
 
 
 def is_assumed(answers: Answers) -> bool:
-    """Whether the string is only assumed to hold, as there is no coefficient of friction."""
+    """Decide whether the string is only assumed to hold, as mu is not given."""
     return answers.case.mu_assumed and bool(answers.case.light)
 
 
-def _in_scene(scene: Any, number: Number) -> Fraction:
-    """The number in SI units; a multiple of g is one of the scene's."""
+def _in_scene(scene: Any, number: TypedNumber) -> Fraction:
+    """Return the number in SI units; a multiple of g is one of the scene's g."""
     return Fraction(number.value) * (scene.g / Fraction(STANDARD_GRAVITY) if number.unit == "g" else 1)
 
 
-def _bound(machine: Any, number: Number) -> Any:
-    """The number in the arithmetic of a machine; an angle in degrees."""
+def _bound(machine: Any, number: TypedNumber) -> Any:
+    """Return the number in the arithmetic of a machine; an angle in degrees."""
     if number.unit == "rad":
         return Angle(number.value, "rad").degrees(machine.ar)
     return machine.ar.number(_in_scene(machine.scene, number))

@@ -1,74 +1,68 @@
-"""A solved scene in words: what the string does and why, and what is missing and why.
+"""Why a scene does what it does, and why answers are missing or doubtful, in sentences.
 
-In sentences, as in the reasons of `Undetermined`, names of inputs and quantities stand between backticks.
-`unmarked` takes these out, for the program's own output, where a name is what is typed. `output.typeset`
-puts symbols for the names, for a page of mathematics.
+Backticks mark names, as in the messages of `Undetermined`: `unmarked` takes them out, and LaTeX output
+(`output.typeset`) replaces the names by symbols.
 """
 
-from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from math import inf
 
 from ..model.case import Case
-from ..model.digits import (
-    DOUBLE_DIGITS,
-    SHOWN_DIGITS,
-    as_typed,
-    is_infinite,
-    text,
-    tidy,
-    to_side_of,
-    to_threshold,
-)
+from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, tidy, to_side_of, to_threshold
 from ..model.scene import Scene
 from ..model.units import MAX_MAGNITUDE
 from .answers import Answers
 
 
 def unmarked(words: str) -> str:
-    """A sentence, or a reason, without backticks."""
+    """Return a sentence without backticks."""
     return words.replace("`", "")
 
 
-def notes(answers: Answers) -> list[str]:
-    """Sentences on the regime and why, on what is missing and what is in doubt."""
+def notes(answers: Answers, names: Sequence[str]) -> list[str]:
+    """Return sentences on the regime and why, and on the quantities named, as `reasons`."""
     said = [verdict(answers), *remarks(answers.shown)]
-    return [*map(unmarked, said), *reasons(answers)]
+    return [*map(unmarked, said), *reasons(answers, names)]
 
 
-def reasons(answers: Answers) -> list[str]:
-    """Sentences on the values asked for so far: why some are missing, what is in doubt."""
-    said = reasons_at(Counter(answers.reasons.items()), 1)
+def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
+    """Return sentences on why quantities or their uncertainties are missing or doubtful."""
+    found = {name: answers.answer(name) for name in names if name != "regime"}
+    said = reasons_at({(name, one.reason): 1 for name, one in found.items() if one.reason}, 1)
     uncertainties = answers.uncertainties
     if uncertainties is None:
         return said
-    unsure = {(f"u_{name}", reason): 1 for name, reason in answers.unsure.items()}
-    lopsided = uncertainties.lopsided(answers.spread, answers.digits or DOUBLE_DIGITS)
-    open_ended = map(unmarked, uncertainties.open_ended(answers.open_ended))
-    return [*said, *uncertainties.doubts(), *lopsided, *open_ended, *reasons_at(unsure, 1)]
+    beyond = {name: one.uncertainty_reason for name, one in found.items() if one.uncertainty_reason}
+    without = [name for name, one in found.items() if one.uncertainty is None and one.value is not None]
+    return [
+        *said,
+        *uncertainties.doubts(),
+        *uncertainties.lopsided([name for name, one in found.items() if one.uncertainty]),
+        *map(unmarked, uncertainties.open_ended(without)),
+        *reasons_at({(f"u_{name}", reason): 1 for name, reason in beyond.items()}, 1),
+    ]
 
 
 def reasons_at(
     counted: Mapping[tuple[str, str], int], points: int, where: str = "at {} of {} points"
 ) -> list[str]:
-    """Why values are missing, and in how many places: a sentence for each reason, without backticks."""
-    return [unmarked(sentence) for sentence in missing(counted, points, where)]
+    """Return a sentence for each reason that values are missing, without backticks.
 
-
-def missing(counted: Mapping[tuple[str, str], int], points: int = 1, where: str = "") -> list[str]:
-    """The same with backticks."""
+    ``counted`` says at how many of the ``points`` a quantity is missing for a reason.
+    """
     names: dict[tuple[str, int], list[str]] = {}
     for (name, reason), times in counted.items():
-        names.setdefault((reason, times), []).append(f"`{name}`")
-    return [
-        f"{', '.join(group)}: {reason}{'' if times == points else f' ({where.format(times, points)})'}."
-        for (reason, times), group in names.items()
-    ]
+        names.setdefault((reason, times), []).append(name)
+    said = []
+    for (reason, times), group in names.items():
+        place = "" if times == points else f" ({where.format(times, points)})"
+        said.append(f"{', '.join(group)}: {unmarked(reason)}{place}.")
+    return said
 
 
 def verdict(answers: Answers) -> str:
-    """What the string does, and why, in a sentence."""
+    """Say what the string does, and why."""
     answers = answers.shown
     case, scene = answers.case, answers.case.scene
     if case.sign == 0:
@@ -84,17 +78,17 @@ def verdict(answers: Answers) -> str:
     if not case.light:
         return "Holds: the string's end is fixed to the pulley."
     if scene.mu is None:
-        where = " on a pulley without mass" * (scene.M is None and scene.I is None)
+        where = " on a pulley without mass" if scene.M is None and scene.I is None else ""
         return f"Assumed to hold, without `mu`: it does{where} if `mu` is at least {_enough(answers)}."
     if case.pulley_known:
-        again = " from rest" * (_sliding(answers) is not None)
-        return f"Holds{again}: {_given_mu(scene)}, and {_enough(answers)} is enough."
+        holds = "Holds from rest" if _sliding(answers) else "Holds"
+        return f"{holds}: {_given_mu(scene)}, and {_enough(answers)} is enough."
     least = answers.rounded("least_heavier_mass", to_threshold(up=False, given=case.heavy))
     if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
         return "Holds on any pulley, under any mass that can be given in place of the heavier one."
-    heavy = as_typed(case.heavy)
+    heavy, least_heavy = as_typed(case.heavy), text(least)
     return (
-        f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {text(least)} kg to slip."
+        f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {least_heavy} kg to slip."
     )
 
 
@@ -103,12 +97,12 @@ def _given_mu(scene: Scene) -> str:
 
 
 def _enough(answers: Answers, name: str = "mu_verge") -> str:
-    """The least coefficient that holds the string."""
+    """Say the least coefficient that holds the string."""
     return _threshold(answers, name, up=True, given=answers.case.scene.mu)
 
 
 def _beside_the_axle(answers: Answers) -> str:
-    """What the string does while the axle holds the pulley; nothing where its end is fixed to it."""
+    """Say what the string does while the axle holds the pulley, "" if it is fixed to the pulley."""
     if not answers.case.light:
         return ""
     if mu := _given_mu(answers.case.scene):
@@ -138,24 +132,24 @@ def _slips(answers: Answers) -> str:
             f"Slips on any pulley, for the friction of its axle: {mu} is below the"
             f" {_enough(answers, 'massless_verge')} that would hold it on one without mass{kinetic}."
         )
-    where = " over a pulley that its axle holds" * (case.rim_stands and not case.locked)
-    return f"Slips{where}: {mu} is below the {_enough(answers)} that would hold it{kinetic}."
+    slips = "Slips over a pulley that its axle holds" if case.rim_stands and not case.locked else "Slips"
+    return f"{slips}: {mu} is below the {_enough(answers)} that would hold it{kinetic}."
 
 
 def _held(case: Case) -> str:
-    """The difference that the axle just holds, rounded down, but not below what it does hold."""
+    """Say the difference that the axle just holds, rounded down, but not below the one that it holds."""
     b, difference = case.axle_mass, case.heavy - case.light
     times, unit = (1000, "g") if b < 1 else (1, "kg")
     return f"{text(to_threshold(up=False, given=times * difference)(times * b))} {unit}"
 
 
 def remarks(answers: Answers) -> list[str]:
-    """Further sentences on the scene, as far as they apply."""
+    """Return further sentences on the scene, as far as they apply."""
     return [*odd_inertia(answers), *kinetic(answers), *holding_again(answers), *open_range(answers)]
 
 
 def odd_inertia(answers: Answers) -> list[str]:
-    """A doubt about an inertia factor that few pulleys have."""
+    """Ask whether an inertia factor above 1 is meant, as few pulleys have one."""
     beta = answers.case.beta
     if beta is None or beta <= 1:
         return []
@@ -167,7 +161,7 @@ def odd_inertia(answers: Answers) -> list[str]:
 
 
 def holding_again(answers: Answers) -> list[str]:
-    """The sentence on a string that slips above the critical mass and holds again under much greater ones."""
+    """Say that a string which slips above the critical mass holds again under much greater ones."""
     if answers.case.scene.mu is None or not answers.case.holds_again:
         return []
     return [
@@ -177,7 +171,7 @@ def holding_again(answers: Answers) -> list[str]:
 
 
 def open_range(answers: Answers) -> list[str]:
-    """The range of the motion, where it depends on a pulley mass that is not given."""
+    """Say the range of the motion, if it depends on a pulley mass that is not given."""
     case = answers.case
     if case.scene.mu is None or answers["acceleration"] is not None:
         return []
@@ -190,7 +184,7 @@ def open_range(answers: Answers) -> list[str]:
 
 
 def kinetic(answers: Answers) -> list[str]:
-    """What mu_k does though the string does not slip: whether one that slides already goes on sliding."""
+    """Say whether a string that slides already goes on sliding, though it does not slip from rest."""
     case, mu_k = answers.case, answers.case.scene.mu_k
     if mu_k is None or case.regime == "slip" or case.tensions_equal:
         return []
@@ -211,7 +205,7 @@ def kinetic(answers: Answers) -> list[str]:
 
 
 def _sliding(answers: Answers) -> Answers | None:
-    """The answers to a scene that holds from rest, were the string sliding; None where it would not go on."""
+    """Return the answers if the string slid already, though it holds from rest; None if it would stop."""
     scene = answers.case.scene
     if scene.mu_k is None or not answers.case.pulley_known:
         return None
@@ -220,10 +214,10 @@ def _sliding(answers: Answers) -> Answers | None:
 
 
 def _threshold(answers: Answers, name: str, up: bool, given: Fraction | None = None) -> str:
-    """A threshold, rounded to the side on which the sentence is true, so that it can be typed back."""
+    """Say a threshold, rounded to the side on which the sentence is true, so that it can be typed back."""
     return text(answers.rounded(name, to_threshold(up, given)))
 
 
 def _say(answers: Answers, name: str) -> str:
-    """A value as the table shows it."""
+    """Say a value as the table shows it."""
     return text(answers[name])

@@ -1,230 +1,248 @@
 """How uncertain results are, by solving the scene again with each input an uncertainty less, and more.
 
-The step of a quantity q with an input x is half the range of q(x - u), q(x) and q(x + u): where q is
+The step of a quantity q with an input x is half the range of q(x - u), q(x) and q(x + u): if q is
 monotonic, that is Kragten's step (GUM, 5.1.3, note 2; J. Kragten, Analyst 119, 1994). The standard
 uncertainty of q is the root of the sum of the squared steps. Anybody can redo it with `solve`, and it sees
 that a string slips at one end, which no derivative does.
+
+Each value is rounded to `DIGITS` digits, and a range below `NEGLIGIBLE` of the value counts as 0. So an
+uncertainty is right to `RIGHT_DIGITS` digits.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from decimal import Decimal
+from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
-from functools import cache
-from itertools import starmap
 from operator import attrgetter, itemgetter
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from ..arithmetic.fingerprint import FINGERPRINTS
-from ..arithmetic.interval import Enclosure, Unsettled, enclosures
-from ..arithmetic.rational import N
-from ..arithmetic.settling import GUARD_DIGITS, settle
+from ..arithmetic.interval import ZERO, decimal_context
 from ..model.case import Case
-from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, tidy, to_digits, to_place, to_threshold
-from ..model.digits import with_uncertainty as with_both
-from ..model.machine import Machine
-from ..model.motion import completed, number_of, with_number
-from ..model.quantities import QUANTITIES
-from ..model.reasons import Undetermined
-from ..model.scene import INPUTS, MEASURED, Scene, parameter_of
+from ..model.digits import (
+    SHOWN_DIGITS,
+    as_typed,
+    is_infinite,
+    text,
+    tidy,
+    to_digits,
+    to_place,
+    to_threshold,
+    with_uncertainty,
+)
+from ..model.motion import found_inputs, number_of, with_number
+from ..model.quantities import QUANTITIES, Undetermined
+from ..model.scene import Motion, Scene, parameter_of, with_unit
 
 if TYPE_CHECKING:
-    from ..arithmetic.rational import Arithmetic, Quantity
+    from .answers import Answers
 
-OnMachine = Callable[[Machine[Any]], Any]
-"""Anything that a machine has, as a function of the machine."""
+DIGITS, RIGHT_DIGITS = 48, 15
+NEGLIGIBLE = Decimal("1e-30")
+EXACT = decimal_context(2 * DIGITS, ROUND_HALF_EVEN)
+"""Sums and products of values lose no digit that counts."""
 
-SURE = 20
-"""Digits of the numbers in sentences before they are rounded."""
-LOPSIDED = 5
-"""A sentence says so where the steps to both sides differ by more than this part of the uncertainty."""
-NAMED = 3
-"""How many quantities a sentence names."""
+UNEVEN_SHARE = Decimal("0.2")
+"""A sentence says so if the steps to both sides differ by more than this part of the uncertainty."""
+MOST_NAMED = 3
+"""The most quantities that a sentence names."""
 COVERAGE = 2
-"""The regime is in doubt where it differs within so many standard uncertainties of an input."""
-REGIME = {"no-slip": "holds", "verge": "on the verge", "slip": "slips"}
+"""The regime is in doubt if it differs within so many standard uncertainties of an input."""
+REGIME_WORDS = {"no-slip": "holds", "verge": "on the verge", "slip": "slips"}
+NO_SCENE, NO_FIT = "there is no such scene", "nothing fits what was measured"
+
+
+class Value(NamedTuple):
+    """The value of a quantity, or why it has none; and the decisions about the scene that it is of."""
+
+    number: Decimal | None
+    reason: str = ""
+    case: Case | None = None
 
 
 class End(NamedTuple):
-    """What an input may be in place of its value, and the case of that scene; or why there is none."""
+    """The scene with an input at an end of its range: the input, and the answers, or why there are none."""
 
-    number: Fraction
-    case: Case | None
+    input: Fraction
+    answers: Answers | None
     reason: str = ""
+
+    def value(self, name: str) -> Value:
+        """Return the value of a quantity; one too small to be written out is 0."""
+        if self.answers is None:
+            return Value(None, self.reason)
+        try:
+            number = Decimal(self.answers.settle(attrgetter(name)))
+        except Undetermined as undetermined:
+            return Value(None, str(undetermined))
+        except ZeroDivisionError:
+            return Value(None, "unknown")
+        except OverflowError:  # of a denominator
+            number = ZERO
+        return Value(number, case=self.answers.case)
+
+
+class Spread(NamedTuple):
+    """A quantity in the scene and at both ends of each input, the steps that are not 0, and the variance."""
+
+    here: Decimal
+    ends: Mapping[str, Sequence[Value]]
+    steps: Mapping[str, Decimal]
+    variance: Decimal
 
 
 class Uncertainties:
-    """The standard uncertainties of a scene: of its inputs, ``given`` in SI units, and of its quantities."""
+    """The standard uncertainties of a scene: of its inputs, ``given`` in SI units, and of its quantities.
 
-    def __init__(self, case: Case, given: Mapping[str, Fraction]) -> None:
-        self.case, self.given = case, given
-        self._machine: Callable[..., Machine[Any]] = cache(Machine)
-        self.ends = {x: [end_of(case, x, -u), end_of(case, x, u)] for x, u in given.items()}
+    ``solve`` returns the answers to a scene, to so many digits, with a motion.
+    """
 
-    def of(self, quantity: OnMachine) -> Quantity:
-        """The standard uncertainty of a quantity that has a value at all ends."""
-        return lambda ar: ar.sqrt(_sum_of_squares(ar, self._steps(quantity, ar)))
+    def __init__(
+        self, case: Case, given: Mapping[str, Fraction], solve: Callable[[Scene, int, Motion], Answers]
+    ) -> None:
+        self.case, self.given, self._solve = case, given, solve
+        self._here = End(Fraction(0), solve(case.scene, DIGITS, case.motion))
+        self._ends = {x: (self._end(x, -u), self._end(x, u)) for x, u in given.items()}
+        self._spreads: dict[str, Spread | None] = {}
 
-    def percent(self, quantity: OnMachine, x: str) -> Quantity:
-        """The share of an input in the variance of a quantity, which must not be 0, in percent."""
-
-        def percent(ar: Arithmetic[N]) -> N:
-            steps = self._steps(quantity, ar)
-            if x not in steps or len(steps) == 1:
-                return ar.number(100 * (x in steps))
-            return 100 * steps[x] * steps[x] / _sum_of_squares(ar, steps)
-
-        return percent
-
-    def _steps(self, quantity: OnMachine, ar: Arithmetic[N]) -> dict[str, N]:
-        """By input x on which the quantity depends: half the range of its values at x and at both ends."""
-        return {
-            x: _half_range(*(self._value(quantity, case, ar) for case in self._cases(x)))
-            for x in self.given
-            if len({self._value(quantity, case, FINGERPRINTS) for case in self._cases(x)}) > 1
-        }
-
-    def _cases(self, x: str) -> list[Case]:
-        """The case of the scene, and those at the ends of an input."""
-        return [self.case, *(end.case for end in self.ends[x] if end.case)]
-
-    def _value(self, quantity: OnMachine, case: Case, ar: Arithmetic[N]) -> N:
-        value: N = quantity(self._machine(case, ar))
-        return value
-
-    def _missing(self, quantity: OnMachine, end: End) -> str:
-        """Why a quantity has no value at an end; empty if it has one."""
-        if end.case is None:
-            return end.reason
+    def _end(self, x: str, step: Fraction) -> End:
+        """Solve the scene with an input so much more, as far as it may be; what is found may go below 0."""
+        scene, motion = self.case.scene, self.case.motion
+        number: Fraction = number_of(scene, motion, x) + step
+        if x == "mu_k" and scene.mu is not None:
+            number = min(number, scene.mu)
+        if x != "a":
+            least = scene.mu_k if x == "mu" else None
+            number = max(number, least or Fraction(0))
+        if not number and x != "a" and not parameter_of(x).zero:
+            return End(number, None, NO_SCENE)
         try:
-            self._value(quantity, end.case, FINGERPRINTS)
-        except Undetermined as undetermined:
-            return str(undetermined)
-        except ZeroDivisionError:
-            return "unknown"
-        return ""
+            scene, motion = with_number(scene, motion, x, number)
+            there = scene._replace(**found_inputs(scene, motion))
+            if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
+                return End(number, None, NO_SCENE)
+            answers = self._solve(there, DIGITS, motion)
+            _ = answers.case.axle_mass, answers.case.rim_mass
+        except (Undetermined, ZeroDivisionError):
+            return End(number, None, NO_FIT)
+        return End(number, answers)
 
-    def exists(self, quantity: OnMachine) -> bool:
-        """Whether a quantity has a value at all ends."""
-        return not any(self._missing(quantity, end) for ends in self.ends.values() for end in ends)
+    def _spread(self, name: str) -> Spread | None:
+        """Compute a quantity at all ends, once; None if it has no finite value in the scene."""
+        if name not in self._spreads:
+            here = self._here.value(name).number
+            self._spreads[name] = None if here is None or is_infinite(here) else self._measure(name, here)
+        return self._spreads[name]
+
+    def _measure(self, name: str, here: Decimal) -> Spread:
+        ends = {x: [end.value(name) for end in pair] for x, pair in self._ends.items()}
+        steps, variance = {}, ZERO
+        for x, values in ends.items():
+            numbers = [here, *(value.number for value in values if value.number is not None)]
+            least, most = min(numbers), max(numbers)
+            size = EXACT.subtract(most, least)
+            scale = max(least.copy_abs(), most.copy_abs())
+            if size > EXACT.multiply(NEGLIGIBLE, scale) or is_infinite(size):
+                steps[x] = EXACT.divide(size, Decimal(2))
+                variance = EXACT.fma(steps[x], steps[x], variance)
+        return Spread(here, ends, steps, variance)
+
+    def of(self, name: str, digits: int | None = None) -> Decimal | None:
+        """Return the standard uncertainty of a quantity, to `RIGHT_DIGITS` digits or to fewer.
+
+        It is None if the quantity has no value at an end of an input, or no finite one in the scene.
+        """
+        spread = self._spread(name)
+        if spread is None or any(value.number is None for pair in spread.ends.values() for value in pair):
+            return None
+        return to_digits(min(digits or RIGHT_DIGITS, RIGHT_DIGITS))(EXACT.sqrt(spread.variance))
+
+    def percents(self, name: str) -> dict[str, Decimal]:
+        """Return the share of each input in the variance of a quantity, if that is finite and not 0."""
+        spread = self._spread(name)
+        if spread is None or not spread.steps or is_infinite(spread.variance):
+            return {}
+        steps = {x: spread.steps.get(x, ZERO) for x in self.given}
+        shares = {x: EXACT.divide(EXACT.multiply(step, step), spread.variance) for x, step in steps.items()}
+        return {x: to_digits(RIGHT_DIGITS)(share.scaleb(2, EXACT)) for x, share in shares.items()}
 
     # In sentences
 
     def doubts(self) -> list[str]:
-        """Which mass is heavier, and what the string does, where that is otherwise two uncertainties off."""
+        """Say that the heavier mass, or the regime, is another within two standard uncertainties."""
         said: dict[str, str] = {}
         for x, u in self.given.items():
             for side in (-COVERAGE, COVERAGE):
-                end = end_of(self.case, x, side * u)
-                if end.case and (what := _otherwise(self.case, end.case)) and what not in said:
+                end = self._end(x, side * u)
+                what = end.answers and _otherwise(self.case, end.answers.case)
+                if what and what not in said:
                     said[what] = (
-                        f"{what} is in doubt: it is otherwise at {_at(self.case, x, end)},"
+                        f"{what} is in doubt: it is otherwise at {self._at(x, end)},"
                         f" {COVERAGE} standard uncertainties off. The results are for the inputs as given."
                     )
         return [*said.values()]
 
     def open_ended(self, names: Iterable[str]) -> list[str]:
-        """Sentences on quantities that have no value at an end, and on what they are at the other one."""
-        found: dict[tuple[str, str], list[tuple[str, End]]] = {}
+        """Say which quantities have no value at an end of an input, and which they have at the other one."""
+        found: dict[tuple[str, str], list[str]] = {}
         for name in names:
-            for x, ends in self.ends.items():
-                for end, other in zip(ends, reversed(ends), strict=True):
-                    if why := self._missing(attrgetter(name), end):
-                        found.setdefault((_at(self.case, x, end), why), []).append((name, other))
+            spread = self._spread(name)
+            for x, values in spread.ends.items() if spread else ():
+                for i, value in enumerate(values):
+                    if spread and value.number is None:
+                        place = self._at(x, self._ends[x][i]), value.reason
+                        found.setdefault(place, []).append(_one_sided(name, spread.here, values[1 - i]))
                         break
         return [
-            f"{_listed(self._one_sided, without)}: at {place} {'it ' * why.startswith('does')}{why}."
-            for (place, why), without in found.items()
+            f"{_first_of(sentences)}: at {place} {'it ' if why.startswith('does') else ''}{why}."
+            for (place, why), sentences in found.items()
         ]
 
-    def _one_sided(self, name: str, other: End) -> str:
-        """A value without an uncertainty, and the one at the only end where it has one."""
-        here = self._settled(name, self.case)
-        said = f"{name} is {_with_unit(name, tidy(to_digits(SHOWN_DIGITS)(here)))}"
-        if self._missing(attrgetter(name), other) or other.case is None:
-            return said
-        there = self._settled(name, other.case)
-        if there == here:
-            return said
-        bound = to_threshold(up=there > here)(there)
-        return f"{said}, {_with_unit(name, bound)} or {'more' if there < here else 'less'}"
+    def lopsided(self, names: Iterable[str]) -> list[str]:
+        """Say which quantities change by more to one side, or change sign or regime within an uncertainty."""
+        found: dict[str, list[str]] = {}
+        for x in self.given:
+            for name in names:
+                spread, u = self._spread(name), self.of(name)
+                if spread and u and self._is_lopsided(spread, x, u):
+                    found.setdefault(x, []).append(self._from_end_to_end(name, spread, x))
+        return [f"{_first_of(sentences)}, as {x} is uncertain." for x, sentences in found.items()]
 
-    def lopsided(self, spread: Mapping[str, float | Decimal], digits: int) -> list[str]:
-        """Sentences on quantities that change by more to one side, or in which the regime or a sign changes.
-
-        ``spread`` has the uncertainties shown, by name of the quantity, settled to so many digits.
-        """
-        ar = enclosures(digits + GUARD_DIGITS)
-        finite = [name for name, u in spread.items() if u and not is_infinite(u)]
-        found = {
-            x: [(name, x) for name in finite if self._is_lopsided(attrgetter(name), x, ar)]
-            for x in self.given
-        }
-        return [
-            f"{_listed(self._from_end_to_end, names)}, as {x} is uncertain."
-            for x, names in found.items()
-            if names
-        ]
-
-    def _is_lopsided(self, quantity: OnMachine, x: str, ar: Arithmetic[Enclosure]) -> bool:
-        """Whether one step differs from half the range by more than a fifth of the uncertainty, or worse."""
-        cases = self._cases(x)
-        try:
-            steps = self._steps(quantity, ar)
-            if x not in steps:
-                return False
-            if any(_otherwise(self.case, case) for case in cases):
-                return True
-            here, *there = (self._value(quantity, case, ar) for case in cases)
-            u = ar.sqrt(_sum_of_squares(ar, steps))
-        except (Unsettled, ZeroDivisionError, OverflowError):  # nearer to a pole than anything measured
+    def _is_lopsided(self, spread: Spread, x: str, u: Decimal) -> bool:
+        if x not in spread.steps or is_infinite(u):
             return False
-        if any((end * here).hi < 0 for end in there):
-            return True
-        return any((LOPSIDED * abs(abs(here - end) - steps[x]) - u).lo > 0 for end in there)
+        for value in spread.ends[x]:
+            if value.case and _otherwise(self.case, value.case):
+                return True
+            if value.number is not None:
+                changes_sign = EXACT.multiply(value.number, spread.here) < 0
+                change = EXACT.subtract(spread.here, value.number).copy_abs()
+                uneven = EXACT.subtract(change, spread.steps[x]).copy_abs()
+                if changes_sign or uneven > EXACT.multiply(UNEVEN_SHARE, u):
+                    return True
+        return False
 
-    def _from_end_to_end(self, name: str, x: str) -> str:
-        """A quantity with its uncertainty, and from where to where it goes with an input."""
-        values = sorted(((self._settled(name, case), case) for case in self._cases(x)), key=itemgetter(0))
-        short = settle(self.of(attrgetter(name)), to_digits(2), 2)
-        here, unit = self._settled(name, self.case), QUANTITIES[name].unit
-        both = with_both(lambda place: to_place(place)(here), short)
-        round_ = to_place(short.adjusted() - 1)
+    def _from_end_to_end(self, name: str, spread: Spread, x: str) -> str:
+        """Say a quantity with its uncertainty, and from where to where it goes with an input."""
+        short = self.of(name, 2)
+        assert short is not None
+        unit, round_ = QUANTITIES[name].unit, to_place(short.adjusted() - 1)
+        both = with_uncertainty(lambda place: to_place(place)(spread.here), short)
+        values = [(spread.here, self.case)]
+        values += [(end.number, end.case) for end in spread.ends[x] if end.number is not None and end.case]
+        values.sort(key=itemgetter(0))
         changes = any(case.regime != self.case.regime for _, case in values)
-        low, high = (
-            f"{text(tidy(round_(value)))}{f' ({REGIME[case.regime]})' * changes}"
-            for value, case in (values[0], values[-1])
-        )
-        return f"{name} is {both}{f' {unit}' * bool(unit)}, from {low} to {high}"
+        ends = []
+        for value, case in (values[0], values[-1]):
+            regime = f" ({REGIME_WORDS[case.regime]})" if changes else ""
+            ends.append(f"{text(tidy(round_(value)))}{regime}")
+        return f"{name} is {with_unit(both, unit)}, from {ends[0]} to {ends[1]}"
 
-    def _settled(self, name: str, case: Case) -> Decimal:
-        """A value to many digits."""
-        quantity = attrgetter(name)
-        return settle(lambda ar: self._value(quantity, case, ar), to_digits(SURE), SURE)
-
-
-def end_of(case: Case, x: str, step: Fraction) -> End:
-    """The scene with an input so much more: as far as it may be, and with what was found going on below 0."""
-    scene, motion = case.scene, case.motion
-    number: Fraction = number_of(scene, motion, x) + step
-    limits = INPUTS | MEASURED
-    if x == "mu_k" and scene.mu is not None:
-        number = min(number, scene.mu)
-    if x != "a":
-        number = max(number, (x == "mu" and scene.mu_k) or Fraction(0))
-    if not number and x != "a" and not limits[x].zero:
-        return End(number, None, "there is no such scene")
-    there, measured = with_number(scene, motion, x, number)
-    try:
-        there = completed(there, measured)
-        if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
-            return End(number, None, "there is no such scene")
-        found = Case(there, measured)
-        _ = found.axle_mass, found.rim_mass
-    except (Undetermined, ZeroDivisionError):
-        return End(number, None, "nothing fits what was measured")
-    return End(number, found)
+    def _at(self, x: str, end: End) -> str:
+        """Say an input at an end, with its unit: "mu = 0.35"."""
+        given = getattr(self.case.scene if x in Scene._fields else self.case.motion, x)
+        unit = getattr(given, "unit", parameter_of(x).unit)
+        return f"{x} = {with_unit(as_typed(end.input), unit)}"
 
 
 DOUBTFUL = {
@@ -232,35 +250,26 @@ DOUBTFUL = {
     "Whether the axle holds the difference": "axle_holds",
     "Whether the string slips": "regime",
 }
-"""What may be otherwise at an end of an input, and the attribute of `Case` that says so."""
+"""The decisions that may differ at an end of an input, and their attributes of `Case`."""
 
 
 def _otherwise(case: Case, other: Case) -> str:
-    """What is otherwise in another case; empty if nothing is."""
+    """Name the first decision that is another in another case, "" if there is none."""
     return next((what for what, x in DOUBTFUL.items() if getattr(case, x) != getattr(other, x)), "")
 
 
-def _at(case: Case, x: str, end: End) -> str:
-    """An input at an end, with its unit: "mu = 0.35"."""
-    given = getattr(case.scene if x in Scene._fields else case.motion, x)
-    unit = getattr(given, "unit", parameter_of(x).unit)
-    return f"{x} = {as_typed(end.number)}{' ' * (unit not in ('', '°'))}{unit}"
+def _one_sided(name: str, here: Decimal, other: Value) -> str:
+    """Say a value without an uncertainty, and the one at the only end that has one."""
+    unit = QUANTITIES[name].unit
+    said = f"{name} is {with_unit(text(tidy(to_digits(SHOWN_DIGITS)(here))), unit)}"
+    if other.number is None or other.number == here:
+        return said
+    bound = with_unit(text(to_threshold(up=other.number > here)(other.number)), unit)
+    return f"{said}, {bound} or {'more' if other.number < here else 'less'}"
 
 
-def _with_unit(name: str, value: Decimal) -> str:
-    """A value in a sentence, with its unit."""
-    return f"{text(value)} {QUANTITIES[name].unit}".rstrip()
-
-
-def _listed(say: Callable[..., str], things: Sequence[Iterable[Any]]) -> str:
-    """What is said of the first things, and how many more there are."""
-    more = f", and so on for {len(things) - NAMED} more" * (len(things) > NAMED)
-    return "; ".join(starmap(say, things[:NAMED])) + more
-
-
-def _sum_of_squares(ar: Arithmetic[N], steps: Mapping[str, N]) -> N:
-    return sum((step * step for step in steps.values()), ar.number(0))
-
-
-def _half_range(a: Any, b: Any, c: Any) -> Any:
-    return (abs(a - b) + abs(b - c) + abs(c - a)) / 4
+def _first_of(sentences: Sequence[str]) -> str:
+    """Join the first sentences, and count the others."""
+    joined = "; ".join(sentences[:MOST_NAMED])
+    others = len(sentences) - MOST_NAMED
+    return f"{joined}, and so on for {others} more" if others > 0 else joined

@@ -1,13 +1,13 @@
-"""Where along a range the regime changes: the exact place, not the two points beside it.
+"""Find the values along a range at which the regime changes, exactly.
 
-The regime is asked for at few values, between which each condition that it depends on changes at most once.
-Where it differs between two of them, it changes at one of these, or is asked between them, by the decision of
-`Case`, which is exact, until it changes between two neighbouring decimals.
+The regime is decided at a few values, between which each condition that it depends on changes at most once.
+If it differs at two of them, it changes at one of these, or is decided between them, exactly by `Case`,
+until it changes between two neighbouring decimals.
 
 **Why no change is missed.** With friction given, the string slips where ln r > μφ. By (1), and (3) with the
 friction of the axle, the tension ratio of a string that grips is
 
-    r = (h/l) q,  q = (2l + c + b)/(2h + c - b) where the axle lets go, h - l > b, and q = 1 where it holds.
+    r = (h/l) q,  q = (2l + c + b)/(2h + c - b) if the axle turns, h - l > b, and q = 1 if it holds.
 
 Both agree at h = l + b. On a locked pulley q = 1. If c is not known, the regime depends on the ratios for
 c = 0 and for c = ∞. Along one parameter ln r - μφ is monotone, but for a swept mass:
@@ -17,7 +17,7 @@ c = 0 and for c = ∞. Along one parameter ln r - μφ is monotone, but for a sw
 - It rises, or stays, with b = f/g: q rises to 1. So it rises along f (the axle) and falls along g.
 - It falls, or stays, along R: so do c = I/R², where I is given, and b, where the axle's friction is a torque.
 - It does not depend on μ_k.
-- It falls with l: so do h/l and, where the axle lets go, (2l + c + b)/l = 2 + (c + b)/l.
+- It falls with l: so do h/l and, if the axle turns, (2l + c + b)/l = 2 + (c + b)/l.
 - It rises with h up to l + b, as h/l does. Beyond, r goes with h/(2h + c - b): it rises for c >= b and falls
   for c < b.
 
@@ -40,16 +40,16 @@ from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
 from .ranges import LOCKED, Point, Range, about_power, decimal_point, exact_point, with_value
 
-BESIDE = Fraction(1, 10**60)
-"""A number is asked for so far from a value, in proportion, to see whether the regime changes there."""
-SMALLEST = Fraction(1, 10**MAX_MAGNITUDE)
+NEIGHBOUR_SHARE = Fraction(1, 10**60)
+"""A value's neighbour, at which it is decided whether the regime changes there, is off by this part of it."""
+LEAST_INPUT = Fraction(1, 10**MAX_MAGNITUDE)
 """No input but 0 is smaller."""
 
 
 class Change(NamedTuple):
     """A change along a range: ``at`` is the value itself, or the greatest decimal before the change.
 
-    At ``last`` is still what was ``before``, at ``first`` what is ``after``.
+    ``last`` and ``first`` are the nearest values before and after the change.
     """
 
     at: Point
@@ -66,9 +66,9 @@ def changes(
     known: Mapping[Fraction, str] = {},
     what: Callable[[Case], Any] = attrgetter("regime"),
 ) -> Iterator[Change]:
-    """The changes of regime along a range, from its least value on, or of anything else about its cases.
+    """Yield the changes of the regime, or of another decision, along a range, from its least value on.
 
-    ``known`` is what it is at some values, which a place of a change must not contradict.
+    ``known`` has the regime at some values, which the changes must not contradict.
     """
 
     def state(value: Fraction) -> Any:
@@ -87,12 +87,13 @@ def changes(
 
 
 def regimes(along: Range, found: Sequence[Change], scene: Scene) -> list[str]:
-    """Each regime along a range, and up to where it holds."""
+    """Say each regime along a range, and up to which value it holds."""
     parts = []
     for before, change in zip([None, *found], found, strict=False):
         place = along.in_units(change.at)
-        where = "at" if change.at.exact == (before.at.exact if before else along.ends[0]) else "up to"
-        parts.append(f"{change.before} {where} {f'{along.name} = ' * (before is None)}{place}")
+        begins = before.at.exact if before else along.ends[0]
+        where = "at" if change.at.exact == begins else "up to"
+        parts.append(f"{change.before} {where} {place if before else f'{along.name} = {place}'}")
     last = found[-1].after if found else Case(with_value(scene, along.name, along.ends[0])).regime
     parts.append(f"{last} beyond" if found else last)
     if along.locks and (locked := Case(scene._replace(M=inf)).regime) != last:
@@ -101,7 +102,7 @@ def regimes(along: Range, found: Sequence[Change], scene: Scene) -> list[str]:
 
 
 def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
-    """Values of a parameter at which the tension ratio turns."""
+    """Yield the values of an input at which the tension ratio turns from rising to falling, or back."""
     if name in MASSES:
         other = scene.m1 if name == "m2" else scene.m2
         yield other
@@ -111,12 +112,15 @@ def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
 def _between(
     state: Callable[[Fraction], Any], before: Any, last: Fraction, first: Fraction, digits: int, suffix: str
 ) -> tuple[Point, Fraction, Fraction]:
-    """A change between two values: its place, and both sides of it.
+    """Return a change between two values, and the nearest values on both sides of it.
 
-    The state is the one ``before`` at ``last``, and not at ``first``.
+    The state is ``before`` at ``last``, and another one at ``first``.
     """
     gap = (first - last) / 2
-    above, below = last + min(gap, last * BESIDE or SMALLEST), first - min(gap, first * BESIDE)
+    above, below = (
+        last + min(gap, last * NEIGHBOUR_SHARE or LEAST_INPUT),
+        first - min(gap, first * NEIGHBOUR_SHARE),
+    )
     if state(above) != before:
         return exact_point(last, suffix), last, above
     if state(below) == before:
@@ -137,7 +141,7 @@ def _between(
 
 
 def _middle(last: Fraction, first: Fraction) -> Fraction:
-    """A value between two; where their sizes differ much, between their logarithms."""
+    """Return a value between two: their mean, or if their sizes differ much, about their geometric mean."""
     low, high = sorted((last, first))
     if low and high < 16 * low:
         return (low + high) / 2

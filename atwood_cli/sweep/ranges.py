@@ -2,9 +2,9 @@
 
 A point is exactly the number that is printed, so that `solve` given that number prints the same row.
 Linear ranges step in exact fractions from one end to the other: steps of 0.1 are 0.1. Points that are no
-decimals (steps of a third), or at equal ratios, are rounded to as many digits as results are shown with, or
-to more if it takes more to tell them apart well. Ends that are decimals are hit exactly. The values of a list
-are all exact: a name such as disk is a point 0.5, a third is the text 1/3.
+decimals (steps of a third), or at equal ratios, are rounded to the digits of results, or to more if
+neighbours would look alike. Ends that are decimals are points exactly. The values of a list are all exact: a
+name such as disk is a point 0.5, a third is the text 1/3.
 """
 
 import re
@@ -33,21 +33,22 @@ from ..model.scene import (
     Input,
     Scene,
     SceneError,
-    in_units,
+    parameter_of,
     read_exactly,
     read_value,
     read_whole,
+    with_unit,
 )
 from ..model.units import MAX_DIGITS, in_quotes, read_number
 from ..output.text import said_of_scene
 from ..solver.answers import Answers
 
-UNUSUAL = {"rad": "rad", "N m": "Nm"}
-"""The units that points carry, as there are others for the same parameter."""
+UNIT_SUFFIXES = {"rad": "rad", "N m": "Nm"}
+"""The units that points carry, as they are not the usual ones of their input."""
 MAX_POINTS, MAX_RANGES = 1_000_000, 2
 FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
-LONGEST_LIST = 6
-"""Values of a list that a sentence writes out."""
+MOST_VALUES_SAID = 6
+"""The most values of a list that a sentence writes out."""
 
 
 class Point(NamedTuple):
@@ -62,7 +63,7 @@ class Point(NamedTuple):
 
     @property
     def text(self) -> str:
-        """As `solve` takes it."""
+        """The point as `solve` takes it."""
         return self.printed if isinstance(self.printed, str) else text(self.printed)
 
 
@@ -70,7 +71,7 @@ LOCKED = Point(inf, "inf")
 
 
 def exact_point(value: Fraction | float, suffix: str = "", name: str = "") -> Point:
-    """A number as a point: a decimal if it is one, else text."""
+    """Return a number as a point: a decimal if it is one, else text."""
     if isinstance(value, float):
         return LOCKED
     number, words = exact_decimal(value), as_typed(value)
@@ -80,12 +81,12 @@ def exact_point(value: Fraction | float, suffix: str = "", name: str = "") -> Po
 
 
 def decimal_point(value: Decimal, suffix: str) -> Point:
-    """A decimal as a point."""
+    """Return a decimal as a point."""
     return Point(Fraction(value), f"{text(value)}{suffix}" if suffix else value)
 
 
 class Range(NamedTuple):
-    """A parameter that is swept, over a range or a list: as typed, its points, the unit that they carry."""
+    """An input that is swept over a range or a list: as typed, its points, the unit that they carry."""
 
     name: str
     typed: str
@@ -99,7 +100,7 @@ class Range(NamedTuple):
 
     @property
     def words(self) -> str:
-        """What a sentence says of it: M from 0 to 50 kg, or M = 0 kg, 10 kg or inf."""
+        """The range in a sentence: M from 0 to 50 kg, or M = 0 kg, 10 kg or inf."""
         if not self.is_list:
             start, stop = self.points[0], self.points[-1]
             return f"{self.name} from {self.cell(start)} to {self.in_units(stop)}"
@@ -108,7 +109,7 @@ class Range(NamedTuple):
             f"{point.name} ({value})" if point.name else value
             for point, value in zip(self.points, values, strict=True)
         ]
-        first = said[:-1] if len(said) <= LONGEST_LIST else [*said[:2], "..."]
+        first = said[:-1] if len(said) <= MOST_VALUES_SAID else [*said[:2], "..."]
         return f"{self.name} = {', '.join(first)} or {said[-1]}"
 
     @property
@@ -117,27 +118,29 @@ class Range(NamedTuple):
 
     @property
     def rank(self) -> int:
-        """Curves run along a range rather than along a list, and along numbers rather than names."""
-        return 2 * (not self.is_list) + (not any(point.name for point in self.points))
+        """2 for a range, 1 for a list of numbers, 0 for one of names: curves run along the greatest."""
+        if not self.is_list:
+            return 2
+        return 0 if any(point.name for point in self.points) else 1
 
     @property
     def locks(self) -> bool:
-        """Whether one of its points is a locked pulley."""
+        """Whether a point is a locked pulley."""
         return self.is_list and LOCKED in self.points
 
     @property
     def finite(self) -> list[Point]:
-        """The points that have a place on an axis, in the order in which they stand there."""
+        """The finite points, in ascending order."""
         return sorted(point for point in self.points if point != LOCKED)
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
-        """The least and the greatest of its finite values, in its unit."""
+        """The least and the greatest finite value, in the unit of the range."""
         points = self.finite
         return Fraction(points[0].exact), Fraction(points[-1].exact)
 
     def steps(self, count: int) -> Iterator[Fraction]:
-        """So many equal steps from one end to the other, about, or equal ratios; with both ends."""
+        """Yield the ends of so many steps from one end to the other, about equal, or of equal ratios."""
         start, stop = self.ends
         yield start
         for i in range(1, count):
@@ -146,15 +149,16 @@ class Range(NamedTuple):
         yield stop
 
     def cell(self, point: Point) -> str:
-        """A point as a table shows it, where a head has the unit."""
+        """Return a point as a table shows it, which has the unit in a head."""
         return point.name or point.text.removesuffix(self.suffix)
 
     def in_units(self, point: Point) -> str:
-        """A point with the unit of its parameter."""
-        return point.text if self.suffix or point == LOCKED else in_units(self.name, point.text)
+        """Return a point with its unit."""
+        bare = self.suffix or point == LOCKED
+        return point.text if bare else with_unit(point.text, parameter_of(self.name).unit)
 
     def stated(self, point: Point) -> str:
-        """What tells a point from others, in a sentence: M = 10 kg, or disk."""
+        """Return a point in a sentence: M = 10 kg, or disk."""
         return point.name or f"{self.name} = {self.in_units(point)}"
 
 
@@ -170,19 +174,19 @@ class Sweep(NamedTuple):
 
     @property
     def inputs(self) -> dict[str, str]:
-        """Each input in words, and the ranges."""
+        """The inputs, and the ranges, in words."""
         ranges = {range_.name: range_.words for range_ in self.ranges}
         return said_of_scene(self.scene, varied=ranges) | ranges
 
     def along(self, along: Range) -> Iterator[tuple[Scene, dict[str, Point]]]:
-        """The scene at each point of the other range, if there is one, and that point."""
+        """Yield the scene at each point of the other range, if there is one, and that point."""
         others = [range_ for range_ in self.ranges if range_ is not along]
         for points in product(*(range_.points for range_ in others)):
             place = dict(zip((range_.name for range_ in others), points, strict=True))
             yield self.at(place), place
 
     def at(self, place: Mapping[str, Point]) -> Scene:
-        """The scene at a point, valid as those at the corners are. What is left out is as in ``scene``."""
+        """Return the scene at a point, with the values of ``scene`` for ranges that the point leaves out."""
         scene = self.scene
         for range_ in self.ranges:
             if range_.name in place:
@@ -190,12 +194,13 @@ class Sweep(NamedTuple):
         return scene
 
     def stated(self, place: Mapping[str, Point]) -> str:
-        """What tells one place of a sweep from others, in a sentence."""
-        return ", ".join(range_.stated(place[range_.name]) for range_ in self.ranges if range_.name in place)
+        """Return a place of a sweep in a sentence."""
+        ranges = (range_ for range_ in self.ranges if range_.name in place)
+        return ", ".join(range_.stated(place[range_.name]) for range_ in ranges)
 
 
 class Row(NamedTuple):
-    """The answers at a point."""
+    """The regime, the values asked for, and why some are missing, at a point."""
 
     at: dict[str, Point]
     regime: str
@@ -204,7 +209,7 @@ class Row(NamedTuple):
 
 
 def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sweep:
-    """The sweep given: values, with one or two ranges or lists, for so many digits. Raises SceneError."""
+    """Read a sweep: values, with one or two ranges or lists, for so many digits. Raises SceneError."""
     typed = {name: words for name in INPUTS if re.search("[:,]", words := given.get(name) or "")}
     if not typed:
         rule = f"or another option of the scene must carry a list, as 0,1,10, or a range: {FORM}"
@@ -214,14 +219,14 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
         third = names[MAX_RANGES]
         rule = f"is a third range or list, after {' and '.join(names[:2])}; give two"
         raise SceneError(third, typed[third], rule)
-    # What is wrong everywhere is not the first point's fault.
+    # An input that is wrong at every point is an error before there are points.
     fixed = {name: read_exactly(name, given.get(name)) for name in INPUTS if name not in typed}
     ranges = [
         read_list(name, words) if "," in words else read_range(name, words, digits)
         for name, words in typed.items()
     ]
     # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
-    corners = ([x.finite[0], x.finite[-1], *[LOCKED] * x.locks] for x in ranges)
+    corners = ([x.finite[0], x.finite[-1], *([LOCKED] if x.locks else [])] for x in ranges)
     scene, *_ = (scene_at(fixed, ranges, corner) for corner in product(*corners))
     sweep = Sweep(ranges, scene)
     if sweep.total > MAX_POINTS:
@@ -231,7 +236,7 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
 
 
 def read_range(name: str, typed: str, digits: int | None = None) -> Range:
-    """A range of a parameter, its points to about so many digits. Raises SceneError."""
+    """Read a range of an input, with points of about so many digits. Raises SceneError."""
     words = typed.split(":")
     if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
         raise SceneError(name, typed, f"is no range; write {FORM}")
@@ -259,7 +264,7 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
 
 
 def read_list(name: str, typed: str) -> Range:
-    """A list of values of a parameter. Raises SceneError."""
+    """Read a list of values of an input. Raises SceneError."""
     words = [word.strip() for word in typed.split(",")]
     if ":" in typed:
         raise SceneError(name, typed, "mixes a list with a range; give one of them")
@@ -277,7 +282,7 @@ def read_list(name: str, typed: str) -> Range:
 
 
 def _read_numbers(name: str, typed: str, words: Sequence[str]) -> tuple[list[Any], str]:
-    """The numbers of a range or a list, and the unit that points carry for them. Raises SceneError."""
+    """Read the numbers of a range or a list, and the unit that their points carry. Raises SceneError."""
     values = [read_value(name, word) for word in words]
     numbers = [getattr(value, "number", value) for value in values]
     named = (LOCKED.text, *INPUTS[name].names)
@@ -286,16 +291,16 @@ def _read_numbers(name: str, typed: str, words: Sequence[str]) -> tuple[list[Any
     if len({bool(read_number(words[i], INPUTS[name].dimension).unit) for i in plain}) > 1:
         # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
         raise SceneError(name, typed, "has a unit at some numbers only; write it at each")
-    suffixes = {UNUSUAL.get(getattr(values[i], "unit", ""), "") for i in plain}
+    suffixes = {UNIT_SUFFIXES.get(getattr(values[i], "unit", ""), "") for i in plain}
     if len(suffixes) > 1:
         raise SceneError(name, typed, "has units of two kinds; write all numbers in the same unit")
     return numbers, next(iter(suffixes), "")
 
 
 def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: int | None) -> int:
-    """The significant digits of points: all where ends and steps are decimals, unless fewer are wanted.
+    """Return the significant digits of points: all if ends and steps are decimals, unless digits are wanted.
 
-    Else as many as are wanted, but three more than it takes to tell neighbours apart.
+    Else as many as are wanted, but at least three more than neighbours have in common.
     """
     if log:  # neighbours differ by at least |ln ratio|/last of their size
         apart = min(abs(1 - start / stop), abs(1 - stop / start)) / last
@@ -308,7 +313,7 @@ def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: 
 
 
 def _equal_steps(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
-    """The points between the ends, each of them from integers over one denominator, rounded once."""
+    """Yield the points between the ends, each from integers over one denominator, rounded once."""
     step = (stop - start) / last
     unit = lcm(start.denominator, step.denominator)
     context = decimal_context(kept, ROUND_HALF_EVEN)
@@ -318,7 +323,7 @@ def _equal_steps(start: Fraction, stop: Fraction, last: int, kept: int) -> Itera
 
 
 def _equal_ratios(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
-    """The points between the ends, each the one before times the same factor, in 20 digits more."""
+    """Yield the points between the ends, each the one before times the same factor, in 20 digits more."""
     context, finer = (decimal_context(n, ROUND_HALF_EVEN) for n in (kept, max(kept, DOUBLE_DIGITS) + 20))
     value, whole = (finer.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (start, stop / start))
     by = finer.exp(finer.divide(finer.ln(whole), Decimal(last)))
@@ -328,22 +333,19 @@ def _equal_ratios(start: Fraction, stop: Fraction, last: int, kept: int) -> Iter
 
 
 def with_value(scene: Scene, name: str, value: Fraction | float) -> Scene:
-    """The scene with another value of a parameter, in the unit that it has there."""
+    """Return the scene with another value of an input, in the unit that it has there."""
     return with_number(scene, UNMEASURED, name, value)[0]
 
 
 def about_power(ratio: Fraction, share: Fraction) -> Fraction:
-    """A ratio to a power between 0 and 1, to a few digits."""
+    """Return a ratio to a power between 0 and 1, to a few digits."""
     context = decimal_context(DOUBLE_DIGITS, ROUND_HALF_EVEN)
     number, exponent = (context.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (ratio, share))
     return Fraction(context.power(number, exponent))
 
 
 def scene_at(fixed: Mapping[str, Input], ranges: Sequence[Range], points: Sequence[Point]) -> Scene:
-    """The scene of the fixed inputs and those at a point, which are read as `solve` reads them.
-
-    Raises SceneError.
-    """
+    """Return the scene of fixed inputs and those at a point, read as by `solve`. Raises SceneError."""
     place = list(zip(ranges, points, strict=True))
     here = {range_.name: read_exactly(range_.name, point.text) for range_, point in place}
     try:
@@ -355,8 +357,8 @@ def scene_at(fixed: Mapping[str, Input], ranges: Sequence[Range], points: Sequen
         raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
 
 
-class _Watched:
-    """A scene that notes what of it is read."""
+class _RecordingScene:
+    """A scene that records which of its inputs are read."""
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.read = scene, set[str]()
@@ -367,24 +369,24 @@ class _Watched:
 
 
 def _unchanged(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[tuple[str, Answers]]:
-    """The quantities that are found from the other inputs alone, and so are the same at all points."""
+    """Yield the quantities that do not read a swept input, and so are the same at all points."""
     fixed = set(INPUTS) - {range_.name for range_ in sweep.ranges}
     for name in names:
-        watched: Any = _Watched(sweep.scene)
-        answers = Answers(watched, digits)
+        recording: Any = _RecordingScene(sweep.scene)
+        answers = Answers(recording, digits)
         _ = answers[name]
-        if watched.read <= fixed:
+        if recording.read <= fixed:
             yield name, answers
 
 
 def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[Row]:
-    """The quantities named at every point, each point solved by itself."""
+    """Yield the quantities named at every point, each point solved by itself."""
     swept = [range_.name for range_ in sweep.ranges]
     unchanged = dict(_unchanged(sweep, ["regime", *names], digits))
     for points in product(*(range_.points for range_ in sweep.ranges)):
         place = dict(zip(swept, points, strict=True))
         answers = Answers(sweep.at(place), digits)
-        found = {name: unchanged.get(name, answers) for name in ["regime", *names]}
-        values = {name: found[name][name] for name in names}
-        reasons = {name: found[name].reasons[name] for name in names if name in found[name].reasons}
-        yield Row(place, found["regime"]["regime"], values, reasons)
+        found = {name: unchanged.get(name, answers).answer(name) for name in ["regime", *names]}
+        values = {name: found[name].value for name in names}
+        reasons = {name: found[name].reason for name in names if found[name].reason}
+        yield Row(place, found["regime"].value, values, reasons)

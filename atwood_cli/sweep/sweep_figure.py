@@ -149,7 +149,7 @@ def picture(sweep: Sweep, names: Sequence[str]) -> Picture:
     lacking = [
         (name, answers) for answers in all_answers for name in names if isnan(_height(answers, name, "max"))
     ]
-    reasons = {(name, answers.reasons[name]): 1 for name, answers in lacking if answers[name] is None}
+    reasons = {(name, answers.answer(name).reason): 1 for name, answers in lacking if answers[name] is None}
     absent = Counter(name for name, _ in lacking)
     drawn = [name for name in names if absent[name] < len(all_answers)]
     if not drawn:

@@ -9,6 +9,7 @@ from operator import attrgetter
 
 from ..model.digits import SHOWN_DIGITS, to_digits, to_double
 from ..model.quantities import QUANTITIES, STANDARD
+from ..model.scene import with_unit
 from ..output.page import Page, aligned, one, watched
 from ..output.text import VERSION, cell, scene_record
 from ..solver.messages import reasons_at
@@ -18,7 +19,7 @@ from .sweep_figure import MAX_CURVES
 
 
 class SweepPage:
-    """A sweep in the forms in which it may be asked for. Rows of JSON and CSV are written as they come."""
+    """A sweep as a page, JSON and CSV. Rows of JSON and CSV are written as they come."""
 
     def __init__(self, sweep: Sweep, names: Sequence[str], digits: int | None) -> None:
         self.sweep, self.digits = sweep, digits
@@ -26,14 +27,14 @@ class SweepPage:
         self.missing = set(names)
         """The quantities that were asked for and that no row has."""
         self.names = names or STANDARD
-        # Where a sentence tells the regimes, they have a column only if it is asked for.
+        # If a sentence says the regimes, they have a column only if it is asked for.
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
         self.reasons: Counter[tuple[str, str]] = Counter()
         self.done = 0
         """The rows that are solved and, as JSON or CSV, written."""
 
     def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
-        """The rows; on the way, reasons for missing values are counted."""
+        """Yield the rows, and count the reasons for missing values."""
         rows = solve_rows(self.sweep, names, digits)
         for row in watched(rows, self.sweep.total, rows=one) if watch else rows:
             self.reasons.update(row.reasons.items())
@@ -42,12 +43,12 @@ class SweepPage:
             self.done += 1
 
     def notes(self) -> list[str]:
-        """The reasons for missing values that were asked for, with the number of points, after all rows."""
+        """Say why values that were asked for are missing, with the number of points, after all rows."""
         asked = {key: points for key, points in self.reasons.items() if key[0] in self.asked}
         return reasons_at(asked, self.sweep.total)
 
     def _all_notes(self) -> Iterator[str]:
-        """The reasons for all missing values: an iterator that begins after all rows."""
+        """Say why any values are missing: an iterator that begins after all rows."""
         yield from reasons_at(self.reasons, self.sweep.total)
 
     def json(self) -> Mapping[str, object]:
@@ -81,7 +82,9 @@ class SweepPage:
         above = [", ".join(sweep.inputs.values()), *_regimes(sweep, rows, self.digits)]
         if PULLEY not in same and any(row.regime == "verge" for row in rows):
             above.append(PULLEYS)
-        if shared := [_stated(name, value) for name, value in same.items() if name != "regime"]:
+        units = {name: QUANTITIES[name].unit for name in same if name != "regime"}
+        if units:
+            shared = (f"{name} = {with_unit(same[name], unit)}" for name, unit in units.items())
             above.append(f"In all rows: {', '.join(shared)}.")
         notes = self.notes()
         page.say(*above)
@@ -109,9 +112,9 @@ PULLEYS = "As M is not given, each row that is on the verge has a pulley of its 
 
 
 def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:
-    """The regimes along one range, in a sentence for each point of the other range, if these are few.
+    """Say the regimes along one range, for each point of the other range, if these are few.
 
-    The range is the one that varies fast, if two come into question.
+    Of two ranges of the same rank, it is the one that varies fast.
     """
     along = max(reversed(sweep.ranges), key=attrgetter("rank"))
     if len({row.regime for row in rows}) == 1 and sweep.ranges[1:]:
@@ -125,10 +128,6 @@ def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[
             known = {Fraction(row.at[along.name].exact): row.regime for pair in pairs for row in pair}
             words = ", ".join(regimes(along, list(changes(scene, along, digits, known)), scene))
             yield f"{sweep.stated(points) or 'Regimes'}: {words}."
-
-
-def _stated(name: str, value: str) -> str:
-    return f"{name} = {value} {QUANTITIES[name].unit}".rstrip()
 
 
 def _in_brackets(unit: str) -> str:

@@ -22,6 +22,7 @@ ON_FRICTION = (
 
 @takes(OUTPUT)
 def quantities(target: Target) -> int:
+    """Run the command."""
     columns = ("name", "symbol", "unit", "meaning", "equation")
     rows = [
         ("regime", "", "", f"what the string does: {', '.join(REGIMES)}", ""),
