@@ -157,14 +157,21 @@ def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = N
 
 # The arc of contact
 
-COLUMN_UNITS = {
-    "angle": "°",
-    "tension": "N",
-    "normal_per_radian": "N/rad",
-    "friction_per_radian": "N/rad",
-    "normal_per_metre": "N/m",
-    "friction_per_metre": "N/m",
+POINT = (
+    *("angle", "tension", "normal_per_radian", "friction_per_radian"),
+    *("normal_per_metre", "friction_per_metre"),
+)
+"""The keys of a point in JSON."""
+HEADS = {
+    "angle": "angle (°)",
+    "tension": "tension T = nR (N)",
+    "friction_per_radian": "friction fR (N/rad)",
+    "normal_per_metre": "normal n (N/m)",
+    "friction_per_metre": "friction f (N/m)",
 }
+"""The headings of a point's columns; the normal force by angle is the tension, (13)."""
+FORCES = {"friction": "friction", "normal": "normal force", "sum": "their sum", "resultant": "T1 and T2"}
+"""The forces in the balance, in words."""
 
 
 def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
@@ -174,7 +181,7 @@ def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
         "scene": scene_record(answers.case.scene, round_=answers.round),
         "regime": answers.case.regime,
         "profile": arc.kind,
-        "points": [{name: point.get(name) for name in COLUMN_UNITS} for point in arc.points],
+        "points": [{name: point.get(name) for name in POINT} for point in arc.points],
         "balance": arc.balance,
         "notes": [unmarked(verdict(answers)), *arc.notes],
     }
@@ -186,16 +193,16 @@ def print_contact(answers: Answers, arc: Contact) -> None:
 
     page = Page()
     page.head(answers)
-    heads = [f"{name.partition('_per_')[0]} ({COLUMN_UNITS[name]})" for name in arc.points[0]]
+    names = [name for name in HEADS if name in arc.points[0]]
     rows = [{**point, "angle": tidy(Decimal(point["angle"]))} for point in arc.points]
-    columns = [aligned(cell(row[name]) for row in rows) for name in arc.points[0]]
-    page.table(heads, [list(zip(*columns, strict=True))])
-    forces = {name: row for name, row in arc.balance.items() if "x" in row}
+    columns = [aligned(cell(row[name]) for row in rows) for name in names]
+    page.table([HEADS[name] for name in names], [list(zip(*columns, strict=True))])
+    forces = {words: arc.balance[name] for name, words in FORCES.items()}
     xs, ys = (aligned(cell(force[axis]) for force in forces.values()) for axis in "xy")
     force_rows = list(zip(forces, xs, ys, strict=True))
-    page.table(["Force on the pulley", "x (N)", "y (N)"], [force_rows[:2], force_rows[2:]])
+    page.table(["Force on the pulley", "x (N)", "y (N)"], [force_rows[:2], force_rows[2:3], force_rows[3:]])
     unit = "N m" if answers.case.scene.R is not None else "N, per unit radius"
     torques = aligned(map(cell, arc.balance["torque"].values()))
-    kinds = ("friction along the arc", "R (T2 - T1)", "residual")
+    kinds = ("friction along the arc", "R (T2 - T1)")
     page.table([f"Torque on the pulley ({unit})", ""], [list(zip(kinds, torques, strict=True))])
     page.say(*arc.notes)

@@ -66,7 +66,7 @@ def drop(stream: TextIO) -> None:
         os.close(nowhere)
 
 
-VERSION = 2
+VERSION = 3
 """The version of JSON's keys (see `examples/json.md`), which grows when a key goes or changes its meaning."""
 
 

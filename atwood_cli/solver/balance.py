@@ -2,20 +2,19 @@
 
 The string acts on the pulley only along the arc: with the normal force nR = T (13) and the friction
 fR = dT/dθ (12), both per radian. Their integrals equal the force (20) and the torque (23) that T1 and T2
-would exert if they acted on the pulley themselves. Both sides are computed here, each rounded correctly, and
-the residuals are exact differences of the printed numbers.
+would exert if they acted on the pulley themselves. Both sides are computed here, each by itself and rounded
+correctly, so their digits agree.
 """
 
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from math import inf
 from typing import Any, NamedTuple
 
 from ..model import arc
 from ..model.arc import Kind
 from ..model.case import Case
-from ..model.digits import is_infinite
+from ..model.digits import to_place
 from ..model.machine import Machine
 from ..model.quantities import FREE_END, NEEDS_M
 from ..model.scene import SceneError, read_whole
@@ -25,17 +24,17 @@ from .messages import unmarked
 Rounded = float | Decimal
 
 MAX_POINTS = 100_000
+ZERO_DIGITS = 50
+"""The digits of a sum that must be 0 if it is to be 0."""
 
 ABOUT_KIND = {
     "creep": (
-        "The tension is not unique while friction is to spare. Shown is that of a slightly elastic"
-        " string: it creeps, with friction at its limit, only at the heavier mass's end of the arc."
+        "The tension is not unique while the string grips with friction to spare. Shown is the tension of a"
+        " slightly elastic string, which slips only over the last part of the arc, at the heavier mass."
     ),
     "exponential": "Friction is at its limit all along the arc.",
 }
-WITHOUT_MU = "Without mu, shown is the string on the verge, with the least mu that holds it."
-ROUNDING = "Residuals are differences of the rounded numbers shown."
-RESIDUALS = (("residual", "x"), ("residual", "y"), ("torque", "residual"))
+WITHOUT_MU = "mu is not given: the forces shown are for the least mu that holds."
 WITHOUT_FRICTION = "Both tensions are equal: there is no friction."
 
 
@@ -69,8 +68,7 @@ def contact(answers: Answers, points: int | str = 13) -> Contact:
     kind = kind_of(answers.case)
     last = read_whole("points", points, 2, MAX_POINTS) - 1
     rows = [_point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
-    balance = _balance(answers, kind)
-    return Contact(kind, rows, balance, _notes(answers, kind, balance))
+    return Contact(kind, rows, _balance(answers, kind), _notes(answers, kind))
 
 
 def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Rounded]:
@@ -126,38 +124,42 @@ def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Rounded]]:
     def vector(of: Callable[[Any], tuple[Any, Any]]) -> dict[str, Rounded]:
         return {"x": answers.settle(lambda m: of(m)[0]), "y": answers.settle(lambda m: of(m)[1])}
 
-    friction = vector(lambda m: m.seen_from_m1(arc.friction(m.arcs(kind))))
-    normal = vector(lambda m: m.seen_from_m1(arc.normal(m.arcs(kind))))
+    def friction(m: Machine[Any]) -> tuple[Any, Any]:
+        return m.seen_from_m1(arc.friction(m.arcs(kind)))
+
+    def normal(m: Machine[Any]) -> tuple[Any, Any]:
+        return m.seen_from_m1(arc.normal(m.arcs(kind)))
+
+    forces = {"friction": vector(friction), "normal": vector(normal)}
     ends = vector(lambda m: m.resultant_vector)
-    together = {axis: _sum(answers, friction[axis], normal[axis]) for axis in "xy"}
-    by_contact = answers.settle(
-        lambda m: arc.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.case.sign
-    )
-    by_ends = answers.settle(lambda m: m.tension_difference * _radius(m))
-    return {
-        "friction": friction,
-        "normal": normal,
-        "sum": together,
-        "resultant": ends,
-        "residual": {axis: _sum(answers, together[axis], ends[axis], -1) for axis in "xy"},
-        "torque": {
-            "contact": by_contact,
-            "ends": by_ends,
-            "residual": _sum(answers, by_contact, by_ends, -1),
-        },
+
+    def total(axis: int) -> Rounded:
+        """Return a component of the sum, rounded once.
+
+        If it is 0, as that of both ends, its enclosures have other numbers in them, too, however narrow they
+        are. It is then 0 if `ZERO_DIGITS` digits of it, counted from those of its terms, are.
+        """
+
+        def of(m: Machine[Any]) -> Any:
+            return friction(m)[axis] + normal(m)[axis]
+
+        term = forces["friction"]["xy"[axis]]
+        if term and ends["xy"[axis]] == 0:
+            rounded = answers.settle(of, to_place(Decimal(term).adjusted() - ZERO_DIGITS))
+            return rounded if rounded else ends["xy"[axis]]
+        return answers.settle(of)
+
+    torque = {
+        "contact": answers.settle(
+            lambda m: arc.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.case.sign
+        ),
+        "ends": answers.settle(lambda m: m.tension_difference * _radius(m)),
     }
+    return {**forces, "sum": {"x": total(0), "y": total(1)}, "resultant": ends, "torque": torque}
 
 
 def _radius(machine: Machine[Any]) -> Any:
     return machine.ar.number(machine.scene.R or Fraction(1))
-
-
-def _sum(answers: Answers, a: Rounded, b: Rounded, sign: int = 1) -> Rounded:
-    """Return a + sign·b of two printed numbers, rounded once; infinite if one of them is."""
-    if is_infinite(a) or is_infinite(b):
-        return inf
-    value: Rounded = answers.round(Fraction(a) + sign * Fraction(b))
-    return value
 
 
 def about(case: Case, kind: Kind) -> str:
@@ -169,11 +171,9 @@ def about(case: Case, kind: Kind) -> str:
     return ABOUT_KIND[kind]
 
 
-def _notes(answers: Answers, kind: Kind, balance: dict[str, dict[str, Rounded]]) -> list[str]:
+def _notes(answers: Answers, kind: Kind) -> list[str]:
     notes = [about(answers.case, kind)]
     for name in ("tension_1", "tension_2"):
         if answers[name] is not None and answers.answer(name).reason:
             notes.append(f"{name}: {answers.answer(name).reason}.")
-    if any(balance[name][part] for name, part in RESIDUALS):
-        notes.append(ROUNDING)
     return notes
