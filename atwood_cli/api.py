@@ -9,7 +9,8 @@ from math import isinf
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, overload
 
 from .model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
-from .model.scene import Given, Scene, read_digits
+from .model.scene import OTHER_NAMES, Given, Scene, read_digits
+from .model.units import nearest
 from .solver.answers import Answers, read_answers
 from .solver.messages import notes
 
@@ -213,7 +214,11 @@ def solve(
         SceneError: An input is not valid; it names the input, the value and the rule (a ValueError).
         TypeError: There is no such input.
     """
-    inputs = SIGNATURE.bind(m1, m2, **given).arguments  # raises TypeError if there is no such input
+    for name in given.keys() - Inputs.__annotations__.keys():
+        meant = OTHER_NAMES.get(name.lower())
+        hint = f"; did you mean {meant}?" if meant else nearest(name, Inputs.__annotations__)
+        raise TypeError(f"solve() got an unexpected keyword argument {name!r}{hint}")
+    inputs: dict[str, Any] = {"m1": m1, "m2": m2, **given}
     return _solved(*read_answers(inputs, read_digits(digits)).given)
 
 

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from atwood_cli import solve, solve_arrays
 from atwood_cli.arithmetic.settling import is_positive, settle
-from atwood_cli.model.digits import to_digits, to_threshold
+from atwood_cli.model.digits import to_digits
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver.answers import Answers, read_answers
 from atwood_cli.solver.balance import contact
@@ -83,13 +83,6 @@ def test_a_rational_value_is_rounded_as_what_it_is(name: str) -> None:
         assert settle(lambda ar, by=wanted - value: quantity(ar) + ar.number(by), to_digits(2), 2) == Decimal(
             digits
         )
-
-
-@pytest.mark.parametrize("up", [True, False])
-def test_a_threshold_that_has_few_digits_is_not_moved(up: bool) -> None:
-    """4^(1/2), rounded up to three digits, was 2.01."""
-    quantity, value = RATIONAL["4^(1/2)"]
-    assert settle(quantity, to_threshold(up), 3) == value == 2
 
 
 @pytest.mark.parametrize("name", IRRATIONAL)

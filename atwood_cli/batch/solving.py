@@ -16,6 +16,7 @@ from ..model.scene import (
     INPUTS,
     MASSES,
     MEASURED,
+    OTHER_NAMES,
     Given,
     Scene,
     SceneError,
@@ -34,21 +35,6 @@ if TYPE_CHECKING:
 ERROR = "error"
 VOCABULARY = Vocabulary({name.replace("_", ""): name for name in INPUTS})
 
-# fmt: off
-OTHER_NAMES = {
-    **{"mass1": "m1", "mass_1": "m1", "mass2": "m2", "mass_2": "m2"},
-    **dict.fromkeys(("m", "mp", "m_p", "m_pulley", "pulley", "pulley_mass", "mass_pulley", "mass"), "M"),
-    **dict.fromkeys(("mass_of_pulley", "mass_of_the_pulley"), "M"),
-    **dict.fromkeys(("mu_s", "mus", "mu_static", "static_friction", "friction", "coefficient"), "mu"),
-    **dict.fromkeys(("friction_coefficient", "coefficient_of_friction", "friction_coeff", "coeff"), "mu"),
-    **dict.fromkeys(("muk", "mu_kinetic", "kinetic_friction"), "mu_k"),
-    **{"gravity": "g", "beta": "inertia", "inertia_factor": "inertia", "moment_of_inertia": "I"},
-    **dict.fromkeys(("axle_friction", "bearing_friction"), "axle"),
-    **{"r": "R", "radius": "R", "pulley_radius": "R", "wrap_angle": "wrap", "angle": "wrap", "phi": "wrap"},
-    **{name.lower(): name for name in (*reversed(INPUTS), *MEASURED) if name != "I"},  # i may count rows
-}
-# fmt: on
-"""The inputs that other headings could be meant for, in small ASCII letters."""
 GREEK_SPELLED = str.maketrans({"μ": "mu", "φ": "phi", "ϕ": "phi", "β": "beta"})
 LONG_CELL = 100
 """The characters up to which any text of a nonzero double is within the limits of digits and exponents."""

@@ -4,6 +4,8 @@ import io
 import os
 import sys
 from collections.abc import Iterable
+from contextlib import suppress
+from errno import EINVAL
 from importlib import import_module
 from typing import Annotated, Any, cast
 
@@ -20,7 +22,7 @@ from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag, write_optio
 COMMANDS = ("solve", "sweep", "contact", "fit", "batch", "quantities", "tradeoff")
 EXTRAS = {"matplotlib": "figure", "polars": "batch", "scipy": "fit"}
 """The extras that bring optional packages."""
-HELP = """Atwood's machine, its pulley massive and its string rough, every digit right.
+HELP = """Solve Atwood's machine with pulley mass and friction, every digit right.
 
 \b
 Examples:
@@ -47,14 +49,15 @@ class Command(TyperCommand):
         for word, value in zip(args, [*args[1:], ""], strict=False):
             name = word.partition("=")[0]
             meant = f"--{name.lstrip(DASHES)}"  # word processors make such dashes of two
-            if name not in options and meant in options and name[:1] in DASHES:
-                raise UsageError(f"No such option: {name}. Did you mean {meant}?", ctx)
+            alike = next((flag for flag in options if flag.lower() == meant.lower()), "")
+            if name not in options and alike and name[:1] in DASHES:
+                raise UsageError(f"No such option: {name}. Did you mean {alike}?", ctx)
             if (
                 word in options
                 and value.partition("=")[0] in options
                 and not getattr(options[word], "is_flag", True)
             ):
-                rule = f"lacks its value: what follows is the option {shortened(value)}"
+                rule = f"needs a value before the option {shortened(value)}"
                 raise SceneError(str(options[word].name), None, rule)
         return super().parse_args(ctx, args)
 
@@ -142,11 +145,31 @@ def run(arguments: list[str] | None = None) -> int:
             return COULD_NOT
         drop(sys.stdout)  # its reader may have stopped, and writing would wait for ever
         raise KeyboardInterrupt from None
-    except (ModuleNotFoundError, OSError, ArithmeticError) as error:
+    except (ImportError, OSError, ArithmeticError) as error:
+        if (
+            isinstance(error, OSError) and error.errno == EINVAL and os.name == "nt"
+        ):  # a closed pipe on Windows
+            drop(sys.stdout)
+            return DONE
         say(_why(error))
         return COULD_NOT
     finally:
         finish()
+
+
+def _installed_from() -> str:
+    """Return what to type for pip to install the program again: the folder of a clone, or its name."""
+    from importlib.metadata import PackageNotFoundError, distribution
+    from json import loads
+    from urllib.parse import urlparse
+    from urllib.request import url2pathname
+
+    with suppress(PackageNotFoundError, ValueError):
+        url = urlparse(loads(distribution("atwood-cli").read_text("direct_url.json") or "{}").get("url", ""))
+        folder = url2pathname(url.path)
+        if url.scheme == "file" and os.path.isdir(folder):
+            return "." if os.path.samefile(folder, os.curdir) else folder
+    return "atwood-cli"
 
 
 def _why(error: Exception) -> str:
@@ -155,7 +178,7 @@ def _why(error: Exception) -> str:
         package = str(error.name).partition(".")[0]
         if package not in EXTRAS:
             raise error
-        return f"this needs {package}; install it with: pip install 'atwood-cli[{EXTRAS[package]}]'"
+        return f"this needs {package}; install it with: pip install '{_installed_from()}[{EXTRAS[package]}]'"
     if isinstance(error, OSError) and error.errno is not None:  # without a number, it is a sentence of ours
         file = shortened(str(error.filename or "the output"), LONGEST_NAME)
         return f"cannot write {file}: {error.strerror}"

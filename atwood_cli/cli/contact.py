@@ -20,7 +20,7 @@ Points = Annotated[
     ),
 ]
 
-HELP = """Show what acts along the arc of contact, and that it adds up.
+HELP = """Show the forces along the arc of contact and their sum.
 
 \b
 Examples:

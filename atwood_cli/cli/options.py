@@ -28,12 +28,12 @@ REMARKS = {
     "mu_k": "; mu if not given",
     "g": ", or a planet, moon or pluto; 9.80665 if not given",
     "inertia": ", or disk, hoop, ring, sphere, shell; 0.5 if not given",
-    "I": ", in place of inertia; needs R",
+    "I": ", instead of inertia; needs R",
     "wrap": ": degrees, 1.5turn, 3rad, pi/2; 180 if not given",
-    "axle": ", as 15mN or 0.4mNm",
+    "axle": ", as 15mN, or 0.4mNm with R",
     "a": ": finds M, or a mass, g, mu_k",
     "drop": ": finds time and speed",
-    "time": ", with drop in place of a",
+    "time": ", with drop instead of a",
 }
 
 
@@ -140,7 +140,7 @@ def _check(options: Mapping[str, Any], no_effect: Rules, needs: Rules) -> None:
             shown = None
         for other in no_effect.get(name, "").split():
             if other in given:
-                raise SceneError(name, shown, f"has no effect with {flag(other)}; leave one of them out")
+                raise SceneError(name, shown, f"cannot be used with {flag(other)}; leave one out")
         needed = needs.get(name, "").split()
         if needed and not given.keys() & set(needed):
             raise SceneError(name, shown, f"needs {' or '.join(map(flag, needed))}")
@@ -152,7 +152,7 @@ def _check(options: Mapping[str, Any], no_effect: Rules, needs: Rules) -> None:
 def _ask_about_radians(wrap: str | None) -> None:
     if wrap and _may_be_radians(wrap):
         typed = f"--wrap {shortened(wrap)}"
-        say(f"{typed} was taken for degrees; if it is in radians, write rad behind it, as 3.14rad")
+        say(f"{typed} was read as degrees; for radians, write 3.14rad")
 
 
 LIKE_RADIANS = (0.3, 12.6)
@@ -182,7 +182,7 @@ def quantity_meanings() -> Mapping[str, str]:
 # Shared by several commands
 
 Digits = Annotated[
-    str | None, option("Output", metavar="N", help="Significant digits; 6 in tables, a double's elsewhere.")
+    str | None, option("Output", metavar="N", help="Significant digits; 6 in tables, doubles elsewhere.")
 ]
 Columns = Annotated[
     list[str] | None,
@@ -213,7 +213,7 @@ Labels = Annotated[
 # Where results go, and in which form
 
 
-Force = Annotated[bool, option("Files", "--force", help="Replace a file that is there.")]
+Force = Annotated[bool, option("Files", "--force", help="Replace an existing file.")]
 
 
 def results(*forms: str) -> Shared:
@@ -240,7 +240,7 @@ def _read_target(options: Mapping[str, Any]) -> Target:
     """Read the form and the file of a result. Raises SceneError, FileExistsError."""
     asked = [form for form in FORMS if options.get(form)]
     if asked[1:]:
-        raise SceneError(asked[0], None, f"has no effect with {flag(asked[1])}; leave one of them out")
+        raise SceneError(asked[0], None, f"cannot be used with {flag(asked[1])}; leave one out")
     form, file, force = "".join(asked), options["output"], options["force"]
     if force and not (file or options.get("figure")):
         raise SceneError(

@@ -47,7 +47,7 @@ Expect = Annotated[
 Markdown = Annotated[
     bool, option("Output", "--markdown", help="With --explain: a page of Markdown, with LaTeX.")
 ]
-All = Annotated[bool, option("Output", "--all", help="Show all quantities, and why others are missing.")]
+All = Annotated[bool, option("Output", "--all", help="Show all quantities, and why any are missing.")]
 Budget = Annotated[
     bool, option("Output", "--budget", help="Also print each uncertain input's share of the variance.")
 ]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from decimal import ROUND_CEILING, ROUND_FLOOR, ROUND_HALF_EVEN, Decimal, Inexact
+from decimal import ROUND_HALF_EVEN, Decimal, Inexact
 from fractions import Fraction
 from math import inf, isinf
 from typing import TypeVar
@@ -14,8 +14,8 @@ from ..arithmetic.rational import OfFloat
 T = TypeVar("T", bound=float | Decimal)
 Rounding = Callable[[Fraction | Decimal], T]
 
-DOUBLE_DIGITS, SHOWN_DIGITS, THRESHOLD_DIGITS = 17, 6, 3
-"""Significant digits: of doubles, of tables and sentences, of thresholds in sentences."""
+DOUBLE_DIGITS, SHOWN_DIGITS = 17, 6
+"""Significant digits: of doubles, of tables and sentences."""
 MOST_DIGITS = 5000
 """More digits than any two numbers that are shown side by side differ in size."""
 ALL_DIGITS = decimal_context(MOST_DIGITS, ROUND_HALF_EVEN)
@@ -53,25 +53,18 @@ def to_digits(digits: int, rounding: str = ROUND_HALF_EVEN) -> Rounding[Decimal]
     return round_
 
 
-def to_threshold(up: bool, given: Fraction | None = None) -> Rounding[Decimal]:
-    """Return a function that rounds a threshold up or down to three digits, or to an integer: 0.350, 4810."""
-    round_ = to_side_of(given, THRESHOLD_DIGITS, ROUND_CEILING if up else ROUND_FLOOR)
-    return lambda x: tidy(value) if (value := round_(x)).adjusted() >= THRESHOLD_DIGITS else value
-
-
-def to_side_of(given: Fraction | None, digits: int, rounding: str = ROUND_HALF_EVEN) -> Rounding[Decimal]:
-    """Return a function that rounds to so many digits, or more until the order with a number is kept."""
+def rounding_apart_from(given: Fraction | None, digits: int) -> Rounding[Decimal]:
+    """Return a function that rounds to so many digits, until the result is not that of ``given``."""
 
     def round_(x: Fraction | Decimal) -> Decimal:
-        shown = to_digits(digits, rounding)(x)
+        shown = to_digits(digits)(x)
         if given is None or not shown.is_finite() or abs(shown.adjusted()) > MOST_DIGITS:
-            return shown  # its fraction might have millions of digits
-        exact = Fraction(x)
+            return shown
         for kept in range(digits, MOST_DIGITS):
-            near = to_digits(kept, rounding)(x)
-            if (Fraction(near) > given, Fraction(near) < given) == (exact > given, exact < given):
+            round_alike = to_digits(kept)
+            if (near := round_alike(x)) != round_alike(given):
                 return near
-        return shown  # the value is the given number, which is no decimal
+        return shown  # the value is the given number
 
     return round_
 

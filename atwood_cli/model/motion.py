@@ -14,7 +14,7 @@ from typing import Any
 from ..arithmetic.rational import EXACT
 from . import physics
 from .case import ZERO, Case, axle_force, rim_mass
-from .digits import SHOWN_DIGITS, as_typed, text, tidy, to_digits, to_double, to_threshold
+from .digits import SHOWN_DIGITS, as_typed, text, tidy, to_digits, to_double
 from .quantities import Undetermined
 from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError, checked
 from .units import Angle
@@ -31,12 +31,14 @@ def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     name = "a" if time is None else "time"
     unknown = missing[0] if measured and len(missing) == 1 else ""
     if unknown and inputs["M"].value is None is inputs["I"].value:
-        raise SceneError(unknown, None, f"is missing; give it, or M, beside which {name} finds it")
+        raise SceneError(unknown, None, f"is missing; give it, or M, with which {name} finds it")
     values = SimpleNamespace(**checked(inputs, unknown))
     if time is not None and drop is None:
-        raise SceneError("time", inputs["time"].given, "needs drop, the height fallen in it")
+        raise SceneError("time", inputs["time"].given, "needs drop, the height of that fall")
     if time is not None and a is not None:
-        raise SceneError("time", inputs["time"].given, "and a both tell the acceleration; give one of them")
+        raise SceneError(
+            "time", inputs["time"].given, "and a both give the acceleration; leave one of them out"
+        )
     if not measured:
         return Scene(**vars(values)), Motion(a, drop, time)
     motion = Motion(a, drop, time, unknown or _unknown(values))
@@ -63,34 +65,37 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
     """Return why an acceleration contradicts the other inputs, "" if it does not."""
     m1, m2, M, mu, finds = values.m1, values.m2, values.M, values.mu, motion.finds
     if mu is not None and finds != "mu_k":
-        why = "a string that slips moves alike on any pulley"
+        why = "a slipping string moves alike on any pulley"
         if finds in MASSES:
             why = f"whether the string slips depends on {finds}"
-        return f"has no place beside mu, as {why}; leave mu out"
+        return f"conflicts with mu, as {why}; leave mu out"
     if finds in MASSES:
         if M == inf:
-            return "has no place beside M = inf, which lets nothing move; leave one of them out"
+            return "conflicts with M = inf, which lets nothing move; leave one of them out"
         if not motion.a and values.axle is not None:
-            return f"tells nothing of {finds}, as the axle holds a difference at rest; leave one of them out"
+            return (
+                f"says nothing about {finds}, as the axle holds a difference at rest; leave one of them out"
+            )
         if motion.time is not None:
-            return f"does not tell which way {finds} moves; give a in its place, positive when m2 descends"
+            return f"does not tell which way {finds} moves; give a instead, positive when m2 descends"
         known = m1 if finds == "m2" else m2
         if not known and not rim_mass(values, values.M):
-            return f"tells nothing of {finds}, which falls freely; give the other mass or M above 0"
+            return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         return ""
     if finds == "M" and m1 != m2 and abs(m1 - m2) <= physics.axle_mass(axle_force(values), values.g):
-        return "has no place beside an axle whose friction holds the masses at rest; leave one of them out"
+        return "conflicts with an axle whose friction holds the masses at rest; leave one of them out"
     if finds == "g" and g_given:
         pulley = "I" if M is None else "M"
-        return f"leaves nothing to find beside both {pulley} and g; leave one of them out"
+        return f"leaves nothing to find if both {pulley} and g are given; leave one of them out"
     if m1 == m2:
-        return "tells nothing of equal masses, which rest on any pulley; leave it out"
+        return "says nothing about equal masses, which rest on any pulley; leave it out"
     if finds == "mu_k" and not m1 * m2:
-        return "has no place beside M = inf and a free end, which is fixed to the pulley; leave it out"
+        return "conflicts with M = inf and a mass of 0, an end that is fixed to the pulley; leave it out"
     if values.mu_k is not None:
-        return "and mu_k both tell how the string slides; leave one of them out"
+        return "and mu_k both say how the string slides; leave one of them out"
     if mu is not None and not Case(Scene(**vars(values))).slips:
-        return f"has no place beside mu = {as_typed(mu)}, with which the string does not slip; leave mu out"
+        slips = f"would find mu_k, but with mu = {as_typed(mu)} the string does not slip"
+        return f"{slips}; leave mu out (an acceleration forced by a motor is not modelled)"
     return ""
 
 
@@ -101,7 +106,7 @@ def _impossible(scene: Scene, motion: Motion) -> str:
         if case.slide_excess(EXACT) < 0:
             return "is too large for any friction: without it the acceleration is " + _free_slide(case)
         if scene.mu is not None and case.exceeds(case.slide_excess, scene.mu):
-            return "is that of a string with more kinetic friction than mu; check both"
+            return "needs more kinetic friction than mu; check both"
         return ""
     if scene.m1 == scene.m2 == 0:
         return "implies that both masses are 0"
@@ -116,7 +121,7 @@ def _free_slide(case: Case) -> str:
     """Return the acceleration of a slide without friction, for a sentence."""
     l, h = case.light, case.heavy
     most = physics.acceleration(physics.drive(l, h, ZERO), physics.load(l, h, ZERO), case.scene.g)
-    return f"{text(to_threshold(up=case.sign < 0)(case.sign * most))} m/s²"
+    return f"{text(to_digits(SHOWN_DIGITS)(case.sign * most))} m/s²"
 
 
 def number_of(scene: Scene, motion: Motion, x: str) -> Any:

@@ -40,7 +40,7 @@ QUANTITIES = {
     "tension_1": About("motion", "T₁", "N", "(4)", "tension of the string at m1", "(1), (26)"),
     "tension_2": About("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)"),
     "mu_verge": About("friction", "μ*", "", "(27)", "friction coefficient below which the string slips"),
-    "safety_factor": About("friction", "μ/μ*", "", "", "how many times the needed friction (not load) there is; below 1 it slips"),
+    "safety_factor": About("friction", "μ/μ*", "", "", "mu divided by mu_verge (not a load factor); below 1 it slips"),
     "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser", "(26)"),
     "capstan_ratio": About("friction", "k", "", "(26)", "greatest ratio of tensions that friction holds"),
     "friction_force": About("friction", "F", "N", "(32)", "net friction force on the pulley"),
@@ -55,8 +55,8 @@ QUANTITIES = {
     "critical_pulley_mass": About("limits", "M*", "kg", "(34)", "pulley mass above which the string slips"),
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
     "critical_lighter_mass": About("limits", "l*", "kg", "", "lighter mass below which the string slips"),
-    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "what the heavier mass must exceed to slip"),
-    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "what the pulley's mass must exceed to slip"),
+    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "heavier mass above which it can slip"),
+    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "pulley mass above which it can slip"),
     "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
     # Of a scene whose motion was measured:
     "pulley_mass": About("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration"),
@@ -64,7 +64,7 @@ QUANTITIES = {
     "gravity": About("measured", "g", "m/s²", "(4)", "gravity that gives the measured acceleration"),
     "m1": About("measured", "m₁", "kg", "(1), (3)", "mass m1 that gives the measured acceleration"),
     "m2": About("measured", "m₂", "kg", "(1), (3)", "mass m2 that gives the measured acceleration"),
-    "mu_k": About("measured", "μ kin", "", "(26)", "kinetic friction that gives the measured acceleration"),
+    "mu_k": About("measured", "μ kin", "", "(26)", "mu_k that gives the measured acceleration"),
     "fall_time": About("measured", "t", "s", "", "time to fall the height from rest"),
     "final_speed": About("measured", "v", "m/s", "", "speed after that"),
 }
@@ -79,11 +79,11 @@ AXLE_ENTERS = {
 
 
 def cited(name: str, slips: bool, rubs: bool) -> str:
-    """Return the paper's equation for a quantity in a regime, with +b if axle friction adds a term."""
+    """Return the paper's equation for a quantity in a regime, and say if axle friction adds a term."""
     about = QUANTITIES[name]
     if slips and about.equation_in_slip is not None:
         return about.equation_in_slip
-    return f"{about.equation}+b" if rubs and name in AXLE_ENTERS else about.equation
+    return f"{about.equation}, with axle friction" if rubs and name in AXLE_ENTERS else about.equation
 
 
 FROM_MOTION: dict[str | None, tuple[str, ...]] = {
@@ -107,35 +107,32 @@ STANDARD = ("regime", *MAIN, "critical_pulley_mass")
 # Why a scene does not determine a quantity, and what to give.
 
 NEEDS_MU = "`give` `mu`, the friction coefficient"
-NEEDS_M = "`give` `M`, the pulley's mass, which decides here"
+NEEDS_M = "`give` `M`, the pulley's mass; this depends on it"
 NEEDS_R = "`give` `R`, the pulley's radius"
-UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, beside `I`"
-FREE_END = "not defined for a free end: the string is fixed to the pulley and no friction holds it"
-NOT_BOUNDED = "not one number while the string grips with friction to spare"
-NOT_DEFINITE = (
-    "between `friction_force_min` and `friction_force_max` while the string grips"
-    " (atwood quantities says when)"
-)
-DEFINITE = "bounds are for a string that grips with friction to spare; here `friction_force` is definite"
-LONG_WRAP = "bounds are known for up to half a turn of wrap (180 degrees)"
-NO_CRITICAL_MASS = "does not exist, as the string holds on any pulley, however heavy"
-NO_CRITICAL_HEAVIER_MASS = "does not exist, as the string holds under any heavier mass"
-AXLE_HOLDS = "does not exist, as the axle holds the difference on any pulley"
-ALWAYS_SLIPS = "does not exist, as for the friction of the axle the string slips on any pulley, however light"
-AXLE_ENOUGH = "no condition here, as the friction of the axle is enough to make the string slip on any pulley"
-NO_NEED = "does not exist, as no friction is needed"
-NO_WRAP = "does not exist, as without friction no wrap holds"
-NOT_APPLICABLE = "conditions (36) do not apply without friction"
+UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, with `I`"
+FREE_END = "not defined, as the string's end is fixed to the pulley and no friction holds it"
+NOT_BOUNDED = "indeterminate while the string grips with friction to spare"
+NOT_DEFINITE = "not unique while the string grips, but between `friction_force_min` and `friction_force_max`"
+DEFINITE = "not needed, as `friction_force` has a single value here"
+LONG_WRAP = "known only up to half a turn of wrap (180 degrees)"
+NO_CRITICAL_MASS = "no value, as the string holds on any pulley, however heavy"
+NO_CRITICAL_HEAVIER_MASS = "no value, as the string holds under any heavier mass"
+AXLE_HOLDS = "no value, as the axle holds the difference on any pulley"
+ALWAYS_SLIPS = "no value, as axle friction makes the string slip on any pulley, however light"
+AXLE_ENOUGH = "no value, as axle friction alone makes the string slip on any pulley"
+NO_NEED = "no value, as no friction is needed"
+NO_WRAP = "no value, as without friction no wrap holds"
+NOT_APPLICABLE = "no value, as conditions (36) do not apply without friction"
 LOCKED_AXLE = "not defined for a locked pulley: `M` = `inf` is not its weight"
-ONE_SIDED = "defined for half a turn of wrap (and whole turns more), where both ends pull downwards"
-NEEDS_A = "`give` `a`, a measured acceleration, in place of `M`"
-NEEDS_A_BESIDE_M = "`give` `a`, a measured acceleration, beside `M` and in place of `g`"
-NEEDS_A_AND_M = "`give` `a`, a measured acceleration, and `M` in place of `{}`"
+ONE_SIDED = "not computed unless both ends pull downwards (half a turn of wrap, plus whole turns)"
+NEEDS_A = "`give` `a`, a measured acceleration, instead of `M`"
+NEEDS_A_BESIDE_M = "`give` `a`, a measured acceleration, with `M` and instead of `g`"
+NEEDS_A_AND_M = "`give` `a`, a measured acceleration, and `M` instead of `{}`"
 NEEDS_A_OF_A_SLIDE = (
-    "`give` `a`, a measured acceleration, beside `M` = `inf`, or beside `M` and a `mu` that is too small"
+    "`give` `a`, a measured acceleration, with `M` = `inf`, or with `M` and a `mu` that is too small"
 )
 NEEDS_DROP = "`give` `drop`, the height that the heavier mass falls from rest"
-AT_REST = "does not exist, as nothing moves"
+AT_REST = "no value, as nothing moves"
 
 # Names as they are typed
 
@@ -183,13 +180,14 @@ def read_name(
         return word
     if (name := symbols.get(_plain(word), "")) in known:
         return name
-    there_are = "atwood quantities lists them" if kind == "quantity" else f"there are {', '.join(known)}"
+    there_are = "see atwood quantities" if kind == "quantity" else f"there are {', '.join(known)}"
+    a_kind = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
     if word in INPUTS:
-        raise SceneError(parameter, word, f"is an input, no {kind}; {there_are}")
+        raise SceneError(parameter, word, f"is an input, not {a_kind}; {there_are}")
     small = _plain(word).lower()
     alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
     hint = f"did you mean {alike[0]}?" if len(alike) == 1 else there_are
-    raise SceneError(parameter, word, f"is no {kind}{nearest(word, known) or f'; {hint}'}")
+    raise SceneError(parameter, word, f"is not {a_kind}{nearest(word, known) or f'; {hint}'}")
 
 
 def read_accuracy(word: object) -> Accuracy:

@@ -134,10 +134,7 @@ INPUTS = {
     "R": Parameter("radius of the pulley", "m", dimension="length"),
     "wrap": Parameter("angle over which the string touches the pulley", "°", dimension="angle"),
     "axle": Parameter(
-        "friction of the axle, as a torque or as a force at the rim",
-        "N",
-        zero=True,
-        dimension="torque or force",
+        "friction of the axle: a force at the rim, or a torque", "N", zero=True, dimension="torque or force"
     ),
 }
 """The inputs of a scene, which columns of arrays and of tables may have, too."""
@@ -146,9 +143,23 @@ MEASURED = {
         "measured acceleration, positive when m2 descends", "m/s²", dimension="acceleration", signed=True
     ),
     "drop": Parameter("height that the heavier mass falls from rest", "m", dimension="length"),
-    "time": Parameter("measured time in which it does", "s", dimension="time"),
+    "time": Parameter("measured time of that fall", "s", dimension="time"),
 }
 """Measurements of the motion, in addition to a scene or instead of one of its inputs; see `motion`."""
+# fmt: off
+OTHER_NAMES = {
+    **{"mass1": "m1", "mass_1": "m1", "mass2": "m2", "mass_2": "m2"},
+    **dict.fromkeys("m mp m_p m_pulley pulley pulley_mass mass_pulley mass_of_pulley mass".split(), "M"),
+    **dict.fromkeys("mu_s mus mu_static static_friction friction coefficient coeff".split(), "mu"),
+    **dict.fromkeys("friction_coefficient coefficient_of_friction friction_coeff".split(), "mu"),
+    **{"muk": "mu_k", "mu_kinetic": "mu_k", "kinetic_friction": "mu_k"},
+    **{"gravity": "g", "beta": "inertia", "inertia_factor": "inertia", "moment_of_inertia": "I"},
+    **{"axle_friction": "axle", "bearing_friction": "axle"},
+    **{"r": "R", "radius": "R", "pulley_radius": "R", "wrap_angle": "wrap", "angle": "wrap", "phi": "wrap"},
+    **{name.lower(): name for name in (*reversed(INPUTS), *MEASURED) if name != "I"},  # i may count rows
+}
+# fmt: on
+"""The inputs that other names may mean, in small ASCII letters."""
 
 
 def parameter_of(name: str) -> Parameter:
@@ -231,7 +242,10 @@ def _contradiction(
     ``given`` is the pulley's mass as it was given.
     """
     if mu is not None and 0 in (m1, m2):
-        return "m1" if m1 == 0 else "m2", "is a free end, which friction cannot hold; leave mu out"
+        return (
+            "m1" if m1 == 0 else "m2",
+            "is an end of the string that is fixed to the pulley, where mu has no effect; leave mu out",
+        )
     if mu_k is not None and mu is None:
         return "mu_k", "needs mu, the coefficient that decides whether it slips"
     if mu_k is not None and mu_k > mu:
@@ -357,7 +371,7 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
     raise SceneError(name, given, rule)
 
 
-NO_UNCERTAINTY = "carries an uncertainty, which only solve takes; give the value alone"
+NO_UNCERTAINTY = "has an uncertainty, which only solve and fit take; give the value alone"
 THOUSANDS = re.compile(r"[+-]?\d{1,3},\d{3}[^,]*", re.ASCII)
 """A number with one comma before three digits; with more commas it may be a list."""
 
@@ -377,7 +391,8 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
     if pointed != word and NUMBER.fullmatch(pointed):
         return f"is not a number; write it with a decimal point, {shortened(pointed)}"
     names = f", or one of {', '.join(parameter.names)}" if parameter.names else ""
-    return f"{NOT_A_NUMBER}{names}{nearest(word, parameter.names)}"
+    locked = "; inf is a locked pulley" if parameter.inf else ""
+    return f"{NOT_A_NUMBER}{names}{locked}{nearest(word, parameter.names)}"
 
 
 def _longest(number: Decimal) -> int:

@@ -76,7 +76,7 @@ IN_BRACKETS = rf"\(([+-]?{_DIGITS}){_SIGN}({_DIGITS})( ?%)?\)({_POWER}{_TAIL})"
 WRITTEN_OUT = rf"({_QUOTIENT})({_TAIL}){_SIGN}(?![+-])({_QUOTIENT})({_TAIL}| ?%)"
 UNCERTAIN = ("(", "±", "+/-", "+-")
 PERCENT = "%"
-NOT_A_NUMBER = "is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1)"
+NOT_A_NUMBER = "is not a number; write it like 2, 1/3, 1.5e-3, 2.0+-0.1 or 2.0(1)"
 NOT_UNCERTAIN = (
     "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+-0.002 or 1.000(2),"
     " and a unit after that"
@@ -218,6 +218,8 @@ def _split_uncertainty(text: str) -> tuple[str, str]:
     if match and match[4].endswith(PERCENT):
         return match[1] + match[2], match[3] + PERCENT
     if not match or match[2] not in ("", match[4]):
+        if re.search(r"[^\W\d] ?\(", text):  # a function, as sin(20)
+            raise NotANumber(NOT_A_NUMBER)
         raise Malformed(NOT_UNCERTAIN)
     return match[1] + match[4], match[3] + match[4]
 

@@ -88,9 +88,10 @@ def print_table(
     page.head(answers, f"Found: {', '.join(found)}." if found else "")
     if groups:
         page.table(COLUMNS, groups)
-    page.say(
-        *map(unmarked, remarks(answers)), *reasons(answers, list(dict.fromkeys([*names, *answers.found])))
-    )
+    lacking = dict.fromkeys([*names, *answers.found])
+    if cell(answers["friction_force_min"]):  # the table has the bounds
+        lacking.pop("friction_force", None)
+    page.say(*map(unmarked, remarks(answers)), *reasons(answers, list(lacking)))
     if budget:
         print_budget(answers, names, page)
 

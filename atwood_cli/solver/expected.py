@@ -6,7 +6,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, to_digits, to_side_of
+from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, rounding_apart_from, text, to_digits
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, REGIMES, read_name
 from ..model.scene import SceneError, with_unit
 from ..model.units import STANDARD_GRAVITY, Angle, Malformed, TypedNumber, in_quotes, read_number
@@ -21,9 +21,9 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     ">=": operator.ge,
     "==": operator.eq,
 }
-FORMS = (
-    "no-slip, slip, verge, or a quantity and a number with < <= > >= or == between, as 'safety_factor >= 1.5'"
-)
+FORMS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
+MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
+"""What a string may do, by its regime."""
 DIMENSIONS = {
     "kg": "mass",
     "m/s²": "acceleration",
@@ -47,8 +47,8 @@ class Condition(NamedTuple):
 
 def read_condition(typed: str) -> Condition:
     """Read a condition. Raises SceneError."""
-    if typed.strip() in REGIMES:
-        return Condition(typed, typed.strip())
+    if (regime := re.sub(r"^\s*regime\s*==", "", typed).strip()) in REGIMES:
+        return Condition(typed.strip(), regime)
     if not (match := COMPARISON.fullmatch(typed)):
         raise SceneError("expect", typed, f"must be {FORMS}")
     word, sign, number = map(str.strip, match.groups())
@@ -58,7 +58,8 @@ def read_condition(typed: str) -> Condition:
     except Malformed as error:
         raise SceneError("expect", typed, f"compares with {in_quotes(number)}, which {error}") from None
     if value.uncertainty:
-        raise SceneError("expect", typed, "compares with an uncertain number; leave its uncertainty out")
+        rule = f"compares with an uncertain number; give two conditions, '{name} >= LOW' and '{name} <= HIGH'"
+        raise SceneError("expect", typed, rule)
     return Condition(typed.strip(), name, sign, value)
 
 
@@ -68,8 +69,11 @@ def failure(answers: Answers, expected: Condition) -> str:
     if expected.name in REGIMES:
         if expected.name != case.regime:
             return f"expected {expected.typed}; it is {case.regime}"
+        uncertainties = answers.uncertainties
+        if uncertainties and (others := uncertainties.other_regimes()):
+            return f"expected {expected.typed}; within the uncertainties it may {MAY[others[0]]}"
         if is_assumed(answers):
-            return f"expected {expected.typed}; it is assumed, as mu is not given"
+            return f"expected {expected.typed}; that is only assumed: give mu"
         return ""
     value, reason, *_ = answers.answer(expected.name)
     if value is None or reason == TOO_SMALL:
@@ -83,7 +87,7 @@ def failure(answers: Answers, expected: Condition) -> str:
     if given is not None and not side:  # digits would not show that the two are equal
         shown = as_typed(given)
     else:
-        value = answers.rounded(expected.name, to_side_of(given, answers.digits or SHOWN_DIGITS))
+        value = answers.rounded(expected.name, rounding_apart_from(given, answers.digits or SHOWN_DIGITS))
         shown = "too large to be written out" if is_infinite(value) else text(value)
     return f"expected {expected.typed}; it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
 

@@ -5,14 +5,17 @@ Backticks mark names, as in the messages of `Undetermined`: `unmarked` takes the
 """
 
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from fractions import Fraction
 from math import inf
 
-from ..model.case import Case
-from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, tidy, to_side_of, to_threshold
-from ..model.scene import Scene
+from ..model.digits import SHOWN_DIGITS, Rounding, as_typed, is_infinite, rounding_apart_from, text, tidy
+from ..model.quantities import QUANTITIES
+from ..model.scene import Scene, with_unit
 from ..model.units import MAX_MAGNITUDE
 from .answers import Answers
+
+ASSUMED = "`mu` is not given, so the string is assumed not to slip"
 
 
 def unmarked(words: str) -> str:
@@ -72,24 +75,22 @@ def verdict(answers: Answers) -> str:
     if case.regime == "slip":
         return _slips(answers)
     if case.axle_holds:
-        return f"At rest: the axle holds up to {_held(case)} of difference.{_beside_the_axle(answers)}"
+        return f"At rest: axle friction can balance up to {_held(answers)}.{_while_at_rest(answers)}"
     if case.tensions_equal:
-        return "Holds: a pulley without mass needs no friction to turn, so both tensions are equal."
+        return "No slip: a massless pulley needs no friction to turn, so both tensions are equal."
     if not case.light:
-        return "Holds: the string's end is fixed to the pulley."
+        return "No slip: the string's end is fixed to the pulley."
     if scene.mu is None:
-        where = " on a pulley without mass" if scene.M is None and scene.I is None else ""
-        return f"Assumed to hold, without `mu`: it does{where} if `mu` is at least {_enough(answers)}."
+        where = " on a massless pulley" if scene.M is None and scene.I is None else ""
+        return f"{ASSUMED}: true{where} if `mu` is at least {_enough(answers)}."
     if case.pulley_known:
-        holds = "Holds from rest" if _sliding(answers) else "Holds"
-        return f"{holds}: {_given_mu(scene)}, and {_enough(answers)} is enough."
-    least = answers.rounded("least_heavier_mass", to_threshold(up=False, given=case.heavy))
+        start = "No slip from rest" if _sliding(answers) else "No slip"
+        return f"{start}: {_given_mu(scene)}, and at least {_enough(answers)} is needed."
+    least = answers.rounded("least_heavier_mass", _beside(answers, case.heavy))
     if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
-        return "Holds on any pulley, under any mass that can be given in place of the heavier one."
-    heavy, least_heavy = as_typed(case.heavy), text(least)
-    return (
-        f"Holds on any pulley: the heavier mass, {heavy} kg, would have to exceed {least_heavy} kg to slip."
-    )
+        return "No slip on any pulley, for any heavier mass that can be typed."
+    masses = f"a heavier mass above {text(least)} kg, not {as_typed(case.heavy)} kg"
+    return f"No slip on any pulley: slipping needs {masses}."
 
 
 def _given_mu(scene: Scene) -> str:
@@ -98,26 +99,26 @@ def _given_mu(scene: Scene) -> str:
 
 def _enough(answers: Answers, name: str = "mu_verge") -> str:
     """Say the least coefficient that holds the string."""
-    return _threshold(answers, name, up=True, given=answers.case.scene.mu)
+    return text(answers.rounded(name, _beside(answers, answers.case.scene.mu)))
 
 
-def _beside_the_axle(answers: Answers) -> str:
+def _while_at_rest(answers: Answers) -> str:
     """Say what the string does while the axle holds the pulley, "" if it is fixed to the pulley."""
     if not answers.case.light:
         return ""
     if mu := _given_mu(answers.case.scene):
-        return f" The string holds: {mu}, and {_enough(answers)} is enough."
-    return f" The string is assumed to hold, without `mu`: it does if `mu` is at least {_enough(answers)}."
+        return f" The string does not slip: {mu}, and at least {_enough(answers)} is needed."
+    return f" {ASSUMED}: true if `mu` is at least {_enough(answers)}."
 
 
 def _on_the_verge(answers: Answers) -> str:
     if not answers.case.scene.mu:
-        return "Slips on any pulley that has mass, for want of friction; the values are for one without."
+        return "Slips on any pulley with mass, as `mu` = 0; the values are for a massless pulley."
     massless = answers.with_pulley(Fraction(0))
     return (
         "On the verge of slipping: as `M` is not given, this is for the critical pulley mass,"
-        f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on one"
-        f" without mass the acceleration is {_say(massless, 'acceleration')} m/s²."
+        f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on a"
+        f" massless one the acceleration is {_say(massless, 'acceleration')} m/s²."
     )
 
 
@@ -126,21 +127,22 @@ def _slips(answers: Answers) -> str:
     mu = _given_mu(scene)
     if not mu:
         return "Slides over the locked pulley."
-    kinetic = "" if scene.mu_k is None else f", and slides with `mu_k` = {as_typed(scene.mu_k)}"
+    kinetic = "" if scene.mu_k is None else f"; it slides with `mu_k` = {as_typed(scene.mu_k)}"
     if not case.pulley_known:
         return (
-            f"Slips on any pulley, for the friction of its axle: {mu} is below the"
-            f" {_enough(answers, 'massless_verge')} that would hold it on one without mass{kinetic}."
+            f"Slips on any pulley, because of axle friction: {mu} is below the"
+            f" {_enough(answers, 'massless_verge')} needed even on a massless one{kinetic}."
         )
-    slips = "Slips over a pulley that its axle holds" if case.rim_stands and not case.locked else "Slips"
-    return f"{slips}: {mu} is below the {_enough(answers)} that would hold it{kinetic}."
+    slips = "Slips over a pulley held by axle friction" if case.rim_stands and not case.locked else "Slips"
+    return f"{slips}: {mu} is below the {_enough(answers)} needed to hold it{kinetic}."
 
 
-def _held(case: Case) -> str:
-    """Say the difference that the axle just holds, rounded down, but not below the one that it holds."""
-    b, difference = case.axle_mass, case.heavy - case.light
-    times, unit = (1000, "g") if b < 1 else (1, "kg")
-    return f"{text(to_threshold(up=False, given=times * difference)(times * b))} {unit}"
+def _held(answers: Answers) -> str:
+    """Say the difference of the masses that the axle just holds."""
+    case = answers.case
+    times, unit = (1000, "g") if case.axle_mass < 1 else (1, "kg")
+    round_ = _beside(answers, times * (case.heavy - case.light))
+    return f"{text(tidy(round_(times * case.axle_mass)))} {unit}"
 
 
 def remarks(answers: Answers) -> list[str]:
@@ -153,10 +155,10 @@ def odd_inertia(answers: Answers) -> list[str]:
     beta = answers.case.beta
     if beta is None or beta <= 1:
         return []
-    shown = tidy(to_side_of(Fraction(1), SHOWN_DIGITS)(beta))
+    shown = tidy(_beside(answers, Fraction(1))(beta))
     return [
-        f"The inertia factor `I/(M R^2)` is {text(shown)}, above 1: the mass lies outside"
-        " the rim the string runs on. If that is not so, check `inertia`, `I` and `R`."
+        f"The inertia factor `I/(M R^2)` is {text(shown)}, above 1: some mass must lie outside"
+        " the string's rim. If none does, check `inertia`, `I` and `R`."
     ]
 
 
@@ -165,8 +167,8 @@ def holding_again(answers: Answers) -> list[str]:
     if answers.case.scene.mu is None or not answers.case.holds_again:
         return []
     return [
-        "Under a much heavier mass it holds again: the more the heavier"
-        " mass weighs, the less the friction of the axle counts beside it."
+        "Far above `critical_heavier_mass` the string holds again, as axle friction matters less"
+        " under heavier masses."
     ]
 
 
@@ -177,10 +179,10 @@ def open_range(answers: Answers) -> list[str]:
         return []
     ends = [answers.with_pulley(mass) for mass in (Fraction(0), inf)]
     ranges = (
-        f"`{name}` from {_say(ends[0], name)} to {_say(ends[1], name)}"
+        f"`{name}` from {_say(ends[0], name)} to {with_unit(_say(ends[1], name), QUANTITIES[name].unit)}"
         for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
     )
-    return [f"From a massless to a locked pulley: {', '.join(ranges)}."]
+    return [f"As `M` goes from 0 to inf: {', '.join(ranges)}."]
 
 
 def kinetic(answers: Answers) -> list[str]:
@@ -189,18 +191,14 @@ def kinetic(answers: Answers) -> list[str]:
     if mu_k is None or case.regime == "slip" or case.tensions_equal:
         return []
     if not case.pulley_known:
-        return [
-            "`mu_k` has no part in this, which starts from rest; what a sliding string does depends on `M`."
-        ]
+        return ["`mu_k` has no effect on a start from rest; how a sliding string moves depends on `M`."]
     sliding = _sliding(answers)
     if sliding is None:
-        return [
-            f"`mu_k` = {as_typed(mu_k)} is enough, too: a string that slides already is caught by the pulley."
-        ]
-    verge = _threshold(answers, "mu_verge", up=False, given=mu_k)
+        return [f"A string that already slides stops sliding, as `mu_k` = {as_typed(mu_k)} is enough, too."]
+    verge = text(answers.rounded("mu_verge", _beside(answers, mu_k)))
     return [
-        f"A string that slides already goes on sliding, as `mu_k` = {as_typed(mu_k)} is below {verge}:"
-        f" the masses then have the acceleration {_say(sliding, 'acceleration')} m/s²."
+        f"A string that already slides keeps sliding, as `mu_k` = {as_typed(mu_k)} is below {verge}:"
+        f" the masses then accelerate at {_say(sliding, 'acceleration')} m/s²."
     ]
 
 
@@ -213,9 +211,9 @@ def _sliding(answers: Answers) -> Answers | None:
     return sliding if sliding.case.regime == "slip" else None
 
 
-def _threshold(answers: Answers, name: str, up: bool, given: Fraction | None = None) -> str:
-    """Say a threshold, rounded to the side on which the sentence is true, so that it can be typed back."""
-    return text(answers.rounded(name, to_threshold(up, given)))
+def _beside(answers: Answers, given: Fraction | None) -> Rounding[Decimal]:
+    """Return the rounding of tables, or one to more digits in which a number differs from a ``given`` one."""
+    return rounding_apart_from(given, answers.digits or SHOWN_DIGITS)
 
 
 def _say(answers: Answers, name: str) -> str:

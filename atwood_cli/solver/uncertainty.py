@@ -27,7 +27,6 @@ from ..model.digits import (
     tidy,
     to_digits,
     to_place,
-    to_threshold,
     with_uncertainty,
 )
 from ..model.motion import found_inputs, number_of, with_number
@@ -48,8 +47,8 @@ MOST_NAMED = 3
 """The most quantities that a sentence names."""
 COVERAGE = 2
 """The regime is in doubt if it differs within so many standard uncertainties of an input."""
-REGIME_WORDS = {"no-slip": "holds", "verge": "on the verge", "slip": "slips"}
-NO_SCENE, NO_FIT = "there is no such scene", "nothing fits what was measured"
+REGIME_WORDS = {"no-slip": "no slip", "verge": "on the verge", "slip": "slips"}
+NO_SCENE, NO_FIT = "makes no valid scene", "nothing fits what was measured"
 
 
 class Value(NamedTuple):
@@ -177,10 +176,16 @@ class Uncertainties:
                 what = end.answers and _otherwise(self.case, end.answers.case)
                 if what and what not in said:
                     said[what] = (
-                        f"{what} is in doubt: it is otherwise at {self._at(x, end)},"
-                        f" {COVERAGE} standard uncertainties off. The results are for the inputs as given."
+                        f"{what} is in doubt: the answer differs at {self._at(x, end)},"
+                        f" {COVERAGE} standard uncertainties away. Results use the inputs as given."
                     )
         return [*said.values()]
+
+    def other_regimes(self) -> list[str]:
+        """Return the regimes, other than the scene's, within two standard uncertainties of an input."""
+        ends = (self._end(x, side * u) for x, u in self.given.items() for side in (-COVERAGE, COVERAGE))
+        found = dict.fromkeys(end.answers.case.regime for end in ends if end.answers)
+        return [regime for regime in found if regime != self.case.regime]
 
     def open_ended(self, names: Iterable[str]) -> list[str]:
         """Say which quantities have no value at an end of an input, and which they have at the other one."""
@@ -194,7 +199,9 @@ class Uncertainties:
                         found.setdefault(place, []).append(_one_sided(name, spread.here, values[1 - i]))
                         break
         return [
-            f"{_first_of(sentences)}: at {place} {'it ' if why.startswith('does') else ''}{why}."
+            f"{_first_of(sentences)}: {place} {why}."
+            if why == NO_SCENE
+            else f"{_first_of(sentences)}: at {place}, {why}."
             for (place, why), sentences in found.items()
         ]
 
@@ -206,7 +213,7 @@ class Uncertainties:
                 spread, u = self._spread(name), self.of(name)
                 if spread and u and self._is_lopsided(spread, x, u):
                     found.setdefault(x, []).append(self._from_end_to_end(name, spread, x))
-        return [f"{_first_of(sentences)}, as {x} is uncertain." for x, sentences in found.items()]
+        return [f"{_first_of(sentences)}, as {x} varies by ±u." for x, sentences in found.items()]
 
     def _is_lopsided(self, spread: Spread, x: str, u: Decimal) -> bool:
         if x not in spread.steps or is_infinite(u):
@@ -264,8 +271,8 @@ def _one_sided(name: str, here: Decimal, other: Value) -> str:
     said = f"{name} is {with_unit(text(tidy(to_digits(SHOWN_DIGITS)(here))), unit)}"
     if other.number is None or other.number == here:
         return said
-    bound = with_unit(text(to_threshold(up=other.number > here)(other.number)), unit)
-    return f"{said}, {bound} or {'more' if other.number < here else 'less'}"
+    bound = with_unit(text(tidy(to_digits(SHOWN_DIGITS)(other.number))), unit)
+    return f"{said}, at {'least' if other.number < here else 'most'} {bound}"
 
 
 def _first_of(sentences: Sequence[str]) -> str:

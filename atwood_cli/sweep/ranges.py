@@ -239,7 +239,7 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     """Read a range of an input, with points of about so many digits. Raises SceneError."""
     words = typed.split(":")
     if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
-        raise SceneError(name, typed, f"is no range; write {FORM}")
+        raise SceneError(name, typed, f"is not a range; write {FORM}")
     for word in words[:2]:
         if word.strip().lower() in (LOCKED.text, *INPUTS[name].names):
             rule = f"has the end {in_quotes(word)}; a range runs between finite numbers"

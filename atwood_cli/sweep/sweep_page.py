@@ -108,7 +108,7 @@ class SweepPage:
 
 
 PULLEY = "critical_pulley_mass"
-PULLEYS = "As M is not given, each row that is on the verge has a pulley of its own: the critical one."
+PULLEYS = "M is not given, so each row on the verge has its own critical pulley mass."
 
 
 def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:

@@ -272,5 +272,5 @@ def read_uncertainty(heading: Heading, cell: str, value: Fraction, comma: bool) 
     try:
         spread = read_input(heading.name, f"1±{number}{PERCENT * relative}").uncertainty
     except SceneError:
-        raise SceneError(heading.column, cell, "is no uncertainty; write it like 0.02 or 2%") from None
+        raise SceneError(heading.column, cell, "is not an uncertainty; write it like 0.02 or 2%") from None
     return spread * (abs(value) if relative else ONE if OWN_UNIT.search(number) else heading.factor)

@@ -261,7 +261,7 @@ def read_ndjson(
 
 def _object(raw: bytes, line: str) -> dict[str, object]:
     """Return the object in a line, with its numbers as texts. Raises Unreadable."""
-    why = "it is no object"
+    why = "it is not an object"
     try:
         raw.decode()
         row = _DECODER.decode(line)
@@ -288,7 +288,7 @@ def _members(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
 
 
 def _no_number(word: str) -> str:
-    raise ValueError(f"{word} is no number of JSON; write null where nothing is given")
+    raise ValueError(f"{word} is not a number in JSON; write null for what is not given")
 
 
 _DECODER = json.JSONDecoder(
