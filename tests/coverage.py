@@ -84,7 +84,12 @@ OTHERS = [
     Design(8, 3, 0.05, step=0.01),
     Design(8, 1, 0.05, step=0.01),
 ]
-DELAYS = [Design(8, 5, 0.05, "both"), Design(8, 3, 0.05, "drops"), Design(6, 3, 0.05), Design(8, 5, 0.05, "one")]
+DELAYS = [
+    Design(8, 5, 0.05, "both"),
+    Design(8, 3, 0.05, "drops"),
+    Design(6, 3, 0.05),
+    Design(8, 5, 0.05, "one"),
+]
 WRONG = [
     Design(8, 3, 0.05, "both", delay=0.15),
     Design(8, 3, 0.05, string=4e-3),

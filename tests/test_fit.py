@@ -30,7 +30,7 @@ from atwood_cli.laboratory.statistics import CannotSeparate, sum_of_squares
 from atwood_cli.model.scene import read_input
 
 from .conftest import many
-from .coverage import CELLS, DELAYS, NOTHING, OTHERS, WRONG, C, Design, F, G, blunders_named, by_scipy, counts, drawn
+from .coverage import CELLS, DELAYS, NOTHING, OTHERS, C, Design, F, G, blunders_named, by_scipy, counts, drawn
 from .coverage import expected as textbook
 from .running import Ran, called, on_terminal, pages_seen, plain, process
 
@@ -360,7 +360,70 @@ def test_two_runs_with_uncertainties_are_enough() -> None:
 def test_rows_that_are_left_out_have_no_part() -> None:
     left, without = found(ODD, "--without 5"), found(ODD.replace("0.075,0.080,0.103\n", ""))
     assert [left[x] for x in ("interval", "dof")] == [without[x] for x in ("interval", "dof")]
-    assert left["runs"][4] == {**left["runs"][4], "a": 0.103, "u": None, "expected": pytest.approx(0.2901, abs=1e-3), "residual": None}
+    assert left["runs"][4] == {
+        **left["runs"][4],
+        "a": 0.103,
+        "u": None,
+        "expected": pytest.approx(0.2901, abs=1e-3),
+        "residual": None,
+    }
+
+
+def test_cells_that_are_left_out_have_no_part() -> None:
+    table = "m1,m2,t1,time 2,t3\n.2,.22,2.1,2.2,9\n.2,.23,1.8,1.7,1.6\n.2,.24,1.5,1.4,1.5\n"
+    empty = found(table.replace("2.2,9", "2.2,").replace("1.8,1.7", "1.8,"), "--drop 1")
+    for words in ("--without 1:t3,2:t2", "--without 1:time3 --without '2:time 2'"):
+        left = found(table, f"--drop 1 {words}")
+        assert [left[x] for x in ("interval", "dof", "chi2")] == [
+            empty[x] for x in ("interval", "dof", "chi2")
+        ]
+    whole, row = (found(table, f"--drop 1 --without {one}") for one in ("1:t1,1:t2,1:t3", "1"))
+    assert whole["interval"] == row["interval"]
+
+
+def test_a_run_of_which_each_repeat_is_odd_is_a_sentence() -> None:
+    """One pair of masses, ten times, with an odd one: ValueError, not enough values to unpack."""
+    times = "1.01,1.02,1.01,1.02,1.01,1.02,1.01,1.02,1.01,5.02"
+    names = ",".join(f"t{k}" for k in range(10))
+    ran = fit(f"m1,m2,{names}\n1,2,{times}\n", "--drop 1 --axle 0")
+    assert "t9 = 5.02 s is" in ran.out
+    assert (ran.status, ran.err) == (0, "")
+
+
+def test_a_result_that_is_none_is_status_1_in_each_form() -> None:
+    for form in ("", "--json", "--csv", "--only dof"):
+        assert fit("m1,m2,a\n.1,.11,9\n.1,.12,8\n.1,.13,9\n.1,.15,9\n", form).status == 1
+
+
+def test_no_reason_blames_the_design_for_a_unit() -> None:
+    """Each was said not to separate the pulley's inertia from axle friction."""
+    rows = [line.split(",") for line in SIMMONS.splitlines()[1:]]
+    timed = table_of(((m1, m2, 1000 * sqrt(2 / float(a))) for m1, m2, a in rows), "m1,m2,t")
+    kilograms = table_of((1000 * float(m1), m2, a) for m1, m2, a in rows)
+    accelerations = table_of((m1, m2, 100 * float(a)) for m1, m2, a in rows)
+    good = table_of(((m1, m2, sqrt(2 / float(a))) for m1, m2, a in rows), "m1,m2,t")
+    for table, words in ((timed, "--drop 1"), (kilograms, ""), (accelerations, ""), (good, "--drop 100m")):
+        ran = fit(table, words)
+        assert ran.status == 1
+        assert "separate" not in ran.out + ran.err
+        assert "check" in ran.out + ran.err
+
+
+def test_a_design_is_blamed_whatever_was_measured() -> None:
+    for a in (0.3, 3.0, 30.0):
+        ran = fit(table_of((0.1, 0.11 + 1e-9 * i, a + i / 100) for i in range(5)))
+        if a < 0.4:
+            assert "the runs do not separate the pulley's inertia from axle friction" in ran.err
+        else:
+            assert "no pulley would give" in ran.err
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "shown"),
+    [(0.049, "kg", "49 g"), (0.0052, "N", "5.2 mN"), (3e-8, "kg", "0.03 mg"), (2.0, "kg", "2 kg"), (0.9996, "kg", "1 kg")],
+)  # fmt: skip
+def test_small_values_have_small_units(value: float, unit: str, shown: str) -> None:
+    assert in_small_unit(value, unit) == shown
 
 
 # What it needs and how it is printed
