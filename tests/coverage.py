@@ -61,7 +61,7 @@ class Design(NamedTuple):
         return ", ".join(f"{name} {getattr(self, name)}" for name in names)
 
 
-ERRORS = ({}, {"masses": 2e-4}, {"axle": 0.1})
+ERRORS: tuple[Any, ...] = ({}, {"masses": 2e-4}, {"axle": 0.1})
 CELLS = [
     Design(runs, repeats, u, **more)
     for runs, repeats in ((3, 5), (6, 3), (12, 3), (8, 5))
@@ -223,7 +223,7 @@ class Counts(NamedTuple):
 def counts(design: Design, sets: int, *more: str, seed: int = 1) -> Counts:
     random, ideal = np.random.default_rng(seed), ideal_widths(design, *more)
     truth = np.array([design.c, design.f, *([design.delay] if more else [])])
-    within, widths, accused, scatters, delayed = list[Any](), list[Any](), 0, 0, 0
+    within, widths, accused, scatters, delayed = list[Any](), list[Any](), 0.0, 0.0, 0.0
     for _ in range(sets):
         try:
             fit = drawn(design, random).fit(*more)
@@ -236,9 +236,10 @@ def counts(design: Design, sets: int, *more: str, seed: int = 1) -> Counts:
             ends = np.array([one.interval for one in fit.whole.results.values()])
             within.append((ends[:, 0] <= truth) & (truth <= ends[:, 1]))
             widths.append((ends[:, 1] - ends[:, 0]) / 2 / ideal)
-    shares = [100 * one / sets for one in (accused, scatters, delayed)]
+    median, wide = np.quantile(widths, (0.5, 0.9), 0)
+    accused, scatters, delayed = (100 * one / sets for one in (accused, scatters, delayed))
     refused = 100 * (1 - len(within) / sets)
-    return Counts(100 * np.mean(within, 0), *np.quantile(widths, (0.5, 0.9), 0), refused, *shares)
+    return Counts(100 * np.mean(within, 0), median, wide, refused, accused, scatters, delayed)
 
 
 def exchanged(time: float) -> float:

@@ -345,31 +345,32 @@ def to_vary(used: Sequence[Run]) -> str:
 def _mistake(data: Data, used: Sequence[Run], kind: str, gravity: float, is_fitted: bool) -> tuple[str, bool]:
     """Return what must be a mistake in the table, if anything, and if most runs are impossible by it."""
     free: Any = physics.acceleration(data.h - data.l, data.h + data.l, np.float64(gravity))
-    a = accelerations(data, data.measured)
-    scatter = data.scatter / data.measured * (1 if data.drop is None else 2)
+    a, is_time = accelerations(data, data.measured), data.drop is not None
+    scatter = data.scatter / data.measured * (2 if is_time else 1)
     too_fast, too_slow = a > free * np.maximum(FASTER, 1 + 3 * scatter), a < SLOWER * free
     impossible = (too_fast | too_slow) & (not is_fitted)
-    is_everywhere = bool(impossible.mean() > 0.5)
-    m1, m2 = (
-        float(np.median([float(mass.value) for mass in side]))
-        for side in zip(*((run.m1, run.m2) for run in used), strict=True)
-    )
-    if m1 and m2 and not 1 / UNUSUAL < m1 / m2 < UNUSUAL:
-        return f"m1 is about {rounded(m1 / m2)} times m2: check the units of their columns", True
-    if cell := _unusual_cell(used, kind):
-        return cell, is_everywhere
+    is_most = bool(impossible.mean() > 0.5)
+    if sides := _unusual_sides(used):
+        return sides, True
+    if unit := _unusual_cell(used, kind):
+        return unit, is_most
     if not impossible.any():
         return "", False
-    i = int(np.argmax(np.where(impossible, np.abs(np.log(a / free)), 0)))
-    is_time, limit = data.drop is not None, rounded(float(free[i]), 3)
-    symbol, unit = ("t", "s") if is_time else ("a", "m/s²")
-    measured = f"{used[i].name}: {symbol} = {rounded(float(data.measured[i]), 3)} {unit}"
+    i = int(np.argmax(impossible))
+    limit = f"{rounded(float(free[i]), 3)}, what no friction and no pulley would give"
+    compared = f"{'more than' if too_fast[i] else 'not a ten-thousandth of'} {limit}"
+    said = f"a = {rounded(float(a[i]), 3)} m/s²"
     if is_time:
-        measured += f" is a = {rounded(float(a[i]), 3)} m/s², which"
-    compared = "more than" if too_fast[i] else "not a ten-thousandth of"
-    check = "the height of fall, the masses and their units" if is_time else "its unit, and the masses"
-    what = "what no friction and no pulley would give"
-    return f"{measured} is {compared} {limit}, {what}; check {check}", is_everywhere
+        time = rounded(float(data.measured[i]), 3)
+        check = "check the height of fall, the masses and their units"
+        return f"{used[i].name}: t = {time} s is {said}, which is {compared}; {check}", is_most
+    return f"{used[i].name}: {said} is {compared}; check its unit, and the masses", is_most
+
+
+def _unusual_sides(used: Sequence[Run]) -> str:
+    """Return that m1 is a hundred times above or below m2; empty if it is not."""
+    m1, m2 = np.median([[float(run.m1.value), float(run.m2.value)] for run in used], 0).tolist()
+    return f"m1 is about {rounded(m1 / m2)} times m2: check their units" if _is_unusual(m1, m2) else ""
 
 
 def _unusual_cell(used: Sequence[Run], kind: str) -> str:
@@ -377,16 +378,18 @@ def _unusual_cell(used: Sequence[Run], kind: str) -> str:
     columns: dict[str, list[float]] = {
         "m1": [float(run.m1.value) for run in used],
         "m2": [float(run.m2.value) for run in used],
-        "drop": [float(run.drop.value) for run in used if run.drop],
+        "drop": [float(run.drop.value) if run.drop else 0.0 for run in used],
         kind: [abs(run.mean) for run in used],
     }
     for name, column in columns.items():
-        median = float(np.median(column)) if column else 0.0
-        for run, value in zip(used, column, strict=False):
-            if value and median and not 1 / UNUSUAL < value / median < UNUSUAL:
+        median = float(np.median(column))
+        for run, value in zip(used, column, strict=True):
+            if _is_unusual(value, median):
                 unit, times = parameter_of(name).unit, f"{rounded(value / median)} times"
-                median_of = f"the median of its column, {rounded(median, 3)} {unit}"
-                return (
-                    f"{run.name}: {name} = {rounded(value, 3)} {unit} is {times} {median_of}; check its unit"
-                )
+                compared = f"{times} the median of its column, {rounded(median, 3)} {unit}"
+                return f"{run.name}: {name} = {rounded(value, 3)} {unit} is {compared}; check its unit"
     return ""
+
+
+def _is_unusual(value: float, usual: float) -> bool:
+    return bool(value and usual) and not 1 / UNUSUAL < value / usual < UNUSUAL
