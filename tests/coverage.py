@@ -171,6 +171,8 @@ def drawn(design: Design, random: Random) -> Set:
     """A set of runs with errors, and none of them odd."""
     n = design.runs
     l, h, drop = masses_of(design)
+    if design.step:  # other masses in each set, or each would have the same errors of rounding
+        l, h = (np.round(m + 1e-3 * random.random(n), 6) for m in (l, h))
     l_true, h_true = (m + design.masses * random.standard_normal(n) for m in (l, h))
     f = design.f * (1 + design.axle * random.standard_normal(n))
     if design.load:

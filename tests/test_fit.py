@@ -390,6 +390,14 @@ def test_a_run_of_which_each_repeat_is_odd_is_a_sentence() -> None:
     assert (ran.status, ran.err) == (0, "")
 
 
+def test_no_memory_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(*_: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr("atwood_cli.laboratory.runs.read_runs", fails)
+    assert fit(SIMMONS).err == "atwood: cannot read stdin: it needs more memory than there is\n"
+
+
 def test_a_result_that_is_none_is_status_1_in_each_form() -> None:
     for form in ("", "--json", "--csv", "--only dof"):
         assert fit("m1,m2,a\n.1,.11,9\n.1,.12,8\n.1,.13,9\n.1,.15,9\n", form).status == 1
@@ -505,7 +513,7 @@ def test_in_python_it_is_what_json_has() -> None:
         ({"m1": 1, "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type int; give a sequence of cells"),
         ({"m1": "12", "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type str; give a sequence of cells"),
         ({"m1": [], "m2": [], "a": []}, {}, ValueError, "cannot read the runs: it has no runs"),
-        ({"m1": [1], "m2": [True], "a": [1]}, {}, ValueError, "cannot read the runs: row 1: m2 'True' is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1); a line of words, units or means is no run: begin it with #, or delete it"),
+        ({"m1": [1], "m2": [True], "a": [1]}, {}, ValueError, "cannot read the runs: row 1: m2 'True' is not a number; write it like 2, 1.5e-3, 2.0+-0.1 or 2.0(1); a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"),
         (Path("none.csv"), {}, OSError, "cannot read none.csv: No such file or directory"),
         (TOP / "LICENSE", {}, OSError, f"cannot read {TOP / 'LICENSE'}: row 2 has 3 cells, and the header 1; is there a decimal comma (write a point), or one at its end?"),
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' is known by g; leave one of them out"),

@@ -211,15 +211,15 @@ def test_files_that_are_read(content: bytes, named: dict[str, str], tmp_path: Pa
     ]
 
 
-NO_RUN = "a line of words, units or means is no run: begin it with #, or delete it"
+NO_RUN = "a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"
 
 
 @pytest.mark.parametrize(
     ("content", "words"),
     [
         (b"PK\x03\x04" + b"xl/", "it is a workbook (.xlsx, .xls), or an archive; save the sheet as CSV"),
-        (b"m1,m2,t\nkg,kg,s\n0.2,0.207,3.99\n", "row 1 has units: write them in the headings, as 'm1 (kg)'"),
-        (b"m1,m2,t\n(kg),(kg),(s)\n0.2,0.207,3.99\n", "row 1 has units: write them in the headings, as 'm1 (kg)'"),
+        (b"m1,m2,t\nkg,kg,s\n0.2,0.207,3.99\n", NO_RUN),
+        (b"m1,m2,t\n(kg),(kg),(s)\n0.2,0.207,3.99\n", NO_RUN),
         (b"m1,m2,t\n0.2,0.207,3.99\n,,4.01\n", "row 2 has no m1; write it in each row"),
         (b"m1,m2,t\n0.2,0.207,3.99\nMean,,3.99\n", NO_RUN),
         (b"m1,m2,t\n0.2,0.207,3.99\nmeasured on Monday,,\n", NO_RUN),

@@ -37,7 +37,7 @@ VOCABULARY = Vocabulary(SPELLINGS, repeated=MEASURED, uncertain=True)
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
 UNSIGNED = "accelerations are read as magnitudes: none is negative, even if m1 is heavier."
-NO_RUN = "a line of words, units or means is no run: begin it with #, or delete it"
+NO_RUN = "a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"
 MEASURABLE = 1e-30, 1e30
 BEYOND = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
 
@@ -114,7 +114,6 @@ def read_runs(
     common = drop and drop._replace(uncertainty=Fraction(0))  # what counts for all runs together
     left_out = _read_without(without, len(sheet.rows), headings)
     try:
-        _check_rows(sheet, headings)
         rows = [
             _run(i, row, headings, comma, common, left_out.get(i, set()))
             for i, row in enumerate(sheet.rows, 1)
@@ -212,12 +211,10 @@ def _missing(sheet: Sheet, missing: Sequence[str]) -> str:
         if one := next((one for one in free if _may_be(name, one[1])), None):
             free.remove(one)
             options.append(f"--column {'t' if name == 'time' else name}={quote(one[0])}")
-    there = f"; there {'are' if sheet.columns[1:] else 'is'} {listed(sheet.columns)}"
-    return (
-        f"{said}{there}; name {'them' if missing[1:] else 'it'}, as {' '.join(options)}"
-        if options
-        else said + there
-    )
+    said += f"; there {'are' if sheet.columns[1:] else 'is'} {listed(sheet.columns)}"
+    if not options:
+        return said
+    return f"{said}; name {'them' if missing[1:] else 'it'}, as {' '.join(options)}"
 
 
 def _may_be(name: str, unit: str) -> bool:
@@ -226,16 +223,6 @@ def _may_be(name: str, unit: str) -> bool:
         return not unit or bool(read_unit(unit, parameter_of(name).dimension or ""))
     except Malformed:
         return False
-
-
-def _check_rows(sheet: Sheet, headings: Sequence[Heading]) -> None:
-    """Raises Unreadable if the first row has units."""
-    cells = [(heading, sheet.rows[0][heading.place].strip(" ()[]")) for heading in headings if sheet.rows]
-    if cells and all(cell and not heading.unit and _may_be(heading.name, cell) for heading, cell in cells):
-        heading, cell = cells[0]
-        raise Unreadable(
-            f"row 1 has units: write them in the headings, as {in_quotes(f'{heading.column} ({cell})')}"
-        )
 
 
 def _read_without(
