@@ -82,6 +82,7 @@ def fit_of(
     from ..tables.sources import cannot_read
     from .fitting import conditions_of, fitted, read_find
     from .runs import VOCABULARY, explained, read_runs
+    from .statistics import CannotSeparate
 
     known = [x for x, value in given.items() if value is not None]
     inputs = {x: read_input(x, given.get(x)) for x in dict.fromkeys((*INPUTS, *known))}
@@ -91,7 +92,7 @@ def fit_of(
         runs = read_runs(table, labels, inputs.get("drop"), without, named)
         try:
             return fitted(runs, same, names)
-        except (Unreadable, ArithmeticError) as error:
+        except (Unreadable, CannotSeparate) as error:
             raise type(error)(explained(error, runs.remarks)) from None
     except (Unreadable, MemoryError) as error:
         why = error if isinstance(error, Unreadable) else Unreadable("it needs more memory than there is")

@@ -13,7 +13,7 @@ from ..model import physics
 from ..model.digits import exact_decimal
 from ..model.scene import Input
 from ..tables.sources import Unreadable
-from .runs import Run, Runs
+from .runs import MEASURABLE, Run, Runs
 from .statistics import ROUNDING, Column, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
@@ -76,6 +76,7 @@ def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -
     measured = np.array([abs(run.mean) for run in used])
     if stated:
         measured = np.bincount(index, weight * values) / total
+    measured = np.maximum(measured, MEASURABLE[0])  # the mean of accelerations to both sides may be 0
     chi2 = sum_of_squares(np.sqrt(weight) * (values - measured[index]))
     dof = len(values) - len(used)
     factor = chi2 / dof if dof else 0.0  # the variance of a value, in units of what is stated

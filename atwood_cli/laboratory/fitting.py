@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, compress
 from math import hypot, inf, isfinite, sqrt
 from typing import Any, NamedTuple
 
@@ -212,7 +212,8 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     without = with_delay = None
     with suppress(CannotSeparate):
         if cells or rows:
-            without = outcome(runs, [run for i, run in enumerate(sound) if i not in rows], given, names)
+            usable = (i not in rows and not _unusable(runs, run, given, names) for i, run in enumerate(sound))
+            without = outcome(runs, [*compress(sound, usable)], given, names)
         elif runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
             with_delay = outcome(runs, used, given, [*names, "delay"])
     return Fitted(runs, used, reasons, given, whole, cells, rows, without, with_delay)
@@ -236,7 +237,7 @@ def outcome(
     try:
         best = estimate(data, given.values, names)
         ends = [[*map(found, pair)] for pair in _neighbours(given)]
-    except CannotSeparate:
+    except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
         raise CannotSeparate(mistake or NOTHING_FITS) from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
@@ -319,7 +320,8 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
         "gravity": given["gravity"],
     }
     least = float((data.h - data.l).min()) * given["gravity"]
-    values = {"rim_mass": 0.1 * sizes["rim_mass"], "axle": 0.1 * least, **given}
+    values = {"rim_mass": 0.1 * sizes["rim_mass"], **given}
+    values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
     ideal = expected(design, values)
     sizes["delay"] = float(np.median(ideal))
     J: Any = slopes(design, values, names) / ideal[:, None] * [sizes[x] for x in names]
