@@ -93,7 +93,8 @@ class Outcome(NamedTuple):
     def correlation(self) -> tuple[str, str, float] | None:
         """The most correlated pair of fitted quantities."""
         names, covariance = self.best.names, self.best.line.covariance
-        of = covariance / np.sqrt(np.outer(covariance.diagonal(), covariance.diagonal()))
+        u = np.sqrt(covariance.diagonal())
+        of = covariance / np.outer(u, u)
         pairs = [(names[i], names[j], float(of[i, j])) for i, j in combinations(range(len(names)), 2)]
         return max(pairs, key=lambda pair: abs(pair[2]), default=None)
 
@@ -223,9 +224,13 @@ def outcome(
     runs: Runs, used: Sequence[Run], given: Conditions, names: Sequence[str], left_out: str = ""
 ) -> Outcome:
     """Return the fit of these runs, with its uncertainties. Raises CannotSeparate."""
-    data, dof = as_data(runs, used), len(used) - len(names)
-    if dof < 0 or not (dof or data.scatter.any() or data.uncertain):
-        raise CannotSeparate(TOO_FEW.format(f"{len(used)} runs are" if used[1:] else "1 run is", left_out))
+    dof = len(used) - len(names)
+    too_few = TOO_FEW.format("1 run is" if len(used) == 1 else f"{len(used)} runs are", left_out)
+    if dof < 0 or not used:
+        raise CannotSeparate(too_few)
+    data = as_data(runs, used)
+    if not (dof or data.scatter.any() or data.uncertain):
+        raise CannotSeparate(too_few)
     mistake, is_everywhere = _mistake(data, used, runs.kind, given.values["gravity"], "gravity" in names)
     if not _separates(data, given.values, names):
         raise CannotSeparate(mistake or undetermined(used, names))
