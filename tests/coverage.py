@@ -233,7 +233,7 @@ def counts(design: Design, sets: int, *more: str, seed: int = 1) -> Counts:
             continue
         accused += bool(fit.odd)
         scatters += (fit.whole.p_value or 1) < 0.05
-        delayed += bool(fit.with_delay and fit.with_delay.p_value_of("delay") < 0.01)
+        delayed += bool(fit.delay and fit.delay[1] < 0.01)
         if not fit.whole.reason:
             ends = np.array([one.interval for one in fit.whole.results.values()])
             within.append((ends[:, 0] <= truth) & (truth <= ends[:, 1]))

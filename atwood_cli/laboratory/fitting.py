@@ -8,7 +8,7 @@ from math import hypot, inf, isfinite, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import fdtrc, stdtr, stdtrit
+from scipy.special import fdtrc, stdtrit
 
 from ..model import physics
 from ..model.case import Case
@@ -29,7 +29,15 @@ from .estimate import (
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, rounded, with_u
 from .runs import BEYOND, Run, Runs, in_range
-from .statistics import NORMAL_DOF, CannotSeparate, judge_of_line, judge_of_repeats, outliers
+from .statistics import (
+    NORMAL_DOF,
+    CannotSeparate,
+    fit_line,
+    judge_of_line,
+    judge_of_repeats,
+    outliers,
+    sum_of_squares,
+)
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
@@ -98,12 +106,6 @@ class Outcome(NamedTuple):
         pairs = [(names[i], names[j], float(of[i, j])) for i, j in combinations(range(len(names)), 2)]
         return max(pairs, key=lambda pair: abs(pair[2]), default=None)
 
-    def p_value_of(self, name: str) -> float:
-        """Return the probability that a value is as far from 0 by chance."""
-        i = list(self.best.names).index(name)
-        u = sqrt(self.best.line.scale * self.best.line.covariance[i, i])
-        return float(2 * stdtr(min(self.best.line.dof, NORMAL_DOF), -abs(self.best.values[name]) / u))
-
 
 class Fitted(NamedTuple):
     """The fit of the runs that can be used, their outliers, and the fit without these.
@@ -111,7 +113,8 @@ class Fitted(NamedTuple):
     ``unusable`` says why other runs cannot be used, by their rows. ``cells`` are repeats far from the others
     of their run, by the index of the run and the place in it, ``rows`` runs far from the line of the others;
     both have the distance in standard deviations. ``without`` is None if nothing is odd, or if too few runs
-    are left. ``with_delay`` is the fit of a delay, too; None if it was not tried or is not possible.
+    are left. ``delay`` is that of a fit with a delay, and the probability that chance lowers χ² as much (an
+    F test); None if it was not tried or is not possible.
     """
 
     runs: Runs
@@ -122,7 +125,7 @@ class Fitted(NamedTuple):
     cells: Mapping[tuple[int, int], float]
     rows: Mapping[int, float]
     without: Outcome | None
-    with_delay: Outcome | None
+    delay: tuple[Result, float] | None
 
     @property
     def odd(self) -> list[int]:
@@ -210,14 +213,27 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     cells = _odd_cells(used, whole.best)
     sound = [run.without({k for j, k in cells if j == i}) for i, run in enumerate(used)]
     rows = _odd_rows(as_data(runs, sound), whole.best)
-    without = with_delay = None
+    without = delay = None
     with suppress(CannotSeparate):
         if cells or rows:
             usable = (i not in rows and not _unusable(runs, run, given, names) for i, run in enumerate(sound))
             without = outcome(runs, [*compress(sound, usable)], given, names)
-        elif runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
-            with_delay = outcome(runs, used, given, [*names, "delay"])
-    return Fitted(runs, used, reasons, given, whole, cells, rows, without, with_delay)
+    with suppress(CannotSeparate):
+        if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
+            delay = _delay(whole.best, outcome(runs, used, given, [*names, "delay"]))
+    return Fitted(runs, used, reasons, given, whole, cells, rows, without, delay)
+
+
+def _delay(best: Estimate, late: Outcome) -> tuple[Result, float] | None:
+    """Return the delay of a fit that has one, and the probability that chance lowers χ² as much."""
+    if late.reason:
+        return None
+    data, sigma = best.data, late.best.sigma
+    on_time, with_delay = (data.measured - expected(data, one.values) for one in (best, late.best))
+    J, exact = slopes(data, best.values, best.names), np.zeros_like(sigma)
+    chi2 = fit_line(J, on_time, sigma**2, exact + 1, exact).chi2 or 0.0
+    lower = max(chi2 - sum_of_squares(with_delay / sigma), 0.0)
+    return late.results["delay"], float(fdtrc(1, min(late.best.line.dof, NORMAL_DOF), lower))
 
 
 def outcome(

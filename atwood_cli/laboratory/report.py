@@ -118,14 +118,14 @@ def _scatter(fit: Fitted) -> str:
 def _delay(fit: Fitted) -> Iterator[str]:
     """Yield if all times seem to be too long, or if the runs cannot show that."""
     names = fit.whole.best.names
-    if fit.runs.kind != "time" or "delay" in names or fit.odd:
+    if fit.runs.kind != "time" or "delay" in names:
         return
-    result = fit.with_delay and fit.with_delay.results.get("delay")
-    if fit.with_delay and result and fit.with_delay.p_value_of("delay") < RARE:
+    result, p = fit.delay or (None, 1.0)
+    if result and p < RARE:
         size = with_u(abs(result.value), result.uncertainty)
         long, find = "long" if result.value > 0 else "short", ",".join([*names, "delay"])
         yield f"All times seem {size} s too {long}: --find {find} fits that, too."
-    elif not result or result.interval[1] - result.value > WIDE_DELAY:
+    elif not fit.odd and (not result or result.interval[1] - result.value > WIDE_DELAY):
         width = f" (it is uncertain by {rounded(result.interval[1] - result.value)} s)" if result else ""
         how = "vary the height of fall, or both m2 - m1 and m1 + m2"
         yield f"These runs cannot show a delay of all times{width}: {how}."
