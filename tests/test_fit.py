@@ -505,6 +505,12 @@ def test_in_python_it_is_what_json_has() -> None:
     assert lines[3:] == list(result.notes)
 
 
+def test_options_in_notes_are_parameters_in_python() -> None:
+    (columns, *rows) = csv.reader(ODD.splitlines())
+    result = laboratory_fit(dict(zip(columns, zip(*rows, strict=True), strict=True)))
+    assert any(note.endswith("from the other runs; without='5'.") for note in result.notes)
+
+
 @pytest.mark.parametrize(
     ("table", "more", "kind", "words"),
     [

@@ -222,7 +222,7 @@ def _lightest(data: Data) -> float:
 
 
 def _start(data: Data, values: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
-    """Return the values of the straight line of forces."""
+    """Return the values that fit the straight line of forces best."""
     J, y, *_ = line_of_forces(data, values, names)
     solution = np.linalg.lstsq(J, y, rcond=None)[0] if names else np.empty(0)
     return dict(zip(names, solution.tolist(), strict=True))

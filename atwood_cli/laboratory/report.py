@@ -64,19 +64,20 @@ def verdict(fit: Fitted) -> str:
 def _oddities(fit: Fitted) -> list[str]:
     """Return what is odd about the runs, and the result without it."""
     unit, symbol = parameter_of(fit.runs.kind).unit, {"a": "a", "time": "t"}[fit.runs.kind]
-    cells, rows = list[str](), list[str]()
+    said, labels = list[str](), list[str]()
     for (i, place), away in fit.cells.items():
         label, value = fit.used[i].cells[place], text(float(fit.used[i].measured[place].value))
         where = in_words(label) if ":" in label else f"{in_words(label)}: {symbol}"
         far = f"{_far(away)} standard deviations from its repeats"
-        cells.append(f"{_capital(where)} = {value} {unit} is {far}; --without {label}.")
+        said.append(f"{_capital(where)} = {value} {unit} is {far}; --without {label}.")
+        labels.append(label)
     for i, away in fit.rows.items():
         far = f"{_far(away)} standard uncertainties from the other runs"
-        label = ",".join(map(str, fit.used[i].rows))
+        labels += map(str, fit.used[i].rows)
         verb = "are outliers" if fit.used[i].rows[1:] else "is an outlier"
-        rows.append(f"{_capital(fit.used[i].name)} {verb}: {far}; --without {label}.")
-    said = _some([*cells, *rows], "outliers")
-    them = "them" if len(cells) + len(rows) > 1 or (rows and "," in rows[0].partition(":")[0]) else "it"
+        label = ",".join(map(str, fit.used[i].rows))
+        said.append(f"{_capital(fit.used[i].name)} {verb}: {far}; --without {label}.")
+    said, them = _some(said, "outliers"), "them" if labels[1:] else "it"
     if fit.without is None:
         return [*said, f"Without {them} too few runs are left to fit."]
     results = ", ".join(equation(x, *one[:2]) for x, one in fit.without.results.items())

@@ -259,7 +259,7 @@ def in_words(cell: str) -> str:
 
 
 def in_range(one: Input) -> bool:
-    """Whether a number, and its uncertainty, are 0 or of a size whose squares are doubles."""
+    """Decide if a number, and its uncertainty, are 0 or of a size whose squares are doubles."""
     low, high = MEASURABLE
     sizes = (getattr(one.value, "number", one.value), one.uncertainty)
     return all(low <= abs(size) <= high for size in sizes if size)
