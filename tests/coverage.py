@@ -1,24 +1,22 @@
-"""How often the intervals of `atwood fit` hold the truth, beside SciPy: `python -m tests.coverage [SETS]`.
+"""What `atwood fit` says of laboratories whose truth is known: `python -m tests.coverage [SETS]`.
 
-Laboratory sets are drawn with a known pulley (c at the rim) and axle (f), with normal errors of what is measured
-and of what the table does not say. Counted are the 95 % intervals that hold the truth, their median widths over
-those of unweighted least squares (`scipy.optimize.curve_fit` of the runs' means, Student's t with n - 2), sets
-without a result, and sound sets of which anything is said to be odd.
+Laboratory sets are drawn with a known pulley (c at the rim), axle (f) and delay, with errors of what is measured and
+of what the table does not say. Counted are the 95 % intervals that hold the truth, and their widths over the ideal
+ones (weighted least squares with the true variances, of the same quantities).
 """
 
 import sys
 from collections.abc import Iterator
 from fractions import Fraction
-from math import nan
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy import optimize, stats
+from scipy import optimize
 
-from atwood_cli.laboratory.judgement import Fitted, conditions_of, fitted
-from atwood_cli.laboratory.published import USUAL
+from atwood_cli.laboratory.fitting import Fitted, conditions_of, fitted
+from atwood_cli.laboratory.results import USUAL
 from atwood_cli.laboratory.runs import Kind, Run, Runs
-from atwood_cli.laboratory.statistics import Alike
+from atwood_cli.laboratory.statistics import CannotSeparate
 from atwood_cli.model.scene import INPUTS, Input, read_input
 
 C, F, G, DROP = 0.028, 0.009, 9.80665, 1.1
@@ -32,9 +30,10 @@ class Design(NamedTuple):
     """A laboratory: n runs of some repeats, with the errors that it has.
 
     ``u`` is that of a single time (s) or acceleration (m/s²), or of a time as a share of it if ``relative``;
-    ``masses`` that of each mass (kg), ``axle`` that of the axle's friction from run to run, ``between`` that of
-    all times of a run, both as shares. ``stated``: the uncertainties that the table states, times this.
-    If ``averaged``, the table has only the mean of the repeats.
+    ``masses`` that of each mass (kg), ``axle`` that of the axle's friction from run to run, ``between`` that of all
+    times of a run, both as shares; ``stated`` the uncertainties that the table states, times this. If ``averaged``,
+    the table has only the mean of the repeats. Times are read to the ``step`` and too long by the ``delay`` (s). The
+    model is wrong by a ``string`` (kg/m), or by friction in proportion to the ``load``.
     """
 
     runs: int
@@ -48,6 +47,10 @@ class Design(NamedTuple):
     stated: float = 0.0
     relative: bool = False
     averaged: bool = False
+    step: float = 0.0
+    delay: float = 0.0
+    string: float = 0.0
+    load: bool = False
     c: float = C
     f: float = F
 
@@ -58,62 +61,73 @@ class Design(NamedTuple):
         return ", ".join(f"{name} {getattr(self, name)}" for name in names)
 
 
-class Bar(NamedTuple):
-    """What a design must reach: the least coverage (%), and the greatest width over that of SciPy."""
-
-    design: Design
-    within: float = 90.0
-    width: float = 1.25
-
-
-BARS = [
-    # Runs that differ by their scatter alone.
-    *(Bar(Design(runs, 3, u)) for runs, u in ((7, 0.1), (3, 0.07), (4, 0.05), (5, 0.05))),
-    Bar(Design(5, 4, 0.05, "vary")),
-    *(Bar(Design(*of)) for of in ((7, 3, 0.07), (12, 3, 0.05), (20, 5, 0.05))),
-    *(Bar(Design(7, 3, u, averaged=True)) for u in (0.1, 0.2)),
-    Bar(Design(8, 1, 0.05)),
-    Bar(Design(8, 1, 0.01, kind="a")),
-    Bar(Design(8, 3, 0.01, "vary", kind="a")),
-    Bar(Design(8, 3, 0.05, "swapped")),
-    Bar(Design(8, 3, 0.05, c=0.0, f=0.0)),
-    # Uncertainties that are stated, rightly and wrongly.
-    *(Bar(Design(7, 3, 0.05, stated=times)) for times in (1.0, 0.5, 2.0)),
-    *(Bar(Design(8, repeats, 0.05, masses=2e-4, stated=1.0), 92, nan) for repeats in (3, 1)),
-    # Runs that differ by more than their scatter.
-    Bar(Design(8, 3, 0.001, axle=0.1), 90, nan),
-    Bar(Design(8, 3, 0.001, between=0.015), 90, nan),
-    Bar(Design(8, 3, 0.05, masses=2e-4), 80, nan),
-    Bar(Design(8, 1, 0.02, relative=True), 80, nan),
+ERRORS: tuple[Any, ...] = ({}, {"masses": 2e-4}, {"axle": 0.1})
+CELLS = [
+    Design(runs, repeats, u, **more)
+    for runs, repeats in ((3, 5), (6, 3), (12, 3), (8, 5))
+    for u in (0.05, 1e-3, 1e-4)
+    for more in ERRORS
 ]
+"""The designs that decided how degrees of freedom are counted."""
+OTHERS = [
+    Design(3, 3, 0.07),
+    Design(7, 3, 0.07, averaged=True),
+    Design(8, 1, 0.05),
+    Design(8, 1, 0.01, kind="a"),
+    Design(8, 3, 0.01, "vary", kind="a"),
+    Design(8, 3, 0.05, "swapped", c=0.0, f=0.0),
+    *(Design(7, 3, 0.05, stated=times) for times in (1.0, 0.5, 2.0)),
+    *(Design(8, repeats, 0.05, masses=2e-4, stated=1.0) for repeats in (3, 1)),
+    Design(8, 3, 1e-3, between=0.015),
+    Design(8, 5, 1e-4, step=1e-3),
+    Design(6, 3, 1e-4, step=1e-3),
+    Design(8, 3, 0.05, step=0.01),
+    Design(8, 1, 0.05, step=0.01),
+]
+DELAYS = [
+    Design(8, 5, 0.05, "both"),
+    Design(8, 3, 0.05, "drops"),
+    Design(6, 3, 0.05),
+    Design(8, 5, 0.05, "one"),
+]
+WRONG = [
+    Design(8, 3, 0.05, "both", delay=0.15),
+    Design(8, 3, 0.05, string=4e-3),
+    Design(8, 3, 0.05, "vary", load=True),
+    Design(8, 3, 0.03, relative=True),
+]
+"""Laboratories of which the model is not true."""
 
 
 class Set(NamedTuple):
-    """The masses as the table has them, and what is measured: (runs, repeats)."""
+    """The masses and heights as the table has them, and what is measured: (runs, repeats)."""
 
     design: Design
     l: Any
     h: Any
+    drop: Any
     values: Any
 
     def runs(self) -> Runs:
         def exact(value: float, u: float = 0.0) -> Input:
-            return Input(Fraction(float(value)), Fraction(u), None)
+            return Input(Fraction(str(round(float(value), 13))), Fraction(u), None)
 
         d = self.design
         values = self.values.mean(1, keepdims=True) if d.averaged else self.values
-        drop, runs = exact(DROP) if d.kind == "time" else None, []
-        for i, (l, h, some) in enumerate(zip(self.l, self.h, values, strict=True), 1):
+        runs = []
+        for i, (l, h, drop, some) in enumerate(zip(self.l, self.h, self.drop, values, strict=True), 1):
             masses = [exact(m, d.masses * bool(d.stated)) for m in (l, h)]
             m1, m2 = masses[::-1] if d.sums == "swapped" and i % 2 else masses
-            runs.append(Run((i,), m1, m2, drop, tuple(exact(value, d.stated * d.u) for value in some)))
+            measured = tuple(exact(value, d.stated * d.u) for value in some)
+            cells = tuple(f"{i}:t{k}" for k in range(len(some)))
+            runs.append(Run((i,), m1, m2, exact(drop) if d.kind == "time" else None, measured, False, cells))
         return Runs(d.kind, runs, False, [])
 
-    def fit(self) -> Fitted:
-        return fitted(self.runs(), conditions_of(NOTHING), [])
+    def fit(self, *more: str) -> Fitted:
+        return fitted(self.runs(), conditions_of(NOTHING), [*USUAL, *more])
 
 
-def expected(kind: Kind, l: Any, h: Any, c: Any, f: Any, g: Any = G, drop: float = DROP) -> Any:
+def expected(kind: Kind, l: Any, h: Any, c: Any, f: Any, g: Any = G, drop: Any = DROP) -> Any:
     """The acceleration, or the time of the fall, as in a textbook."""
     a = ((h - l) * g - f) / (l + h + c)
     return a if kind == "a" else np.sqrt(2 * drop / np.maximum(a, 1e-6))
@@ -125,84 +139,158 @@ def by_scipy(kind: Kind, l: Any, h: Any, measured: Any, names: Any = USUAL, **kn
 
     def ideal(_: Any, *values: float) -> Any:
         x = known | dict(zip(names, values, strict=True))
-        return expected(kind, l, h, x["rim_mass"], x["axle"], x["gravity"], x["drop"])
+        time = expected(kind, l, h, x["rim_mass"], x["axle"], x["gravity"], x["drop"])
+        return time + x.get("delay", 0)
 
-    start = [{"rim_mass": 0.03, "axle": 0.01, "gravity": G}[name] for name in names]
+    start = [{"rim_mass": 0.03, "axle": 0.01, "gravity": G, "delay": 0.0}[name] for name in names]
     tight: Any = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15) | {"jac": "3-point", "x_scale": "jac"}
     found = optimize.curve_fit(ideal, l, measured, start, known["sigma"], method="trf", **tight)
     return found[0], found[1]
 
 
+def masses_of(design: Design) -> tuple[Any, Any, Any]:
+    """The masses and heights of a design."""
+    n, drop = design.runs, np.full(design.runs, DROP)
+    if design.sums == "vary":
+        l = np.linspace(0.1, 0.28, n)
+        return l, l + np.linspace(0.05, 0.012, n), drop
+    if design.sums == "both":
+        total, difference = np.repeat((0.2, 0.6), n // 2), np.tile(np.linspace(0.015, 0.05, n // 2), 2)
+        return (total - difference) / 2, (total + difference) / 2, drop
+    if design.sums == "drops":
+        l = np.linspace(0.1, 0.4, n)
+        return l, l + 0.02, np.where(np.arange(n) % 2, 0.5, 1.5)
+    if design.sums == "one":
+        l = np.linspace(0.1, 0.3, n)
+        return l, l + 0.02, drop
+    difference = np.linspace(0.008, 0.045, n)
+    return (0.45 - difference) / 2, (0.45 + difference) / 2, drop
+
+
 def drawn(design: Design, random: Random) -> Set:
     """A set of runs with errors, and none of them odd."""
     n = design.runs
-    if design.sums == "vary":
-        l = np.linspace(0.1, 0.28, n)
-        h = l + np.linspace(0.05, 0.012, n)
-    else:
-        difference = np.linspace(0.008, 0.045, n)
-        l, h = (0.45 - difference) / 2, (0.45 + difference) / 2
+    l, h, drop = masses_of(design)
+    if design.step:  # other masses in each set, or each would have the same errors of rounding
+        l, h = (np.round(m + 1e-3 * random.random(n), 6) for m in (l, h))
     l_true, h_true = (m + design.masses * random.standard_normal(n) for m in (l, h))
     f = design.f * (1 + design.axle * random.standard_normal(n))
+    if design.load:
+        tensions = l * h / (l + h)
+        f = f * tensions / tensions.mean()
     shares = 1 + design.between * random.standard_normal(n)
-    ideal = (expected(design.kind, l_true, h_true, design.c, f) * shares)[:, None]
+    ideal = (expected(design.kind, l_true, h_true, design.c, f, drop=drop) * shares)[:, None]
+    if design.string:  # x'' = alpha + beta x, as the string moves over to the heavier side
+        load, mass = l + h + design.c + design.string * drop, design.string
+        alpha, beta = (G * (h - l - mass * drop) - f) / load, 2 * G * mass / load
+        ideal = (np.arccosh(1 + beta * drop / alpha) / np.sqrt(beta))[:, None]
     noise = design.u * random.standard_normal((n, design.repeats))
-    return Set(design, l, h, ideal * (1 + noise) if design.relative else ideal + noise)
+    values = (ideal * (1 + noise) if design.relative else ideal + noise) + design.delay
+    return Set(design, l, h, drop, np.round(values / design.step) * design.step if design.step else values)
+
+
+def ideal_widths(design: Design, *more: str) -> Any:
+    """The half widths of ideal intervals of c, f, and of the delay if that is fitted."""
+    l, h, drop = masses_of(design)
+
+    def slope(name: str, size: float = 1e-6) -> Any:
+        x = {"l": l, "h": h, "c": design.c, "f": design.f}
+        ends = (expected(design.kind, **{**x, name: x[name] + by}, drop=drop) for by in (size, -size))
+        return (next(ends) - next(ends)) / (2 * size)
+
+    ideal = expected(design.kind, l, h, design.c, design.f, drop=drop)
+    single = design.u * ideal if design.relative else design.u
+    read = single**2 / design.repeats + design.step**2 / 12 + (design.between * ideal) ** 2
+    masses = (slope("l") ** 2 + slope("h") ** 2) * design.masses**2
+    sigma = np.sqrt(read + masses + (slope("f") * design.axle * design.f) ** 2)
+    J = np.stack([slope("c"), slope("f"), *(np.ones_like(l) for _ in more)], 1) / sigma[:, None]
+    return 1.96 * np.sqrt(np.diag(np.linalg.inv(J.T @ J)))
 
 
 class Counts(NamedTuple):
-    """Shares of sets (%), of c and of f where there are two, and median widths over those of SciPy."""
+    """Shares of sets (%) whose intervals hold c, f and more; the median and the 90th percentile of their widths
+    over the ideal ones; shares (%) without a result, with outliers, and of which it is said that runs scatter more
+    than repeats, or that times seem too long.
+    """
 
     within: Any
     width: Any
-    scipy: Any
+    wide: Any
     refused: float
     accused: float
+    scatters: float
+    delayed: float
 
 
-def counts(design: Design, sets: int, seed: int = 1) -> Counts:
-    random, truth = np.random.default_rng(seed), np.array([design.c, design.f])
-    within, widths, theirs, accused = list[Any](), list[Any](), list[Any](), 0
+def counts(design: Design, sets: int, *more: str, seed: int = 1) -> Counts:
+    random, ideal = np.random.default_rng(seed), ideal_widths(design, *more)
+    truth = np.array([design.c, design.f, *([design.delay] if more else [])])
+    within, widths, accused, scatters, delayed = list[Any](), list[Any](), 0.0, 0.0, 0.0
     for _ in range(sets):
-        made = drawn(design, random)
-        values, covariance = by_scipy(design.kind, made.l, made.h, made.values.mean(1))
-        half = stats.t.ppf(0.975, design.runs - 2) * np.sqrt(np.diag(covariance))
-        theirs.append(np.abs(values - truth) <= half)
         try:
-            fit = made.fit()
-        except Alike:
+            fit = drawn(design, random).fit(*more)
+        except CannotSeparate:
             continue
         accused += bool(fit.odd)
+        scatters += (fit.whole.p_value or 1) < 0.05
+        delayed += bool(fit.delay and fit.delay[1] < 0.01)
         if not fit.whole.reason:
-            ends = np.array([fit.whole.results[x].interval for x in USUAL])
+            ends = np.array([one.interval for one in fit.whole.results.values()])
             within.append((ends[:, 0] <= truth) & (truth <= ends[:, 1]))
-            widths.append((ends[:, 1] - ends[:, 0]) / 2 / half)
-    held, theirs_held = (100 * np.mean(some, 0) for some in (within, theirs))
+            widths.append((ends[:, 1] - ends[:, 0]) / 2 / ideal)
+    median, wide = np.quantile(widths, (0.5, 0.9), 0)
+    accused, scatters, delayed = (100 * one / sets for one in (accused, scatters, delayed))
     refused = 100 * (1 - len(within) / sets)
-    return Counts(held, np.median(widths, 0), theirs_held, refused, 100 * accused / sets)
+    return Counts(100 * np.mean(within, 0), median, wide, refused, accused, scatters, delayed)
 
 
-def blunders_named(sets: int, seed: int = 1) -> list[int]:
-    """Of eight runs, two of which have a mass that is 10 g off: how many sets have 0, 1 or 2 of them named."""
-    random, named = np.random.default_rng(seed), [0, 0, 0]
+def exchanged(time: float) -> float:
+    """The time with its first two digits that differ exchanged, as 8.23 for 2.83."""
+    digits = list(f"{time:.2f}".replace(".", ""))
+    i = next((i for i in range(len(digits) - 1) if digits[i] != digits[i + 1]), 0)
+    digits[i], digits[i + 1] = digits[i + 1], digits[i]
+    return int("".join(digits)) / 100
+
+
+def blunders_named(design: Design, kind: str, number: int, sets: int, seed: int = 1) -> float:
+    """The share of sets in which all blunders of so many runs are named: of a ``time`` or of a ``mass``."""
+    random, named = np.random.default_rng(seed), 0
     for _ in range(sets):
-        made = drawn(Design(8, 3, 0.05), random)
-        off = random.choice(8, 2, replace=False)
-        h = made.h.copy()
-        h[off] += random.choice([-1, 1], 2) * BLUNDER
-        named[len({*off.tolist()} & {*made._replace(h=h).fit().odd})] += 1
-    return named
+        made = drawn(design, random)
+        off = random.choice(design.runs, number, replace=False)
+        h, values = made.h.copy(), made.values.copy()
+        for i in off:
+            if kind == "mass":
+                h[i] += random.choice([-1, 1]) * BLUNDER
+            else:
+                k = random.integers(design.repeats)
+                values[i, k] = exchanged(values[i, k])
+        try:
+            named += {*off.tolist()} <= {*made._replace(h=h, values=values).fit().odd}
+        except CannotSeparate:
+            continue
+    return named / sets
 
 
 def report(sets: int) -> Iterator[str]:
-    yield f"{sets} sets each; c/f; 95 % intervals that hold the truth, median width over SciPy's"
-    yield f"{'what is drawn':60} held      width       SciPy     no result  accused"
-    for bar in BARS:
-        one = counts(bar.design, sets)
-        (c, f), (wide_c, wide_f), (their_c, their_f) = one.within, one.width, one.scipy
-        shares = f"{c:4.0f}/{f:3.0f}  {wide_c:.2f}/{wide_f:.2f}  {their_c:4.0f}/{their_f:3.0f}"
-        yield f"{bar.design!s:60} {shares}   {one.refused:5.1f}     {one.accused:5.1f}"
-    yield f"two of eight masses 10 g off: none, one, both named in {blunders_named(sets)} of {sets} sets"
+    yield f"{sets} sets each; c/f (/delay); 95 % intervals that hold the truth, %; widths over ideal ones"
+    yield f"{'what is drawn':54} held      median     90 %       no result  outliers  scatter more  delay seen"
+    drawn_as = [*((one, ()) for one in [*CELLS, *OTHERS, *WRONG]), *((one, ("delay",)) for one in DELAYS)]
+    drawn_as += [(one._replace(delay=delay), ()) for one in DELAYS for delay in (0.0, 0.03, 0.15)]
+    for design, more in drawn_as:
+        one = counts(design, sets, *more)
+        held = "/".join(f"{share:3.0f}" for share in one.within)
+        median, wide = ("/".join(f"{width:.2f}" for width in some) for some in (one.width, one.wide))
+        rest = f"{one.refused:5.1f} {one.accused:9.1f} {one.scatters:9.1f} {one.delayed:9.1f}"
+        yield f"{f'{design}{more or str()}':54} {held:9} {median:10} {wide:10} {rest}"
+    for runs, repeats in ((8, 1), (8, 3), (5, 3), (15, 3)):
+        design = Design(runs, repeats, 0.05, step=0.01)
+        found = (
+            f"{number} {kind}: {blunders_named(design, kind, number, sets):.2f}"
+            for kind in ("time", "mass")
+            for number in (1, 2)
+        )
+        yield f"{runs} x {repeats}, blunders named: {', '.join(found)}"
 
 
 if __name__ == "__main__":

@@ -78,7 +78,7 @@ OFFERED = {
     "batch in.csv --from ": " ".join(FORMATS),
     "batch ": "",
     "fit ": "",
-    "fit runs.csv --find ": "rim_mass axle gravity",
+    "fit runs.csv --find ": "rim_mass axle gravity delay",
     "fit runs.csv --only mo": "moment_of_inertia",
     "tradeoff --family ": " ".join(FAMILIES),
 }

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from atwood_cli import solve
-from atwood_cli.laboratory import published as laboratory
+from atwood_cli.laboratory import results as laboratory
 from atwood_cli.model.quantities import QUANTITIES
 from atwood_cli.model.scene import INPUTS, MEASURED
 

@@ -3,6 +3,7 @@
 How a table by words of its own is read, and which are refused, stands in `cases/fit.md`.
 """
 
+import gzip
 import re
 from fractions import Fraction
 from math import nan
@@ -189,6 +190,59 @@ def test_what_stands_around_a_table(read: Any, table: str, remark: str) -> None:
     assert numbers(runs) == exactly("0.2 0.207 3.99 0 0 0", "0.201 0.206 5.02 0 0 0")
     assert [run.rows for run in runs.runs] == [(1,), (2,)]
     assert runs.remarks == ([f"read as: {remark}."] if remark else [])
+
+
+@pytest.mark.parametrize(
+    ("content", "named"),
+    [
+        (TABLE.encode("utf-16"), {}),  # as Excel saves "Unicode text"
+        (b"\xfe\xff" + TABLE.replace(",", "\t").encode("utf-16-be"), {}),
+        ("m1;m2;Größe;Zeit\n0,2;0,207;x;3,99\n0,201;0,206;y;5,02\n".encode("cp1252"), {"Zeit": "t"}),
+        (b"m1,m2,time,mean,std\n.2,.207,3.99,4,1\n.201,.206,5.02,5,1\n", {}),
+        (TABLE.replace("m1,m2,time", "mass one (kg),mass two (kg),Trial 1 (s)").encode(), {"mass one (kg)": "m1", "mass two (kg)": "m2", "Trial 1 (s)": "t"}),
+    ],
+)  # fmt: skip
+def test_files_that_are_read(content: bytes, named: dict[str, str], tmp_path: Path) -> None:
+    (tmp_path / "runs.csv").write_bytes(content)
+    runs = read_runs(tmp_path / "runs.csv", drop=DROP, named=named)
+    assert [[float(one.value) for one in (run.m1, run.m2, *run.measured)] for run in runs.runs] == [
+        [0.2, 0.207, 3.99],
+        [0.201, 0.206, 5.02],
+    ]
+
+
+NO_RUN = "a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"
+
+
+@pytest.mark.parametrize(
+    ("content", "words"),
+    [
+        (b"PK\x03\x04" + b"xl/", "it is a workbook (.xlsx, .xls), or an archive; save the sheet as CSV"),
+        (b"m1,m2,t\nkg,kg,s\n0.2,0.207,3.99\n", NO_RUN),
+        (b"m1,m2,t\n(kg),(kg),(s)\n0.2,0.207,3.99\n", NO_RUN),
+        (b"m1,m2,t\n0.2,0.207,3.99\n,,4.01\n", "row 2 has no m1; write it in each row"),
+        (b"m1,m2,t\n0.2,0.207,3.99\nMean,,3.99\n", NO_RUN),
+        (b"m1,m2,t\n0.2,0.207,3.99\nmeasured on Monday,,\n", NO_RUN),
+        (b"m1,m2,t\n0.2,0.207,n/a\n", NO_RUN),
+        (b"m1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", "quantities stand in the first column; make each run a row, with headings above"),
+        (b"0.2,0.207,3.99\n0.201,0.206,5.02\n", "no columns m1, m2, t (or a): give the columns headings, as m1 (g),m2 (g),t (s)"),
+        (b"m1,m2,t1,t2,t\n1,2,3,4,3.5\n", "column 't' stands beside repeats and may be their mean; number it if it is one; or let it pass by --label 't'"),
+        (b"mass one (g),mass two (g),Zeit,n\n1,2,3,4\n", "--column m1='mass one (g)' --column m2='mass two (g)' --column t=Zeit"),
+        (b"m1 (g);Masse 2 (g);t\n200;207,5;3,99\n", "no column m2; there are 'm1 (g)', 'Masse 2 (g)', 't'; name it, as --column m2='Masse 2 (g)'"),
+        (b"m1,m2 (g),time\n1,x,3\n", f"{NO_RUN}; read as: 'm2 (g)' as m2 in g"),
+    ],
+)  # fmt: skip
+def test_files_that_are_refused_with_a_sentence(content: bytes, words: str, tmp_path: Path) -> None:
+    (tmp_path / "runs.csv").write_bytes(content)
+    with pytest.raises(Unreadable, match=re.escape(words)):
+        read_runs(tmp_path / "runs.csv", drop=DROP)
+
+
+def test_a_small_file_does_not_fill_the_memory(tmp_path: Path) -> None:
+    """A file of 1 MB with 1 GB of blank lines took 11 GB."""
+    (tmp_path / "runs.csv.gz").write_bytes(gzip.compress(b"\n" * (65 << 20)))
+    with pytest.raises(Unreadable, match="it is larger than 64 MB, unpacked, the most that fit reads"):
+        read_runs(tmp_path / "runs.csv.gz", drop=DROP)
 
 
 def test_columns_are_as_a_file_of_them(read: Any, tmp_path: Path) -> None:

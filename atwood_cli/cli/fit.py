@@ -4,11 +4,22 @@ from typing import Annotated
 
 import typer
 
-from ..laboratory.published import FITTED, QUANTITIES, RESULTS, SYMBOLS
+from ..laboratory.results import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..model.quantities import divided, read_names
-from ..model.scene import read_whole
+from ..model.scene import SceneError
 from ..output.text import Target, say, show
-from .options import COULD_NOT, OUTPUT, Bare, FigureFile, Labels, check_figure, option, scene_option, takes
+from .options import (
+    COULD_NOT,
+    DONE,
+    OUTPUT,
+    Bare,
+    FigureFile,
+    Labels,
+    check_figure,
+    option,
+    scene_option,
+    takes,
+)
 
 Table = Annotated[
     str,
@@ -25,11 +36,12 @@ Find = Annotated[
         "Measured",
         metavar="NAME",
         words=lambda: {name: QUANTITIES[name].words for name in FITTED},
-        help="Fit just this: rim_mass, axle or gravity; repeatable.",
+        help="Fit just this: rim_mass, axle, gravity or delay; repeatable, or a,b.",
     ),
 ]
 Without = Annotated[
-    list[str] | None, option("Measured", metavar="ROW", help="Leave this row out; repeatable, or 5,7.")
+    list[str] | None,
+    option("Measured", metavar="ROW", help="Leave out this row, or a cell, as 8:t2; repeatable, or 5,7."),
 ]
 Only = Annotated[
     list[str] | None,
@@ -44,7 +56,7 @@ Column = Annotated[
     ),
 ]
 
-HELP = """Fit runs of a laboratory: pulley's inertia, axle's friction.
+HELP = """Fit laboratory runs: pulley inertia and axle friction.
 
 \b
 Examples:
@@ -52,16 +64,17 @@ Examples:
   atwood fit runs.csv --R 25mm --inertia disk --figure line.svg
   atwood fit runs.csv --column t='Fallzeit (s)' --drop 98cm
   atwood fit runs.csv --find gravity --M 84g --axle 0
+  atwood fit runs.csv --find rim_mass,axle,delay --without 8:t2
   atwood fit runs.csv --json
 
-A row a run, with columns m1, m2, and a or t with drop, the height of fall (or --drop for all). Units stand in
-headings, as m1 (g) or t/s, or in cells, as solve takes them. Repeats are further rows, or columns t1, t2 and
-so on. Uncertainties are in cells, 2.05(2), or in columns u(t), t_err, or ± behind their own. Columns by other
-names are labels, unless --column says what they are. How a file was read is said. Either mass may be the
-heavier. What --M, --I, --axle and --g say is given, and not fitted.
+Each row is a run, with columns m1, m2, and a, or t and drop, the height of fall (or --drop for all). Units
+stand in headings, as m1 (g) or t/s, or in cells, as solve takes them. Repeats are further rows, or columns
+t1, t2 and so on. Uncertainties are in cells, 2.05(2), or in columns u(t), t_err, or ± behind their own.
+Columns by other names are labels, unless --column says what they are. A note says how it was read. Either
+mass may be the heavier. Values of --M, --I, --axle and --g are not fitted.
 Results: rim_mass is the pulley's inertia as a mass at its rim, c = I/R², of a disk half its mass; axle is
-the friction of its axle as a force there. Both are fitted, unless --find names others. Rows are left out only
-by --without.
+the friction of its axle as a force there. Both are fitted, unless --find names others. A note names rows in
+which nothing moves or the lighter side falls; they are not used. Others are left out only by --without.
 """
 
 
@@ -74,9 +87,7 @@ def fit(
     without: Without = None,
     drop: Annotated[str | None, scene_option("drop", "Measured", ", if all runs have the same")] = None,
     M: Annotated[str | None, scene_option("M", remark=", if it is known")] = None,
-    inertia: Annotated[
-        str | None, scene_option("inertia", remark=" (a hollow sphere), which gives the pulley's mass")
-    ] = None,
+    inertia: Annotated[str | None, scene_option("inertia", remark=", which gives the pulley's mass")] = None,
     I: Annotated[str | None, scene_option("I", remark=", if it is known; needs R")] = None,
     R: Annotated[str | None, scene_option("R", remark=", which gives the moment of inertia")] = None,
     axle: Annotated[str | None, scene_option("axle", remark=", if it is known")] = None,
@@ -89,16 +100,17 @@ def fit(
 ) -> int:
     given = {"M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "g": g, "drop": drop}
     names = read_names("only", only or [], RESULTS, "result", SYMBOLS)
-    left_out = [read_whole("without", word, 1, 10**9) for word in divided(without or [])]
+    if "runs" in names and (not target.form or (target.form == "csv" and names[1:])):
+        raise SceneError("only", "runs", "takes --json, or --csv and no other name")
     check_figure(figure, target.force)
     from ..laboratory import fit_of
-    from ..laboratory.fit_page import forms_of
+    from ..laboratory.report import forms_of
 
-    best = fit_of(table, given, find or [], label or [], left_out, column or [])
+    best = fit_of(table, given, find or [], label or [], divided(without or []), column or [])
     if figure is not None:
         from ..laboratory.fit_figure import save
 
         save(best, bare, figure, target.force)
     forms = forms_of(best, names)
     say(*show(forms, target))
-    return COULD_NOT * ("" in forms.bare)
+    return COULD_NOT if best.whole.reason or "" in forms.bare else DONE

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
 from ..model.scene import INPUTS, Given, read_input
 from ..tables.sources import Unreadable
-from .published import Fit as Fit
+from .results import Fit as Fit
 
 if TYPE_CHECKING:
     import polars as pl
 
-    from .judgement import Fitted
+    from .fitting import Fitted
 
     Table = str | PathLike[str] | Mapping[str, Iterable[object]] | pl.DataFrame
 
@@ -29,9 +30,9 @@ def fit(
     R: Given | None = None,
     axle: Given | None = None,
     find: str | Sequence[str] | None = None,
-    without: Collection[int] = (),
+    without: Collection[int | str] = (),
 ) -> Fit:
-    """The pulley's inertia and its axle's friction, from runs of a laboratory, by T_h - T_l = c a + f.
+    """Fit the pulley's inertia and its axle's friction to runs of a laboratory, by T_h - T_l = c a + f.
 
     Args:
         runs: A table with a row for each run: the path of a CSV or .tsv file, a mapping of columns of equal
@@ -42,13 +43,13 @@ def fit(
         g, M, inertia, I, R, axle: Inputs that all runs share, as `solve` takes them: numbers in SI units, or
             text with a unit or an uncertainty. M, I, axle and g are not fitted if given. R gives the moment
             of inertia, ``inertia`` the pulley's mass.
-        find: The quantities to fit alone, of "rim_mass", "axle" and "gravity"; if None, the first two unless
-            given.
-        without: Numbers of rows to leave out, from 1.
+        find: The quantities to fit, of "rim_mass", "axle", "gravity" and "delay"; if None, the first two
+            unless given. Of these two, each must be given or fitted.
+        without: Rows to leave out, by their numbers from 1, and cells, as "8:t2".
 
     Returns:
         `Fit`: values by name in SI units, their standard uncertainties and intervals of 95 %, the runs,
-        and ``notes``, which also name odd runs. As text it has a line for each result, and the notes.
+        and ``notes``, which also name outliers. As text it has a line for each result, and the notes.
 
     Raises:
         SceneError: A parameter is not valid (a ValueError).
@@ -56,11 +57,13 @@ def fit(
         OSError: The file cannot be read, or is no table of runs.
         ArithmeticError: The runs are too few, or too alike, to determine the quantities.
     """
-    from .fit_page import results_of
+    from .report import results_of
 
     given = {"g": g, "M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "drop": drop}
     names = [find] if isinstance(find, str) else find or ()
-    return results_of(fit_of(runs, given, names, without=without))
+    found = results_of(fit_of(runs, given, names, without=without))
+    options = re.compile(r"--(find|without) (\S*[^\s.,;:])")
+    return found._replace(notes=[options.sub(r"\1='\2'", note) for note in found.notes])
 
 
 def fit_of(
@@ -68,25 +71,31 @@ def fit_of(
     given: Mapping[str, Given | None],
     find: Sequence[str],
     labels: Collection[str] = (),
-    without: Collection[int] = (),
+    without: Collection[int | str] = (),
     columns: Sequence[str] = (),
 ) -> Fitted:
-    """The fit of a table, which may be "-" for stdin. Raises as `fit` does.
+    """Return the fit of a table, which may be "-" for stdin. Raises as `fit` does.
 
     ``columns`` are words NAME=HEADING, ``labels`` headings that belong to no run.
     """
     from ..tables.headings import read_named
     from ..tables.sources import cannot_read
-    from .judgement import conditions_of, fitted, read_find
-    from .runs import VOCABULARY, read_runs
+    from .fitting import conditions_of, fitted, read_find
+    from .runs import VOCABULARY, explained, read_runs
+    from .statistics import CannotSeparate
 
     known = [x for x, value in given.items() if value is not None]
     inputs = {x: read_input(x, given.get(x)) for x in dict.fromkeys((*INPUTS, *known))}
-    names, same, named = read_find(find, inputs), conditions_of(inputs), read_named(columns, VOCABULARY)
+    same, named = conditions_of(inputs), read_named(columns, VOCABULARY)
+    names = read_find(find, same)
     try:
         runs = read_runs(table, labels, inputs.get("drop"), without, named)
-        return fitted(runs, same, names)
-    except Unreadable as error:
+        try:
+            return fitted(runs, same, names)
+        except (Unreadable, CannotSeparate) as error:
+            raise type(error)(explained(error, runs.remarks)) from None
+    except (Unreadable, MemoryError) as error:
+        why = error if isinstance(error, Unreadable) else Unreadable("it needs more memory than there is")
         if not isinstance(table, str | PathLike):
-            raise ValueError(f"cannot read the runs: {error}") from None
-        raise cannot_read(fspath(table), error) from None
+            raise ValueError(f"cannot read the runs: {why}") from None
+        raise cannot_read(fspath(table), why) from None

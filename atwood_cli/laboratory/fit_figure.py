@@ -1,16 +1,16 @@
 """Runs and their line as a picture."""
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..model import physics
 from ..output.figure import BLUE, INK, RED, check_file, page, say_above
-from .fit_page import conditions
-from .fitting import Data, accelerations, as_data, uncertain_accelerations
-from .judgement import Fitted
-from .published import QUANTITIES, USUAL, shown
-from .sentences import verdict
+from .estimate import Data, accelerations, as_data, uncertain_accelerations
+from .fitting import Fitted
+from .report import conditions, verdict
+from .results import QUANTITIES, USUAL, with_u
 from .statistics import Column
 
 if TYPE_CHECKING:
@@ -28,9 +28,9 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     """
     check_file(path, force)
     best = fit.whole.best
-    g, c, f = (best.values[x] for x in ("gravity", "rim_mass", "axle"))
-    a, y = points(best.data, g)
-    u_a = uncertain_accelerations(best.data, best.sigma)
+    c, f = (best.values[x] for x in ("rim_mass", "axle"))
+    a, y = points(best.data, best.values)
+    u_a = uncertain_accelerations(best)
     u_y, u_rest = (best.data.l + best.data.h) * u_a, (best.data.l + best.data.h + c) * u_a
     with page(path, force) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
@@ -60,8 +60,8 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
 def _name_points(line: "Axes", fit: Fitted, a: Column, y: Column) -> None:
     """Write the numbers of rows at the points, and mark runs that are left out, at the edge if beyond it."""
     names = [(fit.used[i], a[i], y[i]) for i in (fit.odd if len(a) > NAMED else range(len(a)))]
-    if out := [run for run in fit.runs.runs if run.left_out and run.mean]:
-        x_out, y_out = points(as_data(fit.runs, out), fit.whole.best.values["gravity"])
+    if out := fit.left_out:
+        x_out, y_out = points(as_data(fit.runs, out), fit.whole.best.values)
         x_out, y_out = np.clip(x_out, *line.get_xlim()), np.clip(y_out, *line.get_ylim())
         line.plot(x_out, y_out, "o", ms=5, mfc="none", color=INK, clip_on=False)
         names += zip(out, x_out, y_out, strict=True)
@@ -72,10 +72,10 @@ def _name_points(line: "Axes", fit: Fitted, a: Column, y: Column) -> None:
         line.annotate(words, (x, height), (by, -12), textcoords="offset points", size=9, ha=side)
 
 
-def points(data: Data, gravity: float) -> tuple[Column, Column]:
+def points(data: Data, values: Mapping[str, float]) -> tuple[Column, Column]:
     """Runs as points (a, T_h - T_l) of a straight line."""
-    a = accelerations(data, data.measured)
-    y: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(gravity))
+    a = accelerations(data, data.measured, values["delay"])
+    y: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(values["gravity"]))
     return a, y
 
 
@@ -85,6 +85,6 @@ def coefficients(fit: Fitted) -> str:
     for name, label in () if fit.whole.reason else zip(USUAL, labels, strict=True):
         result = fit.whole.results.get(name)
         why = "" if result else ", given" if name in fit.given.values else ", not fitted"
-        value = shown(fit.whole.best.values[name], result and result.uncertainty)
+        value = with_u(fit.whole.best.values[name], result and result.uncertainty)
         lines.append(f"{label} = {value} {QUANTITIES[name].unit}{why}")
     return "\n".join(lines)

@@ -1,21 +1,25 @@
 """A table of runs, from a file or from columns in Python, and the runs that its rows make."""
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence, Set
 from fractions import Fraction
+from shlex import quote
 from typing import Any, Literal, NamedTuple
 
-from ..model.scene import INPUTS, Input, SceneError
-from ..model.units import in_quotes
+from ..model.scene import INPUTS, Input, SceneError, parameter_of
+from ..model.units import Malformed, in_quotes, read_unit
 from ..tables.headings import (
     EMPTY,
     Heading,
     Vocabulary,
     decimal_commas_in,
+    divisions,
+    listed,
     read_as,
     read_cell,
     read_headings,
     read_uncertainty,
+    recognised,
     refused,
 )
 from ..tables.sheets import Sheet, sheet_of
@@ -24,21 +28,16 @@ from ..tables.sources import Unreadable
 Kind = Literal["a", "time"]
 MEASURED = {"a": "acceleration", "time": "time"}
 """The quantities that are measured, which may be repeated in further columns."""
-TAKEN = ("m1", "m2", "drop", "a", "time")
+RUN_QUANTITIES = ("m1", "m2", "drop", "a", "time")
 """The quantities of a run; what else a scene has is the same in all runs."""
 WORDS = {"m1": "m1", "m2": "m2", "drop": "drop h height", "a": "a acceleration", "time": "t time"}
 SPELLINGS = {word: name for name, words in WORDS.items() for word in words.split()}
 SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
 VOCABULARY = Vocabulary(SPELLINGS, repeated=MEASURED, uncertain=True)
-NEEDED = {
-    "m1": "no column m1; name it, as --column m1='Masse 1 (g)'",
-    "m2": "no column m2; name it, as --column m2='Masse 2 (g)'",
-    "a time": "no column of times or accelerations; name it, as --column t='Zeit in s'",
-    "a drop": "times need the height of fall: give drop, or a column of that name",
-}
-"""The columns of which a run needs one, and what is said if there is none."""
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
-UNSIGNED = "accelerations have no sign here: none is negative, though m1 is the heavier at times."
+LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
+UNSIGNED = "accelerations are read as magnitudes: none is negative, even if m1 is heavier."
+NO_RUN = "a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"
 MEASURABLE = 1e-30, 1e30
 BEYOND = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
 
@@ -46,8 +45,9 @@ BEYOND = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]
 class Run(NamedTuple):
     """Masses, the height of fall if there is one, and what was measured, once or more often.
 
-    ``rows`` are the numbers of its rows, which differ only in what was measured; ``left_out`` says that the
-    user leaves the run out of the fit.
+    ``rows`` are the numbers of its rows, which differ only in what was measured. ``cells`` say where each
+    measurement stands, as --without takes it: a row, or 8:t2 if a row has several. ``left_out`` says that
+    the user leaves the run out of the fit.
     """
 
     rows: tuple[int, ...]
@@ -56,11 +56,17 @@ class Run(NamedTuple):
     drop: Input | None
     measured: tuple[Input, ...]
     left_out: bool = False
+    cells: tuple[str, ...] = ()
 
     @property
     def mean(self) -> float:
         """The double nearest to the mean of what was measured."""
         return float(sum((Fraction(one.value) for one in self.measured), Fraction(0)) / len(self.measured))
+
+    def without(self, places: Collection[int]) -> "Run":
+        """Return the run without the measurements at these places."""
+        kept = tuple(one for place, one in enumerate(self.measured) if place not in places)
+        return self._replace(measured=kept)
 
     @property
     def name(self) -> str:
@@ -84,32 +90,38 @@ def read_runs(
     source: Any,
     labels: Collection[str] = (),
     drop: Input | None = None,
-    without: Collection[int] = (),
+    without: Collection[int | str] = (),
     named: Mapping[str, str] = {},
 ) -> Runs:
-    """The runs of a table, a row a run.
+    """Return the runs of a table, a row a run.
 
     ``source`` is the path of a CSV or .tsv file, "-" for stdin, or columns by their headings: a mapping or a
     data frame. ``labels`` are headings that belong to no run, ``named`` maps headings to what they mean, and
-    ``drop`` is the height of fall of all runs. The rows ``without``, by numbers from 1, are marked as left
-    out. Raises Unreadable where it is no table of runs, SceneError for what does not fit the table.
+    ``drop`` is the height of fall of all runs. Rows ``without``, by numbers from 1, and their cells, as 8:t2,
+    are left out. Raises Unreadable if it is no table of runs, SceneError for what does not fit the table.
     """
     sheet = sheet_of(source, VOCABULARY, named)
     headings = read_headings(sheet.columns, VOCABULARY, labels, named)
     names = {heading.name for heading in headings}
     kind: Kind = "a" if "a" in names else "time"
     headings = [heading for heading in headings if kind == "time" or heading.name != "drop"]
+    _check_mean(headings, named)
     headings, others = _with_unnamed(sheet, headings, labels)
-    _check(names, drop)
-    for number in without:
-        if not 1 <= number <= len(sheet.rows):
-            raise SceneError("without", f"{number}", f"is no row; there are 1 to {len(sheet.rows)}")
+    _check(sheet, names, drop)
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     remarks = read_as(headings, sheet.separator, sheet.usual, comma, [*others, *sheet.remarks])
     common = drop and drop._replace(uncertainty=Fraction(0))  # what counts for all runs together
-    rows = [_run(i, row, headings, comma, common, i in without) for i, row in enumerate(sheet.rows, 1)]
-    remarks += [f"Row {run.rows[0]} has no {kind}: it is no run." for run in rows if not run.measured]
+    left_out = _read_without(without, len(sheet.rows), headings)
+    try:
+        rows = [
+            _run(i, row, headings, comma, common, left_out.get(i, set()))
+            for i, row in enumerate(sheet.rows, 1)
+        ]
+    except Unreadable as error:
+        raise Unreadable(explained(error, remarks)) from None
+    remarks += [f"row {run.rows[0]} has no {kind}: it is not used." for run in rows if not run.measured]
+    remarks += [f"{in_words(cell)} was left out, as asked." for cell in map(str, without) if ":" in cell]
     runs = _joined(run for run in rows if run.measured)
     if not runs:
         raise Unreadable("it has no runs")
@@ -119,13 +131,18 @@ def read_runs(
     return Runs(kind, runs, signed, remarks)
 
 
+def explained(error: Exception, remarks: Sequence[str]) -> str:
+    """Return an error in words, and how the table was read."""
+    return "; ".join([f"{error}", *(one.rstrip(".") for one in remarks if one.startswith("read as"))])
+
+
 def _with_unnamed(
     sheet: Sheet, headings: Sequence[Heading], labels: Collection[str]
 ) -> tuple[list[Heading], list[str]]:
-    """The columns, with repeats that have no heading of their own, as below a merged one; and what is said of
-    other columns of numbers, which hold no quantity.
+    """Return the columns, with repeats that have no heading, as below a merged one, and the other columns of
+    numbers in words.
 
-    Raises Unreadable for a column that could hold one, unless it is one of the ``labels``.
+    Raises Unreadable for a column that could hold a quantity, unless it is one of the ``labels``.
     """
     found = {heading.place: heading for heading in headings}
     taken = {*found, *(heading.u.place for heading in headings if heading.u)}
@@ -136,7 +153,7 @@ def _with_unnamed(
         if column in INPUTS:
             option = column.replace("_", "-")
             raise refused(column, f"holds for all runs, so it is an option: give --{option}")
-        if not any(re.match(r"\s*[-+±]?[.,]?\d", row[place]) for row in sheet.rows):
+        if not any(LIKE_NUMBER.match(row[place]) for row in sheet.rows):
             continue
         if not column.strip():
             before, name = found.get(place - 1), f"column {place + 1}"
@@ -150,32 +167,112 @@ def _with_unnamed(
     return [found[place] for place in sorted(found)], others
 
 
-def _check(names: Collection[str], drop: Input | None) -> None:
+def _check_mean(headings: Sequence[Heading], named: Mapping[str, str]) -> None:
+    """Raises Unreadable if a column without a number stands beside numbered repeats: it may be their mean."""
+    measured = [heading for heading in headings if heading.name in MEASURED and heading.column not in named]
+    alone = [heading for heading in measured if not heading.number]
+    if alone and len(measured) > len(alone):
+        raise refused(alone[0].column, "stands beside repeats and may be their mean; number it if it is one")
+
+
+def _check(sheet: Sheet, names: Set[str], drop: Input | None) -> None:
     """Raises Unreadable if a run lacks a column, or has times and accelerations; SceneError for a drop."""
     if "a" in names and "time" in names:
         raise Unreadable("there are columns a and time; keep one, or let one pass by --label")
-    given = [*names, *["drop"] * (drop is not None)]
-    for either, words in NEEDED.items():
-        if not any(name in given for name in either.split()):
-            raise Unreadable(words)
+    missing = [name for name in ("m1", "m2") if name not in names]
+    if not names & {"a", "time"}:
+        missing.append("time")
+    if missing:
+        raise Unreadable(_missing(sheet, missing))
+    if drop is None and not names & {"a", "drop"}:
+        raise Unreadable("times need the height of fall: give drop, or a column of that name")
     if drop is not None and (has := next((name for name in ("a", "drop") if name in names), "")):
         raise SceneError("drop", drop.given, f"has no part here: the table has {has}")
 
 
+def _missing(sheet: Sheet, missing: Sequence[str]) -> str:
+    """Return which columns are missing, the table's own headings, and options that name some of them."""
+    shown = {"m1": "m1", "m2": "m2", "time": "t (or a)"}
+    said = f"no column{'s' if missing[1:] else ''} {', '.join(shown[name] for name in missing)}"
+    if all(map(LIKE_NUMBER.match, filter(str.strip, sheet.columns))):
+        return f"{said}: give the columns headings, as m1 (g),m2 (g),t (s)"
+    if len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
+        return f"{said}: quantities stand in the first column; make each run a row, with headings above"
+    known = recognised(sheet.columns, VOCABULARY)
+    free = [
+        (column, unit)
+        for place, column in enumerate(sheet.columns)
+        if column.strip() and column not in known
+        for *_, (_, unit) in [divisions(column)]
+        if any(LIKE_NUMBER.match(row[place]) for row in sheet.rows)
+    ]
+    options = []
+    for name in missing:
+        if one := next((one for one in free if _may_be(name, one[1])), None):
+            free.remove(one)
+            options.append(f"--column {'t' if name == 'time' else name}={quote(one[0])}")
+    said += f"; there {'are' if sheet.columns[1:] else 'is'} {listed(sheet.columns)}"
+    if not options:
+        return said
+    return f"{said}; name {'them' if missing[1:] else 'it'}, as {' '.join(options)}"
+
+
+def _may_be(name: str, unit: str) -> bool:
+    """Decide if a column with that unit, or without any, may hold a quantity."""
+    try:
+        return not unit or bool(read_unit(unit, parameter_of(name).dimension or ""))
+    except Malformed:
+        return False
+
+
+def _read_without(
+    words: Collection[int | str], rows: int, headings: Sequence[Heading]
+) -> dict[int, set[int]]:
+    """Return the places of cells to leave out by row, all of its measurements for a whole row.
+
+    Raises SceneError for a row or a column that is not there.
+    """
+    measured = {heading.place: _cell_names(heading) for heading in headings if heading.name in MEASURED}
+    found: dict[int, set[int]] = {}
+    for word in map(str, words):
+        number, colon, column = word.partition(":")
+        if not (number.isascii() and number.isdigit() and 1 <= int(number[:9]) <= rows):
+            raise SceneError("without", word, f"is not a row; there are 1 to {rows}")
+        places = {place for place, names in measured.items() if not colon or column.strip() in names}
+        if not places:
+            there = ", ".join(names[0] for names in measured.values())
+            raise SceneError("without", word, f"names no column that is measured; there are {there}")
+        found[int(number)] = found.get(int(number), set()) | places
+    return found
+
+
+def _cell_names(heading: Heading) -> list[str]:
+    """Return the names of a measured column in --without, the shortest first: t2, time2, its heading."""
+    numbered = re.fullmatch(r"\d*", heading.number)
+    names = sorted((f"{word}{heading.number}" for word in WORDS[heading.name].split()), key=len)
+    return [*(names if numbered else []), heading.column]
+
+
+def in_words(cell: str) -> str:
+    """Return where a measurement stands, for a sentence: row 8: t2."""
+    return f"row {cell.replace(':', ': ', 1)}"
+
+
 def in_range(one: Input) -> bool:
-    """Whether a number, and its uncertainty, are 0 or of a size whose squares are doubles."""
+    """Decide if a number, and its uncertainty, are 0 or of a size whose squares are doubles."""
     low, high = MEASURABLE
     sizes = (getattr(one.value, "number", one.value), one.uncertainty)
     return all(low <= abs(size) <= high for size in sizes if size)
 
 
 def _joined(rows: Iterable[Run]) -> list[Run]:
-    """The runs of rows: those that differ only in what was measured are one."""
+    """Return the runs of rows: those that differ only in what was measured are one."""
     alike: dict[object, Run] = {}
     for run in rows:
         key = run.m1[:2], run.m2[:2], run.drop and run.drop[:2], run.left_out
         if first := alike.get(key):
-            run = first._replace(rows=first.rows + run.rows, measured=first.measured + run.measured)
+            measured, cells = first.measured + run.measured, first.cells + run.cells
+            run = first._replace(rows=first.rows + run.rows, measured=measured, cells=cells)
         alike[key] = run
     return [*alike.values()]
 
@@ -186,26 +283,34 @@ def _run(
     headings: Sequence[Heading],
     comma: bool,
     drop: Input | None,
-    left_out: bool,
+    without: Set[int],
 ) -> Run:
-    """The run of one row. Raises Unreadable."""
-    given, measured = dict[str, Input](), list[Input]()
+    """Return the run of one row, marked as left out if all its measurements are. Raises Unreadable."""
+    given, measured = dict[str, Input](), dict[int, Input]()
+    several = sum(heading.name in MEASURED for heading in headings) > 1
     try:
         for heading in headings:
             value = _read_cell(heading, row, comma)
             if value and heading.name in MEASURED:
-                measured.append(value)
+                measured[heading.place] = value
             elif value:
                 given[heading.name] = value
             elif heading.name not in MEASURED:
-                raise Unreadable(f"row {number} has no {heading.name}")
+                raise Unreadable(f"row {number} has no {heading.name}; write it in each row")
     except SceneError as error:
-        raise Unreadable(f"row {number}: {error}") from None
-    return Run((number,), given["m1"], given["m2"], given.get("drop", drop), tuple(measured), left_out)
+        why = f"; {NO_RUN}" if not LIKE_NUMBER.match(row[heading.place]) else ""
+        raise Unreadable(f"row {number}: {error}{why}") from None
+    left_out = bool(measured) and without >= measured.keys()
+    kept = {place: one for place, one in measured.items() if left_out or place not in without}
+    names = {heading.place: _cell_names(heading)[0] for heading in headings if heading.name in MEASURED}
+    cells = tuple(f"{number}:{quote(names[place])}" if several else f"{number}" for place in kept)
+    return Run(
+        (number,), given["m1"], given["m2"], given.get("drop", drop), (*kept.values(),), left_out, cells
+    )
 
 
 def _read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None:
-    """A quantity of a row in SI units; None if its cell is empty. Raises SceneError."""
+    """Return a quantity of a row in SI units; None if its cell is empty. Raises SceneError."""
     cell = row[heading.place]
     given = read_cell(heading, cell, comma)
     if given and heading.u and (u := row[heading.u.place].strip()) not in EMPTY:

@@ -1,14 +1,14 @@
 """The statistics of a fit, as in textbooks: weighted least squares, a variance between runs, outliers.
 
-R. C. Paule and J. Mandel, "Consensus values and weighting factors", J. Res. NBS 87 (1982) 377, find the
+R. C. Paule and J. Mandel, "Consensus values and weighting factors", J. Res. NBS 87 (1982) 377, estimate the
 variance between runs; G. Knapp and J. Hartung, "Improved tests for a random effects meta-regression with a
-single covariate", Stat. Med. 22 (2003) 2693, the scale of the covariance, and Student's t with n - p degrees
-of freedom; B. Rosner, "Percentage points for a generalized ESD many-outlier procedure", Technometrics 25
-(1983) 165, the number of outliers, though they hide each other.
+single covariate", Stat. Med. 22 (2003) 2693, scale the covariance and use Student's t with n - p degrees of
+freedom; B. Rosner, "Percentage points for a generalized ESD many-outlier procedure", Technometrics 25 (1983)
+165, counts outliers that hide each other.
 """
 
 from collections.abc import Callable, Mapping
-from math import inf, sqrt
+from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,44 +17,50 @@ from scipy.optimize import brentq
 from scipy.special import stdtr
 
 Column = NDArray[np.float64]
-NORMAL = 1e8
+NORMAL_DOF = 1e8
 """Degrees of freedom with which Student's t is the normal distribution."""
-ALIKE = 1e-7
-"""Below this ratio of singular values the runs cannot separate the fitted quantities."""
+SINGULAR_RATIO = 1e-7
+"""Below this ratio of singular values a linear fit has no unique solution."""
 ROUNDING = 1e-12
 """The least standard uncertainty of a measured number, as a share of it."""
 TINY = 1e-300
-MOST_STRAYS = 20
+MOST_OUTLIERS = 20
 """Outliers that are looked for; there is at most one for three degrees of freedom."""
 
 
-class Alike(ArithmeticError):
-    """The runs cannot separate the quantities to be fitted."""
+class CannotSeparate(ArithmeticError):
+    """The runs do not determine the quantities to be fitted."""
 
 
 class Line(NamedTuple):
     """A linear fit of n values: p coefficients, their covariance, and the variance of each value.
 
-    Covariance and variances are still to be multiplied by ``scale``. ``between`` is the estimated part of the
-    variance, and ``chi2`` is by the known part alone, None if there is none.
+    Covariance and variances are still to be multiplied by ``scale``, which is known with ``dof`` degrees of
+    freedom. ``between`` is the factor of the estimated part of the variance, and ``chi2`` is by the known
+    part alone, None if there is none.
     """
 
     coefficients: Column
     covariance: Any
     variance: Column
     scale: float
+    dof: float
     chi2: float | None
     between: float
 
 
-def fit_line(J: Any, y: Column, known: Column, shape: Column, least: Column) -> Line:
-    """The coefficients b by which J b (n, p) agrees best with y (n); raises Alike.
+def fit_line(
+    J: Any, y: Column, known: Column, shape: Column, least: Column, repeats: tuple[float, int] = (0.0, 0)
+) -> Line:
+    """Return the coefficients b (p) for which J b is nearest to y (n), with J (n, p). Raises CannotSeparate.
 
-    The variance of y is ``known`` + v ``shape``. Paule and Mandel's v is that at which χ² is n - p, or 0 if
-    χ² is no more than that without it. Knapp and Hartung's scale is χ²/(n - p). Without known variances the
-    shape alone is scaled, which is ordinary least squares. No variance comes out below the ``least``.
+    The variance of y is ``known`` + v ``shape``. Paule and Mandel's v makes χ² equal to n - p; it is 0 if χ²
+    is no more than that without it. Knapp and Hartung's scale is χ²/(n - p). If v is 0, χ² and degrees of
+    freedom of the ``repeats`` about their means are pooled with those of the line. Without known variances
+    the shape alone is scaled, which is ordinary least squares. No variance comes out below the ``least``.
     """
     dof, between, chi2, variance = len(y) - int(J.shape[1]), 0.0, None, shape
+    pooled_chi2, pooled_dof = 0.0, 0
     if known.any():
         floor: Column = np.maximum(known, ROUNDING * known.max())  # no weight is without bound
 
@@ -67,22 +73,26 @@ def fit_line(J: Any, y: Column, known: Column, shape: Column, least: Column) -> 
             while excess(most) > 0:
                 most *= 10
             between = float(brentq(excess, 0, most, xtol=1e-15 * most))
+        else:
+            pooled_chi2, pooled_dof = repeats
         variance = floor + between * shape
     coefficients, covariance, rest = _solved(J, y, variance)
-    scale = max(rest / dof if dof else 1.0, float((least / variance).max()))
-    return Line(coefficients, covariance, variance, scale, chi2, between)
+    all_dof = dof + pooled_dof
+    scale = (rest + pooled_chi2) / all_dof if all_dof else 1.0
+    scale = max(scale, float((least / variance).max()))
+    return Line(coefficients, covariance, variance, scale, all_dof or inf, chi2, between)
 
 
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
-    """The weighted solution, its covariance, and χ²; raises Alike."""
+    """Return the weighted solution, its covariance, and χ². Raises CannotSeparate."""
     sigma = np.sqrt(variance)
     A, b = J / sigma[:, None], y / sigma
     lengths = np.linalg.norm(A, axis=0)
     if not (lengths > 0).all() or not np.isfinite(lengths).all():
-        raise Alike
+        raise CannotSeparate
     U, singular, rows = np.linalg.svd(A / lengths, full_matrices=False)
-    if len(singular) < J.shape[1] or (singular < ALIKE * singular.max(initial=0)).any():
-        raise Alike
+    if len(singular) < J.shape[1] or (singular < SINGULAR_RATIO * singular.max(initial=0)).any():
+        raise CannotSeparate
     half = rows.T / singular / lengths[:, None]
     solution = half @ (U.T @ b)
     return solution, half @ half.T, sum_of_squares(b - A @ solution)
@@ -92,81 +102,75 @@ def sum_of_squares(column: Any) -> float:
     return float(np.square(column).sum())
 
 
-def stray_rows(
-    J: Any, y: Column, known: Column, shape: Column, least: Column, within: float, level: float
-) -> Mapping[int, float]:
-    """The values far from what the others say, and the distances in standard uncertainties.
+Judge = Callable[[NDArray[np.bool_]], tuple[Column, Column]]
+"""Return how many standard deviations each value is from a fit of those kept, and degrees of freedom."""
 
-    Residuals and leverages show the furthest, without a fit for each; the line of the others judges it. The
-    known variance has ``within`` degrees of freedom and is not scaled. The estimated one has those of the
-    other values, their sum those of B. L. Welch and F. E. Satterthwaite.
+
+def outliers(free: int, tests: int, count: int, level: float, judge: Judge) -> Mapping[int, float]:
+    """Return the outliers among ``count`` values, each with its distance in standard deviations (Rosner).
+
+    The value that is farthest from the fit of those kept is left out, and judged by the fit of the others;
+    this goes on, and all values are outliers up to the last that chance does not explain. ``free`` are the
+    degrees of freedom with all values, ``tests`` the number of values that are judged, and ``level`` the
+    probability that a sound set has an outlier.
+    """
+    kept, found, significant = np.ones(count, dtype=bool), dict[int, float](), 0
+    with np.errstate(invalid="ignore"):
+        try:
+            away, _ = judge(kept)
+            for number in range(1, min(MOST_OUTLIERS, max(1, free // 3), free - 1) + 1):
+                # Two repeats are equally far from each other: float32 keeps their order.
+                i = int(np.argmax((np.abs(away) * kept).astype(np.float32)))
+                kept[i] = False
+                away, dof = judge(kept)
+                found[i] = float(away[i])
+                if 2 * tests * stdtr(min(dof[i], NORMAL_DOF), -abs(found[i])) < level:
+                    significant = number
+        except CannotSeparate:
+            pass
+    return dict(list(found.items())[:significant])
+
+
+def judge_of_line(
+    J: Any, y: Column, known: Column, shape: Column, least: Column, repeats: tuple[float, int]
+) -> Judge:
+    """Judge values by the line of those kept; the arguments are those of `fit_line`.
+
+    The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite.
     """
 
-    def line_of(rows: Any) -> Line:
-        return fit_line(J[rows], y[rows], known[rows], shape[rows], least[rows])
+    def judge(kept: NDArray[np.bool_]) -> tuple[Column, Column]:
+        line = fit_line(J[kept], y[kept], known[kept], shape[kept], least[kept], repeats)
+        variance = shape if line.chi2 is None else known + line.between * shape
+        share = line.between * shape / variance
+        dof = np.full(len(y), line.dof)
+        if line.between:
+            dof = 1 / (share**2 / line.dof + (1 - share) ** 2 / (repeats[1] or inf))
+        of_line = np.einsum("ij,jk,ik->i", J, line.covariance, J)
+        of_rest = np.where(kept, np.maximum(variance - of_line, 1e-9 * variance), variance + of_line)
+        away: Column = (y - J @ line.coefficients) / np.sqrt(np.maximum(line.scale * of_rest, least))
+        return away, dof
 
-    def furthest(kept: NDArray[np.bool_]) -> tuple[int, float, float]:
-        rows = np.flatnonzero(kept)
-        line = line_of(rows)
-        rest = y[rows] - J[rows] @ line.coefficients
-        of_line = np.einsum("ij,jk,ik->i", J[rows], line.covariance, J[rows])  # leverage, times the variance
-        i = int(rows[np.argmax(rest**2 / np.maximum(line.variance - of_line, 1e-9 * line.variance))])
-        others = rows[rows != i]
-        line = line_of(others)
-        own, share, scale = float(shape[i]), 1.0, line.scale
-        if line.chi2 is not None:
-            own = float(known[i] + line.between * shape[i])
-            share, scale = line.between * float(shape[i]) / own, 1.0
-        variance = max(scale * (own + float(J[i] @ line.covariance @ J[i])), float(least[i]))
-        inverse = share**2 / (len(others) - J.shape[1]) + (1 - share) ** 2 / within
-        return i, float(y[i] - J[i] @ line.coefficients) / sqrt(variance), 1 / inverse if inverse else inf
-
-    return _strays(len(y), J.shape[1], level / max(len(y), 1), furthest)
+    return judge
 
 
-def stray_repeats(values: Column, u: Column, run: NDArray[np.intp], level: float) -> Mapping[int, float]:
-    """The values far from their siblings, those of the same run, and the distances in standard deviations.
+def judge_of_repeats(values: Column, u: Column, run: NDArray[np.intp], step: float) -> Judge:
+    """Judge values by the mean of those kept of the same ``run``; a value without others is 0 away.
 
-    The scatter is the same in all runs, times ``u``, and that of the others judges a value: so it is robust.
-    A value without siblings is not judged.
+    The scatter is the same in all runs, times ``u``, and at least that of readings rounded to the ``step``.
     """
-    sibling, weight = np.bincount(run)[run] > 1, u**-2
-    order = np.lexsort((values, run))
-    gaps = np.diff(values[order])[np.diff(run[order]) == 0]
-    finest = gaps[gaps > 0].min(initial=inf)  # of readings that were rounded
+    weight = u**-2
 
-    def furthest(kept: NDArray[np.bool_]) -> tuple[int, float, int]:
+    def judge(kept: NDArray[np.bool_]) -> tuple[Column, Column]:
         total = np.bincount(run, weight * kept)
         means = np.bincount(run, weight * kept * values) / np.maximum(total, TINY)
         share = weight / np.maximum(total[run], TINY)
-        rest = (values - means[run]) / u * kept
-        judged = np.where(kept & (share < 1 - 1e-9), rest**2 / np.maximum(1 - share, 1e-9), 0)
-        i = int(np.argmax(judged))
-        dof = int(kept.sum() - np.count_nonzero(total)) - 1
-        variance = max(sum_of_squares(rest) - judged[i], 0.0) / max(dof, 1) + (finest / u[i]) ** 2 / 12
-        return i, float(np.sign(rest[i])) * sqrt(judged[i] / variance), dof
+        rest = (values - means[run]) / u
+        dof = int(kept.sum() - np.count_nonzero(total))
+        variance = sum_of_squares(rest[kept]) / max(dof, 1) + (step / u) ** 2 / 12
+        spread = np.where(kept, 1 - share, 1 + share)
+        is_judged = (spread > 1e-9) & (total[run] > 0) & (variance > 0)
+        away: Column = np.where(is_judged, rest / np.sqrt(np.where(is_judged, spread * variance, 1)), 0)
+        return away, np.full(len(values), float(dof))
 
-    if finest == inf:
-        return {}
-    return _strays(len(values), len(set(run.tolist())), level / int(sibling.sum()), furthest)
-
-
-def _strays(
-    count: int, taken: int, chance: float, furthest: Callable[[NDArray[np.bool_]], tuple[int, float, float]]
-) -> Mapping[int, float]:
-    """The outliers: all up to the last that chance does not explain (Rosner's generalized ESD).
-
-    ``taken`` is the number of values that their fit takes up. ``furthest(kept)`` returns the index of the
-    value furthest from the others kept, its distance in standard deviations, and their degrees of freedom.
-    """
-    kept, found, strays = np.ones(count, dtype=bool), dict[int, float](), 0
-    free = count - taken
-    for number in range(1, min(MOST_STRAYS, max(1, free // 3), free - 1) + 1):
-        try:
-            i, away, dof = furthest(kept)
-        except Alike:
-            break
-        kept[i], found[i] = False, away
-        if 2 * stdtr(min(dof, NORMAL), -abs(away)) < chance:
-            strays = number
-    return dict(list(found.items())[:strays])
+    return judge

@@ -2,7 +2,7 @@
 
 import csv
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, suppress
 from io import StringIO
 from itertools import islice
@@ -16,6 +16,10 @@ from .sources import Unreadable, blocks_of, opened, whole_lines
 
 MOST_ABOVE = 40
 """Rows in which headings are looked for, as titles may stand above them."""
+MOST_BYTES = 64 << 20
+"""The most bytes of a table of runs, unpacked: a laboratory has thousands of rows."""
+UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
+"""The first bytes of a file in UTF-16, as Excel writes its "Unicode text"."""
 COMMENTS = "lines that begin with # left out"
 MISSING = ("nan", "None", "<NA>", "NaT")
 """How Python writes a missing value."""
@@ -37,8 +41,8 @@ def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str]) -> S
     """A file by its path, "-" for stdin, a mapping or a data frame as a table of texts. Raises Unreadable."""
     if isinstance(source, str | PathLike):
         with ExitStack() as stack:
-            blocks = blocks_of(opened(fspath(source), stack))
-            content = b"".join(lines for lines, _ in whole_lines(blocks, cells=True))
+            content = _content(blocks_of(opened(fspath(source), stack)))
+        content = b"".join(lines for lines, _ in whole_lines(iter([content]), cells=True))
         usual = "\t" if Path(source).suffix.lower() == ".tsv" else ","
         return read_sheet(content, usual, vocabulary, named)
     if not hasattr(source, "items") and not hasattr(source, "columns"):
@@ -54,6 +58,19 @@ def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str]) -> S
         lengths = ", ".join(f"{in_quotes(name)} has {len(cells)} cells" for name, cells in columns)
         raise Unreadable(f"its columns differ in length: {lengths}")
     return Sheet([name for name, _ in columns], list(zip(*(cells for _, cells in columns), strict=True)))
+
+
+def _content(blocks: Iterator[bytes]) -> bytes:
+    """Return the bytes of a small file, in UTF-8 if they begin with a mark of UTF-16. Raises Unreadable."""
+    content = b""
+    for block in blocks:
+        content += block
+        if len(content) > MOST_BYTES:
+            raise Unreadable(f"it is larger than {MOST_BYTES >> 20} MB, unpacked, the most that fit reads")
+    if content.startswith(UTF_16_MARKS):
+        with suppress(UnicodeDecodeError):
+            return content.decode("utf-16").encode()
+    return content
 
 
 def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:

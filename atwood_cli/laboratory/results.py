@@ -14,14 +14,14 @@ class Quantity(NamedTuple):
     unit: str
     words: str
     letter: str = ""
-    small_unit: str = ""
     given_by: tuple[str, ...] = ()
 
 
 QUANTITIES = {
-    "rim_mass": Quantity("c=I/R²", "kg", "the pulley's inertia", "c", "g", ("M", "I")),
-    "axle": Quantity("f", "N", "axle friction", "f", "mN", ("axle",)),
-    "gravity": Quantity("g", "m/s²", "gravity", "g", "mm/s²", ("g",)),
+    "rim_mass": Quantity("c=I/R²", "kg", "the pulley's inertia", "c", ("M", "I")),
+    "axle": Quantity("f", "N", "axle friction", "f", ("axle",)),
+    "gravity": Quantity("g", "m/s²", "gravity", "g", ("g",)),
+    "delay": Quantity("Δt", "s", "a delay of all times", "delay"),
     "pulley_mass": Quantity("M", "kg", "the pulley's mass, if its shape is given"),
     "moment_of_inertia": Quantity("I", "kg m²", "the moment of inertia, if R is given"),
 }
@@ -32,12 +32,13 @@ SYMBOLS = {one.letter or one.symbol: name for name, one in QUANTITIES.items()}
 RESULTS = {
     **{name: one.words for name, one in QUANTITIES.items()},
     "correlation": "the correlation of two results",
-    "chi2": "χ² of the runs by the uncertainties given, or the scatter of repeats",
+    "chi2": "χ² of the runs by the uncertainties stated, or by the scatter of repeats",
     "dof": "degrees of freedom: the runs less what is fitted",
     "between_runs": "the standard deviation between runs beyond that, as a mass",
+    "runs": "each run, with what is expected of it",
 }
-SMALL = 1e-3
-"""A small unit in units."""
+SMALLER_UNITS = {"kg": ("kg", "g", "mg"), "N": ("N", "mN", "µN")}
+"""Units that are each a thousandth of the one before."""
 MOST_DIGITS = 11
 """Digits that doubles leave right."""
 
@@ -51,7 +52,7 @@ class Result(NamedTuple):
 
 
 def published(value: float, uncertainty: float, interval: Sequence[float] = (0, 0)) -> tuple[str, str]:
-    """A value ± its uncertainty, and its interval: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.
+    """Return a value ± its uncertainty, and its interval: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.
 
     All are cut at the second digit of the uncertainty. A value without uncertainty has six digits, and no
     interval. No number has more digits than a double.
@@ -66,50 +67,58 @@ def published(value: float, uncertainty: float, interval: Sequence[float] = (0, 
     return both, with_one_power("{:f} to {:f}", numbers[2:], power)
 
 
-def shown(value: float, uncertainty: float | None) -> str:
-    """A value ± its uncertainty, if it has one."""
+def with_u(value: float, uncertainty: float | None) -> str:
+    """Return a value ± its uncertainty, if it has one."""
     return published(value, uncertainty or 0)[0]
 
 
 def equation(name: str, value: float, uncertainty: float) -> str:
-    """A result in a line."""
-    return f"{name} = {shown(value, uncertainty)} {QUANTITIES[name].unit}"
+    """Return a result in a line."""
+    return f"{name} = {with_u(value, uncertainty)} {QUANTITIES[name].unit}"
 
 
 def cut(value: float, uncertainty: float | None) -> str:
-    """A value cut at the second digit of an uncertainty; to six digits if there is none."""
+    """Return a value cut at the second digit of an uncertainty; to six digits if there is none."""
     if not uncertainty:
         return text(to_digits(6)(Fraction(value)))
     return f"{to_place(_place(value, uncertainty))(Fraction(value)):f}"
 
 
 def _place(value: float, uncertainty: float) -> int:
-    """The place of the last digit, as a power of ten."""
+    """Return the place of the last digit, as a power of ten."""
     first, of_u = (to_digits(2)(Fraction(x)).adjusted() if x else -(10**3) for x in (value, uncertainty))
     return max(of_u - 1, first - MOST_DIGITS + 1)
 
 
-def few(value: float, digits: int = 2) -> str:
-    """A value to a few digits, as people write it."""
+def rounded(value: float, digits: int = 2) -> str:
+    """Return a value with a few digits, as people write it."""
     return text(tidy(to_digits(digits)(Fraction(value))))
+
+
+def in_small_unit(value: float, unit: str) -> str:
+    """Return a value with two digits, in a unit in which it is at least 1: 49 g for 0.049 kg."""
+    units = SMALLER_UNITS.get(unit, (unit,))
+    i = next((i for i in range(len(units)) if abs(value) * 1000**i >= 0.9995), len(units) - 1)
+    return f"{rounded(value * 1000**i)} {units[i]}"
 
 
 class Fit(NamedTuple):
     """The results of a fit by name; None where the runs do not determine a result.
 
     ``rim_mass`` (kg) is the pulley's inertia as a mass at its rim, c = I/R². ``axle`` (N) is the friction of
-    its axle as a force at the rim. ``gravity`` (m/s²) is fitted only if asked for. ``pulley_mass`` (kg) needs
-    the pulley's shape, and ``moment_of_inertia`` (kg m²) its radius. ``uncertainty`` and ``interval`` (95 %)
-    have the standard uncertainty and both ends of the interval, by the name of the result. ``correlation``
-    belongs to the two results that have most of it. ``between_runs`` (kg) is the standard deviation between
-    runs that their own uncertainties do not explain, as a mass. ``chi2`` is χ² by these uncertainties, and
-    ``dof`` the number of degrees of freedom. ``runs`` are the rows of ``--csv``. As text it has a line for
-    each result, and the notes.
+    its axle as a force at the rim. ``gravity`` (m/s²) and ``delay`` (s), by which all times are too long, are
+    fitted only if asked for. ``pulley_mass`` (kg) needs the pulley's shape, and ``moment_of_inertia`` (kg m²)
+    its radius. ``uncertainty`` and ``interval`` (95 %) have the standard uncertainty and both ends of the
+    interval, by the name of the result. ``correlation`` is that of the two results that are most correlated.
+    ``chi2`` is χ² by the uncertainties stated, or by the scatter of repeats, and ``dof`` the number of
+    degrees of freedom. ``between_runs`` (kg) is the standard deviation between runs beyond that, as a mass.
+    ``runs`` has a record for each run. As text it has a line for each result, and the notes.
     """
 
     rim_mass: float | None
     axle: float | None
     gravity: float | None
+    delay: float | None
     pulley_mass: float | None
     moment_of_inertia: float | None
     uncertainty: Mapping[str, float]

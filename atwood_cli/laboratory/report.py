@@ -1,0 +1,299 @@
+"""A fit as sentences, tables, JSON and CSV: what the runs determine, what is odd about them, what to vary."""
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
+from typing import Any
+
+from ..model.digits import text, to_place
+from ..model.scene import UNMEASURED, parameter_of
+from ..model.units import counted
+from ..output.page import Page, aligned
+from ..output.text import VERSION, Forms, cell, inputs_in_words
+from .estimate import Data, as_data, expected
+from .fitting import Fitted, to_vary
+from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
+from .runs import MEASURED, RUN_QUANTITIES, Run, in_words
+
+MOST_CORRELATED = 0.95
+"""The correlation beyond which two results can hardly be distinguished."""
+RARE, SELDOM = 0.01, 0.05
+"""Probabilities below which something is not, and is hardly, chance."""
+MOST_NAMED = 5
+"""Runs of which each has a sentence; more are counted."""
+MOST_FAR = 1000
+"""Standard uncertainties that are counted."""
+WIDE_DELAY = 0.1
+"""The half width of a delay's interval (s) from which the runs cannot show it."""
+NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
+WITHOUT = {
+    "chi2": "needs uncertainties, or repeats",
+    "between_runs": "needs uncertainties, or repeats, and more runs than results",
+    "correlation": "needs two results",
+    "moment_of_inertia": "needs the rim mass to be fitted, and R",
+    "pulley_mass": "needs the rim mass to be fitted, and the pulley's shape, --inertia",
+}
+
+
+# Sentences
+
+
+def head(fit: Fitted) -> list[str]:
+    """Return the result in words, and what is odd about the runs."""
+    return [verdict(fit), *(_oddities(fit) if fit.odd else [])]
+
+
+def verdict(fit: Fitted) -> str:
+    """Return how many runs there are, and which quantities differ from 0, unless some runs are odd."""
+    measurements = counted(int(fit.whole.best.data.counts.sum()), MEASURED[fit.runs.kind])
+    said = [f"{counted(len(fit.used), 'run')}, {measurements}."]
+    if fit.whole.reason:
+        said.append(f"No result: {fit.whole.reason}.")
+    elif not fit.whole.best.names:
+        said.append("Nothing is left to fit: the pulley and its axle are given.")
+    for name in [] if fit.odd else [name for name in USUAL if name in fit.whole.results]:
+        quantity, (low, high) = QUANTITIES[name], fit.whole.results[name].interval
+        words = _capital(quantity.words)
+        if low > 0:
+            said.append(f"{words} is clearly above 0.")
+        else:
+            most = in_small_unit(high, quantity.unit)
+            said.append(f"{words} is not distinguishable from 0; it may be up to {most}.")
+    return " ".join(said)
+
+
+def _oddities(fit: Fitted) -> list[str]:
+    """Return what is odd about the runs, and the result without it."""
+    unit, symbol = parameter_of(fit.runs.kind).unit, {"a": "a", "time": "t"}[fit.runs.kind]
+    said, labels = list[str](), list[str]()
+    for (i, place), away in fit.cells.items():
+        label, value = fit.used[i].cells[place], text(float(fit.used[i].measured[place].value))
+        where = in_words(label) if ":" in label else f"{in_words(label)}: {symbol}"
+        far = f"{_far(away)} standard deviations from its repeats"
+        said.append(f"{_capital(where)} = {value} {unit} is {far}; --without {label}.")
+        labels.append(label)
+    for i, away in fit.rows.items():
+        far = f"{_far(away)} standard uncertainties from the other runs"
+        labels += map(str, fit.used[i].rows)
+        verb = "are outliers" if fit.used[i].rows[1:] else "is an outlier"
+        label = ",".join(map(str, fit.used[i].rows))
+        said.append(f"{_capital(fit.used[i].name)} {verb}: {far}; --without {label}.")
+    said, them = _some(said, "outliers"), "them" if labels[1:] else "it"
+    if fit.without is None:
+        return [*said, f"Without {them} too few runs are left to fit."]
+    results = ", ".join(equation(x, *one[:2]) for x, one in fit.without.results.items())
+    return [*said, f"Without {them}: {results or 'no result'}. The fit includes {them}."]
+
+
+def notes(fit: Fitted) -> list[str]:
+    """Return what else there is to say, first how the table was read."""
+    said = [_capital(words) for words in fit.runs.remarks]
+    unused = [run for run in fit.runs.runs if run.rows in fit.unusable]
+    verbs = ((run, "are" if run.rows[1:] else "is") for run in unused)
+    sentences = [f"{_capital(run.name)} {verb} not used: {fit.unusable[run.rows]}." for run, verb in verbs]
+    said += _some(sentences, "runs are not used")
+    if fit.whole.reason:
+        return said
+    return [*said, _scatter(fit), *_delay(fit), *_hardly_separated(fit)]
+
+
+def _scatter(fit: Fitted) -> str:
+    """Return how the scatter of the runs is known, and how probable it is."""
+    chi2, p, stated = fit.whole.chi2, fit.whole.p_value, fit.whole.best.data.stated
+    if chi2 is None:
+        return f"Only the residuals show the scatter of a single {MEASURED[fit.runs.kind]}."
+    if p is None:
+        return "There are as many runs as results, so nothing is left to test the fit."
+    source, test = ("the uncertainties stated", "χ²") if stated else ("the repeats", "F")
+    probability = f"p = {rounded(p)}" if p >= 0.001 else "p < 0.001"
+    freedom = counted(fit.whole.best.dof, "degree") + " of freedom"
+    by = f"(χ² = {rounded(chi2, 3)}, {freedom}; {test} test: {probability})"
+    if p < SELDOM:
+        said = f"The runs scatter more than {source} let expect {by}"
+        return f"{said}: masses, friction or timing vary between them."
+    if p > 1 - RARE:
+        hint = ": they are probably too large" if stated else ""
+        return f"The runs scatter less than {source} let expect {by}{hint}."
+    return f"Scatter as expected from {source} {by}."
+
+
+def _delay(fit: Fitted) -> Iterator[str]:
+    """Yield if all times seem to be too long, or if the runs cannot show that."""
+    names = fit.whole.best.names
+    if fit.runs.kind != "time" or "delay" in names:
+        return
+    result, p = fit.delay or (None, 1.0)
+    if result and p < RARE:
+        size = with_u(abs(result.value), result.uncertainty)
+        long, find = "long" if result.value > 0 else "short", ",".join([*names, "delay"])
+        yield f"All times seem {size} s too {long}: --find {find} fits that, too."
+    elif not fit.odd and (not result or result.interval[1] - result.value > WIDE_DELAY):
+        width = f" (it is uncertain by {rounded(result.interval[1] - result.value)} s)" if result else ""
+        how = "vary the height of fall, or both m2 - m1 and m1 + m2"
+        yield f"These runs cannot show a delay of all times{width}: {how}."
+
+
+def _hardly_separated(fit: Fitted) -> Iterator[str]:
+    """Yield which results can hardly be distinguished, and what to vary."""
+    if (pair := fit.whole.correlation) and abs(pair[2]) > MOST_CORRELATED:
+        one, other = (QUANTITIES[x].words for x in pair[:2])
+        correlation = f"their correlation is {rounded(pair[2], 3)}"
+        yield f"The runs hardly separate {one} from {other} ({correlation}): {to_vary(fit.used)}."
+
+
+def _far(size: float) -> str:
+    """Return how many standard uncertainties something is away."""
+    return rounded(abs(size)) if abs(size) < MOST_FAR else f"more than {MOST_FAR}"
+
+
+def _some(sentences: Sequence[str], more: str) -> list[str]:
+    """Return the first of the sentences, and how many more there are."""
+    hidden = len(sentences) - MOST_NAMED
+    return [*sentences[:MOST_NAMED], f"{hidden} more {more}."] if hidden > 0 else [*sentences]
+
+
+def _capital(words: str) -> str:
+    return f"{words[0].upper()}{words[1:]}"
+
+
+def conditions(fit: Fitted) -> str:
+    """Return what is the same in all runs, in words."""
+    inputs = fit.given.inputs
+    motion = UNMEASURED._replace(drop=inputs["drop"].value) if "drop" in inputs else UNMEASURED
+    uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
+    words = inputs_in_words(fit.given.scene, motion, uncertain)
+    g = "" if "gravity" in fit.whole.best.names else "g"
+    return ", ".join(words[x] for x, one in inputs.items() if one.given is not None or x in (g, "drop"))
+
+
+# Records and pages
+
+
+def results_of(fit: Fitted) -> Fit:
+    """Return all of a fit by name, with its sentences."""
+    whole, correlation = fit.whole, fit.whole.correlation
+    return Fit(
+        **{name: whole.results[name].value if name in whole.results else None for name in QUANTITIES},
+        uncertainty={name: one.uncertainty for name, one in whole.results.items()},
+        interval={name: list(one.interval) for name, one in whole.results.items()},
+        correlation=correlation and correlation[2],
+        chi2=whole.chi2,
+        dof=whole.best.dof,
+        between_runs=whole.between_runs,
+        runs=_records(fit),
+        notes=[*head(fit), *notes(fit)],
+    )
+
+
+def forms_of(fit: Fitted, only: Sequence[str]) -> Forms:
+    """Return a fit in the forms in which it may be asked for; ``only`` names results."""
+    record: dict[str, Any] = results_of(fit)._asdict()
+    lines: Sequence[Mapping[str, Any]] = record["runs"]
+    absent = dict.fromkeys(QUANTITIES)
+    by_name = {name: {**absent, **record[name]} for name in ("uncertainty", "interval")}
+    runs = [{**line, **{x: line.get(x) for x in RUN_QUANTITIES}} for line in lines]
+
+    def json() -> Any:
+        if only:
+            return {name: runs if name == "runs" else record[name] for name in only}
+        return {"version": VERSION, **record, **by_name, "runs": runs}
+
+    def records() -> Iterable[Mapping[str, object]]:
+        if only == ["runs"]:
+            return lines
+        if only:
+            return [json()]
+        return [
+            {"quantity": x, "value": one.value, "uncertainty": one.uncertainty}
+            | {"low": one.interval[0], "high": one.interval[1], "unit": QUANTITIES[x].unit}
+            for x, one in fit.whole.results.items()
+        ]
+
+    def beside() -> Sequence[str]:
+        """Return the sentences that CSV and bare values have no place for."""
+        if not only or only == ["runs"]:
+            return [*head(fit), *notes(fit)]
+        values = [equation(x, *fit.whole.results[x][:2]) for x in only if x in fit.whole.results]
+        why = (f"{x}: {WITHOUT.get(x, NOT_FITTED)}." for x in only if record[x] is None)
+        return [*values, *why, *head(fit)[1:]]
+
+    values = [cell(record[name]) for name in only]
+    return Forms(json, records, lambda: _print_page(fit, lines), beside, values)
+
+
+def _records(fit: Fitted) -> list[dict[str, Any]]:
+    """Return the runs, as JSON and CSV have them; the residual is in standard uncertainties."""
+    values, best = fit.whole.best.values, fit.whole.best
+    groups: list[tuple[Sequence[Run], Data, list[Any]]] = [(fit.used, best.data, best.sigma.tolist())]
+    if left_out := fit.left_out:
+        groups.append((left_out, as_data(fit.runs, left_out), [None] * len(left_out)))
+    found: dict[tuple[int, ...], Any] = {}
+    for runs, data, u in groups:
+        moves = expected(data._replace(drop=None), values) > 0
+        columns = data.measured.tolist(), expected(data, values).tolist(), u, moves.tolist()
+        found |= {run.rows: one for run, *one in zip(runs, *columns, strict=True)}
+    lines = []
+    for run in fit.runs.runs:
+        sign = -1 if run.mean < 0 else 1
+        measured, ideal, u_run, moving = found.get(run.rows, (abs(run.mean), 0.0, None, False))
+        lines.append(
+            {
+                "rows": " ".join(map(str, run.rows)),
+                "m1": float(run.m1.value),
+                "m2": float(run.m2.value),
+                **({} if run.drop is None else {"drop": float(run.drop.value)}),
+                fit.runs.kind: sign * measured,
+                "u": u_run,
+                "expected": sign * ideal if moving else None,
+                "residual": sign * (measured - ideal) / u_run if moving and u_run else None,
+            }
+        )
+    return lines
+
+
+def _print_page(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> None:
+    """Print the conditions, the runs, what there is to say, and the results."""
+    page = Page()
+    page.say(conditions(fit))
+    _print_table(page, _columns(fit, lines))
+    u = "u is the standard uncertainty of a run, scatter between runs included"
+    if (pair := fit.whole.correlation) is not None:
+        u += f"; {pair[0]} and {pair[1]} have correlation {rounded(pair[2])}"
+    page.say(f"{u}.", *notes(fit))
+    page.say(*head(fit), style="bold")
+    if fit.whole.results:
+        written = {x: published(*one) for x, one in fit.whole.results.items()}
+        results = {
+            "Quantity": list(written),
+            "Value": [value for value, _ in written.values()],
+            "Unit": [QUANTITIES[x].unit for x in written],
+            "Symbol": [QUANTITIES[x].symbol for x in written],
+            "95 % interval": [ends for _, ends in written.values()],
+        }
+        _print_table(page, results)
+
+
+def _print_table(page: Page, columns: Mapping[str, Sequence[str]]) -> None:
+    page.table(list(columns), [list(zip(*map(aligned, columns.values()), strict=True))])
+
+
+def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
+    """Return for each run the measurement, what is expected, and the residual."""
+    kind, data = fit.runs.kind, fit.whole.best.data
+    odd = {" ".join(map(str, fit.used[i].rows)) for i in fit.odd}
+    unit = parameter_of(kind).unit
+    finest = min((line["u"] for line in lines if line["u"]), default=None)
+    if data.scatter.any() and finest:  # the mean has the digits of its own scatter
+        finest = min(finest, float(data.scatter.min()))
+
+    def column(name: str) -> list[str]:
+        return ["" if line[name] is None else cut(line[name], finest) for line in lines]
+
+    residuals = [line["residual"] for line in lines]
+    return {
+        "row": [line["rows"].replace(" ", ",") + (" !" if line["rows"] in odd else "") for line in lines],
+        **{f"{name} (kg)": [text(line[name]) for line in lines] for name in ("m1", "m2")},
+        f"{kind} ({unit})": column(kind),
+        f"expected ({unit})": column("expected"),
+        f"u ({unit})": ["" if line["u"] is None else cut(line["u"], line["u"]) for line in lines],
+        "residual/u": ["" if one is None else f"{to_place(-2)(Fraction(one)):f}" for one in residuals],
+    }
