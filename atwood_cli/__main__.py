@@ -14,7 +14,10 @@ def main() -> int:
     status = 0
 
     def end(number: int, _: object) -> None:
-        """End as on Ctrl-C, with the status of a shell. A second signal does not stop the cleaning up."""
+        """End as on Ctrl-C, with the status that a shell reports. A second signal does not stop cleaning up.
+
+        The interrupt is lost if Python is dropping an object, where it can raise nothing.
+        """
         nonlocal status
         if not status:
             status = 128 + number

@@ -114,12 +114,7 @@ class Enclosures:
         self.down, self.up = decimal_context(digits, ROUND_FLOOR), decimal_context(digits, ROUND_CEILING)
 
     def number(self, q: Fraction | int) -> Enclosure:
-        return self._quotient(q.numerator, q.denominator)
-
-    @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
-    def _quotient(self, n: int, d: int) -> Enclosure:
-        over, under = Decimal(n), Decimal(d)
-        return Enclosure(self, self.down.divide(over, under), self.up.divide(over, under))
+        return _quotient(self, q.numerator, q.denominator)
 
     def is_zero(self, x: Enclosure) -> bool:
         return x.lo == x.hi == 0
@@ -166,28 +161,8 @@ class Enclosures:
         x = self._from_zero(x)
         if self.is_zero(x):
             return self.number(1), x
-        (cos, sin), slack = self._cos_sin(x.lo), self._width(x)
+        (cos, sin), slack = _cos_sin(self, x.lo), self._width(x)
         return cos + slack - slack, sin + slack - slack
-
-    @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
-    def _cos_sin(self, x: Decimal) -> tuple[Enclosure, Enclosure]:
-        """Return cosine and sine of a number x >= 0.
-
-        n quarter turns are taken off, which leaves an angle within ±π/4. The series are summed for this angle
-        divided by 2^s, and the angle is doubled s times. 4 (w + n) units cover the error of the series, as in
-        `_expm1`. A doubling squares c + is: it doubles the error and adds at most two units. So
-        2^s · 8 (w + n) units cover all.
-        """
-        n, d = x.as_integer_ratio()
-        bits = _bits(self.digits + max(0, -x.adjusted()))
-        halvings = math.isqrt(bits) // 2
-        w = bits + halvings + 2 * bits.bit_length() + (n // d).bit_length() + 8
-        angle, quarter = (n << w) // d, _pi(w) >> 1
-        turns = (angle + (quarter >> 1)) // quarter
-        c, s = _cos_sin_series(angle - turns * quarter, halvings, w)
-        c, s = ((c, s), (-s, c), (-c, -s), (s, -c))[turns % 4]
-        error = 8 * (w + turns) << halvings
-        return self._fixed(c, error, w), self._fixed(s, error, w)
 
     def cos_sin_of_degrees(self, x: Fraction) -> tuple[Enclosure, Enclosure]:
         """Return cosine and sine of x >= 0, exact at multiples of 90°."""
@@ -245,68 +220,23 @@ class Enclosures:
     def expm1(self, x: Enclosure) -> Enclosure:
         """Return e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""
         x = self._from_zero(x)
-        at_lo, width = self._expm1(x.lo), self._width(x)
+        at_lo, width = _expm1(self, x.lo), self._width(x)
         if width.hi > 1 or at_lo.lo == INFINITY:
-            return Enclosure(self, at_lo.lo, self._expm1(x.hi).hi)
+            return Enclosure(self, at_lo.lo, _expm1(self, x.hi).hi)
         return Enclosure(self, at_lo.lo, (at_lo + 2 * width * (at_lo + 1)).hi)
-
-    @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
-    def _expm1(self, x: Decimal) -> Enclosure:
-        """Return e^x - 1 for a number x >= 0, to the relative precision of the result.
-
-        All is computed in integers, in units of 2^-w. x - n ln 10 is in [0, 2.4), off by at most 2n + 2
-        units. It is divided by 2^s, which gives r, and e^r - 1 = r + r²/2 + ... is summed. Then s doublings
-        follow, each by e^{2r} - 1 = u (2 + u) with u = e^r - 1. A term inherits at most its predecessor's
-        error and is truncated twice by less than one unit, so t terms are off by at most 3t units. A doubling
-        multiplies the error by 2 (1 + u) and adds at most one unit; the product of the factors is 2^s e^{2.4}
-        < 12 · 2^s. So the result is off by fewer than 12 · 2^s (3t + s + 2n + 4) units, less than 2^(s + 8)
-        (w + n), as t and s are below w.
-        """
-        if x == 0:
-            return Enclosure(self, ZERO, ZERO)
-        if x > LARGEST_ARGUMENT:
-            return Enclosure(self, INFINITY, INFINITY)
-        tens = int(self.down.multiply(x, LOG10_E)) if x > 2 else 0
-        bits = _bits(self.digits + max(0, -x.adjusted()))
-        halvings = math.isqrt(bits)
-        w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
-        n, d = x.as_integer_ratio()
-        rest = (n << w) // d - (tens * _ln10(w) if tens else 0)
-        u = _expm1_series(rest, halvings, w)
-        small = self._fixed(u, (w + tens) << (halvings + 8), w)
-        if not tens:
-            return small
-        k = small + 1
-        return Enclosure(self, self.down.scaleb(k.lo, tens), self.up.scaleb(k.hi, tens)) - 1
 
     def log1p(self, x: Enclosure) -> Enclosure:
         """Return ln(1 + x) for x > -1; an x that may be 0 is taken not to be negative."""
         if x.hi < 0:
             return -1 * self.log1p(-1 * x / (x + 1))
         x = self._from_zero(x)
-        at_lo = self._log1p(x.lo)
+        at_lo = _log1p(self, x.lo)
         return Enclosure(self, at_lo.lo, (at_lo + self._width(x)).hi)
-
-    @lru_cache(maxsize=VALUES_KEPT)  # noqa: B019 - `enclosures` keeps the object itself
-    def _log1p(self, y: Decimal) -> Enclosure:
-        """Return ln(1 + y) for a number y >= 0, from a guess y0, with no series.
-
-        ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
-        That encloses the value for any guess, and tightly for a good one.
-        """
-        if y == 0:
-            return Enclosure(self, ZERO, ZERO)
-        guess = self._log1p_guess(y)
-        at_guess, exactly = self._expm1(guess), Enclosure(self, y, y)
-        delta = (exactly - at_guess) / (at_guess + 1)
-        inner = delta / (delta + 1)
-        middle = Enclosure(self, guess, guess)
-        return Enclosure(self, (middle + inner).lo, (middle + delta).hi)
 
     def _log1p_guess(self, y: Decimal) -> Decimal:
         """Return ln(1 + y) to about half the digits: each step of `_log1p` doubles them."""
         if self.digits > 28:
-            return enclosures(self.digits // 2 + 2)._log1p(y).lo
+            return _log1p(enclosures(self.digits // 2 + 2), y).lo
         if -DOUBLE_EXPONENT < y.adjusted() < DOUBLE_EXPONENT:
             return Decimal(math.log1p(float(y)))
         return y if y < 1 else decimal_context(self.digits // 2 + 12, ROUND_HALF_EVEN).ln(y)
@@ -316,6 +246,80 @@ class Enclosures:
 def enclosures(digits: int) -> Enclosures:
     """Return the arithmetic of enclosures with so many digits; always the same object, which keeps π."""
     return Enclosures(digits)
+
+
+@lru_cache(maxsize=VALUES_KEPT)
+def _quotient(ar: Enclosures, n: int, d: int) -> Enclosure:
+    over, under = Decimal(n), Decimal(d)
+    return Enclosure(ar, ar.down.divide(over, under), ar.up.divide(over, under))
+
+
+@lru_cache(maxsize=VALUES_KEPT)
+def _cos_sin(ar: Enclosures, x: Decimal) -> tuple[Enclosure, Enclosure]:
+    """Return cosine and sine of a number x >= 0.
+
+    n quarter turns are taken off, which leaves an angle within ±π/4. The series are summed for this angle
+    divided by 2^s, and the angle is doubled s times. 4 (w + n) units cover the error of the series, as in
+    `_expm1`. A doubling squares c + is: it doubles the error and adds at most two units. So
+    2^s · 8 (w + n) units cover all.
+    """
+    n, d = x.as_integer_ratio()
+    bits = _bits(ar.digits + max(0, -x.adjusted()))
+    halvings = math.isqrt(bits) // 2
+    w = bits + halvings + 2 * bits.bit_length() + (n // d).bit_length() + 8
+    angle, quarter = (n << w) // d, _pi(w) >> 1
+    turns = (angle + (quarter >> 1)) // quarter
+    c, s = _cos_sin_series(angle - turns * quarter, halvings, w)
+    c, s = ((c, s), (-s, c), (-c, -s), (s, -c))[turns % 4]
+    error = 8 * (w + turns) << halvings
+    return ar._fixed(c, error, w), ar._fixed(s, error, w)
+
+
+@lru_cache(maxsize=VALUES_KEPT)
+def _expm1(ar: Enclosures, x: Decimal) -> Enclosure:
+    """Return e^x - 1 for a number x >= 0, to the relative precision of the result.
+
+    All is computed in integers, in units of 2^-w. x - n ln 10 is in [0, 2.4), off by at most 2n + 2
+    units. It is divided by 2^s, which gives r, and e^r - 1 = r + r²/2 + ... is summed. Then s doublings
+    follow, each by e^{2r} - 1 = u (2 + u) with u = e^r - 1. A term inherits at most its predecessor's
+    error and is truncated twice by less than one unit, so t terms are off by at most 3t units. A doubling
+    multiplies the error by 2 (1 + u) and adds at most one unit; the product of the factors is 2^s e^{2.4}
+    < 12 · 2^s. So the result is off by fewer than 12 · 2^s (3t + s + 2n + 4) units, less than 2^(s + 8)
+    (w + n), as t and s are below w.
+    """
+    if x == 0:
+        return Enclosure(ar, ZERO, ZERO)
+    if x > LARGEST_ARGUMENT:
+        return Enclosure(ar, INFINITY, INFINITY)
+    tens = int(ar.down.multiply(x, LOG10_E)) if x > 2 else 0
+    bits = _bits(ar.digits + max(0, -x.adjusted()))
+    halvings = math.isqrt(bits)
+    w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
+    n, d = x.as_integer_ratio()
+    rest = (n << w) // d - (tens * _ln10(w) if tens else 0)
+    u = _expm1_series(rest, halvings, w)
+    small = ar._fixed(u, (w + tens) << (halvings + 8), w)
+    if not tens:
+        return small
+    k = small + 1
+    return Enclosure(ar, ar.down.scaleb(k.lo, tens), ar.up.scaleb(k.hi, tens)) - 1
+
+
+@lru_cache(maxsize=VALUES_KEPT)
+def _log1p(ar: Enclosures, y: Decimal) -> Enclosure:
+    """Return ln(1 + y) for a number y >= 0, from a guess y0, with no series.
+
+    ln(1 + y) = y0 + ln(1 + δ) with δ = (1 + y)/e^{y0} - 1, and δ/(1 + δ) <= ln(1 + δ) <= δ for δ > -1.
+    That encloses the value for any guess, and tightly for a good one.
+    """
+    if y == 0:
+        return Enclosure(ar, ZERO, ZERO)
+    guess = ar._log1p_guess(y)
+    at_guess, exactly = _expm1(ar, guess), Enclosure(ar, y, y)
+    delta = (exactly - at_guess) / (at_guess + 1)
+    inner = delta / (delta + 1)
+    middle = Enclosure(ar, guess, guess)
+    return Enclosure(ar, (middle + inner).lo, (middle + delta).hi)
 
 
 def _bits(digits: int) -> int:

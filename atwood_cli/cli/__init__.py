@@ -94,7 +94,7 @@ def program(names: Iterable[str] = COMMANDS) -> Any:
         help=HELP,
         rich_markup_mode=None,
         invoke_without_command=True,
-        add_completion=names is COMMANDS,
+        add_completion=tuple(names) == COMMANDS,
         context_settings={"help_option_names": ["-h", "--help"]},
     )
     app.callback()(root)

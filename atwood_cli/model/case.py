@@ -194,7 +194,7 @@ class Case:
         self._known_to_slip = not self.tensions_equal and self.slips_at(place)
         return self._known_to_slip
 
-    @property
+    @lazy
     def limiting_mu(self) -> Fraction:
         """The coefficient of friction at its limit: static on the verge, kinetic in slip; 0 if not given."""
         limit = self.scene.mu if self.at_static_limit else self.scene.mu_k
@@ -205,7 +205,7 @@ class Case:
         """Whether friction is that with the least coefficient that holds the string, as mu is not given."""
         return self.regime == "no-slip" and self.scene.mu is None and not self.tensions_equal
 
-    @property
+    @lazy
     def at_static_limit(self) -> bool:
         """Whether friction at its limit is static (mu) or kinetic (mu_k)."""
         return not self.slide_measured and (self.scene.mu_k is None or self.regime == "verge")

@@ -96,9 +96,10 @@ class Page:
         for group in groups:
             lines = list(islice(left, len(group)))
             # Rows are joined if none is folded, as rich takes five times as long over single ones.
-            for part in [lines] if fits else [[line] for line in lines]:
+            parts = [lines] if fits else [[line] for line in lines]
+            for number, part in enumerate(parts, 1):
                 joined = (Text("\n".join(column)) for column in zip(*part, strict=True))
-                table.add_row(*joined, end_section=part[-1] is lines[-1])
+                table.add_row(*joined, end_section=number == len(parts))
         self.console.print(table, crop=False)
 
 

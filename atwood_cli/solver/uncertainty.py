@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
 DIGITS, RIGHT_DIGITS = 48, 15
 NEGLIGIBLE = Decimal("1e-30")
-EXACT = decimal_context(2 * DIGITS, ROUND_HALF_EVEN)
+CONTEXT = decimal_context(2 * DIGITS, ROUND_HALF_EVEN)
 """Sums and products of values lose no digit that counts."""
 
 UNEVEN_SHARE = Decimal("0.2")
@@ -111,8 +111,8 @@ class Uncertainties:
         if x == "mu_k" and scene.mu is not None:
             number = min(number, scene.mu)
         if x != "a":
-            least = scene.mu_k if x == "mu" else None
-            number = max(number, least or Fraction(0))
+            least = scene.mu_k if x == "mu" and scene.mu_k is not None else Fraction(0)
+            number = max(number, least)
         if not number and x != "a" and not parameter_of(x).zero:
             return End(number, None, NO_SCENE)
         try:
@@ -139,11 +139,11 @@ class Uncertainties:
         for x, values in ends.items():
             numbers = [here, *(value.number for value in values if value.number is not None)]
             least, most = min(numbers), max(numbers)
-            size = EXACT.subtract(most, least)
+            size = CONTEXT.subtract(most, least)
             scale = max(least.copy_abs(), most.copy_abs())
-            if size > EXACT.multiply(NEGLIGIBLE, scale) or is_infinite(size):
-                steps[x] = EXACT.divide(size, Decimal(2))
-                variance = EXACT.fma(steps[x], steps[x], variance)
+            if size > CONTEXT.multiply(NEGLIGIBLE, scale) or is_infinite(size):
+                steps[x] = CONTEXT.divide(size, Decimal(2))
+                variance = CONTEXT.fma(steps[x], steps[x], variance)
         return Spread(here, ends, steps, variance)
 
     def of(self, name: str, digits: int | None = None) -> Decimal | None:
@@ -154,7 +154,7 @@ class Uncertainties:
         spread = self._spread(name)
         if spread is None or any(value.number is None for pair in spread.ends.values() for value in pair):
             return None
-        return to_digits(min(digits or RIGHT_DIGITS, RIGHT_DIGITS))(EXACT.sqrt(spread.variance))
+        return to_digits(min(digits or RIGHT_DIGITS, RIGHT_DIGITS))(CONTEXT.sqrt(spread.variance))
 
     def percents(self, name: str) -> dict[str, Decimal]:
         """Return the share of each input in the variance of a quantity, if that is finite and not 0."""
@@ -162,8 +162,10 @@ class Uncertainties:
         if spread is None or not spread.steps or is_infinite(spread.variance):
             return {}
         steps = {x: spread.steps.get(x, ZERO) for x in self.given}
-        shares = {x: EXACT.divide(EXACT.multiply(step, step), spread.variance) for x, step in steps.items()}
-        return {x: to_digits(RIGHT_DIGITS)(share.scaleb(2, EXACT)) for x, share in shares.items()}
+        shares = {
+            x: CONTEXT.divide(CONTEXT.multiply(step, step), spread.variance) for x, step in steps.items()
+        }
+        return {x: to_digits(RIGHT_DIGITS)(share.scaleb(2, CONTEXT)) for x, share in shares.items()}
 
     # In sentences
 
@@ -173,7 +175,7 @@ class Uncertainties:
         for x, u in self.given.items():
             for side in (-COVERAGE, COVERAGE):
                 end = self._end(x, side * u)
-                what = end.answers and _otherwise(self.case, end.answers.case)
+                what = _otherwise(self.case, end.answers.case) if end.answers else ""
                 if what and what not in said:
                     said[what] = (
                         f"{what} is in doubt: the answer differs at {self._at(x, end)},"
@@ -192,12 +194,14 @@ class Uncertainties:
         found: dict[tuple[str, str], list[str]] = {}
         for name in names:
             spread = self._spread(name)
-            for x, values in spread.ends.items() if spread else ():
-                for i, value in enumerate(values):
-                    if spread and value.number is None:
-                        place = self._at(x, self._ends[x][i]), value.reason
-                        found.setdefault(place, []).append(_one_sided(name, spread.here, values[1 - i]))
-                        break
+            if spread is None:
+                continue
+            for x, values in spread.ends.items():
+                missing = [i for i in (0, 1) if values[i].number is None]
+                if missing:
+                    i = missing[0]
+                    place = self._at(x, self._ends[x][i]), values[i].reason
+                    found.setdefault(place, []).append(_one_sided(name, spread.here, values[1 - i]))
         return [
             f"{_first_of(sentences)}: {place} {why}."
             if why == NO_SCENE
@@ -222,10 +226,10 @@ class Uncertainties:
             if value.case and _otherwise(self.case, value.case):
                 return True
             if value.number is not None:
-                changes_sign = EXACT.multiply(value.number, spread.here) < 0
-                change = EXACT.subtract(spread.here, value.number).copy_abs()
-                uneven = EXACT.subtract(change, spread.steps[x]).copy_abs()
-                if changes_sign or uneven > EXACT.multiply(UNEVEN_SHARE, u):
+                changes_sign = CONTEXT.multiply(value.number, spread.here) < 0
+                change = CONTEXT.subtract(spread.here, value.number).copy_abs()
+                uneven = CONTEXT.subtract(change, spread.steps[x]).copy_abs()
+                if changes_sign or uneven > CONTEXT.multiply(UNEVEN_SHARE, u):
                     return True
         return False
 
