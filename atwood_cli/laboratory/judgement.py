@@ -8,7 +8,7 @@ from math import hypot, inf, sqrt
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import stdtrit
+from scipy.special import fdtrc, stdtrit
 
 from ..model import physics
 from ..model.case import Case
@@ -64,6 +64,14 @@ class Outcome(NamedTuple):
     def chi2(self) -> float | None:
         """χ² of the runs by the uncertainties stated, or by the scatter of repeats; None without either."""
         return self.best.line.chi2 if self.best.data.scatter.any() else None
+
+    @property
+    def p_value(self) -> float | None:
+        """The probability that chance gives a larger χ²; None if nothing is left to test the fit."""
+        chi2, dof = self.chi2, self.best.dof
+        if chi2 is None or not dof:
+            return None
+        return float(fdtrc(dof, min(self.best.data.within, NORMAL), chi2 / dof))
 
     @property
     def between_runs(self) -> float | None:

@@ -4,7 +4,6 @@ from collections.abc import Iterable, Iterator
 from math import isfinite
 
 import numpy as np
-from scipy.special import fdtrc
 
 from ..model.digits import text
 from ..model.scene import parameter_of
@@ -13,7 +12,6 @@ from .fitting import shared_error
 from .judgement import Fitted, beyond, to_vary
 from .published import QUANTITIES, SMALL, USUAL, equation, few
 from .runs import MEASURED
-from .statistics import NORMAL
 
 MUCH = 0.95
 """A correlation beyond which two results can hardly be distinguished."""
@@ -92,7 +90,7 @@ def _spread(fit: Fitted) -> str:
     by = "scatter of repeats" if isfinite(within) else "uncertainties stated"
     if not dof:
         return f"As many runs as results: nothing shows whether the runs differ more than by the {by}."
-    above = float(fdtrc(dof, min(within, NORMAL), chi2 / dof))
+    above = fit.whole.p_value or 0.0
     is_small = above >= 1 - RARE
     share = 1 - above if is_small else above
     percent = f"{few(100 * share)} %" if share >= 0.001 else "less than 0.1 %"
