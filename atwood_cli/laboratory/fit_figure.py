@@ -63,7 +63,11 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     above = [conditions(fit), verdict(fit)]
     if (p := fit.whole.p_value) is not None and p < RARE:
         above.append(f"Scatter is larger than the uncertainties, p = {few(p)}.")
-    with page(path, force, above, f"{_on_bars(fit)} Numbers at points are those of rows.", bare, 2) as figure:
+    bars_are = "widened to the scatter between runs" if fit.whole.between_runs else "not widened"
+    if fit.whole.chi2 is None:
+        bars_are = "by the scatter of the runs"
+    below = f"Error bars are standard uncertainties, {bars_are}. Numbers at points are those of rows."
+    with page(path, force, above, below, bare, panels=2) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
         end = 1.06 * max(seen.x + u_x)
         line.plot([0, end], [seen.intercept, seen.intercept + seen.slope * end], color=BLUE)
@@ -85,15 +89,6 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         rest.set_ylabel("residual/u")
         rest.set_xlabel(seen.labels[0])
         _name_points(line, fit, seen)
-
-
-def _on_bars(fit: Fitted) -> str:
-    """Return what the error bars are, in a sentence."""
-    if fit.whole.chi2 is None:
-        return "Error bars are standard uncertainties, by the scatter of the runs."
-    if fit.whole.between_runs:
-        return "Error bars are standard uncertainties, widened to the scatter between runs."
-    return "Error bars are standard uncertainties, not widened."
 
 
 def _name_points(line: "Axes", fit: Fitted, seen: View) -> None:

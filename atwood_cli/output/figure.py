@@ -58,7 +58,8 @@ LINE_CHARACTERS = 88
 BESIDE = [(x, y) for r in (6, 11, 17, 24, 32) for x, y in ((r, 0), (-r, 0), (0, r), (0, -r))]
 BESIDE += [(x * r, y * r) for r in (4, 8, 13, 19) for x in (1, -1) for y in (-1, 1)]
 """Where words may stand beside a point, in points of 1/72 inch."""
-NAMES_IN_WORDS = re.compile(r"\b(m1|m2|mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
+NAMES_IN_WORDS = re.compile(r"\b(mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
+SIDES_IN_WORDS = re.compile(r"\b([mTW])([12])\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 EXPONENT, MINUS = re.compile(r"(?<=\d)e\+?(-?\d+)"), re.compile(r"(?<![\w.)])-(?=\d)")
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -159,6 +160,7 @@ def page(
 def typeset(words: str) -> str:
     """Return words as print has them: symbols for names, minus signs, powers of ten, no endless digits."""
     words = NAMES_IN_WORDS.sub(lambda name: AXIS_WORDS[name[0]][1], LONG_DIGITS.sub(r"\1…", words))
+    words = SIDES_IN_WORDS.sub(lambda name: name[1] + "_₁₂"[int(name[2])], words)
     words = EXPONENT.sub(lambda power: f" × 10{power[1].translate(SUPERSCRIPTS)}", words)
     return MINUS.sub("−", words)
 
@@ -190,12 +192,9 @@ def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) 
             text.set_in_layout(False)
             box = text.get_window_extent().padded(2)
             off = [hypot(*(at.clip(box.min, box.max) - at)) for at in (anchor, *anchors)]
-            is_free = not box.count_overlaps(boxes) and edge.contains(*box.min) and edge.contains(*box.max)
-            if (
-                is_free
-                and off[0] < min(off) + 1
-                and not any(path.intersects_bbox(box, False) for path in paths)
-            ):
+            is_near, is_inside = off[0] < min(off) + 1, edge.contains(*box.min) and edge.contains(*box.max)
+            covers = box.count_overlaps(boxes) or any(path.intersects_bbox(box, False) for path in paths)
+            if is_near and is_inside and not covers:
                 boxes.append(box)
                 written.append(text)
                 break

@@ -4,9 +4,9 @@ Points and directions are complex numbers, lengths in radii of the pulley, whose
 on the left, where the string of m1 hangs down, and runs clockwise over the top. Strings leave along tangents.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
+from fractions import Fraction
 from math import inf, pi, radians, sqrt
-from operator import attrgetter
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from ..model import arc
 from ..model.digits import SHOWN_DIGITS, text, tidy, to_double
 from ..model.scene import SceneError
 from ..solver.answers import Answers
-from ..solver.balance import about
+from ..solver.balance import about, point
 from ..solver.messages import unmarked, verdict
 from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_file, page, typeset, write_beside
 from .text import describe
@@ -38,9 +38,6 @@ LONGEST_ON_ARC, LEAST_ON_ARC = 0.9 * BETWEEN_ARROWS, 0.01
 NORMAL_AT, FRICTION_AT = 1.05, 0.9  # distances from the axle at which arrows end and start
 ROTATION_AT, AXLE_AT, ACCELERATION = 0.56, 0.24, 0.4  # two distances from the axle, and a length
 
-Along = Callable[[Any], tuple[Any, Any]]
-"""Tension and friction per radian (N) at shares of the arc; the tension is the normal force nR, too."""
-
 
 def save(
     answers: Answers, kind: arc.Kind | None, path: str, force: bool, bare: bool, curves: bool = False
@@ -62,26 +59,23 @@ def save(
         raise SceneError("figure", path, f"draws forces between {LEAST_FORCE} and {GREATEST_FORCE} N only")
     wrap = float(doubles.settle(lambda m: case.scene.wrap.degrees(m.ar)))
     if not LEAST_WRAP <= wrap <= GREATEST_WRAP:
-        raise SceneError(
-            "figure", path, f"draws wraps between {LEAST_WRAP} and {GREATEST_WRAP:.0e} degrees only"
-        )
+        rule = f"draws wraps between {LEAST_WRAP} and {GREATEST_WRAP:.0e} degrees only"
+        raise SceneError("figure", path, rule)
     if not case.ends_hang_down:
         forces = {name: force for name, force in forces.items() if name[0] == "T"}
     below = [*(_on_friction(few, kind) if kind and not bare else []), *_on_drawing(few, kind, wrap, forces)]
     above = [describe(case.scene, case.motion, answers.uncertain), unmarked(verdict(few))]
     with page(path, force, above, " ".join(below), bare, panels=1 + curves) as figure:
-        machine, *more = figure.subplots(1 + curves, height_ratios=[1.6, 1][: 1 + curves], squeeze=False)[
-            :, 0
-        ]
+        heights = [1.6, 1] if curves else [1]
+        machine, *more = figure.subplots(len(heights), height_ratios=heights, squeeze=False)[:, 0]
         machine.axis("off")
         machine.set_aspect("equal", adjustable="datalim")
         machine.margins(0.01)
         _draw_pulley(machine, few, radians(wrap))
         if kind:
-            along, stuck = _forces_along(doubles, kind)
-            scale = _draw_contact(machine, case.sign, along, radians(wrap), legend=not curves)
+            scale = _draw_contact(machine, doubles, kind, radians(wrap), legend=not curves)
             if curves:
-                _draw_curves(more[0], few, along, stuck, wrap, scale)
+                _draw_curves(more[0], few, kind, wrap, scale)
         longest = max(forces.values()) or inf
         lengths = {x: max(LONGEST * F / longest, SHORTEST) if F else 0.0 for x, F in forces.items()}
         (_draw_masses if case.ends_hang_down else _draw_tensions)(machine, few, lengths, radians(wrap))
@@ -95,9 +89,8 @@ def _on_friction(few: Answers, kind: arc.Kind) -> list[str]:
     if kind != "creep":
         return [about(few.case, kind), f"The net friction force is {text(force)} N."]
     end = "last" if few.case.sign > 0 else "first"
-    drawn = (
-        f"Drawn: friction at its limit on the {end} {text(few.settle(lambda m: m.alpha * 180 / m.ar.pi))}°"
-    )
+    angle = text(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
+    drawn = f"Drawn: friction at its limit on the {end} {angle}°"
     greatest, least = few["friction_force_max"], few["friction_force_min"]
     if greatest is None:
         return [f"{drawn}, as on a slightly elastic string."]
@@ -114,26 +107,15 @@ def _on_drawing(few: Answers, kind: arc.Kind | None, wrap: float, forces: Mappin
     if not few.case.ends_hang_down:
         said.append("The masses hang over guides that are not drawn." if kind else "The mass is not drawn.")
     if longer := [name for name, force in forces.items() if 0 < force < least]:
-        said.append(f"Drawn longer than to scale: {', '.join(map(_subscript, longer))}.")
+        said.append(f"Drawn longer than to scale: {', '.join(longer)}.")
     return said
 
 
-def _forces_along(doubles: Answers, kind: arc.Kind) -> tuple[Along, float]:
-    """Return the forces along the arc, and the share of it over which the string is stuck.
-
-    From the lighter mass on the tension is constant, and then exponential.
-    """
-    light, heavy = (float(doubles.settle(attrgetter(f"{side}_tension"))) for side in ("light", "heavy"))
-    mu = float(doubles.settle(lambda m: m.arc_mu(kind)))
-    stuck = float(doubles.settle(lambda m: (m.phi - m.alpha) / m.phi)) if kind == "creep" else 0.0
-    sign = doubles.case.sign or 1
-
-    def along(shares: Any) -> tuple[Any, Any]:
-        from_light = shares if sign > 0 else 1 - shares
-        tension = light * (heavy / light) ** np.clip((from_light - stuck) / (1 - stuck), 0, 1)
-        return tension, np.where(from_light < stuck, 0, sign * mu * tension)
-
-    return along, stuck
+def _forces(doubles: Answers, kind: arc.Kind, shares: Any) -> tuple[Any, Any]:
+    """Return tension and friction per radian (N) at shares of the arc; nR is the tension, too."""
+    points = [point(doubles, kind, Fraction(share)) for share in shares]
+    tension, friction = ([float(one[name]) for one in points] for name in ("tension", "friction_per_radian"))
+    return np.array(tension), np.array(friction)
 
 
 def _rim(angle: Any) -> Any:
@@ -194,11 +176,7 @@ def _number(few: Answers, value: Any) -> str:
     return typeset(text(tidy(few.round(value))))
 
 
-def _subscript(name: str) -> str:
-    return name.replace("1", "₁").replace("2", "₂")
-
-
-def _draw_contact(axes: "Axes", sign: int, along: Along, phi: float, legend: bool) -> str:
+def _draw_contact(axes: "Axes", doubles: Answers, kind: arc.Kind, phi: float, legend: bool) -> str:
     """Draw the arrows of normal force and friction over the turn at the heavier mass.
 
     Returns the scale of those of friction, in words.
@@ -207,8 +185,8 @@ def _draw_contact(axes: "Axes", sign: int, along: Along, phi: float, legend: boo
     count = int(drawn * phi / BETWEEN_ARROWS + 1e-9) + 1
     shares = np.linspace(0, drawn, count) if count > 1 else np.array([drawn / 2])
     shares = shares[: -1 if phi >= TURN else None]  # of a turn, both ends are one place
-    shares = 1 - shares if sign > 0 else shares
-    outwards, (normal, friction) = _rim(phi * shares), along(shares)
+    shares = 1 - shares if doubles.case.sign >= 0 else shares
+    outwards, (normal, friction) = _rim(phi * shares), _forces(doubles, kind, shares)
     larger = normal.max() / (abs(friction).max() or inf)
     lengths = normal / normal.max() * LONGEST_ON_ARC
     _draw_arrows(axes, (NORMAL_AT + lengths) * outwards, -lengths * outwards, BLUE)
@@ -240,7 +218,7 @@ def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float], _: fl
             (0.12, bottom - max(weight / 2, 0.17), f"W{end} = {_number(few, mass * scene.g)} N", GREEN),
         ):
             look: Any = {"color": colour, "ha": "left" if x > 0 else "right", "va": "center"}
-            axes.text(x * (1 + away), height, _subscript(words[:2]) + words[2:], **look)
+            axes.text(x * (1 + away), height, typeset(words), **look)
         if acceleration:
             half = -x * few.case.sign * ACCELERATION / 2 * 1j
             centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
@@ -257,11 +235,13 @@ def _draw_tensions(axes: "Axes", few: Answers, lengths: Mapping[str, float], phi
         arrow = length * (-1j if name == "T1" else 1j) * np.exp(-1j * angle)
         _draw_arrows(axes, [_rim(angle)], [arrow], INK)
         tip, tension = _rim(angle) + arrow, _number(few, few[f"tension_{name[1]}"])
-        labels.append((tip.real, tip.imag, f"{_subscript(name)} = {tension} N", INK))
+        labels.append((tip.real, tip.imag, typeset(f"{name} = {tension} N"), INK))
     axes.autoscale_view()
     spokes = np.outer(_rim(np.linspace(0, TURN, 37)), [0, 1])
-    axes.plot(spokes.real.T, spokes.imag.T, alpha=0)  # keeps words off the pulley
+    on_pulley = axes.plot(spokes.real.T, spokes.imag.T)
     write_beside(axes, labels)
+    for spoke in on_pulley:  # which kept words off it
+        spoke.remove()
 
 
 def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:
@@ -274,11 +254,13 @@ def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:
         axes.quiver(tails.real, tails.imag, along.real, along.imag, color=colour, **look)
 
 
-def _draw_curves(axes: "Axes", few: Answers, along: Along, stuck: float, wrap: float, scale: str) -> None:
+def _draw_curves(axes: "Axes", few: Answers, kind: arc.Kind, wrap: float, scale: str) -> None:
     """Draw normal force and friction along the arc, over grey where the string is stuck."""
+    doubles = few.to(None)
+    stuck = float(doubles.settle(lambda m: (m.phi - m.alpha) / m.phi)) if kind == "creep" else 0.0
     edge, start = (stuck, 0) if few.case.sign >= 0 else (1 - stuck, 1)
     shares = np.sort([*np.linspace(0, 1, CURVE_POINTS), *np.nextafter(edge, [0, edge, 1])])
-    tension, friction = along(shares)
+    tension, friction = _forces(doubles, kind, shares)
     axes.axhline(0, color=FAINT, lw=0.8)
     axes.plot(wrap * shares, tension, color=BLUE, label="normal force nR = T")
     axes.plot(wrap * shares, friction, color=RED, ls="--", label=f"friction fR = dT/dθ{scale}")
@@ -292,7 +274,7 @@ def _draw_curves(axes: "Axes", few: Answers, along: Along, stuck: float, wrap: f
     axes.set_xlabel("angle θ along the arc, from m₁'s end on the left (°)")
     axes.set_ylabel("tension T = nR and\nfriction fR (N per radian)")
     axes.legend(loc="lower right", bbox_to_anchor=(1, 1.1), ncols=2)
-    t1, t2 = (f"{_subscript(x)} = {_number(few, few[f'tension_{x[1]}'])} N" for x in ("T1", "T2"))
+    t1, t2 = (typeset(f"T{end} = {_number(few, few[f'tension_{end}'])} N") for end in (1, 2))
     labels = [(0.0, tension[0], t1, BLUE), (wrap, tension[-1], t2, BLUE)]
     if stuck:
         axes.axvspan(wrap * edge, wrap * start, color=FAINT, alpha=0.2, lw=0)

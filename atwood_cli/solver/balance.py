@@ -73,12 +73,12 @@ def contact(answers: Answers, points: int | str = 13) -> Contact:
     """
     kind = kind_of(answers.case)
     last = read_whole("points", points, 2, MAX_POINTS) - 1
-    rows = [_point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
+    rows = [point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
     balance = _balance(answers, kind)
     return Contact(kind, rows, balance, _notes(answers, kind, balance))
 
 
-def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
+def point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Number]:
     """The columns at the fraction q of the arc, counted from m1's end."""
     scene, sign = answers.case.scene, answers.case.sign
     from_light = q if sign >= 0 else 1 - q

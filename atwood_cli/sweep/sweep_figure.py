@@ -1,6 +1,5 @@
 """The curves of a sweep, and their picture."""
 
-from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from decimal import ROUND_FLOOR
 from fractions import Fraction
@@ -12,17 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..model.digits import SHOWN_DIGITS, is_infinite, tidy, to_digits
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, SceneError
-from ..output.figure import (
-    AXIS_WORDS,
-    COLOURS,
-    FAINT,
-    INK,
-    axis_words,
-    check_file,
-    page,
-    typeset,
-    write_beside,
-)
+from ..output.figure import COLOURS, FAINT, INK, axis_words, check_file, page, typeset, write_beside
 from ..output.text import wrapped
 from ..solver.answers import Answers
 from ..solver.messages import reasons_at, unmarked
@@ -54,24 +43,23 @@ TICK_CHARACTERS, TICK_POINTS, WIDE = 70, 12, 30
 class Curve(NamedTuple):
     """A quantity along a range, while all other inputs stay the same.
 
-    ``point`` is that of the other range, in words. ``heights`` belong to the values ``xs``. If a quantity is
-    not one number, ``least`` and ``most`` are the edges of a band. NaN stands where there is no number.
-    ``marks`` are the places of changes of regime, with words. ``locked`` is the value for a locked pulley.
+    ``point`` is that of the other range, in words. ``least`` and ``most`` belong to the values ``xs``: equal
+    unless the quantity is not one number, NaN if there is none. ``marks`` are where the regime changes, with
+    words. ``locked`` are the least and the most on a locked pulley.
     """
 
     quantity: str
     point: str
     xs: list[float]
-    heights: list[float]
     least: list[float]
     most: list[float]
     marks: list[tuple[float, float, str]]
-    locked: float
+    locked: list[float]
 
     @property
     def numbers(self) -> list[float]:
         """All numbers that are drawn, the one at the right end last."""
-        return [y for y in (self.locked, *self.least, *self.heights, *self.most) if not isnan(y)]
+        return [y for y in (*self.locked, *self.least, *self.most) if not isnan(y)]
 
 
 def drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
@@ -119,11 +107,11 @@ def panels_of(sweep: Sweep, names: Sequence[str]) -> tuple[list[list[Curve]], li
     """
     along = longest(sweep)
     scenes = [(_in_symbols(sweep, point), *_solve(along, scene)) for scene, point in sweep.along(along)]
-    every = [(name, one) for _, _, solved in scenes for one in solved.values() for name in names]
-    lacking = [(name, one) for name, one in every if isnan(_height(one, name, "max"))]
-    reasons = {(name, one.reasons[name]): 1 for name, one in lacking if one[name] is None}
-    absent, points = Counter(name for name, _ in lacking), len(every) // len(names)
-    drawn = [name for name in names if absent[name] < points]
+    answers = [one for _, _, solved in scenes for one in solved.values()]
+    lacking = {name: [one for one in answers if isnan(_height(one, name, "max"))] for name in names}
+    missing = [(name, one) for name in names for one in lacking[name] if one[name] is None]
+    reasons = {(name, one.reasons[name]): 1 for name, one in missing}
+    drawn = [name for name in names if len(lacking[name]) < len(answers)]
     if not drawn:
         why = unmarked("; ".join(dict.fromkeys(reason for _, reason in reasons)))
         raise ArithmeticError(f"{', '.join(names)} exists at no point, so there is nothing to draw: {why}")
@@ -138,9 +126,9 @@ def panels_of(sweep: Sweep, names: Sequence[str]) -> tuple[list[list[Curve]], li
 
 def _curve(along: Range, name: str, point: str, found: list[Change], solved: dict[float, Answers]) -> Curve:
     """Return the curve of a quantity."""
-    locked = _height(solved[inf], name) if inf in solved else nan
+    locked = {_height(solved[inf], name, edge) for edge in ("min", "max")} if inf in solved else set()
     xs = [x for x in solved if x < inf]
-    heights, least, most = ([_height(solved[x], name, edge) for x in xs] for edge in ("", "min", "max"))
+    least, most = ([_height(solved[x], name, edge) for x in xs] for edge in ("min", "max"))
     marks = []
     for change in found:
         if change.before[0] != change.after[0]:
@@ -150,12 +138,12 @@ def _curve(along: Range, name: str, point: str, found: list[Change], solved: dic
             at = along.in_units(decimal_point(tidy(place) if place == exact else place, along.suffix))
             height = next((y for y in beside if not isnan(y)), nan)
             marks.append((float(change.first), height, f"{BEGINS[change.after[0]]} from {at}"))
-    return Curve(name, point, xs, heights, least, most, marks, locked)
+    return Curve(name, point, xs, least, most, marks, sorted(y for y in locked if not isnan(y)))
 
 
-def _height(answers: Answers, name: str, edge: str = "") -> float:
+def _height(answers: Answers, name: str, edge: str) -> float:
     """Return a quantity, or an edge of its band; NaN if it does not exist or no double holds it."""
-    if edge and name == "friction_force" and answers[name] is None:
+    if name == "friction_force" and answers[name] is None:
         name = f"{name}_{edge}"
     value: Any = answers[name]
     return nan if value is None or is_infinite(value) else float(value)
@@ -174,7 +162,7 @@ def _in_symbols(sweep: Sweep, at: Mapping[str, Point]) -> str:
     """Return the point of the other range: μ = 0.2, or disk; empty if there is none."""
     for range_ in sweep.ranges:
         if point := at.get(range_.name):
-            return point.name or typeset(f"{AXIS_WORDS[range_.name][1]} = {range_.in_units(point)}")
+            return point.name or typeset(f"{axis_words(range_.name)[1]} = {range_.in_units(point)}")
     return ""
 
 
@@ -200,6 +188,9 @@ def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool)
                 _draw(axes, curve, place, along.is_list)
             _set_heights(axes, [y for curve in curves for y in curve.numbers])
         _draw_legend(figure, panels)
+        for axes, curves in zip(all_axes, panels, strict=True):
+            ends = [(y, colour) for curve, colour in zip(curves, COLOURS, strict=False) for y in curve.locked]
+            write_beside(axes, [(axes.get_xlim()[1], y, "locked", colour) for y, colour in ends])
         first = panels[0][: len(panels[0]) // len(quantities[0])]
         labels = [(*mark, COLOURS[place]) for place, curve in enumerate(first) for mark in curve.marks]
         written = write_beside(all_axes[0], labels)
@@ -207,10 +198,6 @@ def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool)
             for text in written:
                 text.remove()
             _draw_legend(figure, panels, ["\n".join(words for *_, words in curve.marks) for curve in first])
-        for axes, curves in zip(all_axes, panels, strict=True):
-            ends = [(curve.locked, colour) for curve, colour in zip(curves, COLOURS, strict=False)]
-            right = axes.get_xlim()[1]
-            write_beside(axes, [(right, y, "locked", colour) for y, colour in ends if not isnan(y)])
 
 
 def _draw_legend(figure: "Figure", panels: Sequence[Sequence[Curve]], marks: Sequence[str] = ()) -> None:
@@ -268,15 +255,16 @@ def _set_heights(axes: "Axes", numbers: Sequence[float]) -> None:
 def _draw(axes: "Axes", curve: Curve, place: int, is_list: bool) -> None:
     """Draw a curve, the band where it is not one number, and the changes; or the points of a list."""
     xs, colour, label = curve.xs, COLOURS[place], f"{place}"
+    heights = [low if low == high else nan for low, high in zip(curve.least, curve.most, strict=True)]
     if is_list:
-        axes.plot(xs, curve.heights, MARKERS[place], color=colour, ms=5, label=label)
+        axes.plot(xs, heights, MARKERS[place], color=colour, ms=5, label=label)
         axes.vlines(xs, curve.least, curve.most, color=colour, lw=3, alpha=0.5)
     else:
-        axes.plot(xs, curve.heights, color=colour, ls=LINE_STYLES[place], label=label)
-        band = [any(map(isnan, curve.heights[max(i - 1, 0) : i + 2])) for i in range(len(xs))]
+        axes.plot(xs, heights, color=colour, ls=LINE_STYLES[place], label=label)
+        band = [any(map(isnan, heights[max(i - 1, 0) : i + 2])) for i in range(len(xs))]
         look: Any = {"facecolor": (colour, 0.18), "edgecolor": colour, "lw": 0.8}
         axes.fill_between(xs, curve.least, curve.most, band, **look)
     for x, y, _ in curve.marks:
         axes.plot([x], [y], "o", color=INK, ms=4, zorder=3)
-    if not isnan(curve.locked):
-        axes.axhline(curve.locked, color=colour, ls=(0, (4, 3)), lw=1)
+    for y in curve.locked:
+        axes.axhline(y, color=colour, ls=(0, (4, 3)), lw=1)
