@@ -87,9 +87,9 @@ def in_seconds(seconds: float) -> str:
 
 def short(value: float | None, digits: int = 2) -> str:
     """Return a number to a few digits; a dash if there is none."""
-    if value is None or isinf(value):
-        return "-" if value is None else "inf"
-    return text(Decimal(f"{value:.{digits}g}"))
+    if value is None:
+        return "-"
+    return "inf" if isinf(value) else text(Decimal(f"{value:.{digits}g}"))
 
 
 def percent(share: float) -> str:
