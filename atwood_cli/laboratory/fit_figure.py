@@ -17,8 +17,7 @@ from .statistics import Column
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_NAMED = 40
-"""The most runs of which all are named; of more, only those that are odd or left out."""
+MOST_NAMED = 40  # runs; of more, only those that are odd or left out
 
 
 class View(NamedTuple):

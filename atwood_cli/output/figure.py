@@ -55,20 +55,21 @@ INK, FAINT = "#222222", "#999999"
 WIDTH, HEIGHT, PANEL_HEIGHT = 6.4, 4.0, 2.0
 """The size of a picture with one pair of axes, and the height of each further pair, in inches."""
 LINE_CHARACTERS = 88
-BESIDE = [(x, y) for r in (6, 11, 17, 24, 32) for x, y in ((r, 0), (-r, 0), (0, r), (0, -r))]
-BESIDE += [(x * r, y * r) for r in (4, 8, 13, 19) for x in (1, -1) for y in (-1, 1)]
-"""Where words may stand beside a point, in points of 1/72 inch."""
+BESIDE = [(x, y, by) for by in (6, 11, 17, 24, 32) for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1))]
+BESIDE += [(x, y, by) for by in (4, 8, 13, 19) for x in (1, -1) for y in (-1, 1)]
+"""Where words may stand: right or left of a point, above or below it, and by how many points of 1/72 inch."""
+ALIGNED = {-1: ("right", "top"), 0: ("center", "center"), 1: ("left", "bottom")}
 NAMES_IN_WORDS = re.compile(r"\b(mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
-SIDES_IN_WORDS = re.compile(r"\b([mTW])([12])\b")
+SIDES_IN_WORDS = re.compile(r"\b[mTW][12]\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 EXPONENT, MINUS = re.compile(r"(?<=\d)e\+?(-?\d+)"), re.compile(r"(?<![\w.)])-(?=\d)")
-SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+SUPERSCRIPTS, SUBSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"), str.maketrans("12", "₁₂")
 PATH_IN_SVG, FINE_DECIMALS = re.compile(rb"^.*[MLCQ] [-\d. ]+$", re.MULTILINE), re.compile(rb"(\.\d\d)\d+")
 STYLE: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 9,
     "figure.titlesize": 9.5,
-    "axes.titlesize": 9,
+    "axes.titlesize": 8.5,
     "axes.spines.top": False,
     "axes.spines.right": False,
     "axes.formatter.limits": (-3, 5),  # the powers of ten between which numbers are written without one
@@ -160,7 +161,7 @@ def page(
 def typeset(words: str) -> str:
     """Return words as print has them: symbols for names, minus signs, powers of ten, no endless digits."""
     words = NAMES_IN_WORDS.sub(lambda name: AXIS_WORDS[name[0]][1], LONG_DIGITS.sub(r"\1…", words))
-    words = SIDES_IN_WORDS.sub(lambda name: name[1] + "_₁₂"[int(name[2])], words)
+    words = SIDES_IN_WORDS.sub(lambda name: name[0].translate(SUBSCRIPTS), words)
     words = EXPONENT.sub(lambda power: f" × 10{power[1].translate(SUPERSCRIPTS)}", words)
     return MINUS.sub("−", words)
 
@@ -181,14 +182,13 @@ def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) 
     """
     figure: Any = axes.figure
     figure.draw_without_rendering()
-    paths, boxes = [*_drawn(axes)], [text.get_window_extent() for text in axes.texts]
+    paths, boxes, written = [*_drawn(axes)], [one.get_window_extent() for one in axes.texts], list["Text"]()
     edge, anchors = axes.bbox.padded(3), [axes.transData.transform(label[:2]) for label in labels]
-    written: list[Text] = []
     for (x, y, words, colour), anchor in zip(labels, anchors, strict=True):
-        for right, up in BESIDE:
-            look: Any = {"ha": ("center", "left", "right")[(right > 0) - (right < 0)], "color": colour}
-            look |= {"va": ("center", "bottom", "top")[(up > 0) - (up < 0)], "annotation_clip": False}
-            text = axes.annotate(words, (x, y), (right, up), textcoords="offset points", **look)
+        for right, up, by in BESIDE:
+            look: Any = {"ha": ALIGNED[right][0], "va": ALIGNED[up][1], "color": colour}
+            look |= {"textcoords": "offset points", "annotation_clip": False}
+            text = axes.annotate(words, (x, y), (right * by, up * by), **look)
             text.set_in_layout(False)
             box = text.get_window_extent().padded(2)
             off = [hypot(*(at.clip(box.min, box.max) - at)) for at in (anchor, *anchors)]

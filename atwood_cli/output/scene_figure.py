@@ -23,10 +23,8 @@ from .text import describe
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LEAST_FORCE, GREATEST_FORCE = 1e-100, 1e100
-"""The forces that are drawn, in N."""
-LEAST_WRAP, GREATEST_WRAP = 1e-100, 1e9
-"""The wraps that are drawn, in degrees: doubles cannot tell where a greater one ends."""
+FORCES, WRAPS = (1e-100, 1e100), (1e-100, 1e9)
+"""What is drawn, in N and in degrees: doubles do not determine where a greater wrap ends."""
 TURN = 2 * pi
 RIM_POINTS, CURVE_POINTS = 181, 200
 ANGLE_TICKS = (30, 45, 90, 180, 360)
@@ -55,18 +53,17 @@ def save(
         if mass:
             forces |= {f"T{end}": float(doubles[f"tension_{end}"]), f"W{end}": to_double(mass * case.scene.g)}
     least = min(force for name, force in forces.items() if kind or name[0] == "W")
-    if not (LEAST_FORCE <= least and max(forces.values()) <= GREATEST_FORCE):
-        raise SceneError("figure", path, f"draws forces between {LEAST_FORCE} and {GREATEST_FORCE} N only")
+    if not FORCES[0] <= least <= max(forces.values()) <= FORCES[1]:
+        raise SceneError("figure", path, f"draws forces between {FORCES[0]} and {FORCES[1]} N only")
     wrap = float(doubles.settle(lambda m: case.scene.wrap.degrees(m.ar)))
-    if not LEAST_WRAP <= wrap <= GREATEST_WRAP:
-        rule = f"draws wraps between {LEAST_WRAP} and {GREATEST_WRAP:.0e} degrees only"
-        raise SceneError("figure", path, rule)
+    if not WRAPS[0] <= wrap <= WRAPS[1]:
+        raise SceneError("figure", path, f"draws wraps between {WRAPS[0]} and {WRAPS[1]:.0e} degrees only")
     if not case.ends_hang_down:
         forces = {name: force for name, force in forces.items() if name[0] == "T"}
     below = [*(_on_friction(few, kind) if kind and not bare else []), *_on_drawing(few, kind, wrap, forces)]
     above = [describe(case.scene, case.motion, answers.uncertain), unmarked(verdict(few))]
-    with page(path, force, above, " ".join(below), bare, panels=1 + curves) as figure:
-        heights = [1.6, 1] if curves else [1]
+    heights = [1.6, 1] if curves else [1]
+    with page(path, force, above, " ".join(below), bare, panels=len(heights)) as figure:
         machine, *more = figure.subplots(len(heights), height_ratios=heights, squeeze=False)[:, 0]
         machine.axis("off")
         machine.set_aspect("equal", adjustable="datalim")
@@ -78,16 +75,18 @@ def save(
                 _draw_curves(more[0], few, kind, wrap, scale)
         longest = max(forces.values()) or inf
         lengths = {x: max(LONGEST * F / longest, SHORTEST) if F else 0.0 for x, F in forces.items()}
-        (_draw_masses if case.ends_hang_down else _draw_tensions)(machine, few, lengths, radians(wrap))
+        if case.ends_hang_down:
+            _draw_masses(machine, few, lengths)
+        else:
+            _draw_tensions(machine, few, lengths, radians(wrap))
 
 
 def _on_friction(few: Answers, kind: arc.Kind) -> list[str]:
     """Return sentences on the net friction on the pulley, and on the part of the arc over which it acts."""
-    force = few["friction_force"]
-    if few.case.frictionless or (kind != "creep" and force is None):
-        return [about(few.case, kind)]
     if kind != "creep":
-        return [about(few.case, kind), f"The net friction force is {text(force)} N."]
+        force = few["friction_force"]
+        net = [f"The net friction force is {text(force)} N."] if force else []
+        return [about(few.case, kind), *net]
     end = "last" if few.case.sign > 0 else "first"
     angle = text(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
     drawn = f"Drawn: friction at its limit on the {end} {angle}°"
@@ -136,11 +135,13 @@ def _draw_pulley(axes: "Axes", few: Answers, phi: float) -> None:
         elif few.case.ends_hang_down:
             axes.plot([end.real] * 2, [0, -STRING], color=FAINT, lw=2.4, solid_capstyle="butt")
     axes.text(0, 0.26, _pulley(few), ha="center", va="center", size=8)
-    clockwise = np.exp(1j * np.radians(np.linspace(125, 55, 40)))
+    above = np.exp(1j * np.radians(np.linspace(125, 55, 40)))
+    if few.case.sign < 0:  # anticlockwise
+        above = above[::-1]
     if few["rim_acceleration"]:
-        _draw_arc(axes, ROTATION_AT * clockwise[:: few.case.sign], PURPLE, "white")
+        _draw_arc(axes, ROTATION_AT * above, PURPLE, "white")
     if friction := _axle_friction(few):
-        _draw_arc(axes, AXLE_AT * clockwise.conj()[:: few.case.sign], ORANGE, ORANGE)
+        _draw_arc(axes, AXLE_AT * above.conj(), ORANGE, ORANGE)
         axes.text(0, -0.42, f"f_axle = {friction} N", ha="center", va="center", size=8, color=ORANGE)
 
 
@@ -184,24 +185,28 @@ def _draw_contact(axes: "Axes", doubles: Answers, kind: arc.Kind, phi: float, le
     drawn = min(1, TURN / phi)
     count = int(drawn * phi / BETWEEN_ARROWS + 1e-9) + 1
     shares = np.linspace(0, drawn, count) if count > 1 else np.array([drawn / 2])
-    shares = shares[: -1 if phi >= TURN else None]  # of a turn, both ends are one place
-    shares = 1 - shares if doubles.case.sign >= 0 else shares
+    if phi >= TURN:  # both ends of a turn are one place
+        shares = shares[:-1]
+    if doubles.case.sign >= 0:
+        shares = 1 - shares
     outwards, (normal, friction) = _rim(phi * shares), _forces(doubles, kind, shares)
-    larger = normal.max() / (abs(friction).max() or inf)
     lengths = normal / normal.max() * LONGEST_ON_ARC
     _draw_arrows(axes, (NORMAL_AT + lengths) * outwards, -lengths * outwards, BLUE)
-    around = friction / normal.max() * larger * LONGEST_ON_ARC * 1j * np.exp(-1j * phi * shares)
-    _draw_arrows(axes, FRICTION_AT * outwards, around, RED)
     axes.plot([], [], color=BLUE, marker=">", ms=4, label="normal force nR")
-    scale = f"{larger:.3g} times larger" if larger > 1 else f"{1 / (larger or 1):.3g} times smaller"
-    if larger:
-        axes.plot([], [], color=RED, marker=">", ms=4, label=f"friction fR, drawn {typeset(scale)}")
+    scale = ""
+    if greatest := abs(friction).max():
+        around = friction / greatest * LONGEST_ON_ARC * 1j * np.exp(-1j * phi * shares)
+        _draw_arrows(axes, FRICTION_AT * outwards, around, RED)
+        larger = normal.max() / greatest
+        times = f"{larger:.3g} times larger" if larger > 1 else f"{1 / larger:.3g} times smaller"
+        axes.plot([], [], color=RED, marker=">", ms=4, label=typeset(f"friction fR, drawn {times}"))
+        scale = typeset(f" (arrows {times})")
     if legend:
         axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), ncols=2)
-    return f" (arrows {typeset(scale)})" if larger else ""
+    return scale
 
 
-def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float], _: float) -> None:
+def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> None:
     """Draw the masses that hang on the string, their forces, and their acceleration."""
     scene, acceleration = few.case.scene, few["acceleration"]
     for x, end, mass in ((-1, "1", scene.m1), (1, "2", scene.m2)):

@@ -34,8 +34,8 @@ CURVE_STEPS, DRAWN_DIGITS = 210, 12
 BEGINS = {"slip": "slips", "no-slip": "holds", "verge": "on the verge"}
 LINE_STYLES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
 MARKERS = "osD^vP"
-TITLE_CHARACTERS = (42, 24)
-"""The most characters of a line beside an axis, of one panel and of several."""
+TITLE_CHARACTERS, TITLE_OF_SEVERAL = 42, 24
+"""The most characters of a line beside the axis of the one panel, and of several."""
 TICK_CHARACTERS, TICK_POINTS, WIDE = 70, 12, 30
 """The room below an axis, the height of a line, and the ratio from which a list's axis is logarithmic."""
 
@@ -160,10 +160,9 @@ def axis_title(names: Iterable[str], unit: str = "") -> str:
 
 def _in_symbols(sweep: Sweep, at: Mapping[str, Point]) -> str:
     """Return the point of the other range: μ = 0.2, or disk; empty if there is none."""
-    for range_ in sweep.ranges:
-        if point := at.get(range_.name):
-            return point.name or typeset(f"{axis_words(range_.name)[1]} = {range_.in_units(point)}")
-    return ""
+    found = ((range_, at[range_.name]) for range_ in sweep.ranges if range_.name in at)
+    words = (one.name or f"{axis_words(range_.name)[1]} = {range_.in_units(one)}" for range_, one in found)
+    return typeset("".join(words))
 
 
 def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool) -> None:
@@ -183,7 +182,7 @@ def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool)
         _set_places(all_axes[-1], along)
         for axes, curves, drawn in zip(all_axes, panels, quantities, strict=True):
             words = axis_title(drawn, QUANTITIES[curves[0].quantity].unit)
-            axes.set_ylabel("\n".join(wrapped(words, TITLE_CHARACTERS[len(panels) > 1])))
+            axes.set_ylabel("\n".join(wrapped(words, TITLE_OF_SEVERAL if panels[1:] else TITLE_CHARACTERS)))
             for place, curve in enumerate(curves):
                 _draw(axes, curve, place, along.is_list)
             _set_heights(axes, [y for curve in curves for y in curve.numbers])
@@ -248,8 +247,10 @@ def _set_heights(axes: "Axes", numbers: Sequence[float]) -> None:
     low, high = min(numbers), max(numbers)
     if low < 0 < high:
         axes.axhline(0, color=FAINT, lw=0.8, zorder=0)
-    elif 2 * min(abs(low), abs(high)) <= max(abs(low), abs(high)):
-        axes.set_ylim(*((0, None) if high > 0 else (None, 0)))
+    elif 0 <= 2 * low <= high:
+        axes.set_ylim(bottom=0)
+    elif low <= 2 * high <= 0:
+        axes.set_ylim(top=0)
 
 
 def _draw(axes: "Axes", curve: Curve, place: int, is_list: bool) -> None:

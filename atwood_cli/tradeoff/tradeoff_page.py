@@ -21,8 +21,6 @@ SECONDS = {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
 LEAST, GREATEST = 1e-3, 1e16
 """The least and the greatest error that is drawn, in ulp; others are drawn as these."""
 TICKS = {LEAST: "≤ 0.001", 1.0: "1", 1e4: "10⁴", 1e8: "10⁸", 1e12: "10¹²", GREATEST: "no digit\nright"}
-LOOKS = zip("oD^v", (RED, BLUE, GREEN, PURPLE), strict=True)
-MARKS = {setting.name: look for setting, look in zip(SETTINGS, LOOKS, strict=True)}
 
 
 def record(measured: Sequence[Measured], scenes: int, seed: int) -> dict[str, object]:
@@ -62,17 +60,15 @@ def save(measured: Sequence[Measured], path: str, force: bool, bare: bool = Fals
     with page(path, force, [title], bare=bare) as figure:
         panels = figure.subplots(1, len(families), sharex=True, sharey=True, squeeze=False)[0]
         for axes, (family, settings) in zip(panels, families.items(), strict=True):
-            axes.set(xscale="log", yscale="log")
-            axes.set_title(family, fontsize=8.5)
+            axes.set(title=family, xscale="log", yscale="log")
             axes.set_yticks(list(TICKS), TICKS.values())
             axes.set_yticks([], minor=True)
             axes.xaxis.set_major_locator(LogLocator(base=100))
             axes.xaxis.set_minor_locator(NullLocator())
             axes.grid(alpha=0.3)
-            for point in settings:
+            for point, marker, colour in zip(settings, "oD^v", (RED, BLUE, GREEN, PURPLE), strict=True):
                 worst = GREATEST if point.worst_ulp is None else min(max(point.worst_ulp, LEAST), GREATEST)
-                mark, colour = MARKS[point.setting]
-                axes.plot(point.seconds, worst, mark, color=colour, label=point.setting)
+                axes.plot(point.seconds, worst, marker, color=colour, label=point.setting)
         panels[0].set_ylabel("worst error ε (ulp)")
         panels[len(panels) // 2].set_xlabel("time per scene t (s)")
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
