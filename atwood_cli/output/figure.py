@@ -66,7 +66,8 @@ EXPONENT, MINUS = re.compile(r"(?<=\d)e\+?(-?\d+)"), re.compile(r"(?<![\w.)])-(?
 SUPERSCRIPTS, SUBSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"), str.maketrans("12", "₁₂")
 PATH_IN_SVG, FINE_DECIMALS = re.compile(rb"^.*[MLCQ] [-\d. ]+$", re.MULTILINE), re.compile(rb"(\.\d\d)\d+")
 STYLE: Any = {
-    "font.family": "DejaVu Sans",
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans", "Verdana"],  # which is as wide, for SVG without the first
     "font.size": 9,
     "figure.titlesize": 9.5,
     "axes.titlesize": 8.5,
@@ -78,7 +79,6 @@ STYLE: Any = {
     "mathtext.fontset": "dejavusans",
     "legend.frameon": False,
     "legend.borderpad": 0,
-    "lines.linewidth": 1.6,
     "savefig.dpi": 300,
     "svg.fonttype": "none",  # text stays text
     "svg.hashsalt": "atwood",  # else the SVG's ids are random

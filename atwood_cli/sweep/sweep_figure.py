@@ -29,7 +29,7 @@ DRAWN_UNNAMED = ["acceleration"]
 LARGEST_DRAWN = 1e100
 """The largest number that is drawn, in any unit."""
 UNDRAWABLE = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only, not such {{}}"
-CURVE_STEPS, DRAWN_DIGITS = 210, 12
+CURVE_STEPS, DRAWN_DIGITS = 200, 12
 """The steps of a curve, and the digits of a place at which the regime changes, as it is drawn."""
 BEGINS = {"slip": "slips", "no-slip": "holds", "verge": "on the verge"}
 LINE_STYLES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
