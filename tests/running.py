@@ -14,6 +14,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, NamedTuple
 from unittest.mock import patch
+from xml.etree.ElementTree import fromstring
 
 import pytest
 
@@ -172,8 +173,9 @@ def plain(seen: str) -> str:
 
 
 def labels(svg: str) -> list[str]:
-    """The texts of a figure, which matplotlib writes beside their outlines."""
-    return re.findall(r"<!-- (.*?) -->", svg, re.DOTALL)
+    """The texts of a picture, in its title and description, too."""
+    names = ("title", "desc", "text")
+    return ["".join(one.itertext()) for one in fromstring(svg).iter() if one.tag.split("}")[-1] in names]
 
 
 @contextmanager
@@ -185,10 +187,10 @@ def pages_seen() -> Iterator[list[Any]]:
         yield pages
 
 
-def drawn(line: str) -> Any:
+def drawn(line: str, stdin: bytes = b"") -> Any:
     """The picture that a command line has, as matplotlib has it."""
     with TemporaryDirectory() as folder, chdir(folder), pages_seen() as pages:
-        ran = called([*line.split(), "--figure", "a.svg"])
+        ran = called([*line.split(), "--figure", "a.svg"], stdin)
     assert ran.status == 0, ran.err
     (page,) = pages
     return page

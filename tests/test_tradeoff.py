@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
 from math import inf, isfinite, nan, nextafter, ulp
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -23,7 +22,7 @@ from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Measured, Setting, d
 from atwood_cli.tradeoff.tradeoff_page import LEGEND, in_seconds, percent, short
 
 from . import oracle
-from .running import Atwood, called, misplaced, pages_seen
+from .running import Atwood, called
 
 NAMES = [setting.name for setting in SETTINGS]
 
@@ -244,22 +243,3 @@ def test_json(atwood: Atwood) -> None:
     assert (list(lost), lost["worst_ulp"]) == ([*Measured._fields], None)  # infinite
     for one, other in zip(printed["settings"][len(NAMES) :], again["settings"], strict=True):
         assert {**one, "seconds": 0} == {**other, "seconds": 0}
-
-
-def test_the_figure_has_a_pane_for_each_family(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    pytest.importorskip("matplotlib")
-    from atwood_cli.tradeoff.tradeoff_figure import GREATEST, LEAST, save
-
-    off = dict(zip(NAMES, (None, 39.2, 0.499, 4.2e-34), strict=True))
-    measured = [Measured(family, name, 1e-7, off[name], 0.0) for family in FAMILIES for name in NAMES]
-    for bare in (False, True):
-        with pages_seen() as pages:
-            save(measured, str(tmp_path / "a.svg"), force=True, bare=bare)
-        (page,) = pages
-        assert misplaced(page) == []
-        assert bool(page.get_suptitle()) != bare
-        assert [pane.get_title() for pane in page.axes] == list(FAMILIES)
-        (legend,) = page.legends
-        assert [text.get_text() for text in legend.get_texts()] == NAMES
-        for pane in page.axes:
-            assert [line.get_ydata()[0] for line in pane.lines] == [GREATEST, 39.2, 0.499, LEAST]

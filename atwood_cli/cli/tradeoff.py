@@ -74,7 +74,7 @@ def tradeoff(
     parts = (measure(name, draw_scenes(name, count, start)) for name in families)
     measured = list(chain.from_iterable(watched(parts, len(families))))
     if figure is not None:
-        from ..tradeoff.tradeoff_figure import save
+        from ..tradeoff.tradeoff_page import save
 
         save(measured, figure, target.force, bare)
     forms = Forms(

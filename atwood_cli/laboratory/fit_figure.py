@@ -1,24 +1,51 @@
-"""Runs and their line as a picture."""
+"""Runs and the line that fits them, as a picture, with residuals below."""
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from ..model import physics
-from ..output.figure import BLUE, INK, RED, check_file, page, say_above
-from .estimate import Data, accelerations, as_data, uncertain_accelerations
+from ..output.figure import BLUE, FAINT, INK, RED, check_file, page, typeset, write_beside
+from .estimate import Data, accelerations, as_data, expected, uncertain_accelerations
 from .fitting import Fitted
-from .report import conditions, verdict
-from .results import QUANTITIES, USUAL, with_u
+from .report import RARE, conditions, verdict
+from .results import QUANTITIES, rounded, with_u
 from .statistics import Column
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-NAMED = 40
-"""Runs: of more, only those that are odd or left out are named."""
-AXES = "tension of the heavier side less that\nof the lighter, $T_h - T_l$  (N)"
+MOST_NAMED = 40  # runs; of more, only those that are odd or left out
+
+
+class View(NamedTuple):
+    """Runs as points of a straight line, of which fitted quantities are the slope and the intercept."""
+
+    x: Column
+    y: Column
+    slope: float
+    intercept: float
+    labels: tuple[str, str]
+    meaning: Mapping[str, str]
+
+
+def view(data: Data, a: Column, values: Mapping[str, float], names: Sequence[str]) -> View:
+    """Return runs with accelerations in the axes that suit the fitted quantities: T_h - T_l = c a + f."""
+    sum_, difference = data.l + data.h, data.h - data.l
+    g, c, f = (values[name] for name in ("gravity", "rim_mass", "axle"))
+    if "gravity" not in names:
+        y: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(g))
+        labels = "acceleration a (m/s²)", "difference of tensions Tₕ − Tₗ (N)"
+        return View(a, y, c, f, labels, {"rim_mass": "slope c", "axle": "intercept f_axle"})
+    if {*names} == {"rim_mass", "gravity"}:
+        labels = "(mₕ − mₗ)/a (kg s²/m)", "mₕ + mₗ + f_axle/a (kg)"
+        meaning = {"gravity": "slope g", "rim_mass": "intercept −c, with c", "axle": "with f_axle"}
+        return View(difference / a, sum_ + f / a, g, -c, labels, meaning)
+    added, plus, intercept = (0.0, "", "intercept −f_axle, ") if "axle" in names else (f, " + f_axle", "")
+    labels = "difference of masses mₕ − mₗ (kg)", f"(mₕ + mₗ + c) a{plus} (N)"
+    meaning = {"gravity": "slope g", "rim_mass": "with c", "axle": f"{intercept}with f_axle"}
+    return View(difference, (sum_ + c) * a + added, g, added - f, labels, meaning)
 
 
 def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
@@ -28,63 +55,63 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     """
     check_file(path, force)
     best = fit.whole.best
-    c, f = (best.values[x] for x in ("rim_mass", "axle"))
-    a, y = points(best.data, best.values)
-    u_a = uncertain_accelerations(best)
-    u_y, u_rest = (best.data.l + best.data.h) * u_a, (best.data.l + best.data.h + c) * u_a
-    with page(path, force) as figure:
-        line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1])
-        ends: Any = np.array([min(0.0, min(a - u_a)), max(a + u_a)]) * 1.06
-        line.plot([0, ends[1]], [f, f + c * float(ends[1])], color=BLUE, lw=1.5)
-        bars: Any = {"fmt": "o", "ms": 5, "capsize": 3, "lw": 1.2, "color": INK}
-        line.errorbar(a, y, yerr=u_y, xerr=u_a, **bars)
-        of_line: Any = physics.difference_of_a_pulley(np.float64(c), a, np.float64(f))
-        residual = y - of_line
-        rest.axhline(0, color=BLUE, lw=1.5)
-        rest.errorbar(a, residual, yerr=u_rest, **bars)
-        for axes, values in ((line, y), (rest, residual)):
-            axes.plot(a[fit.odd], values[fit.odd], "o", ms=11, mfc="none", color=RED)
-            axes.spines[["top", "right"]].set_visible(False)
-        low, high = min(*(y - u_y), f, 0.0), max(*(y + u_y), f, 0.0)
-        line.set_xlim(*ends)
-        line.set_ylim(low - 0.05 * (high - low) * (low < 0), high + 0.25 * (high - low))
-        _name_points(line, fit, a, y)
-        line.text(0.03, 0.95, coefficients(fit), transform=line.transAxes, va="top", color=BLUE)
-        line.set_ylabel(AXES)
-        rest.set_ylabel("residual (N)")
-        rest.set_xlabel("acceleration $a$ (m/s²); numbers are those of rows")
-        if not bare:
-            say_above(figure, conditions(fit), verdict(fit))
+    a, u_a = accelerations(best.data, best.data.measured, best.values["delay"]), uncertain_accelerations(best)
+    seen, shifted = (view(best.data, there, best.values, best.names) for there in (a, a + u_a))
+    u_x, u_y = abs(shifted.x - seen.x), abs(shifted.y - seen.y)
+    above = [conditions(fit), verdict(fit)]
+    if (p := fit.whole.p_value) is not None and p < RARE:
+        above.append(f"Scatter is larger than the uncertainties, p = {rounded(p)}.")
+    bars_are = "widened to the scatter between runs" if fit.whole.between_runs else "not widened"
+    if fit.whole.chi2 is None:
+        bars_are = "by the scatter of the runs"
+    below = f"Error bars are standard uncertainties, {bars_are}. Numbers at points are those of rows."
+    with page(path, force, above, below, bare, panels=2) as figure:
+        line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
+        end = 1.06 * max(seen.x + u_x)
+        line.plot([0, end], [seen.intercept, seen.intercept + seen.slope * end], color=BLUE)
+        bars: Any = {"fmt": "o", "ms": 4, "capsize": 2, "lw": 1, "color": INK}
+        line.errorbar(seen.x, seen.y, yerr=u_y, xerr=u_x if u_x.any() else None, **bars)
+        residual = (best.data.measured - expected(best.data, best.values)) / best.sigma
+        rest.axhline(0, color=BLUE)
+        for level in (-2, 2):
+            rest.axhline(level, color=FAINT, lw=0.8, ls="--")
+        rest.plot(seen.x, residual, "o", ms=4, color=INK)
+        for axes, heights in ((line, seen.y), (rest, residual)):
+            axes.plot(seen.x[fit.odd], heights[fit.odd], "o", ms=9, mfc="none", color=RED)
+        line.set_xlim(1.06 * min(0.0, min(seen.x - u_x)), end)
+        low, high = min(*(seen.y - u_y), seen.intercept, 0.0), max(*(seen.y + u_y), seen.intercept, 0.0)
+        line.set_ylim(low - 0.05 * (high - low) if low < 0 else 0, high + 0.3 * (high - low))
+        rest.set_ylim(-max(3, 1.15 * -min(residual)), max(3, 1.15 * max(residual)))
+        line.text(0.03, 0.97, coefficients(fit, seen.meaning), transform=line.transAxes, va="top", color=BLUE)
+        line.set_ylabel(seen.labels[1])
+        rest.set_ylabel("residual/u")
+        rest.set_xlabel(seen.labels[0])
+        _name_points(line, fit, seen)
 
 
-def _name_points(line: "Axes", fit: Fitted, a: Column, y: Column) -> None:
+def _name_points(line: "Axes", fit: Fitted, seen: View) -> None:
     """Write the numbers of rows at the points, and mark runs that are left out, at the edge if beyond it."""
-    names = [(fit.used[i], a[i], y[i]) for i in (fit.odd if len(a) > NAMED else range(len(a)))]
+    named = fit.odd if len(fit.used) > MOST_NAMED else range(len(fit.used))
+    labels = [(seen.x[i], seen.y[i], ",".join(map(str, fit.used[i].rows)), INK) for i in named]
     if out := fit.left_out:
-        x_out, y_out = points(as_data(fit.runs, out), fit.whole.best.values)
-        x_out, y_out = np.clip(x_out, *line.get_xlim()), np.clip(y_out, *line.get_ylim())
-        line.plot(x_out, y_out, "o", ms=5, mfc="none", color=INK, clip_on=False)
-        names += zip(out, x_out, y_out, strict=True)
-    for run, x, height in names:
-        words = ",".join(map(str, run.rows)) + ", left out" * run.left_out
-        right = x > 0.9 * line.get_xlim()[1]
-        side, by = ("right", -7) if right else ("left", 7)
-        line.annotate(words, (x, height), (by, -12), textcoords="offset points", size=9, ha=side)
+        data, best = as_data(fit.runs, out), fit.whole.best
+        a = accelerations(data, data.measured, best.values["delay"])
+        there = view(data, a, best.values, best.names)
+        x, y = np.clip(there.x, *line.get_xlim()), np.clip(there.y, *line.get_ylim())
+        line.plot(x, y, "o", ms=4, mfc="none", color=INK, clip_on=False)
+        rows = [",".join(map(str, run.rows)) + ", left out" for run in out]
+        labels += zip(x, y, rows, [INK] * len(out), strict=True)
+    write_beside(line, labels)
 
 
-def points(data: Data, values: Mapping[str, float]) -> tuple[Column, Column]:
-    """Runs as points (a, T_h - T_l) of a straight line."""
-    a = accelerations(data, data.measured, values["delay"])
-    y: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(values["gravity"]))
-    return a, y
-
-
-def coefficients(fit: Fitted) -> str:
-    """The slope and the intercept of the line, if they are a result, with symbols as in LaTeX."""
-    lines, labels = [], ("slope $c$", "intercept $f$")
-    for name, label in () if fit.whole.reason else zip(USUAL, labels, strict=True):
-        result = fit.whole.results.get(name)
-        why = "" if result else ", given" if name in fit.given.values else ", not fitted"
-        value = with_u(fit.whole.best.values[name], result and result.uncertainty)
-        lines.append(f"{label} = {value} {QUANTITIES[name].unit}{why}")
-    return "\n".join(lines)
+def coefficients(fit: Fitted, meaning: Mapping[str, str]) -> str:
+    """Return the slope and the intercept of the line, if they are a result."""
+    lines = []
+    for name, words in {} if fit.whole.reason else meaning.items():
+        value, unit = fit.whole.best.values[name], QUANTITIES[name].unit
+        if result := fit.whole.results.get(name):
+            lines.append(f"{words} = {with_u(value, result.uncertainty)} {unit}")
+        else:
+            why = "given" if name in fit.given.values else "not fitted"
+            lines.append(f"{words} = {rounded(value, 6)} {unit}, {why}")
+    return typeset("\n".join(lines))

@@ -1,4 +1,4 @@
-"""Pictures in files, for a slide: their page, their style and their sentences.
+"""Pictures in files, as wide as the text of a printed page: their size, their style and their sentences.
 
 matplotlib draws them (extra ``figure``), without pyplot or a display. The same scene gives the same SVG, to
 the byte.
@@ -8,13 +8,15 @@ import os
 import re
 import sys
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import chdir, contextmanager
 from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
+from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from xml.sax.saxutils import escape
 
 from ..model.quantities import QUANTITIES
 from ..model.scene import SceneError
@@ -24,6 +26,8 @@ from .text import wrapped
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.path import Path as MatplotlibPath
+    from matplotlib.text import Text
 
 AXIS_WORDS = {
     "m1": ("mass", "m₁"),
@@ -36,7 +40,7 @@ AXIS_WORDS = {
     "I": ("moment of inertia", "I"),
     "R": ("radius", "R"),
     "wrap": ("angle of wrap", "φ"),
-    "axle": ("friction of the axle", "f"),
+    "axle": ("axle friction", "f_axle"),
     "mu_verge": ("verge coefficient", "μ*"),
     "friction_force_min": ("least friction force", "F min"),
     "friction_force_max": ("greatest friction force", "F max"),
@@ -44,37 +48,60 @@ AXIS_WORDS = {
     "friction_force_y": ("vertical friction force", "Fy"),
 }
 """The names and symbols on axes: of parameters, and of quantities whose own name says less."""
-PICTURE_SUFFIXES = (".svg", ".png", ".pdf")
 BLUE, RED, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b05d91", "#b07800", "#56b4e9"
 """Colours that differ on paper and without seeing red or green (M. Okabe, K. Ito, Color universal design)."""
+COLOURS = (BLUE, RED, GREEN, PURPLE, ORANGE, SKY)
 INK, FAINT = "#222222", "#999999"
-PAGE_INCHES, PAGE_CHARACTERS = 11, 130
-"""The width of a page, and the most characters of a line on it."""
-NAME_POINTS = 10
-"""The size of names, in points."""
-NAMES_IN_WORDS = re.compile(r"\b(m1|m2|mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
+WIDTH, HEIGHT, PANEL_HEIGHT = 6.4, 4.0, 2.0
+"""The size of a picture with one pair of axes, and the height of each further pair, in inches."""
+LINE_CHARACTERS = 88
+BESIDE = [(x, y, by) for by in (6, 11, 17, 24, 32) for x, y in ((1, 0), (-1, 0), (0, 1), (0, -1))]
+BESIDE += [(x, y, by) for by in (4, 8, 13, 19) for x in (1, -1) for y in (-1, 1)]
+"""Where words may stand: right or left of a point, above or below it, and by how many points of 1/72 inch."""
+ALIGNED = {-1: ("right", "top"), 0: ("center", "center"), 1: ("left", "bottom")}
+NAMES_IN_WORDS = re.compile(r"\b(mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
+SIDES_IN_WORDS = re.compile(r"\b[mTW][12]\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
+EXPONENT, MINUS = re.compile(r"(?<=\d)e\+?(-?\d+)"), re.compile(r"(?<![\w.)])-(?=\d)")
+SUPERSCRIPTS, SUBSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"), str.maketrans("12", "₁₂")
+PATH_IN_SVG, FINE_DECIMALS = re.compile(rb"^.*[MLCQ] [-\d. ]+$", re.MULTILINE), re.compile(rb"(\.\d\d)\d+")
 STYLE: Any = {
-    "svg.hashsalt": "atwood",  # else the SVG's ids are random
-    "font.family": "DejaVu Sans",
+    "font.family": "sans-serif",
+    "font.sans-serif": ["DejaVu Sans", "Verdana"],  # which is as wide, for SVG without the first
+    "font.size": 9,
+    "figure.titlesize": 9.5,
+    "axes.titlesize": 8.5,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.formatter.limits": (-3, 5),  # the powers of ten between which numbers are written without one
+    "axes.formatter.min_exponent": 4,  # the least power of ten with which those on axes of logarithms are
+    "axes.formatter.use_mathtext": True,
     "mathtext.fontset": "dejavusans",
-    "font.size": 11,
+    "legend.frameon": False,
+    "legend.borderpad": 0,
+    "savefig.dpi": 300,
+    "svg.fonttype": "none",  # text stays text
+    "svg.hashsalt": "atwood",  # else the SVG's ids are random
+    "pdf.fonttype": 42,  # fonts that can be edited and searched
 }
+FORMATS: Any = {"svg": {"Date": None}, "png": {}, "pdf": {"CreationDate": None}}
+"""The formats of pictures, and what of their metadata would differ each time."""
 
 
 def axis_words(name: str) -> tuple[str, str]:
-    """The name and the symbol of a parameter or a quantity."""
+    """Return the name and the symbol of a parameter or a quantity."""
     if name in AXIS_WORDS:
         return AXIS_WORDS[name]
     return name.rstrip("_12").replace("_", " "), QUANTITIES[name].symbol
 
 
 def check_file(path: str, force: bool) -> None:
-    """Raise in time what a picture would run into: SceneError where its suffix is no format, ImportError, and
-    OSError where the file exists.
+    """Check that a picture can be written, before anything is computed.
+
+    Raises SceneError if the suffix is no format, ImportError, and OSError if the file exists.
     """
-    if Path(path).suffix.lower() not in PICTURE_SUFFIXES:
-        raise SceneError("figure", path, f"must end in one of {', '.join(PICTURE_SUFFIXES)}")
+    if Path(path).suffix[1:].lower() not in FORMATS:
+        raise SceneError("figure", path, f"must end in one of {', '.join(f'.{kind}' for kind in FORMATS)}")
     if is_stdout(path):
         raise SceneError("figure", path, "is where standard output goes; name another")
     _load()
@@ -96,48 +123,96 @@ def _load() -> None:
 
 
 @contextmanager
-def page(path: str, force: bool, inches: float = PAGE_INCHES) -> Iterator["Figure"]:
-    """A figure to draw on, so many inches wide, which is then saved."""
+def page(
+    path: str, force: bool, above: Sequence[str], below: str = "", bare: bool = False, panels: int = 1
+) -> Iterator["Figure"]:
+    """Yield a figure with room for so many panels, below each other, and save it. Raises OSError.
+
+    The sentences ``above`` are written unless it is ``bare``. In the file, the first of them is the title,
+    and all others, with those ``below``, are the description.
+    """
     _load()
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
     kind = Path(path).suffix[1:].lower()
-    date_key = {"svg": "Date", "pdf": "CreationDate"}.get(kind)
+    title, *others = map(typeset, [*above, below])
+    description = " ".join(others).strip()
+    metadata = FORMATS[kind] | {"Title": title, "Subject" if kind == "pdf" else "Description": description}
     os.environ.pop("SOURCE_DATE_EPOCH", None)  # a figure has no date, whatever this is set to
     image = BytesIO()  # matplotlib would not report a full disk as we do
     with written_beside(Path(path), force) as beside:
         with warnings.catch_warnings(action="ignore"), rc_context({**rcParamsDefault, **STYLE}):
-            figure = Figure(figsize=(inches, 6), layout="constrained")
+            figure = Figure((WIDTH, HEIGHT + (panels - 1) * PANEL_HEIGHT), layout="constrained")
             FigureCanvasAgg(figure)  # knows the width of words
+            figure.suptitle("" if bare else "\n".join(map(_in_lines, above)))
+            figure.supxlabel(_in_lines(below), fontsize=9)
             yield figure
-            figure.savefig(image, format=kind, dpi=200, metadata={date_key: None} if date_key else None)
-        beside.write_bytes(image.getbuffer())
+            figure.savefig(image, format=kind, metadata=metadata)
+        content = image.getvalue()
+        if kind == "svg":  # with 0.01 of a point, no printer's dot; and with what matplotlib leaves out
+            content = PATH_IN_SVG.sub(lambda path: FINE_DECIMALS.sub(rb"\1", path[0]), content)
+            described = f"</title>\n <desc>{escape(description)}</desc>"
+            content = content.replace(b"</title>", described.encode(), 1)
+        beside.write_bytes(content)
 
 
-def say_above(figure: "Figure", *sentences: str) -> None:
-    """Write sentences above a picture."""
-    figure.suptitle("\n".join(_lines(figure, words) for words in sentences), fontsize=10)
+def typeset(words: str) -> str:
+    """Return words as print has them: symbols for names, minus signs, powers of ten, no endless digits."""
+    words = NAMES_IN_WORDS.sub(lambda name: AXIS_WORDS[name[0]][1], LONG_DIGITS.sub(r"\1…", words))
+    words = SIDES_IN_WORDS.sub(lambda name: name[0].translate(SUBSCRIPTS), words)
+    words = EXPONENT.sub(lambda power: f" × 10{power[1].translate(SUPERSCRIPTS)}", words)
+    return MINUS.sub("−", words)
 
 
-def say_below(figure: "Figure", words: str) -> None:
-    """Write words below a picture."""
-    figure.supxlabel(_lines(figure, words), fontsize=10)
+def _in_lines(words: str) -> str:
+    """Return words in lines that fit, and that are about equally long."""
+    words = typeset(words)
+    count = len(wrapped(words, LINE_CHARACTERS))
+    lines = (wrapped(words, width) for width in range(1, LINE_CHARACTERS + 1))
+    return "\n".join(next(split for split in lines if len(split) <= count))
 
 
-def legend_beside(axes: "Axes") -> None:
-    """Name the lines on the right of their axes."""
-    look: Any = {"frameon": False, "handlelength": 4, "fontsize": NAME_POINTS}
-    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5), **look)
+def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) -> list["Text"]:
+    """Write words at points (x, y, words, colour) where they cover no other words and no lines.
+
+    No words are nearer to another point than to their own. Returns those for which there was room. Nothing
+    may change the size of the axes afterwards.
+    """
+    figure: Any = axes.figure
+    figure.draw_without_rendering()
+    paths, boxes, written = [*_drawn(axes)], [one.get_window_extent() for one in axes.texts], list["Text"]()
+    edge, anchors = axes.bbox.padded(3), [axes.transData.transform(label[:2]) for label in labels]
+    for (x, y, words, colour), anchor in zip(labels, anchors, strict=True):
+        for right, up, by in BESIDE:
+            look: Any = {"ha": ALIGNED[right][0], "va": ALIGNED[up][1], "color": colour}
+            look |= {"textcoords": "offset points", "annotation_clip": False}
+            text = axes.annotate(words, (x, y), (right * by, up * by), **look)
+            text.set_in_layout(False)
+            box = text.get_window_extent().padded(2)
+            off = [hypot(*(at.clip(box.min, box.max) - at)) for at in (anchor, *anchors)]
+            is_near, is_inside = off[0] < min(off) + 1, edge.contains(*box.min) and edge.contains(*box.max)
+            covers = box.count_overlaps(boxes) or any(path.intersects_bbox(box, False) for path in paths)
+            if is_near and is_inside and not covers:
+                boxes.append(box)
+                written.append(text)
+                break
+            text.remove()
+    return written
 
 
-def cut(words: str) -> str:
-    """The words, with the first twelve digits of numbers that have twice as many."""
-    return LONG_DIGITS.sub(r"\1…", words)
+def _drawn(axes: "Axes") -> Iterator["MatplotlibPath"]:
+    """Yield all lines, arrows and edges, in pixels."""
+    from matplotlib.path import Path as MatplotlibPath
 
-
-def _lines(figure: "Figure", words: str) -> str:
-    """Words in lines that fit, with symbols for the names of parameters."""
-    in_symbols = NAMES_IN_WORDS.sub(lambda name: AXIS_WORDS[name[0]][1], cut(words))
-    return "\n".join(wrapped(in_symbols, int(PAGE_CHARACTERS * figure.get_figwidth() / PAGE_INCHES)))
+    for line in axes.lines:
+        if line.get_linestyle() != "None":
+            yield line.get_path().transformed(line.get_transform())
+    for drawn in axes.collections:
+        arrows: Any = drawn
+        if hasattr(arrows, "XY"):
+            for tail, *way in zip(arrows.XY, arrows.U, arrows.V, strict=True):
+                yield MatplotlibPath([tail, tail + way]).transformed(axes.transData)
+        else:
+            yield from (path.transformed(drawn.get_transform()) for path in drawn.get_paths())

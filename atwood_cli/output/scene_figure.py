@@ -1,67 +1,40 @@
-"""The machine in a picture, alone or beside curves of the forces along the arc of contact.
+"""The machine in a picture, alone or above curves of the forces along the arc of contact.
 
 Points and directions are complex numbers, lengths in radii of the pulley, whose axle is at 0. The arc begins
 on the left, where the string of m1 hangs down, and runs clockwise over the top. Strings leave along tangents.
 """
 
-from collections.abc import Sequence
-from decimal import Decimal
-from math import cos, floor, inf, log10, pi, radians, sin
-from typing import TYPE_CHECKING, Any, NamedTuple
+from collections.abc import Mapping
+from fractions import Fraction
+from math import inf, pi, radians, sqrt
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ..model import arc
-from ..model.digits import text, tidy, to_double
-from ..model.machine import Machine
+from ..model.digits import SHOWN_DIGITS, text, tidy, to_double
 from ..model.scene import SceneError
 from ..solver.answers import Answers
-from ..solver.balance import about
+from ..solver.balance import about, point
 from ..solver.messages import unmarked, verdict
-from .figure import (
-    BLUE,
-    FAINT,
-    GREEN,
-    INK,
-    NAME_POINTS,
-    ORANGE,
-    PAGE_INCHES,
-    PURPLE,
-    RED,
-    check_file,
-    page,
-    say_above,
-    say_below,
-)
+from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_file, page, typeset, write_beside
 from .text import describe
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-DRAWN_FORCES = (1e-100, 1e100)
-"""The least and the greatest force that is drawn, in N."""
-DRAWN_WRAPS = (1e-100, 1e9)
-"""The least and the greatest wrap that is drawn, in degrees: doubles cannot tell where a greater one ends."""
-SAID_DIGITS, CURVE_POINTS = 4, 200
-MACHINE_INCHES = 8
-"""The width of a page without curves."""
-
+FORCES, WRAPS = (1e-100, 1e100), (1e-100, 1e9)
+"""What is drawn, in N and in degrees: doubles do not determine where a greater wrap ends."""
 TURN = 2 * pi
-TURN_PIECES = 360
-"""The number of straight pieces that a turn is drawn in."""
+RIM_POINTS, CURVE_POINTS = 181, 200
+ANGLE_TICKS = (30, 45, 90, 180, 360)
 # Lengths and places are in radii of the pulley.
-BOX, STRING = 0.3, 1.75  # the width of a mass, and the length of its string
-WORDS_SIZE = 1.15 + 0.4j  # the width and the height of the words beside a mass
-SHORT_STRING = 0.4  # m2's string where it ends right of m1's
-ENDS_LEFT, CLEAR = radians(250), 1.6  # from this angle of wrap on it ends left of m1's, so far from the axle
-MOST_TENSION, MOST_WEIGHT, LEAST_ARROW = 0.35, 0.5, 0.05  # lengths of arrows
-FRICTION_ARROW = (0.12, 0.3)  # the longest of friction; beyond, all of friction is drawn larger or smaller
-BETWEEN_ARROWS = radians(15)  # along the arc
-FRICTION_AT, NORMAL_AT = 0.93, 0.86  # distances from the axle at which arrows start
-AXLE_ARROW, ACCELERATION_ARROW = (0.23, -0.08), 0.36  # the end of the first, and the length of the second
-PULLEY_WORDS = -0.36j  # the place of the pulley's mass
-NOT_TO_SCALE = "Short and long arrows are not to scale."
-GUIDED = "m₂'s guide is not drawn."
+LONGEST, SHORTEST = 0.84, 0.07  # of forces: in proportion within 1:12
+STRING, LARGER_SIDE, LEAST_SIDE = 0.95, 0.5, 1 / 3  # of a mass; of its block; the smaller's, beside that
+BETWEEN_ARROWS = radians(20)  # along the arc
+LONGEST_ON_ARC, LEAST_ON_ARC = 0.9 * BETWEEN_ARROWS, 0.01
+NORMAL_AT, FRICTION_AT = 1.05, 0.9  # distances from the axle at which arrows end and start
+ROTATION_AT, AXLE_AT, ACCELERATION = 0.56, 0.24, 0.4  # two distances from the axle, and a length
 
 
 def save(
@@ -69,300 +42,247 @@ def save(
 ) -> None:
     """Draw the machine to a file, whose suffix is its format, and with ``curves`` the forces along the arc.
 
-    ``kind`` is how the tension runs along the arc; there is none where an end of the string is fixed to the
-    pulley. ``bare`` leaves out all sentences except on how it is drawn. Raises SceneError, OSError.
+    ``kind`` is how the tension runs along the arc, None if an end of the string is fixed to the pulley.
+    ``bare`` leaves out all sentences except on how it is drawn. Raises SceneError, OSError.
     """
     check_file(path, force)
-    scene, few = answers.case.scene, answers.to(min(answers.digits or SAID_DIGITS, SAID_DIGITS))
+    case, few = answers.case, answers.to(min(answers.digits or SHOWN_DIGITS, SHOWN_DIGITS))
     doubles = answers.to(None)
-    weights = [to_double(mass * scene.g) for mass in (scene.m1, scene.m2)]
-    tensions = [float(doubles[name] or 0) for name in ("tension_1", "tension_2")]
-    least, greatest = DRAWN_FORCES
-    if (min(tensions) if kind else max(weights)) < least or max(*tensions, *weights) > greatest:
-        raise SceneError("figure", path, f"draws forces between {least} and {greatest} N only")
-    wrap = float(doubles.settle(lambda m: scene.wrap.degrees(m.ar)))
-    least, greatest = DRAWN_WRAPS
-    if not least <= wrap <= greatest:
-        raise SceneError("figure", path, f"draws wraps between {least} and {greatest:.0e} degrees only")
-    forces = Forces.of(doubles, kind) if kind else None
-    widths = [1.3, 1] if curves else [1]
-    with page(path, force, PAGE_INCHES if curves else MACHINE_INCHES) as figure:
-        if not bare:
-            inputs = describe(scene, answers.case.motion, answers.uncertain)
-            say_above(figure, inputs, unmarked(verdict(few)))
-        machine, *beside = figure.subplots(1, len(widths), width_ratios=widths, squeeze=False)[0]
-        on_drawing = _draw_machine(machine, few, forces, radians(wrap), tensions, weights)
-        if curves and forces:
-            _draw_curves(beside[0], forces, wrap)
-        sentences = _sentences(few, kind) if kind and not bare else []
-        if wrap > 360:
-            turns = text(tidy(Decimal(few.settle(lambda m: scene.wrap.degrees(m.ar) / 360))))
-            of_them = f"Of {turns} turns, the heavier mass's is drawn."
-            sentences.append(of_them if kind else f"There are {turns} turns.")
-        say_below(figure, " ".join([*sentences, *on_drawing]))
+    forces = dict[str, float]()
+    for end, mass in (("1", case.scene.m1), ("2", case.scene.m2)):
+        if mass:
+            forces |= {f"T{end}": float(doubles[f"tension_{end}"]), f"W{end}": to_double(mass * case.scene.g)}
+    least = min(force for name, force in forces.items() if kind or name[0] == "W")
+    if not FORCES[0] <= least <= max(forces.values()) <= FORCES[1]:
+        raise SceneError("figure", path, f"draws forces between {FORCES[0]} and {FORCES[1]} N only")
+    wrap = float(doubles.settle(lambda m: case.scene.wrap.degrees(m.ar)))
+    if not WRAPS[0] <= wrap <= WRAPS[1]:
+        raise SceneError("figure", path, f"draws wraps between {WRAPS[0]} and {WRAPS[1]:.0e} degrees only")
+    if not case.ends_hang_down:
+        forces = {name: force for name, force in forces.items() if name[0] == "T"}
+    below = [*(_on_friction(few, kind) if kind and not bare else []), *_on_drawing(few, kind, wrap, forces)]
+    above = [describe(case.scene, case.motion, answers.uncertain), unmarked(verdict(few))]
+    heights = [1.6, 1] if curves else [1]
+    with page(path, force, above, " ".join(below), bare, panels=len(heights)) as figure:
+        machine, *more = figure.subplots(len(heights), height_ratios=heights, squeeze=False)[:, 0]
+        machine.axis("off")
+        machine.set_aspect("equal", adjustable="datalim")
+        machine.margins(0.01)
+        _draw_pulley(machine, few, radians(wrap))
+        if kind:
+            scale = _draw_contact(machine, doubles, kind, radians(wrap), legend=not curves)
+            if curves:
+                _draw_curves(more[0], few, kind, wrap, scale)
+        longest = max(forces.values()) or inf
+        lengths = {x: max(LONGEST * F / longest, SHORTEST) if F else 0.0 for x, F in forces.items()}
+        if case.ends_hang_down:
+            _draw_masses(machine, few, lengths)
+        else:
+            _draw_tensions(machine, few, lengths, radians(wrap))
 
 
-def number(value: Any) -> str:
-    """A number as a picture says it: without an exponent where it is readable without."""
-    return f"{value:f}" if isinstance(value, Decimal) and 0 <= value.adjusted() < 16 else text(value)
-
-
-def _sentences(few: Answers, kind: arc.Kind) -> list[str]:
-    """Sentences on the friction on the pulley, and on the part of the arc over which it acts."""
-    if few.case.frictionless:
-        return [about(few.case, kind)]
-
-    def net(m: Machine[Any]) -> Any:
-        x, y = arc.friction(m.arcs(kind))
-        return m.ar.sqrt(x * x + y * y)
-
-    force = f"The net friction force is {number(few.settle(net))} N"
+def _on_friction(few: Answers, kind: arc.Kind) -> list[str]:
+    """Return sentences on the net friction on the pulley, and on the part of the arc over which it acts."""
     if kind != "creep":
-        return [about(few.case, kind), f"{force}."]
+        force = few["friction_force"]
+        net = [f"The net friction force is {text(force)} N."] if force else []
+        return [about(few.case, kind), *net]
     end = "last" if few.case.sign > 0 else "first"
-    angle = number(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
-    return [f"{force}, over the {end} {angle}° of the arc; over the rest the string is stuck."]
+    angle = text(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
+    drawn = f"Drawn: friction at its limit on the {end} {angle}°"
+    greatest, least = few["friction_force_max"], few["friction_force_min"]
+    if greatest is None:
+        return [f"{drawn}, as on a slightly elastic string."]
+    return [f"{drawn}, which makes the net force greatest ({text(greatest)} N; least {text(least)} N)."]
 
 
-class Forces(NamedTuple):
-    """The forces along the arc: from the lighter mass on the tension is constant, and then exponential."""
-
-    stuck: float
-    """The share of the arc over which the tension is constant."""
-    light: float
-    heavy: float
-    """The tensions at both ends, in N."""
-    mu: float
-    """Friction over normal force where the tension changes, positive where it grows towards m2."""
-    sign: int
-    """1 where m1 is the lighter mass, and -1 where it is the heavier mass."""
-
-    @classmethod
-    def of(cls, answers: Answers, kind: arc.Kind) -> "Forces":
-        mu = float(answers.settle(lambda m: m.arc_mu(kind)))
-        stuck = float(answers.settle(lambda m: (m.phi - m.alpha) / m.phi)) if kind == "creep" else 0.0
-        light = float(answers.settle(lambda m: m.light_tension))
-        heavy = float(answers.settle(lambda m: m.heavy_tension))
-        sign = 1 if answers.case.sign >= 0 else -1
-        return cls(stuck, light, heavy, sign * mu, sign)
-
-    def along(self, shares: Any) -> tuple[Any, Any]:
-        """Tension and friction per radian (N) at shares of the arc; the tension is the normal force, too."""
-        from_light = shares if self.sign > 0 else 1 - shares
-        limiting = np.clip((from_light - self.stuck) / (1 - self.stuck), 0, 1)
-        tension = self.light * (self.heavy / self.light) ** limiting
-        return tension, np.where(from_light < self.stuck, 0, self.mu * tension)
+def _on_drawing(few: Answers, kind: arc.Kind | None, wrap: float, forces: Mapping[str, float]) -> list[str]:
+    """Return sentences on what is drawn otherwise than it is."""
+    said, least = [], max(forces.values()) * SHORTEST / LONGEST
+    if wrap > 360:
+        turns = _number(few, few.settle(lambda m: few.case.scene.wrap.degrees(m.ar) / 360))
+        one = ", and the forces on the one at the heavier mass are drawn" if kind else ""
+        said.append(f"There are {turns} turns{one}.")
+    if not few.case.ends_hang_down:
+        said.append("The masses hang over guides that are not drawn." if kind else "The mass is not drawn.")
+    if longer := [name for name, force in forces.items() if 0 < force < least]:
+        said.append(f"Drawn longer than to scale: {', '.join(longer)}.")
+    return said
 
 
-class End(NamedTuple):
-    """An end of the string: the top of its mass, the direction of the string, and the side of the words."""
-
-    top: complex
-    down: complex
-    aside: complex
-
-
-def _ends(end: float) -> tuple[End, End]:
-    """Both ends, where the arc ends at an angle within a turn."""
-    ends_left, leaving = end >= ENDS_LEFT, 1j * np.exp(-1j * end)
-    first = End(-1 - STRING * 1j, -1j, 1.0 if ends_left else -1.0)
-    aside = -1j if ends_left and end < 1.5 * pi else 1j
-    return first, End(_rim(end) + _length(end) * leaving, leaving, aside * leaving)
-
-
-def _draw_machine(
-    axes: "Axes",
-    few: Answers,
-    forces: Forces | None,
-    phi: float,
-    tensions: Sequence[float],
-    weights: Sequence[float],
-) -> list[str]:
-    """Draw pulley, string and masses, and the forces on them. Returns sentences on the drawing."""
-    axes.axis("off")
-    turn = phi % TURN or TURN  # where the arc ends, however many turns there are
-    ends = _ends(turn)
-    _draw_string(
-        axes, phi, turn, [end.top if weight else None for end, weight in zip(ends, weights, strict=True)]
-    )
-    # The longest tension gives the scale, or the longest weight where this makes it no less than half.
-    scale = MOST_TENSION / (max(tensions) or inf)
-    fitting = MOST_WEIGHT / max(weights)
-    if scale / 2 <= fitting < scale or not scale:
-        scale = fitting
-    legend, to_scale = _draw_contact(axes, forces, phi, scale) if forces else ([], True)
-    if friction := _axle_friction(few):
-        (x, y), sign = AXLE_ARROW, few.case.sign
-        look: Any = {"color": ORANGE, "arrowstyle": "-|>", "connectionstyle": f"arc3,rad={0.7 * sign}"}
-        axes.annotate("", (sign * x, y), (-sign * x, y), arrowprops=look)
-        legend.append((f"axle friction, {friction} N at the rim", ORANGE))
-    axes.text(PULLEY_WORDS.real, PULLEY_WORDS.imag, _pulley(few), ha="center", va="center", size=10)
-    for place, (end, tension, weight) in enumerate(zip(ends, tensions, weights, strict=True)):
-        if weight:
-            to_scale &= _draw_mass(axes, few, place, end, scale * tension, scale * weight)
-    axes.margins(0.02)
-    axes.autoscale_view()
-    axes.set_aspect("equal")
-    _draw_legend(axes, legend)
-    guided = bool(weights[1]) and abs(turn - pi) > 1e-9
-    return [*[GUIDED] * guided, *[NOT_TO_SCALE] * (not to_scale)]
-
-
-def _draw_string(axes: "Axes", phi: float, turn: float, tops: Sequence[complex | None]) -> None:
-    """Draw the pulley, and the string from one mass to the other; an end without a mass is fixed there."""
-    rim = _rim(np.linspace(0, TURN, TURN_PIECES + 1))
-    axes.fill(rim.real, rim.imag, facecolor="#eeeeee", edgecolor=FAINT, lw=1)
-    axes.plot([0], [0], "o", color=FAINT, ms=4)
-    around = _rim(np.linspace(0, turn + TURN * (phi > TURN), 2 * TURN_PIECES))
-    start, end = ([] if top is None else [top] for top in tops)
-    string = np.array([*start, *around, *end])
-    axes.plot(string.real, string.imag, color=INK, lw=2.2, solid_capstyle="butt", solid_joinstyle="round")
-    for top, place in zip(tops, around[[0, -1]], strict=True):
-        if top is None:
-            axes.plot([place.real], [place.imag], "o", color=INK, ms=8)
-
-
-def _draw_legend(axes: "Axes", entries: Sequence[tuple[str, str]]) -> None:
-    """Write below the picture what arrows are, by their colours."""
-    from matplotlib.lines import Line2D
-
-    lines = [Line2D([], [], color=colour, marker=">", label=words) for words, colour in entries]
-    if lines:
-        look: Any = {"ncols": 2, "frameon": False, "fontsize": NAME_POINTS}
-        axes.legend(handles=lines, loc="upper center", bbox_to_anchor=(0.5, 0), **look)
+def _forces(doubles: Answers, kind: arc.Kind, shares: Any) -> tuple[Any, Any]:
+    """Return tension and friction per radian (N) at shares of the arc; nR is the tension, too."""
+    points = [point(doubles, kind, Fraction(share)) for share in shares]
+    tension, friction = ([float(one[name]) for one in points] for name in ("tension", "friction_per_radian"))
+    return np.array(tension), np.array(friction)
 
 
 def _rim(angle: Any) -> Any:
-    """The place on the rim at an angle along the arc."""
+    """Return the place on the rim at an angle along the arc."""
     return -np.exp(-1j * angle)
 
 
-def _length(end: float) -> float:
-    """The length of m2's string from the end of the arc, with which m2 hangs clear of m1."""
-    if pi < end < ENDS_LEFT:
-        return SHORT_STRING
-    return STRING if end <= pi else min(STRING, (CLEAR - cos(end)) / -sin(end))
+def _draw_pulley(axes: "Axes", few: Answers, phi: float) -> None:
+    """Draw the pulley with its mass, how it turns, its axle's friction, and the string around it."""
+    scene, around = few.case.scene, _rim(np.linspace(0, TURN, RIM_POINTS))
+    axes.fill(around.real, around.imag, facecolor="#f0f0f0", edgecolor=FAINT, lw=1)
+    axes.plot(0, 0, "o", color=FAINT, ms=3)
+    string = around if phi > TURN else _rim(np.linspace(0, phi, RIM_POINTS))
+    axes.plot(string.real, string.imag, color=FAINT, lw=2.4, solid_capstyle="butt")
+    for mass, end in ((scene.m1, -1 + 0j), (scene.m2, _rim(phi))):
+        if not mass:
+            axes.plot(end.real, end.imag, "o", color=INK, ms=6)
+        elif few.case.ends_hang_down:
+            axes.plot([end.real] * 2, [0, -STRING], color=FAINT, lw=2.4, solid_capstyle="butt")
+    axes.text(0, 0.26, _pulley(few), ha="center", va="center", size=8)
+    above = np.exp(1j * np.radians(np.linspace(125, 55, 40)))
+    if few.case.sign < 0:  # anticlockwise
+        above = above[::-1]
+    if few["rim_acceleration"]:
+        _draw_arc(axes, ROTATION_AT * above, PURPLE, "white")
+    if friction := _axle_friction(few):
+        _draw_arc(axes, AXLE_AT * above.conj(), ORANGE, ORANGE)
+        axes.text(0, -0.42, f"f_axle = {friction} N", ha="center", va="center", size=8, color=ORANGE)
+
+
+def _draw_arc(axes: "Axes", path: Any, colour: str, head: str) -> None:
+    """Draw an arrow along points. One of motion is dashed and has an open head, as it is no force."""
+    axes.plot(path.real, path.imag, color=colour, ls=(0, (3, 1.5)) if head == "white" else "-", lw=1.3)
+    turned = np.angle(path[-1] - path[-2], deg=True) - 90
+    axes.plot(path[-1].real, path[-1].imag, marker=(3, 0, turned), ms=7, color=colour, mfc=head)
 
 
 def _pulley(few: Answers) -> str:
-    """The pulley's inertia, as far as it is known, in words; empty where the scene leaves it open."""
+    """Return the pulley's inertia, as far as it is known, in words; empty if the scene leaves it open."""
     case, scene = few.case, few.case.scene
     if case.locked:
-        return "M = inf"
+        return "locked"
     if scene.I is not None and scene.M is None:
-        return f"I = {text(tidy(few.round(scene.I)))} kg m²"
+        return f"I = {_number(few, scene.I)} kg m²"
     mass = few["critical_pulley_mass"] if case.regime == "verge" else case.pulley_mass
-    return "" if mass is None else f"M = {text(tidy(few.round(mass)))} kg"
+    return "" if mass is None else f"M = {_number(few, mass)} kg"
 
 
 def _axle_friction(few: Answers) -> str:
-    """The axle's friction as a force at the rim (N), as much of it as acts; empty where none does."""
+    """Return the axle's friction as a force at the rim (N), as much of it as acts; empty if none does."""
     case = few.case
     if not case.rubs or case.locked or not case.sign:
         return ""
     held = case.rim_stands if case.regime == "slip" else case.axle_holds
-    return text(tidy(Decimal(few.settle(lambda m: m.difference if held else m.f))))
+    return _number(few, few.settle(lambda m: m.difference if held else m.f))
 
 
-def _draw_contact(
-    axes: "Axes", forces: Forces, phi: float, scale: float
-) -> tuple[list[tuple[str, str]], bool]:
+def _number(few: Answers, value: Any) -> str:
+    """Return a number with as many digits as others have."""
+    return typeset(text(tidy(few.round(value))))
+
+
+def _draw_contact(axes: "Axes", doubles: Answers, kind: arc.Kind, phi: float, legend: bool) -> str:
     """Draw the arrows of normal force and friction over the turn at the heavier mass.
 
-    Returns the entries of the legend, by colour, and whether all arrows are to scale.
+    Returns the scale of those of friction, in words.
     """
-    drawn = min(phi, TURN) / phi
+    drawn = min(1, TURN / phi)
     count = int(drawn * phi / BETWEEN_ARROWS + 1e-9) + 1
     shares = np.linspace(0, drawn, count) if count > 1 else np.array([drawn / 2])
-    shares = shares[: -1 if phi >= TURN else None]  # of a turn, both ends are one place
-    if forces.sign > 0:
+    if phi >= TURN:  # both ends of a turn are one place
+        shares = shares[:-1]
+    if doubles.case.sign >= 0:
         shares = 1 - shares
-    outwards = _rim(phi * shares)
-    normal, friction = (scale * force for force in forces.along(shares))
-    factor = _factor(abs(friction).max())
-    along = factor * friction * 1j * np.exp(-1j * phi * shares)
-    to_scale = _draw_arrows(axes, NORMAL_AT * outwards, -normal * outwards, BLUE)
-    to_scale &= _draw_arrows(axes, FRICTION_AT * outwards, along, RED)
-    times = number(tidy(Decimal(f"{max(factor, 1 / factor):.1g}")))
-    enlarged = f", drawn {times} times {'larger' if factor > 1 else 'smaller'}" * (factor != 1)
-    of_friction = [(f"friction fR{enlarged}", RED)] * bool(np.any(friction))
-    return [("normal force nR", BLUE), *of_friction], to_scale
+    outwards, (normal, friction) = _rim(phi * shares), _forces(doubles, kind, shares)
+    lengths = normal / normal.max() * LONGEST_ON_ARC
+    _draw_arrows(axes, (NORMAL_AT + lengths) * outwards, -lengths * outwards, BLUE)
+    axes.plot([], [], color=BLUE, marker=">", ms=4, label="normal force nR")
+    scale = ""
+    if greatest := abs(friction).max():
+        around = friction / greatest * LONGEST_ON_ARC * 1j * np.exp(-1j * phi * shares)
+        _draw_arrows(axes, FRICTION_AT * outwards, around, RED)
+        larger = normal.max() / greatest
+        times = f"{larger:.3g} times larger" if larger > 1 else f"{1 / larger:.3g} times smaller"
+        axes.plot([], [], color=RED, marker=">", ms=4, label=typeset(f"friction fR, drawn {times}"))
+        scale = typeset(f" (arrows {times})")
+    if legend:
+        axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), ncols=2)
+    return scale
 
 
-def _factor(longest: float) -> float:
-    """The factor by which arrows of friction are drawn larger than others: 1, 2 or 5 times a power of ten."""
-    least, most = FRICTION_ARROW
-    if least <= longest <= most or not longest:
-        return 1.0
-    power = 10.0 ** floor(log10(most / longest))
-    return max((n * power for n in (2, 5) if n * power * longest <= most), default=power)
+def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> None:
+    """Draw the masses that hang on the string, their forces, and their acceleration."""
+    scene, acceleration = few.case.scene, few["acceleration"]
+    for x, end, mass in ((-1, "1", scene.m1), (1, "2", scene.m2)):
+        if not mass:
+            continue
+        side = LARGER_SIDE * max(LEAST_SIDE, sqrt(mass / max(scene.m1, scene.m2)))
+        top, bottom, pull, weight = -STRING, -STRING - side, lengths[f"T{end}"], lengths[f"W{end}"]
+        axes.fill_between([x - side / 2, x + side / 2], top, bottom, fc="#e3ddcf", ec=INK, lw=1, zorder=3)
+        _draw_arrows(axes, [x + top * 1j], [pull * 1j], INK)
+        _draw_arrows(axes, [x + bottom * 1j], [-weight * 1j], GREEN)
+        for away, height, words, colour in (
+            (0.12, top + max(pull / 2, 0.17), f"T{end} = {_number(few, few[f'tension_{end}'])} N", INK),
+            (side / 2 + 0.08, (top + bottom) / 2, f"m{end} = {_number(few, mass)} kg", INK),
+            (0.12, bottom - max(weight / 2, 0.17), f"W{end} = {_number(few, mass * scene.g)} N", GREEN),
+        ):
+            look: Any = {"color": colour, "ha": "left" if x > 0 else "right", "va": "center"}
+            axes.text(x * (1 + away), height, typeset(words), **look)
+        if acceleration:
+            half = -x * few.case.sign * ACCELERATION / 2 * 1j
+            centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
+            _draw_arc(axes, np.array([centre - half, centre + half]), PURPLE, "white")
+    words = f"a = {_number(few, abs(acceleration))} m/s²" if acceleration else "a = 0"
+    axes.text(0, -STRING - LARGER_SIDE - 0.17, words, color=PURPLE, ha="center", va="center")
 
 
-def _draw_mass(axes: "Axes", few: Answers, place: int, end: End, tension: float, weight: float) -> bool:
-    """Draw a mass at its end of the string, with its acceleration, and its forces as arrows of given lengths.
-
-    Returns whether both forces are to scale.
-    """
-    scene, sub, (top, down, aside) = few.case.scene, "₁₂"[place], end
-    centre = top + down * BOX / 2
-    box = centre + BOX / 2 * down * np.array([1 + 1j, 1 - 1j, -1 - 1j, -1 + 1j])
-    axes.fill(box.real, box.imag, fc="#e3ddcf", ec=INK, lw=1)
-    axes.text(centre.real, centre.imag, f"m{sub}", ha="center", va="center")
-    to_scale = _draw_arrows(axes, [top + 0.11 * aside], [-tension * down], INK)
-    to_scale &= _draw_arrows(axes, [top + down * BOX], [weight * down], GREEN)
-    acceleration = few["acceleration"]
-    if acceleration:
-        along = (-1, 1)[place] * few.case.sign * ACCELERATION_ARROW * down
-        _draw_arrows(axes, [centre + 0.27 * aside - along / 2], [along], PURPLE)
-    lines = (
-        (f"T{sub} = {number(few[f'tension_{place + 1}'])} N", INK),
-        (f"W{sub} = {number(few.round((scene.m1, scene.m2)[place] * scene.g))} N", GREEN),
-        (f"a = {number(abs(acceleration))} m/s²" if acceleration else "a = 0", PURPLE),
-    )
-    _write_beside(axes, centre + 0.46 * aside, aside, lines)
-    return to_scale
+def _draw_tensions(axes: "Axes", few: Answers, lengths: Mapping[str, float], phi: float) -> None:
+    """Draw the tensions as arrows along the string where it leaves the pulley, with their values."""
+    labels = []
+    for name, length in lengths.items():
+        angle = 0 if name == "T1" else phi
+        arrow = length * (-1j if name == "T1" else 1j) * np.exp(-1j * angle)
+        _draw_arrows(axes, [_rim(angle)], [arrow], INK)
+        tip, tension = _rim(angle) + arrow, _number(few, few[f"tension_{name[1]}"])
+        labels.append((tip.real, tip.imag, typeset(f"{name} = {tension} N"), INK))
+    axes.autoscale_view()
+    spokes = np.outer(_rim(np.linspace(0, TURN, 37)), [0, 1])
+    on_pulley = axes.plot(spokes.real.T, spokes.imag.T)
+    write_beside(axes, labels)
+    for spoke in on_pulley:  # which kept words off it
+        spoke.remove()
 
 
-def _write_beside(axes: "Axes", place: complex, aside: complex, lines: Sequence[tuple[str, str]]) -> None:
-    """Write lines, each in its colour, on one side of a place."""
-    from matplotlib.offsetbox import AnnotationBbox, TextArea, VPacker
-
-    areas: Any = [TextArea(words, textprops={"color": colour}) for words, colour in lines]
-    align = (1 - aside.real) / 2, (1 - aside.imag) / 2
-    corner = place - complex(WORDS_SIZE.real * align[0], WORDS_SIZE.imag * align[1])
-    axes.update_datalim([(point.real, point.imag) for point in (corner, corner + WORDS_SIZE)])
-    look: Any = {"box_alignment": align, "pad": 0, "frameon": False, "annotation_clip": False}
-    axes.add_artist(AnnotationBbox(VPacker(children=areas, sep=3), (place.real, place.imag), **look))
+def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:
+    """Draw arrows that are long enough to be seen; the head is at most 0.4 of an arrow."""
+    tails, along = (np.asarray(one)[np.abs(arrows) > LEAST_ON_ARC] for one in (starts, arrows))
+    look: Any = {"units": "inches", "width": 1.3 / 72, "headwidth": 5, "headlength": 6, "headaxislength": 6}
+    look |= {"minshaft": 1.5, "minlength": 0, "angles": "xy", "scale_units": "xy", "scale": 1, "zorder": 4}
+    if len(tails):
+        axes.update_datalim([(place.real, place.imag) for place in (*tails, *(tails + along))])
+        axes.quiver(tails.real, tails.imag, along.real, along.imag, color=colour, **look)
 
 
-def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> bool:
-    """Draw arrows that are not 0, each long enough to be seen. Returns whether all are to scale."""
-    pairs = [(start, arrow) for start, arrow in zip(starts, arrows, strict=True) if arrow]
-    tails, lengths = np.array([start for start, _ in pairs], complex), [abs(arrow) for _, arrow in pairs]
-    drawn = np.clip(lengths, LEAST_ARROW, MOST_WEIGHT)
-    along = np.array([arrow / length for (_, arrow), length in zip(pairs, lengths, strict=True)]) * drawn
-    axes.update_datalim([(point.real, point.imag) for point in (*tails, *(tails + along))])
-    look: Any = {"units": "inches", "width": 1.5 / 72, "headwidth": 5, "headlength": 6, "headaxislength": 6}
-    scale: Any = {"angles": "xy", "scale_units": "xy", "scale": 1, "minlength": 0}
-    axes.quiver(tails.real, tails.imag, along.real, along.imag, color=colour, **look, **scale)
-    return bool(np.all(drawn == lengths))
-
-
-def _draw_curves(axes: "Axes", forces: Forces, wrap: float) -> None:
+def _draw_curves(axes: "Axes", few: Answers, kind: arc.Kind, wrap: float, scale: str) -> None:
     """Draw normal force and friction along the arc, over grey where the string is stuck."""
-    edge = forces.stuck if forces.sign > 0 else 1 - forces.stuck
+    doubles = few.to(None)
+    stuck = float(doubles.settle(lambda m: (m.phi - m.alpha) / m.phi)) if kind == "creep" else 0.0
+    edge, start = (stuck, 0) if few.case.sign >= 0 else (1 - stuck, 1)
     shares = np.sort([*np.linspace(0, 1, CURVE_POINTS), *np.nextafter(edge, [0, edge, 1])])
-    tension, friction = forces.along(shares)
-    angles = wrap * shares
+    tension, friction = _forces(doubles, kind, shares)
     axes.axhline(0, color=FAINT, lw=0.8)
-    if forces.stuck:
-        axes.axvspan(wrap * edge, wrap * (forces.sign < 0), color=FAINT, alpha=0.15, lw=0)
-    axes.plot(angles, tension, color=BLUE, lw=2, label="nR = T(θ)")
-    axes.plot(angles, friction, color=RED, lw=2, ls="--", label="fR = dT/dθ")
+    axes.plot(wrap * shares, tension, color=BLUE, label="normal force nR = T")
+    axes.plot(wrap * shares, friction, color=RED, ls="--", label=f"friction fR = dT/dθ{scale}")
     axes.set_xlim(0, wrap)
+    axes.margins(y=0.2)
+    if friction.min() >= 0:
+        axes.set_ylim(bottom=0)
+    step = next((step for step in ANGLE_TICKS if 2 * step <= wrap <= 8 * step), None)
+    if step:
+        axes.set_xticks(np.arange(0, wrap + 1e-6, step))
     axes.set_xlabel("angle θ along the arc, from m₁'s end on the left (°)")
-    axes.xaxis.set_major_formatter("{x:.6g}")
-    axes.set_ylabel("force per radian of arc, nR and fR (N/rad)")
-    axes.margins(y=0.12)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=2, frameon=False, fontsize=NAME_POINTS)
+    axes.set_ylabel("tension T = nR and\nfriction fR (N per radian)")
+    axes.legend(loc="lower right", bbox_to_anchor=(1, 1.1), ncols=2)
+    t1, t2 = (typeset(f"T{end} = {_number(few, few[f'tension_{end}'])} N") for end in (1, 2))
+    labels = [(0.0, tension[0], t1, BLUE), (wrap, tension[-1], t2, BLUE)]
+    if stuck:
+        axes.axvspan(wrap * edge, wrap * start, color=FAINT, alpha=0.2, lw=0)
+    if stuck > 0.1:  # else the word is wider
+        labels.append((wrap * (edge + start) / 2, tension.min() / 2, "stuck", INK))
+    write_beside(axes, labels)

@@ -67,11 +67,11 @@ def contact(answers: Answers, points: int | str = 13) -> Contact:
     """
     kind = kind_of(answers.case)
     last = read_whole("points", points, 2, MAX_POINTS) - 1
-    rows = [_point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
+    rows = [point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
     return Contact(kind, rows, _balance(answers, kind), _notes(answers, kind))
 
 
-def _point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Rounded]:
+def point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Rounded]:
     """Return the columns at the fraction q of the arc, counted from m1's end."""
     scene, sign = answers.case.scene, answers.case.sign
     from_light = q if sign >= 0 else 1 - q

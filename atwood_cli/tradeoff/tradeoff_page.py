@@ -1,4 +1,4 @@
-"""Times and errors as a table and for JSON."""
+"""Times and errors as a table, for JSON, and as a picture."""
 
 from collections.abc import Sequence
 from decimal import Decimal
@@ -7,20 +7,24 @@ from math import isinf
 from operator import attrgetter
 
 from ..model.digits import text
+from ..output.figure import BLUE, GREEN, PURPLE, RED, page
 from ..output.page import Page
 from ..output.text import VERSION
 from .measure import SETTINGS, Measured
 
 LEGEND = (
-    "Of each family: the time of a scene, the worst error in units in the last place of a double (ulp),"
-    " 1e-16 of it, and the share of scenes of which it is mistaken whether the string slips.",
-    "Settings: the paper's formulas in NumPy, accuracies of solve_arrays, and solve with so many digits.",
+    "Each family has the time per scene, the worst error in units in the last place of a double (ulp, about"
+    " 1e-16 of it), and the share of scenes with a wrong regime.",
+    "Settings: the paper's formulas in NumPy, accuracies of solve_arrays, and solve to 50 digits.",
 )
 SECONDS = {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
+LEAST, GREATEST = 1e-3, 1e16
+"""The least and the greatest error that is drawn, in ulp; others are drawn as these."""
+TICKS = {LEAST: "≤ 0.001", 1.0: "1", 1e4: "10⁴", 1e8: "10⁸", 1e12: "10¹²", GREATEST: "no digit\nright"}
 
 
 def record(measured: Sequence[Measured], scenes: int, seed: int) -> dict[str, object]:
-    """The record for JSON: the seed, the number of scenes, and every setting on every family."""
+    """Return the record for JSON: the seed, the number of scenes, and every setting on every family."""
     settings = [point._asdict() for point in measured]
     return {"version": VERSION, "seed": seed, "scenes": scenes, "settings": settings}
 
@@ -38,26 +42,52 @@ def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
     widths = [max(map(len, column)) for column in zip(*chain(*groups), strict=True)]
     for row in chain(*groups):
         row[1:] = map(str.rjust, row[1:], widths[1:])
-    page = Page()
-    page.say(f"{scenes} scenes of each family, seed {seed}")
-    page.table(["Family", *(setting.name for setting in SETTINGS)], groups)
-    page.say(*LEGEND)
+    table = Page()
+    table.say(f"{scenes} scenes of each family, seed {seed}")
+    table.table(["Family", *(setting.name for setting in SETTINGS)], groups)
+    table.say(*LEGEND)
+
+
+def save(measured: Sequence[Measured], path: str, force: bool, bare: bool = False) -> None:
+    """Draw errors against times to a file, whose suffix is its format, a panel for each family.
+
+    ``bare`` leaves the sentence out. Raises OSError.
+    """
+    from matplotlib.ticker import LogLocator, NullLocator
+
+    families = {family: [*group] for family, group in groupby(measured, attrgetter("family"))}
+    title = "Worst error of a scene, in units in the last place of a double (ulp), against its time"
+    with page(path, force, [title], bare=bare) as figure:
+        panels = figure.subplots(1, len(families), sharex=True, sharey=True, squeeze=False)[0]
+        for axes, (family, settings) in zip(panels, families.items(), strict=True):
+            axes.set(title=family, xscale="log", yscale="log")
+            axes.set_yticks(list(TICKS), TICKS.values())
+            axes.set_yticks([], minor=True)
+            axes.xaxis.set_major_locator(LogLocator(base=100))
+            axes.xaxis.set_minor_locator(NullLocator())
+            axes.grid(alpha=0.3)
+            for point, marker, colour in zip(settings, "oD^v", (RED, BLUE, GREEN, PURPLE), strict=True):
+                worst = GREATEST if point.worst_ulp is None else min(max(point.worst_ulp, LEAST), GREATEST)
+                axes.plot(point.seconds, worst, marker, color=colour, label=point.setting)
+        panels[0].set_ylabel("worst error ε (ulp)")
+        panels[len(panels) // 2].set_xlabel("time per scene t (s)")
+        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
 
 
 def in_seconds(seconds: float) -> str:
-    """A time to three digits, in the unit that fits."""
+    """Return a time to three digits, in the unit that fits."""
     shown = {unit: float(f"{seconds / factor:.3g}") for unit, factor in SECONDS.items()}
     unit = next((unit for unit, number in shown.items() if number < 1000), "s")
     return f"{short(shown[unit], 3)} {unit}"
 
 
 def short(value: float | None, digits: int = 2) -> str:
-    """A number to a few digits; a dash where there is none."""
-    if value is None or isinf(value):
-        return "-" if value is None else "inf"
-    return text(Decimal(f"{value:.{digits}g}"))
+    """Return a number to a few digits; a dash if there is none."""
+    if value is None:
+        return "-"
+    return "inf" if isinf(value) else text(Decimal(f"{value:.{digits}g}"))
 
 
 def percent(share: float) -> str:
-    """A share in percent, to three digits."""
+    """Return a share in percent, to three digits."""
     return f"{short(100 * share, 3)} %"

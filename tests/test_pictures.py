@@ -1,0 +1,487 @@
+"""Pictures: what they show is what the pages say, to scale, and can be read. Their words stand in `cases/pictures.md`."""
+
+import csv
+import re
+import shlex
+import warnings
+from itertools import chain, pairwise
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pytest
+
+from atwood_cli import solve
+from atwood_cli.model.quantities import NAMES
+from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Measured
+from atwood_cli.tradeoff.tradeoff_page import GREATEST, LEAST
+from atwood_cli.tradeoff.tradeoff_page import save as save_tradeoff
+
+from . import doors
+from .regenerate import CASES
+from .running import TOP, called, drawn, labels, misplaced, pages_seen, process, words_on
+from .scenes import inputs
+
+figure = pytest.importorskip("atwood_cli.output.figure")
+pytest.importorskip("matplotlib")
+
+(PICTURES,) = (page.read_text(encoding="utf-8") for page in CASES if page.stem == "pictures")
+KEPT = re.findall(r"^\$ (?:printf '(.*)' \| )?atwood (.*) --figure \S+(.*)", PICTURES, re.MULTILINE)
+FIGURE = "--m1 1 --m2 3 --M 10 --mu 0.3"
+MIRRORED = "--m1 3 --m2 1 --M 10 --mu 0.3"
+MORE = f"""
+{"|".join(f"contact {FIGURE} --wrap {wrap}" for wrap in (1, 76, 90, 181, 200, 225, 251, 269, 300, 345, 540, 2000))}
+contact {MIRRORED} --wrap 120
+contact {MIRRORED} --axle 3 --wrap 300
+contact --m1 2 --m2 2 --M 3 --mu 0.1 --wrap 300
+contact --m1 1 --m2 3 --mu 0
+contact --m1 1 --m2 3 --M inf --mu 5 --wrap 1e9
+contact --m1 1 --m2 3 --M 1 --wrap 1e-99rad
+contact --m1 1e-90 --m2 3e90 --M 1 --mu 0.1 --wrap 1e6
+contact --m1 1 --m2 3 --M 100 --mu 0.3 --mu-k 0.25 --digits 12
+contact --m1 1000 --m2 1 --M 5 --wrap 1440
+contact --m1 1.00000000000000000000001 --m2 1 --M 0.3 --mu 0.3
+contact --m1 1.{"123456789" * 60} --m2 2.{"123456789" * 60} --M 3.{"1" * 500} --mu 0.{"3" * 500}
+sweep --only a,T1,T2 --m1 1 --m2 3 --M 0:50:6 --mu 0.2,0.3,0.25
+sweep --only T1,T2,mu_verge --m1 1000 --m2 400:1000:3 --mu 0.1,0.2 --M 100
+sweep --only friction_force,mu_verge,a --m1 1 --m2 3 --M 1:1000:6:log --mu 0.3 --inertia disk,hoop,1/3
+sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.3
+sweep --m1 1 --m2 3 --M 1:1000:6:log --mu 0.1:0.34:6
+sweep --only friction_force --m1 1 --m2 3 --M 0:50:6 --mu 0.15:0.4:6
+sweep --only friction_force --m1 1 --m2 0.2:5:6 --M 5 --mu 0.1:0.3:3
+sweep --only mu_verge --m1 1 --m2 3 --mu 0.3 --M 0:60:3
+sweep --only tension_2 --m1 1 --m2 3 --mu 0:0.5:9
+sweep --m1 1 --m2 1.5 --M 1 --mu 0.1 --axle 0:5:6
+sweep --m1 1 --m2 3 --M 20 --mu 0.3 --mu-k 0.2 --wrap 1rad:7rad:5
+sweep --only torque --m1 1 --m2 3 --M 1e-20:2e-20:3 --R 1e-5
+sweep --only tension_1 --m1 1 --m2 1 --g 1:25:3
+sweep --m1 1 --m2 3 --M 1,9.9,10,10.1,11,1000,inf --mu 0.2,0.3
+sweep --m1 1 --m2 3 --g moon,mars,earth --only a,T1
+"""
+LINES = [("", line) for line in MORE.strip().replace("|", "\n").split("\n")]
+LINES += [(table, words + rest) for table, words, rest in KEPT]
+
+
+@pytest.mark.parametrize(("table", "line"), LINES)
+def test_all_of_a_picture_can_be_read(table: str, line: str) -> None:
+    """No words lie over others or run off, titles are no smaller than ticks, and there is one legend at most."""
+    page = drawn(" ".join(shlex.split(line)), table.encode().decode("unicode_escape").encode())
+    assert misplaced(page) == []
+    panels = 1 if line.startswith("solve") else len(page.axes)
+    assert page.get_size_inches().tolist() == [6.4, 4 + 2 * (panels - 1)]
+    title = page._suptitle.get_fontsize()
+    ticks = [text for axes in page.axes for text in (*axes.get_xticklabels(), *axes.get_yticklabels())]
+    assert all(text.get_fontsize() <= title for text in ticks)
+    assert sum(axes.get_legend() is not None for axes in page.axes) + len(page.legends) <= 1
+    said = " ".join(words_on(page))
+    assert not re.search(r"(?<![\w.)])-\d|\de[-\d]|\bmu\b|\bm1\b", said), said
+    for axes in page.axes:
+        crossed = [text.get_text() for text in axes.texts if crosses(axes, text)]
+        assert crossed == []
+
+
+def crosses(axes: Any, text: Any) -> bool:
+    """Whether a curve or an error bar runs through words; those of the machine stand at their arrows."""
+    if not axes.axison or not text.get_text():
+        return False
+    bars = (one.get_segments() for one in axes.collections if hasattr(one, "get_segments"))
+    curves = (
+        line.get_xydata() for line in axes.lines if line.get_linestyle() != "None" and line.get_zorder() > 0
+    )
+    box = text.get_window_extent()
+    for path in (*chain(*bars), *(curve for curve in curves if len(curve) > 2)):
+        pixels = axes.transData.transform(path)
+        dense = np.concatenate([np.linspace(*pair, 50) for pair in pairwise(pixels)])
+        if ((dense > box.min) & (dense < box.max)).all(axis=1).any():
+            return True
+    return False
+
+
+# The machine
+
+
+def arrows_of(axes: Any) -> dict[str, list[tuple[complex, complex]]]:
+    """The arrows by colour, from left to right: where each begins, and its vector."""
+    from matplotlib.colors import to_hex
+
+    arrows: dict[str, list[tuple[complex, complex]]] = {}
+    for alike in (one for one in axes.collections if hasattr(one, "XY")):
+        pairs = zip(alike.XY @ [1, 1j], alike.U + 1j * alike.V, strict=True)
+        arrows.setdefault(to_hex(alike.get_facecolor()[0]), []).extend(pairs)
+    return {colour: sorted(pairs, key=lambda pair: pair[0].real) for colour, pairs in arrows.items()}
+
+
+def motions_of(axes: Any) -> list[tuple[complex, complex]]:
+    """The dashed arrows of motion: where each begins and ends."""
+    paths = [line.get_xydata() @ [1, 1j] for line in axes.lines if line.get_color() == figure.PURPLE]
+    return [(path[0], path[-1]) for path in paths if len(path) > 1]
+
+
+@pytest.mark.parametrize(("masses", "sign"), [("m1=1 m2=1.5", 1), ("m1=1.5 m2=1", -1)])
+@pytest.mark.parametrize("axle", [2, 30])
+def test_what_arrows_show(masses: str, sign: int, axle: int) -> None:
+    """Weights point down and tensions up the string, to one scale; a pulley turns, or its axle holds it."""
+    scene = inputs(f"{masses} M=10 mu=0.4 axle={axle}")
+    axes = drawn(" ".join(["solve", *doors.words(scene)])).axes[0]
+    arrows, s = arrows_of(axes), cast(Any, solve(**scene))
+    weights = [float(scene[m]) * 9.80665 for m in ("m1", "m2")]
+    scale = 0.84 / max(weights)
+    up = [way for _, way in arrows.pop(figure.INK)]
+    assert up == pytest.approx([1j * scale * s.tension_1, 1j * scale * s.tension_2])
+    assert [way for _, way in arrows.pop(figure.GREEN)] == pytest.approx([-1j * scale * W for W in weights])
+    normal, friction = arrows.pop(figure.BLUE), arrows.pop(figure.RED)
+    inwards = [-(way * start.conjugate()).real / abs(start) for start, way in normal]
+    assert inwards == pytest.approx([abs(way) for _, way in normal])
+    assert min(inwards) / max(inwards) == pytest.approx(min(up, key=abs).imag / max(up, key=abs).imag)
+    around = [-(way * start.conjugate()).imag / abs(start) for start, way in friction]  # clockwise
+    assert sign * np.array(around) == pytest.approx([abs(way) for _, way in friction])
+    between = abs(normal[0][0] + normal[0][1] - normal[1][0] - normal[1][1])  # of places on the rim
+    assert max(inwards) == pytest.approx(max(map(abs, around))) == pytest.approx(0.9 * between, rel=0.06)
+    assert arrows == {}
+    motions = motions_of(axes)
+    if axle == 30:
+        assert motions == []
+        return
+    turning, *moving = sorted(motions, key=lambda ends: -ends[0].imag)
+    assert np.sign((turning[1] - turning[0]).real) == sign  # above the axle
+    assert [np.sign((end - start).imag) for start, end in sorted(moving, key=lambda ends: ends[0].real)] == [
+        sign,
+        -sign,
+    ]
+    (against, *_) = (line for line in axes.lines if line.get_color() == figure.ORANGE)
+    xs, ys = against.get_xydata().T
+    assert max(ys) < 0 < sign * (xs[-1] - xs[0])  # below the axle
+
+
+def test_arrows_out_of_scale_are_named_and_others_are_in_proportion() -> None:
+    page = drawn("solve --m1 1 --m2 15 --M 20 --mu 5")
+    s: Any = solve(m1=1, m2=15, M=20, mu=5)
+    (t1, t2), (w1, w2) = (
+        [abs(way) for _, way in arrows_of(page.axes[0])[x]] for x in (figure.INK, figure.GREEN)
+    )
+    assert [t2 / w2, t1 / w2] == pytest.approx([s.tension_2 / (15 * 9.80665), s.tension_1 / (15 * 9.80665)])
+    assert w2 / w1 == pytest.approx(12)
+    assert "Drawn longer than to scale: W₁." in page.get_supxlabel()
+
+
+@pytest.mark.parametrize("wrap", [1, 76, 90, 181, 200, 225, 270, 345, 1441])
+@pytest.mark.parametrize("masses", ["--m1 1 --m2 3", "--m1 3 --m2 1"])
+def test_on_other_wraps_the_tensions_pull_along_the_tangents(wrap: int, masses: str) -> None:
+    """At 200° a block lay over the pulley, on a slanted string, with a weight along it."""
+    page = drawn(f"solve {masses} --M 10 --mu 0.3 --wrap {wrap}")
+    axes = page.axes[0]
+    arrows = dict(arrows_of(axes)[figure.INK])
+    last = -np.exp(-1j * np.radians(wrap))
+    (at_1,), (at_2,) = (
+        [way for start, way in arrows.items() if abs(start - end) < 1e-9] for end in (-1, last)
+    )
+    assert at_1.real == pytest.approx(0)
+    assert at_1.imag < 0
+    assert (at_2 * last.conjugate()).real == pytest.approx(0)
+    assert (at_2 * last.conjugate()).imag < 0  # on from the arc, which runs clockwise
+    assert figure.GREEN not in arrows_of(axes)
+    assert len(axes.patches) == 1
+    assert not [text for text in axes.texts if text.get_text().startswith(("m", "W", "a"))]
+    assert "The masses hang over guides that are not drawn." in " ".join(page.get_supxlabel().split())
+
+
+def test_blocks_are_in_proportion_to_the_masses() -> None:
+    for heavier, ratio in (("4", 4), ("9", 9), ("1000", 9)):
+        axes = drawn(f"solve --m1 1 --m2 {heavier} --M 1").axes[0]
+        boxes = [one.get_paths()[0].get_extents() for one in axes.collections if not hasattr(one, "XY")]
+        small, large = sorted(box.width * box.height for box in boxes)
+        assert large / small == pytest.approx(ratio)
+
+
+SYMBOLS = {"T₁": "tension_1", "T₂": "tension_2", "M": "critical_pulley_mass"}
+SOLVED = [line for _, line in LINES if line.startswith(("solve", "contact")) and "1.123" not in line]
+
+
+@pytest.mark.parametrize("line", SOLVED)
+def test_every_value_in_a_picture_is_the_pages(line: str) -> None:
+    """The caption had a net friction force where the page has bounds, or none."""
+    page = drawn(line)
+    words = shlex.split(re.sub(r" --(bare|csv|only \S+|points \d+|digits \d+)", "", line))
+    digits = re.findall(r"--digits (\d+)", line)
+    ran = called(
+        ["solve", *words[1:], "--digits", min([*digits, "6"], key=int), "--only", ",".join(NAMES), "--csv"]
+    )
+    (values,) = csv.DictReader(ran.out.splitlines())
+    told = " ".join(words_on(page)).replace("\n", " ")
+    found = [(SYMBOLS.get(name, ""), x) for name, x in re.findall(r"(T[₁₂]) = (\S+(?: × 10\S+)?) N", told)]
+    found += [
+        ("acceleration", x)
+        for x in re.findall(r"\ba = (\S+(?: × 10\S+)?)(?= m/s²)", told.partition(" ± ")[0])
+    ][:1]
+    found += [("friction_force", x) for x in re.findall(r"net friction force is (\S+(?: × 10\S+)?) N", told)]
+    for greatest, least in re.findall(r"greatest \((\S+(?: × 10\S+)?) N; least (\S+(?: × 10\S+)?) N\)", told):
+        found += [("friction_force_max", greatest), ("friction_force_min", least)]
+    assert len(found) >= 1
+    for name, shown in found:
+        mantissa, *power = shown.replace("−", "-").split(" × 10")
+        exponent = "".join(power).translate(str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")) or "0"
+        assert float(f"{mantissa}e{exponent}") == abs(float(values[name])), (name, shown)
+
+
+@pytest.mark.parametrize("words", ["M=10 mu=0.3", "m1=3 m2=1 M=10 mu=0.3", "mu=0.3"])
+def test_curves_are_those_of_the_table_with_a_step_where_the_string_is_stuck(words: str) -> None:
+    scene = inputs(words)
+    line = " ".join(["contact", *doors.words(scene)])
+    axes = drawn(line).axes[1]
+    curves = {one.get_label().partition(" (")[0]: one.get_xydata() for one in axes.lines}
+    normal, friction = curves["normal force nR = T"], curves["friction fR = dT/dθ"]
+    for row in csv.DictReader(called([*line.split(), "--csv"]).out.splitlines()):
+        for curve, column in ((normal, "tension"), (friction, "friction_per_radian")):
+            there = np.interp(float(row["angle"]), *curve.T)
+            assert there == pytest.approx(float(row[column]), rel=1e-5)
+    # Friction begins at its limit where the string begins to creep, and the arc before is grey.
+    beside = [(here, there) for (x, here), (at, there) in pairwise(friction) if at - x < 1e-9]
+    s: Any = solve(**scene)
+    step = float(scene["mu"]) * min(s.tension_1, s.tension_2) * np.sign(s.acceleration)
+    steps = [max(two, key=abs) for two in beside if 0 in two and any(two)]
+    assert steps == pytest.approx([step] * ("M" in scene), rel=1e-6)
+    stuck = [text for text in axes.texts if text.get_text() == "stuck"]
+    if steps:
+        (grey,), (text,) = axes.patches, stuck
+        box, band = text.get_window_extent(), grey.get_window_extent()
+        assert band.x0 < box.x0 < box.x1 < band.x1
+        edge = axes.transData.inverted().transform([(band.x0, 0), (band.x1, 0)])[:, 0]
+        assert 180 * (scene["m1"] == "3") in edge.round(9)
+    assert (axes.get_ylim()[0] == 0) == (s.acceleration > 0)
+    assert axes.get_xticks().tolist() == [0, 30, 60, 90, 120, 150, 180]
+
+
+# Sweeps
+
+
+def test_marks_say_where_the_table_says_that_regimes_change() -> None:
+    line = "sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.15,0.2,0.25,0.3"
+    (axes,) = drawn(line).axes
+    table = called(line.split()).out
+    told = [text.get_text() for text in axes.texts]
+    assert len(told) == 4
+    for words in told:
+        assert f"no-slip up to M = {words.removeprefix('slips from ')}, slip beyond" in table
+
+
+def test_marks_are_of_one_colour_and_curves_of_others() -> None:
+    """Twelve places at which regimes change have no room for words, so the legend has them."""
+    page = drawn("sweep --m1 0.1:30:9 --m2 3 --M 50 --mu 0.05:0.3:6 --csv")
+    ((axes,), (legend,)) = page.axes, page.legends
+    dots = [line.get_color() for line in axes.lines if line.get_marker() == "o"]
+    curves = [line.get_color() for line in legend.get_lines()]
+    assert (len(dots), len({*dots}), len({*dots, *curves})) == (12, 1, 7)
+    assert all("holds from" in text.get_text() for text in legend.get_texts())
+    ends = {line.get_color(): line.get_ydata()[-1] for line in axes.lines if line.get_marker() == "None"}
+    assert [ends[colour] for colour in curves] == sorted((ends[colour] for colour in curves), reverse=True)
+
+
+def test_a_scene_looks_the_same_in_all_panels() -> None:
+    page = drawn("sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.2,0.3 --only a,T1,T2 --csv")
+    one, two = ([(line.get_color(), line.get_linestyle()) for line in axes.lines[:6:2]] for axes in page.axes)
+    assert one[:2] == two[:2]
+    (legend,) = page.legends
+    names = {
+        line.get_color(): text.get_text()
+        for line, text in zip(legend.get_lines(), legend.get_texts(), strict=True)
+    }
+    assert sorted(names.values()) == ["T₂, μ = 0.2", "T₂, μ = 0.3", "a, T₁, μ = 0.2", "a, T₁, μ = 0.3"]
+
+
+@pytest.mark.parametrize(
+    ("words", "starts", "ends", "crosses_0"),
+    [
+        ("--m1 1 --m2 3 --M 0:50:6", True, False, False),
+        ("--m1 3 --m2 1 --M 0:50:6", False, True, False),
+        ("--m1 1 --m2 3 --M 0:1:6", False, False, False),
+        ("--m1 1 --m2 0.5:3:6 --M 1", False, False, True),
+    ],
+)
+def test_an_axis_starts_at_0_where_no_more_than_half_of_it_is_empty(
+    words: str, starts: bool, ends: bool, crosses_0: bool
+) -> None:
+    page = drawn(f"sweep {words}")
+    low, high = page.axes[0].get_ylim()
+    assert (low == 0, high == 0) == (starts, ends)
+    assert any({*line.get_ydata()} == {0} for line in page.axes[0].lines) == crosses_0
+    assert page.legends == []  # of a single curve
+
+
+def test_lists_are_points_with_names_and_a_locked_pulley_is_a_level() -> None:
+    planets = drawn("sweep --m1 1 --m2 3 --g earth,moon,mars --only a").axes[0]
+    assert [text.get_text().strip() for text in planets.get_xticklabels()] == ["moon", "mars", "earth"]
+    (points,) = planets.lines
+    assert (points.get_linestyle(), points.get_marker()) == ("None", "o")
+    accelerations = [solve(m1=1, m2=3, g=g).acceleration for g in (1.62, 3.71, 9.80665)]
+    assert points.get_ydata() == pytest.approx(accelerations, rel=0.01)
+    masses = drawn("sweep --m1 1 --m2 3 --M 1,10,1000,inf --mu 0.3").axes[0]
+    (level,) = (line for line in masses.lines if line.get_linestyle() == "--")
+    assert {*level.get_ydata()} == {solve(m1="1", m2="3", M="inf", mu="0.3").acceleration}
+    assert [text.get_text() for text in masses.texts] == ["locked"]
+    assert masses.lines[0].get_xdata().tolist() == [1, 10, 1000]
+
+
+# Fits
+
+
+MADE = "m1,m2,a\n0.1,0.11,0.334\n0.2,0.212,0.2230\n0.15,0.18,0.770\n0.3,0.32,0.2740\n0.05,0.06,0.580\n"
+SOUND = "m1 (g),m2 (g),t1,t2\n200,207,4.06,3.88\n200.5,206.5,4.33,4.62\n201,206,5,5.06\n202,205,8,7.5\n"
+SCATTERED = (
+    "m1 (g),m2 (g),t1,t2\n200,207,4.06,4.05\n200.5,206.5,4.83,4.82\n201,206,5,5.01\n202,205,7.9,7.91\n"
+)
+
+
+@pytest.mark.parametrize(
+    ("find", "slope", "intercept"),
+    [
+        ("rim_mass,axle", "rim_mass", "axle"),
+        ("gravity --M 0.05 --axle 0.02", "gravity", ""),
+        ("gravity,axle --M 0.05", "gravity", "axle"),
+        ("gravity,rim_mass --axle 0.02", "gravity", "rim_mass"),
+        ("gravity,rim_mass,axle", "gravity", "axle"),
+    ],
+)
+def test_what_is_fitted_is_the_slope_or_the_intercept(find: str, slope: str, intercept: str) -> None:
+    """A fit of gravity did not show it."""
+    pytest.importorskip("scipy")
+    rows = called(f"fit - --find {find} --csv".split(), MADE.encode()).out
+    values = called(
+        f"fit - --find {find} --only {slope}{f',{intercept}' if intercept else ''}".split(), MADE.encode()
+    ).out
+    line, rest = drawn(f"fit - --find {find}", MADE.encode()).axes
+    (x0, y0), (x1, y1) = line.lines[0].get_xydata()
+    value, *other = map(float, values.split())
+    assert (y1 - y0) / (x1 - x0) == pytest.approx(value)
+    assert [abs(y0)] == pytest.approx([*map(abs, other), 0][:1])
+    (words,) = (text.get_text() for text in line.texts if "slope" in text.get_text())
+    assert " ± " in words.splitlines()[0]
+    residuals = [float(row["residual"]) for row in csv.DictReader(rows.splitlines())]
+    (points,) = (one for one in rest.lines if len(one.get_xdata()) == 5)
+    assert points.get_ydata() == pytest.approx(residuals)
+    assert {y for one in rest.lines for y in one.get_ydata()} >= {-2, 0, 2}
+
+
+def test_a_bad_fit_says_so() -> None:
+    pytest.importorskip("scipy")
+    good, bad = (drawn("fit - --drop 98cm --without 3", table.encode()) for table in (SOUND, SCATTERED))
+    assert "Scatter is larger than the uncertainties, p = " in bad.get_suptitle()
+    assert "Scatter" not in good.get_suptitle()
+    for page, words in ((good, "not widened"), (bad, "widened to the scatter between runs")):
+        assert f"Error bars are standard uncertainties, {words}." in " ".join(page.get_supxlabel().split())
+        assert "3, left out" in [text.get_text() for text in page.axes[0].texts]
+
+
+# Files
+
+
+DRAWING = """
+import sys
+from atwood_cli.cli import run
+for file in ("a.svg", "a.png", "a.pdf"):
+    assert run([*sys.argv[1:], "--figure", file]) == 0
+"""
+
+
+def test_a_picture_is_the_same_to_the_byte_whenever_and_wherever_it_is_drawn(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It has no date, nor settings of matplotlib: neither those of the folder nor of the environment."""
+    for place, asked in (("here", {}), ("there", {"MPLBACKEND": "nonsense", "SOURCE_DATE_EPOCH": "abc"})):
+        (tmp_path / place).mkdir()
+        monkeypatch.chdir(tmp_path / place)
+        Path("matplotlibrc").write_text("text.usetex: True\nlines.linewidth: 9\nbackend: bad\nnonsense: 1\n")
+        if asked:
+            ran = process("contact", *FIGURE.split(), code=DRAWING, PYTHONPATH=str(TOP), **asked)
+            assert (ran.status, ran.err) == (0, "")
+        else:
+            for file in ("a.svg", "a.png", "a.pdf"):
+                assert called(["contact", *FIGURE.split(), "--figure", file]).status == 0
+    for file, start in (("a.svg", b"<?xml"), ("a.png", b"\x89PNG"), ("a.pdf", b"%PDF")):
+        here, there = ((tmp_path / place / file).read_bytes() for place in ("here", "there"))
+        assert here == there
+        assert here.startswith(start)
+        assert b"Date" not in here
+        if file == "a.png":
+            assert int.from_bytes(here[16:20]) == 6.4 * 300
+        if file == "a.pdf":
+            assert b"/FontFile2" in here  # TrueType, type 42
+            assert b"/Type3" not in here
+
+
+BLANKS = str.maketrans("", "", " \n")
+LARGE = [line for _, line in LINES if "0.05:0.3:6" in line or "0.15:0.4:6" in line or "2.5turn" in line]
+
+
+@pytest.mark.parametrize(
+    "line", [f"contact {FIGURE}", "sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.2,0.3 --only a,T1", *LARGE]
+)
+def test_an_svg_is_small_has_its_text_as_text_a_title_and_a_description(tmp_path: Path, line: str) -> None:
+    file = tmp_path / "a.svg"
+    assert called([*line.split(), "--figure", str(file)]).status == 0
+    svg = file.read_text(encoding="utf-8")
+    assert len(svg) < 40_000
+    title, described, *texts = labels(svg)
+    page = drawn(line)
+    said = [text for axes in page.axes for text in (axes.xaxis.label, axes.yaxis.label, *axes.texts)]
+    lines = {words for text in said for words in text.get_text().splitlines()}
+    assert lines <= {*texts}
+    assert f"{title} {described}".replace(
+        " ", ""
+    ) == f"{page.get_suptitle()}{page.get_supxlabel()}".translate(BLANKS)
+
+
+@pytest.mark.filterwarnings("error")
+def test_what_matplotlib_warns_of_reaches_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
+    from matplotlib.figure import Figure
+
+    monkeypatch.setattr(Figure, "suptitle", lambda *_, **__: warnings.warn("a line", stacklevel=1))
+    drawn(f"contact {FIGURE}")
+
+
+SMALL_DISK = """
+import resource, signal, sys
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+sys.dont_write_bytecode = True  # which would be cut off, too
+resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
+"""
+NO_MATPLOTLIB = 'import sys; sys.modules["matplotlib"] = None'
+INSTALL = "this needs matplotlib; install it with: pip install 'atwood-cli[figure]'"
+
+
+@pytest.mark.parametrize("error", ["cannot write {}: File too large", INSTALL])
+def test_a_picture_that_cannot_be_made_is_a_sentence_and_no_file(tmp_path: Path, error: str) -> None:
+    pytest.importorskip("resource")
+    setting, file = NO_MATPLOTLIB if error == INSTALL else SMALL_DISK, tmp_path / "a.svg"
+    code = f"{setting}\nfrom atwood_cli.__main__ import main\nsys.exit(main())"
+    ran = process("contact", *FIGURE.split(), "--figure", str(file), code=code)
+    assert ran == (1, "", f"atwood: {error.format(file)}\n")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_picture_is_not_drawn_where_standard_output_goes(tmp_path: Path) -> None:
+    there = shlex.quote(str(tmp_path))
+    ran = process(shell=f"cd {there}; atwood contact --m1 1 --m2 3 --M 10 --figure a.svg --force > a.svg")
+    why = "atwood: --figure 'a.svg' is where standard output goes; name another\n"
+    assert (ran.status, ran.err, (tmp_path / "a.svg").read_text()) == (2, why, "")
+
+
+# The picture of tradeoff
+
+
+def test_the_picture_of_tradeoff_has_a_panel_for_each_family(tmp_path: Path) -> None:
+    names = [setting.name for setting in SETTINGS]
+    off = dict(zip(names, (None, 39.2, 0.499, 4.2e-34), strict=True))
+    measured = [Measured(family, name, 1e-7, off[name], 0.0) for family in FAMILIES for name in names]
+    for bare in (False, True):
+        with pages_seen() as pages:
+            save_tradeoff(measured, str(tmp_path / "a.svg"), force=True, bare=bare)
+        (page,) = pages
+        assert misplaced(page) == []
+        assert bool(page.get_suptitle()) != bare
+        assert [axes.get_title() for axes in page.axes] == list(FAMILIES)
+        assert all(axes.title.get_fontsize() < page._suptitle.get_fontsize() for axes in page.axes)
+        assert len([axes for axes in page.axes if axes.get_xlabel()]) == 1
+        (legend,) = page.legends
+        assert [text.get_text() for text in legend.get_texts()] == names
+        for axes in page.axes:
+            assert [line.get_ydata()[0] for line in axes.lines] == [GREATEST, 39.2, 0.499, LEAST]
