@@ -11,7 +11,7 @@ from typing import Any
 
 import flint
 
-from atwood_cli.model.case import Case
+from atwood_cli.model.decisions import Decisions
 from atwood_cli.model.scene import Scene
 from atwood_cli.solver.answers import Answers
 
@@ -209,7 +209,7 @@ def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
 def as_doubles(given: Given) -> Given | None:
     """A scene whose numbers are the doubles nearest to those of this one; None if that is no such scene."""
     scene = Scene.read(given)
-    numbers = scene._asdict() | {"wrap": scene.wrap.number, "axle": Case(scene).axle_friction}
+    numbers = scene._asdict() | {"wrap": scene.wrap.number, "axle": Decisions(scene).axle_friction}
     try:
         row = {name: float(value) for name, value in numbers.items() if value is not None}
     except OverflowError:
@@ -232,9 +232,11 @@ def with_axle(rng: Random, given: Given) -> Given:
         f = g * (h - l) * (1 + rng.choice([-1, 0, 1]) * Fraction(10 ** rng.uniform(-25, -2)))
     if scene.mu and scene.mu < 1 and h > l and rng.random() < 0.3:
         # The verge of a massless pulley: where b (h + l) = (k - 1) l (2 h - b).
-        k1 = Fraction(Answers(Scene.read({**given, "M": "1", "I": None}), 30).settle(lambda m: m.k1))
+        k_minus_1 = Fraction(
+            Answers(Scene.read({**given, "M": "1", "I": None}), 30).settle(lambda m: m.k_minus_1)
+        )
         near = 1 + Fraction(rng.choice([-1, 1]) * 10 ** rng.uniform(-15, -3))
-        f = g * 2 * h * l * k1 / (h + l + l * k1) * near
+        f = g * 2 * h * l * k_minus_1 / (h + l + l * k_minus_1) * near
     context = Context(prec=rng.choice([3, 17, 40]), Emin=-5000, Emax=5000)
     shown = context.divide(Decimal(f.numerator), Decimal(f.denominator))
     text = str(max(min(shown, Decimal("1e450")), Decimal("1e-450")))  # as far as a number may be typed
@@ -411,8 +413,8 @@ def beside_the_critical_pulley_mass(rng: Random) -> Row:
     m1 = _log_uniform(rng, -3, 3)
     m2 = m1 * rng.uniform(1.01, 100)
     mu = rng.uniform(0.01, 0.99) * log(m2 / m1) / pi
-    k1 = _capstan(mu)
-    critical = 4 * flint.arb(m1) * m2 * k1 / (m2 - m1 * (1 + k1))
+    k_minus_1 = _capstan(mu)
+    critical = 4 * flint.arb(m1) * m2 * k_minus_1 / (m2 - m1 * (1 + k_minus_1))
     return {"m1": m1, "m2": m2, "mu": mu, "mu_k": mu * rng.uniform(0, 0.99), "M": _beside(rng, critical)}
 
 

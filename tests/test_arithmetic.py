@@ -16,11 +16,11 @@ from hypothesis import strategies as st
 
 from atwood_cli import solve
 from atwood_cli.arithmetic import settling
-from atwood_cli.arithmetic.interval import Enclosure, Enclosures, Unsettled, enclosures
+from atwood_cli.arithmetic.interval import Enclosure, Enclosures, NeedsMoreDigits, enclosures
 from atwood_cli.arithmetic.rational import EXACT, Irrational
 from atwood_cli.arithmetic.settling import settle
-from atwood_cli.model.digits import as_typed, tidy, to_digits, to_double, with_one_power
-from atwood_cli.model.digits import text as text_of
+from atwood_cli.model.digits import as_typed, share_exponent, strip_zeros, to_digits, to_double
+from atwood_cli.model.digits import format_number as text_of
 
 if TYPE_CHECKING:
     from atwood_cli.arithmetic.rational import Arithmetic, N, Quantity
@@ -156,7 +156,7 @@ def test_zero_stays_exact() -> None:
 def test_division_by_what_may_be_zero_asks_for_digits() -> None:
     at = enclosures(20)
     third = at.number(Fraction(1, 3))
-    with pytest.raises(Unsettled):
+    with pytest.raises(NeedsMoreDigits):
         at.number(1) / (third - third)
 
 
@@ -229,10 +229,10 @@ AS_TYPED = {
 
 
 def test_a_power_of_ten_stands_behind_numbers_from_1e16_on() -> None:
-    assert with_one_power("{:f} ± {:f}", (Decimal("1E15"), Decimal("1E14")), 15).endswith(
+    assert share_exponent("{:f} ± {:f}", (Decimal("1E15"), Decimal("1E14")), 15).endswith(
         " ± 100000000000000"
     )
-    assert with_one_power("{:f} ± {:f}", (Decimal("1.0E16"), Decimal("1E15")), 16) == "(1.0 ± 0.1)e16"
+    assert share_exponent("{:f} ± {:f}", (Decimal("1.0E16"), Decimal("1E15")), 16) == "(1.0 ± 0.1)e16"
 
 
 @example(Fraction(0), Fraction(2), Fraction(1))
@@ -301,7 +301,7 @@ def test_text_is_what_people_write() -> None:
     assert {value: text_of(value) for value in SHORTEST} == SHORTEST
     assert {q: as_typed(q) for q in AS_TYPED} == AS_TYPED
     whole = {q: typed for q, typed in AS_TYPED.items() if q.denominator == 1}
-    assert {q: text_of(tidy(Decimal(int(q)))) for q in whole} == whole
+    assert {q: text_of(strip_zeros(Decimal(int(q)))) for q in whole} == whole
 
 
 @given(st.floats(allow_nan=False, allow_infinity=False))

@@ -25,7 +25,7 @@ from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
 from atwood_cli.arithmetic.lazy import lazy
 from atwood_cli.arrays import STATUSES
 from atwood_cli.arrays.plan import plan
-from atwood_cli.model.case import Case
+from atwood_cli.model.decisions import Decisions
 from atwood_cli.model.quantities import ACCURACIES, NAMES, Accuracy
 from atwood_cli.model.scene import INPUTS, MASSES, Scene
 from atwood_cli.solver.answers import Answers
@@ -410,7 +410,7 @@ def test_threads_do_not_wait_for_each_others_attributes() -> None:
         seen = list(pool.map(lambda block: (block.attribute, block.attribute), [Block(), Block()]))
     assert sorted(seen) == [(0, 0), (1, 1)]
     assert isinstance(Block.attribute, lazy)
-    assert all(isinstance(vars(Case)[name], lazy) for name in ("regime", "slips", "can_slip"))
+    assert all(isinstance(vars(Decisions)[name], lazy) for name in ("regime", "slips", "can_slip"))
 
 
 # fmt: off

@@ -11,7 +11,7 @@ import sympy as sp
 l, h, c, b, g, mu, phi, t1, t2, beta = sp.symbols("l h c b g mu phi T1 T2 beta", positive=True)
 zero = sp.Integer(0)
 k = sp.exp(mu * phi)
-k1 = k - 1
+k_minus_1 = k - 1
 
 
 def _no_slip() -> tuple[sp.Expr, sp.Expr, sp.Expr]:
@@ -35,7 +35,7 @@ def test_verge_coefficient_solves_26() -> None:
 
 
 def _critical_pulley_mass() -> sp.Expr:
-    return physics.critical_pulley_mass(l, h, l * k1, physics.drive(l, h, l * k1), beta, zero)
+    return physics.critical_pulley_mass(l, h, l * k_minus_1, physics.drive(l, h, l * k_minus_1), beta, zero)
 
 
 def test_critical_pulley_mass_solves_33() -> None:
@@ -47,10 +47,13 @@ def test_critical_pulley_mass_solves_33() -> None:
 
 
 def test_conditions_36_are_where_34_and_35_diverge() -> None:
-    least = physics.least_heavier_mass(l, l * k1)
+    least = physics.least_heavier_mass(l, l * k_minus_1)
     assert sp.simplify(1 / _critical_pulley_mass()).subs(h, least).simplify() == 0
-    pulley = physics.least_pulley_mass(l * k1, beta, zero)
-    assert sp.simplify((1 / physics.critical_heavier_mass(l, c, l * k1, zero)).subs(c, beta * pulley)) == 0
+    pulley = physics.least_pulley_mass(l * k_minus_1, beta, zero)
+    assert (
+        sp.simplify((1 / physics.critical_heavier_mass(l, c, l * k_minus_1, zero)).subs(c, beta * pulley))
+        == 0
+    )
 
 
 theta = sp.Symbol("theta", positive=True)
@@ -139,15 +142,18 @@ def test_locked_pulley_is_the_limit() -> None:
         (t_l, l * g),
         (t_h, h * g),
         (t_h - t_l, physics.difference_of_moving_masses(l, h, 0, g)),
-        (physics.excess_ratio(l, h, c, b, sp.Integer(1)), physics.excess_ratio(l, h, c, b, zero)),
+        (
+            physics.gripping_ratio_minus_1(l, h, c, b, sp.Integer(1)),
+            physics.gripping_ratio_minus_1(l, h, c, b, zero),
+        ),
     ]
     for value, limit in limits:
         assert sp.simplify(sp.limit(value, c, sp.oo) - limit) == 0
 
 
 def test_heaviest_mass_is_the_limit() -> None:
-    ratio = sp.limit(physics.excess_ratio(l, h, c, b, sp.Integer(1)), h, sp.oo)
-    assert sp.simplify(ratio - physics.heaviest_excess(l, c, b)) == 0
+    ratio = sp.limit(physics.gripping_ratio_minus_1(l, h, c, b, sp.Integer(1)), h, sp.oo)
+    assert sp.simplify(ratio - physics.heaviest_ratio_minus_1(l, c, b)) == 0
 
 
 def test_they_undo_the_fall_and_the_slide() -> None:
@@ -157,8 +163,8 @@ def test_they_undo_the_fall_and_the_slide() -> None:
     assert sp.simplify(a * t**2 / 2 - H) == 0
     assert sp.simplify(v - a * t) == 0
     assert sp.simplify(physics.acceleration_of_fall(H, t) - a) == 0
-    z = physics.transfer_at_limit(l, k1)
+    z = physics.friction_mass_at_limit(l, k_minus_1)
     slide = physics.acceleration(physics.drive(l, h, z), physics.load(l, h, z), g)
-    assert sp.simplify(physics.slide_excess(l, h, slide, g) - k1) == 0
+    assert sp.simplify(physics.slide_ratio_minus_1(l, h, slide, g) - k_minus_1) == 0
     # A disk: I = M R²/2, c = M/2.
     assert physics.moment_of_inertia(c, R) == c * R**2

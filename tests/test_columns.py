@@ -363,14 +363,14 @@ def test_a_question_is_open_where_the_bound_says_nothing() -> None:
     pattern = Pattern(1, tuple(COLUMN if name in inputs else shared.get(name) for name in INPUTS))
     task = Task(pattern, frozenset({("moves_axle difference", True)}), (), 0)
     found = {}
-    for question in ("scene", "lightest_held"):
+    for question in ("scene", "lightest_at_rest"):
         program = answering(task, f"slips_at {question}", DOUBLES)
         found[question] = {name: np.empty(4, np.bool_) for name in program.results}
         columns = {name: np.array(column) for name, column in inputs.items()}
         program.run(columns, found[question], [np.empty(4, kind) for kind in program.between])
     assert found["scene"]["sure"].tolist() == [True] * 4
     assert found["scene"]["answer"].tolist() == [True, False, False, True]
-    assert found["lightest_held"]["sure"].tolist() == [True, True, True, False]
+    assert found["lightest_at_rest"]["sure"].tolist() == [True, True, True, False]
 
 
 # Programs

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli.model.case import Case
+from atwood_cli.model.decisions import Decisions
 from atwood_cli.model.digits import is_infinite, to_digits
 from atwood_cli.model.quantities import NAMES, QUANTITIES
 from atwood_cli.model.scene import Scene
@@ -195,13 +195,13 @@ def spelled(words: str) -> str:
     return re.sub(r"\b([Mml])\*", r"\1_crit", words)
 
 
-def check_laws(found: Explanation, case: Case, env: dict[str, Any]) -> None:
+def check_laws(found: Explanation, case: Decisions, env: dict[str, Any]) -> None:
     """(1) holds as printed; the ratio on the verge with each critical mass in its place."""
     light, heavy = ("m2", "m1") if case.sign < 0 else ("m1", "m2")
     replaced = {
         "c": env["β"] * env["M_crit"] if "M_crit" in env and "β" in env else None,
         heavy: None if case.locked else env.get("m_crit"),
-        light: None if case.stands_until_it_slips else env.get("l_crit") or None,
+        light: None if case.pulley_at_rest_until_it_slips else env.get("l_crit") or None,
     }
     for equation in all_equations(found):
         words = spelled(f"{symbol_of(equation)} = {chain(equation)[0][2:]}")
@@ -287,7 +287,11 @@ def known_numbers(given: Given) -> list[Decimal]:
     others += [{"M": "0", "I": None}, {"M": "0", "I": None, **none}, {"M": "inf", "I": None, **none}]
     solved = [Answers(Scene.read({**given, **other}), 40) for other in others]
     values: list[Any] = [answers[name] for answers in solved for name in NAMES[1:]]
-    beta, b, angle = Case(scene).beta, Case(scene).axle_mass or 0, mp.radians(exact(scene.wrap.number))
+    beta, b, angle = (
+        Decisions(scene).beta,
+        Decisions(scene).axle_mass or 0,
+        mp.radians(exact(scene.wrap.number)),
+    )
     inputs = [scene.m1, scene.m2, scene.M, scene.mu, scene.mu_k, beta, b, 1000 * b, scene.wrap.number]
     values += [to_digits(40)(q) for q in inputs if isinstance(q, Fraction)]
     return [Decimal(str(x)) for x in (*values, 1, 0, angle, mp.sin(angle / 2)) if x is not None]

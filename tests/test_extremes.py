@@ -52,7 +52,7 @@ def numbers(given: Given) -> SimpleNamespace:
     if "I" in given:
         x.c = mp.mpf(given["I"]) / mp.mpf(given["R"]) ** 2
     x.grip = x.mu * x.phi
-    x.k, x.k1 = mp.exp(x.grip), mp.expm1(x.grip)
+    x.k, x.k_minus_1 = mp.exp(x.grip), mp.expm1(x.grip)
     x.slide = mp.exp(mp.mpf(given.get("mu_k", given.get("mu", "0"))) * x.phi)
     x.massless, x.pull = x.g * (x.h - x.l) / (x.l + x.h), 2 * x.l * x.h * x.g / (x.l + x.h)
     return x
@@ -98,14 +98,14 @@ def verge_with_weak_friction(x: Any) -> Law:
 def critical_pulley_mass(x: Any) -> Law:
     """h - l k is lost where l k is formed first: what it hangs on are digits that l k has no room for."""
     holds = x.l * x.k > x.h
-    critical = None if holds else 4 * x.l * x.h * x.k1 / (x.h - x.l * x.k)  # (34)
+    critical = None if holds else 4 * x.l * x.h * x.k_minus_1 / (x.h - x.l * x.k)  # (34)
     return {"regime": "no-slip" if holds else "verge", "critical_pulley_mass": critical}, 0
 
 
 def beside_the_pulley_that_any_mass_leaves_holding(x: Any) -> Law:
     """Between two doubles the critical heavier mass goes to infinity."""
-    holds = x.M < 4 * x.l * x.k1
-    critical = None if holds else x.M * x.l * x.k / (x.M - 4 * x.l * x.k1)  # (35)
+    holds = x.M < 4 * x.l * x.k_minus_1
+    critical = None if holds else x.M * x.l * x.k / (x.M - 4 * x.l * x.k_minus_1)  # (35)
     return {"regime": "no-slip" if holds else "slip", "critical_heavier_mass": critical}, 0
 
 
@@ -114,7 +114,7 @@ def motion(x: Any) -> Law:
     rests = x.c == inf or x.g * (x.h - x.l) <= x.axle
     a = mp.mpf(0) if rests else (x.g * (x.h - x.l) - x.axle) / (x.h + x.l + x.c)
     light, heavy = x.l * (x.g + a), x.h * (x.g - a)
-    if not x.mu or heavy / light - 1 <= x.k1:
+    if not x.mu or heavy / light - 1 <= x.k_minus_1:
         return {"regime": "no-slip", "a": a, "rim": a, "light": light, "heavy": heavy}, 0
     light = 2 * x.l * x.h * x.g / (x.h + x.l * x.slide)
     left = light * (x.slide - 1) - x.axle
@@ -125,7 +125,7 @@ def motion(x: Any) -> Law:
 def slip_on_any_pulley_or_hardly(x: Any) -> Law:
     """At the verge (1) gives a, and (3) what pulley that takes."""
     a = x.g * (x.h - x.l * x.k) / (x.h + x.l * x.k)
-    c = (x.l * (x.g + a) * x.k1 - x.axle) / a
+    c = (x.l * (x.g + a) * x.k_minus_1 - x.axle) / a
     if x.g * (x.h - x.l) <= x.axle or x.l * x.k > x.h:
         return {"critical_pulley_mass": None}, 0
     return {"regime": "verge", "critical_pulley_mass": 2 * c} if c > 0 else {"regime": "slip"}, 0

@@ -28,7 +28,7 @@ def test_newtons_equations_hold_exactly_without_slip(
     assert t_l - l * g == l * a  # (1a)
     assert h * g - t_h == h * a  # (1b)
     assert t_h - t_l == c * a + f  # (3), M/2 = c
-    assert t_l * (1 + physics.excess_ratio(l, h, c, b, one)) == t_h
+    assert t_l * (1 + physics.gripping_ratio_minus_1(l, h, c, b, one)) == t_h
     assert physics.rim_mass(l, h, a, g, b) == c
     assert physics.gravity(l, h, c, a, f) == g
     assert physics.heavier_mass(l, c, a, g, f) == h
@@ -40,23 +40,25 @@ def test_limits_are_points_of_the_one_formula(
     l: Fraction, more: Fraction, C: Fraction, b: Fraction, D: Fraction
 ) -> None:
     h, g, none = l + b + more, Fraction(9), Fraction(0)
-    assert physics.excess_ratio(l, h, C, b, D) == physics.excess_ratio(l, h, C / D, b, one)
+    assert physics.gripping_ratio_minus_1(l, h, C, b, D) == physics.gripping_ratio_minus_1(
+        l, h, C / D, b, one
+    )
     for heavy in (h, l + b, l + b / 2):  # a pulley that stands, and tensions that are weights
-        assert l * (1 + physics.excess_ratio(l, heavy, C, b, none)) == heavy
-    assert physics.excess_ratio(l, l + b, C, b, D) == b / l  # the greatest difference that is held
-    assert physics.excess_ratio(h - b, h, C, b, D) == b / (h - b)  # the lightest mass that is held
+        assert l * (1 + physics.gripping_ratio_minus_1(l, heavy, C, b, none)) == heavy
+    assert physics.gripping_ratio_minus_1(l, l + b, C, b, D) == b / l  # the greatest difference that is held
+    assert physics.gripping_ratio_minus_1(h - b, h, C, b, D) == b / (h - b)  # the lightest mass that is held
     # Without mass the pulley passes on all but what the axle takes.
     a = physics.acceleration(physics.drive(l, h, b), physics.load(l, h, none), g)
-    assert physics.light_tension(l, a, g) * physics.excess_ratio(l, h, none, b, D) == b * g
+    assert physics.light_tension(l, a, g) * physics.gripping_ratio_minus_1(l, h, none, b, D) == b * g
     # Under a mass beyond all bounds all falls freely, so T_l = 2 l g.
-    assert 2 * l * g * physics.heaviest_excess(l, C, b) == C * g + b * g
+    assert 2 * l * g * physics.heaviest_ratio_minus_1(l, C, b) == C * g + b * g
 
 
 @given(masses, masses, st.fractions(min_value=1, max_value=20), masses, axles, masses)
 def test_newtons_equations_hold_exactly_at_the_verge_and_in_slip(
     l: Fraction, more: Fraction, k: Fraction, g: Fraction, f: Fraction, beta: Fraction
 ) -> None:
-    b, z = physics.axle_mass(f, g), physics.transfer_at_limit(l, k - 1)
+    b, z = physics.axle_mass(f, g), physics.friction_mass_at_limit(l, k - 1)
     h = l * k + more
     d = physics.drive(l, h, z)
     a = physics.acceleration(d, physics.load(l, h, z), g)
@@ -81,10 +83,10 @@ def test_the_critical_heavier_mass_is_where_the_ratio_is_the_capstans(
     assume(c != b and c + b != 2 * z)
     h = physics.critical_heavier_mass(l, c, z, b)
     if h - l > b:
-        assert physics.excess_ratio(l, h, c, b, one) == k - 1
+        assert physics.gripping_ratio_minus_1(l, h, c, b, one) == k - 1
     if 2 * z > b:
         pulley = physics.least_pulley_mass(z, Fraction(1, 2), b)
-        assert physics.heaviest_excess(l, pulley / 2, b) == k - 1
+        assert physics.heaviest_ratio_minus_1(l, pulley / 2, b) == k - 1
 
 
 @pytest.mark.parametrize("name", [name for name, one in vars(physics).items() if isfunction(one)])

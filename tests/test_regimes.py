@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve
-from atwood_cli.model.case import Case
+from atwood_cli.model.decisions import Decisions
 from atwood_cli.model.digits import SHOWN_DIGITS
 from atwood_cli.sweep.changes import LEAST_INPUT, changes
 from atwood_cli.sweep.ranges import read_sweep, with_value
@@ -44,7 +44,7 @@ def check_with_oracle(words: dict[str, str], *places: float) -> int:
     said = list(changes(swept.scene, along))
     low, high = along.ends
     stretches = list(pairwise([low, *(end for change in said for end in (change.last, change.first)), high]))
-    in_turn = [said[0].before if said else Case(swept.scene).regime, *(change.after for change in said)]
+    in_turn = [said[0].before if said else Decisions(swept.scene).regime, *(change.after for change in said)]
     assert in_turn[:-1] == [change.before for change in said]
     for change in said:
         assert change.at.exact in (change.last, change.first)

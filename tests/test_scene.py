@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import Scene, SceneError, solve
-from atwood_cli.model.case import Case
+from atwood_cli.model.decisions import Decisions
 from atwood_cli.model.scene import BODIES, Axle
 from atwood_cli.model.units import UNITS
 
@@ -172,7 +172,9 @@ def test_units_and_names_as_people_write_them(name: str, text: str, value: Any) 
 
 @pytest.mark.parametrize(("axle", "newtons"), AXLES.items())
 def test_an_axle_is_a_force_at_the_rim_or_a_torque(axle: Any, newtons: Any) -> None:
-    assert Case(Scene.read({"m1": 1, "m2": 3, "R": "5cm", "axle": axle})).axle_friction == Fraction(newtons)
+    assert Decisions(Scene.read({"m1": 1, "m2": 3, "R": "5cm", "axle": axle})).axle_friction == Fraction(
+        newtons
+    )
 
 
 def test_what_was_measured_takes_units_too() -> None:

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from atwood_cli import SceneError, solve, solve_arrays
-from atwood_cli.model.digits import to_digits, to_place, with_uncertainty
+from atwood_cli.model.digits import rounding_to_place, to_digits, with_uncertainty
 from atwood_cli.model.scene import read_input
 from atwood_cli.model.units import Angle
 from atwood_cli.solver.answers import Answers, read_answers
@@ -378,8 +378,8 @@ SIZES = {
 @pytest.mark.parametrize("numbers", SIZES)
 def test_numbers_of_every_size(numbers: str) -> None:
     value, u = map(Decimal, numbers.split())
-    assert with_uncertainty(lambda place: to_place(place)(value), u) == SIZES[numbers]
-    assert with_uncertainty(lambda place: to_place(place)(Fraction(value)), u) == SIZES[numbers]
+    assert with_uncertainty(lambda place: rounding_to_place(place)(value), u) == SIZES[numbers]
+    assert with_uncertainty(lambda place: rounding_to_place(place)(Fraction(value)), u) == SIZES[numbers]
 
 
 def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:

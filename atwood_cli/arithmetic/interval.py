@@ -29,7 +29,7 @@ DOUBLE_EXPONENT = 300  # the largest exponent of a number that is taken for a do
 LOG10_E = Decimal("0.434294481903")  # rounded down, so that the rest of an argument is not negative
 
 
-class Unsettled(ArithmeticError):
+class NeedsMoreDigits(ArithmeticError):
     """The enclosure is too wide to go on: compute with more digits (``digits``, if the number is known)."""
 
     def __init__(self, digits: int = 0) -> None:
@@ -85,14 +85,14 @@ class Enclosure:
     def __truediv__(self, other: Enclosure | int) -> Enclosure:
         """Return the quotient by a positive number, as every denominator of the equations is.
 
-        Raises Unsettled for a denominator that may be zero, ZeroDivisionError for one that is.
+        Raises NeedsMoreDigits for a denominator that may be zero, ZeroDivisionError for one that is.
         Raises OverflowError for one beyond 10^LARGEST_EXPONENT, which is infinity: a quotient would be 0.
         """
         other, ar = self._lift(other), self.arithmetic
         if other.lo == INFINITY:
             raise OverflowError(f"a denominator is beyond 10^{LARGEST_EXPONENT}")
         if other.lo <= ZERO:
-            raise ZeroDivisionError if other.hi == 0 == other.lo else Unsettled
+            raise ZeroDivisionError if other.hi == 0 == other.lo else NeedsMoreDigits
         lo = ar.down.divide(self.lo, other.hi if self.lo >= ZERO else other.lo)
         return Enclosure(ar, lo, ar.up.divide(self.hi, other.lo if self.hi >= ZERO else other.hi))
 
@@ -188,7 +188,7 @@ class Enclosures:
         a, b = ZERO, end.lo
         f_a, f_b = f_at(a), f_at(b)
         if not f_a.hi < 0 < f_b.lo:
-            raise Unsettled(wanted)
+            raise NeedsMoreDigits(wanted)
         x, f_x, y, f_y, blur = a, f_a.hi, b, f_b.lo, self._width(f_b).hi
         slope = near.divide(near.subtract(f_y, f_x), b)
         for _ in range(8 * self.digits):
@@ -211,7 +211,7 @@ class Enclosures:
             if lo > 0 and f_at(lo).hi < 0 < f_at(hi).lo:
                 return Enclosure(self, lo, hi)
             error = near.scaleb(error, self.digits // 8)
-        raise Unsettled(wanted)
+        raise NeedsMoreDigits(wanted)
 
     def exp(self, x: Enclosure) -> Enclosure:
         """Return e^x for x >= 0."""

@@ -22,7 +22,7 @@ from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
 from typing import TYPE_CHECKING, TypeVar
 
-from .interval import ZERO, Enclosure, Unsettled, decimal_context, enclosures
+from .interval import ZERO, Enclosure, NeedsMoreDigits, decimal_context, enclosures
 from .rational import EXACT, Irrational
 
 if TYPE_CHECKING:
@@ -54,7 +54,7 @@ def settle(quantity: Quantity, round_: Callable[[Fraction | Decimal], T], digits
         if precision < TIE_DIGITS // 8:
             return None
         if precision < TIE_DIGITS:  # it may be a tie, which more digits than that show
-            raise Unsettled(TIE_DIGITS + 4 * GUARD_DIGITS)
+            raise NeedsMoreDigits(TIE_DIGITS + 4 * GUARD_DIGITS)
         if value.lo <= 0 <= value.hi:
             return round_(ZERO)
         near_lo, near_hi = TO_TIE.plus(value.lo), TO_TIE.plus(value.hi)
@@ -86,7 +86,7 @@ def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits:
         try:
             if (settled := answer(quantity(enclosures(digits)))) is not None:
                 return settled
-        except Unsettled as unsettled:
+        except NeedsMoreDigits as unsettled:
             needed = unsettled.digits
         digits = max(2 * digits, needed)
     raise ArithmeticError(f"not settled within {LARGEST_PRECISION} digits")

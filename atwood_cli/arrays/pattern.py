@@ -21,7 +21,7 @@ COLUMN = "column"
 
 
 class Pattern(NamedTuple):
-    """What rows have in common before any question: which mass is heavier (`Case.sign`), and each input.
+    """What rows have in common before any question: which mass is heavier (`Decisions.sign`), and each input.
 
     An input is None (not given), inf, a Fraction that is the same in all rows, or COLUMN.
     """
@@ -40,7 +40,7 @@ class Pattern(NamedTuple):
         return Scene(**fields)
 
 
-Decisions = frozenset[tuple[str, bool]]
+Branches = frozenset[tuple[str, bool]]
 """Questions, each with the answer of a group's rows."""
 
 
@@ -48,7 +48,7 @@ class Task(NamedTuple):
     """Quantities to compute at a level of precision, for rows with one pattern and the same decisions."""
 
     pattern: Pattern
-    decisions: Decisions
+    branches: Branches
     names: tuple[str, ...]
     level: int
 

@@ -37,13 +37,13 @@ from typing import Any, Literal, NamedTuple, cast
 from ..arithmetic.lazy import lazy
 from ..arithmetic.settling import settle
 from ..arithmetic.symbolic import Formula, Term, formula
-from ..model.case import Case, Place, is_zero
+from ..model.decisions import Decisions, LimitingCase, is_zero
 from ..model.digits import to_double
 from ..model.machine import Machine
 from ..model.quantities import REGIMES, Accuracy, Undetermined
 from .doubles import DOUBLES, Doubles, NoProgram, certified, equal, less
 from .pairs import PAIRS
-from .pattern import Decisions, Pattern, Task
+from .pattern import Branches, Pattern, Task
 from .program import Program
 
 LEVELS: dict[str, tuple[Doubles, ...]] = {"certified": (DOUBLES, PAIRS), "exact": (PAIRS,)}
@@ -62,12 +62,12 @@ class Undecided(Exception):
     """
 
 
-class _GroupCase(Case):
+class _GroupDecisions(Decisions):
     """The case of a group of rows, or of a row in it: its decisions are those of the group."""
 
-    def __init__(self, pattern: Pattern, decisions: Decisions, number: Callable[[str], Any]) -> None:
+    def __init__(self, pattern: Pattern, branches: Branches, number: Callable[[str], Any]) -> None:
         super().__init__(pattern.scene(number))
-        self.sign, self._decisions = pattern.sign, dict(decisions)
+        self.sign, self._branches = pattern.sign, dict(branches)
 
     @lazy
     def rim_mass(self) -> Any:
@@ -75,9 +75,9 @@ class _GroupCase(Case):
         return self.pulley_mass if is_zero(self.pulley_mass) else super().rim_mass
 
     def _decided(self, question: str) -> bool:
-        if question not in self._decisions:
+        if question not in self._branches:
             raise Undecided(question)
-        return self._decisions[question]
+        return self._branches[question]
 
     @lazy
     def long_wrap(self) -> bool:
@@ -89,18 +89,18 @@ class _GroupCase(Case):
         wrap = self.scene.wrap
         return wrap.ends_hang_down if isinstance(wrap.number, Fraction) else self._decided("ends_hang_down")
 
-    def slips_at(self, place: Place) -> bool:
+    def slips_at(self, place: LimitingCase) -> bool:
         return self._decided(f"slips_at {place}")
 
-    def slides_at(self, place: Place) -> bool:
-        return self.slips_at(place) if self.at_static_limit else self._decided(f"slides_at {place}")
+    def slides_at(self, place: LimitingCase) -> bool:
+        return self.slips_at(place) if self.limit_is_static else self._decided(f"slides_at {place}")
 
     def moves_axle(self, which: Literal["difference", "heavy"]) -> bool:
         return self._decided(f"moves_axle {which}")
 
 
 def _machine_of_columns(task: Task, ar: Doubles) -> Machine[Any]:
-    case = _GroupCase(task.pattern, task.decisions, lambda name: ar.number(Formula("symbol", name)))
+    case = _GroupDecisions(task.pattern, task.branches, lambda name: ar.number(Formula("symbol", name)))
     return Machine(case, ar)
 
 
@@ -181,13 +181,13 @@ def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
         margin: Any = getattr(case, point) * machine.g - machine.f
     else:
         mu = case.scene.mu if method == "slips_at" else case.limiting_mu
-        margin = ar.log1p(case.excess(cast(Place, point), ar)) - ar.number(mu) * machine.phi
+        margin = ar.log1p(case.ratio_minus_1(cast(LimitingCase, point), ar)) - ar.number(mu) * machine.phi
     return {"sure": less(margin.bound, 0.25), "answer": less(0.0, margin.parts[0])}
 
 
 def nearest_double(task: Task, name: str, number: Callable[[str], Fraction]) -> float | None:
     """Solve one quantity of one row exactly, by its group's decisions; None if they do not suffice."""
-    case = _GroupCase(task.pattern, task.decisions, number)
+    case = _GroupDecisions(task.pattern, task.branches, number)
     try:
         return settle(lambda ar: getattr(Machine(case, ar), name), to_double, ENOUGH_DIGITS)
     except (Undecided, Undetermined, OverflowError):

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.case import Case
+from ..model.decisions import Decisions
 from ..model.quantities import REGIMES, Accuracy
 from ..solver.answers import Answers
 from .pairs import PAIRS
@@ -77,8 +77,8 @@ class Rows:
             for answer in (False, True):
                 places = np.flatnonzero(answers == answer)
                 answered = rows if places.size == answers.size else select(rows, places)
-                decisions = task.decisions | {(plan_.question, answer)}
-                yield answered, task._replace(decisions=decisions, names=plan_.asking)
+                decisions = task.branches | {(plan_.question, answer)}
+                yield answered, task._replace(branches=decisions, names=plan_.asking)
 
     def _run_plan(self, plan_: Plan, rows: Index) -> dict[str, Flags]:
         """Run the program of a plan, and return its conditions and answers, by their names."""
@@ -128,7 +128,7 @@ class Rows:
         # Exact arithmetic decides the rest.
         for place in np.flatnonzero(~sure).tolist():
             method, point = question.split()
-            case = Case(task.pattern.scene(self._number(rows[place])))
+            case = Decisions(task.pattern.scene(self._number(rows[place])))
             answers[place] = getattr(case, method)(point)
         return answers
 
@@ -147,7 +147,7 @@ class Rows:
         """Solve the scene that is in each of these rows."""
         number = self._number(rows[0])
         # What the group has decided spares a single quantity all questions, if it suffices.
-        if len(task.names) == 1 and task.decisions:
+        if len(task.names) == 1 and task.branches:
             value = nearest_double(task, task.names[0], number)
             if value is not None:
                 self.results[task.names[0]][rows] = value

@@ -80,7 +80,7 @@ def batch(
 ) -> int:
     from ..batch.run import Job, run_batch
     from ..batch.solving import VOCABULARY, Question, Tally
-    from ..output.page import watched
+    from ..output.page import with_progress
     from ..tables.headings import read_named
 
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
@@ -91,7 +91,7 @@ def batch(
     tally = Tally(set(names))
     before = _stamp(output)
     try:
-        remarks = run_batch(job, watched, tally)
+        remarks = run_batch(job, with_progress, tally)
     except KeyboardInterrupt:
         stopped = f"stopped after {counted(tally.rows, 'row')}"
         if not is_stream(output) and _stamp(output) == before:

@@ -5,10 +5,10 @@ from typing import Annotated
 
 from ..model.scene import Scene, read_digits
 from ..output.scene_page import contact_record, print_contact
-from ..output.text import Forms, Target, say, show
+from ..output.text import Destination, Report, say, show
 from ..solver.answers import Answers
 from ..solver.balance import contact as solve_contact
-from .options import DONE, OUTPUT, SCENE, Bare, Digits, FigureFile, option, takes
+from .options import DONE, OUTPUT, SCENE, Bare, Digits, FigureFile, option, with_options
 
 DEFAULT_POINTS = 13
 Points = Annotated[
@@ -30,10 +30,10 @@ Examples:
 """
 
 
-@takes(SCENE, OUTPUT, needs={"bare": "figure"})
+@with_options(SCENE, OUTPUT, needs={"bare": "figure"})
 def contact(
     given: Mapping[str, str | None],
-    target: Target,
+    target: Destination,
     *,
     points: Points = None,
     digits: Digits = None,
@@ -48,7 +48,7 @@ def contact(
         from ..output.scene_figure import save
 
         save(answers, arc.kind, figure, target.force, bare, curves=True)
-    forms = Forms(
+    forms = Report(
         json=lambda: contact_record(answers, arc),
         records=lambda: arc.points,
         page=lambda: print_contact(answers, arc),

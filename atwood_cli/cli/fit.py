@@ -7,7 +7,7 @@ import typer
 from ..laboratory.results import FITTED, QUANTITIES, RESULTS, SYMBOLS
 from ..model.quantities import divided, read_names
 from ..model.scene import SceneError
-from ..output.text import Target, say, show
+from ..output.text import Destination, say, show
 from .options import (
     COULD_NOT,
     DONE,
@@ -18,7 +18,7 @@ from .options import (
     check_figure,
     option,
     scene_option,
-    takes,
+    with_options,
 )
 
 Table = Annotated[
@@ -78,10 +78,10 @@ which nothing moves or the lighter side falls; they are not used. Others are lef
 """
 
 
-@takes(OUTPUT, needs={"bare": "figure"})
+@with_options(OUTPUT, needs={"bare": "figure"})
 def fit(
     table: Table,
-    target: Target,
+    target: Destination,
     *,
     find: Find = None,
     without: Without = None,

@@ -14,7 +14,7 @@ from ..model.quantities import NAMES, QUANTITIES
 from ..model.scene import INPUTS, SceneError, parameter_of
 from ..model.units import read_number, shortened
 from ..output.files import STDOUT, check_free
-from ..output.text import FORMS, Target, say
+from ..output.text import FORMS, Destination, say
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """The environment variable by which a shell asks for completions of a word."""
@@ -87,7 +87,7 @@ Rules = Mapping[str, str]
 NO_RULES: Rules = {}
 
 
-class Shared(NamedTuple):
+class OptionGroup(NamedTuple):
     """Options that several commands have, and the argument that a command gets instead of them."""
 
     argument: str
@@ -95,8 +95,8 @@ class Shared(NamedTuple):
     read: Callable[[Mapping[str, Any]], Any]
 
 
-def takes(
-    *shared: Shared, no_effect: Rules = NO_RULES, needs: Rules = NO_RULES
+def with_options(
+    *shared: OptionGroup, no_effect: Rules = NO_RULES, needs: Rules = NO_RULES
 ) -> Callable[[Command], Command]:
     """Give a command groups of options: typer sees each option, the command the arguments read from them.
 
@@ -167,7 +167,7 @@ def _may_be_radians(typed: str) -> bool:
     return not any(angle.unit for angle in angles) and least < max(angle.value for angle in angles) < most
 
 
-SCENE = Shared(
+SCENE = OptionGroup(
     "given",
     {name: Annotated[str | None, scene_option(name)] for name in INPUTS},
     lambda options: {name: options[name] for name in INPUTS},
@@ -179,7 +179,7 @@ def quantity_meanings() -> Mapping[str, str]:
     return {"regime": "no-slip, verge or slip", **{name: QUANTITIES[name].meaning for name in NAMES[1:]}}
 
 
-# Shared by several commands
+# OptionGroup by several commands
 
 Digits = Annotated[
     str | None, option("Output", metavar="N", help="Significant digits; 6 in tables, doubles elsewhere.")
@@ -216,7 +216,7 @@ Labels = Annotated[
 Force = Annotated[bool, option("Files", "--force", help="Replace an existing file.")]
 
 
-def results(*forms: str) -> Shared:
+def results(*forms: str) -> OptionGroup:
     """Return the options that choose the form of a result among these, and the file that it goes to."""
     suffixes = ", ".join(f"{FORMS[form].suffix}" for form in forms)
     options = {
@@ -233,10 +233,10 @@ def results(*forms: str) -> Shared:
         ],
         "force": Force,
     }
-    return Shared("target", options, _read_target)
+    return OptionGroup("target", options, _read_target)
 
 
-def _read_target(options: Mapping[str, Any]) -> Target:
+def _read_target(options: Mapping[str, Any]) -> Destination:
     """Read the form and the file of a result. Raises SceneError, FileExistsError."""
     asked = [form for form in FORMS if options.get(form)]
     if asked[1:]:
@@ -247,12 +247,12 @@ def _read_target(options: Mapping[str, Any]) -> Target:
             "force", None, "needs --output or --figure" if "figure" in options else "needs --output"
         )
     if file in (None, STDOUT):
-        return Target(form, None, force)
+        return Destination(form, None, force)
     if (figure := options.get("figure")) and os.path.realpath(figure) == os.path.realpath(file):
         raise SceneError("figure", figure, "is the file of --output; name another")
     form = _form_of_file(file, form, options)
     check_free(Path(file), force)
-    return Target(form, file, force)
+    return Destination(form, file, force)
 
 
 def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 from ..model.quantities import QUANTITIES, REGIMES
-from ..output.text import VERSION, Forms, Target, show
-from .options import DONE, OUTPUT, takes
+from ..output.text import VERSION, Destination, Report, show
+from .options import DONE, OUTPUT, with_options
 
 HELP = """List the quantities: symbols, units, meanings, equations.
 
@@ -20,8 +20,8 @@ ON_FRICTION = (
 )
 
 
-@takes(OUTPUT)
-def quantities(target: Target) -> int:
+@with_options(OUTPUT)
+def quantities(target: Destination) -> int:
     """Run the command."""
     columns = ("name", "symbol", "unit", "meaning", "equation")
     rows = [
@@ -33,7 +33,7 @@ def quantities(target: Target) -> int:
     ]
     records = [dict(zip(columns, row, strict=True)) for row in rows]
     show(
-        Forms(lambda: {"version": VERSION, "quantities": records}, lambda: records, lambda: _print(rows)),
+        Report(lambda: {"version": VERSION, "quantities": records}, lambda: records, lambda: _print(rows)),
         target,
     )
     return DONE

@@ -6,7 +6,7 @@ from typing import Annotated
 from ..model.quantities import MEASURED_NAMES, NAMES, read_names
 from ..model.scene import SceneError, read_digits
 from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_table, record
-from ..output.text import Forms, Target, cell, said_of_scene, say, show
+from ..output.text import Destination, Report, cell, relevant_inputs, say, show
 from ..solver.answers import Answers, read_answers
 from ..solver.expected import failure, read_condition
 from ..solver.messages import reasons_at, unmarked
@@ -20,7 +20,7 @@ from .options import (
     option,
     quantity_meanings,
     scene_option,
-    takes,
+    with_options,
 )
 
 
@@ -72,7 +72,7 @@ Any number may carry its standard uncertainty; results then have theirs.
 """
 
 
-@takes(
+@with_options(
     SCENE,
     OUTPUT,
     no_effect={"explain": "json csv budget", "all": "json csv only explain"},
@@ -80,7 +80,7 @@ Any number may carry its standard uncertainty; results then have theirs.
 )
 def solve(
     given: Mapping[str, str | None],
-    target: Target,
+    target: Destination,
     *,
     a: Acceleration = None,
     drop: Drop = None,
@@ -105,7 +105,7 @@ def solve(
     if figure is not None:
         _draw(answers, figure, bare, target.force)
     values = [cell(answers[name]) for name in names]
-    forms = Forms(
+    forms = Report(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
         page=lambda: _explain(answers, names, markdown) if explain else print_table(answers, all, budget),
@@ -129,7 +129,7 @@ def _explain(answers: Answers, names: Sequence[str], markdown: bool) -> None:
     from ..output.page import print_explanation
     from ..solver.steps import explain
 
-    given = said_of_scene(answers.case.scene, answers.case.motion)
+    given = relevant_inputs(answers.case.scene, answers.case.motion)
     print_explanation([*given.values()], explain(answers, names), markdown)
 
 

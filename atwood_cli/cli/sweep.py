@@ -5,11 +5,22 @@ from collections.abc import Mapping
 from ..model.quantities import read_names
 from ..model.scene import read_digits
 from ..model.units import counted
-from ..output.text import Forms, Target, say, show
+from ..output.text import Destination, Report, say, show
 from ..sweep.ranges import read_sweep
 from ..sweep.sweep_figure import drawable, save
 from ..sweep.sweep_page import SweepPage
-from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Columns, Digits, FigureFile, check_figure, takes
+from .options import (
+    COULD_NOT,
+    DONE,
+    OUTPUT,
+    SCENE,
+    Bare,
+    Columns,
+    Digits,
+    FigureFile,
+    check_figure,
+    with_options,
+)
 
 HELP = """Solve a range or a list of scenes.
 
@@ -28,10 +39,10 @@ a range; a second one, or a list, is a curve for each value.
 """
 
 
-@takes(SCENE, OUTPUT, needs={"bare": "figure"})
+@with_options(SCENE, OUTPUT, needs={"bare": "figure"})
 def sweep(
     given: Mapping[str, str | None],
-    target: Target,
+    target: Destination,
     *,
     only: Columns = None,
     digits: Digits = None,
@@ -47,7 +58,7 @@ def sweep(
         save(swept, drawn, figure, target.force, bare)
     forms = SweepPage(swept, names, precision)
     try:
-        aside = show(Forms(forms.json, forms.records, forms.page, forms.notes), target)
+        aside = show(Report(forms.json, forms.records, forms.page, forms.notes), target)
     except KeyboardInterrupt:
         if forms.done:
             say(f"stopped after {forms.done} of {counted(swept.total, 'row')}")

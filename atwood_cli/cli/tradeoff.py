@@ -6,8 +6,8 @@ from typing import Annotated
 
 from ..model.quantities import read_names
 from ..model.scene import read_whole
-from ..output.text import Forms, Target, show
-from .options import DONE, Bare, FigureFile, check_figure, option, results, takes
+from ..output.text import Destination, Report, show
+from .options import DONE, Bare, FigureFile, check_figure, option, results, with_options
 
 
 def _families() -> Mapping[str, str]:
@@ -53,9 +53,9 @@ Examples:
 """
 
 
-@takes(results("json"), needs={"bare": "figure"})
+@with_options(results("json"), needs={"bare": "figure"})
 def tradeoff(
-    target: Target,
+    target: Destination,
     *,
     family: Families = None,
     scenes: Scenes = None,
@@ -63,7 +63,7 @@ def tradeoff(
     figure: FigureFile = None,
     bare: Bare = False,
 ) -> int:
-    from ..output.page import watched
+    from ..output.page import with_progress
     from ..tradeoff import tradeoff_page
     from ..tradeoff.measure import FAMILIES, MOST_SCENES, draw_scenes, measure
 
@@ -72,12 +72,12 @@ def tradeoff(
     count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
     start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
     parts = (measure(name, draw_scenes(name, count, start)) for name in families)
-    measured = list(chain.from_iterable(watched(parts, len(families))))
+    measured = list(chain.from_iterable(with_progress(parts, len(families))))
     if figure is not None:
         from ..tradeoff.tradeoff_page import save
 
         save(measured, figure, target.force, bare)
-    forms = Forms(
+    forms = Report(
         json=lambda: tradeoff_page.record(measured, count, start),
         records=list,
         page=lambda: tradeoff_page.print_table(measured, count, start),

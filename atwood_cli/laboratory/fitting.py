@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import fdtrc, stdtrit
 
 from ..model import physics
-from ..model.case import Case
+from ..model.decisions import Decisions
 from ..model.quantities import read_names
 from ..model.scene import Input, Scene, SceneError, parameter_of
 from ..tables.sources import Unreadable
@@ -153,7 +153,7 @@ def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
             raise SceneError(x, one.given, BEYOND)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
     scene = Scene.of({**inputs, **masses})
-    case, values = Case(scene), {"gravity": float(scene.g)}
+    case, values = Decisions(scene), {"gravity": float(scene.g)}
     if scene.axle is not None:
         values["axle"] = float(case.axle_friction or 0)
     if scene.M is not None or scene.I is not None:

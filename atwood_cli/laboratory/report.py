@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
-from ..model.digits import text, to_place
+from ..model.digits import format_number, rounding_to_place
 from ..model.scene import UNMEASURED, parameter_of
 from ..model.units import counted
 from ..output.page import Page, aligned
-from ..output.text import VERSION, Forms, cell, inputs_in_words
+from ..output.text import VERSION, Report, cell, inputs_in_words
 from .estimate import Data, as_data, expected
 from .fitting import Fitted, to_vary
 from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
@@ -66,7 +66,7 @@ def _oddities(fit: Fitted) -> list[str]:
     unit, symbol = parameter_of(fit.runs.kind).unit, {"a": "a", "time": "t"}[fit.runs.kind]
     said, labels = list[str](), list[str]()
     for (i, place), away in fit.cells.items():
-        label, value = fit.used[i].cells[place], text(float(fit.used[i].measured[place].value))
+        label, value = fit.used[i].cells[place], format_number(float(fit.used[i].measured[place].value))
         where = in_words(label) if ":" in label else f"{in_words(label)}: {symbol}"
         far = f"{_far(away)} standard deviations from its repeats"
         said.append(f"{_capital(where)} = {value} {unit} is {far}; --without {label}.")
@@ -184,7 +184,7 @@ def results_of(fit: Fitted) -> Fit:
     )
 
 
-def forms_of(fit: Fitted, only: Sequence[str]) -> Forms:
+def forms_of(fit: Fitted, only: Sequence[str]) -> Report:
     """Return a fit in the forms in which it may be asked for; ``only`` names results."""
     record: dict[str, Any] = results_of(fit)._asdict()
     lines: Sequence[Mapping[str, Any]] = record["runs"]
@@ -217,7 +217,7 @@ def forms_of(fit: Fitted, only: Sequence[str]) -> Forms:
         return [*values, *why, *head(fit)[1:]]
 
     values = [cell(record[name]) for name in only]
-    return Forms(json, records, lambda: _print_page(fit, lines), beside, values)
+    return Report(json, records, lambda: _print_page(fit, lines), beside, values)
 
 
 def _records(fit: Fitted) -> list[dict[str, Any]]:
@@ -291,9 +291,11 @@ def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[
     residuals = [line["residual"] for line in lines]
     return {
         "row": [line["rows"].replace(" ", ",") + (" !" if line["rows"] in odd else "") for line in lines],
-        **{f"{name} (kg)": [text(line[name]) for line in lines] for name in ("m1", "m2")},
+        **{f"{name} (kg)": [format_number(line[name]) for line in lines] for name in ("m1", "m2")},
         f"{kind} ({unit})": column(kind),
         f"expected ({unit})": column("expected"),
         f"u ({unit})": ["" if line["u"] is None else cut(line["u"], line["u"]) for line in lines],
-        "residual/u": ["" if one is None else f"{to_place(-2)(Fraction(one)):f}" for one in residuals],
+        "residual/u": [
+            "" if one is None else f"{rounding_to_place(-2)(Fraction(one)):f}" for one in residuals
+        ],
     }

@@ -4,7 +4,14 @@ from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..model.digits import DOUBLE_DIGITS, text, tidy, to_digits, to_place, with_one_power
+from ..model.digits import (
+    DOUBLE_DIGITS,
+    format_number,
+    rounding_to_place,
+    share_exponent,
+    strip_zeros,
+    to_digits,
+)
 
 
 class Quantity(NamedTuple):
@@ -59,12 +66,12 @@ def published(value: float, uncertainty: float, interval: Sequence[float] = (0, 
     """
     largest = max(map(abs, (value, uncertainty, *interval)))
     place = max(_place(value, uncertainty), _place(largest, largest) - (DOUBLE_DIGITS - 2))
-    numbers = [to_place(place)(Fraction(x)) for x in (value, uncertainty, *interval)]
+    numbers = [rounding_to_place(place)(Fraction(x)) for x in (value, uncertainty, *interval)]
     if not numbers[1]:
-        return text(to_digits(MOST_DIGITS if uncertainty else 6)(Fraction(value))), ""
+        return format_number(to_digits(MOST_DIGITS if uncertainty else 6)(Fraction(value))), ""
     power = max(number.adjusted() for number in numbers[:2] if number)
-    both = with_one_power("{:f} ± {:f}", numbers[:2], power)
-    return both, with_one_power("{:f} to {:f}", numbers[2:], power)
+    both = share_exponent("{:f} ± {:f}", numbers[:2], power)
+    return both, share_exponent("{:f} to {:f}", numbers[2:], power)
 
 
 def with_u(value: float, uncertainty: float | None) -> str:
@@ -80,8 +87,8 @@ def equation(name: str, value: float, uncertainty: float) -> str:
 def cut(value: float, uncertainty: float | None) -> str:
     """Return a value cut at the second digit of an uncertainty; to six digits if there is none."""
     if not uncertainty:
-        return text(to_digits(6)(Fraction(value)))
-    return f"{to_place(_place(value, uncertainty))(Fraction(value)):f}"
+        return format_number(to_digits(6)(Fraction(value)))
+    return f"{rounding_to_place(_place(value, uncertainty))(Fraction(value)):f}"
 
 
 def _place(value: float, uncertainty: float) -> int:
@@ -92,7 +99,7 @@ def _place(value: float, uncertainty: float) -> int:
 
 def rounded(value: float, digits: int = 2) -> str:
     """Return a value with a few digits, as people write it."""
-    return text(tidy(to_digits(digits)(Fraction(value))))
+    return format_number(strip_zeros(to_digits(digits)(Fraction(value))))
 
 
 def in_small_unit(value: float, unit: str) -> str:

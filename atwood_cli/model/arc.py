@@ -24,7 +24,7 @@ from . import physics
 if TYPE_CHECKING:
     from ..arithmetic.rational import Arithmetic
 
-Kind = Literal["exponential", "creep", "least"]
+Profile = Literal["exponential", "creep", "least"]
 STUCK = {"exponential": (False,), "creep": (True, False), "least": (False, True, False)}
 """The pieces of each profile from the light end: whether the string is stuck over them."""
 
@@ -47,7 +47,9 @@ class Arc(NamedTuple, Generic[N]):
     end: Knot[N]
 
 
-def arcs(ar: Arithmetic[N], kind: Kind, mu: N, lengths: Sequence[N], light: N, end: Knot[N]) -> list[Arc[N]]:
+def arcs(
+    ar: Arithmetic[N], kind: Profile, mu: N, lengths: Sequence[N], light: N, end: Knot[N]
+) -> list[Arc[N]]:
     """Return pieces of these lengths (rad) as arcs, from the light end with its tension (N) to ``end``."""
     zero, one = ar.number(0), ar.number(1)
     knots = [Knot(zero, one, zero, light)]

@@ -69,7 +69,7 @@ def rounding_apart_from(given: Fraction | None, digits: int) -> Rounding[Decimal
     return round_
 
 
-def to_place(place: int) -> Rounding[Decimal]:
+def rounding_to_place(place: int) -> Rounding[Decimal]:
     """Return a function that rounds to a multiple of 10^place, half to even, never -0."""
     unit = Decimal((0, (1,), place))
 
@@ -97,11 +97,11 @@ def as_typed(q: Fraction, longest: float = 16) -> str:
     Floats print as Python prints them.
     """
     if isinstance(q, OfFloat):
-        return text(float(q))
+        return format_number(float(q))
     value = exact_decimal(q)
     if value is None and len(str(q)) > longest:
-        value = tidy(to_digits(DOUBLE_DIGITS)(q))
-    return str(q) if value is None else text(value)
+        value = strip_zeros(to_digits(DOUBLE_DIGITS)(q))
+    return str(q) if value is None else format_number(value)
 
 
 def exact_or_rounded(q: Fraction, round_: Rounding[T]) -> T | Decimal:
@@ -113,28 +113,28 @@ def exact_or_rounded(q: Fraction, round_: Rounding[T]) -> T | Decimal:
 def with_uncertainty(round_to: Callable[[int], Decimal], u: Decimal) -> str:
     """Return a value and its standard uncertainty u > 0, rounded at the second digit of u: 0.764 ± 0.012.
 
-    ``round_to`` returns the value rounded to a multiple of 10^place, as `to_place` does.
+    ``round_to`` returns the value rounded to a multiple of 10^place, as `rounding_to_place` does.
     """
     place = to_digits(2)(u).adjusted() - 1
-    pair = round_to(place), to_place(place)(u)
-    return with_one_power("{:f} ± {:f}", pair, max(x.adjusted() for x in pair if x))
+    pair = round_to(place), rounding_to_place(place)(u)
+    return share_exponent("{:f} ± {:f}", pair, max(x.adjusted() for x in pair if x))
 
 
-def with_one_power(form: str, numbers: Sequence[Decimal], power: int) -> str:
+def share_exponent(form: str, numbers: Sequence[Decimal], power: int) -> str:
     """Return numbers in a form, with a common power of ten behind them if they are hard to read without."""
     if -4 <= power < 16:
         return form.format(*numbers)
     return f"({form.format(*(ALL_DIGITS.scaleb(x, -power) for x in numbers))})e{power}"
 
 
-def tidy(value: Decimal) -> Decimal:
+def strip_zeros(value: Decimal) -> Decimal:
     """Return a number without trailing zeros, and without an exponent if that would have few zeros."""
     short = ALL_DIGITS.normalize(value)
     is_short_integer = len(short.as_tuple().digits) <= short.adjusted() < 16
     return ALL_DIGITS.quantize(short, Decimal(1)) if is_short_integer else short
 
 
-def text(value: float | Decimal) -> str:
+def format_number(value: float | Decimal) -> str:
     """Return the shortest text that reads back to the same double; all the digits of a decimal."""
     mantissa, _, exponent = str(value).lower().partition("e")
     if isinstance(value, float):

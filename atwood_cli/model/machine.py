@@ -1,6 +1,6 @@
 """Every quantity by its name: limiting masses, and inputs found from a measured motion.
 
-`Machine` is the model of a `Case` in one arithmetic. It computes nothing that is not asked for, and a
+`Machine` is the model of a `Decisions` in one arithmetic. It computes nothing that is not asked for, and a
 quantity that the scene does not determine raises `Undetermined` with the reason.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import N
 from . import physics, quantities
-from .case import is_zero
+from .decisions import is_zero
 from .mechanics import Mechanics
 from .quantities import Undetermined
 
@@ -36,48 +36,48 @@ class Machine(Mechanics[N]):
             raise Undetermined(quantities.AXLE_HOLDS if self.case.axle_holds else quantities.NO_CRITICAL_MASS)
         if self.case.always_slips:
             raise Undetermined(quantities.ALWAYS_SLIPS)
-        transfer = self.transfer
+        friction_mass = self.friction_mass
         beta = self._given(self.case.beta, quantities.UNKNOWN_SHAPE)
-        return physics.critical_pulley_mass(self.l, self.h, transfer, self.drive, beta, self.b)
+        return physics.critical_pulley_mass(self.l, self.h, friction_mass, self.drive, beta, self.b)
 
     @lazy
     def critical_heavier_mass(self) -> N:
-        transfer = self.transfer
+        friction_mass = self.friction_mass
         if self.case.locked or self.case.slips_once_it_moves:
             return self.least_heavier_mass
         c = self._given(self.case.rim_mass, quantities.NEEDS_M)
         if not self.case.can_be_made_slip:
             raise Undetermined(quantities.NO_CRITICAL_HEAVIER_MASS)
-        return physics.critical_heavier_mass(self.l, c, transfer, self.b)
+        return physics.critical_heavier_mass(self.l, c, friction_mass, self.b)
 
     @lazy
     def critical_lighter_mass(self) -> N:
         """Lighter mass below which the string slips (kg); 0 if it slips under none."""
-        k1, h = self.k1, self.h
-        if self.case.stands_until_it_slips:
+        k_minus_1, h = self.k_minus_1, self.h
+        if self.case.pulley_at_rest_until_it_slips:
             return physics.lighter_mass_at_rest(h, self.capstan_ratio)
         c = self._given(self.case.rim_mass, quantities.NEEDS_M)
-        if self.case.turns_freely:
+        if self.case.pulley_is_ideal:
             return self.ar.number(0)
-        return physics.critical_lighter_mass(h, c, k1, self.b)
+        return physics.critical_lighter_mass(h, c, k_minus_1, self.b)
 
     @lazy
     def least_heavier_mass(self) -> N:
         self._check_applicable()
-        return physics.least_heavier_mass(self.l, self.transfer)
+        return physics.least_heavier_mass(self.l, self.friction_mass)
 
     @lazy
     def least_pulley_mass(self) -> N:
         self._check_applicable()
-        transfer = self.transfer
+        friction_mass = self.friction_mass
         if self.case.slips_once_it_moves:
             raise Undetermined(quantities.AXLE_ENOUGH)
         beta = self._given(self.case.beta, quantities.UNKNOWN_SHAPE)
-        return physics.least_pulley_mass(transfer, beta, self.b)
+        return physics.least_pulley_mass(friction_mass, beta, self.b)
 
     def _check_applicable(self) -> None:
         """Raise Undetermined if the critical pulley has no mass, so that (36) has no meaning."""
-        if is_zero(self.scene.mu) and not self.case.pulley_known and not self.case.rubs:
+        if is_zero(self.scene.mu) and not self.case.pulley_known and not self.case.has_axle_friction:
             raise Undetermined(quantities.NOT_APPLICABLE)
 
     @lazy

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Generic
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import N
 from . import arc, physics, quantities
-from .case import Case, is_zero
+from .decisions import Decisions, is_zero
 from .quantities import Undetermined
 
 if TYPE_CHECKING:
@@ -25,16 +25,16 @@ class Mechanics(Generic[N]):
 
         state            drive d                                   load s
         no slip          h - l - b        `gripping_drive`         h + l + c
-        verge            h - l - z        `drive`                  h + l + z, z = l (k - 1)    `transfer`
-        slip             the same with μ_k: `limiting_drive`       `limiting_transfer`
+        verge            h - l - z        `drive`                  h + l + z, z = l (k - 1)    `friction_mass`
+        slip             the same with μ_k: `limiting_drive`       `limiting_friction_mass`
     """
 
-    def __init__(self, case: Case, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:
+    def __init__(self, case: Decisions, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:
         self.case, self.scene, self.ar = case, case.scene, ar
         self.l, self.h = ar.number(case.light), ar.number(case.heavy)
         # The axle's friction as a force at the rim (N), and as a mass (kg).
         self.f, self.b = map(ar.number, (case.axle_friction, case.axle_mass))
-        self._arcs: dict[arc.Kind, list[arc.Arc[N]]] = {}
+        self._arcs: dict[arc.Profile, list[arc.Arc[N]]] = {}
         for name, value in known.items():
             setattr(self, name, value)
 
@@ -58,61 +58,61 @@ class Mechanics(Generic[N]):
     @property
     def mu(self) -> N:
         """Coefficient of static friction; not given if one mass is 0."""
-        reason = quantities.FREE_END if self.case.free_end else quantities.NEEDS_MU
+        reason = quantities.FREE_END if self.case.one_mass_is_0 else quantities.NEEDS_MU
         return self._given(self.scene.mu, reason)
 
-    def _capstan_excess(self, given: Fraction | None, mu: N) -> N:
+    def _capstan_ratio_minus_1(self, given: Fraction | None, mu: N) -> N:
         """Return e^{μφ} - 1, exactly 0 without friction."""
         return self.ar.number(0) if is_zero(given) else self.ar.expm1(mu * self.phi)
 
     @lazy
-    def k1(self) -> N:
+    def k_minus_1(self) -> N:
         """k - 1 = e^{μφ} - 1 of static friction."""
-        return self._capstan_excess(self.scene.mu, self.mu)
+        return self._capstan_ratio_minus_1(self.scene.mu, self.mu)
 
     @lazy
-    def excess(self) -> N:
+    def ratio_minus_1(self) -> N:
         """T_h/T_l - 1 of a string that grips, (33)."""
-        return self.ar.not_negative(self.case.excess("scene", self.ar))
+        return self.ar.not_negative(self.case.ratio_minus_1("scene", self.ar))
 
     @lazy
     def log_ratio(self) -> N:
         """ln(T_h/T_l) of a string that grips."""
-        return self.ar.log1p(self.excess)
+        return self.ar.log1p(self.ratio_minus_1)
 
     @lazy
-    def transfer(self) -> N:
+    def friction_mass(self) -> N:
         """z = l (k - 1) of static friction (kg)."""
-        return physics.transfer_at_limit(self.l, self.k1)
+        return physics.friction_mass_at_limit(self.l, self.k_minus_1)
 
     @lazy
     def drive(self) -> N:
         """Drive at the limit of static friction (kg)."""
-        return self.ar.not_negative(physics.drive(self.l, self.h, self.transfer))
+        return self.ar.not_negative(physics.drive(self.l, self.h, self.friction_mass))
 
     @lazy
-    def limiting_k1(self) -> N:
+    def limiting_k_minus_1(self) -> N:
         """T_h/T_l - 1 on the verge and in slip, as friction is at its limit."""
         if self.case.slide_measured:
-            return self.case.slide_excess(self.ar)
-        if self.case.at_static_limit:
-            return self.k1
+            return self.case.slide_ratio_minus_1(self.ar)
+        if self.case.limit_is_static:
+            return self.k_minus_1
         kinetic = self.case.limiting_mu
-        return self._capstan_excess(kinetic, self.ar.number(kinetic))
+        return self._capstan_ratio_minus_1(kinetic, self.ar.number(kinetic))
 
     @lazy
-    def limiting_transfer(self) -> N:
+    def limiting_friction_mass(self) -> N:
         """z on the verge and in slip (kg)."""
-        if self.case.at_static_limit:
-            return self.transfer
-        return physics.transfer_at_limit(self.l, self.limiting_k1)
+        if self.case.limit_is_static:
+            return self.friction_mass
+        return physics.friction_mass_at_limit(self.l, self.limiting_k_minus_1)
 
     @lazy
     def limiting_drive(self) -> N:
         """Drive on the verge and in slip (kg)."""
-        if self.case.at_static_limit:
+        if self.case.limit_is_static:
             return self.drive
-        return self.ar.not_negative(physics.drive(self.l, self.h, self.limiting_transfer))
+        return self.ar.not_negative(physics.drive(self.l, self.h, self.limiting_friction_mass))
 
     @lazy
     def gripping_drive(self) -> N:
@@ -124,8 +124,8 @@ class Mechanics(Generic[N]):
         """Magnitude of the acceleration (m/s²)."""
         l, h, case = self.l, self.h, self.case
         if case.regime != "no-slip":
-            drive, load = self.limiting_drive, physics.load(l, h, self.limiting_transfer)
-        elif case.sign == 0 or case.stands:
+            drive, load = self.limiting_drive, physics.load(l, h, self.limiting_friction_mass)
+        elif case.sign == 0 or case.pulley_at_rest:
             return self.ar.number(0)
         else:
             drive = self.gripping_drive
@@ -158,13 +158,13 @@ class Mechanics(Generic[N]):
         mu = self.mu
         return physics.limiting_arc(self.log_ratio, mu)
 
-    def arcs(self, kind: arc.Kind) -> list[arc.Arc[N]]:
+    def arcs(self, kind: arc.Profile) -> list[arc.Arc[N]]:
         """Return the arc of contact from the light end, in limiting and stuck pieces (see `arc`)."""
         if kind not in self._arcs:
             self._arcs[kind] = self._arrange(kind)
         return self._arcs[kind]
 
-    def _arrange(self, kind: arc.Kind) -> list[arc.Arc[N]]:
+    def _arrange(self, kind: arc.Profile) -> list[arc.Arc[N]]:
         ar, mu, light = self.ar, self.arc_mu(kind), self.light_tension
         if ar.is_zero(mu):  # the tension is the same everywhere: no angle is needed, so no π either
             nowhere = ar.number(0)
@@ -179,7 +179,7 @@ class Mechanics(Generic[N]):
         lead = arc.least_lead(ar, mu, self.alpha, stuck, light, end)
         return arc.arcs(ar, kind, mu, [lead, stuck, self.alpha - lead], light, end)
 
-    def arc_mu(self, kind: arc.Kind) -> N:
+    def arc_mu(self, kind: arc.Profile) -> N:
         """Return the coefficient of a profile's friction at its limit."""
         return self.friction_mu if kind == "exponential" else self.mu
 
@@ -208,10 +208,10 @@ class Mechanics(Generic[N]):
         """Magnitude of T2 - T1 (N)."""
         case = self.case
         if case.regime != "no-slip":
-            return physics.difference_of_friction(self.light_tension, self.limiting_k1)
+            return physics.difference_of_friction(self.light_tension, self.limiting_k_minus_1)
         if case.tensions_equal:
             return self.ar.number(0)
-        if case.stands:
+        if case.pulley_at_rest:
             rest = self.ar.number(0)
             return self.ar.not_negative(physics.difference_of_moving_masses(self.l, self.h, rest, self.g))
         c = self._given(case.rim_mass, quantities.NEEDS_M)
@@ -261,7 +261,7 @@ class Mechanics(Generic[N]):
     @lazy
     def mu_verge(self) -> N:
         case = self.case
-        if case.free_end:
+        if case.one_mass_is_0:
             raise Undetermined(quantities.FREE_END)
         if case.tensions_equal:
             return self.ar.number(0)
@@ -282,24 +282,24 @@ class Mechanics(Generic[N]):
     @lazy
     def tension_ratio(self) -> N:
         if self.case.regime != "no-slip":
-            return self.limiting_k1 + 1
-        if self.case.free_end:
+            return self.limiting_k_minus_1 + 1
+        if self.case.one_mass_is_0:
             raise Undetermined(quantities.FREE_END)
         if self.case.tensions_equal:
             return self.ar.number(1)
         if not self.case.pulley_known:
             raise Undetermined(quantities.NEEDS_M)
-        return self.excess + 1
+        return self.ratio_minus_1 + 1
 
     @lazy
     def capstan_ratio(self) -> N:
-        return self.k1 + 1
+        return self.k_minus_1 + 1
 
     @lazy
     def massless_verge(self) -> N:
         """Friction coefficient at which the string is on the verge over a massless pulley."""
-        excess = self.case.excess("massless", self.ar)
-        return physics.verge_coefficient(self.ar.log1p(excess), self.phi)
+        ratio_minus_1 = self.case.ratio_minus_1("massless", self.ar)
+        return physics.verge_coefficient(self.ar.log1p(ratio_minus_1), self.phi)
 
     @lazy
     def friction_force(self) -> N:
@@ -333,7 +333,7 @@ class Mechanics(Generic[N]):
     def rim_acceleration(self) -> N:
         if self.case.regime != "slip":
             return self.acceleration
-        if self.case.rim_stands:
+        if self.case.rim_at_rest:
             return self.ar.number(0)
         c = self._given(self.case.rim_mass, quantities.NEEDS_M)
         return physics.rim_acceleration(self.difference, c, self.f) * self.case.sign
@@ -346,7 +346,7 @@ class Mechanics(Generic[N]):
     def mu_k(self) -> N:
         if not self.case.slide_measured:
             raise Undetermined(quantities.NEEDS_A_OF_A_SLIDE)
-        return physics.verge_coefficient(self.ar.log1p(self.limiting_k1), self.phi)
+        return physics.verge_coefficient(self.ar.log1p(self.limiting_k_minus_1), self.phi)
 
     @lazy
     def friction_force_min(self) -> N:

@@ -13,8 +13,8 @@ from typing import Any
 
 from ..arithmetic.rational import EXACT
 from . import physics
-from .case import ZERO, Case, axle_force, rim_mass
-from .digits import SHOWN_DIGITS, as_typed, text, tidy, to_digits, to_double
+from .decisions import ZERO, Decisions, axle_force, rim_mass
+from .digits import SHOWN_DIGITS, as_typed, format_number, strip_zeros, to_digits, to_double
 from .quantities import Undetermined
 from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError, checked
 from .units import Angle
@@ -93,7 +93,7 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
         return "conflicts with M = inf and a mass of 0, an end that is fixed to the pulley; leave it out"
     if values.mu_k is not None:
         return "and mu_k both say how the string slides; leave one of them out"
-    if mu is not None and not Case(Scene(**vars(values))).slips:
+    if mu is not None and not Decisions(Scene(**vars(values))).slips:
         slips = f"would find mu_k, but with mu = {as_typed(mu)} the string does not slip"
         return f"{slips}; leave mu out (an acceleration forced by a motor is not modelled)"
     return ""
@@ -101,11 +101,11 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
 
 def _impossible(scene: Scene, motion: Motion) -> str:
     """Return why the scene that follows from a motion is none, "" if it is one."""
-    finds, case = str(motion.finds), Case(scene, motion)
+    finds, case = str(motion.finds), Decisions(scene, motion)
     if finds == "mu_k":
-        if case.slide_excess(EXACT) < 0:
+        if case.slide_ratio_minus_1(EXACT) < 0:
             return "is too large for any friction: without it the acceleration is " + _free_slide(case)
-        if scene.mu is not None and case.exceeds(case.slide_excess, scene.mu):
+        if scene.mu is not None and case.exceeds(case.slide_ratio_minus_1, scene.mu):
             return "needs more kinetic friction than mu; check both"
         return ""
     if scene.m1 == scene.m2 == 0:
@@ -113,15 +113,15 @@ def _impossible(scene: Scene, motion: Motion) -> str:
     value, domain = getattr(scene, finds), INPUTS[finds]
     if value >= 0:  # 0 is a mass
         return ""
-    shown = text(tidy(to_digits(SHOWN_DIGITS)(value)))
+    shown = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(value)))
     return f"implies {finds} = {shown} {domain.unit}, which {domain.domain}"
 
 
-def _free_slide(case: Case) -> str:
+def _free_slide(case: Decisions) -> str:
     """Return the acceleration of a slide without friction, for a sentence."""
     l, h = case.light, case.heavy
     most = physics.acceleration(physics.drive(l, h, ZERO), physics.load(l, h, ZERO), case.scene.g)
-    return f"{text(to_digits(SHOWN_DIGITS)(case.sign * most))} m/s²"
+    return f"{format_number(to_digits(SHOWN_DIGITS)(case.sign * most))} m/s²"
 
 
 def number_of(scene: Scene, motion: Motion, x: str) -> Any:
@@ -190,7 +190,7 @@ def _mass(unknown: str, values: Values, motion: Motion) -> Fraction:
     down = a if unknown == "m2" else -a
     if down >= g:
         side, limit = ("below", g) if unknown == "m2" else ("above", -g)
-        raise Undetermined(f"must be {side} {text(to_double(limit))} m/s², that of free fall")
+        raise Undetermined(f"must be {side} {format_number(to_double(limit))} m/s², that of free fall")
     c, f = rim_mass(values, values.M), axle_force(values)
     assert c is not None
     if down > 0:

@@ -7,7 +7,7 @@ column, mpmath, SymPy); exp, log and roots are handed in by the arithmetic.
 Symbols: ``l`` and ``h`` are the lighter and the heavier mass (kg), ``c`` = βM the pulley's inertia as a mass
 at the rim (kg; half the pulley's mass in the paper), ``g`` gravity (m/s²), ``phi`` the angle of wrap (rad; π
 in the paper), ``f`` the axle's friction as a force at the rim (N), ``b`` = f/g the same as a mass (kg), and
-``k`` = e^{μφ} the capstan ratio. It comes in as ``k1`` = k - 1, so that weak friction loses no digits.
+``k`` = e^{μφ} the capstan ratio. It comes in as ``k_minus_1`` = k - 1, so that weak friction loses no digits.
 
 One form of the motion serves every regime, Newton's: a *drive* d (kg) sets a *load* s (kg) moving, a = g d/s.
 The light side hangs in its weight and what accelerates it, (1): T_l = l (g + a).
@@ -29,13 +29,13 @@ Function = Callable[[N], N]
 Hypot = Callable[[N, N | int], N]
 
 
-def transfer_at_limit(l: N, k1: N) -> N:
+def friction_mass_at_limit(l: N, k_minus_1: N) -> N:
     """Return z = l (k - 1) (kg), the mass that friction at its limit adds, from (26).
 
-    >>> transfer_at_limit(1, 1)
+    >>> friction_mass_at_limit(1, 1)
     1
     """
-    return l * k1
+    return l * k_minus_1
 
 
 def drive(l: N, h: N, taken: N) -> N:
@@ -112,10 +112,10 @@ def lighter_mass(h: N, c: N, a: N, g: N, f: N) -> N:
     return (h * (g - a) - difference_of_a_pulley(c, a, f)) / (g + a)
 
 
-def slide_excess(l: N, h: N, a: N, g: N) -> N:
+def slide_ratio_minus_1(l: N, h: N, a: N, g: N) -> N:
     """Return T_h/T_l - 1 of masses with a measured acceleration, from (1).
 
-    >>> slide_excess(1, 3, 2, 10)
+    >>> slide_ratio_minus_1(1, 3, 2, 10)
     1.0
     """
     return difference_of_moving_masses(l, h, a, g) / light_tension(l, a, g)
@@ -193,33 +193,33 @@ def difference_of_moving_masses(l: N, h: N, a: N, g: N) -> N:
     return g * (h - l) - a * (h + l)
 
 
-def difference_of_friction(light: N, k1: N) -> N:
+def difference_of_friction(light: N, k_minus_1: N) -> N:
     """Return T_h - T_l (N) if friction is at its limit (26); ``light`` = T_l.
 
     >>> difference_of_friction(12, 1)
     12
     """
-    return light * k1
+    return light * k_minus_1
 
 
-def excess_ratio(l: N, h: N, c: N, b: N, D: N) -> N:
+def gripping_ratio_minus_1(l: N, h: N, c: N, b: N, D: N) -> N:
     """Return T_h/T_l - 1 of a string that grips, by (33), without cancellation.
 
     The pulley's inertia is c/D, so that limits are points like others: D = 0 is a pulley at rest, as it is
     locked or its axle holds it (h - l <= b), and c = 0 is one without mass.
 
-    >>> excess_ratio(1, 3, 6, 0, 1), excess_ratio(1, 3, 5, 1, 1)
+    >>> gripping_ratio_minus_1(1, 3, 6, 0, 1), gripping_ratio_minus_1(1, 3, 5, 1, 1)
     (1.0, 1.4)
-    >>> excess_ratio(1, 3, 1, 1, 0), excess_ratio(1, 3, 0, 1, 1)
+    >>> gripping_ratio_minus_1(1, 3, 1, 1, 0), gripping_ratio_minus_1(1, 3, 0, 1, 1)
     (2.0, 0.8)
     """
     return (c * (h - l) + b * D * (h + l)) / (l * (D * (2 * h - b) + c))
 
 
-def heaviest_excess(l: N, c: N, b: N) -> N:
-    """Return the limit of `excess_ratio` for h = ∞, on a pulley that turns.
+def heaviest_ratio_minus_1(l: N, c: N, b: N) -> N:
+    """Return the limit of `gripping_ratio_minus_1` for h = ∞, on a pulley that turns.
 
-    >>> heaviest_excess(1, 5, 1)
+    >>> heaviest_ratio_minus_1(1, 5, 1)
     3.0
     """
     return (c + b) / (2 * l)
@@ -234,7 +234,7 @@ def verge_coefficient(log_ratio: N, phi: N) -> N:
     return log_ratio / phi
 
 
-def critical_pulley_mass(l: N, h: N, transfer: N, drive: N, beta: N, b: N) -> N:
+def critical_pulley_mass(l: N, h: N, friction_mass: N, drive: N, beta: N, b: N) -> N:
     """Return the pulley mass (kg) above which the string slips (34); z and d at the limit of friction.
 
     >>> z = 1.56633  # e^{0.3 π} - 1, the paper's example
@@ -243,25 +243,25 @@ def critical_pulley_mass(l: N, h: N, transfer: N, drive: N, beta: N, b: N) -> N:
     >>> critical_pulley_mass(1, 3, 1, 1, 0.5, 1)
     2.0
     """
-    return (2 * transfer * h - b * (h + l + transfer)) / (drive * beta)
+    return (2 * friction_mass * h - b * (h + l + friction_mass)) / (drive * beta)
 
 
-def critical_heavier_mass(l: N, c: N, transfer: N, b: N) -> N:
+def critical_heavier_mass(l: N, c: N, friction_mass: N, b: N) -> N:
     """Return the heavier mass (kg) above which the string slips (35); needs c > b and c + b > 2 l (k - 1).
 
     >>> critical_heavier_mass(1, 4, 1, 0), critical_heavier_mass(1, 6, 2, 1)
     (4.0, 5.0)
     """
-    return (c - b) / (c + b - 2 * transfer) * least_heavier_mass(l, transfer)
+    return (c - b) / (c + b - 2 * friction_mass) * least_heavier_mass(l, friction_mass)
 
 
-def critical_lighter_mass(h: N, c: N, k1: N, b: N) -> N:
+def critical_lighter_mass(h: N, c: N, k_minus_1: N, b: N) -> N:
     """Return the lighter mass (kg) below which the string slips: (33) solved for it, like (34) and (35).
 
     >>> critical_lighter_mass(3, 6, 1, 0), critical_lighter_mass(3, 6, 1, 3)
     (1.0, 2.25)
     """
-    return h * ((c + b) / (c - b + k1 * (2 * h + c - b)))
+    return h * ((c + b) / (c - b + k_minus_1 * (2 * h + c - b)))
 
 
 def lighter_mass_at_rest(h: N, k: N) -> N:
@@ -274,7 +274,7 @@ def lighter_mass_at_rest(h: N, k: N) -> N:
 
 
 def ratio_in_the_paper(l: N, h: N, M: N) -> N:
-    """Return T_h/T_l of a string that grips a disk of mass M, as (33) has it; 1 + `excess_ratio`.
+    """Return T_h/T_l of a string that grips a disk of mass M, as (33) has it; 1 + `gripping_ratio_minus_1`.
 
     >>> ratio_in_the_paper(1, 3, 12)
     2.0
@@ -300,22 +300,22 @@ def heavier_mass_in_the_paper(l: N, M: N, k: N) -> N:
     return M * l * k / (M - 4 * l * (k - 1))
 
 
-def least_heavier_mass(l: N, transfer: N) -> N:
+def least_heavier_mass(l: N, friction_mass: N) -> N:
     """Return the heavier mass (kg) above which the string slips on some pulley, l k: first condition of (36).
 
     >>> least_heavier_mass(1, 1)
     2
     """
-    return l + transfer
+    return l + friction_mass
 
 
-def least_pulley_mass(transfer: N, beta: N, b: N) -> N:
+def least_pulley_mass(friction_mass: N, beta: N, b: N) -> N:
     """Return the pulley mass (kg) above which some mass makes the string slip: second of (36); z >= b.
 
     >>> least_pulley_mass(1, 0.5, 0), least_pulley_mass(2, 0.5, 1)
     (4.0, 6.0)
     """
-    return (2 * transfer - b) / beta
+    return (2 * friction_mass - b) / beta
 
 
 def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N], hypot: Hypot[N]) -> N:

@@ -78,12 +78,16 @@ AXLE_ENTERS = {
 """The quantities whose equation has an additional term if the axle has friction."""
 
 
-def cited(name: str, slips: bool, rubs: bool) -> str:
+def cited(name: str, slips: bool, has_axle_friction: bool) -> str:
     """Return the paper's equation for a quantity in a regime, and say if axle friction adds a term."""
     about = QUANTITIES[name]
     if slips and about.equation_in_slip is not None:
         return about.equation_in_slip
-    return f"{about.equation}, with axle friction" if rubs and name in AXLE_ENTERS else about.equation
+    return (
+        f"{about.equation}, with axle friction"
+        if has_axle_friction and name in AXLE_ENTERS
+        else about.equation
+    )
 
 
 FROM_MOTION: dict[str | None, tuple[str, ...]] = {

@@ -146,7 +146,7 @@ def one(_: object) -> int:
     return 1
 
 
-def watched(
+def with_progress(
     parts: Iterator[Part],
     total: int | None,
     size: Callable[[Part], int] = one,

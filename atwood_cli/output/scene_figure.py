@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..model import arc
-from ..model.digits import SHOWN_DIGITS, text, tidy, to_double
+from ..model.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..model.scene import SceneError
 from ..solver.answers import Answers
 from ..solver.balance import about, point
@@ -38,7 +38,7 @@ ROTATION_AT, AXLE_AT, ACCELERATION = 0.56, 0.24, 0.4  # two distances from the a
 
 
 def save(
-    answers: Answers, kind: arc.Kind | None, path: str, force: bool, bare: bool, curves: bool = False
+    answers: Answers, kind: arc.Profile | None, path: str, force: bool, bare: bool, curves: bool = False
 ) -> None:
     """Draw the machine to a file, whose suffix is its format, and with ``curves`` the forces along the arc.
 
@@ -81,22 +81,27 @@ def save(
             _draw_tensions(machine, few, lengths, radians(wrap))
 
 
-def _on_friction(few: Answers, kind: arc.Kind) -> list[str]:
+def _on_friction(few: Answers, kind: arc.Profile) -> list[str]:
     """Return sentences on the net friction on the pulley, and on the part of the arc over which it acts."""
     if kind != "creep":
         force = few["friction_force"]
-        net = [f"The net friction force is {text(force)} N."] if force else []
+        net = [f"The net friction force is {format_number(force)} N."] if force else []
         return [about(few.case, kind), *net]
     end = "last" if few.case.sign > 0 else "first"
-    angle = text(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
+    angle = format_number(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
     drawn = f"Drawn: friction at its limit on the {end} {angle}°"
     greatest, least = few["friction_force_max"], few["friction_force_min"]
     if greatest is None:
         return [f"{drawn}, as on a slightly elastic string."]
-    return [f"{drawn}, which makes the net force greatest ({text(greatest)} N; least {text(least)} N)."]
+    return [
+        f"{drawn}, which makes the net force greatest"
+        f" ({format_number(greatest)} N; least {format_number(least)} N)."
+    ]
 
 
-def _on_drawing(few: Answers, kind: arc.Kind | None, wrap: float, forces: Mapping[str, float]) -> list[str]:
+def _on_drawing(
+    few: Answers, kind: arc.Profile | None, wrap: float, forces: Mapping[str, float]
+) -> list[str]:
     """Return sentences on what is drawn otherwise than it is."""
     said, least = [], max(forces.values()) * SHORTEST / LONGEST
     if wrap > 360:
@@ -110,7 +115,7 @@ def _on_drawing(few: Answers, kind: arc.Kind | None, wrap: float, forces: Mappin
     return said
 
 
-def _forces(doubles: Answers, kind: arc.Kind, shares: Any) -> tuple[Any, Any]:
+def _forces(doubles: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:
     """Return tension and friction per radian (N) at shares of the arc; nR is the tension, too."""
     points = [point(doubles, kind, Fraction(share)) for share in shares]
     tension, friction = ([float(one[name]) for one in points] for name in ("tension", "friction_per_radian"))
@@ -166,18 +171,18 @@ def _pulley(few: Answers) -> str:
 def _axle_friction(few: Answers) -> str:
     """Return the axle's friction as a force at the rim (N), as much of it as acts; empty if none does."""
     case = few.case
-    if not case.rubs or case.locked or not case.sign:
+    if not case.has_axle_friction or case.locked or not case.sign:
         return ""
-    held = case.rim_stands if case.regime == "slip" else case.axle_holds
+    held = case.rim_at_rest if case.regime == "slip" else case.axle_holds
     return _number(few, few.settle(lambda m: m.difference if held else m.f))
 
 
 def _number(few: Answers, value: Any) -> str:
     """Return a number with as many digits as others have."""
-    return typeset(text(tidy(few.round(value))))
+    return typeset(format_number(strip_zeros(few.round(value))))
 
 
-def _draw_contact(axes: "Axes", doubles: Answers, kind: arc.Kind, phi: float, legend: bool) -> str:
+def _draw_contact(axes: "Axes", doubles: Answers, kind: arc.Profile, phi: float, legend: bool) -> str:
     """Draw the arrows of normal force and friction over the turn at the heavier mass.
 
     Returns the scale of those of friction, in words.
@@ -259,7 +264,7 @@ def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:
         axes.quiver(tails.real, tails.imag, along.real, along.imag, color=colour, **look)
 
 
-def _draw_curves(axes: "Axes", few: Answers, kind: arc.Kind, wrap: float, scale: str) -> None:
+def _draw_curves(axes: "Axes", few: Answers, kind: arc.Profile, wrap: float, scale: str) -> None:
     """Draw normal force and friction along the arc, over grey where the string is stuck."""
     doubles = few.to(None)
     stuck = float(doubles.settle(lambda m: (m.phi - m.alpha) / m.phi)) if kind == "creep" else 0.0

@@ -6,7 +6,7 @@ from decimal import Decimal
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from ..model.digits import tidy, to_place, with_uncertainty
+from ..model.digits import rounding_to_place, strip_zeros, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..model.scene import with_unit
 from ..solver.answers import Answers
@@ -120,7 +120,7 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
         about, case = QUANTITIES[name], answers.case
-        equation = cited(name, case.regime == "slip", case.rubs)
+        equation = cited(name, case.regime == "slip", case.has_axle_friction)
         shown = f"{name} at mu_verge" if name in AT_LIMIT and case.mu_assumed else name
         row = [shown, value, about.unit, about.symbol, equation]
         groups.setdefault(about.group, []).append(row)
@@ -138,7 +138,7 @@ def _with_uncertainty(answers: Answers, name: str) -> str:
     if not (shown and answers.uncertainties and answers.answer(name).uncertainty):
         return shown
     u = answers.uncertainties.of(name, 2)
-    return with_uncertainty(lambda place: answers.rounded(name, to_place(place)), u) if u else shown
+    return with_uncertainty(lambda place: answers.rounded(name, rounding_to_place(place)), u) if u else shown
 
 
 def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = None) -> None:
@@ -146,7 +146,7 @@ def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = N
     from .page import Page, aligned
 
     page, names = page or Page(), [name for name in names if name != "regime"]
-    budgets = {name: shares for name in names if (shares := answers.budget(name, to_place(-1)))}
+    budgets = {name: shares for name in names if (shares := answers.budget(name, rounding_to_place(-1)))}
     if not budgets:
         return
     page.say("Each input's share of the variance, in percent:")
@@ -195,7 +195,7 @@ def print_contact(answers: Answers, arc: Contact) -> None:
     page = Page()
     page.head(answers)
     names = [name for name in HEADS if name in arc.points[0]]
-    rows = [{**point, "angle": tidy(Decimal(point["angle"]))} for point in arc.points]
+    rows = [{**point, "angle": strip_zeros(Decimal(point["angle"]))} for point in arc.points]
     columns = [aligned(cell(row[name]) for row in rows) for name in names]
     page.table([HEADS[name] for name in names], [list(zip(*columns, strict=True))])
     forces = {words: arc.balance[name] for name, words in FORCES.items()}

@@ -10,7 +10,7 @@ from fractions import Fraction
 from math import inf
 from typing import Any, NamedTuple, TextIO
 
-from ..model.digits import Rounding, as_typed, exact_or_rounded, is_infinite, text, to_double
+from ..model.digits import Rounding, as_typed, exact_or_rounded, format_number, is_infinite, to_double
 from ..model.scene import INERTIA_FACTORS, MEASURED, UNMEASURED, Axle, Motion, Scene, parameter_of, with_unit
 from ..model.units import Angle
 from .files import Stdout, printable, stdout_into
@@ -70,7 +70,7 @@ VERSION = 3
 """The version of JSON's keys (see `examples/json.md`), which grows when a key goes or changes its meaning."""
 
 
-class Forms(NamedTuple):
+class Report(NamedTuple):
     """A result in all forms that may be asked for. Each is made when it is asked for.
 
     ``json`` returns the record, and ``records`` the lines of CSV. ``page`` prints the page. ``bare`` are the
@@ -90,16 +90,16 @@ class Form(NamedTuple):
 
     suffix: str
     help: str
-    write: Callable[[Forms], None]
+    write: Callable[[Report], None]
     has_notes: bool
 
 
-def _write_json(forms: Forms) -> None:
+def _write_json(forms: Report) -> None:
     sys.stdout.writelines(as_json(forms.json()))
     print()
 
 
-def _write_csv(forms: Forms) -> None:
+def _write_csv(forms: Report) -> None:
     """Print a line of names, and a line for each record when it comes."""
     from csv import writer
 
@@ -117,7 +117,7 @@ FORMS = {
 """The forms, by the name of their option. Without such an option a page is printed, or bare values."""
 
 
-class Target(NamedTuple):
+class Destination(NamedTuple):
     """The form of a result, "" for a page, and the file that it goes to, None for stdout."""
 
     form: str = ""
@@ -125,7 +125,7 @@ class Target(NamedTuple):
     force: bool = False
 
 
-def show(forms: Forms, target: Target) -> Sequence[str]:
+def show(forms: Report, target: Destination) -> Sequence[str]:
     """Print a result in a form, as bare values or as a page, whole or not at all. Raises OSError.
 
     Returns the notes if the form has no place for them, as CSV and bare values: they are to be said on
@@ -177,7 +177,7 @@ def cell(value: object) -> str:
     """Return a value as bare text, "" if there is none or it is infinite."""
     match value:
         case float() | Decimal():
-            return "" if is_infinite(value) else text(value)
+            return "" if is_infinite(value) else format_number(value)
         case bool():
             return str(value).lower()
     return "" if value is None else str(value)
@@ -195,7 +195,7 @@ def scene_record(
         if not isinstance(value, Fraction):
             return value
         number = exact_or_rounded(value, round_)
-        return f"{text(number)}{unit}" if unit else number
+        return f"{format_number(number)}{unit}" if unit else number
 
     return {name: written(value, unit) for name, (value, unit) in _given(scene, motion).items()}
 
@@ -216,10 +216,10 @@ def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
 
 def describe(scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}) -> str:
     """Say the scene in one line, as understood, with uncertainties."""
-    return ", ".join(said_of_scene(scene, motion, uncertain).values())
+    return ", ".join(relevant_inputs(scene, motion, uncertain).values())
 
 
-def said_of_scene(
+def relevant_inputs(
     scene: Scene,
     motion: Motion = UNMEASURED,
     uncertain: Mapping[str, Fraction] = {},

@@ -10,7 +10,7 @@ from decimal import Decimal
 from typing import Any
 
 from ..arithmetic.symbolic import Formula, Symbol, factors
-from ..model.digits import text
+from ..model.digits import format_number
 from ..model.quantities import QUANTITIES
 from ..model.scene import INPUTS
 from ..solver.equations import Equation, plain
@@ -44,7 +44,7 @@ def _write(node: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool)
 
     match node.op:
         case "symbol" if numbers is not None:
-            return _write_number(text(numbers[node.parts[0]]), latex)
+            return _write_number(format_number(numbers[node.parts[0]]), latex)
         case "symbol":
             name = node.parts[0].name
             level = SUM if " " in name else POWER if "*" in name else ATOM  # LaTeX takes one superscript

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from ..arithmetic.interval import LARGEST_EXPONENT
 from ..arithmetic.rational import EXACT, Irrational
 from ..arithmetic.settling import is_positive, settle
-from ..model.case import Case
+from ..model.decisions import Decisions
 from ..model.digits import DOUBLE_DIGITS, SHOWN_DIGITS, Rounding, is_infinite, to_digits, to_double
 from ..model.machine import Machine
 from ..model.quantities import FROM_MOTION, MAIN, NAMES, Undetermined
@@ -60,7 +60,7 @@ class Answers:
         motion: Motion = UNMEASURED,
         uncertain: Mapping[str, Fraction] = {},
     ) -> None:
-        self.case, self.uncertain = Case(scene, motion), uncertain
+        self.case, self.uncertain = Decisions(scene, motion), uncertain
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._by_digits: dict[int | None, Answers] = {}
         self._round_to(digits)
@@ -116,7 +116,7 @@ class Answers:
         also = {
             "friction_force_min": bounded,
             "friction_force_max": bounded,
-            "axle_force": case.rubs and case.ends_hang_down,
+            "axle_force": case.has_axle_friction and case.ends_hang_down,
             "torque": scene.R is not None,
             "rim_acceleration": case.regime == "slip",
             "angular_acceleration": scene.R is not None,

@@ -12,9 +12,9 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from ..model import arc
-from ..model.arc import Kind
-from ..model.case import Case
-from ..model.digits import to_place
+from ..model.arc import Profile
+from ..model.decisions import Decisions
+from ..model.digits import rounding_to_place
 from ..model.machine import Machine
 from ..model.quantities import FREE_END, NEEDS_M
 from ..model.scene import SceneError, read_whole
@@ -41,13 +41,13 @@ WITHOUT_FRICTION = "Both tensions are equal: there is no friction."
 class Contact(NamedTuple):
     """The arc of contact: its profile, its points with their columns, the balance of forces, and notes."""
 
-    kind: Kind
+    kind: Profile
     points: list[dict[str, Rounded]]
     balance: dict[str, dict[str, Rounded]]
     notes: list[str]
 
 
-def kind_of(case: Case) -> Kind:
+def kind_of(case: Decisions) -> Profile:
     """Return the profile of the tension along the arc: with friction to spare, the string creeps.
 
     Raises SceneError if the scene does not determine the arc.
@@ -71,7 +71,7 @@ def contact(answers: Answers, points: int | str = 13) -> Contact:
     return Contact(kind, rows, _balance(answers, kind), _notes(answers, kind))
 
 
-def point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Rounded]:
+def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
     """Return the columns at the fraction q of the arc, counted from m1's end."""
     scene, sign = answers.case.scene, answers.case.sign
     from_light = q if sign >= 0 else 1 - q
@@ -104,7 +104,7 @@ def point(answers: Answers, kind: Kind, q: Fraction) -> dict[str, Rounded]:
     return row
 
 
-def _piece(answers: Answers, kind: Kind, from_light: Fraction) -> int:
+def _piece(answers: Answers, kind: Profile, from_light: Fraction) -> int:
     """Return the piece of the profile that has the point at a fraction of the arc from the light end."""
     last = len(arc.STUCK[kind]) - 1
     for piece in range(last):
@@ -118,7 +118,7 @@ def _piece(answers: Answers, kind: Kind, from_light: Fraction) -> int:
     return last
 
 
-def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Rounded]]:
+def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
     """Return forces on the pulley (N) and torques (N m, or N per unit radius), by the arc and by T1, T2."""
 
     def vector(of: Callable[[Any], tuple[Any, Any]]) -> dict[str, Rounded]:
@@ -145,7 +145,7 @@ def _balance(answers: Answers, kind: Kind) -> dict[str, dict[str, Rounded]]:
 
         term = forces["friction"]["xy"[axis]]
         if term and ends["xy"[axis]] == 0:
-            rounded = answers.settle(of, to_place(Decimal(term).adjusted() - ZERO_DIGITS))
+            rounded = answers.settle(of, rounding_to_place(Decimal(term).adjusted() - ZERO_DIGITS))
             return rounded if rounded else ends["xy"[axis]]
         return answers.settle(of)
 
@@ -162,7 +162,7 @@ def _radius(machine: Machine[Any]) -> Any:
     return machine.ar.number(machine.scene.R or Fraction(1))
 
 
-def about(case: Case, kind: Kind) -> str:
+def about(case: Decisions, kind: Profile) -> str:
     """Return the sentence on a profile of the tension."""
     if case.frictionless:
         return WITHOUT_FRICTION
@@ -171,7 +171,7 @@ def about(case: Case, kind: Kind) -> str:
     return ABOUT_KIND[kind]
 
 
-def _notes(answers: Answers, kind: Kind) -> list[str]:
+def _notes(answers: Answers, kind: Profile) -> list[str]:
     notes = [about(answers.case, kind)]
     for name in ("tension_1", "tension_2"):
         if answers[name] is not None and answers.answer(name).reason:

@@ -12,7 +12,7 @@ from operator import attrgetter
 from typing import Any, NamedTuple
 
 from ..arithmetic.symbolic import Formula, Symbol, Symbols, formula
-from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, text, to_digits
+from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, to_digits
 from ..model.machine import Machine
 from ..model.quantities import QUANTITIES
 from .answers import Answers
@@ -54,7 +54,9 @@ Part = str | Equation
 MOTION = ("acceleration", "tension_1", "tension_2")
 """Quantities that a derivation gives first, and by which simpler models are compared."""
 UNITS = {
-    **dict.fromkeys(("transfer", "limiting_transfer", "drive", "limiting_drive", "M", "c", "b"), "kg"),
+    **dict.fromkeys(
+        ("friction_mass", "limiting_friction_mass", "drive", "limiting_drive", "M", "c", "b"), "kg"
+    ),
     **dict.fromkeys(("light_tension", "heavy_tension", "difference", "f_axle"), "N"),
     **dict.fromkeys(("magnitude", "a", "|a|", "g"), "m/s²"),
     **dict.fromkeys(("phi", "alpha"), "rad"),
@@ -62,18 +64,18 @@ UNITS = {
 """Units of the model's intermediate values, by name, and of inputs, by symbol."""
 INTERMEDIATE_SYMBOLS = {
     "half_sine": "sin(φ/2)",
-    "excess": "x",
+    "ratio_minus_1": "x",
     "massless_verge": "μ_0",
-    "k1": "k - 1",
+    "k_minus_1": "k - 1",
     "capstan_ratio": "k",
-    "transfer": "z",
+    "friction_mass": "z",
     "drive": "d",
     "alpha": "φ_lim",
     "critical_pulley_mass": "M*",
 }
 """Symbols of what equations refer to, by the model's names."""
 LABELS = {"acceleration": "", "light_tension": "(1)", "tension_ratio": "", "massless_verge": "(27)"}
-LABELS |= dict.fromkeys(("k1", "limiting_k1"), "(26)")
+LABELS |= dict.fromkeys(("k_minus_1", "limiting_k_minus_1"), "(26)")
 """Numbers of equations that the table of quantities does not have."""
 WITHOUT_AXLE_FRICTION = {"f": 0, "b": 0, "D": 1}
 """Values of letters of `physics` if the axle has no friction."""
@@ -112,8 +114,8 @@ class Derivation:
             "g": scene.g,
             "I": scene.I,
             "R": scene.R,
-            "f_axle": case.axle_friction if case.rubs else None,
-            "b": case.axle_mass if case.rubs else None,
+            "f_axle": case.axle_friction if case.has_axle_friction else None,
+            "b": case.axle_mass if case.has_axle_friction else None,
             self.symbols["magnitude"]: case.measured_acceleration if motion.finds else None,
             "s": motion.drop,
             "t": motion.time,
@@ -135,9 +137,13 @@ class Derivation:
         if case.regime != "verge":  # on the verge it is the coefficient given
             symbols["mu_verge"] = "μ*"
         if case.slide_measured:
-            symbols |= {"limiting_k1": "x_kin", "mu_k": "μ_k"}
+            symbols |= {"limiting_k_minus_1": "x_kin", "mu_k": "μ_k"}
         elif case.regime == "slip" and scene.mu_k is not None:
-            symbols |= {"limiting_k1": "k_kin - 1", "limiting_transfer": "z_kin", "limiting_drive": "d_kin"}
+            symbols |= {
+                "limiting_k_minus_1": "k_kin - 1",
+                "limiting_friction_mass": "z_kin",
+                "limiting_drive": "d_kin",
+            }
         return symbols
 
     def symbol(self, name: str) -> str:
@@ -170,9 +176,9 @@ class Derivation:
         case, motion = self.case, QUANTITIES["acceleration"]
         labels = {**LABELS, "magnitude": motion.equation_in_slip or "", "difference": "(26)"}
         if case.regime == "no-slip":
-            labels |= {"magnitude": motion.equation, "difference": "(1)" if case.stands else "(3)"}
+            labels |= {"magnitude": motion.equation, "difference": "(1)" if case.pulley_at_rest else "(3)"}
         if case.slide_measured:
-            labels["limiting_k1"] = "(1)"
+            labels["limiting_k_minus_1"] = "(1)"
         if name == "critical_heavier_mass" and self.slips_at_rest:
             labels["critical_heavier_mass"] = QUANTITIES["least_heavier_mass"].equation
         return labels.get(name, QUANTITIES[name].equation if name in QUANTITIES else "")
@@ -193,7 +199,7 @@ class Derivation:
         put_in = "=" if all(is_exact for _, is_exact in rounded.values()) else "≈"
         signs = put_in + ("=" if exact and (put_in == "=" or not value) else "≈")
         unit = unit_of(result.of if isinstance(result.of, str) else result.name)
-        return Equation(label, result.name, recorded, (), numbers, signs, text(value), unit)
+        return Equation(label, result.name, recorded, (), numbers, signs, format_number(value), unit)
 
     def number(self, symbol: Symbol, digits: int, typed: int = 0) -> tuple[Decimal, bool]:
         """Return the number to put in for a symbol, and whether it is exact.
@@ -236,7 +242,9 @@ class Derivation:
         label, recorded = self._label(name), None if follows else self._formula(name)
         if recorded is None or recorded.op == "number":
             sign = "=" if exact or not value else "≈"
-            yield Equation(label, symbol.name, None, follows, None, sign * 2, text(value), unit_of(name))
+            yield Equation(
+                label, symbol.name, None, follows, None, sign * 2, format_number(value), unit_of(name)
+            )
         else:
             yield self._worked_out(symbol, recorded, label)
 
@@ -258,7 +266,7 @@ def unit_of(name: str) -> str:
 
 def in_words(name: str, value: Any) -> str:
     """Return a value with its unit."""
-    return f"{text(value)} {unit_of(name)}".rstrip()
+    return f"{format_number(value)} {unit_of(name)}".rstrip()
 
 
 def plain(symbol: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..model.digits import SHOWN_DIGITS, as_typed, is_infinite, rounding_apart_from, text, to_digits
+from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, rounding_apart_from, to_digits
 from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, REGIMES, read_name
 from ..model.scene import SceneError, with_unit
 from ..model.units import STANDARD_GRAVITY, Angle, Malformed, TypedNumber, in_quotes, read_number
@@ -88,7 +88,7 @@ def failure(answers: Answers, expected: Condition) -> str:
         shown = as_typed(given)
     else:
         value = answers.rounded(expected.name, rounding_apart_from(given, answers.digits or SHOWN_DIGITS))
-        shown = "too large to be written out" if is_infinite(value) else text(value)
+        shown = "too large to be written out" if is_infinite(value) else format_number(value)
     return f"expected {expected.typed}; it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
 
 

@@ -9,7 +9,15 @@ from decimal import Decimal
 from fractions import Fraction
 from math import inf
 
-from ..model.digits import SHOWN_DIGITS, Rounding, as_typed, is_infinite, rounding_apart_from, text, tidy
+from ..model.digits import (
+    SHOWN_DIGITS,
+    Rounding,
+    as_typed,
+    format_number,
+    is_infinite,
+    rounding_apart_from,
+    strip_zeros,
+)
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, with_unit
 from ..model.units import MAX_MAGNITUDE
@@ -89,7 +97,7 @@ def verdict(answers: Answers) -> str:
     least = answers.rounded("least_heavier_mass", _beside(answers, case.heavy))
     if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
         return "No slip on any pulley, for any heavier mass that can be typed."
-    masses = f"a heavier mass above {text(least)} kg, not {as_typed(case.heavy)} kg"
+    masses = f"a heavier mass above {format_number(least)} kg, not {as_typed(case.heavy)} kg"
     return f"No slip on any pulley: slipping needs {masses}."
 
 
@@ -99,7 +107,7 @@ def _given_mu(scene: Scene) -> str:
 
 def _enough(answers: Answers, name: str = "mu_verge") -> str:
     """Say the least coefficient that holds the string."""
-    return text(answers.rounded(name, _beside(answers, answers.case.scene.mu)))
+    return format_number(answers.rounded(name, _beside(answers, answers.case.scene.mu)))
 
 
 def _while_at_rest(answers: Answers) -> str:
@@ -133,7 +141,7 @@ def _slips(answers: Answers) -> str:
             f"Slips on any pulley, because of axle friction: {mu} is below the"
             f" {_enough(answers, 'massless_verge')} needed even on a massless one{kinetic}."
         )
-    slips = "Slips over a pulley held by axle friction" if case.rim_stands and not case.locked else "Slips"
+    slips = "Slips over a pulley held by axle friction" if case.rim_at_rest and not case.locked else "Slips"
     return f"{slips}: {mu} is below the {_enough(answers)} needed to hold it{kinetic}."
 
 
@@ -142,7 +150,7 @@ def _held(answers: Answers) -> str:
     case = answers.case
     times, unit = (1000, "g") if case.axle_mass < 1 else (1, "kg")
     round_ = _beside(answers, times * (case.heavy - case.light))
-    return f"{text(tidy(round_(times * case.axle_mass)))} {unit}"
+    return f"{format_number(strip_zeros(round_(times * case.axle_mass)))} {unit}"
 
 
 def remarks(answers: Answers) -> list[str]:
@@ -155,9 +163,9 @@ def odd_inertia(answers: Answers) -> list[str]:
     beta = answers.case.beta
     if beta is None or beta <= 1:
         return []
-    shown = tidy(_beside(answers, Fraction(1))(beta))
+    shown = strip_zeros(_beside(answers, Fraction(1))(beta))
     return [
-        f"The inertia factor `I/(M R^2)` is {text(shown)}, above 1: some mass must lie outside"
+        f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
         " the string's rim. If none does, check `inertia`, `I` and `R`."
     ]
 
@@ -195,7 +203,7 @@ def kinetic(answers: Answers) -> list[str]:
     sliding = _sliding(answers)
     if sliding is None:
         return [f"A string that already slides stops sliding, as `mu_k` = {as_typed(mu_k)} is enough, too."]
-    verge = text(answers.rounded("mu_verge", _beside(answers, mu_k)))
+    verge = format_number(answers.rounded("mu_verge", _beside(answers, mu_k)))
     return [
         f"A string that already slides keeps sliding, as `mu_k` = {as_typed(mu_k)} is below {verge}:"
         f" the masses then accelerate at {_say(sliding, 'acceleration')} m/s²."
@@ -218,4 +226,4 @@ def _beside(answers: Answers, given: Fraction | None) -> Rounding[Decimal]:
 
 def _say(answers: Answers, name: str) -> str:
     """Say a value as the table shows it."""
-    return text(answers[name])
+    return format_number(answers[name])

@@ -190,7 +190,7 @@ def _fields(derivation: Derivation) -> dict[str, str]:
     is_kinetic = case.regime == "slip" and scene.mu_k is not None and not case.slide_measured
     limiting = "limiting_" if is_kinetic else ""
     pulley = "without mass" if case.tensions_equal and case.sign else "with its moment of inertia"
-    axle = "with constant" if case.rubs else "without"
+    axle = "with constant" if case.has_axle_friction else "without"
     more = "" if case.ends_hang_down else ", guide sheaves without mass or friction"
     if scene.mu is not None:
         more += ", Coulomb friction between string and pulley"
@@ -203,7 +203,9 @@ def _fields(derivation: Derivation) -> dict[str, str]:
         "kinetic": "kinetic " if is_kinetic else "",
         "kin": "_kin" if is_kinetic else "",
         "limiting_": limiting,
-        "limiting_symbol": derivation.symbol("limiting_k1" if case.slide_measured else f"{limiting}k1"),
+        "limiting_symbol": derivation.symbol(
+            "limiting_k_minus_1" if case.slide_measured else f"{limiting}k_minus_1"
+        ),
         "modelled": f"a pulley {pulley}, an axle {axle} friction{more}",
         "verdict": verdict(derivation.answers),
     }
@@ -219,14 +221,14 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
         "one mass is 0": not case.light,
         "ends hang down": case.ends_hang_down,
         "half a turn": scene.wrap.is_half_turn,
-        "axle friction": case.rubs,
-        "axle torque": case.rubs and scene.axle is not None and scene.axle.unit == "N m",
+        "axle friction": case.has_axle_friction,
+        "axle torque": case.has_axle_friction and scene.axle is not None and scene.axle.unit == "N m",
         "locked": case.locked,
-        "paper's pulley": is_disk and not case.rubs and not case.stands,
+        "paper's pulley": is_disk and not case.has_axle_friction and not case.pulley_at_rest,
         "pulley is known": case.pulley_known,
         "c is known": case.rim_mass is not None,
         "ratio is known": case.pulley_known and not case.tensions_equal,
-        "turns freely": case.turns_freely,
+        "turns freely": case.pulley_is_ideal,
         "I is given": scene.I is not None,
         "R is given": scene.R is not None,
         "mu is given": scene.mu is not None,
@@ -244,14 +246,14 @@ def _behaviour(derivation: Derivation) -> dict[str, bool]:
     """Decide the conditions on the regime, the motion and the friction."""
     case, answers = derivation.case, derivation.answers
     grips, slips, moves = case.regime == "no-slip", case.regime == "slip", answers["acceleration"] is not None
-    at_rest = case.sign == 0 or case.stands
-    rim_at_rest = slips and (case.rim_stands or case.frictionless)
+    at_rest = case.sign == 0 or case.pulley_at_rest
+    rim_at_rest = slips and (case.rim_at_rest or case.frictionless)
     definite = answers["friction_force"] is not None
     return {
         "grips": grips,
         "slips": slips,
         "verge": case.regime == "verge",
-        "pulley at rest": case.stands,
+        "pulley at rest": case.pulley_at_rest,
         "held by the axle": case.axle_holds and not case.locked,
         "turning": not (at_rest or case.tensions_equal),
         "masses at rest": grips and at_rest,
@@ -274,9 +276,9 @@ def _critical_masses(derivation: Derivation) -> dict[str, bool]:
     case, answers = derivation.case, derivation.answers
     names = [f"critical_{name}_mass" for name in ("pulley", "heavier", "lighter")]
     pulley, heavier, lighter = (answers[name] is not None for name in names)
-    lighter = lighter and not case.turns_freely
+    lighter = lighter and not case.pulley_is_ideal
     heavier_at_rest = heavier and derivation.slips_at_rest
-    lighter_at_rest = lighter and case.stands_until_it_slips
+    lighter_at_rest = lighter and case.pulley_at_rest_until_it_slips
     return {
         "M* exists": pulley,
         "m* exists": heavier,
@@ -290,7 +292,7 @@ def _critical_masses(derivation: Derivation) -> dict[str, bool]:
 def _simpler(derivation: Derivation) -> Iterator[tuple[str, Answers]]:
     """Yield questions on simpler models, and what these give for the scene."""
     case, scene, digits = derivation.case, derivation.scene, derivation.digits
-    if case.rubs and case.regime == "no-slip" and case.sign and not case.locked:
+    if case.has_axle_friction and case.regime == "no-slip" and case.sign and not case.locked:
         yield "What if the axle had no friction?", Answers(scene._replace(axle=None), digits)
     if case.regime == "slip" and case.pulley_known:
         yield "What if slipping is ignored?", Answers(scene._replace(mu=None, mu_k=None), digits)

@@ -18,15 +18,15 @@ from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.interval import ZERO, decimal_context
-from ..model.case import Case
+from ..model.decisions import Decisions
 from ..model.digits import (
     SHOWN_DIGITS,
     as_typed,
+    format_number,
     is_infinite,
-    text,
-    tidy,
+    rounding_to_place,
+    strip_zeros,
     to_digits,
-    to_place,
     with_uncertainty,
 )
 from ..model.motion import found_inputs, number_of, with_number
@@ -56,7 +56,7 @@ class Value(NamedTuple):
 
     number: Decimal | None
     reason: str = ""
-    case: Case | None = None
+    case: Decisions | None = None
 
 
 class End(NamedTuple):
@@ -97,7 +97,7 @@ class Uncertainties:
     """
 
     def __init__(
-        self, case: Case, given: Mapping[str, Fraction], solve: Callable[[Scene, int, Motion], Answers]
+        self, case: Decisions, given: Mapping[str, Fraction], solve: Callable[[Scene, int, Motion], Answers]
     ) -> None:
         self.case, self.given, self._solve = case, given, solve
         self._here = End(Fraction(0), solve(case.scene, DIGITS, case.motion))
@@ -237,8 +237,8 @@ class Uncertainties:
         """Say a quantity with its uncertainty, and from where to where it goes with an input."""
         short = self.of(name, 2)
         assert short is not None
-        unit, round_ = QUANTITIES[name].unit, to_place(short.adjusted() - 1)
-        both = with_uncertainty(lambda place: to_place(place)(spread.here), short)
+        unit, round_ = QUANTITIES[name].unit, rounding_to_place(short.adjusted() - 1)
+        both = with_uncertainty(lambda place: rounding_to_place(place)(spread.here), short)
         values = [(spread.here, self.case)]
         values += [(end.number, end.case) for end in spread.ends[x] if end.number is not None and end.case]
         values.sort(key=itemgetter(0))
@@ -246,7 +246,7 @@ class Uncertainties:
         ends = []
         for value, case in (values[0], values[-1]):
             regime = f" ({REGIME_WORDS[case.regime]})" if changes else ""
-            ends.append(f"{text(tidy(round_(value)))}{regime}")
+            ends.append(f"{format_number(strip_zeros(round_(value)))}{regime}")
         return f"{name} is {with_unit(both, unit)}, from {ends[0]} to {ends[1]}"
 
     def _at(self, x: str, end: End) -> str:
@@ -261,10 +261,10 @@ DOUBTFUL = {
     "Whether the axle holds the difference": "axle_holds",
     "Whether the string slips": "regime",
 }
-"""The decisions that may differ at an end of an input, and their attributes of `Case`."""
+"""The decisions that may differ at an end of an input, and their attributes of `Decisions`."""
 
 
-def _otherwise(case: Case, other: Case) -> str:
+def _otherwise(case: Decisions, other: Decisions) -> str:
     """Name the first decision that is another in another case, "" if there is none."""
     return next((what for what, x in DOUBTFUL.items() if getattr(case, x) != getattr(other, x)), "")
 
@@ -272,10 +272,10 @@ def _otherwise(case: Case, other: Case) -> str:
 def _one_sided(name: str, here: Decimal, other: Value) -> str:
     """Say a value without an uncertainty, and the one at the only end that has one."""
     unit = QUANTITIES[name].unit
-    said = f"{name} is {with_unit(text(tidy(to_digits(SHOWN_DIGITS)(here))), unit)}"
+    said = f"{name} is {with_unit(format_number(strip_zeros(to_digits(SHOWN_DIGITS)(here))), unit)}"
     if other.number is None or other.number == here:
         return said
-    bound = with_unit(text(tidy(to_digits(SHOWN_DIGITS)(other.number))), unit)
+    bound = with_unit(format_number(strip_zeros(to_digits(SHOWN_DIGITS)(other.number))), unit)
     return f"{said}, at {'least' if other.number < here else 'most'} {bound}"
 
 

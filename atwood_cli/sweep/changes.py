@@ -1,7 +1,7 @@
 """Find the values along a range at which the regime changes, exactly.
 
 The regime is decided at a few values, between which each condition that it depends on changes at most once.
-If it differs at two of them, it changes at one of these, or is decided between them, exactly by `Case`,
+If it differs at two of them, it changes at one of these, or is decided between them, exactly by `Decisions`,
 until it changes between two neighbouring decimals.
 
 **Why no change is missed.** With friction given, the string slips where ln r > μφ. By (1), and (3) with the
@@ -34,8 +34,8 @@ from math import inf
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..model.case import Case
-from ..model.digits import SHOWN_DIGITS, tidy, to_digits
+from ..model.decisions import Decisions
+from ..model.digits import SHOWN_DIGITS, strip_zeros, to_digits
 from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
 from .ranges import LOCKED, Point, Range, about_power, decimal_point, exact_point, with_value
@@ -64,7 +64,7 @@ def changes(
     along: Range,
     digits: int | None = None,
     known: Mapping[Fraction, str] = {},
-    what: Callable[[Case], Any] = attrgetter("regime"),
+    what: Callable[[Decisions], Any] = attrgetter("regime"),
 ) -> Iterator[Change]:
     """Yield the changes of the regime, or of another decision, along a range, from its least value on.
 
@@ -72,7 +72,7 @@ def changes(
     """
 
     def state(value: Fraction) -> Any:
-        return what(Case(with_value(scene, along.name, value)))
+        return what(Decisions(with_value(scene, along.name, value)))
 
     start, stop = along.ends
     asked = [start, *(value for value in _turns(scene, along.name) if start < value < stop), stop]
@@ -94,10 +94,10 @@ def regimes(along: Range, found: Sequence[Change], scene: Scene) -> list[str]:
         begins = before.at.exact if before else along.ends[0]
         where = "at" if change.at.exact == begins else "up to"
         parts.append(f"{change.before} {where} {place if before else f'{along.name} = {place}'}")
-    last = found[-1].after if found else Case(with_value(scene, along.name, along.ends[0])).regime
+    last = found[-1].after if found else Decisions(with_value(scene, along.name, along.ends[0])).regime
     parts.append(f"{last} beyond" if found else last)
-    if along.locks and (locked := Case(scene._replace(M=inf)).regime) != last:
-        parts.append(f"{locked} at {along.stated(LOCKED)}")
+    if along.locks and (locked := Decisions(scene._replace(M=inf)).regime) != last:
+        parts.append(f"{locked} at {along.in_words(LOCKED)}")
     return parts
 
 
@@ -106,7 +106,7 @@ def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
     if name in MASSES:
         other = scene.m1 if name == "m2" else scene.m2
         yield other
-        yield other + Case(scene).axle_mass
+        yield other + Decisions(scene).axle_mass
 
 
 def _between(
@@ -136,7 +136,7 @@ def _between(
             break
         else:
             digits += 1
-    place = tidy(down(last)) if last == start else down(last)
+    place = strip_zeros(down(last)) if last == start else down(last)
     return decimal_point(place, suffix), last, first
 
 

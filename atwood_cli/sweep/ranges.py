@@ -22,8 +22,8 @@ from ..model.digits import (
     as_typed,
     exact_decimal,
     exact_or_rounded,
-    text,
-    tidy,
+    format_number,
+    strip_zeros,
     to_digits,
 )
 from ..model.motion import with_number
@@ -40,7 +40,7 @@ from ..model.scene import (
     with_unit,
 )
 from ..model.units import MAX_DIGITS, in_quotes, read_number
-from ..output.text import said_of_scene
+from ..output.text import relevant_inputs
 from ..solver.answers import Answers
 
 UNIT_SUFFIXES = {"rad": "rad", "N m": "Nm"}
@@ -64,7 +64,7 @@ class Point(NamedTuple):
     @property
     def text(self) -> str:
         """The point as `solve` takes it."""
-        return self.printed if isinstance(self.printed, str) else text(self.printed)
+        return self.printed if isinstance(self.printed, str) else format_number(self.printed)
 
 
 LOCKED = Point(inf, "inf")
@@ -77,12 +77,12 @@ def exact_point(value: Fraction | float, suffix: str = "", name: str = "") -> Po
     number, words = exact_decimal(value), as_typed(value)
     if suffix or number is None:
         return Point(Fraction(words), f"{words}{suffix}", name)
-    return Point(value, tidy(number), name)
+    return Point(value, strip_zeros(number), name)
 
 
 def decimal_point(value: Decimal, suffix: str) -> Point:
     """Return a decimal as a point."""
-    return Point(Fraction(value), f"{text(value)}{suffix}" if suffix else value)
+    return Point(Fraction(value), f"{format_number(value)}{suffix}" if suffix else value)
 
 
 class Range(NamedTuple):
@@ -157,7 +157,7 @@ class Range(NamedTuple):
         bare = self.suffix or point == LOCKED
         return point.text if bare else with_unit(point.text, parameter_of(self.name).unit)
 
-    def stated(self, point: Point) -> str:
+    def in_words(self, point: Point) -> str:
         """Return a point in a sentence: M = 10 kg, or disk."""
         return point.name or f"{self.name} = {self.in_units(point)}"
 
@@ -176,7 +176,7 @@ class Sweep(NamedTuple):
     def inputs(self) -> dict[str, str]:
         """The inputs, and the ranges, in words."""
         ranges = {range_.name: range_.words for range_ in self.ranges}
-        return said_of_scene(self.scene, varied=ranges) | ranges
+        return relevant_inputs(self.scene, varied=ranges) | ranges
 
     def along(self, along: Range) -> Iterator[tuple[Scene, dict[str, Point]]]:
         """Yield the scene at each point of the other range, if there is one, and that point."""
@@ -193,10 +193,10 @@ class Sweep(NamedTuple):
                 scene = with_value(scene, range_.name, place[range_.name].exact)
         return scene
 
-    def stated(self, place: Mapping[str, Point]) -> str:
+    def in_words(self, place: Mapping[str, Point]) -> str:
         """Return a place of a sweep in a sentence."""
         ranges = (range_ for range_ in self.ranges if range_.name in place)
-        return ", ".join(range_.stated(place[range_.name]) for range_ in ranges)
+        return ", ".join(range_.in_words(place[range_.name]) for range_ in ranges)
 
 
 class Row(NamedTuple):
@@ -258,7 +258,7 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     if kept > MAX_DIGITS:
         rule = f"has points closer together than {MAX_DIGITS} digits can tell"
         raise SceneError(name, typed, f"{rule}; take fewer points, or ends further apart")
-    ends = [tidy(exact_or_rounded(end, to_digits(kept))) for end in (start, stop)]
+    ends = [strip_zeros(exact_or_rounded(end, to_digits(kept))) for end in (start, stop)]
     points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last, kept), ends[1]]
     return Range(name, typed, [decimal_point(x, suffix) for x in points], log, suffix)
 
@@ -319,7 +319,7 @@ def _equal_steps(start: Fraction, stop: Fraction, last: int, kept: int) -> Itera
     context = decimal_context(kept, ROUND_HALF_EVEN)
     first, by, whole = int(start * unit), int(step * unit), Decimal(unit)
     for i in range(1, last):
-        yield tidy(context.divide(Decimal(first + i * by), whole))
+        yield strip_zeros(context.divide(Decimal(first + i * by), whole))
 
 
 def _equal_ratios(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
@@ -329,7 +329,7 @@ def _equal_ratios(start: Fraction, stop: Fraction, last: int, kept: int) -> Iter
     by = finer.exp(finer.divide(finer.ln(whole), Decimal(last)))
     for _ in range(1, last):  # a million factors cost half of the further digits
         value = finer.multiply(value, by)
-        yield tidy(context.plus(value))
+        yield strip_zeros(context.plus(value))
 
 
 def with_value(scene: Scene, name: str, value: Fraction | float) -> Scene:

@@ -8,7 +8,7 @@ from math import inf, isnan, log, nan
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..model.digits import SHOWN_DIGITS, is_infinite, tidy, to_digits
+from ..model.digits import SHOWN_DIGITS, is_infinite, strip_zeros, to_digits
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, SceneError
 from ..output.figure import COLOURS, FAINT, INK, axis_words, check_file, page, typeset, write_beside
@@ -135,7 +135,7 @@ def _curve(along: Range, name: str, point: str, found: list[Change], solved: dic
             beside = (_height(solved[float(x)], name, "max") for x in (change.first, change.last))
             exact = Fraction(change.at.exact)
             place = to_digits(SHOWN_DIGITS, ROUND_FLOOR)(exact)  # as the table has it
-            at = along.in_units(decimal_point(tidy(place) if place == exact else place, along.suffix))
+            at = along.in_units(decimal_point(strip_zeros(place) if place == exact else place, along.suffix))
             height = next((y for y in beside if not isnan(y)), nan)
             marks.append((float(change.first), height, f"{BEGINS[change.after[0]]} from {at}"))
     return Curve(name, point, xs, least, most, marks, sorted(y for y in locked if not isnan(y)))

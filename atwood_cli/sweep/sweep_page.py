@@ -10,7 +10,7 @@ from operator import attrgetter
 from ..model.digits import SHOWN_DIGITS, to_digits, to_double
 from ..model.quantities import QUANTITIES, STANDARD
 from ..model.scene import with_unit
-from ..output.page import Page, aligned, one, watched
+from ..output.page import Page, aligned, one, with_progress
 from ..output.text import VERSION, cell, scene_record
 from ..solver.messages import reasons_at
 from .changes import changes, regimes
@@ -36,7 +36,7 @@ class SweepPage:
     def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
         """Yield the rows, and count the reasons for missing values."""
         rows = solve_rows(self.sweep, names, digits)
-        for row in watched(rows, self.sweep.total, rows=one) if watch else rows:
+        for row in with_progress(rows, self.sweep.total, rows=one) if watch else rows:
             self.reasons.update(row.reasons.items())
             self.missing = {name for name in self.missing if not cell(row.values[name])}
             yield row
@@ -127,7 +127,7 @@ def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[
             pairs = [pair for pair in pairwise(part) if pair[0].regime != pair[1].regime]
             known = {Fraction(row.at[along.name].exact): row.regime for pair in pairs for row in pair}
             words = ", ".join(regimes(along, list(changes(scene, along, digits, known)), scene))
-            yield f"{sweep.stated(points) or 'Regimes'}: {words}."
+            yield f"{sweep.in_words(points) or 'Regimes'}: {words}."
 
 
 def _in_brackets(unit: str) -> str:

@@ -6,7 +6,7 @@ from itertools import chain, groupby
 from math import isinf
 from operator import attrgetter
 
-from ..model.digits import text
+from ..model.digits import format_number
 from ..output.figure import BLUE, GREEN, PURPLE, RED, page
 from ..output.page import Page
 from ..output.text import VERSION
@@ -85,7 +85,7 @@ def short(value: float | None, digits: int = 2) -> str:
     """Return a number to a few digits; a dash if there is none."""
     if value is None:
         return "-"
-    return "inf" if isinf(value) else text(Decimal(f"{value:.{digits}g}"))
+    return "inf" if isinf(value) else format_number(Decimal(f"{value:.{digits}g}"))
 
 
 def percent(share: float) -> str:

@@ -2,7 +2,7 @@
 
 A string slips if the tension ratio r = T_h/T_l that it would have if it gripped exceeds e^{μφ}. The regime is
 the result of the first line below that answers. The second table has the scenes of which r is taken, each a
-`Place`.
+`LimitingCase`.
 
     question                                             decided by                          result
     does kinetic friction follow from a measured a?      motion.finds == "mu_k"              slip
@@ -17,8 +17,8 @@ the result of the first line below that answers. The second table has the scenes
     scene, locked, massless    as given; D = 0; c = 0    see above
     massless                   in slip                   is the rim at rest under the string that slips?
     heaviest                   h = ∞                     does it slip under some heavier mass?
-    most_held                  c = 0, h = l + b          does it slip as soon as the axle turns?
-    lightest_held              c = 0, l = h - b          is the pulley at rest at the critical lighter mass?
+    heaviest_at_rest           c = 0, h = l + b          does it slip as soon as the axle turns?
+    lightest_at_rest           c = 0, l = h - b          is the pulley at rest at the critical lighter mass?
 
 With an axle that holds the difference, h - l <= b, the pulley is at rest like a locked one. If one mass is 0,
 friction cannot be given, and only the first three lines apply.
@@ -39,7 +39,7 @@ if TYPE_CHECKING:
     from ..arithmetic.rational import Arithmetic, N, Quantity
 
 ZERO, ONE = Fraction(0), Fraction(1)
-Place = Literal["scene", "locked", "massless", "heaviest", "most_held", "lightest_held"]
+LimitingCase = Literal["scene", "locked", "massless", "heaviest", "heaviest_at_rest", "lightest_at_rest"]
 
 
 def is_zero(value: object) -> bool:
@@ -64,7 +64,7 @@ def axle_force(inputs: Any) -> Fraction:
     return force
 
 
-class Case:
+class Decisions:
     """The decisions about a scene, and the inputs seen from the lighter and the heavier mass.
 
     Each is made when it is asked for, once.
@@ -73,7 +73,7 @@ class Case:
     def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
         self.scene, self.motion = scene, motion
         self._known_to_slip = False
-        self._excesses: dict[tuple[Place, Arithmetic[Any]], Any] = {}
+        self._ratios_minus_1: dict[tuple[LimitingCase, Arithmetic[Any]], Any] = {}
 
     @lazy
     def sign(self) -> int:
@@ -91,7 +91,7 @@ class Case:
         return self.by_side(self.scene.m1, self.scene.m2)[1]
 
     @property
-    def free_end(self) -> bool:
+    def one_mass_is_0(self) -> bool:
         """Whether one mass is 0; or below, as a mass that is found with an uncertain acceleration may be."""
         return hasattr(self.light, "numerator") and self.light <= 0
 
@@ -126,19 +126,19 @@ class Case:
         return axle_force(self.scene)
 
     @property
-    def rubs(self) -> bool:
+    def has_axle_friction(self) -> bool:
         """Whether the axle has friction."""
         return not is_zero(self.axle_friction)
 
     @lazy
     def axle_mass(self) -> Fraction:
         """The axle's friction as a mass, b = f/g (kg)."""
-        return physics.axle_mass(self.axle_friction, self.scene.g) if self.rubs else ZERO
+        return physics.axle_mass(self.axle_friction, self.scene.g) if self.has_axle_friction else ZERO
 
     @lazy
     def axle_holds(self) -> bool:
         """Whether the axle's friction holds unequal masses at rest, h - l <= b."""
-        return self.rubs and self.sign != 0 and not self.moves_axle("difference")
+        return self.has_axle_friction and self.sign != 0 and not self.moves_axle("difference")
 
     @property
     def difference(self) -> Fraction:
@@ -151,7 +151,7 @@ class Case:
         return mass * self.scene.g > self.axle_friction
 
     @property
-    def stands(self) -> bool:
+    def pulley_at_rest(self) -> bool:
         """Whether the pulley is at rest, as it is locked or its axle holds it."""
         return self.locked or self.axle_holds
 
@@ -162,17 +162,17 @@ class Case:
     @property
     def pulley_known(self) -> bool:
         """Whether the motion of a string that grips is known: the pulley's inertia is, or it is at rest."""
-        return self.stands or self.rim_mass is not None
+        return self.pulley_at_rest or self.rim_mass is not None
 
     @property
-    def turns_freely(self) -> bool:
+    def pulley_is_ideal(self) -> bool:
         """Whether the pulley has neither mass nor friction in its axle."""
-        return is_zero(self.rim_mass) and not self.rubs
+        return is_zero(self.rim_mass) and not self.has_axle_friction
 
     @property
     def tensions_equal(self) -> bool:
         """Whether a string that grips needs no friction."""
-        return self.sign == 0 or self.turns_freely
+        return self.sign == 0 or self.pulley_is_ideal
 
     @lazy
     def regime(self) -> Literal["no-slip", "verge", "slip"]:
@@ -190,14 +190,14 @@ class Case:
     @lazy
     def slips(self) -> bool:
         """Whether the string slips on a pulley that is known and friction that is given."""
-        place: Place = "locked" if self.stands else "scene"
+        place: LimitingCase = "locked" if self.pulley_at_rest else "scene"
         self._known_to_slip = not self.tensions_equal and self.slips_at(place)
         return self._known_to_slip
 
     @lazy
     def limiting_mu(self) -> Fraction:
         """The coefficient of friction at its limit: static on the verge, kinetic in slip; 0 if not given."""
-        limit = self.scene.mu if self.at_static_limit else self.scene.mu_k
+        limit = self.scene.mu if self.limit_is_static else self.scene.mu_k
         return ZERO if limit is None else limit
 
     @property
@@ -206,7 +206,7 @@ class Case:
         return self.regime == "no-slip" and self.scene.mu is None and not self.tensions_equal
 
     @lazy
-    def at_static_limit(self) -> bool:
+    def limit_is_static(self) -> bool:
         """Whether friction at its limit is static (mu) or kinetic (mu_k)."""
         return not self.slide_measured and (self.scene.mu_k is None or self.regime == "verge")
 
@@ -224,7 +224,7 @@ class Case:
     def frictionless(self) -> bool:
         """Whether the string moves, or rests, without friction."""
         if self.slide_measured:
-            return not self.slide_excess(EXACT)
+            return not self.slide_ratio_minus_1(EXACT)
         return self.tensions_equal or (self.regime != "no-slip" and is_zero(self.limiting_mu))
 
     @lazy
@@ -237,24 +237,24 @@ class Case:
     @lazy
     def always_slips(self) -> bool:
         """Whether axle friction makes the string slip on any pulley, however light."""
-        return self.rubs and self.slips_at("locked" if self.axle_holds else "massless")
+        return self.has_axle_friction and self.slips_at("locked" if self.axle_holds else "massless")
 
     @lazy
     def slips_once_it_moves(self) -> bool:
         """Whether the string slips under the greatest difference that the axle holds."""
-        return self.rubs and self.slips_at("most_held")
+        return self.has_axle_friction and self.slips_at("heaviest_at_rest")
 
     @property
-    def stands_until_it_slips(self) -> bool:
+    def pulley_at_rest_until_it_slips(self) -> bool:
         """Whether the pulley is at rest when the lighter mass is the least that the string holds."""
-        if self.locked or not self.rubs:
+        if self.locked or not self.has_axle_friction:
             return self.locked
-        return not self.moves_axle("heavy") or self.slips_at("lightest_held")
+        return not self.moves_axle("heavy") or self.slips_at("lightest_at_rest")
 
     @lazy
     def can_be_made_slip(self) -> bool:
         """Whether the string slips under some heavier mass: second condition of (36)."""
-        return not self.turns_freely and (self.slips_once_it_moves or self.slips_at("heaviest"))
+        return not self.pulley_is_ideal and (self.slips_once_it_moves or self.slips_at("heaviest"))
 
     @lazy
     def holds_again(self) -> bool:
@@ -262,15 +262,15 @@ class Case:
         return self.rim_mass is not None and self.slips_once_it_moves and not self.slips_at("heaviest")
 
     @lazy
-    def rim_stands(self) -> bool:
+    def rim_at_rest(self) -> bool:
         """Whether the pulley is at rest while the string slips over it."""
-        if self.stands:
+        if self.pulley_at_rest:
             return True
-        if not self.rubs:
+        if not self.has_axle_friction:
             return False
         # T_h - T_l then does not exceed f, as on a massless pulley that is about to turn.
         if self.slide_measured:
-            return not self.slide_excess(EXACT) > self.excess("massless", EXACT)
+            return not self.slide_ratio_minus_1(EXACT) > self.ratio_minus_1("massless", EXACT)
         return self.slides_at("massless")
 
     @lazy
@@ -285,51 +285,51 @@ class Case:
 
     # The tension ratio of a string that grips, against e^{μφ}
 
-    def excess(self, place: Place, ar: Arithmetic[N]) -> N:
+    def ratio_minus_1(self, place: LimitingCase, ar: Arithmetic[N]) -> N:
         """Return T_h/T_l - 1 of a string that grips, at a place of the table at the head; it is kept."""
-        if (place, ar) not in self._excesses:
-            self._excesses[place, ar] = self._excess(place, ar)
-        excess: N = self._excesses[place, ar]
-        return excess
+        if (place, ar) not in self._ratios_minus_1:
+            self._ratios_minus_1[place, ar] = self._new_ratio_minus_1(place, ar)
+        ratio_minus_1: N = self._ratios_minus_1[place, ar]
+        return ratio_minus_1
 
-    def _excess(self, place: Place, ar: Arithmetic[N]) -> N:
+    def _new_ratio_minus_1(self, place: LimitingCase, ar: Arithmetic[N]) -> N:
         l, h, b = self.light, self.heavy, self.axle_mass
         # A limit does not read the pulley's mass: so a sweep of it computes the limit once.
         c = self.rim_mass if place in ("scene", "heaviest") else ZERO
         if place == "heaviest":
             assert c is not None
-            return physics.heaviest_excess(*map(ar.number, (l, c, b)))
-        if c is None or place == "locked" or (place == "scene" and self.stands):
-            return physics.excess_ratio(*map(ar.number, (l, h, ONE, b, ZERO)))
-        if place == "lightest_held":
+            return physics.heaviest_ratio_minus_1(*map(ar.number, (l, c, b)))
+        if c is None or place == "locked" or (place == "scene" and self.pulley_at_rest):
+            return physics.gripping_ratio_minus_1(*map(ar.number, (l, h, ONE, b, ZERO)))
+        if place == "lightest_at_rest":
             l = h - b
-        elif place == "most_held":
+        elif place == "heaviest_at_rest":
             h = l + b
-        return physics.excess_ratio(*map(ar.number, (l, h, c, b, ONE)))
+        return physics.gripping_ratio_minus_1(*map(ar.number, (l, h, c, b, ONE)))
 
-    def slips_at(self, place: Place) -> bool:
+    def slips_at(self, place: LimitingCase) -> bool:
         """Decide whether the string slips at a place, as static friction cannot hold it."""
-        return self.exceeds(lambda ar: self.excess(place, ar), self.scene.mu)
+        return self.exceeds(lambda ar: self.ratio_minus_1(place, ar), self.scene.mu)
 
-    def slides_at(self, place: Place) -> bool:
+    def slides_at(self, place: LimitingCase) -> bool:
         """Decide whether the string goes on sliding at a place, with the friction that acts in its regime."""
-        return self.exceeds(lambda ar: self.excess(place, ar), self.limiting_mu)
+        return self.exceeds(lambda ar: self.ratio_minus_1(place, ar), self.limiting_mu)
 
-    def exceeds(self, excess: Quantity, mu: Fraction | None) -> bool:
-        """Decide whether 1 + excess > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed.
+    def exceeds(self, ratio_minus_1: Quantity, mu: Fraction | None) -> bool:
+        """Decide whether 1 + ratio_minus_1 > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed.
 
         For μ > 0, e^{μφ} is transcendental by Gelfond's theorem if φ is a rational multiple of π, and by
         Lindemann's if φ is rational. A rational ratio never equals it, so the enclosure's sign decides.
         """
         if not mu:
-            return excess(EXACT) > 0
+            return ratio_minus_1(EXACT) > 0
 
         def margin(ar: Arithmetic[N]) -> N:
-            return ar.log1p(excess(ar)) - ar.number(mu) * self.scene.wrap.radians(ar)
+            return ar.log1p(ratio_minus_1(ar)) - ar.number(mu) * self.scene.wrap.radians(ar)
 
         return is_positive(margin)
 
-    def slide_excess(self, ar: Arithmetic[N]) -> N:
+    def slide_ratio_minus_1(self, ar: Arithmetic[N]) -> N:
         """Return T_h/T_l - 1 of a string that slides with the measured acceleration."""
         a = self.measured_acceleration
-        return physics.slide_excess(*map(ar.number, (self.light, self.heavy, a, self.scene.g)))
+        return physics.slide_ratio_minus_1(*map(ar.number, (self.light, self.heavy, a, self.scene.g)))
