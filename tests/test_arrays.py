@@ -148,7 +148,7 @@ def _fault(row: Row) -> str | None:
 
 FAULTS = {
     "and m2 are both 0; at least one mass must hang": "no mass",
-    "is a free end, which friction cannot hold; leave mu out": "friction at a free end",
+    "is an end of the string that is fixed to the pulley, where mu has no effect; leave mu out": "friction at a free end",
     "needs mu, the coefficient that decides whether it slips": "mu_k without mu",
     "must not be above": "mu_k above mu",
     "and inertia both describe the pulley": "I and inertia",
@@ -571,14 +571,14 @@ def test_quantities_by_their_symbols_have_their_names(words: Any) -> None:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"accuracy": "best"}, "accuracy 'best' is no accuracy; there are certified, exact"),
+        ({"accuracy": "best"}, "accuracy 'best' is not an accuracy; there are certified, exact"),
         (
             {"accuracy": "fast"},
             "accuracy 'fast' is no longer there, as certified takes hardly longer; take that",
         ),
-        ({"quantities": ["tension"]}, "quantities 'tension' is no quantity; did you mean tension_2?"),
-        ({"quantities": "a,t1"}, "quantities 't1' is no quantity; did you mean tension_1?"),
-        ({"quantities": [["torque"]]}, r"quantities .*torque.* is no quantity.*"),
+        ({"quantities": ["tension"]}, "quantities 'tension' is not a quantity; did you mean tension_2?"),
+        ({"quantities": "a,t1"}, "quantities 't1' is not a quantity; did you mean tension_1?"),
+        ({"quantities": [["torque"]]}, r"quantities .*torque.* is not a quantity.*"),
     ],
 )
 def test_errors(arguments: dict[str, Any], message: str) -> None:

@@ -143,7 +143,7 @@ def test_a_cell_is_a_number_where_solve_takes_it_for_one(batch: Batch) -> None:
             taken = True
         except SceneError:
             taken = False
-        assert taken == (not error) or error.endswith(BEYOND) or "carries an uncertainty" in error, word
+        assert taken == (not error) or error.endswith(BEYOND) or "has an uncertainty" in error, word
 
 
 def test_a_number_too_small_for_a_double_is_no_0(batch: Batch) -> None:

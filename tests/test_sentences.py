@@ -52,13 +52,13 @@ class Claims:
         return {self.regime(pulley=m, **other) for m in [*masses, *[Fraction(0)] * bool(self.b), inf]}
 
     def least_mu(self, text: str, **other: Any) -> None:
-        """That mu holds the string, and less by one in its last digit does not."""
-        assert self.regime(mu=Fraction(text), mu_k=None, **other) == "no-slip", text
+        """A mu that rounds up to that one does not hold the string, and one that rounds down to it does."""
+        assert self.regime(mu=above(text), mu_k=None, **other) == "no-slip", text
         assert self.regime(mu=below(text), mu_k=None, **other) == "slip", text
 
     def least_mass(self, text: str) -> None:
-        """Under that heavier mass no pulley slips, and under more by one in its last digit a locked one does."""
-        assert self.regime(pulley=inf, h=Fraction(text)) == "no-slip", text
+        """Under a heavier mass that rounds up to that one no pulley slips; under one that rounds down a locked one does."""
+        assert self.regime(pulley=inf, h=below(text)) == "no-slip", text
         assert self.regime(pulley=inf, h=above(text)) == "slip", text
 
 
@@ -77,22 +77,23 @@ def last_place(text: str) -> Fraction:
 
 
 def below(text: str) -> Fraction:
-    return max(Fraction(text) - last_place(text), Fraction(0))
+    """Half of one in the last digit below a number."""
+    return max(Fraction(text) - last_place(text) / 2, Fraction(0))
 
 
 def above(text: str) -> Fraction:
-    return Fraction(text) + last_place(text)
+    return Fraction(text) + last_place(text) / 2
 
 
 # By the words of a sentence, what is asked of the oracle: the scene, its numbers and words, digits of the table.
 
 
 def rest(c: Claims, held: str, unit: str, then: str, digits: int) -> None:
-    difference, place = (size / (1000 if unit == "g" else 1) for size in (Fraction(held), last_place(held)))
-    assert c.h - c.l <= difference <= c.b < difference + place
-    if match := re.search(f"at least {NUMBER}\\.$|, and {NUMBER} is enough", then):
-        c.least_mu(match[1] or match[2])
-        assert match[1] or Fraction(match[2]) <= (c.scene.mu or 0)
+    least, most = (size / (1000 if unit == "g" else 1) for size in (below(held), above(held)))
+    assert least <= c.b <= most
+    assert c.h - c.l <= c.b
+    if match := re.search(f"at least {NUMBER}(\\.$| is needed)", then):
+        c.least_mu(match[1])
 
 
 def on_the_verge(c: Claims, critical: str, a: str, digits: int) -> None:
@@ -129,7 +130,7 @@ def holds(c: Claims, from_rest: str, mu: str, least: str, digits: int) -> None:
     c.least_mu(least)
 
 
-def holds_on_any(c: Claims, heavy: str, least: str, digits: int) -> None:
+def holds_on_any(c: Claims, least: str, heavy: str, digits: int) -> None:
     assert Fraction(heavy) == c.h < Fraction(least)
     assert c.any_pulley() == {"no-slip"}
     c.least_mass(least)
@@ -138,7 +139,7 @@ def holds_on_any(c: Claims, heavy: str, least: str, digits: int) -> None:
 def goes_on(c: Claims, mu_k: str, verge: str, a: str, digits: int) -> None:
     assert c.scene.mu_k == Fraction(mu_k) < Fraction(verge)
     sliding = c.expected(mu=c.scene.mu_k)
-    assert (c.regime(mu=Fraction(verge)), c.regime(mu=above(verge))) == ("slip", "no-slip")
+    assert (c.regime(mu=below(verge)), c.regime(mu=above(verge))) == ("slip", "no-slip")
     assert sliding["regime"] == "slip"
     assert is_shown(a, sliding["acceleration"], digits)
 
@@ -163,7 +164,7 @@ def inertia(c: Claims, shown: str, digits: int) -> None:
     scene: Any = c.scene
     beta = scene.I / scene.M / scene.R**2 if scene.inertia is None else scene.inertia
     assert Fraction(shown) > 1
-    assert abs(Fraction(shown) / beta - 1) < Fraction(1, 10**5)
+    assert abs(Fraction(shown) / beta - 1) < Fraction(1, 10 ** (digits - 1))
 
 
 def out_of_range(c: Claims, names: str, why: str, digits: int) -> None:
@@ -188,40 +189,41 @@ def claimed(truth: Callable[[Claims], bool]) -> Callable[..., None]:
 RANGES = "|".join(
     map(re.escape, (answers_.TOO_LARGE, answers_.TOO_SMALL, answers_.ABOVE_DOUBLES, answers_.BELOW_DOUBLES))
 )
-KINETIC = "(, and slides with mu_k = .*)?"
+KINETIC = "(; it slides with mu_k = .*)?"
 SENTENCES: dict[str, Callable[..., None]] = {
     r"At rest: the masses are equal, so no friction is needed\.": claimed(lambda c: c.scene.m1 == c.scene.m2),
-    rf"At rest: the axle holds up to {NUMBER} (k?g) of difference\.(.*)": rest,
-    r"Slips on any pulley that has mass, for want of friction; the values are for one without\.": claimed(
+    rf"At rest: axle friction can balance up to {NUMBER} (k?g)\.(.*)": rest,
+    r"Slips on any pulley with mass, as mu = 0; the values are for a massless pulley\.": claimed(
         lambda c: c.any_pulley() == {"slip"} and c.regime(pulley=Fraction(0)) == "no-slip"
     ),
     rf"On the verge of slipping: as M is not given, this is for the critical pulley mass, {NUMBER} kg\. On a"
-    rf" heavier pulley the string slips; on one without mass the acceleration is {NUMBER} m/s²\.": on_the_verge,
-    rf"Slips on any pulley, for the friction of its axle: mu = {NUMBER} is below the {NUMBER} that would hold"
-    rf" it on one without mass{KINETIC}\.": slips_on_any,
-    rf"Slips( over a pulley that its axle holds)?: mu = {NUMBER} is below the {NUMBER} that would hold"
+    rf" heavier pulley the string slips; on a massless one the acceleration is {NUMBER} m/s²\.": on_the_verge,
+    rf"Slips on any pulley, because of axle friction: mu = {NUMBER} is below the {NUMBER} needed even on a"
+    rf" massless one{KINETIC}\.": slips_on_any,
+    rf"Slips( over a pulley held by axle friction)?: mu = {NUMBER} is below the {NUMBER} needed to hold"
     rf" it{KINETIC}\.": slips,
-    r"Holds: a pulley without mass needs no friction to turn, so both tensions are equal\.": claimed(
+    r"No slip: a massless pulley needs no friction to turn, so both tensions are equal\.": claimed(
         lambda c: c.l == 0 or c.expected(pulley=Fraction(0), mu=Fraction(0))["regime"] == "no-slip"
     ),
-    r"Holds: the string's end is fixed to the pulley\.": claimed(lambda c: c.l == 0),
-    rf"Assumed to hold, without mu: it does( on a pulley without mass)? if mu is at least {NUMBER}\.": assumed,
-    rf"Holds( from rest)?: mu = {NUMBER}, and {NUMBER} is enough\.": holds,
-    rf"Holds on any pulley: the heavier mass, {NUMBER} kg, would have to exceed {NUMBER} kg to slip\.": (
-        holds_on_any
-    ),
-    r"Holds on any pulley, under any mass that can be given in place of the heavier one\.": claimed(
+    r"No slip: the string's end is fixed to the pulley\.": claimed(lambda c: c.l == 0),
+    r"mu is not given, so the string is assumed not to slip: true( on a massless pulley)? if mu is at least"
+    rf" {NUMBER}\.": assumed,
+    rf"No slip( from rest)?: mu = {NUMBER}, and at least {NUMBER} is needed\.": holds,
+    rf"No slip on any pulley: slipping needs a heavier mass above {NUMBER} kg, not {NUMBER} kg\.": holds_on_any,
+    r"No slip on any pulley, for any heavier mass that can be typed\.": claimed(
         lambda c: c.regime(pulley=inf, h=Fraction(10**500)) == "no-slip"
     ),
-    r"Under a much heavier mass it holds again: .*": claimed(
+    r"Far above critical_heavier_mass the string holds again, .*": claimed(
         lambda c: (c.regime(h=c.l + c.b), c.regime(h=c.h * 10**30)) == ("slip", "no-slip")
     ),
-    r"mu_k has no part in this, .*": claimed(lambda c: c.scene.M is None),
-    r"mu_k = .* is enough, too: .*": claimed(lambda c: c.regime(mu=c.scene.mu_k) == "no-slip"),
-    rf"A string that slides already goes on sliding, as mu_k = {NUMBER} is below {NUMBER}: the masses then"
-    rf" have the acceleration {NUMBER} m/s²\.": goes_on,
-    "From a massless to a locked pulley: "
-    + ", ".join(f"{name} from {NUMBER} to {NUMBER}" for name in OPEN)
+    r"mu_k has no effect on a start from rest; .*": claimed(lambda c: c.scene.M is None),
+    r"A string that already slides stops sliding, as mu_k = .* is enough, too\.": claimed(
+        lambda c: c.regime(mu=c.scene.mu_k) == "no-slip"
+    ),
+    rf"A string that already slides keeps sliding, as mu_k = {NUMBER} is below {NUMBER}: the masses then"
+    rf" accelerate at {NUMBER} m/s²\.": goes_on,
+    "As M goes from 0 to inf: "
+    + ", ".join(f"{name} from {NUMBER} to {NUMBER}(?: [^,]*)?" for name in OPEN)
     + r"\.": open_range,
     rf"(.*?): ({RANGES})\.": out_of_range,
     rf"The inertia factor I/\(M R\^2\) is {NUMBER}, above 1: .*": inertia,

@@ -150,7 +150,7 @@ def _held(answers: Answers) -> str:
     case = answers.case
     times, unit = (1000, "g") if case.axle_mass < 1 else (1, "kg")
     round_ = _beside(answers, times * (case.heavy - case.light))
-    return f"{format_number(strip_zeros(round_(times * case.axle_mass)))} {unit}"
+    return f"{format_number(round_(times * case.axle_mass))} {unit}"
 
 
 def remarks(answers: Answers) -> list[str]:
