@@ -26,7 +26,7 @@ from atwood_cli.model.units import UNITS
 from atwood_cli.tables import sources
 from atwood_cli.tables.sources import FORMATS
 
-from .running import HANGS, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
+from .running import FROM, HANGS, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
 
 TEXT = "m1,m2\n1,3\n"
 ONE = "atwood: 1 row: 1 no-slip; no errors.\n"
@@ -261,7 +261,7 @@ def test_the_input_is_never_overwritten(tmp_path: Path, monkeypatch: pytest.Monk
 
 def test_without_polars_one_line_says_what_to_install(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "polars", None)
-    why = "this needs polars; install it with: pip install 'atwood-cli[batch]'"
+    why = f"this needs polars; install it with: pip install '{FROM}[batch]'"
     assert batch(TEXT) == (1, "", f"atwood: {why}\n")
 
 

@@ -35,7 +35,7 @@ def test_a_solution_shows_itself_as_the_command_does(atwood: Atwood, given: str)
     assert f"{solution}\n" == atwood(*typed).out
     number: Any = str if "digits" in given else float
     shown = json.loads(atwood(*typed, "--json").out, parse_float=number, parse_int=number)
-    assert json.loads(json.dumps(solution.to_dict(), allow_nan=False)) == {**shown, "version": 2}
+    assert json.loads(json.dumps(solution.to_dict(), allow_nan=False)) == {**shown, "version": 3}
     assert list(solution.to_dict()) == list(shown)
 
 

@@ -160,7 +160,7 @@ def test_an_acceleration_no_pulley_is_light_enough_for_beside_it() -> None:
 
 def test_a_fall_in_doubt_of_slipping() -> None:
     s = measured(M="10", mu="0.21(1)", drop="2.00(1)")
-    doubt = "Whether the string slips is in doubt: it is otherwise at mu = 0.19, 2 standard"
+    doubt = "Whether the string slips is in doubt: the answer differs at mu = 0.19, 2 standard"
     assert any(note.startswith(doubt) for note in s.notes)
 
 

@@ -71,7 +71,7 @@ def test_every_key_is_on_the_page_and_of_its_type(atwood: Atwood, tmp_path: Path
         ran = atwood(*words.split())
         assert ran.err == ""
         result = json.loads(ran.out)
-        assert result["version"] == 2
+        assert result["version"] == 3
         top.append(list(result))
         for key, value in keys(result):
             key = re.sub(r"^scene\.\w+", "scene.INPUT", key)

@@ -19,7 +19,7 @@ from atwood_cli.tradeoff.tradeoff_page import save as save_tradeoff
 
 from . import doors
 from .regenerate import CASES
-from .running import TOP, called, drawn, labels, misplaced, pages_seen, process, words_on
+from .running import FROM, TOP, called, drawn, labels, misplaced, pages_seen, process, words_on
 from .scenes import inputs
 
 figure = pytest.importorskip("atwood_cli.output.figure")
@@ -344,7 +344,7 @@ SCATTERED = (
 def test_what_is_fitted_is_the_slope_or_the_intercept(find: str, slope: str, intercept: str) -> None:
     """A fit of gravity did not show it."""
     pytest.importorskip("scipy")
-    rows = called(f"fit - --find {find} --csv".split(), MADE.encode()).out
+    rows = called(f"fit - --find {find} --csv --only runs".split(), MADE.encode()).out
     values = called(
         f"fit - --find {find} --only {slope}{f',{intercept}' if intercept else ''}".split(), MADE.encode()
     ).out
@@ -445,7 +445,7 @@ sys.dont_write_bytecode = True  # which would be cut off, too
 resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
 """
 NO_MATPLOTLIB = 'import sys; sys.modules["matplotlib"] = None'
-INSTALL = "this needs matplotlib; install it with: pip install 'atwood-cli[figure]'"
+INSTALL = f"this needs matplotlib; install it with: pip install '{FROM}[figure]'"
 
 
 @pytest.mark.parametrize("error", ["cannot write {}: File too large", INSTALL])

@@ -21,7 +21,7 @@ from atwood_cli.model.quantities import STANDARD
 from atwood_cli.sweep.ranges import Row, read_list, read_range, read_sweep, solve_rows
 from atwood_cli.sweep.sweep_figure import Curve, panels_of
 
-from .running import TOP, Atwood, called, on_terminal, plain, process
+from .running import FROM, TOP, Atwood, called, on_terminal, plain, process
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]
@@ -251,7 +251,7 @@ def test_without_its_extra_it_names_the_pip_command(atwood: Atwood, monkeypatch:
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     for solves in ("sweep_figure.Answers", "sweep_page.solve_rows"):
         monkeypatch.delattr(f"atwood_cli.sweep.{solves}")  # it is told before anything is solved
-    why = "this needs matplotlib; install it with: pip install 'atwood-cli[figure]'"
+    why = f"this needs matplotlib; install it with: pip install '{FROM}[figure]'"
     assert atwood(*SWEEP, "--M", "1:2:3", "--figure", "x.svg") == (1, "", f"atwood: {why}\n")
 
 

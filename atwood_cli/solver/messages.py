@@ -190,7 +190,7 @@ def open_range(answers: Answers) -> list[str]:
         f"`{name}` from {_say(ends[0], name)} to {with_unit(_say(ends[1], name), QUANTITIES[name].unit)}"
         for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
     )
-    return [f"As `M` goes from 0 to inf: {', '.join(ranges)}."]
+    return [f"As `M` goes from 0 to `inf`: {', '.join(ranges)}."]
 
 
 def kinetic(answers: Answers) -> list[str]:
