@@ -113,14 +113,37 @@ def test_only_what_is_asked_for_is_computed() -> None:
 
 
 def test_every_row_and_every_column_is_shown() -> None:
-    """Of 12 rows the six in the middle were left out, and columns went into a table below."""
+    """Of 12 rows the six in the middle were left out. On a terminal, columns that have no room follow below."""
     words = [*HELD, "--mu", "0:0.33:12"]
     places: list[dict[str, str]] = [{}, {"FORCE_COLOR": "1"}, {"COLUMNS": "40", "LINES": "5"}]
     terminals = [plain(on_terminal(*words, columns=columns, rows=10)) for columns in (30, 60, 110)]
     for seen in [*(plain(process(*words, **asked).out) for asked in places), *terminals]:
         rows = [line for line in seen.splitlines() if re.match(r"│ +\d", line)]
-        assert (len(rows), {row.count("│") for row in rows}, "..." in seen) == (12, {8}, False)
+        tables = [[row.count("│") for row in rows[i : i + 12]] for i in range(0, len(rows), 12)]
+        assert (sum(counts[0] - 2 for counts in tables), {len({*counts}) for counts in tables}) == (6, {1})
+        assert "..." not in seen
+        assert max(map(len, seen.splitlines())) <= (30 if seen is terminals[0] else 200)
     assert ["critical_pulley_mass" in seen for seen in terminals] == [False, False, True]
+
+
+@pytest.mark.parametrize("columns", [60, 80, 100, 120])
+@pytest.mark.parametrize(
+    "line",
+    [
+        "solve --m1 1 --m2 3 --M 10 --axle 1 --all",
+        "sweep --m1 1 --m2 3 --M 1:1000:3:log --mu 0.2:0.4:2",
+        "contact --m1 1 --m2 3 --M 10 --mu 0.3 --R 0.1",
+        "fit RIT --drop 98cm",
+    ],
+)
+def test_no_cell_is_folded(line: str, columns: int) -> None:
+    """Of a sweep at 80 columns, `no-slip` became `no-sli` and `p`. Each row has a number, or begins a group."""
+    pytest.importorskip("scipy")
+    seen = plain(on_terminal(*line.replace("RIT", str(RIT)).split(), columns=columns))
+    for row in re.findall(r"^│(.*)│$", seen, re.MULTILINE):
+        cells = [cell.strip() for cell in row.split("│")]
+        assert cells[0] or not any(re.match(r"-?\d", cell) for cell in cells[1:]), row
+    assert "no-sli │" not in seen
 
 
 # Files

@@ -83,11 +83,7 @@ def cited(name: str, slips: bool, has_axle_friction: bool) -> str:
     about = QUANTITIES[name]
     if slips and about.equation_in_slip is not None:
         return about.equation_in_slip
-    return (
-        f"{about.equation}, with axle friction"
-        if has_axle_friction and name in AXLE_ENTERS
-        else about.equation
-    )
+    return f"{about.equation} with axle" if has_axle_friction and name in AXLE_ENTERS else about.equation
 
 
 FROM_MOTION: dict[str | None, tuple[str, ...]] = {

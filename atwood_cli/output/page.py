@@ -67,36 +67,49 @@ class Page:
             style = f"bold {style}"
         self.say(unmarked(verdict(answers)), style=style)
 
-    def table(self, columns: Sequence[str], groups: Groups) -> None:
+    def table(self, columns: Sequence[str], groups: Groups, keys: int = 1) -> None:
         """Print a table, with a line between groups of rows.
 
-        Words are folded if the terminal is narrow. Numbers and heads are not: a table that has no room for
-        them is wider than the terminal.
+        On a terminal it is no wider than that: words are wrapped at blanks, and columns for which there is
+        no room follow below, with the first ``keys`` columns again. Numbers and names are never broken.
         """
+        rows = [[printable(word, keep="") for word in row] for row in chain.from_iterable(groups)]
+        heads, cells = [printable(head) for head in columns], list(zip(*rows, strict=True))
+        sizes = [len(group) for group in groups]
+        widths = list(map(_widest, heads, cells))
+        if not self.room or _width(widths) <= self.room:
+            self._print_table(heads, cells, widths, sizes)
+            return
+        heads = [re.sub("_(?=[a-z])", "_\n", head) for head in heads]
+        widths = list(map(_narrowest, heads, cells))
+        for block in _blocks(widths, keys, self.room):
+            part = [heads[i] for i in block], [cells[i] for i in block], [widths[i] for i in block]
+            self._print_table(*part, sizes)
+
+    def _print_table(
+        self,
+        heads: Sequence[str],
+        cells: Sequence[Sequence[str]],
+        widths: Sequence[int],
+        sizes: Sequence[int],
+    ) -> None:
+        """Print columns of at least these widths. ``sizes`` are the numbers of rows of the groups."""
         from rich import box
         from rich.table import Table
         from rich.text import Text
 
-        rows = [[printable(word, keep="") for word in row] for row in chain.from_iterable(groups)]
-        heads, cells = [printable(head) for head in columns], list(zip(*rows, strict=True))
-        fits = not self.room or _width(map(_widest, heads, cells)) <= self.room
-        if not fits:
-            heads = [re.sub("_(?=[a-z])", "_\n", head) for head in heads]
-        whole = [fits or any(map(_is_number, column)) for column in cells]
-        least = [
-            _widest(head, column if fixed else ())
-            for head, column, fixed in zip(heads, cells, whole, strict=True)
-        ]
-        self.console.width = max(self.console.width, _width(least))
+        self.console.width = max(self.console.width, _width(widths))
         table = Table(box=box.ROUNDED)
-        for head, width, fixed in zip(heads, least, whole, strict=True):
+        wraps = []
+        for head, column, width in zip(heads, cells, widths, strict=True):
+            wraps.append(_widest("", column) > width)
             # Not as markup, which a file's heading may look like.
-            table.add_column(Text(head), overflow="fold", no_wrap=fixed, min_width=width)
-        left = iter(rows)
-        for group in groups:
-            lines = list(islice(left, len(group)))
-            # Rows are joined if none is folded, as rich takes five times as long over single ones.
-            parts = [lines] if fits else [[line] for line in lines]
+            table.add_column(Text(head), no_wrap=not wraps[-1], min_width=width)
+        left = zip(*cells, strict=True)
+        for size in sizes:
+            lines = list(islice(left, size))
+            # Rows are joined if none is wrapped, as rich takes five times as long over single ones.
+            parts = [[line] for line in lines] if any(wraps) else [lines]
             for number, part in enumerate(parts, 1):
                 joined = (Text("\n".join(column)) for column in zip(*part, strict=True))
                 table.add_row(*joined, end_section=number == len(parts))
@@ -124,6 +137,25 @@ def _width(columns: Iterable[int]) -> int:
 
 def _widest(head: str, cells: Iterable[str]) -> int:
     return max(len(line) for words in (head, *cells) for line in words.split("\n"))
+
+
+def _narrowest(head: str, cells: Sequence[str]) -> int:
+    """Return the least width of a column: only words may be wrapped, and only at blanks."""
+    if any(map(_is_number, cells)):
+        return _widest(head, cells)
+    return _widest(head, chain.from_iterable(cell.split(" ") for cell in cells))
+
+
+def _blocks(widths: Sequence[int], keys: int, room: int) -> Iterator[list[int]]:
+    """Yield the columns of tables that stand below each other, each with the first ``keys`` columns."""
+    first = list(range(keys))
+    block = list(first)
+    for column in range(keys, len(widths)):
+        if len(block) > keys and _width(widths[i] for i in (*block, column)) > room:
+            yield block
+            block = list(first)
+        block.append(column)
+    yield block
 
 
 def aligned(numbers: Iterable[str]) -> list[str]:

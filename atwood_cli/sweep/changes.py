@@ -35,7 +35,7 @@ from operator import attrgetter
 from typing import Any, NamedTuple
 
 from ..model.decisions import Decisions
-from ..model.digits import SHOWN_DIGITS, strip_zeros, to_digits
+from ..model.digits import SHOWN_DIGITS, to_digits
 from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
 from .ranges import LOCKED, Point, Range, about_power, decimal_point, exact_point, with_value
@@ -47,7 +47,7 @@ LEAST_INPUT = Fraction(1, 10**MAX_MAGNITUDE)
 
 
 class Change(NamedTuple):
-    """A change along a range: ``at`` is the value itself, or the greatest decimal before the change.
+    """A change along a range: ``at`` is the value itself, or the decimal nearest to it.
 
     ``last`` and ``first`` are the nearest values before and after the change.
     """
@@ -125,19 +125,20 @@ def _between(
         return exact_point(last, suffix), last, above
     if state(below) == before:
         return exact_point(first, suffix), below, first
-    start = last
+    ends = last, first
     while True:
         down, up = (to_digits(digits, way) for way in (ROUND_FLOOR, ROUND_CEILING))
         middle = _middle(last, first)
         between = next((x for x in map(Fraction, (down(middle), up(middle))) if last < x < first), None)
         if between is not None:
             last, first = (between, first) if state(between) == before else (last, between)
-        elif down(last) == last:
-            break
-        else:
-            digits += 1
-    place = strip_zeros(down(last)) if last == start else down(last)
-    return decimal_point(place, suffix), last, first
+            continue
+        # Both are neighbouring decimals, or one is an end. The nearer one must not be an end of the search,
+        # at which the state is known to hold on: more digits tell them apart.
+        nearest = first if state((last + first) / 2) == before else last
+        if down(nearest) == nearest and nearest not in ends:
+            return decimal_point(down(nearest), suffix), last, first
+        digits += 1
 
 
 def _middle(last: Fraction, first: Fraction) -> Fraction:

@@ -103,7 +103,7 @@ class SweepPage:
             slow = sweep.ranges[0].name
             groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
             table = [[next(lines) for _ in group] for _, group in groups]
-            page.table(list(columns), table)
+            page.table(list(columns), table, keys=len(sweep.ranges))
         page.say(*notes)
 
 
