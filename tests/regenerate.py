@@ -137,7 +137,7 @@ KEPT = [
     *(
         whole(
             EXAMPLES / name,
-            f'cd $(mktemp -d); atwood {words} --figure {name} > table; cat {name}; rm -r "$PWD"',
+            f'cd $(mktemp -d); atwood {words} --figure {name} > table 2>&1; cat {name}; rm -r "$PWD"',
             "matplotlib",
         )
         for name, words in PICTURES.items()

@@ -51,7 +51,7 @@ def contact(
     forms = Report(
         json=lambda: contact_record(answers, arc),
         records=lambda: arc.points,
-        page=lambda: print_contact(answers, arc),
+        page=lambda: print_contact(answers, arc, tables=figure is None or target.file is not None),
         notes=lambda: arc.notes,
     )
     say(*show(forms, target))

@@ -1,6 +1,7 @@
 """`atwood sweep`: ranges and lists of scenes, as a table with its regimes, JSON, CSV or a picture."""
 
 from collections.abc import Mapping
+from functools import partial
 
 from ..model.quantities import read_names
 from ..model.scene import read_digits
@@ -58,7 +59,9 @@ def sweep(
         save(swept, drawn, figure, target.force, bare)
     forms = SweepPage(swept, names, precision)
     try:
-        aside = show(Report(forms.json, forms.records, forms.page, forms.notes), target)
+        # What is drawn is not printed, too, but to a file that is asked for.
+        page = partial(forms.page, table=figure is None or target.file is not None)
+        aside = show(Report(forms.json, forms.records, page, forms.notes), target)
     except KeyboardInterrupt:
         if forms.done:
             say(f"stopped after {forms.done} of {counted(swept.total, 'row')}")

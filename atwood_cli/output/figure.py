@@ -20,8 +20,9 @@ from xml.sax.saxutils import escape
 
 from ..model.quantities import QUANTITIES
 from ..model.scene import SceneError
+from ..model.units import LONGEST_NAME, shortened
 from .files import check_free, is_stdout, written_beside
-from .text import wrapped
+from .text import say, wrapped
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -126,7 +127,7 @@ def _load() -> None:
 def page(
     path: str, force: bool, above: Sequence[str], below: str = "", bare: bool = False, panels: int = 1
 ) -> Iterator["Figure"]:
-    """Yield a figure with room for so many panels, below each other, and save it. Raises OSError.
+    """Yield a figure with room for so many panels, below each other, save it and say so. Raises OSError.
 
     The sentences ``above`` are written unless it is ``bare``. In the file, the first of them is the title,
     and all others, with those ``below``, are the description.
@@ -156,6 +157,7 @@ def page(
             described = f"</title>\n <desc>{escape(description)}</desc>"
             content = content.replace(b"</title>", described.encode(), 1)
         beside.write_bytes(content)
+    say(f"wrote {shortened(path, LONGEST_NAME)}")
 
 
 def typeset(words: str) -> str:

@@ -188,12 +188,21 @@ def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
     }
 
 
-def print_contact(answers: Answers, arc: Contact) -> None:
-    """Print the scene, the verdict, the points along the arc, the balance of forces, and the notes."""
-    from .page import Page, aligned
+def print_contact(answers: Answers, arc: Contact, tables: bool = True) -> None:
+    """Print the scene, the verdict, with ``tables`` the forces along the arc and their sum, and the notes."""
+    from .page import Page
 
     page = Page()
     page.head(answers)
+    if tables:
+        _print_forces(page, answers, arc)
+    page.say(*arc.notes)
+
+
+def _print_forces(page: "Page", answers: Answers, arc: Contact) -> None:
+    """Print the forces at points along the arc, and their sum."""
+    from .page import aligned
+
     names = [name for name in HEADS if name in arc.points[0]]
     rows = [{**point, "angle": strip_zeros(Decimal(point["angle"]))} for point in arc.points]
     columns = [aligned(cell(row[name]) for row in rows) for name in names]
@@ -206,4 +215,3 @@ def print_contact(answers: Answers, arc: Contact) -> None:
     torques = aligned(map(cell, arc.balance["torque"].values()))
     kinds = ("friction along the arc", "R (T2 - T1)")
     page.table([f"Torque on the pulley ({unit})", ""], [list(zip(kinds, torques, strict=True))])
-    page.say(*arc.notes)

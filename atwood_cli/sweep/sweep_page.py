@@ -67,10 +67,10 @@ class SweepPage:
             points = {name: point.printed for name, point in row.at.items()}
             yield points | {name: row.values[name] for name in self.names}
 
-    def page(self) -> None:
-        """Print the scene, its regimes, values that all rows share, a row for each point, and the notes.
+    def page(self, table: bool = True) -> None:
+        """Print the scene, its regimes, values that all rows share, and the notes.
 
-        Columns without a value are left out.
+        With ``table``, a table has a row for each point. Columns without a value are left out.
         """
         page, sweep, names = Page(), self.sweep, list(self.columns)
         if sweep.scene.M is None and sweep.scene.mu is not None and PULLEY not in names:
@@ -88,7 +88,7 @@ class SweepPage:
             above.append(f"In all rows: {', '.join(shared)}.")
         notes = self.notes()
         page.say(*above)
-        if len(same) < len(shown) or not shown:
+        if table and (len(same) < len(shown) or not shown):
             columns = {}
             for range_ in sweep.ranges:
                 points = [range_.cell(row.at[range_.name]) for row in rows]
@@ -102,8 +102,8 @@ class SweepPage:
             # Groups are the points of the range that varies slowly, or the regimes along a single range.
             slow = sweep.ranges[0].name
             groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
-            table = [[next(lines) for _ in group] for _, group in groups]
-            page.table(list(columns), table, keys=len(sweep.ranges))
+            parts = [[next(lines) for _ in group] for _, group in groups]
+            page.table(list(columns), parts, keys=len(sweep.ranges))
         page.say(*notes)
 
 
@@ -117,9 +117,8 @@ def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[
     Of two ranges of the same rank, it is the one that varies fast.
     """
     along = max(reversed(sweep.ranges), key=attrgetter("rank"))
-    if len({row.regime for row in rows}) == 1 and sweep.ranges[1:]:
-        yield f"Regimes: {rows[0].regime}."
-    elif sweep.total // len(along.points) <= MAX_CURVES:
+    if sweep.total // len(along.points) <= MAX_CURVES:
+        said: dict[str, str] = {}
         for scene, points in sweep.along(along):
             part = [row for row in rows if points.items() <= row.at.items()]
             if along.is_list:
@@ -127,7 +126,12 @@ def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[
             pairs = [pair for pair in pairwise(part) if pair[0].regime != pair[1].regime]
             known = {Fraction(row.at[along.name].exact): row.regime for pair in pairs for row in pair}
             words = ", ".join(regimes(along, list(changes(scene, along, digits, known)), scene))
-            yield f"{sweep.in_words(points) or 'Regimes'}: {words}."
+            said[sweep.in_words(points)] = words
+        if len({*said.values()}) == 1:
+            said = {"Regimes": words}
+        yield from (f"{where}: {words}." for where, words in said.items())
+    elif len({row.regime for row in rows}) == 1:
+        yield f"Regime of all rows: {rows[0].regime}."
 
 
 def _in_brackets(unit: str) -> str:
