@@ -41,7 +41,8 @@ def _described(names: Sequence[str]) -> str:
     lines = []
     for name in names:
         about = QUANTITIES[name]
-        unit, equation = about.unit and f" [{about.unit}]", about.equation and f", {about.equation}"
+        unit = f" [{about.unit}]" if about.unit else ""
+        equation = f", {about.equation}" if about.equation else ""
         lines.append(f"    {name:<{width}}  {about.meaning}{unit}{equation}")
     return "\n".join(lines)
 

@@ -12,7 +12,7 @@ else:
         """An attribute that is computed when it is first asked for, and kept.
 
         This is `cached_property` of Python 3.12. Before 3.12 it held a lock for all objects of a class, so
-        that threads which each solve a block waited for each other.
+        that threads which each solve a chunk waited for each other.
         """
 
         def __get__(self, instance: Any, owner: Any = None) -> Any:

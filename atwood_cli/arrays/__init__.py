@@ -84,7 +84,7 @@ def solve_arrays(
 def solve_and_count(
     given: Mapping[str, Numbers | None], accuracy: Accuracy, quantities: Sequence[str] | None
 ) -> tuple[dict[str, NDArray[Any]], Counter[tuple[str, str]]]:
-    """As `solve_arrays`; and the number of valid rows without a value, by quantity and reason."""
+    """Solve as `solve_arrays`, and count the valid rows without a value, by quantity and reason."""
     names = tuple(read_quantities(quantities))
     accuracy = read_accuracy(accuracy)
     inputs, shape = _read(given)

@@ -20,13 +20,13 @@ BINARY_PLACES = 240
 
 @cache
 def pi() -> Fraction:
-    """π."""
+    """Return π."""
     return Fraction(EIGHTY_DIGITS.pi.lo)
 
 
 @cache
 def ln2() -> Fraction:
-    """ln 2."""
+    """Return ln 2."""
     return Fraction(EIGHTY_DIGITS.log1p(EIGHTY_DIGITS.number(1)).lo)
 
 
@@ -41,7 +41,7 @@ def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
 
 @lru_cache(10_000)
 def cos_sin_in_doubles(degrees: float) -> tuple[float, ...]:
-    """Cosine and sine, each as the sum of two doubles."""
+    """Return cosine and sine, each as the sum of two doubles."""
     doubles = []
     for exact in precise_cos_sin(Fraction(degrees)):
         doubles += [float(exact), float(exact - Fraction(float(exact)))]
@@ -61,7 +61,7 @@ def in_parts(q: Fraction, bits: int, count: int) -> tuple[float, ...]:
 
 @cache
 def powers() -> tuple[Column, Column]:
-    """2^(i/n) - 1 for each step i of the table's n, as the sum of two columns."""
+    """Return 2^(i/n) - 1 for each step i of the table's n, as the sum of two columns."""
     exact = [0]
     step = int(Fraction(EIGHTY_DIGITS.expm1(EIGHTY_DIGITS.number(ln2() / TABLE_STEPS)).lo) * 2**BINARY_PLACES)
     for _ in range(TABLE_STEPS - 1):

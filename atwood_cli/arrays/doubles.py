@@ -186,7 +186,7 @@ class Bounded:
         return dividend / self
 
     def _scaled(self, factor: float) -> Bounded:
-        """This number times ±2^n."""
+        """Return this number times ±2^n."""
         if factor == 1:
             return self
         parts = [part * factor for part in self.parts]
@@ -218,7 +218,7 @@ class Doubles:
     # Parts, without bounds
 
     def sum(self, x: Parts, y: Parts, sign: float, positive: bool) -> Parts:
-        """x + sign y; ``positive`` says that nothing cancels, as no row of either is negative."""
+        """Return x + sign y; ``positive`` says that nothing cancels, as no row of either is negative."""
         return (x[0] + y[0] if sign > 0 else x[0] - y[0],)
 
     def multiply(self, x: Parts, y: Parts) -> Parts:
@@ -254,7 +254,7 @@ class Doubles:
         return x
 
     def sqrt(self, x: Bounded) -> Bounded:
-        """√x for x >= 0."""
+        """Return √x for x >= 0."""
         row_error = None if x.row_error is None else 0.5 * x.row_error
         return Bounded(self, self.root_of(x.parts), x.fixed_error / 2 + self.error_of_root, row_error)
 
@@ -269,16 +269,16 @@ class Doubles:
         return self.expm1(x) + 1
 
     def expm1(self, x: Bounded) -> Bounded:
-        """e^x - 1 for x >= 0."""
+        """Return e^x - 1 for x >= 0."""
         first = formula(x.parts[0])
         return Bounded(self, (Formula("expm1", first),), LIBRARY, (1.0 + first) * x.bound)
 
     def log1p(self, x: Bounded) -> Bounded:
-        """ln(1 + x) for x >= 0."""
+        """Return ln(1 + x) for x >= 0."""
         return Bounded(self, (Formula("log1p", formula(x.parts[0])),), LIBRARY + x.fixed_error, x.row_error)
 
     def cos_sin_of_degrees(self, angle: Any) -> tuple[Bounded, Bounded]:
-        """Cosine and sine of an angle in degrees, or of a column of exact angles."""
+        """Return cosine and sine of an angle in degrees, or of a column of exact angles."""
         if isinstance(angle, Fraction):
             cos, sin = map(self.number, precise_cos_sin(angle))
             return cos, sin

@@ -44,7 +44,7 @@ class GivenColumn(NamedTuple):
     absent: NDArray[np.bool_] | None
 
     def cut(self, shape: tuple[int, ...], rows: Index) -> GivenColumn:
-        """Rows of the column as if it were broadcast and flat; a single number stays single."""
+        """Return rows of the column as if it were broadcast and flat; a single number stays single."""
         absent = None if self.absent is None else _cut(self.absent, shape, rows)
         return GivenColumn(_cut(self.doubles, shape, rows), absent)
 
@@ -77,7 +77,9 @@ def read_column(name: str, value: Numbers | None) -> GivenColumn:
             doubles: Any = plain.astype(np.float64, copy=False) if array.dtype.kind in REAL_KINDS else None
     except (TypeError, ValueError, OverflowError) as error:
         raise SceneError(name, None, f"must be real numbers: {error}") from None
-    items = value if isinstance(value, list | tuple) else plain.flat if plain.dtype == object else ()
+    items: Any = plain.flat if plain.dtype == object else ()
+    if isinstance(value, list | tuple):
+        items = value
     if doubles is None or any(isinstance(item, bool | np.bool_) for item in items):
         kind = array.dtype if doubles is None else "bool"
         raise SceneError(name, None, f"must be real numbers, not {kind}")
@@ -127,7 +129,7 @@ SAME_IN_ALL: dict[int, Any] = {Kind.ABSENT: None, Kind.ZERO: Fraction(0), Kind.I
 
 
 class InputColumn(NamedTuple):
-    """An input in the rows of a block: its numbers, and the kind of each, or the one kind of all."""
+    """An input in the rows of a chunk: its numbers, and the kind of each, or the one kind of all."""
 
     doubles: Column
     kinds: int | NDArray[np.int_]
@@ -137,7 +139,7 @@ class InputColumn(NamedTuple):
 
 
 class Group(NamedTuple):
-    """Rows of a block with the same status, and of valid rows the pattern that they have in common."""
+    """Rows of a chunk with the same status, and of valid rows the pattern that they have in common."""
 
     rows: Index
     status: int
@@ -147,7 +149,7 @@ class Group(NamedTuple):
 
 
 def input_columns(given: Mapping[str, GivenColumn]) -> dict[str, InputColumn]:
-    """Return the inputs of a block, with the kinds of their numbers."""
+    """Return the inputs of a chunk, with the kinds of their numbers."""
     return {name: InputColumn(column.doubles, _kinds(name, given)) for name, column in given.items()}
 
 
@@ -183,7 +185,7 @@ def _kinds(name: str, given: Mapping[str, GivenColumn]) -> int | NDArray[np.int_
 
 
 def groups(inputs: Mapping[str, InputColumn], size: int) -> Iterator[Group]:
-    """Yield the rows of a block, grouped by their status and pattern."""
+    """Yield the rows of a chunk, grouped by their status and pattern."""
     m1, m2, mu, mu_k = (inputs[name].doubles for name in ("m1", "m2", "mu", "mu_k"))
     # Rows differ by the digits of a key, each with its base: kinds, the heavier mass, a mu_k above mu.
     digits: list[tuple[int, NDArray[Any]]] = [

@@ -38,20 +38,20 @@ BOUNDED_EXPONENT = 180.0
 
 
 def two_sum(x: Term, y: Term) -> tuple[Any, Any]:
-    """x + y, rounded, and its exact error, whichever of the two is larger (D. E. Knuth)."""
+    """Return x + y, rounded, and its exact error, whichever of the two is larger (D. E. Knuth)."""
     total = x + y
     added = total - x
     return total, (x - (total - added)) + (y - added)
 
 
 def fast_two_sum(x: Term, y: Term) -> tuple[Any, Any]:
-    """x + y, rounded, and its exact error, for |y| <= |x| in every row (T. J. Dekker)."""
+    """Return x + y, rounded, and its exact error, for |y| <= |x| in every row (T. J. Dekker)."""
     total = x + y
     return total, (x - total) + y
 
 
 def two_product(x: Term, y: Term) -> tuple[Any, Any]:
-    """x y, rounded, and its exact error, from the products of heads and tails (T. J. Dekker).
+    """Return x y, rounded, and its exact error, by products of heads and tails (T. J. Dekker).
 
     A head is a double rounded to 26 bits. So its tail has 26 bits, too, and a sign. The four products are
     exact, and so are their sums.
@@ -127,7 +127,7 @@ class Pairs(Doubles):
     # Functions
 
     def expm1(self, x: Bounded) -> Bounded:
-        """k = e^x - 1 for x >= 0, without a bound beyond x = 180 (`BOUNDED_EXPONENT`).
+        """Return k = e^x - 1 for x >= 0, without a bound beyond x = 180 (`BOUNDED_EXPONENT`).
 
         x is split into m ln 2, i steps of ln 2/16384 and a rest r < 4.3e-5, which loses 8 u² of x, as a
         product does. The steps are looked up in a table of a = 2^(i/16384) - 1. The rest gives s = e^r - 1 by
@@ -151,13 +151,13 @@ class Pairs(Doubles):
         return Bounded(self, k.parts, k.fixed_error, where(less(first, BOUNDED_EXPONENT), row_error, inf))
 
     def _small_expm1(self, r: Parts) -> Bounded:
-        """e^r - 1 = r + r² (1/2 + r (1/6 + ...)) for a small r."""
+        """Return e^r - 1 = r + r² (1/2 + r (1/6 + ...)) for a small r."""
         x, tail = Bounded(self, r), ((r[0] * (1 / 720) + 1 / 120) * r[0] + 1 / 24) * r[0]
         factor = self.number(Fraction(1, 6)) + Bounded(self, (tail,))
         return Bounded(self, (x + x * x * (factor * x + self.number(Fraction(1, 2)))).parts)
 
     def log1p(self, x: Bounded) -> Bounded:
-        """ln(1 + x) for x >= 0, as a double y and a correction.
+        """Return ln(1 + x) for x >= 0, as a double y and a correction.
 
         The correction is ln(1 + δ) for δ = (1 + x)/e^y - 1, by two terms of its series. As y is below 180 and
         off by a few u of it, δ is below 2^-43.
@@ -170,7 +170,7 @@ class Pairs(Doubles):
         return result
 
     def cos_sin_of_column(self, degrees: Formula) -> tuple[Bounded, Bounded]:
-        """Return each angle that occurs is computed once, to 70 digits."""
+        """Return the cosine and the sine of angles in degrees; each angle that occurs is computed once."""
         columns = [Formula(op, degrees) for op in ("cos°", "rest of cos°", "sin°", "rest of sin°")]
         x, y = (
             Bounded(self, parts, self.error_of_constant, positive=False)
@@ -180,14 +180,14 @@ class Pairs(Doubles):
 
 
 def _remainder(x: Parts, q: Term, y: Term) -> Any:
-    """x - q y for a rounded quotient q, as a double: q y is so close to x that their difference is exact."""
+    """Return x - q y for a rounded quotient q as a double: q y is so close to x that this is exact."""
     product, error = two_product(q, y)
     remainder = (x[0] - product) - error
     return remainder + x[1] if len(x) == 2 else remainder
 
 
 def _rest(first: Term, others: Sequence[Term], count: Formula) -> Parts:
-    """x minus a multiple of ln 2/16384 that is near it (argument reduction).
+    """Return x minus a multiple of ln 2/16384 that is near it (argument reduction).
 
     The constant is split into parts of 24 bits, whose multiples are exact, and the rest.
     """

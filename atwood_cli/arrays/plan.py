@@ -63,7 +63,7 @@ class Undecided(Exception):
 
 
 class _GroupDecisions(Decisions):
-    """The case of a group of rows, or of a row in it: its decisions are those of the group."""
+    """The decisions about a group of rows, or about a row in it, which has those of its group."""
 
     def __init__(self, pattern: Pattern, branches: Branches, number: Callable[[str], Any]) -> None:
         super().__init__(pattern.scene(number))

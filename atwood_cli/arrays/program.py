@@ -36,21 +36,14 @@ def _copy(x: NDArray[Any], out: NDArray[Any]) -> None:
     out[:] = x
 
 
-def _integer(x: Column, out: NDArray[np.intp]) -> None:
-    out[:] = x
-
-
 def _where(condition: NDArray[np.bool_], x: Column, y: Column, out: Column) -> None:
     out[:] = y
     np.copyto(out, x, where=condition)
 
 
-def _maximum(x: Column, y: Column, out: Column) -> None:
-    np.maximum(x, y, out=out)  # NumPy deprecates giving it in third place
-
-
-def _minimum(x: Column, y: Column, out: Column) -> None:
-    np.minimum(x, y, out=out)
+def _with_keyword(operation: Operation) -> Operation:
+    """Return an operation of two columns whose result NumPy takes only by keyword."""
+    return lambda x, y, out: operation(x, y, out=out)
 
 
 def _power(exponent: NDArray[np.intp], out: Column) -> None:
@@ -88,11 +81,11 @@ OPERATIONS: dict[str, Operation] = {
     "or": np.logical_or,
     "bits": np.bitwise_and,
     ">>": np.right_shift,
-    "maximum": _maximum,
-    "minimum": _minimum,
+    "maximum": _with_keyword(np.maximum),
+    "minimum": _with_keyword(np.minimum),
     "where": _where,
     "take": _take,
-    "int": _integer,
+    "int": _copy,
     "head": _head,
     "power": _power,
     "cos°": _of_degrees(0),
@@ -113,7 +106,7 @@ _OF_THREAD = local()
 
 
 def columns_for(types: Iterable[type[Any]], size: int) -> list[NDArray[Any]]:
-    """Columns of these types for intermediate values; a thread gets the same columns in its next call.
+    """Return columns of these types for intermediate values; a thread gets the same ones in its next call.
 
     New ones would be new pages of memory at each call, which take half as long as the work in them.
     """

@@ -142,7 +142,7 @@ def _write(
 
 @contextmanager
 def _reading() -> Iterator[None]:
-    """Raises Unreadable for any error that polars makes of damaged Parquet.
+    """Raise Unreadable for any error that polars makes of damaged Parquet.
 
     Its threads that panic write to the descriptor of stderr. So this leads nowhere meanwhile, while
     `sys.stderr` leads where it did.

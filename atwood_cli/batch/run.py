@@ -4,7 +4,9 @@ import os
 import signal
 import stat
 import sys
+from collections.abc import Iterator
 from contextlib import ExitStack
+from importlib import import_module
 from io import BytesIO
 from operator import attrgetter
 from pathlib import Path
@@ -41,12 +43,12 @@ def run_batch(job: Job, watch: Watch, tally: Tally) -> list[str]:
     ``watch`` shows progress, unless results go to a terminal.
     """
     if hasattr(signal, "siginterrupt"):
-        import polars  # noqa: F401  # as it is imported, it has Ctrl-C wait for a pipe
+        import_module("polars")  # as it is imported, it has Ctrl-C wait for a pipe
 
         signal.siginterrupt(signal.SIGINT, True)
     _check_apart(job)
     if job.target == STDOUT and sys.stdout.isatty():
-        watch = lambda parts, *_: parts  # noqa: E731
+        watch = _unwatched
     with ExitStack() as stack:
         try:
             source = opened(job.source, stack)
@@ -60,6 +62,10 @@ def run_batch(job: Job, watch: Watch, tally: Tally) -> list[str]:
         except Unreadable as error:
             raise cannot_read(job.source, error) from None
     return remarks
+
+
+def _unwatched(parts: Iterator[Any], *_: object) -> Iterator[Any]:
+    return parts
 
 
 def _check_apart(job: Job) -> None:
@@ -102,7 +108,7 @@ def _solve_csv(
 
 
 def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memoryview:
-    """Records with their results."""
+    """Return records with their results."""
     import polars as pl
 
     error, mark = pl.col(ERROR), table.separator
@@ -141,7 +147,7 @@ def _solve_ndjson(
 
 
 def _ndjson(piece: Piece, results: "pl.DataFrame") -> memoryview:
-    """Objects, each with its results as its last members."""
+    """Return objects, each with its results as its last members."""
     import polars as pl
 
     line, members = pl.col("line"), pl.struct(results.columns).struct.json_encode().str.slice(1)
@@ -166,7 +172,7 @@ def _solve_parquet(
 
 
 def _remarks(layout: Layout, separator: str, usual: str, tally: Tally) -> list[str]:
-    """Sentences on how a table was read, if not as usual."""
+    """Return sentences on how a table was read, if not as usual."""
     not_given = [f"{' and '.join(sorted(tally.not_given))} as not given"] if tally.not_given else []
     headings = [heading for heading in layout.headings if heading.place >= 0]
     not_read = [f"not read: {listed(layout.not_read)}."] if layout.not_read else []

@@ -205,7 +205,7 @@ def _doubles(
 ) -> "tuple[dict[str, pl.Series], dict[int, str], set[str]]":
     """Return the inputs by name, the first error of each bad row, and the words that stand for empty cells.
 
-    An input is null where its cell is empty or wrong.
+    An input is null if its cell is empty or wrong.
     """
     import polars as pl
 

@@ -39,7 +39,7 @@ REMARKS = {
 
 def flag(name: str) -> str:
     """Return a name as an option is typed: mu_k is --mu-k."""
-    return f"--{name.replace('_', '-')}"
+    return f"--{name.rstrip('_').replace('_', '-')}"
 
 
 Words = Callable[[], Mapping[str, str]]
@@ -179,7 +179,7 @@ def quantity_meanings() -> Mapping[str, str]:
     return {"regime": "no-slip, verge or slip", **{name: QUANTITIES[name].meaning for name in NAMES[1:]}}
 
 
-# OptionGroup by several commands
+# Options of several commands
 
 Digits = Annotated[
     str | None, option("Output", metavar="N", help="Significant digits; 6 in tables, doubles elsewhere.")

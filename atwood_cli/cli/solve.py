@@ -6,7 +6,7 @@ from typing import Annotated
 from ..model.quantities import MEASURED_NAMES, NAMES, read_names
 from ..model.scene import SceneError, read_digits
 from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_table, record
-from ..output.text import Destination, Report, cell, relevant_inputs, say, show
+from ..output.text import FORMS, Destination, Report, cell, relevant_inputs, say, show
 from ..solver.answers import Answers, read_answers
 from ..solver.expected import failure, read_condition
 from ..solver.messages import reasons_at, unmarked
@@ -22,6 +22,8 @@ from .options import (
     scene_option,
     with_options,
 )
+
+FORM_NAMES = " ".join(FORMS)
 
 
 def _askable() -> Mapping[str, str]:
@@ -75,7 +77,7 @@ Any number may carry its standard uncertainty; results then have theirs.
 @with_options(
     SCENE,
     OUTPUT,
-    no_effect={"explain": "json csv budget", "all": "json csv only explain"},
+    no_effect={"explain": f"{FORM_NAMES} budget", "all_": f"{FORM_NAMES} only explain"},
     needs={"markdown": "explain", "bare": "figure"},
 )
 def solve(
@@ -87,7 +89,7 @@ def solve(
     time: Time = None,
     only: Only = None,
     expect: Expect = None,
-    all: All = False,  # noqa: A002 - as the option is called
+    all_: All = False,
     digits: Digits = None,
     budget: Budget = False,
     explain: Explain = False,
@@ -108,7 +110,7 @@ def solve(
     forms = Report(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
-        page=lambda: _explain(answers, names, markdown) if explain else print_table(answers, all, budget),
+        page=lambda: _explain(answers, names, markdown) if explain else print_table(answers, all_, budget),
         notes=lambda: notes_on_stderr(answers, names, values=not target.form),
         bare=[] if explain else values,
         below=lambda: print_budget(answers, names) if budget else None,

@@ -10,18 +10,7 @@ from ..output.text import Destination, Report, say, show
 from ..sweep.ranges import read_sweep
 from ..sweep.sweep_figure import drawable, save
 from ..sweep.sweep_page import SweepPage
-from .options import (
-    COULD_NOT,
-    DONE,
-    OUTPUT,
-    SCENE,
-    Bare,
-    Columns,
-    Digits,
-    FigureFile,
-    check_figure,
-    with_options,
-)
+from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Columns, Digits, FigureFile, with_options
 
 HELP = """Solve a range or a list of scenes.
 
@@ -54,7 +43,6 @@ def sweep(
     precision = read_digits(digits)
     swept = read_sweep(given, precision)
     drawn = drawable(swept, names) if figure is not None else []
-    check_figure(figure, target.force)
     if figure is not None:
         save(swept, drawn, figure, target.force, bare)
     forms = SweepPage(swept, names, precision)

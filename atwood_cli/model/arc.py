@@ -104,7 +104,7 @@ def _sum(vectors: Sequence[tuple[N, N]]) -> tuple[N, N]:
 
 
 def torque_per_radius(ar: Arithmetic[N], pieces: Sequence[Arc[N]]) -> N:
-    """Return ∫ dT/dθ dθ (N), the torque of friction on the pulley over its radius, arc by arc; (22)."""
+    """Return ∫ dT/dθ dθ (N), the torque of friction on the pulley over its radius, arc by arc; (23)."""
     total = ar.number(0)
     for arc in pieces:
         if not arc.stuck:

@@ -1,7 +1,7 @@
 """Decide exactly which side is heavier and whether the string slips.
 
 A string slips if the tension ratio r = T_h/T_l that it would have if it gripped exceeds e^{μφ}. The regime is
-the result of the first line below that answers. The second table has the scenes of which r is taken, each a
+the result of the first line below that answers. The second table has the scenes whose r is compared, each a
 `LimitingCase`.
 
     question                                             decided by                          result
@@ -21,7 +21,7 @@ the result of the first line below that answers. The second table has the scenes
     lightest_at_rest           c = 0, l = h - b          is the pulley at rest at the critical lighter mass?
 
 With an axle that holds the difference, h - l <= b, the pulley is at rest like a locked one. If one mass is 0,
-friction cannot be given, and only the first three lines apply.
+mu cannot be given, and the second line answers.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""Every quantity by its name: limiting masses, and inputs found from a measured motion.
+"""Compute critical masses, inputs found from a measured motion, and the time and the speed of a fall.
 
-`Machine` is the model of a `Decisions` in one arithmetic. It computes nothing that is not asked for, and a
-quantity that the scene does not determine raises `Undetermined` with the reason.
+`Machine` is the model of a scene in one arithmetic. It inherits the acceleration, the tensions and the
+friction from `Mechanics`. It computes nothing that is not asked for. A quantity that the scene does not
+determine raises `Undetermined` with the reason.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from .quantities import Undetermined
 
 
 class Machine(Mechanics[N]):
-    """The model of a case in one arithmetic. Its properties are the quantities, as `quantities` has them."""
+    """The model of a scene in one arithmetic. Its properties are the quantities, as `quantities` has them."""
 
     @lazy
     def axle_force(self) -> N:

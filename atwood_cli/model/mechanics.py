@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 class Mechanics(Generic[N]):
-    """The motion, the tensions and the friction of a case in one arithmetic.
+    """The motion, the tensions and the friction of a scene in one arithmetic.
 
     ``known`` has values by the names of attributes, which are then not computed.
 

@@ -164,8 +164,10 @@ def read_names(
 
 def read_quantities(words: Sequence[str] | None) -> list[str]:
     """Read the quantities that a program names, each once; by default the standard ones. Raises SceneError."""
-    typed = [words] if isinstance(words, str) else STANDARD if words is None else words
-    return list(dict.fromkeys(read_names("quantities", map(str, typed))))
+    if words is None:
+        return list(STANDARD)
+    typed = [words] if isinstance(words, str) else map(str, words)
+    return list(dict.fromkeys(read_names("quantities", typed)))
 
 
 def read_name(

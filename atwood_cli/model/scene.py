@@ -343,11 +343,8 @@ def read_digits(given: int | str | None) -> int | None:
 def _checked(name: str, given: Given, number: TypedNumber) -> Any:
     """Return a number as the value of an input: an angle or an axle, if it is one. Raises SceneError."""
     parameter, (value, unit, _) = parameter_of(name), number
-    if (
-        (value < 0 and not parameter.signed)
-        or (value == 0 and not (parameter.zero or parameter.signed))
-        or (abs(value) == inf and not parameter.inf)
-    ):
+    too_small = not parameter.signed and (value < 0 or (value == 0 and not parameter.zero))
+    if too_small or (abs(value) == inf and not parameter.inf):
         raise SceneError(name, given, parameter.domain)
     if parameter.dimension == "angle":
         return Angle(value, "rad" if unit == "rad" else "°")

@@ -43,7 +43,7 @@ UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
     },
 }
 # fmt: on
-"""By dimension, its units in those of the SI, angles in degrees; radians stay radians.
+"""The units of each dimension in those of the SI; angles are in degrees, but radians stay radians.
 
 A unit may also have no blank, or a dot, a star, ^2 or ².
 """
@@ -65,7 +65,7 @@ MULTIPLES = {
     "angle": (_MULTIPLE % "(?i:pi)|π" + "(?: ?rad)?", "pi", Fraction(180)),
     "acceleration": (_MULTIPLE % "g", "g", Fraction(STANDARD_GRAVITY)),
 }
-"""By dimension, the constant of which a number may be a multiple, as in 3pi/2, and what that is."""
+"""The pattern of multiples of a constant, as 3pi/2, its name and its value, by dimension."""
 _PLAIN = str.maketrans("µμ⁻²", "uu-2", "*·^ ")
 _SYMBOLS = {symbol.translate(_PLAIN): symbol for symbols in UNITS.values() for symbol in symbols}
 

@@ -47,8 +47,8 @@ def _write(node: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool)
             return _write_number(format_number(numbers[node.parts[0]]), latex)
         case "symbol":
             name = node.parts[0].name
-            level = SUM if " " in name else POWER if "*" in name else ATOM  # LaTeX takes one superscript
-            return written(name, latex=latex), level
+            level = POWER if "*" in name else ATOM  # LaTeX takes one superscript
+            return written(name, latex=latex), SUM if " " in name else level
         case "number":
             return _write_number(str(node.parts[0]), latex)
         case "+" | "-":
@@ -80,7 +80,8 @@ def _quotient(node: Formula, write: Callable[[Formula], Written], has_numbers: b
     minus = "-" if above[0].op == "number" and above[0].parts[0] < 0 else ""
     if minus:
         del above[0]
-    times = (r" \cdot " if latex else " · ") if has_numbers else (r"\," if latex else " ")
+    by_numbers, by_symbols = (r" \cdot ", r"\,") if latex else (" · ", " ")
+    times = by_numbers if has_numbers else by_symbols
 
     def product(factors: list[Formula], alone: bool) -> str:
         if alone and len(factors) == 1:

@@ -42,7 +42,7 @@ class Equation(NamedTuple):
 
     @property
     def needs(self) -> set[str]:
-        """Return the symbols that the equation rests on."""
+        """The symbols that the equation rests on."""
         formulas = [side for side in (self.left, self.right) if isinstance(side, Formula)]
         symbols = {symbol.name for side in formulas for symbol in side.symbols()}
         return symbols.union(self.follows)

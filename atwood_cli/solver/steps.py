@@ -83,7 +83,7 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
 
 CITATION = re.compile(r"\(\d+\)")
 LINE = re.compile(r"^( *)(?:\[(.*?)\] )?(.+)$", re.MULTILINE)
-LAW = re.compile(r"([a-z_]{3,})\((.*)\)")
+LAW = re.compile(r"([a-z_][a-z_0-9]{2,})\((.*)\)")
 
 
 def _needed(paragraphs: Sequence[Paragraph], wanted: set[str]) -> list[Paragraph]:

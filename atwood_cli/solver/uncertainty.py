@@ -265,7 +265,7 @@ DOUBTFUL = {
 
 
 def _otherwise(case: Decisions, other: Decisions) -> str:
-    """Name the first decision that is another in another case, "" if there is none."""
+    """Name the first decision that differs between two scenes, "" if none does."""
     return next((what for what, x in DOUBTFUL.items() if getattr(case, x) != getattr(other, x)), "")
 
 

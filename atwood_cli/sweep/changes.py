@@ -15,7 +15,7 @@ c = 0 and for c = ∞. Along one parameter ln r - μφ is monotone, but for a sw
 - It falls, or stays, with μ and with φ (the wrap), on which r does not depend.
 - It rises, or stays, with c: dq/dc has the sign of h - l - b. So it does along M, β (the inertia) and I.
 - It rises, or stays, with b = f/g: q rises to 1. So it rises along f (the axle) and falls along g.
-- It falls, or stays, along R: so do c = I/R², where I is given, and b, where the axle's friction is a torque.
+- It falls, or stays, along R: so do c = I/R², if I is given, and b, if the axle's friction is a torque.
 - It does not depend on μ_k.
 - It falls with l: so do h/l and, if the axle turns, (2l + c + b)/l = 2 + (c + b)/l.
 - It rises with h up to l + b, as h/l does. Beyond, r goes with h/(2h + c - b): it rises for c >= b and falls

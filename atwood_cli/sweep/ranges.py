@@ -54,7 +54,7 @@ MOST_VALUES_SAID = 6
 class Point(NamedTuple):
     """A value of a swept parameter, exactly (inf is a locked pulley), as it is printed, and as it was named.
 
-    It is printed as text where it has a unit (an angle in radians, a torque) or is no decimal (1/3, inf).
+    It is printed as text if it has a unit (an angle in radians, a torque) or is no decimal (1/3, inf).
     """
 
     exact: Fraction | float

@@ -78,11 +78,11 @@ def read_headings(
     labels: Collection[str] = (),
     named: Mapping[str, str] = {},
 ) -> list[Heading]:
-    """The columns that hold a quantity, in their order, each with its column of uncertainties.
+    """Return the columns that hold a quantity, in their order, each with its column of uncertainties.
 
     ``labels`` are headings of columns without a quantity, whatever they look like. ``named`` maps headings to
-    names of this grammar. Raises Unreadable where two columns hold the same, a unit is wrong or an
-    uncertainty belongs to no column, SceneError where the table lacks a heading that is ``named``.
+    names of this grammar. Raises Unreadable if two columns hold the same, a unit is wrong or an uncertainty
+    belongs to no column, SceneError if the table lacks a heading that is ``named``.
     """
     if absent := [heading for heading in named if heading not in columns]:
         word = f"{named[absent[0]]}={absent[0]}"
@@ -98,9 +98,11 @@ def read_headings(
             if column in named and key in headings and meaning.name in vocabulary.repeated:
                 key = meaning.name, column  # a repeat that its user did not number
             if key in headings:
-                number = f"number what is repeated, as '{key[0]} 1'" * (key[0] in vocabulary.repeated)
+                way = "rename one"
+                if key[0] in vocabulary.repeated:
+                    way = f"number what is repeated, as '{key[0]} 1'"
                 same = f"{in_quotes(headings[key].column)} and {in_quotes(column)} are both {key[0]}"
-                raise Unreadable(f"columns {same}; {number or 'rename one'}{_let_pass(column)}")
+                raise Unreadable(f"columns {same}; {way}{_let_pass(column)}")
             factor = unit_factor(key[0], meaning.unit, column)
             headings[key] = Heading(place, column, *key, meaning.unit, factor)
     for place, meaning in uncertain:
@@ -109,12 +111,12 @@ def read_headings(
 
 
 def recognised(columns: Sequence[str], vocabulary: Vocabulary, named: Mapping[str, str] = {}) -> list[str]:
-    """The columns that the vocabulary knows, or that the user has named."""
+    """Return the columns that the vocabulary knows, or that the user has named."""
     return [column for column in columns if _meaning(column, vocabulary, named)]
 
 
 def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
-    """The names by their headings, from options --column NAME=HEADING. Raises SceneError."""
+    """Return the names by their headings, from options --column NAME=HEADING. Raises SceneError."""
     named: dict[str, str] = {}
     for word in words:
         name, equals, heading = word.partition("=")
@@ -128,7 +130,7 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
 
 
 def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> _Meaning | None:
-    """The meaning of a heading; None if it is not known."""
+    """Return the meaning of a heading; None if it is not known."""
     name = without_blanks(named.get(column, column))
     meanings = (_named(word, unit, vocabulary) for word, unit in divisions(name))
     meaning = next(filter(None, meanings), None)
@@ -139,7 +141,7 @@ def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> _
 
 
 def divisions(text: str) -> Iterator[tuple[str, str]]:
-    """The ways to read a heading as a name and a unit, first as a name alone."""
+    """Yield the ways to read a heading as a name and a unit, first as a name alone."""
     yield text, ""
     found = (re.fullmatch(pattern, text) for pattern in DIVIDED if len(text) <= LONGEST_HEADING)
     if match := next(filter(None, found), None):
@@ -148,7 +150,7 @@ def divisions(text: str) -> Iterator[tuple[str, str]]:
 
 
 def _named(word: str, unit: str, vocabulary: Vocabulary) -> _Meaning | None:
-    """The meaning of a name without its unit; None if it is not known."""
+    """Return the meaning of a name without its unit; None if it is not known."""
     uncertain = False
     if vocabulary.uncertain:
         if word in OF_COLUMN_BEFORE:
@@ -183,7 +185,7 @@ def _add_uncertainty(
 
 
 def unit_factor(name: str, unit: str, column: str) -> Fraction:
-    """The factor from the unit of a column to SI units, or to degrees. Raises Unreadable."""
+    """Return the factor from the unit of a column to SI units, or to degrees. Raises Unreadable."""
     if not unit:
         return ONE
     dimension = "force" if name == "axle" else parameter_of(name).dimension
@@ -198,7 +200,7 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
 
 
 def refused(column: str, why: str) -> Unreadable:
-    """The error for a heading, with the option that lets it pass."""
+    """Return the error for a heading, with the option that lets it pass."""
     return Unreadable(f"column {in_quotes(column)} {why}{_let_pass(column)}")
 
 
@@ -207,7 +209,7 @@ def _let_pass(column: str) -> str:
 
 
 def listed(names: Sequence[str], most: int = 12) -> str:
-    """Headings in a sentence."""
+    """Return headings in a sentence, the first of many."""
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return f"{', '.join(map(in_quotes, names[:most]))}{more}"
 
@@ -215,7 +217,7 @@ def listed(names: Sequence[str], most: int = 12) -> str:
 def read_as(
     headings: Iterable[Heading], separator: str, usual: str, comma: bool, others: Iterable[str] = ()
 ) -> list[str]:
-    """A line that says how a table was read, if it was not as usual."""
+    """Return a line that says how a table was read; none if it was read as usual."""
     parts = [f"cells separated by {SEPARATOR_NAMES[separator]}"] if separator != usual else []
     parts += ["decimal commas"] if comma else []
     read = {own.place: (own.column, own.name, own.unit) for own in headings}
@@ -231,7 +233,7 @@ def read_as(
 
 
 def decimal_commas_in(rows: Iterable[Sequence[str]], places: Collection[int], separator: str) -> bool:
-    """Whether commas in those places of rows are decimal.
+    """Decide whether commas in those places of rows are decimal.
 
     In a table with semicolons all are. In one with tabs they are, unless each comma separates thousands.
     """
@@ -242,14 +244,14 @@ def decimal_commas_in(rows: Iterable[Sequence[str]], places: Collection[int], se
 
 
 def pointed(name: str, cell: str, comma: bool) -> str:
-    """A cell with a decimal point, without blanks around it. Raises SceneError."""
+    """Return a cell with a decimal point, without blanks around it. Raises SceneError."""
     if comma and "." in cell:
         raise SceneError(name, cell, "has a point in a table of decimal commas; write all alike")
     return (cell.replace(",", ".") if comma else cell).strip()
 
 
 def read_cell(heading: Heading, cell: str, comma: bool) -> Input | None:
-    """The number in a cell, exact and in SI units, with its uncertainty; None if the cell is empty.
+    """Return the number in a cell, exact and in SI units, with its uncertainty; None if it is empty.
 
     A unit in the cell goes before the unit of the heading. Raises SceneError.
     """
@@ -265,12 +267,14 @@ def read_cell(heading: Heading, cell: str, comma: bool) -> Input | None:
 
 
 def read_uncertainty(heading: Heading, cell: str, value: Fraction, comma: bool) -> Fraction:
-    """The uncertainty of a value, from the cell in the column of its uncertainties. Raises SceneError."""
+    """Return the uncertainty of a value, from the cell in its column of uncertainties. Raises SceneError."""
     number = pointed(heading.column, cell, comma).lstrip("± ")
     relative = number.endswith(PERCENT) or heading.unit == PERCENT
     number = number.removesuffix(PERCENT)
     try:
-        spread = read_input(heading.name, f"1±{number}{PERCENT * relative}").uncertainty
+        spread = read_input(heading.name, f"1±{number}{PERCENT if relative else ''}").uncertainty
     except SceneError:
         raise SceneError(heading.column, cell, "is not an uncertainty; write it like 0.02 or 2%") from None
-    return spread * (abs(value) if relative else ONE if OWN_UNIT.search(number) else heading.factor)
+    if relative:
+        return spread * abs(value)
+    return spread if OWN_UNIT.search(number) else spread * heading.factor

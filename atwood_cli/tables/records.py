@@ -64,7 +64,7 @@ class Csv:
         csv.field_size_limit(LONGEST_RECORD)
         self._texts = (decoded(*lines) for lines in whole_lines(blocks, cells=True))
         self._text, self._at, self._line = next(self._texts, ""), 0, 1
-        self.mark = BYTE_ORDER_MARK * self._text.startswith(BYTE_ORDER_MARK)
+        self.mark = BYTE_ORDER_MARK if self._text.startswith(BYTE_ORDER_MARK) else ""
         self._text = self._text.removeprefix(BYTE_ORDER_MARK)
         while self._text.count('"') % 2 and len(self._text) < LONGEST_RECORD:  # the header may have line ends
             if not (more := next(self._texts, "")):
@@ -198,7 +198,7 @@ class Csv:
         return error
 
     def _written(self, cells: Sequence[str]) -> str:
-        """Cells as a row of the table, in quotation marks if they need them."""
+        """Return cells as a row of the table, in quotation marks if they need them."""
         buffer = StringIO()
         csv.writer(buffer, delimiter=self.separator, lineterminator="").writerow(cells)
         return buffer.getvalue()
@@ -309,4 +309,4 @@ def _column(values: Sequence[object]) -> "pl.Series":
 
 def _text(value: object) -> str | None:
     text = value if value is None or isinstance(value, str) else json.dumps(value, ensure_ascii=False)
-    return text and text.encode(errors="backslashreplace").decode()
+    return None if text is None else text.encode(errors="backslashreplace").decode()

@@ -38,7 +38,7 @@ class Sheet(NamedTuple):
 
 
 def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
-    """A file by its path, "-" for stdin, a mapping or a data frame as a table of texts. Raises Unreadable."""
+    """Read a file by its path, stdin by "-", a mapping or a data frame as texts. Raises Unreadable."""
     if isinstance(source, str | PathLike):
         with ExitStack() as stack:
             content = _content(blocks_of(opened(fspath(source), stack)))
@@ -74,7 +74,7 @@ def _content(blocks: Iterator[bytes]) -> bytes:
 
 
 def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
-    """The table in a text, without blank rows; each row has as many cells as there are headings.
+    """Return the table in a text, without blank rows; each row has as many cells as there are headings.
 
     The separator is that by which most headings are known, the ``usual`` one if several are as good. Raises
     Unreadable.
@@ -87,7 +87,7 @@ def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mappin
         remarks.append("text in Windows-1252")
 
     def header(text: str, separator: str) -> tuple[int, int, int]:
-        """How many headings the text has by that separator, how many cells, and in which of its rows."""
+        """Count the headings and cells of the best header by that separator, and say in which row it is."""
         best = (0, 0, 0)
         with suppress(csv.Error):
             rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
@@ -103,16 +103,18 @@ def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mappin
         bare = lines[i].lstrip("# \t")  # NumPy writes headings so
         is_header = max(header(bare, mark)[0] for mark in SEPARATOR_NAMES) > 1
         lines[i] = bare if is_header else ""
-        remarks += [] if is_header or COMMENTS in remarks else [COMMENTS]
+        if not is_header and COMMENTS not in remarks:
+            remarks.append(COMMENTS)
     text = "\n".join(lines)
     separator = max((usual, *SEPARATOR_NAMES), key=lambda mark: header(text, mark)[:2])
     start = header(text, separator)[2]
-    remarks += ["lines above the headings left out"] * (start > 0)
+    if start:
+        remarks.append("lines above the headings left out")
     return Sheet(*_rows(text, separator, start), separator, usual, remarks)
 
 
 def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[str]]]:
-    """The headings in that row of a text, and the rows below. Raises Unreadable."""
+    """Return the headings in that row of a text, and the rows below. Raises Unreadable."""
     reader = csv.reader(StringIO(text, newline=""), delimiter=separator, strict=True)
     try:
         columns, *rows = [row for row in reader if any(row)][start:]
@@ -123,8 +125,9 @@ def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[s
     rows = [row for row in rows if "".join(row).strip()]
     for number, row in enumerate(rows, 1):
         if any(map(str.strip, [*columns[len(row) :], *row[len(columns) :]])):
-            comma = "; is there a decimal comma (write a point), or one at its end?"
-            hint = comma * (separator == "," and len(row) > len(columns))
+            hint = ""
+            if separator == "," and len(row) > len(columns):
+                hint = "; is there a decimal comma (write a point), or one at its end?"
             raise Unreadable(f"row {number} has {len(row)} cells, and the header {len(columns)}{hint}")
         row += [""] * (len(columns) - len(row))
     return columns, rows

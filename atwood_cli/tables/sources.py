@@ -125,7 +125,7 @@ def _what_comes(pipe: Any, most: int) -> bytes:
 
 
 def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[tuple[bytes, int]]:
-    """Blocks of whole lines, each with the number of its first line.
+    """Yield blocks of whole lines, each with the number of its first line.
 
     Raises Unreadable for a file of another kind: no text of ``cells``, or else of objects.
     """
