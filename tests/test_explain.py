@@ -14,6 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from atwood_cli.model import physics
 from atwood_cli.model.decisions import Decisions
 from atwood_cli.model.digits import is_infinite, to_digits
 from atwood_cli.model.quantities import NAMES, QUANTITIES
@@ -337,6 +338,13 @@ def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str) -> None:
                 assert any(str(number).lower().replace("e+", "e") in word for word in words)
         assert not re.search("[\xa0`]", "".join(lines))
         assert not any(re.search(r"^=|\w =$", line) for line in lines)
+
+
+@kinds
+def test_no_function_of_the_program_is_printed(kind: str) -> None:
+    """After a rename, `gripping_ratio_minus_1(l h c b D)` stood where (33) stands."""
+    printed = "\n".join(line for line, _ in as_text([], told_of(kind), 80))
+    assert [name for name in vars(physics) if "_" in name[1:] and f"{name}(" in printed] == []
 
 
 # A handout
