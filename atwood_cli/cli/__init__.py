@@ -135,9 +135,10 @@ def run(arguments: list[str] | None = None) -> int:
         say(error.describe(flag(error.parameter)))
         return WRONG_USAGE
     except UsageError as error:
-        hint = f"; {error.ctx.command_path} -h shows how" if error.ctx else ""
+        hint = f"{error.ctx.command_path} -h shows how" if error.ctx else ""
         words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
-        say(f"{shortened(words, LONGEST_NAME)}{hint}")
+        said = shortened(words, LONGEST_NAME)
+        say(f"{said}{' ' if said.endswith('?') else '; '}{hint}" if hint else said)
         return WRONG_USAGE
     except (KeyboardInterrupt, EOFError, typer.Abort) as error:
         if EOFError in (type(error), type(error.__cause__)):  # a compiled module was cut off

@@ -77,7 +77,8 @@ def failure(answers: Answers, expected: Condition) -> str:
         return ""
     value, reason, *_ = answers.answer(expected.name)
     if value is None or reason == TOO_SMALL:
-        return unmarked(f"expected {expected.typed}; {expected.name} has no value: {reason}")
+        why = reason if reason.startswith("no value") else f"no value: {reason}"
+        return unmarked(f"expected {expected.typed}; {expected.name} has {why}")
     side = answers.settle(
         lambda machine: getattr(machine, expected.name) - _bound(machine, expected.number), to_digits(1)
     )
