@@ -226,7 +226,7 @@ NO_RUN = "a line of words, means or units is no run: begin it with # (units go i
         (b"m1,m2,t\n0.2,0.207,n/a\n", NO_RUN),
         (b"m1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", "quantities stand in the first column; make each run a row, with headings above"),
         (b"0.2,0.207,3.99\n0.201,0.206,5.02\n", "no columns m1, m2, t (or a): give the columns headings, as m1 (g),m2 (g),t (s)"),
-        (b"m1,m2,t1,t2,t\n1,2,3,4,3.5\n", "column 't' stands beside repeats and may be their mean; number it if it is one; or let it pass by --label 't'"),
+        (b"m1,m2,t1,t2,t\n1,2,3,4,3.5\n", "column 't' stands beside repeats and may be their mean; number it if it is one; or keep it with --label 't'"),
         (b"mass one (g),mass two (g),Zeit,n\n1,2,3,4\n", "--column m1='mass one (g)' --column m2='mass two (g)' --column t=Zeit"),
         (b"m1 (g);Masse 2 (g);t\n200;207,5;3,99\n", "no column m2; there are 'm1 (g)', 'Masse 2 (g)', 't'; name it, as --column m2='Masse 2 (g)'"),
         (b"m1,m2 (g),time\n1,x,3\n", f"{NO_RUN}; read as: 'm2 (g)' as m2 in g"),
