@@ -77,7 +77,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
             rest.axhline(level, color=FAINT, lw=0.8, ls="--")
         rest.plot(seen.x, residual, "o", ms=4, color=INK)
         for axes, heights in ((line, seen.y), (rest, residual)):
-            axes.plot(seen.x[fit.odd], heights[fit.odd], "o", ms=9, mfc="none", color=RED)
+            axes.plot(seen.x[fit.suspects], heights[fit.suspects], "o", ms=9, mfc="none", color=RED)
         line.set_xlim(1.06 * min(0.0, min(seen.x - u_x)), end)
         low, high = min(*(seen.y - u_y), seen.intercept, 0.0), max(*(seen.y + u_y), seen.intercept, 0.0)
         line.set_ylim(low - 0.05 * (high - low) if low < 0 else 0, high + 0.3 * (high - low))
@@ -91,7 +91,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
 
 def _name_points(line: "Axes", fit: Fitted, seen: View) -> None:
     """Write the numbers of rows at the points, and mark runs that are left out, at the edge if beyond it."""
-    named = fit.odd if len(fit.used) > MOST_NAMED else range(len(fit.used))
+    named = fit.suspects if len(fit.used) > MOST_NAMED else range(len(fit.used))
     labels = [(seen.x[i], seen.y[i], ",".join(map(str, fit.used[i].rows)), INK) for i in named]
     if out := fit.left_out:
         data, best = as_data(fit.runs, out), fit.whole.best

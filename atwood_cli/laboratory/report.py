@@ -10,12 +10,10 @@ from ..model.units import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
 from .estimate import Data, as_data, expected
-from .fitting import Fitted, to_vary
+from .fitting import Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
 from .runs import MEASURED, RUN_QUANTITIES, Run, in_words
 
-MOST_CORRELATED = 0.95
-"""The correlation beyond which two results can hardly be distinguished."""
 RARE, SELDOM = 0.01, 0.05
 """Probabilities below which something is not, and is hardly, chance."""
 MOST_NAMED = 5
@@ -39,7 +37,7 @@ WITHOUT = {
 
 def head(fit: Fitted) -> list[str]:
     """Return the result in words, and what is odd about the runs."""
-    return [verdict(fit), *(_oddities(fit) if fit.odd else [])]
+    return [verdict(fit), *(_oddities(fit) if fit.suspects else [])]
 
 
 def verdict(fit: Fitted) -> str:
@@ -50,7 +48,7 @@ def verdict(fit: Fitted) -> str:
         said.append(f"No result: {fit.whole.reason}.")
     elif not fit.whole.best.names:
         said.append("Nothing is left to fit: the pulley and its axle are given.")
-    for name in [] if fit.odd else [name for name in USUAL if name in fit.whole.results]:
+    for name in [] if fit.suspects else [name for name in USUAL if name in fit.whole.results]:
         quantity, (low, high) = QUANTITIES[name], fit.whole.results[name].interval
         words = _capital(quantity.words)
         if low > 0:
@@ -65,13 +63,13 @@ def _oddities(fit: Fitted) -> list[str]:
     """Return what is odd about the runs, and the result without it."""
     unit, symbol = parameter_of(fit.runs.kind).unit, {"a": "a", "time": "t"}[fit.runs.kind]
     said, labels = list[str](), list[str]()
-    for (i, place), away in fit.cells.items():
+    for (i, place), away in fit.repeats.items():
         label, value = fit.used[i].cells[place], format_number(float(fit.used[i].measured[place].value))
         where = in_words(label) if ":" in label else f"{in_words(label)}: {symbol}"
         far = f"{_far(away)} standard deviations from its repeats"
         said.append(f"{_capital(where)} = {value} {unit} is {far}; --without {label}.")
         labels.append(label)
-    for i, away in fit.rows.items():
+    for i, away in fit.outlying.items():
         far = f"{_far(away)} standard uncertainties from the other runs"
         labels += map(str, fit.used[i].rows)
         verb = "are outliers" if fit.used[i].rows[1:] else "is an outlier"
@@ -93,7 +91,7 @@ def notes(fit: Fitted) -> list[str]:
     said += _some(sentences, "runs are not used")
     if fit.whole.reason:
         return said
-    return [*said, _scatter(fit), *_delay(fit), *_hardly_separated(fit)]
+    return [*said, _scatter(fit), *_delay(fit)]
 
 
 def _scatter(fit: Fitted) -> str:
@@ -126,18 +124,10 @@ def _delay(fit: Fitted) -> Iterator[str]:
         size = with_u(abs(result.value), result.uncertainty)
         long, find = "long" if result.value > 0 else "short", ",".join([*names, "delay"])
         yield f"All times seem {size} s too {long}: --find {find} fits that, too."
-    elif not fit.odd and (not result or result.interval[1] - result.value > WIDE_DELAY):
+    elif not fit.suspects and (not result or result.interval[1] - result.value > WIDE_DELAY):
         width = f" (it is uncertain by {rounded(result.interval[1] - result.value)} s)" if result else ""
         how = "vary the height of fall, or both m2 - m1 and m1 + m2"
         yield f"These runs cannot show a delay of all times{width}: {how}."
-
-
-def _hardly_separated(fit: Fitted) -> Iterator[str]:
-    """Yield which results can hardly be distinguished, and what to vary."""
-    if (pair := fit.whole.correlation) and abs(pair[2]) > MOST_CORRELATED:
-        one, other = (QUANTITIES[x].words for x in pair[:2])
-        correlation = f"their correlation is {rounded(pair[2], 3)}"
-        yield f"The runs hardly separate {one} from {other} ({correlation}): {to_vary(fit.used)}."
 
 
 def _far(size: float) -> str:
@@ -279,7 +269,7 @@ def _print_table(page: Page, columns: Mapping[str, Sequence[str]]) -> None:
 def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
     """Return for each run the measurement, what is expected, and the residual."""
     kind, data = fit.runs.kind, fit.whole.best.data
-    odd = {" ".join(map(str, fit.used[i].rows)) for i in fit.odd}
+    odd = {" ".join(map(str, fit.used[i].rows)) for i in fit.suspects}
     unit = parameter_of(kind).unit
     finest = min((line["u"] for line in lines if line["u"]), default=None)
     if data.scatter.any() and finest:  # the mean has the digits of its own scatter
