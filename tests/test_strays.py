@@ -9,10 +9,7 @@ pytest.importorskip("scipy")
 
 from scipy.special import stdtr
 
-from atwood_cli.laboratory.estimate import as_data, estimate, uncertain_accelerations
-from atwood_cli.laboratory.runs import read_runs
 from atwood_cli.laboratory.statistics import judge_of_line, judge_of_repeats, outliers
-from atwood_cli.model.scene import read_input
 
 
 def test_a_repeat_is_odd_if_chance_makes_one_as_far_on_either_side_too_seldom() -> None:
@@ -38,11 +35,3 @@ def test_a_run_is_judged_by_the_line_of_the_others() -> None:
     own = np.array([4, 1]) @ covariance @ np.array([4, 1]) + rest @ rest / 3
     assert odd == 4
     assert away == pytest.approx((y[4] - np.polyval(fit, 4)) / sqrt(own))
-
-
-def test_the_uncertainty_of_a_time_is_that_of_an_acceleration() -> None:
-    runs = read_runs({"m1": [1, 2], "m2": [2, 5], "t": ["1.1(1)", "0.7(1)"]}, drop=read_input("drop", "1"))
-    data, u = as_data(runs, runs.runs), 1e-6
-    best = estimate(data, {"gravity": 9.8, "rim_mass": 0.0, "axle": 0.0}, [])._replace(sigma=np.full(2, u))
-    slow, fast = (2 / (data.measured + by) ** 2 for by in (u, -u))
-    assert uncertain_accelerations(best).tolist() == pytest.approx(((fast - slow) / 2).tolist(), rel=1e-5)

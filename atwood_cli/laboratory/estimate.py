@@ -146,15 +146,6 @@ def accelerations(data: Data, measured: Any, delay: float = 0.0) -> Any:
     return measured if data.drop is None else physics.acceleration_of_fall(data.drop, measured - delay)
 
 
-def uncertain_accelerations(best: Estimate) -> Column:
-    """Return the standard uncertainties of the runs' accelerations."""
-    data, delay = best.data, best.values.get("delay", 0.0)
-    if data.drop is None:
-        return best.sigma
-    u: Column = best.sigma * 2 * accelerations(data, data.measured, delay) / (data.measured - delay)
-    return u
-
-
 # Least squares
 
 

@@ -28,13 +28,13 @@ from .estimate import (
     step_of,
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
-from .runs import BEYOND, Run, Runs, in_range
+from .runs import BEYOND, Run, Runs, in_range, rows_in_words
 from .statistics import NORMAL_DOF, CannotSeparate, Column, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
-LEAST_CHANGE = 2e-4
-"""The least change of what is measured, as a share of it, by quantities as large as the masses and forces."""
+LEAST_SINGULAR = 4e-4
+"""Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
 MOST_RATIO = 100
 """Masses, heights, times and accelerations beyond this ratio to the median of their kind are mistakes."""
 LEAST_SHARE, MOST_SHARE = 1e-4, 1.02
@@ -94,7 +94,7 @@ class Outcome(NamedTuple):
 class Fitted(NamedTuple):
     """The fit of the runs that can be used, their outliers, and the fit without these.
 
-    ``unusable`` says why other runs cannot be used, by their rows. ``repeats`` are outliers among the repeats
+    ``unusable`` has the rows of the others, by the reason. ``repeats`` are outliers among the repeats
     of a run, by the index of the run and the place in it, and ``outlying`` runs among all runs, both with
     their distance in standard deviations. ``without`` is None if there are none, or if too few runs are left.
     ``delay`` is that of a fit with a delay, and its p value; None if it was not tried or is not possible.
@@ -102,7 +102,7 @@ class Fitted(NamedTuple):
 
     runs: Runs
     used: Sequence[Run]
-    unusable: Mapping[tuple[int, ...], str]
+    unusable: Mapping[str, Sequence[int]]
     given: Conditions
     whole: Outcome
     repeats: Mapping[tuple[int, int], float]
@@ -187,9 +187,13 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit of these quantities, and outliers. Raises Unreadable, SceneError, CannotSeparate."""
     if "delay" in names and runs.kind != "time":
         raise SceneError("find", "delay", "needs times; the table has accelerations")
-    reasons = {run.rows: why for run in runs.runs if (why := _unusable(runs, run, given, names))}
-    used = [run for run in runs.runs if run.rows not in reasons]
-    left_out = "".join(f"; {run.name}: {reasons[run.rows]}" for run in runs.runs if run.rows in reasons)
+    used, unusable = list[Run](), dict[str, list[int]]()
+    for run in runs.runs:
+        if why := _unusable(runs, run, given, names):
+            unusable.setdefault(why, []).extend(run.rows)
+        else:
+            used.append(run)
+    left_out = "".join(f"; {rows_in_words(rows)}: {why}" for why, rows in unusable.items())
     if not used:
         raise Unreadable(f"no run can be used{left_out}")
     whole = outcome(runs, used, given, names, left_out)
@@ -208,7 +212,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
             if found := late.results.get("delay"):
                 dof = min(late.best.line.dof, NORMAL_DOF)
                 delay = found, float(2 * stdtr(dof, -abs(found.value) / found.uncertainty))
-    return Fitted(runs, used, reasons, given, whole, repeats, outlying, without, delay)
+    return Fitted(runs, used, unusable, given, whole, repeats, outlying, without, delay)
 
 
 def outcome(
@@ -275,8 +279,11 @@ def _outlying_repeats(used: Sequence[Run], best: Estimate) -> dict[tuple[int, in
     judge = judge_of_repeats(values[order], np.where(u > 0, u, 1)[order], index[order], step)
     judged = int((np.bincount(index)[index] > 1).sum())
     found = outliers(len(values) - len(used), judged, len(values), OUTLIER_LEVEL, judge)
-    first = np.searchsorted(index, index)
-    return {(int(index[j]), int(j - first[j])): distance for i, distance in found.items() for j in [order[i]]}
+    first, places = np.searchsorted(index, index), dict[tuple[int, int], float]()
+    for i, distance in found.items():
+        j = int(order[i])
+        places[int(index[j]), int(j - first[j])] = distance
+    return places
 
 
 def _outlying_runs(data: Data, best: Estimate) -> Mapping[int, float]:
@@ -293,7 +300,7 @@ def _unusable(runs: Runs, run: Run, given: Conditions, names: Sequence[str]) -> 
     difference = float(run.m2.value - run.m1.value)
     held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
     reasons = {
-        "it was left out, as asked": run.left_out,
+        "left out, as asked": run.left_out,
         "the masses are equal": not difference,
         "nothing moved": not run.mean,
         "the lighter side falls": runs.signed and (run.mean > 0) != (difference > 0),
@@ -305,23 +312,15 @@ def _unusable(runs: Runs, run: Run, given: Conditions, names: Sequence[str]) -> 
 def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> bool:
     """Decide if runs with these masses and heights determine the quantities, whatever was measured.
 
-    Quantities as large as the masses and forces at hand, in any combination, must change what a plausible
-    pulley lets expect by more than ``LEAST_CHANGE``: the singular values of the slopes tell.
+    The singular values of the slopes at a plausible pulley tell, each slope scaled to the length 1.
     """
     design = data._replace(measured=np.full_like(data.l, inf))
-    sizes = {
-        "rim_mass": float(np.median(data.l + data.h)),
-        "axle": float(np.median(data.h - data.l)) * given["gravity"],
-        "gravity": given["gravity"],
-    }
     least = float((data.h - data.l).min()) * given["gravity"]
-    values = {"rim_mass": 0.1 * sizes["rim_mass"], **given}
+    values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), **given}
     values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
-    ideal = expected(design, values)
-    sizes["delay"] = float(np.median(ideal))
-    J: Any = slopes(design, values, names) / ideal[:, None] * [sizes[x] for x in names]
-    singular = np.linalg.svd(J, compute_uv=False)
-    return not names or bool(singular.min() > LEAST_CHANGE * sqrt(len(ideal)))
+    J: Any = slopes(design, values, names) / expected(design, values)[:, None]
+    singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
+    return not names or bool(singular.min() > LEAST_SINGULAR)
 
 
 def _mistake(data: Data, used: Sequence[Run], kind: str, g: float, is_fitted: bool) -> tuple[str, bool]:

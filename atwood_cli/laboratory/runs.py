@@ -36,7 +36,6 @@ SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
 VOCABULARY = Vocabulary(SPELLINGS, repeated=MEASURED, uncertain=True)
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
-UNSIGNED = "accelerations are read as magnitudes: none is negative, even if m1 is heavier."
 NO_RUN = "a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"
 MEASURABLE = 1e-30, 1e30
 BEYOND = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
@@ -46,8 +45,8 @@ class Run(NamedTuple):
     """Masses, the height of fall if there is one, and what was measured, once or more often.
 
     ``rows`` are the numbers of its rows, which differ only in what was measured. ``cells`` say where each
-    measurement stands, as --without takes it: a row, or 8:t2 if a row has several. ``left_out`` says that
-    the user leaves the run out of the fit.
+    measurement stands, as --without takes it: 8:t2. ``left_out`` says that the user leaves the run out of the
+    fit.
     """
 
     rows: tuple[int, ...]
@@ -71,7 +70,12 @@ class Run(NamedTuple):
     @property
     def name(self) -> str:
         """Its rows, for a sentence."""
-        return f"row {self.rows[0]}" if len(self.rows) == 1 else f"rows {', '.join(map(str, self.rows))}"
+        return rows_in_words(self.rows)
+
+
+def rows_in_words(rows: Sequence[int]) -> str:
+    """Return rows for a sentence: row 1, or rows 1, 2."""
+    return f"row{'s' if rows[1:] else ''} {', '.join(map(str, rows))}"
 
 
 class Runs(NamedTuple):
@@ -126,8 +130,6 @@ def read_runs(
     if not runs:
         raise Unreadable("it has no runs")
     signed = any(one.value < 0 for run in runs for one in run.measured)
-    if kind == "a" and not signed and any(run.m1.value > run.m2.value for run in runs):
-        remarks.append(UNSIGNED)
     return Runs(kind, runs, signed, remarks)
 
 
@@ -287,7 +289,6 @@ def _run(
 ) -> Run:
     """Return the run of one row, marked as left out if all its measurements are. Raises Unreadable."""
     given, measured = dict[str, Input](), dict[int, Input]()
-    several = sum(heading.name in MEASURED for heading in headings) > 1
     try:
         for heading in headings:
             value = _read_cell(heading, row, comma)
@@ -303,7 +304,7 @@ def _run(
     left_out = bool(measured) and without >= measured.keys()
     kept = {place: one for place, one in measured.items() if left_out or place not in without}
     names = {heading.place: _cell_names(heading)[0] for heading in headings if heading.name in MEASURED}
-    cells = tuple(f"{number}:{quote(names[place])}" if several else f"{number}" for place in kept)
+    cells = tuple(f"{number}:{quote(names[place])}" for place in kept)
     return Run(
         (number,), given["m1"], given["m2"], given.get("drop", drop), (*kept.values(),), left_out, cells
     )
