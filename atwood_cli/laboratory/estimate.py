@@ -13,7 +13,7 @@ from ..model import physics
 from ..model.digits import exact_decimal
 from ..model.scene import Input
 from ..tables.sources import Unreadable
-from .runs import MEASURABLE, Run, Runs
+from .runs import MEASURABLE, Run, Runs, rows_in_words
 from .statistics import ROUNDING, Column, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
@@ -69,7 +69,7 @@ def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -
         drop, uncertain["drop"] = _columns([one for run in used if (one := drop_of_all or run.drop)])
     values, u, index = measurements(used)
     if (stated := bool(u.any())) and not u.all():
-        name = used[int(index[np.argmin(u > 0)])].name
+        name = rows_in_words(used[int(index[np.argmin(u > 0)])].rows)
         raise Unreadable(f"{name} has no uncertainty of its {runs.kind}, as others have; give all")
     weight = u**-2 if stated else np.ones_like(values)
     total = np.bincount(index, weight)

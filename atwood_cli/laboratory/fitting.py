@@ -8,7 +8,7 @@ from math import hypot, inf, isfinite, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import fdtrc, stdtr, stdtrit
+from scipy.special import chdtrc, fdtrc, stdtr, stdtrit
 
 from ..model import physics
 from ..model.decisions import Decisions
@@ -72,11 +72,13 @@ class Outcome(NamedTuple):
         chi2, dof, data = self.chi2, self.best.dof, self.best.data
         if chi2 is None or not dof:
             return None
-        return float(fdtrc(dof, NORMAL_DOF if data.stated else data.repeats[1] or NORMAL_DOF, chi2 / dof))
+        if data.stated or not data.repeats[1]:
+            return float(chdtrc(dof, chi2))
+        return float(fdtrc(dof, data.repeats[1], chi2 / dof))
 
     @property
     def between_runs(self) -> float | None:
-        """The standard deviation between runs beyond that, as a mass (kg); None where nothing shows it."""
+        """The standard deviation between runs beyond that, as a mass (kg); None if nothing shows it."""
         if self.chi2 is None or not self.best.dof:
             return None
         return sqrt(self.best.line.between) / abs(self.best.values["gravity"])
@@ -86,18 +88,18 @@ class Outcome(NamedTuple):
         """The most correlated pair of fitted quantities."""
         names, covariance = self.best.names, self.best.line.covariance
         u = np.sqrt(covariance.diagonal())
-        of = covariance / np.outer(u, u)
-        pairs = [(names[i], names[j], float(of[i, j])) for i, j in combinations(range(len(names)), 2)]
+        ratios = covariance / np.outer(u, u)
+        pairs = [(names[i], names[j], float(ratios[i, j])) for i, j in combinations(range(len(names)), 2)]
         return max(pairs, key=lambda pair: abs(pair[2]), default=None)
 
 
 class Fitted(NamedTuple):
-    """The fit of the runs that can be used, their outliers, and the fit without these.
+    """The fit of the runs that can be used, and their outliers.
 
-    ``unusable`` has the rows of the others, by the reason. ``repeats`` are outliers among the repeats
-    of a run, by the index of the run and the place in it, and ``outlying`` runs among all runs, both with
-    their distance in standard deviations. ``without`` is None if there are none, or if too few runs are left.
-    ``delay`` is that of a fit with a delay, and its p value; None if it was not tried or is not possible.
+    ``unusable`` has the rows of the others, by the reason. ``repeats`` are outliers among the repeats of a
+    run, by the index of the run and the place in it, and ``outlying`` runs among all runs, both with their
+    distance in standard deviations. ``delay`` is that of a fit with a delay, and its p value; None if it was
+    not tried or is not possible.
     """
 
     runs: Runs
@@ -107,7 +109,6 @@ class Fitted(NamedTuple):
     whole: Outcome
     repeats: Mapping[tuple[int, int], float]
     outlying: Mapping[int, float]
-    without: Outcome | None
     delay: tuple[Result, float] | None
 
     @property
@@ -117,10 +118,9 @@ class Fitted(NamedTuple):
 
     @property
     def left_out(self) -> list[Run]:
-        """The runs that the user leaves out and of which something can be expected, as if they were exact."""
-        exact = Fraction(0)
+        """The runs that the user leaves out, each with its mean, if something can be expected of them."""
         return [
-            run._replace(measured=tuple(one._replace(uncertainty=exact) for one in run.measured))
+            run._replace(measured=(Input(Fraction(run.mean), Fraction(0), None),))
             for run in self.runs.runs
             if run.left_out and run.mean and run.m1.value != run.m2.value
         ]
@@ -171,7 +171,8 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
     if not names:
         return [x for x in USUAL if x not in given.values]
     if left := [x for x in USUAL if x not in names and x not in given.values]:
-        what, give, find = (" and ".join(map(of, left)) for of in (_words, GIVE.__getitem__, str))
+        what, give = (" and ".join(map(words, left)) for words in (_words, GIVE.__getitem__))
+        find = " and ".join(left)
         raise SceneError("find", ",".join(names), f"leaves {what} open: give {give}, or find {find}, too")
     return names
 
@@ -198,21 +199,19 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         raise Unreadable(f"no run can be used{left_out}")
     whole = outcome(runs, used, given, names, left_out)
     repeats = _outlying_repeats(used, whole.best)
-    sound = [run.without({k for j, k in repeats if j == i}) for i, run in enumerate(used)]
+    sound = [
+        run._replace(measured=tuple(one for k, one in enumerate(run.measured) if (i, k) not in repeats))
+        for i, run in enumerate(used)
+    ]
     outlying = _outlying_runs(as_data(runs, sound), whole.best)
-    without = delay = None
-    with suppress(CannotSeparate):
-        if repeats or outlying:
-            kept = (run for i, run in enumerate(sound) if i not in outlying)
-            usable = [run for run in kept if not _unusable(runs, run, given, names)]
-            without = outcome(runs, usable, given, names)
+    delay = None
     with suppress(CannotSeparate):
         if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
             late = outcome(runs, used, given, [*names, "delay"])
             if found := late.results.get("delay"):
                 dof = min(late.best.line.dof, NORMAL_DOF)
                 delay = found, float(2 * stdtr(dof, -abs(found.value) / found.uncertainty))
-    return Fitted(runs, used, unusable, given, whole, repeats, outlying, without, delay)
+    return Fitted(runs, used, unusable, given, whole, repeats, outlying, delay)
 
 
 def outcome(
@@ -354,6 +353,6 @@ def _mistake(data: Data, used: Sequence[Run], kind: str, g: float, is_fitted: bo
             there = rounded(float(np.broadcast_to(usual, ratio.shape)[i]), 3)
             value = f"{name} = {rounded(float(values[i]), 3)} {unit}"
             times = f"{rounded(float(ratio[i]), 3)} times {there} {unit}, {what}"
-            said = f"{used[i].name}: {value} is {times}; {CHECK}"
+            said = f"{rows_in_words(used[i].rows)}: {value} is {times}; {CHECK}"
         is_mistaken |= is_unusual
     return said, bool(is_mistaken.mean() > 0.5)

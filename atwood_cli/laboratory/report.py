@@ -53,7 +53,7 @@ def verdict(fit: Fitted) -> str:
 
 
 def _outliers(fit: Fitted) -> list[str]:
-    """Return a sentence for each outlier, and the result without them."""
+    """Return a sentence for each outlier."""
     unit, said = parameter_of(fit.runs.kind).unit, list[str]()
     for (i, place), distance in fit.repeats.items():
         cell, value = fit.used[i].cells[place], format_number(float(fit.used[i].measured[place].value))
@@ -63,12 +63,8 @@ def _outliers(fit: Fitted) -> list[str]:
         rows = fit.used[i].rows
         what = f"{_capital(rows_in_words(rows))} {'are' if rows[1:] else 'is'} {rounded(abs(distance))}"
         said.append(f"{what} standard deviations from the other runs; --without {','.join(map(str, rows))}.")
-    them = "them" if said[1:] else "it"
-    if said and fit.without is None:
-        said.append(f"Without {them} too few runs are left to fit.")
-    elif said and fit.without:
-        results = ", ".join(equation(x, *one[:2]) for x, one in fit.without.results.items())
-        said.append(f"Without {them}: {results or 'no result'}. The fit includes {them}.")
+    if said:
+        said.append(f"The fit includes {'them' if said[1:] else 'it'}.")
     return said
 
 

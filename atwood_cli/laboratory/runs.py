@@ -62,16 +62,6 @@ class Run(NamedTuple):
         """The double nearest to the mean of what was measured."""
         return float(sum((Fraction(one.value) for one in self.measured), Fraction(0)) / len(self.measured))
 
-    def without(self, places: Collection[int]) -> "Run":
-        """Return the run without the measurements at these places."""
-        kept = tuple(one for place, one in enumerate(self.measured) if place not in places)
-        return self._replace(measured=kept)
-
-    @property
-    def name(self) -> str:
-        """Its rows, for a sentence."""
-        return rows_in_words(self.rows)
-
 
 def rows_in_words(rows: Sequence[int]) -> str:
     """Return rows for a sentence: row 1, or rows 1, 2."""
