@@ -168,7 +168,7 @@ def masses_of(design: Design) -> tuple[Any, Any, Any]:
 
 
 def drawn(design: Design, random: Random) -> Set:
-    """A set of runs with errors, and none of them odd."""
+    """A set of runs with errors, without outliers."""
     n = design.runs
     l, h, drop = masses_of(design)
     if design.step:  # other masses in each set, or each would have the same errors of rounding

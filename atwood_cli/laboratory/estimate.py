@@ -27,8 +27,8 @@ class Data(NamedTuple):
     """Runs as columns, light and heavy masses apart.
 
     ``measured`` are means of so many values as ``counts`` says. ``scatter`` is the standard uncertainty of
-    such a mean, ``stated`` or by its repeats, 0 where there is neither. ``repeats`` are χ² and the degrees of
-    freedom of the repeats about their means. ``uncertain`` is what else is uncertain in each run, by name.
+    such a mean, ``stated`` or by its repeats, 0 without either. ``repeats`` are χ² and the degrees of
+    freedom of the repeats about their means. ``uncertain`` has uncertainties of other columns, by name.
     """
 
     l: Column
@@ -117,7 +117,7 @@ def _columns(inputs: Sequence[Input]) -> tuple[Column, Column]:
 def expected(data: Data, values: Mapping[str, Any]) -> Any:
     """Return the acceleration of the heavier mass, or the time of its fall with the delay, for each run.
 
-    ``values`` are rim_mass, axle, gravity and delay, and may replace columns. Where next to nothing would
+    ``values`` are rim_mass, axle, gravity and delay, and may replace columns. If next to nothing would
     move, the time goes on along its tangent, so that a fit finds its way back.
     """
     x: dict[str, Any] = {**data._asdict(), "delay": 0.0, **values}
@@ -132,7 +132,7 @@ def expected(data: Data, values: Mapping[str, Any]) -> Any:
 
 
 def slopes(data: Data, values: Mapping[str, Any], names: Sequence[str]) -> Any:
-    """Return the derivatives of what is expected of each run by each of the named: an array (runs, names).
+    """Return the derivatives of what is expected of each run by each of ``names``: an array (runs, names).
 
     The imaginary part by an imaginary step is the derivative to the last digit.
     """

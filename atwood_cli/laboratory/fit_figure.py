@@ -77,7 +77,9 @@ def _name_points(line: "Axes", fit: Fitted, x: Column, y: Column) -> None:
 def coefficients(fit: Fitted) -> str:
     """Return the slope and the intercept of the line, and what else is fitted, if that is a result."""
     lines = []
-    for name, words in {} if fit.whole.reason else MEANING.items():
+    if fit.whole.reason:
+        return ""
+    for name, words in MEANING.items():
         value, unit = fit.whole.best.values[name], QUANTITIES[name].unit
         if result := fit.whole.results.get(name):
             lines.append(f"{words} = {with_u(value, result.uncertainty)} {unit}")

@@ -28,7 +28,7 @@ from .estimate import (
     step_of,
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
-from .runs import BEYOND, Run, Runs, in_range, rows_in_words
+from .runs import OUT_OF_RANGE, Run, Runs, in_range, rows_in_words
 from .statistics import NORMAL_DOF, CannotSeparate, Column, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
@@ -36,7 +36,7 @@ OUTLIER_LEVEL = 0.012
 LEAST_SINGULAR = 4e-4
 """Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
 MOST_RATIO = 100
-"""Masses, heights, times and accelerations beyond this ratio to the median of their kind are mistakes."""
+"""A value that many times above or below the median of its kind must be a mistake."""
 LEAST_SHARE, MOST_SHARE = 1e-4, 1.02
 """The least and the most share that an acceleration may have of that without a pulley and friction."""
 TOO_FEW = "too few for this fit: give more runs, repeats or uncertainties (as 2.05+/-0.02), or give M or axle"
@@ -47,7 +47,7 @@ CHECK = "check masses, heights and units"
 
 
 class Conditions(NamedTuple):
-    """What is the same in all runs: inputs, with ``drop`` if that is, and the quantities that they give."""
+    """The inputs that all runs share, with ``drop`` if they share it, and the quantities that these give."""
 
     inputs: Mapping[str, Input]
     scene: Scene
@@ -130,10 +130,10 @@ class Fitted(NamedTuple):
 
 
 def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
-    """Return what is the same in all runs. Raises SceneError."""
+    """Return the conditions that inputs give. Raises SceneError."""
     for x, one in inputs.items():
         if one.given is not None and one.value != inf and not in_range(one):
-            raise SceneError(x, one.given, BEYOND)
+            raise SceneError(x, one.given, OUT_OF_RANGE)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
     scene = Scene.of({**inputs, **masses})
     case, values = Decisions(scene), {"gravity": float(scene.g)}

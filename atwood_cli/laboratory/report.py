@@ -15,7 +15,7 @@ from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, publi
 from .runs import MEASURED, RUN_QUANTITIES, Run, in_words, rows_in_words
 
 RARE, SELDOM = 0.01, 0.05
-"""p values below which a fit without a delay, and uncertainties of runs, are said to be wrong."""
+"""p values below which a delay, and scatter between runs, are reported."""
 WIDE_DELAY = 0.1
 """The half width of a delay's interval (s) from which the runs cannot show it."""
 NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
@@ -97,7 +97,7 @@ def _scatter(fit: Fitted) -> str:
 
 
 def _delay(fit: Fitted) -> Iterator[str]:
-    """Yield if all times seem to be too long, or if the runs cannot show that."""
+    """Yield a sentence if all times seem too long, or if the runs cannot show that."""
     names = fit.whole.best.names
     if fit.runs.kind != "time" or "delay" in names:
         return
@@ -131,12 +131,12 @@ def conditions(fit: Fitted) -> str:
 
 def results_of(fit: Fitted) -> Fit:
     """Return all of a fit by name, with its sentences."""
-    whole, correlation = fit.whole, fit.whole.correlation
+    whole, pair = fit.whole, fit.whole.correlation
     return Fit(
         **{name: whole.results[name].value if name in whole.results else None for name in QUANTITIES},
         uncertainty={name: one.uncertainty for name, one in whole.results.items()},
         interval={name: list(one.interval) for name, one in whole.results.items()},
-        correlation=correlation and correlation[2],
+        correlation=pair[2] if pair else None,
         chi2=whole.chi2,
         dof=whole.best.dof,
         between_runs=whole.between_runs,
