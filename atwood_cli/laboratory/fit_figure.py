@@ -1,6 +1,7 @@
-"""Runs and the line T_h - T_l = c a + f that fits them, as a picture, with residuals below."""
+"""Runs and the line that fits them, as a picture, with residuals below."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from ..model import physics
 from ..output.figure import BLUE, FAINT, INK, RED, check_file, page, typeset, write_beside
 from .estimate import Data, accelerations, as_data, expected
 from .fitting import Fitted
-from .report import conditions, verdict
+from .report import RARE, conditions, verdict
 from .results import QUANTITIES, rounded, with_u
 from .statistics import Column
 
@@ -16,15 +17,35 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MOST_NAMED = 40  # runs; of more, only outliers and those left out
-MEANING = {"rim_mass": "slope c", "axle": "intercept f_axle", "gravity": "with g", "delay": "with Δt"}
-BELOW = "Error bars are standard uncertainties, with the scatter between runs. Numbers are those of rows."
 
 
-def points(fit: Fitted, data: Data) -> tuple[Column, Column]:
-    """Return the accelerations of runs (m/s²), and the differences of their tensions (N)."""
-    values = fit.whole.best.values
-    a = accelerations(data, data.measured, values["delay"])
-    return a, physics.difference_of_moving_masses(data.l, data.h, a, np.float64(values["gravity"]))
+class View(NamedTuple):
+    """Runs as points of a straight line, of which fitted quantities are the slope and the intercept."""
+
+    x: Column
+    y: Column
+    slope: float
+    intercept: float
+    labels: tuple[str, str]
+    meaning: Mapping[str, str]
+
+
+def view(data: Data, a: Column, values: Mapping[str, float], names: Sequence[str]) -> View:
+    """Return runs with accelerations in the axes that suit the fitted quantities: T_h - T_l = c a + f."""
+    sum_, difference = data.l + data.h, data.h - data.l
+    g, c, f = (values[name] for name in ("gravity", "rim_mass", "axle"))
+    if "gravity" not in names:
+        y: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(g))
+        labels = "acceleration a (m/s²)", "difference of tensions Tₕ − Tₗ (N)"
+        return View(a, y, c, f, labels, {"rim_mass": "slope c", "axle": "intercept f_axle"})
+    if {*names} == {"rim_mass", "gravity"}:
+        labels = "(mₕ − mₗ)/a (kg s²/m)", "mₕ + mₗ + f_axle/a (kg)"
+        meaning = {"gravity": "slope g", "rim_mass": "intercept −c, with c", "axle": "with f_axle"}
+        return View(difference / a, sum_ + f / a, g, -c, labels, meaning)
+    added, plus, intercept = (0.0, "", "intercept −f_axle, ") if "axle" in names else (f, " + f_axle", "")
+    labels = "difference of masses mₕ − mₗ (kg)", f"(mₕ + mₗ + c) a{plus} (N)"
+    meaning = {"gravity": "slope g", "rim_mass": "with c", "axle": f"{intercept}with f_axle"}
+    return View(difference, (sum_ + c) * a + added, g, added - f, labels, meaning)
 
 
 def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
@@ -33,56 +54,67 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     Raises SceneError, OSError.
     """
     check_file(path, force)
-    best, data = fit.whole.best, fit.whole.best.data
-    c, f, delay = (best.values[name] for name in ("rim_mass", "axle", "delay"))
-    x, y = points(fit, data)
-    u_x = best.sigma if data.drop is None else 2 * best.sigma * x / (data.measured - delay)
-    u_y = u_x * (data.l + data.h)
-    with page(path, force, [conditions(fit), verdict(fit)], BELOW, bare, panels=2) as figure:
+    best, data, delay = fit.whole.best, fit.whole.best.data, fit.whole.best.values["delay"]
+    a = accelerations(data, data.measured, delay)
+    u_a = best.sigma if data.drop is None else 2 * best.sigma * a / (data.measured - delay)
+    seen, shifted = (view(data, there, best.values, best.names) for there in (a, a + u_a))
+    u_x, u_y = abs(shifted.x - seen.x), abs(shifted.y - seen.y)
+    above = [conditions(fit), verdict(fit)]
+    if (p := fit.whole.p_value) is not None and p < RARE:
+        above.append(f"Scatter is larger than the uncertainties, p = {rounded(p)}.")
+    bars_are = "widened to the scatter between runs" if fit.whole.between_runs else "not widened"
+    if fit.whole.chi2 is None:
+        bars_are = "by the scatter of the runs"
+    below = f"Error bars are standard uncertainties, {bars_are}. Numbers at points are those of rows."
+    with page(path, force, above, below, bare, panels=2) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
-        end = 1.06 * max(x + u_x)
-        line.plot([0, end], [f, f + c * end], color=BLUE)
-        line.errorbar(x, y, yerr=u_y, xerr=u_x, fmt="o", ms=4, capsize=2, lw=1, color=INK)
+        end = 1.06 * max(seen.x + u_x)
+        line.plot([0, end], [seen.intercept, seen.intercept + seen.slope * end], color=BLUE)
+        bars: Any = {"fmt": "o", "ms": 4, "capsize": 2, "lw": 1, "color": INK}
+        line.errorbar(seen.x, seen.y, yerr=u_y, xerr=u_x if u_x.any() else None, **bars)
         residual = (data.measured - expected(data, best.values)) / best.sigma
         rest.axhline(0, color=BLUE)
         for level in (-2, 2):
             rest.axhline(level, color=FAINT, lw=0.8, ls="--")
-        rest.plot(x, residual, "o", ms=4, color=INK)
-        for axes, heights in ((line, y), (rest, residual)):
-            axes.plot(x[fit.suspects], heights[fit.suspects], "o", ms=9, mfc="none", color=RED)
-        line.set_xlim(1.06 * min(0.0, min(x - u_x)), end)
-        low, high = min(*(y - u_y), f, 0.0), max(*(y + u_y), f, 0.0)
+        rest.plot(seen.x, residual, "o", ms=4, color=INK)
+        for axes, heights in ((line, seen.y), (rest, residual)):
+            axes.plot(seen.x[fit.suspects], heights[fit.suspects], "o", ms=9, mfc="none", color=RED)
+        line.set_xlim(1.06 * min(0.0, min(seen.x - u_x)), end)
+        low, high = min(*(seen.y - u_y), seen.intercept, 0.0), max(*(seen.y + u_y), seen.intercept, 0.0)
         line.set_ylim(low - 0.05 * (high - low) if low < 0 else 0, high + 0.3 * (high - low))
         rest.set_ylim(-max(3, 1.15 * -min(residual)), max(3, 1.15 * max(residual)))
-        line.text(0.03, 0.97, coefficients(fit), transform=line.transAxes, va="top", color=BLUE)
-        line.set_ylabel("difference of tensions Tₕ − Tₗ (N)")
+        line.text(0.03, 0.97, coefficients(fit, seen.meaning), transform=line.transAxes, va="top", color=BLUE)
+        line.set_ylabel(seen.labels[1])
         rest.set_ylabel("residual/u")
-        rest.set_xlabel("acceleration a (m/s²)")
-        _name_points(line, fit, x, y)
+        rest.set_xlabel(seen.labels[0])
+        _name_points(line, fit, seen)
 
 
-def _name_points(line: "Axes", fit: Fitted, x: Column, y: Column) -> None:
+def _name_points(line: "Axes", fit: Fitted, seen: View) -> None:
     """Write the numbers of rows at the points, and mark runs that are left out, at the edge if outside."""
     named = fit.suspects if len(fit.used) > MOST_NAMED else range(len(fit.used))
-    labels = [(x[i], y[i], ",".join(map(str, fit.used[i].rows)), INK) for i in named]
-    if left_out := fit.left_out:
-        there: Any = points(fit, as_data(fit.runs, left_out))
-        x, y = np.clip(there[0], *line.get_xlim()), np.clip(there[1], *line.get_ylim())
+    labels = [(seen.x[i], seen.y[i], ",".join(map(str, fit.used[i].rows)), INK) for i in named]
+    if out := fit.left_out:
+        data, best = as_data(fit.runs, out), fit.whole.best
+        a = accelerations(data, data.measured, best.values["delay"])
+        there = view(data, a, best.values, best.names)
+        x, y = np.clip(there.x, *line.get_xlim()), np.clip(there.y, *line.get_ylim())
         line.plot(x, y, "o", ms=4, mfc="none", color=INK, clip_on=False)
-        rows = [",".join(map(str, run.rows)) + ", left out" for run in left_out]
-        labels += zip(x, y, rows, [INK] * len(rows), strict=True)
+        rows = [",".join(map(str, run.rows)) + ", left out" for run in out]
+        labels += zip(x, y, rows, [INK] * len(out), strict=True)
     write_beside(line, labels)
 
 
-def coefficients(fit: Fitted) -> str:
-    """Return the slope and the intercept of the line, and what else is fitted, if that is a result."""
+def coefficients(fit: Fitted, meaning: Mapping[str, str]) -> str:
+    """Return the slope and the intercept of the line, if they are a result."""
     lines = []
     if fit.whole.reason:
         return ""
-    for name, words in MEANING.items():
+    for name, words in meaning.items():
         value, unit = fit.whole.best.values[name], QUANTITIES[name].unit
         if result := fit.whole.results.get(name):
             lines.append(f"{words} = {with_u(value, result.uncertainty)} {unit}")
-        elif name in ("rim_mass", "axle"):
-            lines.append(f"{words} = {rounded(value, 6)} {unit}, given")
+        else:
+            why = "given" if name in fit.given.values else "not fitted"
+            lines.append(f"{words} = {rounded(value, 6)} {unit}, {why}")
     return typeset("\n".join(lines))
