@@ -168,7 +168,7 @@ def masses_of(design: Design) -> tuple[Any, Any, Any]:
 
 
 def drawn(design: Design, random: Random) -> Set:
-    """A set of runs with errors, and none of them odd."""
+    """A set of runs with errors, without outliers."""
     n = design.runs
     l, h, drop = masses_of(design)
     if design.step:  # other masses in each set, or each would have the same errors of rounding
@@ -231,7 +231,7 @@ def counts(design: Design, sets: int, *more: str, seed: int = 1) -> Counts:
             fit = drawn(design, random).fit(*more)
         except CannotSeparate:
             continue
-        accused += bool(fit.odd)
+        accused += bool(fit.suspects)
         scatters += (fit.whole.p_value or 1) < 0.05
         delayed += bool(fit.delay and fit.delay[1] < 0.01)
         if not fit.whole.reason:
@@ -266,7 +266,7 @@ def blunders_named(design: Design, kind: str, number: int, sets: int, seed: int 
                 k = random.integers(design.repeats)
                 values[i, k] = exchanged(values[i, k])
         try:
-            named += {*off.tolist()} <= {*made._replace(h=h, values=values).fit().odd}
+            named += {*off.tolist()} <= {*made._replace(h=h, values=values).fit().suspects}
         except CannotSeparate:
             continue
     return named / sets

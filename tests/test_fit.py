@@ -381,7 +381,7 @@ def test_cells_that_are_left_out_have_no_part() -> None:
     assert whole["interval"] == row["interval"]
 
 
-def test_a_run_of_which_each_repeat_is_odd_is_a_sentence() -> None:
+def test_outliers_in_the_only_run_are_a_sentence() -> None:
     """One pair of masses, ten times, with an odd one: ValueError, not enough values to unpack."""
     times = "1.01,1.02,1.01,1.02,1.01,1.02,1.01,1.02,1.01,5.02"
     names = ",".join(f"t{k}" for k in range(10))

@@ -9,21 +9,18 @@ pytest.importorskip("scipy")
 
 from scipy.special import stdtr
 
-from atwood_cli.laboratory.estimate import as_data, estimate, uncertain_accelerations
-from atwood_cli.laboratory.runs import read_runs
 from atwood_cli.laboratory.statistics import judge_of_line, judge_of_repeats, outliers
-from atwood_cli.model.scene import read_input
 
 
-def test_a_repeat_is_odd_if_chance_makes_one_as_far_on_either_side_too_seldom() -> None:
+def test_a_repeat_is_an_outlier_if_chance_makes_one_as_far_on_either_side_too_seldom() -> None:
     """The scatter of the others is at least that of their last digit."""
     values, u, run = np.array([1.0, 1.1, 0.9, 1.05, 2.0]), np.ones(5), np.zeros(5, dtype=np.intp)
     scatter = np.var(values[:4]) * 4 / 3 + 0.05**2 / 12
     judge = judge_of_repeats(values, u, run, 0.05)
-    ((odd, away),) = outliers(4, 5, 5, 5.0, judge).items()
-    assert odd == 4
-    assert away == pytest.approx((2 - values[:4].mean()) / sqrt(scatter * 5 / 4))
-    chance = 5 * 2 * float(stdtr(3, -away))  # of any of five
+    ((outlier, distance),) = outliers(4, 5, 5, 5.0, judge).items()
+    assert outlier == 4
+    assert distance == pytest.approx((2 - values[:4].mean()) / sqrt(scatter * 5 / 4))
+    chance = 5 * 2 * float(stdtr(3, -distance))  # of any of five
     assert [len(outliers(4, 5, 5, chance * by, judge)) for by in (0.99, 1.01)] == [0, 1]
 
 
@@ -31,18 +28,12 @@ def test_a_run_is_judged_by_the_line_of_the_others() -> None:
     """Its distance is over the uncertainty of its own prediction: a t statistic of n - p - 1 = 3."""
     x, y = np.arange(6.0), np.array([0.1, 0.9, 2.1, 2.9, 9.0, 5.1])
     J, none = np.stack([np.ones(6), x], 1), np.zeros(6)
-    ((odd, away),) = outliers(4, 6, 6, 0.01, judge_of_line(J, y, none, none + 1, none, (0.0, 0))).items()
+    ((outlier, distance),) = outliers(
+        4, 6, 6, 0.01, judge_of_line(J, y, none, none + 1, none, (0.0, 0))
+    ).items()
     others = x != 4
     fit, covariance = np.polyfit(x[others], y[others], 1, cov=True)
     rest = y[others] - np.polyval(fit, x[others])
     own = np.array([4, 1]) @ covariance @ np.array([4, 1]) + rest @ rest / 3
-    assert odd == 4
-    assert away == pytest.approx((y[4] - np.polyval(fit, 4)) / sqrt(own))
-
-
-def test_the_uncertainty_of_a_time_is_that_of_an_acceleration() -> None:
-    runs = read_runs({"m1": [1, 2], "m2": [2, 5], "t": ["1.1(1)", "0.7(1)"]}, drop=read_input("drop", "1"))
-    data, u = as_data(runs, runs.runs), 1e-6
-    best = estimate(data, {"gravity": 9.8, "rim_mass": 0.0, "axle": 0.0}, [])._replace(sigma=np.full(2, u))
-    slow, fast = (2 / (data.measured + by) ** 2 for by in (u, -u))
-    assert uncertain_accelerations(best).tolist() == pytest.approx(((fast - slow) / 2).tolist(), rel=1e-5)
+    assert outlier == 4
+    assert distance == pytest.approx((y[4] - np.polyval(fit, 4)) / sqrt(own))

@@ -13,7 +13,7 @@ from ..model import physics
 from ..model.digits import exact_decimal
 from ..model.scene import Input
 from ..tables.sources import Unreadable
-from .runs import MEASURABLE, Run, Runs
+from .runs import MEASURABLE, Run, Runs, rows_in_words
 from .statistics import ROUNDING, Column, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
@@ -27,8 +27,8 @@ class Data(NamedTuple):
     """Runs as columns, light and heavy masses apart.
 
     ``measured`` are means of so many values as ``counts`` says. ``scatter`` is the standard uncertainty of
-    such a mean, ``stated`` or by its repeats, 0 where there is neither. ``repeats`` are χ² and the degrees of
-    freedom of the repeats about their means. ``uncertain`` is what else is uncertain in each run, by name.
+    such a mean, ``stated`` or by its repeats, 0 without either. ``repeats`` are χ² and the degrees of
+    freedom of the repeats about their means. ``uncertain`` has uncertainties of other columns, by name.
     """
 
     l: Column
@@ -69,7 +69,7 @@ def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -
         drop, uncertain["drop"] = _columns([one for run in used if (one := drop_of_all or run.drop)])
     values, u, index = measurements(used)
     if (stated := bool(u.any())) and not u.all():
-        name = used[int(index[np.argmin(u > 0)])].name
+        name = rows_in_words(used[int(index[np.argmin(u > 0)])].rows)
         raise Unreadable(f"{name} has no uncertainty of its {runs.kind}, as others have; give all")
     weight = u**-2 if stated else np.ones_like(values)
     total = np.bincount(index, weight)
@@ -117,7 +117,7 @@ def _columns(inputs: Sequence[Input]) -> tuple[Column, Column]:
 def expected(data: Data, values: Mapping[str, Any]) -> Any:
     """Return the acceleration of the heavier mass, or the time of its fall with the delay, for each run.
 
-    ``values`` are rim_mass, axle, gravity and delay, and may replace columns. Where next to nothing would
+    ``values`` are rim_mass, axle, gravity and delay, and may replace columns. If next to nothing would
     move, the time goes on along its tangent, so that a fit finds its way back.
     """
     x: dict[str, Any] = {**data._asdict(), "delay": 0.0, **values}
@@ -132,7 +132,7 @@ def expected(data: Data, values: Mapping[str, Any]) -> Any:
 
 
 def slopes(data: Data, values: Mapping[str, Any], names: Sequence[str]) -> Any:
-    """Return the derivatives of what is expected of each run by each of the named: an array (runs, names).
+    """Return the derivatives of what is expected of each run by each of ``names``: an array (runs, names).
 
     The imaginary part by an imaginary step is the derivative to the last digit.
     """
@@ -144,15 +144,6 @@ def slopes(data: Data, values: Mapping[str, Any], names: Sequence[str]) -> Any:
 def accelerations(data: Data, measured: Any, delay: float = 0.0) -> Any:
     """Convert fall times, less the delay, to accelerations; measured accelerations stay as they are."""
     return measured if data.drop is None else physics.acceleration_of_fall(data.drop, measured - delay)
-
-
-def uncertain_accelerations(best: Estimate) -> Column:
-    """Return the standard uncertainties of the runs' accelerations."""
-    data, delay = best.data, best.values.get("delay", 0.0)
-    if data.drop is None:
-        return best.sigma
-    u: Column = best.sigma * 2 * accelerations(data, data.measured, delay) / (data.measured - delay)
-    return u
 
 
 # Least squares

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..model import physics
 from ..output.figure import BLUE, FAINT, INK, RED, check_file, page, typeset, write_beside
-from .estimate import Data, accelerations, as_data, expected, uncertain_accelerations
+from .estimate import Data, accelerations, as_data, expected
 from .fitting import Fitted
 from .report import RARE, conditions, verdict
 from .results import QUANTITIES, rounded, with_u
@@ -16,7 +16,7 @@ from .statistics import Column
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-MOST_NAMED = 40  # runs; of more, only those that are odd or left out
+MOST_NAMED = 40  # runs; of more, only outliers and those left out
 
 
 class View(NamedTuple):
@@ -54,9 +54,10 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     Raises SceneError, OSError.
     """
     check_file(path, force)
-    best = fit.whole.best
-    a, u_a = accelerations(best.data, best.data.measured, best.values["delay"]), uncertain_accelerations(best)
-    seen, shifted = (view(best.data, there, best.values, best.names) for there in (a, a + u_a))
+    best, data, delay = fit.whole.best, fit.whole.best.data, fit.whole.best.values["delay"]
+    a = accelerations(data, data.measured, delay)
+    u_a = best.sigma if data.drop is None else 2 * best.sigma * a / (data.measured - delay)
+    seen, shifted = (view(data, there, best.values, best.names) for there in (a, a + u_a))
     u_x, u_y = abs(shifted.x - seen.x), abs(shifted.y - seen.y)
     above = [conditions(fit), verdict(fit)]
     if (p := fit.whole.p_value) is not None and p < RARE:
@@ -71,13 +72,13 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         line.plot([0, end], [seen.intercept, seen.intercept + seen.slope * end], color=BLUE)
         bars: Any = {"fmt": "o", "ms": 4, "capsize": 2, "lw": 1, "color": INK}
         line.errorbar(seen.x, seen.y, yerr=u_y, xerr=u_x if u_x.any() else None, **bars)
-        residual = (best.data.measured - expected(best.data, best.values)) / best.sigma
+        residual = (data.measured - expected(data, best.values)) / best.sigma
         rest.axhline(0, color=BLUE)
         for level in (-2, 2):
             rest.axhline(level, color=FAINT, lw=0.8, ls="--")
         rest.plot(seen.x, residual, "o", ms=4, color=INK)
         for axes, heights in ((line, seen.y), (rest, residual)):
-            axes.plot(seen.x[fit.odd], heights[fit.odd], "o", ms=9, mfc="none", color=RED)
+            axes.plot(seen.x[fit.suspects], heights[fit.suspects], "o", ms=9, mfc="none", color=RED)
         line.set_xlim(1.06 * min(0.0, min(seen.x - u_x)), end)
         low, high = min(*(seen.y - u_y), seen.intercept, 0.0), max(*(seen.y + u_y), seen.intercept, 0.0)
         line.set_ylim(low - 0.05 * (high - low) if low < 0 else 0, high + 0.3 * (high - low))
@@ -90,8 +91,8 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
 
 
 def _name_points(line: "Axes", fit: Fitted, seen: View) -> None:
-    """Write the numbers of rows at the points, and mark runs that are left out, at the edge if beyond it."""
-    named = fit.odd if len(fit.used) > MOST_NAMED else range(len(fit.used))
+    """Write the numbers of rows at the points, and mark runs that are left out, at the edge if outside."""
+    named = fit.suspects if len(fit.used) > MOST_NAMED else range(len(fit.used))
     labels = [(seen.x[i], seen.y[i], ",".join(map(str, fit.used[i].rows)), INK) for i in named]
     if out := fit.left_out:
         data, best = as_data(fit.runs, out), fit.whole.best
@@ -107,7 +108,9 @@ def _name_points(line: "Axes", fit: Fitted, seen: View) -> None:
 def coefficients(fit: Fitted, meaning: Mapping[str, str]) -> str:
     """Return the slope and the intercept of the line, if they are a result."""
     lines = []
-    for name, words in {} if fit.whole.reason else meaning.items():
+    if fit.whole.reason:
+        return ""
+    for name, words in meaning.items():
         value, unit = fit.whole.best.values[name], QUANTITIES[name].unit
         if result := fit.whole.results.get(name):
             lines.append(f"{words} = {with_u(value, result.uncertainty)} {unit}")

@@ -3,12 +3,12 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from itertools import combinations, compress
+from itertools import combinations
 from math import hypot, inf, isfinite, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import fdtrc, stdtrit
+from scipy.special import chdtrc, fdtrc, stdtr, stdtrit
 
 from ..model import physics
 from ..model.decisions import Decisions
@@ -27,43 +27,27 @@ from .estimate import (
     slopes,
     step_of,
 )
-from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, rounded, with_u
-from .runs import BEYOND, Run, Runs, in_range
-from .statistics import (
-    NORMAL_DOF,
-    CannotSeparate,
-    fit_line,
-    judge_of_line,
-    judge_of_repeats,
-    outliers,
-    sum_of_squares,
-)
+from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
+from .runs import OUT_OF_RANGE, Run, Runs, in_range, rows_in_words
+from .statistics import NORMAL_DOF, CannotSeparate, Column, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
-SAME = 0.01
-"""The spread of m1 + m2, as a share of it, below which it counts as constant."""
-LEAST_CHANGE = 2e-4
-"""The least change of what is measured, as a share of it, by quantities as large as the masses and forces."""
-FASTER, SLOWER, UNUSUAL = 1.02, 1e-4, 100
-"""Ratios: accelerations to those without pulley and friction, and cells to the median, that are mistakes."""
-TOO_FEW = (
-    "{} too few for this fit: give more runs, repeats or uncertainties (as 2.05+/-0.02), or give M or axle{}"
-)
+LEAST_SINGULAR = 4e-4
+"""Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
+MOST_RATIO = 100
+"""A value that many times above or below the median of its kind must be a mistake."""
+LEAST_SHARE, MOST_SHARE = 1e-4, 1.02
+"""The least and the most share that an acceleration may have of that without a pulley and friction."""
+TOO_FEW = "too few for this fit: give more runs, repeats or uncertainties (as 2.05+/-0.02), or give M or axle"
+VARY = "vary both m2 - m1 and m1 + m2 more"
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
-NEGATIVE = {
-    "rim_mass": "the fit gives a negative rim mass, {} kg: check masses, heights and gravity, and whether"
-    " something else drives the masses",
-    "axle": "the fit gives a negative axle friction, {} N: check masses, and whether something else drives"
-    " the masses",
-    "gravity": "the fit gives a negative gravity, {} m/s²: check whether m1 and m2, or signs, are exchanged",
-}
-NOTHING_FITS = "no rim mass and no axle friction of 0 or more fit these runs: check masses, heights and units"
+CHECK = "check masses, heights and units"
 
 
 class Conditions(NamedTuple):
-    """What is the same in all runs: inputs, with ``drop`` if that is, and the quantities that they give."""
+    """The inputs that all runs share, with ``drop`` if they share it, and the quantities that these give."""
 
     inputs: Mapping[str, Input]
     scene: Scene
@@ -88,11 +72,13 @@ class Outcome(NamedTuple):
         chi2, dof, data = self.chi2, self.best.dof, self.best.data
         if chi2 is None or not dof:
             return None
-        return float(fdtrc(dof, NORMAL_DOF if data.stated else data.repeats[1] or NORMAL_DOF, chi2 / dof))
+        if data.stated or not data.repeats[1]:
+            return float(chdtrc(dof, chi2))
+        return float(fdtrc(dof, data.repeats[1], chi2 / dof))
 
     @property
     def between_runs(self) -> float | None:
-        """The standard deviation between runs beyond that, as a mass (kg); None where nothing shows it."""
+        """The standard deviation between runs beyond that, as a mass (kg); None if nothing shows it."""
         if self.chi2 is None or not self.best.dof:
             return None
         return sqrt(self.best.line.between) / abs(self.best.values["gravity"])
@@ -102,42 +88,39 @@ class Outcome(NamedTuple):
         """The most correlated pair of fitted quantities."""
         names, covariance = self.best.names, self.best.line.covariance
         u = np.sqrt(covariance.diagonal())
-        of = covariance / np.outer(u, u)
-        pairs = [(names[i], names[j], float(of[i, j])) for i, j in combinations(range(len(names)), 2)]
+        ratios = covariance / np.outer(u, u)
+        pairs = [(names[i], names[j], float(ratios[i, j])) for i, j in combinations(range(len(names)), 2)]
         return max(pairs, key=lambda pair: abs(pair[2]), default=None)
 
 
 class Fitted(NamedTuple):
-    """The fit of the runs that can be used, their outliers, and the fit without these.
+    """The fit of the runs that can be used, and their outliers.
 
-    ``unusable`` says why other runs cannot be used, by their rows. ``cells`` are repeats far from the others
-    of their run, by the index of the run and the place in it, ``rows`` runs far from the line of the others;
-    both have the distance in standard deviations. ``without`` is None if nothing is odd, or if too few runs
-    are left. ``delay`` is that of a fit with a delay, and the probability that chance lowers χ² as much (an
-    F test); None if it was not tried or is not possible.
+    ``unusable`` has the rows of the others, by the reason. ``repeats`` are outliers among the repeats of a
+    run, by the index of the run and the place in it, and ``outlying`` runs among all runs, both with their
+    distance in standard deviations. ``delay`` is that of a fit with a delay, and its p value; None if it was
+    not tried or is not possible.
     """
 
     runs: Runs
     used: Sequence[Run]
-    unusable: Mapping[tuple[int, ...], str]
+    unusable: Mapping[str, Sequence[int]]
     given: Conditions
     whole: Outcome
-    cells: Mapping[tuple[int, int], float]
-    rows: Mapping[int, float]
-    without: Outcome | None
+    repeats: Mapping[tuple[int, int], float]
+    outlying: Mapping[int, float]
     delay: tuple[Result, float] | None
 
     @property
-    def odd(self) -> list[int]:
-        """The runs that have anything odd."""
-        return sorted({*(i for i, _ in self.cells), *self.rows})
+    def suspects(self) -> list[int]:
+        """The runs that are outliers or have one among their repeats."""
+        return sorted({*(i for i, _ in self.repeats), *self.outlying})
 
     @property
     def left_out(self) -> list[Run]:
-        """The runs that the user leaves out and of which something can be expected, as if they were exact."""
-        exact = Fraction(0)
+        """The runs that the user leaves out, each with its mean, if something can be expected of them."""
         return [
-            run._replace(measured=tuple(one._replace(uncertainty=exact) for one in run.measured))
+            run._replace(measured=(Input(Fraction(run.mean), Fraction(0), None),))
             for run in self.runs.runs
             if run.left_out and run.mean and run.m1.value != run.m2.value
         ]
@@ -147,10 +130,10 @@ class Fitted(NamedTuple):
 
 
 def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
-    """Return what is the same in all runs. Raises SceneError."""
+    """Return the conditions that inputs give. Raises SceneError."""
     for x, one in inputs.items():
         if one.given is not None and one.value != inf and not in_range(one):
-            raise SceneError(x, one.given, BEYOND)
+            raise SceneError(x, one.given, OUT_OF_RANGE)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
     scene = Scene.of({**inputs, **masses})
     case, values = Decisions(scene), {"gravity": float(scene.g)}
@@ -188,7 +171,8 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
     if not names:
         return [x for x in USUAL if x not in given.values]
     if left := [x for x in USUAL if x not in names and x not in given.values]:
-        what, give, find = (" and ".join(map(of, left)) for of in (_words, GIVE.__getitem__, str))
+        what, give = (" and ".join(map(words, left)) for words in (_words, GIVE.__getitem__))
+        find = " and ".join(left)
         raise SceneError("find", ",".join(names), f"leaves {what} open: give {give}, or find {find}, too")
     return names
 
@@ -201,39 +185,33 @@ def _words(name: str) -> str:
 
 
 def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
-    """Return the fit of these quantities, and what is odd. Raises Unreadable, SceneError, CannotSeparate."""
+    """Return the fit of these quantities, and outliers. Raises Unreadable, SceneError, CannotSeparate."""
     if "delay" in names and runs.kind != "time":
         raise SceneError("find", "delay", "needs times; the table has accelerations")
-    reasons = {run.rows: why for run in runs.runs if (why := _unusable(runs, run, given, names))}
-    used = [run for run in runs.runs if run.rows not in reasons]
-    left_out = "".join(f"; {run.name}: {reasons[run.rows]}" for run in runs.runs if run.rows in reasons)
+    used, unusable = list[Run](), dict[str, list[int]]()
+    for run in runs.runs:
+        if why := _unusable(runs, run, given, names):
+            unusable.setdefault(why, []).extend(run.rows)
+        else:
+            used.append(run)
+    left_out = "".join(f"; {rows_in_words(rows)}: {why}" for why, rows in unusable.items())
     if not used:
         raise Unreadable(f"no run can be used{left_out}")
     whole = outcome(runs, used, given, names, left_out)
-    cells = _odd_cells(used, whole.best)
-    sound = [run.without({k for j, k in cells if j == i}) for i, run in enumerate(used)]
-    rows = _odd_rows(as_data(runs, sound), whole.best)
-    without = delay = None
-    with suppress(CannotSeparate):
-        if cells or rows:
-            usable = (i not in rows and not _unusable(runs, run, given, names) for i, run in enumerate(sound))
-            without = outcome(runs, [*compress(sound, usable)], given, names)
+    repeats = _outlying_repeats(used, whole.best)
+    sound = [
+        run._replace(measured=tuple(one for k, one in enumerate(run.measured) if (i, k) not in repeats))
+        for i, run in enumerate(used)
+    ]
+    outlying = _outlying_runs(as_data(runs, sound), whole.best)
+    delay = None
     with suppress(CannotSeparate):
         if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
-            delay = _delay(whole.best, outcome(runs, used, given, [*names, "delay"]))
-    return Fitted(runs, used, reasons, given, whole, cells, rows, without, delay)
-
-
-def _delay(best: Estimate, late: Outcome) -> tuple[Result, float] | None:
-    """Return the delay of a fit that has one, and the probability that chance lowers χ² as much."""
-    if late.reason:
-        return None
-    data, sigma = best.data, late.best.sigma
-    on_time, with_delay = (data.measured - expected(data, one.values) for one in (best, late.best))
-    J, exact = slopes(data, best.values, best.names), np.zeros_like(sigma)
-    chi2 = fit_line(J, on_time, sigma**2, exact + 1, exact).chi2 or 0.0
-    lower = max(chi2 - sum_of_squares(with_delay / sigma), 0.0)
-    return late.results["delay"], float(fdtrc(1, min(late.best.line.dof, NORMAL_DOF), lower))
+            late = outcome(runs, used, given, [*names, "delay"])
+            if found := late.results.get("delay"):
+                dof = min(late.best.line.dof, NORMAL_DOF)
+                delay = found, float(2 * stdtr(dof, -abs(found.value) / found.uncertainty))
+    return Fitted(runs, used, unusable, given, whole, repeats, outlying, delay)
 
 
 def outcome(
@@ -241,15 +219,15 @@ def outcome(
 ) -> Outcome:
     """Return the fit of these runs, with its uncertainties. Raises CannotSeparate."""
     dof = len(used) - len(names)
-    too_few = TOO_FEW.format("1 run is" if len(used) == 1 else f"{len(used)} runs are", left_out)
-    if dof < 0 or not used:
-        raise CannotSeparate(too_few)
-    data = as_data(runs, used)
-    if not (dof or data.scatter.any() or data.uncertain):
-        raise CannotSeparate(too_few)
-    mistake, is_everywhere = _mistake(data, used, runs.kind, given.values["gravity"], "gravity" in names)
+    data = as_data(runs, used) if used and dof >= 0 else None
+    if not data or not (dof or data.scatter.any() or data.uncertain):
+        count = "1 run is" if len(used) == 1 else f"{len(used)} runs are"
+        raise CannotSeparate(f"{count} {TOO_FEW}{left_out}")
+    mistake, is_of_most = _mistake(data, used, runs.kind, given.values["gravity"], "gravity" in names)
+    reason = mistake or f"no rim mass and no axle friction of 0 or more fit these runs: {CHECK}"
     if not _separates(data, given.values, names):
-        raise CannotSeparate(mistake or undetermined(used, names))
+        verb, what = "separate" if names[1:] else "determine", " from ".join(map(_words, names))
+        raise CannotSeparate(mistake or f"the runs do not {verb} {what}: {VARY}")
 
     def found(there: Conditions) -> dict[str, float]:
         moved = as_data(runs, used, there.inputs.get("drop"))
@@ -259,7 +237,7 @@ def outcome(
         best = estimate(data, given.values, names)
         ends = [[*map(found, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        raise CannotSeparate(mistake or NOTHING_FITS) from None
+        raise CannotSeparate(reason) from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
     times = float(stdtrit(min(best.line.dof, NORMAL_DOF), 0.975))  # Student's t
@@ -269,13 +247,13 @@ def outcome(
         u = hypot(spread[x], *steps)
         results[x] = Result(value, u, (value - times * u, value + times * u))
     if not all(isfinite(one.value) and isfinite(one.uncertainty) for one in results.values()):
-        raise CannotSeparate(mistake or NOTHING_FITS)
-    negative = [x for x in names if x in NEGATIVE and results[x].interval[1] < 0]
-    if is_everywhere:
+        raise CannotSeparate(reason)
+    if is_of_most:
         return Outcome(best, {}, mistake)
-    if negative:
-        x = negative[0]
-        return Outcome(best, {}, mistake or NEGATIVE[x].format(with_u(*results[x][:2])))
+    for x in names:
+        if x != "delay" and results[x].interval[1] < 0:
+            negative = f"{equation(x, *results[x][:2])} is negative: {CHECK}, and the signs of accelerations"
+            return Outcome(best, {}, mistake or negative)
     return Outcome(best, results, "")
 
 
@@ -291,8 +269,8 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
     return {x: found[x] for x in QUANTITIES if x in found}
 
 
-def _odd_cells(used: Sequence[Run], best: Estimate) -> dict[tuple[int, int], float]:
-    """Return repeats far from the others of their run, by the index of the run and the place in it."""
+def _outlying_repeats(used: Sequence[Run], best: Estimate) -> dict[tuple[int, int], float]:
+    """Return outliers among the repeats of each run, by the index of the run and the place in it."""
     values, u, index = measurements(used)
     # Of two repeats, which are equally far from each other, that far from the line comes first.
     order = np.argsort(-np.abs(values - expected(best.data, best.values)[index]), kind="stable")
@@ -300,14 +278,16 @@ def _odd_cells(used: Sequence[Run], best: Estimate) -> dict[tuple[int, int], flo
     judge = judge_of_repeats(values[order], np.where(u > 0, u, 1)[order], index[order], step)
     judged = int((np.bincount(index)[index] > 1).sum())
     found = outliers(len(values) - len(used), judged, len(values), OUTLIER_LEVEL, judge)
-    first = np.searchsorted(index, index)
-    return {(int(index[j]), int(j - first[j])): away for i, away in found.items() for j in [order[i]]}
+    first, places = np.searchsorted(index, index), dict[tuple[int, int], float]()
+    for i, distance in found.items():
+        j = int(order[i])
+        places[int(index[j]), int(j - first[j])] = distance
+    return places
 
 
-def _odd_rows(data: Data, best: Estimate) -> Mapping[int, float]:
-    """Return the runs far from the straight line of forces, which outliers bend least."""
-    J, y, known, shape, least = line_of_forces(data, best.values, best.names)
-    judge = judge_of_line(J, y, known, shape, least, data.repeats)
+def _outlying_runs(data: Data, best: Estimate) -> Mapping[int, float]:
+    """Return outliers by the straight line of forces, which they bend least."""
+    judge = judge_of_line(*line_of_forces(data, best.values, best.names), data.repeats)
     return outliers(best.dof, len(data.l), len(data.l), OUTLIER_LEVEL, judge)
 
 
@@ -319,7 +299,7 @@ def _unusable(runs: Runs, run: Run, given: Conditions, names: Sequence[str]) -> 
     difference = float(run.m2.value - run.m1.value)
     held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
     reasons = {
-        "it was left out, as asked": run.left_out,
+        "left out, as asked": run.left_out,
         "the masses are equal": not difference,
         "nothing moved": not run.mean,
         "the lighter side falls": runs.signed and (run.mean > 0) != (difference > 0),
@@ -331,88 +311,48 @@ def _unusable(runs: Runs, run: Run, given: Conditions, names: Sequence[str]) -> 
 def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> bool:
     """Decide if runs with these masses and heights determine the quantities, whatever was measured.
 
-    Quantities as large as the masses and forces at hand, in any combination, must change what a plausible
-    pulley lets expect by more than ``LEAST_CHANGE``: the singular values of the slopes tell.
+    The singular values of the slopes at a plausible pulley tell, each slope scaled to the length 1.
     """
     design = data._replace(measured=np.full_like(data.l, inf))
-    sizes = {
-        "rim_mass": float(np.median(data.l + data.h)),
-        "axle": float(np.median(data.h - data.l)) * given["gravity"],
-        "gravity": given["gravity"],
-    }
     least = float((data.h - data.l).min()) * given["gravity"]
-    values = {"rim_mass": 0.1 * sizes["rim_mass"], **given}
+    values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), **given}
     values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
-    ideal = expected(design, values)
-    sizes["delay"] = float(np.median(ideal))
-    J: Any = slopes(design, values, names) / ideal[:, None] * [sizes[x] for x in names]
-    singular = np.linalg.svd(J, compute_uv=False)
-    return not names or bool(singular.min() > LEAST_CHANGE * sqrt(len(ideal)))
+    J: Any = slopes(design, values, names) / expected(design, values)[:, None]
+    singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
+    return not names or bool(singular.min() > LEAST_SINGULAR)
 
 
-def undetermined(used: Sequence[Run], names: Sequence[str]) -> str:
-    """Return that the runs do not determine these, and what to vary."""
-    verb = "separate" if names[1:] else "determine"
-    return f"the runs do not {verb} {' from '.join(map(_words, names))}: {to_vary(used)}"
+def _mistake(data: Data, used: Sequence[Run], kind: str, g: float, is_fitted: bool) -> tuple[str, bool]:
+    """Return what must be a mistake in the table, if anything, and if most runs have one.
 
-
-def to_vary(used: Sequence[Run]) -> str:
-    """Return what other runs should vary, so that they determine more."""
-    sums, differences = ([float(abs(run.m2.value + sign * run.m1.value)) for run in used] for sign in (1, -1))
-    same_sum, same_difference = (max(some) - min(some) < SAME * max(some) for some in (sums, differences))
-    if same_sum and same_difference:
-        return "vary m2 - m1, and m1 + m2"
-    return "vary m1 + m2 as well" if same_sum else "vary m2 - m1 more, and m1 + m2"
-
-
-def _mistake(data: Data, used: Sequence[Run], kind: str, gravity: float, is_fitted: bool) -> tuple[str, bool]:
-    """Return what must be a mistake in the table, if anything, and if most runs are impossible by it."""
-    free: Any = physics.acceleration(data.h - data.l, data.h + data.l, np.float64(gravity))
-    a, is_time = accelerations(data, data.measured), data.drop is not None
-    scatter = data.scatter / data.measured * (2 if is_time else 1)
-    too_fast, too_slow = a > free * np.maximum(FASTER, 1 + 3 * scatter), a < SLOWER * free
-    impossible = (too_fast | too_slow) & (not is_fitted)
-    is_most = bool(impossible.mean() > 0.5)
-    if sides := _unusual_sides(used):
-        return sides, True
-    if unit := _unusual_cell(used, kind):
-        return unit, is_most
-    if not impossible.any():
-        return "", False
-    i = int(np.argmax(impossible))
-    limit = f"{rounded(float(free[i]), 3)}, what no friction and no pulley would give"
-    compared = f"{'more than' if too_fast[i] else 'not a ten-thousandth of'} {limit}"
-    said = f"a = {rounded(float(a[i]), 3)} m/s²"
-    if is_time:
-        time = rounded(float(data.measured[i]), 3)
-        check = "check the height of fall, the masses and their units"
-        return f"{used[i].name}: t = {time} s is {said}, which is {compared}; {check}", is_most
-    return f"{used[i].name}: {said} is {compared}; check its unit, and the masses", is_most
-
-
-def _unusual_sides(used: Sequence[Run]) -> str:
-    """Return that m1 is a hundred times above or below m2; empty if it is not."""
-    m1, m2 = np.median([[float(run.m1.value), float(run.m2.value)] for run in used], 0).tolist()
-    return f"m1 is about {rounded(m1 / m2)} times m2: check their units" if _is_unusual(m1, m2) else ""
-
-
-def _unusual_cell(used: Sequence[Run], kind: str) -> str:
-    """Return that a cell is a hundred times above or below the median of its column; empty if none is."""
-    columns: dict[str, list[float]] = {
-        "m1": [float(run.m1.value) for run in used],
-        "m2": [float(run.m2.value) for run in used],
-        "drop": [float(run.drop.value) if run.drop else 0.0 for run in used],
-        kind: [abs(run.mean) for run in used],
-    }
+    Each value is compared with the median of its kind, and each acceleration with that of free masses,
+    unless gravity is fitted.
+    """
+    masses = np.array([[float(run.m1.value), float(run.m2.value)] for run in used])
+    columns = {"m1": masses[:, 0], "m2": masses[:, 1], "drop": data.drop, kind: data.measured}
+    checks: list[tuple[str, str, Column, Any, float, Any]] = []
     for name, column in columns.items():
-        median = float(np.median(column))
-        for run, value in zip(used, column, strict=True):
-            if _is_unusual(value, median):
-                unit, times = parameter_of(name).unit, f"{rounded(value / median)} times"
-                compared = f"{times} the median of its column, {rounded(median, 3)} {unit}"
-                return f"{run.name}: {name} = {rounded(value, 3)} {unit} is {compared}; check its unit"
-    return ""
-
-
-def _is_unusual(value: float, usual: float) -> bool:
-    return bool(value and usual) and not 1 / UNUSUAL < value / usual < UNUSUAL
+        if column is not None:
+            median, what = (np.median(masses), "mass") if name in ("m1", "m2") else (np.median(column), name)
+            checks.append((name, f"the median {what}", column, median, 1 / MOST_RATIO, MOST_RATIO))
+    if not is_fitted:
+        name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
+        a, free = (
+            accelerations(data, data.measured),
+            physics.acceleration(data.h - data.l, data.h + data.l, g),
+        )
+        most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
+        checks.append((name, "what no friction and no pulley would give", a, free, LEAST_SHARE, most))
+    said, is_mistaken = "", np.zeros(len(used), dtype=bool)
+    for name, what, values, usual, least, most in checks:
+        with np.errstate(divide="ignore"):
+            ratio = values / usual
+        is_unusual = (values > 0) & ((ratio < least) | (ratio > most))
+        if is_unusual.any() and not said:
+            i, unit = int(np.argmax(is_unusual)), parameter_of("a" if name[0] == "a" else name).unit
+            there = rounded(float(np.broadcast_to(usual, ratio.shape)[i]), 3)
+            value = f"{name} = {rounded(float(values[i]), 3)} {unit}"
+            times = f"{rounded(float(ratio[i]), 3)} times {there} {unit}, {what}"
+            said = f"{rows_in_words(used[i].rows)}: {value} is {times}; {CHECK}"
+        is_mistaken |= is_unusual
+    return said, bool(is_mistaken.mean() > 0.5)

@@ -1,4 +1,4 @@
-"""A fit as sentences, tables, JSON and CSV: what the runs determine, what is odd about them, what to vary."""
+"""A fit as sentences, tables, JSON and CSV: what the runs determine, their outliers, what to vary."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
@@ -10,25 +10,16 @@ from ..model.units import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
 from .estimate import Data, as_data, expected
-from .fitting import Fitted, to_vary
+from .fitting import Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
-from .runs import MEASURED, RUN_QUANTITIES, Run, in_words
+from .runs import MEASURED, RUN_QUANTITIES, Run, in_words, rows_in_words
 
-MOST_CORRELATED = 0.95
-"""The correlation beyond which two results can hardly be distinguished."""
 RARE, SELDOM = 0.01, 0.05
-"""Probabilities below which something is not, and is hardly, chance."""
-MOST_NAMED = 5
-"""Runs of which each has a sentence; more are counted."""
-MOST_FAR = 1000
-"""Standard uncertainties that are counted."""
+"""p values below which a delay, and scatter between runs, are reported."""
 WIDE_DELAY = 0.1
 """The half width of a delay's interval (s) from which the runs cannot show it."""
 NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
-WITHOUT = {
-    "chi2": "needs uncertainties, or repeats",
-    "between_runs": "needs uncertainties, or repeats, and more runs than results",
-    "correlation": "needs two results",
+NEEDS = {
     "moment_of_inertia": "needs the rim mass to be fitted, and R",
     "pulley_mass": "needs the rim mass to be fitted, and the pulley's shape, --inertia",
 }
@@ -38,19 +29,19 @@ WITHOUT = {
 
 
 def head(fit: Fitted) -> list[str]:
-    """Return the result in words, and what is odd about the runs."""
-    return [verdict(fit), *(_oddities(fit) if fit.odd else [])]
+    """Return the result in words, and the outliers."""
+    return [verdict(fit), *_outliers(fit)]
 
 
 def verdict(fit: Fitted) -> str:
-    """Return how many runs there are, and which quantities differ from 0, unless some runs are odd."""
+    """Return how many runs there are, and which quantities differ from 0, unless there are outliers."""
     measurements = counted(int(fit.whole.best.data.counts.sum()), MEASURED[fit.runs.kind])
     said = [f"{counted(len(fit.used), 'run')}, {measurements}."]
     if fit.whole.reason:
         said.append(f"No result: {fit.whole.reason}.")
     elif not fit.whole.best.names:
         said.append("Nothing is left to fit: the pulley and its axle are given.")
-    for name in [] if fit.odd else [name for name in USUAL if name in fit.whole.results]:
+    for name in [] if fit.suspects else [name for name in USUAL if name in fit.whole.results]:
         quantity, (low, high) = QUANTITIES[name], fit.whole.results[name].interval
         words = _capital(quantity.words)
         if low > 0:
@@ -61,63 +52,52 @@ def verdict(fit: Fitted) -> str:
     return " ".join(said)
 
 
-def _oddities(fit: Fitted) -> list[str]:
-    """Return what is odd about the runs, and the result without it."""
-    unit, symbol = parameter_of(fit.runs.kind).unit, {"a": "a", "time": "t"}[fit.runs.kind]
-    said, labels = list[str](), list[str]()
-    for (i, place), away in fit.cells.items():
-        label, value = fit.used[i].cells[place], format_number(float(fit.used[i].measured[place].value))
-        where = in_words(label) if ":" in label else f"{in_words(label)}: {symbol}"
-        far = f"{_far(away)} standard deviations from its repeats"
-        said.append(f"{_capital(where)} = {value} {unit} is {far}; --without {label}.")
-        labels.append(label)
-    for i, away in fit.rows.items():
-        far = f"{_far(away)} standard uncertainties from the other runs"
-        labels += map(str, fit.used[i].rows)
-        verb = "are outliers" if fit.used[i].rows[1:] else "is an outlier"
-        label = ",".join(map(str, fit.used[i].rows))
-        said.append(f"{_capital(fit.used[i].name)} {verb}: {far}; --without {label}.")
-    said, them = _some(said, "outliers"), "them" if labels[1:] else "it"
-    if fit.without is None:
-        return [*said, f"Without {them} too few runs are left to fit."]
-    results = ", ".join(equation(x, *one[:2]) for x, one in fit.without.results.items())
-    return [*said, f"Without {them}: {results or 'no result'}. The fit includes {them}."]
+def _outliers(fit: Fitted) -> list[str]:
+    """Return a sentence for each outlier."""
+    unit, said = parameter_of(fit.runs.kind).unit, list[str]()
+    for (i, place), distance in fit.repeats.items():
+        cell, value = fit.used[i].cells[place], format_number(float(fit.used[i].measured[place].value))
+        what = f"{_capital(in_words(cell))} = {value} {unit} is {rounded(abs(distance))}"
+        said.append(f"{what} standard deviations from its repeats; --without {cell}.")
+    for i, distance in fit.outlying.items():
+        rows = fit.used[i].rows
+        what = f"{_capital(rows_in_words(rows))} {'are' if rows[1:] else 'is'} {rounded(abs(distance))}"
+        said.append(f"{what} standard deviations from the other runs; --without {','.join(map(str, rows))}.")
+    if said:
+        said.append(f"The fit includes {'them' if said[1:] else 'it'}.")
+    return said
 
 
 def notes(fit: Fitted) -> list[str]:
     """Return what else there is to say, first how the table was read."""
     said = [_capital(words) for words in fit.runs.remarks]
-    unused = [run for run in fit.runs.runs if run.rows in fit.unusable]
-    verbs = ((run, "are" if run.rows[1:] else "is") for run in unused)
-    sentences = [f"{_capital(run.name)} {verb} not used: {fit.unusable[run.rows]}." for run, verb in verbs]
-    said += _some(sentences, "runs are not used")
+    for why, rows in fit.unusable.items():
+        said.append(f"{_capital(rows_in_words(rows))} {'are' if rows[1:] else 'is'} not used: {why}.")
     if fit.whole.reason:
         return said
-    return [*said, _scatter(fit), *_delay(fit), *_hardly_separated(fit)]
+    return [*said, _scatter(fit), *_delay(fit)]
 
 
 def _scatter(fit: Fitted) -> str:
-    """Return how the scatter of the runs is known, and how probable it is."""
+    """Return how the scatter of the runs is known, and its p value."""
     chi2, p, stated = fit.whole.chi2, fit.whole.p_value, fit.whole.best.data.stated
     if chi2 is None:
         return f"Only the residuals show the scatter of a single {MEASURED[fit.runs.kind]}."
     if p is None:
         return "There are as many runs as results, so nothing is left to test the fit."
-    source, test = ("the uncertainties stated", "χ²") if stated else ("the repeats", "F")
+    source = "the uncertainties stated" if stated else "the repeats"
     probability = f"p = {rounded(p)}" if p >= 0.001 else "p < 0.001"
-    freedom = counted(fit.whole.best.dof, "degree") + " of freedom"
-    by = f"(χ² = {rounded(chi2, 3)}, {freedom}; {test} test: {probability})"
+    by = f"(χ² = {rounded(chi2, 3)}, {counted(fit.whole.best.dof, 'degree')} of freedom, {probability})"
     if p < SELDOM:
-        said = f"The runs scatter more than {source} let expect {by}"
-        return f"{said}: masses, friction or timing vary between them."
+        more = f"The runs scatter more than {source} let expect {by}"
+        return f"{more}: masses, friction or timing vary between them."
     if p > 1 - RARE:
-        hint = ": they are probably too large" if stated else ""
-        return f"The runs scatter less than {source} let expect {by}{hint}."
+        return f"The runs scatter less than {source} let expect {by}."
     return f"Scatter as expected from {source} {by}."
 
 
 def _delay(fit: Fitted) -> Iterator[str]:
-    """Yield if all times seem to be too long, or if the runs cannot show that."""
+    """Yield a sentence if all times seem too long, or if the runs cannot show that."""
     names = fit.whole.best.names
     if fit.runs.kind != "time" or "delay" in names:
         return
@@ -126,29 +106,10 @@ def _delay(fit: Fitted) -> Iterator[str]:
         size = with_u(abs(result.value), result.uncertainty)
         long, find = "long" if result.value > 0 else "short", ",".join([*names, "delay"])
         yield f"All times seem {size} s too {long}: --find {find} fits that, too."
-    elif not fit.odd and (not result or result.interval[1] - result.value > WIDE_DELAY):
+    elif not fit.suspects and (not result or result.interval[1] - result.value > WIDE_DELAY):
         width = f" (it is uncertain by {rounded(result.interval[1] - result.value)} s)" if result else ""
         how = "vary the height of fall, or both m2 - m1 and m1 + m2"
         yield f"These runs cannot show a delay of all times{width}: {how}."
-
-
-def _hardly_separated(fit: Fitted) -> Iterator[str]:
-    """Yield which results can hardly be distinguished, and what to vary."""
-    if (pair := fit.whole.correlation) and abs(pair[2]) > MOST_CORRELATED:
-        one, other = (QUANTITIES[x].words for x in pair[:2])
-        correlation = f"their correlation is {rounded(pair[2], 3)}"
-        yield f"The runs hardly separate {one} from {other} ({correlation}): {to_vary(fit.used)}."
-
-
-def _far(size: float) -> str:
-    """Return how many standard uncertainties something is away."""
-    return rounded(abs(size)) if abs(size) < MOST_FAR else f"more than {MOST_FAR}"
-
-
-def _some(sentences: Sequence[str], more: str) -> list[str]:
-    """Return the first of the sentences, and how many more there are."""
-    hidden = len(sentences) - MOST_NAMED
-    return [*sentences[:MOST_NAMED], f"{hidden} more {more}."] if hidden > 0 else [*sentences]
 
 
 def _capital(words: str) -> str:
@@ -170,12 +131,12 @@ def conditions(fit: Fitted) -> str:
 
 def results_of(fit: Fitted) -> Fit:
     """Return all of a fit by name, with its sentences."""
-    whole, correlation = fit.whole, fit.whole.correlation
+    whole, pair = fit.whole, fit.whole.correlation
     return Fit(
         **{name: whole.results[name].value if name in whole.results else None for name in QUANTITIES},
         uncertainty={name: one.uncertainty for name, one in whole.results.items()},
         interval={name: list(one.interval) for name, one in whole.results.items()},
-        correlation=correlation and correlation[2],
+        correlation=pair[2] if pair else None,
         chi2=whole.chi2,
         dof=whole.best.dof,
         between_runs=whole.between_runs,
@@ -213,7 +174,7 @@ def forms_of(fit: Fitted, only: Sequence[str]) -> Report:
         if not only or only == ["runs"]:
             return [*head(fit), *notes(fit)]
         values = [equation(x, *fit.whole.results[x][:2]) for x in only if x in fit.whole.results]
-        why = (f"{x}: {WITHOUT.get(x, NOT_FITTED)}." for x in only if record[x] is None)
+        why = (f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None)
         return [*values, *why, *head(fit)[1:]]
 
     values = [cell(record[name]) for name in only]
@@ -279,7 +240,7 @@ def _print_table(page: Page, columns: Mapping[str, Sequence[str]]) -> None:
 def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
     """Return for each run the measurement, what is expected, and the residual."""
     kind, data = fit.runs.kind, fit.whole.best.data
-    odd = {" ".join(map(str, fit.used[i].rows)) for i in fit.odd}
+    suspects = {" ".join(map(str, fit.used[i].rows)) for i in fit.suspects}
     unit = parameter_of(kind).unit
     finest = min((line["u"] for line in lines if line["u"]), default=None)
     if data.scatter.any() and finest:  # the mean has the digits of its own scatter
@@ -290,7 +251,9 @@ def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[
 
     residuals = [line["residual"] for line in lines]
     return {
-        "row": [line["rows"].replace(" ", ",") + (" !" if line["rows"] in odd else "") for line in lines],
+        "row": [
+            line["rows"].replace(" ", ",") + (" !" if line["rows"] in suspects else "") for line in lines
+        ],
         **{f"{name} (kg)": [format_number(line[name]) for line in lines] for name in ("m1", "m2")},
         f"{kind} ({unit})": column(kind),
         f"expected ({unit})": column("expected"),

@@ -15,7 +15,7 @@ from ..model.digits import (
 
 
 class Quantity(NamedTuple):
-    """What a quantity is called; with a letter it can be fitted, unless the inputs ``given_by`` give it."""
+    """The names of a quantity; with a ``letter`` it can be fitted, unless inputs ``given_by`` give it."""
 
     symbol: str
     unit: str
@@ -110,7 +110,7 @@ def in_small_unit(value: float, unit: str) -> str:
 
 
 class Fit(NamedTuple):
-    """The results of a fit by name; None where the runs do not determine a result.
+    """The results of a fit by name; None if the runs do not determine a result.
 
     ``rim_mass`` (kg) is the pulley's inertia as a mass at its rim, c = I/R². ``axle`` (N) is the friction of
     its axle as a force at the rim. ``gravity`` (m/s²) and ``delay`` (s), by which all times are too long, are

@@ -29,25 +29,24 @@ Kind = Literal["a", "time"]
 MEASURED = {"a": "acceleration", "time": "time"}
 """The quantities that are measured, which may be repeated in further columns."""
 RUN_QUANTITIES = ("m1", "m2", "drop", "a", "time")
-"""The quantities of a run; what else a scene has is the same in all runs."""
+"""The quantities of a run; all others are the same in all runs."""
 WORDS = {"m1": "m1", "m2": "m2", "drop": "drop h height", "a": "a acceleration", "time": "t time"}
 SPELLINGS = {word: name for name, words in WORDS.items() for word in words.split()}
 SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
 VOCABULARY = Vocabulary(SPELLINGS, repeated=MEASURED, uncertain=True)
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
-UNSIGNED = "accelerations are read as magnitudes: none is negative, even if m1 is heavier."
 NO_RUN = "a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"
 MEASURABLE = 1e-30, 1e30
-BEYOND = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
+OUT_OF_RANGE = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
 
 
 class Run(NamedTuple):
-    """Masses, the height of fall if there is one, and what was measured, once or more often.
+    """A pair of masses, the height of fall if there is one, and what was measured, once or more often.
 
     ``rows`` are the numbers of its rows, which differ only in what was measured. ``cells`` say where each
-    measurement stands, as --without takes it: a row, or 8:t2 if a row has several. ``left_out`` says that
-    the user leaves the run out of the fit.
+    measurement stands, as --without takes it: 8:t2. ``left_out`` says that the user leaves the run out of the
+    fit.
     """
 
     rows: tuple[int, ...]
@@ -63,15 +62,10 @@ class Run(NamedTuple):
         """The double nearest to the mean of what was measured."""
         return float(sum((Fraction(one.value) for one in self.measured), Fraction(0)) / len(self.measured))
 
-    def without(self, places: Collection[int]) -> "Run":
-        """Return the run without the measurements at these places."""
-        kept = tuple(one for place, one in enumerate(self.measured) if place not in places)
-        return self._replace(measured=kept)
 
-    @property
-    def name(self) -> str:
-        """Its rows, for a sentence."""
-        return f"row {self.rows[0]}" if len(self.rows) == 1 else f"rows {', '.join(map(str, self.rows))}"
+def rows_in_words(rows: Sequence[int]) -> str:
+    """Return rows for a sentence: row 1, or rows 1, 2."""
+    return f"row{'s' if rows[1:] else ''} {', '.join(map(str, rows))}"
 
 
 class Runs(NamedTuple):
@@ -111,12 +105,12 @@ def read_runs(
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     remarks = read_as(headings, sheet.separator, sheet.usual, comma, [*others, *sheet.remarks])
-    common = drop and drop._replace(uncertainty=Fraction(0))  # what counts for all runs together
+    if drop:
+        drop = drop._replace(uncertainty=Fraction(0))  # it counts for all runs together
     left_out = _read_without(without, len(sheet.rows), headings)
     try:
         rows = [
-            _run(i, row, headings, comma, common, left_out.get(i, set()))
-            for i, row in enumerate(sheet.rows, 1)
+            _run(i, row, headings, comma, drop, left_out.get(i, set())) for i, row in enumerate(sheet.rows, 1)
         ]
     except Unreadable as error:
         raise Unreadable(explained(error, remarks)) from None
@@ -126,8 +120,6 @@ def read_runs(
     if not runs:
         raise Unreadable("it has no runs")
     signed = any(one.value < 0 for run in runs for one in run.measured)
-    if kind == "a" and not signed and any(run.m1.value > run.m2.value for run in runs):
-        remarks.append(UNSIGNED)
     return Runs(kind, runs, signed, remarks)
 
 
@@ -139,8 +131,9 @@ def explained(error: Exception, remarks: Sequence[str]) -> str:
 def _with_unnamed(
     sheet: Sheet, headings: Sequence[Heading], labels: Collection[str]
 ) -> tuple[list[Heading], list[str]]:
-    """Return the columns, with repeats that have no heading, as below a merged one, and the other columns of
-    numbers in words.
+    """Return the columns of quantities, and the other columns of numbers in words.
+
+    A column without a heading behind a measured one, as below a merged heading, is a repeat.
 
     Raises Unreadable for a column that could hold a quantity, unless it is one of the ``labels``.
     """
@@ -168,7 +161,7 @@ def _with_unnamed(
 
 
 def _check_mean(headings: Sequence[Heading], named: Mapping[str, str]) -> None:
-    """Raises Unreadable if a column without a number stands beside numbered repeats: it may be their mean."""
+    """Refuse a column without a number beside numbered repeats: it may be their mean. Raises Unreadable."""
     measured = [heading for heading in headings if heading.name in MEASURED and heading.column not in named]
     alone = [heading for heading in measured if not heading.number]
     if alone and len(measured) > len(alone):
@@ -176,7 +169,7 @@ def _check_mean(headings: Sequence[Heading], named: Mapping[str, str]) -> None:
 
 
 def _check(sheet: Sheet, names: Set[str], drop: Input | None) -> None:
-    """Raises Unreadable if a run lacks a column, or has times and accelerations; SceneError for a drop."""
+    """Check that runs have all columns, and times or accelerations. Raises Unreadable, SceneError."""
     if "a" in names and "time" in names:
         raise Unreadable("there are columns a and time; keep one, or let one pass by --label")
     missing = [name for name in ("m1", "m2") if name not in names]
@@ -267,14 +260,14 @@ def in_range(one: Input) -> bool:
 
 def _joined(rows: Iterable[Run]) -> list[Run]:
     """Return the runs of rows: those that differ only in what was measured are one."""
-    alike: dict[object, Run] = {}
+    by_key: dict[object, Run] = {}
     for run in rows:
         key = run.m1[:2], run.m2[:2], run.drop and run.drop[:2], run.left_out
-        if first := alike.get(key):
+        if first := by_key.get(key):
             measured, cells = first.measured + run.measured, first.cells + run.cells
             run = first._replace(rows=first.rows + run.rows, measured=measured, cells=cells)
-        alike[key] = run
-    return [*alike.values()]
+        by_key[key] = run
+    return [*by_key.values()]
 
 
 def _run(
@@ -287,7 +280,6 @@ def _run(
 ) -> Run:
     """Return the run of one row, marked as left out if all its measurements are. Raises Unreadable."""
     given, measured = dict[str, Input](), dict[int, Input]()
-    several = sum(heading.name in MEASURED for heading in headings) > 1
     try:
         for heading in headings:
             value = _read_cell(heading, row, comma)
@@ -303,7 +295,7 @@ def _run(
     left_out = bool(measured) and without >= measured.keys()
     kept = {place: one for place, one in measured.items() if left_out or place not in without}
     names = {heading.place: _cell_names(heading)[0] for heading in headings if heading.name in MEASURED}
-    cells = tuple(f"{number}:{quote(names[place])}" if several else f"{number}" for place in kept)
+    cells = tuple(f"{number}:{quote(names[place])}" for place in kept)
     return Run(
         (number,), given["m1"], given["m2"], given.get("drop", drop), (*kept.values(),), left_out, cells
     )
@@ -318,5 +310,5 @@ def _read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | Non
             raise SceneError(heading.u.column, u, f"is a second uncertainty, beside {in_quotes(cell)}")
         given = given._replace(uncertainty=read_uncertainty(heading.u, u, given.value, comma))
     if given and not in_range(given):
-        raise SceneError(heading.name, cell, BEYOND)
+        raise SceneError(heading.name, cell, OUT_OF_RANGE)
     return given

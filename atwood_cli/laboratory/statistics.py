@@ -117,13 +117,13 @@ def outliers(free: int, tests: int, count: int, level: float, judge: Judge) -> M
     kept, found, significant = np.ones(count, dtype=bool), dict[int, float](), 0
     with np.errstate(invalid="ignore"):
         try:
-            away, _ = judge(kept)
+            distance, _ = judge(kept)
             for number in range(1, min(MOST_OUTLIERS, max(1, free // 3), free - 1) + 1):
                 # Two repeats are equally far from each other: float32 keeps their order.
-                i = int(np.argmax((np.abs(away) * kept).astype(np.float32)))
+                i = int(np.argmax((np.abs(distance) * kept).astype(np.float32)))
                 kept[i] = False
-                away, dof = judge(kept)
-                found[i] = float(away[i])
+                distance, dof = judge(kept)
+                found[i] = float(distance[i])
                 if 2 * tests * stdtr(min(dof[i], NORMAL_DOF), -abs(found[i])) < level:
                     significant = number
         except CannotSeparate:
@@ -148,14 +148,14 @@ def judge_of_line(
             dof = 1 / (share**2 / line.dof + (1 - share) ** 2 / (repeats[1] or inf))
         of_line = np.einsum("ij,jk,ik->i", J, line.covariance, J)
         of_rest = np.where(kept, np.maximum(variance - of_line, 1e-9 * variance), variance + of_line)
-        away: Column = (y - J @ line.coefficients) / np.sqrt(np.maximum(line.scale * of_rest, least))
-        return away, dof
+        distance: Column = (y - J @ line.coefficients) / np.sqrt(np.maximum(line.scale * of_rest, least))
+        return distance, dof
 
     return judge
 
 
 def judge_of_repeats(values: Column, u: Column, run: NDArray[np.intp], step: float) -> Judge:
-    """Judge values by the mean of those kept of the same ``run``; a value without others is 0 away.
+    """Judge values by the mean of those kept of the same ``run``; a value without others is not judged.
 
     The scatter is the same in all runs, times ``u``, and at least that of readings rounded to the ``step``.
     """
@@ -170,7 +170,7 @@ def judge_of_repeats(values: Column, u: Column, run: NDArray[np.intp], step: flo
         variance = sum_of_squares(rest[kept]) / max(dof, 1) + (step / u) ** 2 / 12
         spread = np.where(kept, 1 - share, 1 + share)
         is_judged = (spread > 1e-9) & (total[run] > 0) & (variance > 0)
-        away: Column = np.where(is_judged, rest / np.sqrt(np.where(is_judged, spread * variance, 1)), 0)
-        return away, np.full(len(values), float(dof))
+        distance: Column = np.where(is_judged, rest / np.sqrt(np.where(is_judged, spread * variance, 1)), 0)
+        return distance, np.full(len(values), float(dof))
 
     return judge
