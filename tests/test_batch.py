@@ -26,7 +26,7 @@ from atwood_cli.model.units import UNITS
 from atwood_cli.tables import sources
 from atwood_cli.tables.sources import FORMATS
 
-from .running import FROM, HANGS, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
+from .running import FROM, HANGS, TOP, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
 
 TEXT = "m1,m2\n1,3\n"
 ONE = "atwood: 1 row: 1 no-slip; no errors.\n"
@@ -263,6 +263,18 @@ def test_without_polars_one_line_says_what_to_install(batch: Batch, monkeypatch:
     monkeypatch.setitem(sys.modules, "polars", None)
     why = f"this needs polars; install it with: pip install '{FROM}[batch]'"
     assert batch(TEXT) == (1, "", f"atwood: {why}\n")
+
+
+def test_a_polars_that_is_too_old_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
+    oldest = re.search("polars>=([0-9.]+)", (TOP / "pyproject.toml").read_text(encoding="utf-8"))
+    assert oldest
+    monkeypatch.setattr(pl, "__version__", oldest[1])
+    assert batch(TEXT, "--only a").status == 0
+    monkeypatch.setattr(pl, "__version__", "1.9.0")
+    why = f"this needs polars {oldest[1]} or newer, not 1.9.0; pip install --upgrade polars"
+    assert batch(TEXT) == (1, "", f"atwood: {why}\n")
+    with pytest.raises(ImportError, match=re.escape(why)):
+        solve_table(pl.DataFrame({"m1": [1.0], "m2": [3.0]}))
 
 
 # How it ends

@@ -26,6 +26,22 @@ GROUP_ROWS, GROUP_CELLS = 1 << 16, 1 << 20
 """The most rows, and the most cells, of a row group that is written."""
 
 
+OLDEST_POLARS = "1.41.1"
+
+
+def check_polars() -> None:
+    """Raise ImportError if polars is older than what tables are tested with."""
+    import polars as pl
+
+    version, oldest = (
+        list(map(int, re.findall(r"\d+", words)[:3])) for words in (pl.__version__, OLDEST_POLARS)
+    )
+    if version < oldest:
+        raise ImportError(
+            f"this needs polars {OLDEST_POLARS} or newer, not {pl.__version__}; pip install --upgrade polars"
+        )
+
+
 def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
     """Append its results to each row of a table of scenes, as `atwood batch` does.
 
@@ -46,9 +62,11 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
         SceneError: A quantity is not known (a ValueError).
         ValueError: The table is no frame of polars, lacks a mass, or has a column that could be meant for an
             input, holds no numbers, or is named as a result.
+        ImportError: polars is missing or too old.
     """
     import polars as pl
 
+    check_polars()
     if not isinstance(table, pl.DataFrame | pl.LazyFrame):
         what = f"the table is of type {type(table).__name__}"
         raise ValueError(f"{what}; give a polars frame, as by pl.from_pandas(frame)")

@@ -6,7 +6,6 @@ import stat
 import sys
 from collections.abc import Iterator
 from contextlib import ExitStack
-from importlib import import_module
 from io import BytesIO
 from operator import attrgetter
 from pathlib import Path
@@ -17,7 +16,7 @@ from ..output.files import STDOUT, Stdout, written_beside
 from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream, opened
-from .frames import Watch, solve_parquet
+from .frames import Watch, check_polars, solve_parquet
 from .solving import ERROR, VOCABULARY, Layout, Question, Tally, read_layout, solve_cells
 
 if TYPE_CHECKING:
@@ -42,9 +41,8 @@ def run_batch(job: Job, watch: Watch, tally: Tally) -> list[str]:
 
     ``watch`` shows progress, unless results go to a terminal.
     """
-    if hasattr(signal, "siginterrupt"):
-        import_module("polars")  # as it is imported, it has Ctrl-C wait for a pipe
-
+    check_polars()
+    if hasattr(signal, "siginterrupt"):  # as polars is imported, it has Ctrl-C wait for a pipe
         signal.siginterrupt(signal.SIGINT, True)
     _check_apart(job)
     if job.target == STDOUT and sys.stdout.isatty():

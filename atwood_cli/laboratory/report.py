@@ -85,15 +85,15 @@ def _scatter(fit: Fitted) -> str:
         return f"Only the residuals show the scatter of a single {MEASURED[fit.runs.kind]}."
     if p is None:
         return "There are as many runs as results, so nothing is left to test the fit."
-    source = "the uncertainties stated" if stated else "the repeats"
+    source = "uncertainties" if stated else "repeats"
     probability = f"p = {rounded(p)}" if p >= 0.001 else "p < 0.001"
     by = f"(χ² = {rounded(chi2, 3)}, {counted(fit.whole.best.dof, 'degree')} of freedom, {probability})"
     if p < SELDOM:
-        more = f"The runs scatter more than {source} let expect {by}"
+        more = f"The runs scatter more than their {source} {by}"
         return f"{more}: masses, friction or timing vary between them."
     if p > 1 - RARE:
-        return f"The runs scatter less than {source} let expect {by}."
-    return f"Scatter as expected from {source} {by}."
+        return f"The runs scatter less than their {source} {by}."
+    return f"Scatter as expected from the {source} {by}."
 
 
 def _delay(fit: Fitted) -> Iterator[str]:
