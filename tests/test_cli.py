@@ -2,19 +2,23 @@
 
 import json
 import marshal
+import os
 import re
 import subprocess
 import sys
+from errno import EINVAL
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
+from unittest.mock import Mock
 
 import pytest
 
-from atwood_cli import solve
+from atwood_cli import cli, solve
 from atwood_cli.__main__ import main
 from atwood_cli.model.quantities import ASCII, QUANTITIES, read_names
 
-from .running import LOADED, PAPER, Atwood, process
+from .running import LOADED, PAPER, Atwood, called, process
 from .scenes import inputs
 
 # The table
@@ -166,6 +170,19 @@ def test_python_dash_m_and_the_command_are_one() -> None:
 
 
 # As a program
+
+
+def test_a_lack_of_memory_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("atwood_cli.cli.solve.read_answers", Mock(side_effect=MemoryError))
+    assert called(PAPER) == (1, "", "atwood: there is not enough memory\n")
+
+
+def test_a_pipe_that_is_closed_on_windows_ends_a_run_quietly(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("atwood_cli.cli.solve.read_answers", Mock(side_effect=OSError(EINVAL, "Invalid")))
+    monkeypatch.setattr("atwood_cli.cli.drop", Mock())
+    assert called(PAPER).status == 1
+    monkeypatch.setattr(cli, "os", SimpleNamespace(name="nt", environ=os.environ))
+    assert cli.run(PAPER) == 0
 
 
 ENDING = """

@@ -146,10 +146,8 @@ def run(arguments: list[str] | None = None) -> int:
             return COULD_NOT
         drop(sys.stdout)  # its reader may have stopped, and writing would wait for ever
         raise KeyboardInterrupt from None
-    except (ImportError, OSError, ArithmeticError) as error:
-        if (
-            isinstance(error, OSError) and error.errno == EINVAL and os.name == "nt"
-        ):  # a closed pipe on Windows
+    except (ImportError, OSError, ArithmeticError, MemoryError) as error:
+        if os.name == "nt" and getattr(error, "errno", 0) == EINVAL:  # a pipe whose reader has left
             drop(sys.stdout)
             return DONE
         say(_why(error))
@@ -183,4 +181,4 @@ def _why(error: Exception) -> str:
     if isinstance(error, OSError) and error.errno is not None:  # without a number, it is a sentence of ours
         file = shortened(str(error.filename or "the output"), LONGEST_NAME)
         return f"cannot write {file}: {error.strerror}"
-    return str(error)
+    return "there is not enough memory" if isinstance(error, MemoryError) else str(error)
