@@ -1,12 +1,26 @@
 """The map's table of what a change touches: in a copy, what it names is enough for the change to be seen."""
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 from shutil import copytree
 
 import pytest
 
+from atwood_cli import Solution
+from atwood_cli.model import quantities
+from atwood_cli.model.machine import Machine
+from atwood_cli.model.quantities import MEASURED_NAMES, QUANTITIES
+from atwood_cli.model.scene import Scene
+from atwood_cli.model.units import UNITS
+from atwood_cli.output.typeset import IN_LATEX
+from atwood_cli.solver.equations import plain
+from atwood_cli.solver.expected import DIMENSIONS
+
+from . import oracle
 from .running import TOP, process
+from .test_scene import BY_DEFINITION
+from .test_sentences import REASONS
 
 MAP = (TOP / "atwood_cli" / "README.md").read_text(encoding="utf-8")
 # fmt: off
@@ -41,3 +55,58 @@ def test_what_the_map_names_is_enough(tmp_path: Path) -> None:
         (package / name).write_text(text.replace(before, line + before), encoding="utf-8")
     ran = process(code=SEEN, PYTHONPATH=str(tmp_path), PYTHONSAFEPATH="1")
     assert (ran.out, ran.err) == ("True\n10.0 3.0 4.0\n10\nM,trial\n1,10\n2,10\n1\n", "")
+
+
+WITHOUT_DIMENSION = ("", "m/s", "rad/s²")
+"""Units with which --expect compares plain numbers."""
+OF_MOTION = "NEEDS_A"
+"""How reasons of quantities begin that a measurement gives: no scene lacks them."""
+
+
+def lacking() -> Iterator[str]:
+    """What quantities, reasons, symbols and units lack: in which file what is to be added."""
+    known = oracle.expected(Scene.read({"m1": 1, "m2": 3, "M": 10, "mu": "0.3", "R": 1}))
+    for name, about in QUANTITIES.items():
+        if name not in known and name not in MEASURED_NAMES:
+            yield f"tests/oracle.py: expected() has no {name!r}"
+        if not hasattr(Machine, name):
+            yield f"atwood_cli/model/machine.py: Machine has no property {name!r}"
+        if name not in Solution.__dataclass_fields__:
+            yield f"atwood_cli/api.py: Solution has no field {name!r}"
+        if about.unit not in (*DIMENSIONS, *WITHOUT_DIMENSION):
+            yield f"atwood_cli/solver/expected.py: DIMENSIONS has no {about.unit!r}"
+        for sign in plain(about.symbol):
+            if not sign.isascii() and ord(sign) not in IN_LATEX:
+                yield f"atwood_cli/output/typeset.py: {sign!r} has no LaTeX in SIGNS"
+    source = Path(quantities.__file__).read_text(encoding="utf-8")
+    for name in re.findall(
+        r"^([A-Z_]+) = ", source.partition("# Why")[2].partition("# Names")[0], re.MULTILINE
+    ):
+        reason = getattr(quantities, name)
+        if not name.startswith((OF_MOTION, "NEEDS_DROP", "AT_REST")) and reason not in REASONS:
+            yield f"tests/test_sentences.py: REASONS has no {name}"
+    for dimension, units in UNITS.items():
+        for unit in units:
+            if unit.replace(" ", "_") not in BY_DEFINITION[dimension].split():
+                yield f"tests/test_scene.py: BY_DEFINITION has no {unit!r}"
+
+
+def test_nothing_lacks_what_a_change_needs() -> None:
+    """The first word on a change: without it, 185 tests failed with a KeyError."""
+    assert [*lacking()] == []
+
+
+@pytest.mark.parametrize(
+    ("table", "key", "entry", "said"),
+    [
+        (QUANTITIES, "trial", QUANTITIES["torque"]._replace(symbol="ε"), "tests/oracle.py: expected() has no 'trial'"),
+        (QUANTITIES, "torque", QUANTITIES["torque"]._replace(symbol="ε"), "atwood_cli/output/typeset.py: 'ε' has no LaTeX in SIGNS"),
+        (QUANTITIES, "torque", QUANTITIES["torque"]._replace(unit="W"), "atwood_cli/solver/expected.py: DIMENSIONS has no 'W'"),
+        (UNITS["mass"], "stater", "7", "tests/test_scene.py: BY_DEFINITION has no 'stater'"),
+    ],
+)  # fmt: skip
+def test_what_is_lacking_is_named(
+    monkeypatch: pytest.MonkeyPatch, table: dict[str, object], key: str, entry: object, said: str
+) -> None:
+    monkeypatch.setitem(table, key, entry)
+    assert said in [*lacking()]
