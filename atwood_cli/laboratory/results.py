@@ -26,7 +26,7 @@ class Quantity(NamedTuple):
 
 QUANTITIES = {
     "rim_mass": Quantity("c=I/R²", "kg", "the pulley's inertia", "c", ("M", "I")),
-    "axle": Quantity("f", "N", "axle friction", "f", ("axle",)),
+    "axle": Quantity("f_axle", "N", "axle friction", "f", ("axle",)),
     "gravity": Quantity("g", "m/s²", "gravity", "g", ("g",)),
     "delay": Quantity("Δt", "s", "a delay of all times", "delay"),
     "pulley_mass": Quantity("M", "kg", "the pulley's mass, if its shape is given"),
