@@ -193,7 +193,7 @@ def test_blocks_are_in_proportion_to_the_masses() -> None:
         assert large / small == pytest.approx(ratio)
 
 
-SYMBOLS = {"T₁": "tension_1", "T₂": "tension_2", "M": "critical_pulley_mass"}
+SYMBOLS = {"T₁": "tension_1", "T₂": "tension_2"}
 SOLVED = [line for _, line in LINES if line.startswith(("solve", "contact")) and "1.123" not in line]
 
 
@@ -208,7 +208,7 @@ def test_every_value_in_a_picture_is_the_pages(line: str) -> None:
     )
     (values,) = csv.DictReader(ran.out.splitlines())
     told = " ".join(words_on(page)).replace("\n", " ")
-    found = [(SYMBOLS.get(name, ""), x) for name, x in re.findall(r"(T[₁₂]) = (\S+(?: × 10\S+)?) N", told)]
+    found = [(SYMBOLS[name], x) for name, x in re.findall(r"(T[₁₂]) = (\S+(?: × 10\S+)?) N", told)]
     found += [
         ("acceleration", x)
         for x in re.findall(r"\ba = (\S+(?: × 10\S+)?)(?= m/s²)", told.partition(" ± ")[0])
