@@ -89,7 +89,7 @@ def test_whole_numbers_have_one_answer_at_every_door() -> None:
     """They are the same as texts and as doubles, and gravity is exact wherever it is not given."""
     rng = Random(43)
     tried: list[Given] = [
-        {name: str(rng.randint(1, 20)) for name in ("m1", "m2", "M")}
+        dict(zip(("m1", "m2", "M"), map(str, rng.sample(range(1, 21), 3)), strict=True))
         | {"mu": rng.choice(["0.25", "0.5", "2"])}
         for _ in range(many(200))
     ]
