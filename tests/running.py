@@ -176,9 +176,12 @@ def plain(seen: str) -> str:
 
 
 def labels(svg: str) -> list[str]:
-    """The texts of a picture, in its title and description, too."""
+    """The texts of a picture, in its title and description, too, but for the name of what drew it."""
     names = ("title", "desc", "text")
-    return ["".join(one.itertext()) for one in fromstring(svg).iter() if one.tag.split("}")[-1] in names]
+    texts = ("".join(one.itertext()) for one in fromstring(svg).iter() if one.tag.split("}")[-1] in names)
+    # Numbers along axes are set digit by digit by some versions of matplotlib, each in a line.
+    whole = ("".join(text.split()) if "\n" in text else text for text in texts)
+    return [text for text in whole if not text.startswith("Matplotlib v")]
 
 
 @contextmanager
