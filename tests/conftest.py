@@ -17,9 +17,7 @@ ANYWHERE = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.functi
 settings.register_profile("every-digit", deadline=None, suppress_health_check=ANYWHERE)
 settings.register_profile("usual", settings.get_profile("every-digit"), max_examples=25)
 settings.register_profile("quick", settings.get_profile("every-digit"), max_examples=4)
-SLOW = (
-    "arrays columns contact explain fit fuzz kills parquet sweep terminal ties tradeoff uncertainty".split()
-)
+SLOW = "arrays columns contact explain fit fuzz kills parquet pictures sweep terminal ties tradeoff uncertainty".split()
 """What --quick leaves out: transcripts and doors see most faults that these modules see, and sooner."""
 
 
