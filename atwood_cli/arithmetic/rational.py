@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from typing import Protocol, Self
 
     class Field(Protocol):
-        """A number with + - * and /. Ints may stand on either side of an operation."""
+        """A number with + - * and /. Ints may stand on either side, but not before a minus."""
 
         def __add__(self, other: Any, /) -> Self: ...
         def __radd__(self, other: Any, /) -> Self: ...

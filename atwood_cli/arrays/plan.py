@@ -24,7 +24,8 @@ What each accuracy promises, and why it holds:
   inputs, whose pair is exact. Other ties, half-way between two doubles, are left to a single scene.
 
 Rows with an input beyond `doubles.WINDOW`, other than 0, are solved one by one at once. Quantities are, too,
-if they need the sine of an angle that each row has for itself: the least and the greatest friction force.
+if they need the sine of an angle that is computed, not given in degrees: the least and the greatest friction
+force.
 """
 
 from __future__ import annotations

@@ -205,7 +205,7 @@ Labels = Annotated[
         "Files",
         "--label",
         metavar="COLUMN",
-        help="Pass this column on as it is, though it may be meant for an input; repeatable.",
+        help="Leave this column as it is, though it may be meant for an input; repeatable.",
     ),
 ]
 
@@ -218,7 +218,7 @@ Force = Annotated[bool, option("Files", "--force", help="Replace an existing fil
 
 def results(*forms: str) -> OptionGroup:
     """Return the options that choose the form of a result among these, and the file that it goes to."""
-    suffixes = ", ".join(f"{FORMS[form].suffix}" for form in forms)
+    suffixes = ", ".join(FORMS[form].suffix for form in forms)
     options = {
         **{form: Annotated[bool, option("Output", flag(form), help=FORMS[form].help)] for form in forms},
         "output": Annotated[

@@ -217,7 +217,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
 def outcome(
     runs: Runs, used: Sequence[Run], given: Conditions, names: Sequence[str], left_out: str = ""
 ) -> Outcome:
-    """Return the fit of these runs, with its uncertainties. Raises CannotSeparate."""
+    """Return the fit of these runs, with its uncertainties. Raises Unreadable, SceneError, CannotSeparate."""
     dof = len(used) - len(names)
     data = as_data(runs, used) if used and dof >= 0 else None
     if not data or not (dof or data.scatter.any() or data.uncertain):

@@ -1,4 +1,4 @@
-"""Read what is given, words and numbers, into an exact and valid `Scene`. Nothing is computed."""
+"""Read what is given, words and numbers, into an exact and valid `Scene`."""
 
 from __future__ import annotations
 
@@ -393,8 +393,8 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
 
 
 def _longest(number: Decimal) -> int:
-    """Return the number of digits before the point, or behind it if they are more."""
-    return max(abs(number.adjusted()), -int(number.as_tuple().exponent))
+    """Return the power of ten of the first digit, or the number of decimal places if that is more."""
+    return max(number.adjusted(), -int(number.as_tuple().exponent))
 
 
 def _exact_number(name: str, given: object) -> Fraction | float:

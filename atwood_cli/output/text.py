@@ -227,7 +227,8 @@ def relevant_inputs(
 ) -> dict[str, str]:
     """Say each input. Hide the default inertia and wrap if no result depends on them.
 
-    The inertia has no effect on a pulley without mass or at rest, the wrap none without friction.
+    The inertia has no effect on a pulley without mass or at rest, the wrap none if
+    there is neither friction nor a pulley with mass.
     """
     has_friction = scene.mu is not None or "mu" in varied or motion.finds is not None
     heavy = scene.M not in (None, 0) or scene.I is not None or "M" in varied or "I" in varied
