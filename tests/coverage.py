@@ -193,7 +193,8 @@ def ideal_widths(design: Design, *more: str) -> Any:
     """The half widths of ideal intervals of c, f, and of the delay if that is fitted."""
     l, h, drop = masses_of(design)
 
-    def slope(name: str, size: float = 1e-6) -> Any:
+    def slope(name: str) -> Any:
+        size = 1e-6
         x = {"l": l, "h": h, "c": design.c, "f": design.f}
         ends = (expected(design.kind, **{**x, name: x[name] + by}, drop=drop) for by in (size, -size))
         return (next(ends) - next(ends)) / (2 * size)
@@ -252,9 +253,9 @@ def exchanged(time: float) -> float:
     return int("".join(digits)) / 100
 
 
-def blunders_named(design: Design, kind: str, number: int, sets: int, seed: int = 1) -> float:
+def blunders_named(design: Design, kind: str, number: int, sets: int) -> float:
     """The share of sets in which all blunders of so many runs are named: of a ``time`` or of a ``mass``."""
-    random, named = np.random.default_rng(seed), 0
+    random, named = np.random.default_rng(1), 0
     for _ in range(sets):
         made = drawn(design, random)
         off = random.choice(design.runs, number, replace=False)

@@ -99,12 +99,6 @@ class Enclosure:
     def __rtruediv__(self, other: int) -> Enclosure:
         return self._lift(other) / self
 
-    def __abs__(self) -> Enclosure:
-        if self.lo >= ZERO:
-            return self
-        least = ZERO if self.hi > ZERO else self.hi.copy_negate()
-        return Enclosure(self.arithmetic, least, max(self.lo.copy_negate(), self.hi))
-
 
 class Enclosures:
     """Enclosures of about ``digits`` significant digits."""

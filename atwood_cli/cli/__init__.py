@@ -3,7 +3,7 @@
 import io
 import os
 import sys
-from collections.abc import Iterable
+from collections.abc import Sequence
 from contextlib import suppress
 from errno import EINVAL
 from importlib import import_module
@@ -87,7 +87,7 @@ def root(context: typer.Context, version: Version = False) -> None:
         print(context.get_help())
 
 
-def program(names: Iterable[str] = COMMANDS) -> Any:
+def program(names: Sequence[str] = COMMANDS) -> Any:
     """Return the program with these commands; each takes a while to import."""
     app = typer.Typer(
         name="atwood",

@@ -67,7 +67,7 @@ def axle_force(inputs: Any) -> Fraction:
 class Decisions:
     """The decisions about a scene, and the inputs seen from the lighter and the heavier mass.
 
-    Each is made when it is asked for, once.
+    Each is made when it is asked for; the ``lazy`` ones once.
     """
 
     def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
@@ -250,6 +250,11 @@ class Decisions:
         if self.locked or not self.has_axle_friction:
             return self.locked
         return not self.moves_axle("heavy") or self.slips_at("lightest_at_rest")
+
+    @property
+    def slips_at_rest(self) -> bool:
+        """Whether the critical heavier mass makes the string slip on a pulley that is at rest."""
+        return self.locked or self.slips_once_it_moves
 
     @lazy
     def can_be_made_slip(self) -> bool:

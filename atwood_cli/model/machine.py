@@ -44,7 +44,7 @@ class Machine(Mechanics[N]):
     @lazy
     def critical_heavier_mass(self) -> N:
         friction_mass = self.friction_mass
-        if self.case.locked or self.case.slips_once_it_moves:
+        if self.case.slips_at_rest:
             return self.least_heavier_mass
         c = self._given(self.case.rim_mass, quantities.NEEDS_M)
         if not self.case.can_be_made_slip:

@@ -101,7 +101,7 @@ def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
 
 
 @contextmanager
-def stdout_into(file: str | None, force: bool = False) -> Iterator[None]:
+def stdout_into(file: str | None, force: bool) -> Iterator[None]:
     """Print into a file, unless it is None or -. Raises OSError."""
     if file in (None, STDOUT):
         yield

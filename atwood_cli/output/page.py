@@ -44,12 +44,9 @@ class Page:
 
     def say(self, *sentences: str, style: str = "") -> None:
         """Print sentences, in lines no longer than the terminal is wide, or than a page in a pipe."""
-        for line in self.lines(*sentences):
-            self.line(line, style)
-
-    def lines(self, *sentences: str) -> list[str]:
-        """Return sentences in lines, as `say` prints them."""
-        return [line for words in sentences for line in wrapped(printable(words), self.width)]
+        for words in sentences:
+            for line in wrapped(printable(words), self.width):
+                self.line(line, style)
 
     def line(self, words: str, style: str = "") -> None:
         """Print a line as it is, however long."""

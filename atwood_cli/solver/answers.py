@@ -137,8 +137,7 @@ class Answers:
             return Answer(self.case.regime)
         if name not in self._answers:
             value, reason = self._settled(attrgetter(name))
-            uncertainty = self._uncertainty(name, value, reason) if self.uncertainties else ()
-            self._answers[name] = Answer(value, reason, *uncertainty)
+            self._answers[name] = Answer(value, reason, *self._uncertainty(name, value, reason))
         return self._answers[name]
 
     def _settled(self, quantity: OnMachine) -> tuple[Any, str]:

@@ -179,7 +179,7 @@ class Derivation:
             labels |= {"magnitude": motion.equation, "difference": "(1)" if case.pulley_at_rest else "(3)"}
         if case.slide_measured:
             labels["limiting_k_minus_1"] = "(1)"
-        if name == "critical_heavier_mass" and self.slips_at_rest:
+        if name == "critical_heavier_mass" and self.case.slips_at_rest:
             labels["critical_heavier_mass"] = QUANTITIES["least_heavier_mass"].equation
         return labels.get(name, QUANTITIES[name].equation if name in QUANTITIES else "")
 
@@ -217,11 +217,6 @@ class Derivation:
         if isinstance(symbol.of, Fraction):
             return to_digits(digits)(symbol.of), False
         return Decimal(self.answers.to(digits).settle(attrgetter(symbol.of))), False
-
-    @property
-    def slips_at_rest(self) -> bool:
-        """Whether the critical heavier mass makes the string slip on a pulley that is at rest."""
-        return self.case.locked or self.case.slips_once_it_moves
 
     def exists(self, name: str) -> bool:
         """Decide whether the scene determines a value that can be written out."""

@@ -149,7 +149,7 @@ def _held(answers: Answers) -> str:
     """Say the difference of the masses that the axle just holds."""
     case = answers.case
     times, unit = (1000, "g") if case.axle_mass < 1 else (1, "kg")
-    round_ = _beside(answers, times * (case.heavy - case.light))
+    round_ = _beside(answers, times * case.difference)
     return f"{format_number(round_(times * case.axle_mass))} {unit}"
 
 

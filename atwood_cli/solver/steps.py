@@ -277,7 +277,7 @@ def _critical_masses(derivation: Derivation) -> dict[str, bool]:
     names = [f"critical_{name}_mass" for name in ("pulley", "heavier", "lighter")]
     pulley, heavier, lighter = (answers[name] is not None for name in names)
     lighter = lighter and not case.pulley_is_ideal
-    heavier_at_rest = heavier and derivation.slips_at_rest
+    heavier_at_rest = heavier and derivation.case.slips_at_rest
     lighter_at_rest = lighter and case.pulley_at_rest_until_it_slips
     return {
         "M* exists": pulley,

@@ -70,7 +70,7 @@ class Point(NamedTuple):
 LOCKED = Point(inf, "inf")
 
 
-def exact_point(value: Fraction | float, suffix: str = "", name: str = "") -> Point:
+def exact_point(value: Fraction | float, suffix: str, name: str = "") -> Point:
     """Return a number as a point: a decimal if it is one, else text."""
     if isinstance(value, float):
         return LOCKED

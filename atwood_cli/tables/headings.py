@@ -208,8 +208,9 @@ def _let_pass(column: str) -> str:
     return f"; or keep it with --label {in_quotes(column)}"
 
 
-def listed(names: Sequence[str], most: int = 12) -> str:
+def listed(names: Sequence[str]) -> str:
     """Return headings in a sentence, the first of many."""
+    most = 12
     more = f" and {len(names) - most} more" if len(names) > most else ""
     return f"{', '.join(map(in_quotes, names[:most]))}{more}"
 
