@@ -132,7 +132,8 @@ KEPT = [
         for engine, needs in ENGINES.items()
     ),
     whole(
-        EXAMPLES / "handout.md", partial(shown, "atwood solve --m1 1 --m2 3 --mu 0.3 --explain --markdown")
+        EXAMPLES / "handout.md",
+        partial(shown, "atwood solve --m1 1 --m2 3 --M 10 --explain --only a,T1 --markdown"),
     ),
     *(
         whole(
