@@ -13,6 +13,7 @@ from contextlib import ExitStack, chdir
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
+from shutil import which
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
@@ -39,7 +40,7 @@ PICTURES = {
 
 
 class Kept(NamedTuple):
-    """A text that is a part of a file or all of it, what it is today, and the package that this needs."""
+    """A text that is a part of a file or all of it, what it is today, and the package or program that this needs."""
 
     file: Path
     text: str
@@ -48,8 +49,8 @@ class Kept(NamedTuple):
 
     @property
     def lacks(self) -> str:
-        """The package that is needed and not installed."""
-        return "" if not self.needs or find_spec(self.needs) else self.needs
+        """What is needed and not installed."""
+        return "" if not self.needs or find_spec(self.needs) or which(self.needs) else self.needs
 
 
 def printed(line: str) -> str:
@@ -120,7 +121,11 @@ KEPT = [
         for block in blocks(page)
         for command in re.findall(r"^\$ .*\n(?:(?!\$ ).*\n)*", block, re.MULTILINE)
     ),
-    *(Kept(page, block, partial(transcript, block)) for page in PAGES for block in blocks(page)),
+    *(
+        Kept(page, block, partial(transcript, block), "jq" if "| jq" in block else "")
+        for page in PAGES
+        for block in blocks(page)
+    ),
     # The scripts call `atwood` and `python3`; both are this interpreter here.
     *(
         whole(script.with_suffix(".txt"), f'python3() {{ "$PYTHON" "$@"; }}; . "{script}"')
@@ -132,7 +137,8 @@ KEPT = [
         for engine, needs in ENGINES.items()
     ),
     whole(
-        EXAMPLES / "handout.md", partial(shown, "atwood solve --m1 1 --m2 3 --mu 0.3 --explain --markdown")
+        EXAMPLES / "handout.md",
+        partial(shown, "atwood solve --m1 1 --m2 3 --M 10 --explain --only a,T1 --markdown"),
     ),
     *(
         whole(

@@ -7,6 +7,7 @@ import runpy
 from collections import Counter
 from math import inf, nan
 from pathlib import Path
+from shutil import which
 
 import pytest
 
@@ -77,6 +78,16 @@ def test_the_python_in_the_pages_runs(name: str) -> None:
 )
 def test_what_ends_otherwise_is_not_written_unasked(before: str, after: str, otherwise: bool) -> None:
     assert ends_otherwise(before, after) == otherwise
+
+
+@pytest.mark.skipif(os.name == "nt" or not which("make"), reason="needs make")
+def test_the_makefile_keeps_no_table_in_which_a_row_failed(tmp_path: Path) -> None:
+    (rules,) = re.findall(r"```make\n(.*?)```", PAGES["examples/programs.md"], re.DOTALL)
+    (tmp_path / "makefile").write_text(rules)
+    for mass, status in ((3, 0), (-3, 2)):
+        (tmp_path / "scenes.csv").write_text(f"m1,m2\n1,{mass}\n")
+        ran = process(shell=f'PATH="$(dirname "$PYTHON"):$PATH" make --always-make -C "{tmp_path}"')
+        assert (ran.status, (tmp_path / "results.csv").exists()) == (status, not status), ran
 
 
 def anchors(page: Path) -> set[str]:
