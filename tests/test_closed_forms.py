@@ -163,7 +163,7 @@ def test_they_undo_the_fall_and_the_slide() -> None:
     assert sp.simplify(a * t**2 / 2 - H) == 0
     assert sp.simplify(v - a * t) == 0
     assert sp.simplify(physics.acceleration_of_fall(H, t) - a) == 0
-    z = physics.friction_mass_at_limit(l, k_minus_1)
+    z = physics.friction_at_limit(l, k_minus_1)
     slide = physics.acceleration(physics.drive(l, h, z), physics.load(l, h, z), g)
     assert sp.simplify(physics.slide_ratio_minus_1(l, h, slide, g) - k_minus_1) == 0
     # A disk: I = M R²/2, c = M/2.

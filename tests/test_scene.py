@@ -167,7 +167,8 @@ def test_text_means_exactly_itself(text: str, value: Any) -> None:
 )
 def test_units_and_names_as_people_write_them(name: str, text: str, value: Any) -> None:
     scene = Scene.read({"m1": 1, "m2": 1, "R": 1, name: text})
-    assert getattr(scene, name) == Fraction(value)
+    read = getattr(scene, name)
+    assert getattr(read, "number", read) == Fraction(value)
 
 
 @pytest.mark.parametrize(("axle", "newtons"), AXLES.items())

@@ -47,7 +47,7 @@ class Machine(Mechanics[N]):
         if self.case.slips_at_rest:
             return self.least_heavier_mass
         c = self._given(self.case.rim_mass, quantities.NEEDS_M)
-        if not self.case.can_be_made_slip:
+        if self.case.pulley_is_ideal or not self.case.slips_at("heaviest"):
             raise Undetermined(quantities.NO_CRITICAL_HEAVIER_MASS)
         return physics.critical_heavier_mass(self.l, c, friction_mass, self.b)
 

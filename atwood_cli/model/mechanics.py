@@ -24,7 +24,7 @@ class Mechanics(Generic[N]):
     The acceleration is a = g d/s, with a drive d and a load s (see `physics`):
 
         state            drive d                                   load s
-        no slip          h - l - b        `gripping_drive`         h + l + c
+        no slip          h - l - b                                 h + l + c
         verge            h - l - z        `drive`                  h + l + z, z = l (k - 1)    `friction_mass`
         slip             the same with μ_k: `limiting_drive`       `limiting_friction_mass`
     """
@@ -83,7 +83,7 @@ class Mechanics(Generic[N]):
     @lazy
     def friction_mass(self) -> N:
         """z = l (k - 1) of static friction (kg)."""
-        return physics.friction_mass_at_limit(self.l, self.k_minus_1)
+        return physics.friction_at_limit(self.l, self.k_minus_1)
 
     @lazy
     def drive(self) -> N:
@@ -105,7 +105,7 @@ class Mechanics(Generic[N]):
         """z on the verge and in slip (kg)."""
         if self.case.limit_is_static:
             return self.friction_mass
-        return physics.friction_mass_at_limit(self.l, self.limiting_k_minus_1)
+        return physics.friction_at_limit(self.l, self.limiting_k_minus_1)
 
     @lazy
     def limiting_drive(self) -> N:
@@ -113,11 +113,6 @@ class Mechanics(Generic[N]):
         if self.case.limit_is_static:
             return self.drive
         return self.ar.not_negative(physics.drive(self.l, self.h, self.limiting_friction_mass))
-
-    @lazy
-    def gripping_drive(self) -> N:
-        """Drive of a string that grips and moves (kg)."""
-        return self.ar.not_negative(physics.drive(self.l, self.h, self.b))
 
     @lazy
     def magnitude(self) -> N:
@@ -128,7 +123,7 @@ class Mechanics(Generic[N]):
         elif case.sign == 0 or case.pulley_at_rest:
             return self.ar.number(0)
         else:
-            drive = self.gripping_drive
+            drive = self.ar.not_negative(physics.drive(l, h, self.b))
             load = physics.load(l, h, self._given(case.rim_mass, quantities.NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
@@ -208,7 +203,7 @@ class Mechanics(Generic[N]):
         """Magnitude of T2 - T1 (N)."""
         case = self.case
         if case.regime != "no-slip":
-            return physics.difference_of_friction(self.light_tension, self.limiting_k_minus_1)
+            return physics.friction_at_limit(self.light_tension, self.limiting_k_minus_1)
         if case.tensions_equal:
             return self.ar.number(0)
         if case.pulley_at_rest:

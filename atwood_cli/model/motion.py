@@ -4,16 +4,14 @@ Without slip a = g d/s, with the load s = l + h + c: whichever of M, g and a mas
 In slip the pulley's mass does not enter the motion, so that a gives the kinetic friction instead.
 """
 
-from collections.abc import Callable, Mapping
-from fractions import Fraction
-from functools import partial
+from collections.abc import Mapping
 from math import inf
 from types import SimpleNamespace
 from typing import Any
 
 from ..arithmetic.rational import EXACT
 from . import physics
-from .decisions import ZERO, Decisions, axle_force, rim_mass
+from .decisions import ZERO, Decisions, axle_friction, inertia_at_rim
 from .digits import SHOWN_DIGITS, as_typed, format_number, strip_zeros, to_digits, to_double
 from .quantities import Undetermined
 from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError, checked
@@ -79,10 +77,10 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a instead, positive when m2 descends"
         known = m1 if finds == "m2" else m2
-        if not known and not rim_mass(values, values.M):
+        if not known and not inertia_at_rim(values, values.M):
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         return ""
-    if finds == "M" and m1 != m2 and abs(m1 - m2) <= physics.axle_mass(axle_force(values), values.g):
+    if finds == "M" and m1 != m2 and abs(m1 - m2) <= physics.axle_mass(axle_friction(values), values.g):
         return "conflicts with an axle whose friction holds the masses at rest; leave one of them out"
     if finds == "g" and g_given:
         pulley = "I" if M is None else "M"
@@ -134,15 +132,9 @@ def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scen
     """Return the scene, and what was measured, with another number for an input, in the same unit."""
     if x not in Scene._fields:
         return scene, motion._replace(**{x: number})
-    value = getattr(scene, x)
-    if isinstance(value, Angle):
-        number = Angle(number, value.unit)
-    elif isinstance(value, Axle):
-        number = Axle(number, value.unit)
-    return scene._replace(**{x: number}), motion
-
-
-# The unknown input, from the others
+    value: Any = getattr(scene, x)
+    given: Any = value._replace(number=number) if isinstance(value, Angle | Axle) else number
+    return scene._replace(**{x: given}), motion
 
 
 def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
@@ -150,58 +142,25 @@ def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
 
     Kinetic friction is no rational number: the machine computes it.
     """
-    if motion.finds is None:
+    m1, m2, g, finds = values.m1, values.m2, values.g, motion.finds
+    if finds is None:
         return {}
-    if motion.finds == "mu_k":
-        _moving(values, motion)
-        return {}
-    return {motion.finds: FINDERS[motion.finds](values, motion)}
-
-
-def _moving(values: Values, motion: Motion) -> tuple[Fraction, Fraction, Fraction]:
-    """Return the lighter and the heavier mass, and the acceleration of the latter. Raises Undetermined."""
-    m1, m2 = values.m1, values.m2
+    c, f = inertia_at_rim(values, values.M), axle_friction(values)
+    if finds in MASSES:
+        known, down = (m1, motion.acceleration(1)) if finds == "m2" else (m2, motion.acceleration(-1))
+        if down >= g:
+            side, limit = ("below", g) if finds == "m2" else ("above", -g)
+            raise Undetermined(f"must be {side} {format_number(to_double(limit))} m/s², that of free fall")
+        if down > 0:
+            return {finds: physics.heavier_mass(known, c, down, g, f)}
+        return {finds: physics.lighter_mass(known, c, -down, g, f)}
     a = motion.acceleration((m2 > m1) - (m2 < m1))
     if a <= 0:
         heavier, side = ("m2", "above") if m2 > m1 else ("m1", "below")
         raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass")
-    return min(m1, m2), max(m1, m2), a
-
-
-def _pulley_mass(values: Values, motion: Motion) -> Fraction:
-    l, h, a = _moving(values, motion)
-    c = physics.rim_mass(l, h, a, values.g, physics.axle_mass(axle_force(values), values.g))
-    mass: Fraction = c / values.inertia
-    return mass
-
-
-def _gravity(values: Values, motion: Motion) -> Fraction:
-    l, h, a = _moving(values, motion)
-    c = rim_mass(values, values.M)
-    assert c is not None
-    return physics.gravity(l, h, c, a, axle_force(values))
-
-
-def _mass(unknown: str, values: Values, motion: Motion) -> Fraction:
-    """Return the mass that moves with the measured acceleration. Raises Undetermined beyond free fall."""
-    known: Fraction = values.m1 if unknown == "m2" else values.m2
-    g: Fraction = values.g
-    a = motion.acceleration(1)
-    down = a if unknown == "m2" else -a
-    if down >= g:
-        side, limit = ("below", g) if unknown == "m2" else ("above", -g)
-        raise Undetermined(f"must be {side} {format_number(to_double(limit))} m/s², that of free fall")
-    c, f = rim_mass(values, values.M), axle_force(values)
-    assert c is not None
-    if down > 0:
-        return physics.heavier_mass(known, c, down, g, f)
-    return physics.lighter_mass(known, c, -down, g, f)
-
-
-FINDERS: dict[str, Callable[[Values, Motion], Fraction]] = {
-    "M": _pulley_mass,
-    "g": _gravity,
-    "m1": partial(_mass, "m1"),
-    "m2": partial(_mass, "m2"),
-}
-"""The functions that find an unknown input, by its name."""
+    l, h = sorted((m1, m2))
+    if finds == "M":
+        return {"M": physics.rim_mass(l, h, a, g, physics.axle_mass(f, g)) / values.inertia}
+    if finds == "g":
+        return {"g": physics.gravity(l, h, c, a, f)}
+    return {}

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import chain
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple, cast, get_args
 
 from .scene import INPUTS, SceneError
 from .units import nearest
@@ -196,8 +196,7 @@ def read_accuracy(word: object) -> Accuracy:
     """Read the name of an accuracy. Raises SceneError."""
     if word == "fast":
         raise SceneError("accuracy", word, "is no longer there, as certified takes hardly longer; take that")
-    known = read_name("accuracy", str(word), ACCURACIES, "accuracy")
-    return next(accuracy for accuracy in ACCURACIES if accuracy == known)
+    return cast(Accuracy, read_name("accuracy", str(word), ACCURACIES, "accuracy"))
 
 
 def divided(typed: Iterable[str]) -> list[str]:

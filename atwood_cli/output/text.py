@@ -239,7 +239,7 @@ def relevant_inputs(
         and (not heavy or scene.M == inf)
     ):
         idle.add("inertia")
-    if scene.wrap == 180 and not (has_friction or heavy or scene.axle is not None or "axle" in varied):
+    if scene.wrap.is_half_turn and not (has_friction or heavy or scene.axle is not None or "axle" in varied):
         idle.add("wrap")
     in_words = inputs_in_words(scene, motion, uncertain)
     return {name: words for name, words in in_words.items() if name not in idle or name in uncertain}
