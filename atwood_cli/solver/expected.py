@@ -21,7 +21,7 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     ">=": operator.ge,
     "==": operator.eq,
 }
-FORMS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
+CONDITIONS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
 MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
 DIMENSIONS = {
@@ -50,7 +50,7 @@ def read_condition(typed: str) -> Condition:
     if (regime := re.sub(r"^\s*regime\s*==", "", typed).strip()) in REGIMES:
         return Condition(typed.strip(), regime)
     if not (match := COMPARISON.fullmatch(typed)):
-        raise SceneError("expect", typed, f"must be {FORMS}")
+        raise SceneError("expect", typed, f"must be {CONDITIONS}")
     word, sign, number = map(str.strip, match.groups())
     name = read_name("expect", word, (*NAMES[1:], *MEASURED_NAMES))
     try:
