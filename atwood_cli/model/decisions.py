@@ -271,12 +271,16 @@ class Decisions:
     @lazy
     def long_wrap(self) -> bool:
         """Whether the wrap is beyond half a turn."""
-        return self.scene.wrap.is_beyond_half_turn
+        wrap = self.scene.wrap
+        if wrap.unit == "°":
+            return bool(wrap.number > 180)
+        return is_positive(lambda ar: wrap.radians(ar) - ar.pi)
 
     @lazy
     def ends_hang_down(self) -> bool:
-        """Whether both ends of the string leave the pulley downwards."""
-        return self.scene.wrap.ends_hang_down
+        """Whether both ends of the string hang down: half a turn of wrap, plus whole turns."""
+        wrap = self.scene.wrap
+        return bool(wrap.unit == "°" and (wrap.number - 180) % 360 == 0)
 
     # The tension ratio of a string that grips, against e^{μφ}
 

@@ -141,7 +141,7 @@ class Mechanics(Generic[N]):
     @lazy
     def friction_vector(self) -> tuple[N, N]:
         """Net friction force on the pulley (N), (x, y), seen from m1."""
-        return self.seen_from_m1(arc.friction(self.arcs("exponential")))
+        return self.seen_from_m1(arc.force(self.arcs("exponential"), physics.friction_vector))
 
     def seen_from_m1(self, vector: tuple[N, N]) -> tuple[N, N]:
         """Return a vector that is given from the lighter mass's end of the arc as seen from m1's end."""
@@ -348,7 +348,7 @@ class Mechanics(Generic[N]):
         """Least net friction force (N) of a string that grips, if all friction acts one way."""
         if not self._bounded():
             return self.ar.number(0)
-        x, y = arc.friction(self.arcs("least"))
+        x, y = arc.force(self.arcs("least"), physics.friction_vector)
         return self.ar.sqrt(x * x + y * y)
 
     @lazy

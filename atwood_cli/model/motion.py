@@ -39,7 +39,13 @@ def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
         )
     if not measured:
         return Scene(**vars(values)), Motion(a, drop, time)
-    motion = Motion(a, drop, time, unknown or _unknown(values))
+    if unknown:
+        finds = unknown
+    elif values.M == inf or (values.mu is not None and values.M is not None):
+        finds = "mu_k"
+    else:
+        finds = "M" if values.M is None and values.I is None else "g"
+    motion = Motion(a, drop, time, finds)
     rule = _contradiction(values, motion, inputs["g"].given is not None)
     if not rule:
         try:
@@ -50,13 +56,6 @@ def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     if rule:
         raise SceneError(name, inputs[name].given, rule)
     return scene, motion
-
-
-def _unknown(values: Values) -> str:
-    """Return the input that an acceleration finds if both masses are given."""
-    if values.M == inf or (values.mu is not None and values.M is not None):
-        return "mu_k"
-    return "M" if values.M is None and values.I is None else "g"
 
 
 def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
@@ -102,7 +101,9 @@ def _impossible(scene: Scene, motion: Motion) -> str:
     finds, case = str(motion.finds), Decisions(scene, motion)
     if finds == "mu_k":
         if case.slide_ratio_minus_1(EXACT) < 0:
-            return "is too large for any friction: without it the acceleration is " + _free_slide(case)
+            drive, load = (of(case.light, case.heavy, ZERO) for of in (physics.drive, physics.load))
+            most = to_digits(SHOWN_DIGITS)(case.sign * physics.acceleration(drive, load, scene.g))
+            return f"is too large for any friction: without it the acceleration is {format_number(most)} m/s²"
         if scene.mu is not None and case.exceeds(case.slide_ratio_minus_1, scene.mu):
             return "needs more kinetic friction than mu; check both"
         return ""
@@ -113,13 +114,6 @@ def _impossible(scene: Scene, motion: Motion) -> str:
         return ""
     shown = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(value)))
     return f"implies {finds} = {shown} {domain.unit}, which {domain.domain}"
-
-
-def _free_slide(case: Decisions) -> str:
-    """Return the acceleration of a slide without friction, for a sentence."""
-    l, h = case.light, case.heavy
-    most = physics.acceleration(physics.drive(l, h, ZERO), physics.load(l, h, ZERO), case.scene.g)
-    return f"{format_number(to_digits(SHOWN_DIGITS)(case.sign * most))} m/s²"
 
 
 def number_of(scene: Scene, motion: Motion, x: str) -> Any:

@@ -9,7 +9,6 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from ..arithmetic.settling import is_positive
 from .digits import as_typed, to_digits
 
 if TYPE_CHECKING:
@@ -131,17 +130,6 @@ class Angle(NamedTuple):
     @property
     def is_half_turn(self) -> bool:
         return bool(self.unit == "°" and self.number == 180)
-
-    @property
-    def is_beyond_half_turn(self) -> bool:
-        if self.unit == "°":
-            return bool(self.number > 180)
-        return is_positive(lambda ar: self.radians(ar) - ar.pi)
-
-    @property
-    def ends_hang_down(self) -> bool:
-        """Whether both ends of the string hang down: half a turn of wrap, plus whole turns."""
-        return bool(self.unit == "°" and (self.number - 180) % 360 == 0)
 
 
 LONGEST_NAME = 255
