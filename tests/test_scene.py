@@ -24,7 +24,7 @@ NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
 def error(**given: Any) -> str:
     with pytest.raises(SceneError) as caught:
-        Scene.read({"m1": "1", "m2": "3", **given})
+        solve(**{"m1": "1", "m2": "3", **given})
     return str(caught.value)
 
 
@@ -39,6 +39,7 @@ RULES: list[tuple[str, list[Any], str]] = [
     ("m1", [Decimal("1e9999999"), f"1.{'1' * 999}/{'7' * 999}e500"], TOO_LONG),
     ("m1", ["4" * 1000 + "lb"], "has 1008 digits, its unit included; at most 1000 are taken"),
     ("m1", [f"1 kg{'*st^9' * 20_000}"], NOT_A_NUMBER),
+    ("a", [nan, -inf], "must be finite"),
     ("axle", [(1, "N")], TYPES),
     ("R", [Axle(1)], TYPES),
     ("m1", [True, b"1", 1j, np.timedelta64(1, "s"), np.timedelta64(1), np.datetime64("2020")], TYPES),
