@@ -110,21 +110,6 @@ def test_notes_show_floats_as_they_are_written() -> None:
     assert "not 3.3 kg" in solve(m1=1.0, m2=3.3, mu=0.5).notes[0]
 
 
-TENTHS = "0.3 > 0.299999999999999988897769753748434595763683319091796875"
-
-
-@pytest.mark.parametrize(("mu", "mu_k", "sizes"), [(0.3, "0.3", TENTHS), (0.2, 0.3, "0.3 > 0.2")])
-def test_the_digits_of_a_float_are_shown_where_they_decide(mu: float, mu_k: Any, sizes: str) -> None:
-    with pytest.raises(SceneError, match=f"must not be above mu; exactly, {sizes}"):
-        solve(m1=1, m2=3, mu=mu, mu_k=mu_k)
-
-
-@pytest.mark.parametrize("digits", [0, -1, 1001, 2.5, "", "six", "99999", True])
-def test_digits_out_of_range_are_refused(digits: Any) -> None:
-    with pytest.raises(SceneError, match=r"digits .* must be a whole number from 1 to 1000"):
-        solve(m1=1, m2=3, digits=digits)
-
-
 def test_nothing_is_divided_by_a_number_too_large_to_be_written() -> None:
     """The quotient was an exact 0: infinity stands for e^{μφ} = e^1000000000."""
     ar = enclosures(20)
