@@ -20,18 +20,7 @@ from typing import Any
 import pytest
 
 import atwood_cli
-from atwood_cli import (
-    REGIMES,
-    STATUSES,
-    Fit,
-    Scene,
-    SceneError,
-    Solution,
-    fit,
-    solve,
-    solve_arrays,
-    solve_table,
-)
+from atwood_cli import Fit, Scene, SceneError, Solution, fit, solve, solve_arrays, solve_table
 from atwood_cli.__main__ import INTERRUPTED
 from atwood_cli.arithmetic.interval import enclosures
 from atwood_cli.cli import COMMANDS
@@ -96,9 +85,9 @@ def test_the_decimal_context_of_the_caller_has_no_part(trapped: bool) -> None:
 
 
 def test_floats_mean_their_binary_value() -> None:
-    exact = solve(m1=0.1, m2=3, M=1, digits=30)
+    exact, typed = (solve(m1=m1, m2=3, M=1, digits=30) for m1 in (0.1, "0.1"))
     assert exact == solve(m1=Fraction(0.1), m2=3, M=1, digits=30)
-    assert exact.acceleration != solve(m1="0.1", m2=3, M=1, digits=30).acceleration
+    assert exact.acceleration != typed.acceleration
     assert repr(exact.scene.m1) == repr(Fraction(0.1))
 
 
@@ -216,9 +205,9 @@ PYTHON: dict[str, tuple[Iterable[str], str]] = {
     "Solution": ([one.name for one in fields(Solution)], f"scene notes regime {VALUES} uncertainty"),
     "Scene": (Scene._fields, SCENE),
     "Fit": (Fit._fields, FITTED),
-    "REGIMES": (REGIMES, "no-slip verge slip"),
+    "REGIMES": (atwood_cli.REGIMES, "no-slip verge slip"),
     "STATUSES": (
-        [status.replace(" ", "_") for status in STATUSES],
+        [status.replace(" ", "_") for status in atwood_cli.STATUSES],
         """valid m1 m2 M mu mu_k g inertia R wrap no_mass friction_at_a_free_end mu_k_without_mu mu_k_above_mu
         NaN I axle I_and_inertia I_without_R I_with_M_=_0_or_inf""",
     ),
