@@ -42,6 +42,7 @@ def test_motion_and_its_limits() -> None:
         "v = a t": (physics.final_speed(H, A, sp.sqrt), A * fall),
         "a = 2 H/t²": (physics.acceleration_of_fall(H, fall), A),
         "I = c R²": (physics.moment_of_inertia(c, R), c * R**2),
+        "c = I/R²": (physics.inertia_at_rim(c * R**2, R), c),
     }  # fmt: skip
     assert not differing(forms)
 

@@ -47,23 +47,6 @@ def is_zero(value: object) -> bool:
     return hasattr(value, "numerator") and not value
 
 
-def inertia_at_rim(inputs: Any, mass: Fraction | None) -> Fraction | None:
-    """Return the inertia of a pulley of that mass as a mass at the rim (kg), c = βM; None if it is not known.
-
-    ``inputs`` has I, R and inertia.
-    """
-    if inputs.I is not None and inputs.R is not None:
-        c: Fraction = inputs.I / (inputs.R * inputs.R)
-        return c
-    return mass if mass is None or inputs.inertia is None else inputs.inertia * mass
-
-
-def axle_friction(inputs: Any) -> Fraction:
-    """Return the axle's friction as a force at the rim, f (N). ``inputs`` has axle and R."""
-    force: Fraction = ZERO if inputs.axle is None else inputs.axle.force(inputs.R)
-    return force
-
-
 class Decisions:
     """The decisions about a scene, and the inputs seen from the lighter and the heavier mass.
 
@@ -111,7 +94,10 @@ class Decisions:
     @lazy
     def rim_mass(self) -> Fraction | None:
         """The pulley's inertia as a mass at the rim, c (kg); None if it is locked or not known."""
-        return inertia_at_rim(self.scene, self.pulley_mass)
+        scene, mass = self.scene, self.pulley_mass
+        if scene.I is not None and scene.R is not None:
+            return physics.inertia_at_rim(scene.I, scene.R)
+        return mass if mass is None or scene.inertia is None else scene.inertia * mass
 
     @lazy
     def beta(self) -> Fraction | None:
@@ -123,7 +109,8 @@ class Decisions:
     @lazy
     def axle_friction(self) -> Fraction:
         """The axle's friction as a force at the rim, f (N)."""
-        return axle_friction(self.scene)
+        axle = self.scene.axle
+        return ZERO if axle is None else axle.force(self.scene.R)
 
     @property
     def has_axle_friction(self) -> bool:

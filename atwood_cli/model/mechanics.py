@@ -45,7 +45,7 @@ class Mechanics(Generic[N]):
 
     @lazy
     def phi(self) -> N:
-        """The angle of wrap φ (rad)."""
+        """The angle of wrap φ (rad), as in e^{μφ}. `_direction` and decisions read the wrap in degrees."""
         return self.scene.wrap.radians(self.ar)
 
     # Intermediate values
@@ -217,12 +217,24 @@ class Mechanics(Generic[N]):
         """T2 - T1 (N)."""
         return self.difference * self.case.sign
 
+    def _tensions_differ(self) -> bool:
+        """Decide whether a string that grips has unequal tensions. Raises Undetermined if they are not known.
+
+        If they differ and the pulley is not known, they are those on the verge.
+        """
+        if self.case.one_mass_is_0:
+            raise Undetermined(quantities.FREE_END)
+        if self.case.tensions_equal:
+            return False
+        if not self.case.pulley_known and self.case.regime != "verge":
+            raise Undetermined(quantities.NEEDS_M)
+        return True
+
     def _bounded(self) -> bool:
         """Decide whether the friction force has bounds above 0. Raises Undetermined if it has none."""
         if self.case.regime != "no-slip":
             raise Undetermined(quantities.DEFINITE)
-        _ = self.mu_verge  # raises if there is none
-        if self.case.tensions_equal:
+        if not self._tensions_differ():
             return False
         _ = self.mu  # raises if it is not given
         if self.case.long_wrap:
@@ -255,15 +267,10 @@ class Mechanics(Generic[N]):
 
     @lazy
     def mu_verge(self) -> N:
-        case = self.case
-        if case.one_mass_is_0:
-            raise Undetermined(quantities.FREE_END)
-        if case.tensions_equal:
+        if not self._tensions_differ():
             return self.ar.number(0)
-        if not case.pulley_known:
-            if case.regime == "verge":
-                return self.ar.number(case.limiting_mu)
-            raise Undetermined(quantities.NEEDS_M)
+        if not self.case.pulley_known:
+            return self.ar.number(self.case.limiting_mu)
         phi = self.phi  # first, as fractions give up on π sooner than on the ratio
         return physics.verge_coefficient(self.log_ratio, phi)
 
@@ -278,13 +285,7 @@ class Mechanics(Generic[N]):
     def tension_ratio(self) -> N:
         if self.case.regime != "no-slip":
             return self.limiting_k_minus_1 + 1
-        if self.case.one_mass_is_0:
-            raise Undetermined(quantities.FREE_END)
-        if self.case.tensions_equal:
-            return self.ar.number(1)
-        if not self.case.pulley_known:
-            raise Undetermined(quantities.NEEDS_M)
-        return self.ratio_minus_1 + 1
+        return self.ratio_minus_1 + 1 if self._tensions_differ() else self.ar.number(1)
 
     @lazy
     def capstan_ratio(self) -> N:

@@ -11,7 +11,7 @@ from typing import Any
 
 from ..arithmetic.rational import EXACT
 from . import physics
-from .decisions import ZERO, Decisions, axle_friction, inertia_at_rim
+from .decisions import ZERO, Decisions
 from .digits import SHOWN_DIGITS, as_typed, format_number, strip_zeros, to_digits, to_double
 from .quantities import Undetermined
 from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError, checked
@@ -76,10 +76,10 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a instead, positive when m2 descends"
         known = m1 if finds == "m2" else m2
-        if not known and not inertia_at_rim(values, values.M):
+        if not known and not Decisions(values).rim_mass:
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         return ""
-    if finds == "M" and m1 != m2 and abs(m1 - m2) <= physics.axle_mass(axle_friction(values), values.g):
+    if finds == "M" and m1 != m2 and abs(m1 - m2) <= Decisions(values).axle_mass:
         return "conflicts with an axle whose friction holds the masses at rest; leave one of them out"
     if finds == "g" and g_given:
         pulley = "I" if M is None else "M"
@@ -139,7 +139,8 @@ def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
     m1, m2, g, finds = values.m1, values.m2, values.g, motion.finds
     if finds is None:
         return {}
-    c, f = inertia_at_rim(values, values.M), axle_friction(values)
+    case: Any = Decisions(values)  # about the pulley, as a mass may be missing
+    c, f, b = case.rim_mass, case.axle_friction, case.axle_mass
     if finds in MASSES:
         known, down = (m1, motion.acceleration(1)) if finds == "m2" else (m2, motion.acceleration(-1))
         if down >= g:
@@ -154,7 +155,7 @@ def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
         raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass")
     l, h = sorted((m1, m2))
     if finds == "M":
-        return {"M": physics.rim_mass(l, h, a, g, physics.axle_mass(f, g)) / values.inertia}
+        return {"M": physics.rim_mass(l, h, a, g, b) / values.inertia}
     if finds == "g":
         return {"g": physics.gravity(l, h, c, a, f)}
     return {}

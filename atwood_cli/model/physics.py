@@ -121,6 +121,15 @@ def slide_ratio_minus_1(l: N, h: N, a: N, g: N) -> N:
     return difference_of_moving_masses(l, h, a, g) / light_tension(l, a, g)
 
 
+def inertia_at_rim(I: N, R: N) -> N:
+    """Return c (kg), the moment of inertia I (kg m²) of a pulley of radius R (m) as a mass at its rim.
+
+    >>> inertia_at_rim(20, 2)
+    5.0
+    """
+    return I / (R * R)
+
+
 def moment_of_inertia(c: N, R: N) -> N:
     """Return the moment of inertia (kg m²) of a pulley of radius R (m), from its c as a mass at the rim.
 
