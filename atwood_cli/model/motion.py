@@ -24,21 +24,14 @@ Values = Any
 def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     """Return the scene, with the input that follows from what was measured, and that. Raises SceneError."""
     a, drop, time = (inputs[name].value for name in MEASURED)
-    measured = a is not None or time is not None
-    missing = [mass for mass in MASSES if inputs[mass].value is None]
+    if a is None and time is None:
+        return Scene.of(inputs), Motion(drop=drop)
     name = "a" if time is None else "time"
-    unknown = missing[0] if measured and len(missing) == 1 else ""
+    missing = [mass for mass in MASSES if inputs[mass].value is None]
+    unknown = missing[0] if len(missing) == 1 else ""
     if unknown and inputs["M"].value is None is inputs["I"].value:
         raise SceneError(unknown, None, f"is missing; give it, or M, with which {name} finds it")
     values = SimpleNamespace(**checked(inputs, unknown))
-    if time is not None and drop is None:
-        raise SceneError("time", inputs["time"].given, "needs drop, the height of that fall")
-    if time is not None and a is not None:
-        raise SceneError(
-            "time", inputs["time"].given, "and a both give the acceleration; leave one of them out"
-        )
-    if not measured:
-        return Scene(**vars(values)), Motion(a, drop, time)
     if unknown:
         finds = unknown
     elif values.M == inf or (values.mu is not None and values.M is not None):
@@ -59,8 +52,12 @@ def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
 
 
 def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
-    """Return why an acceleration contradicts the other inputs, "" if it does not."""
-    m1, m2, M, mu, finds = values.m1, values.m2, values.M, values.mu, motion.finds
+    """Return why what was measured contradicts the other inputs, "" if it does not."""
+    case, finds, M, mu = Decisions(values), motion.finds, values.M, values.mu
+    if motion.time is not None and motion.drop is None:
+        return "needs drop, the height of that fall"
+    if motion.time is not None and motion.a is not None:
+        return "and a both give the acceleration; leave one of them out"
     if mu is not None and finds != "mu_k":
         why = "a slipping string moves alike on any pulley"
         if finds in MASSES:
@@ -75,22 +72,21 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
             )
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a instead, positive when m2 descends"
-        known = m1 if finds == "m2" else m2
-        if not known and not Decisions(values).rim_mass:
+        if 0 in (values.m1, values.m2) and not case.rim_mass:
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         return ""
-    if finds == "M" and m1 != m2 and abs(m1 - m2) <= Decisions(values).axle_mass:
+    if finds == "M" and case.axle_holds:
         return "conflicts with an axle whose friction holds the masses at rest; leave one of them out"
     if finds == "g" and g_given:
         pulley = "I" if M is None else "M"
         return f"leaves nothing to find if both {pulley} and g are given; leave one of them out"
-    if m1 == m2:
+    if case.sign == 0:
         return "says nothing about equal masses, which rest on any pulley; leave it out"
-    if finds == "mu_k" and not m1 * m2:
+    if finds == "mu_k" and not case.light:
         return "conflicts with M = inf and a mass of 0, an end that is fixed to the pulley; leave it out"
     if values.mu_k is not None:
         return "and mu_k both say how the string slides; leave one of them out"
-    if mu is not None and not Decisions(Scene(**vars(values))).slips:
+    if mu is not None and not case.slips:
         slips = f"would find mu_k, but with mu = {as_typed(mu)} the string does not slip"
         return f"{slips}; leave mu out (an acceleration forced by a motor is not modelled)"
     return ""
