@@ -21,12 +21,13 @@ class Mechanics(Generic[N]):
 
     ``known`` has values by the names of attributes, which are then not computed.
 
-    The acceleration is a = g d/s, with a drive d and a load s (see `physics`):
+    The acceleration is a = g d/s, with a drive d and a load s (see `physics`), and T_l = l (g + a):
 
-        state            drive d                                   load s
-        no slip          h - l - b                                 h + l + c
-        verge            h - l - z        `drive`                  h + l + z, z = l (k - 1)    `friction_mass`
-        slip             the same with μ_k: `limiting_drive`       `limiting_friction_mass`
+        state      drive d                load s                       T_h - T_l
+        at rest    0                                                   g (h - l)
+        no slip    h - l - b              h + l + c                    c a + f
+        verge      h - l - z   `drive`    h + l + z   `friction_mass`  (k - 1) T_l   `k_minus_1`
+        slip       the same with μ_k: `limiting_drive`, `limiting_friction_mass`, `limiting_k_minus_1`
     """
 
     def __init__(self, case: Decisions, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:
