@@ -178,9 +178,8 @@ def test_units_and_names_as_people_write_them(name: str, text: str, value: Any) 
 
 @pytest.mark.parametrize(("axle", "newtons"), AXLES.items())
 def test_an_axle_is_a_force_at_the_rim_or_a_torque(axle: Any, newtons: Any) -> None:
-    assert Decisions(Scene.read({"m1": 1, "m2": 3, "R": "5cm", "axle": axle})).axle_friction == Fraction(
-        newtons
-    )
+    scene = Scene.read({"m1": 1, "m2": 3, "R": "5cm", "axle": axle})
+    assert Decisions(scene).axle_friction == Fraction(newtons)
 
 
 def test_what_was_measured_takes_units_and_multiples_of_g() -> None:
