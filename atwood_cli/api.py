@@ -1,14 +1,14 @@
 """The Python interface to one scene: `solve`, and the `Solution` that it returns."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Decimal
 from inspect import Parameter, Signature
 from math import isinf
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, overload
 
-from .model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
+from .model.quantities import MEASURED_NAMES, QUANTITIES
 from .model.scene import OTHER_NAMES, Given, Scene, read_digits
 from .model.units import nearest
 from .solver.answers import Answers, read_answers
@@ -35,15 +35,13 @@ class Inputs(TypedDict, total=False):
 T = TypeVar("T", float, Decimal)
 
 
-def _described(names: Sequence[str]) -> str:
-    """Return lines on quantities for a docstring: name, meaning, unit, equation."""
-    width = max(map(len, names))
+def _described() -> str:
+    """Return lines on the quantities for a docstring: name, meaning, unit, equation."""
     lines = []
-    for name in names:
-        about = QUANTITIES[name]
+    for name, about in QUANTITIES.items():
         unit = f" [{about.unit}]" if about.unit else ""
         equation = f", {about.equation}" if about.equation else ""
-        lines.append(f"    {name:<{width}}  {about.meaning}{unit}{equation}")
+        lines.append(f"    {name:<{max(map(len, QUANTITIES))}}  {about.meaning}{unit}{equation}")
     return "\n".join(lines)
 
 
@@ -65,13 +63,9 @@ class Solution(Answered, Generic[T]):
 
     Forces are on the pulley, with x from the axle to the place where m1's string meets it, and y up.
     Accelerations, torque and angles are positive when m2 descends. The quantities, with their units and the
-    paper's equations:
+    paper's equations; those from ``{MEASURED_NAMES[0]}`` on follow from ``a`` or ``drop``, else are None:
 
-{_described(NAMES[1:])}
-
-    These follow from ``a`` or ``drop``, and are None without:
-
-{_described(MEASURED_NAMES)}
+{_described()}
     """
 
     scene: Scene
@@ -109,8 +103,9 @@ class Solution(Answered, Generic[T]):
     final_speed: T | None
     uncertainty: Mapping[str, T | None]
 
-    def __init__(self, answers: Answers) -> None:
-        object.__setattr__(self, "_answers", answers)
+    def __init__(self, *given: Any) -> None:
+        """Make the solution for what `Answers` takes. A copied or pickled one is computed anew when read."""
+        object.__setattr__(self, "_answers", Answers(*given))
 
     if not TYPE_CHECKING:  # which would take any name for a field
 
@@ -149,7 +144,7 @@ class Solution(Answered, Generic[T]):
         return hash(self.scene)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _solved, self._answers.given
+        return Solution, self._answers.given
 
 
 def _computed(name: str, answers: Answers) -> Any:
@@ -162,11 +157,6 @@ def _computed(name: str, answers: Answers) -> Any:
         case "notes":
             return tuple(notes(answers, answers.names))
     return answers[name] if name in answers.names else None
-
-
-def _solved(*given: Any) -> Solution[Any]:
-    """Return the solution for these inputs. A copied or pickled one is computed again when it is read."""
-    return Solution(Answers(*given))
 
 
 Mass = Given | None
@@ -220,17 +210,12 @@ def solve(
         hint = f"; did you mean {meant}?" if meant else nearest(name, Inputs.__annotations__)
         raise TypeError(f"solve() got an unexpected keyword argument {name!r}{hint}")
     inputs: dict[str, Any] = {"m1": m1, "m2": m2, **given}
-    return _solved(*read_answers(inputs, read_digits(digits)).given)
+    return Solution(*read_answers(inputs, read_digits(digits)).given)
 
 
-SIGNATURE = Signature(
-    [
-        *(Parameter(name, Parameter.POSITIONAL_OR_KEYWORD, default=None) for name in ("m1", "m2")),
-        *(
-            Parameter(name, Parameter.KEYWORD_ONLY, default=None)
-            for name in (*Inputs.__annotations__, "digits")
-        ),
-    ]
-)
+_masses = [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD, default=None) for name in ("m1", "m2")]
+_others = [
+    Parameter(name, Parameter.KEYWORD_ONLY, default=None) for name in (*Inputs.__annotations__, "digits")
+]
 # help() and editors show the inputs by this attribute, which type checkers do not know of a function.
-solve.__dict__["__signature__"] = SIGNATURE
+solve.__dict__["__signature__"] = Signature([*_masses, *_others])

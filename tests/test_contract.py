@@ -1,6 +1,6 @@
 """What is given decides the scene: every line and corner of the contract, through `solve`."""
 
-import inspect
+import json
 import pickle
 import pydoc
 import re
@@ -12,21 +12,24 @@ from copy import copy, deepcopy
 from dataclasses import fields
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
-from functools import partial
+from inspect import signature
 from pathlib import Path
 from runpy import run_path
 from typing import Any
 
 import pytest
 
-from atwood_cli import Scene, SceneError, Solution, solve, solve_arrays
-from atwood_cli.api import Inputs
+import atwood_cli
+from atwood_cli import Fit, Scene, SceneError, Solution, fit, solve, solve_arrays, solve_table
+from atwood_cli.__main__ import INTERRUPTED
 from atwood_cli.arithmetic.interval import enclosures
+from atwood_cli.cli import COMMANDS
+from atwood_cli.cli.options import COULD_NOT, DONE, WRONG_USAGE
 from atwood_cli.model.machine import Machine
-from atwood_cli.model.quantities import MEASURED_NAMES, NAMES, QUANTITIES
-from atwood_cli.model.scene import INPUTS, MEASURED, Motion
+from atwood_cli.model.quantities import NAMES, QUANTITIES
 
 from . import oracle
+from .running import Atwood
 from .scenes import inputs, table
 
 USER_SCRIPT = str(Path(__file__).with_name("user_script.py"))
@@ -82,9 +85,9 @@ def test_the_decimal_context_of_the_caller_has_no_part(trapped: bool) -> None:
 
 
 def test_floats_mean_their_binary_value() -> None:
-    exact = solve(m1=0.1, m2=3, M=1, digits=30)
+    exact, typed = (solve(m1=m1, m2=3, M=1, digits=30) for m1 in (0.1, "0.1"))
     assert exact == solve(m1=Fraction(0.1), m2=3, M=1, digits=30)
-    assert exact.acceleration != solve(m1="0.1", m2=3, M=1, digits=30).acceleration
+    assert exact.acceleration != typed.acceleration
     assert repr(exact.scene.m1) == repr(Fraction(0.1))
 
 
@@ -94,21 +97,6 @@ def test_notes_show_floats_as_they_are_written() -> None:
     assert slips.notes[0] == "Slips: mu = 0.2 is below the 0.214620 needed to hold it."
     assert holds.notes[0] == "No slip from rest: mu = 0.31, and at least 0.214620 is needed."
     assert "not 3.3 kg" in solve(m1=1.0, m2=3.3, mu=0.5).notes[0]
-
-
-TENTHS = "0.3 > 0.299999999999999988897769753748434595763683319091796875"
-
-
-@pytest.mark.parametrize(("mu", "mu_k", "sizes"), [(0.3, "0.3", TENTHS), (0.2, 0.3, "0.3 > 0.2")])
-def test_the_digits_of_a_float_are_shown_where_they_decide(mu: float, mu_k: Any, sizes: str) -> None:
-    with pytest.raises(SceneError, match=f"must not be above mu; exactly, {sizes}"):
-        solve(m1=1, m2=3, mu=mu, mu_k=mu_k)
-
-
-@pytest.mark.parametrize("digits", [0, -1, 1001, 2.5, "", "six", "99999", True])
-def test_digits_out_of_range_are_refused(digits: Any) -> None:
-    with pytest.raises(SceneError, match=r"digits .* must be a whole number from 1 to 1000"):
-        solve(m1=1, m2=3, digits=digits)
 
 
 def test_nothing_is_divided_by_a_number_too_large_to_be_written() -> None:
@@ -187,24 +175,73 @@ def test_help_begins_with_what_a_function_does(function: Any) -> None:
     assert described.index((function.__doc__ or "").split("\n")[0]) < 500
 
 
-def test_what_is_registered_is_everywhere() -> None:
-    """A quantity or an input that is added fails here, by the places that lack it."""
-    everything, of_scenes, inputs_ = (*NAMES, *MEASURED_NAMES), ("scene", "notes"), (*INPUTS, *MEASURED)
-    places: dict[str, tuple[Iterable[str], Iterable[str]]] = {
-        "quantities.NAMES": (everything, ("regime", *QUANTITIES)),
-        "api.Solution": (Solution.__slots__, (*of_scenes, *everything, "uncertainty")),
-        "api.Inputs": (("m1", "m2", *Inputs.__annotations__), inputs_),
-        "scene.Scene, scene.Motion": ((*Scene._fields, *Motion._fields[:3]), inputs_),
-        "machine.Machine": (filter(partial(hasattr, Machine), QUANTITIES), QUANTITIES),
-        "oracle.NAMES": (oracle.NAMES, NAMES),
-        "solve's signature": (inspect.signature(solve).parameters, (*inputs_, "digits")),
-    }
-    for place, (has, wanted) in places.items():
-        assert list(has) == list(wanted), place
-    described = str(Solution.__doc__)
+# What a version promises: an entry may be added, but none goes or changes its meaning
+
+VALUES = """
+    acceleration tension_1 tension_2 mu_verge safety_factor tension_ratio capstan_ratio friction_force
+    friction_force_min friction_force_max friction_force_x friction_force_y axle_force torque rim_acceleration
+    angular_acceleration critical_pulley_mass critical_heavier_mass critical_lighter_mass least_heavier_mass
+    least_pulley_mass least_wrap pulley_mass moment_of_inertia gravity m1 m2 mu_k fall_time final_speed"""
+SCENE = "m1 m2 M mu mu_k g inertia I R wrap axle"
+FITTED = """rim_mass axle gravity delay pulley_mass moment_of_inertia uncertainty interval correlation chi2 dof
+    between_runs runs notes"""
+RIT = Path(__file__).parent.parent / "examples" / "rit.csv"
+JSON = {
+    "solve --m1 1 --m2 3": f"version scene regime {VALUES} uncertainty budget notes",
+    "sweep --m1 1:2:2 --m2 3": "version scene rows notes",
+    "contact --m1 1 --m2 3": "version scene regime profile points balance notes",
+    f"fit {RIT} --drop 98cm": f"version {FITTED}",
+}
+"""The keys of JSON at its top; `test_json` has the keys below."""
+PYTHON: dict[str, tuple[Iterable[str], str]] = {
+    "atwood_cli": (
+        atwood_cli.__all__,
+        "REGIMES STATUSES Fit Scene SceneError Solution fit solve solve_arrays solve_table",
+    ),
+    "solve": (signature(solve).parameters, f"{SCENE} a drop time digits"),
+    "solve_arrays": (signature(solve_arrays).parameters, f"{SCENE} accuracy quantities"),
+    "solve_table": (signature(solve_table).parameters, "table quantities"),
+    "fit": (signature(fit).parameters, "runs drop g M inertia I R axle find without"),
+    "Solution": ([one.name for one in fields(Solution)], f"scene notes regime {VALUES} uncertainty"),
+    "Scene": (Scene._fields, SCENE),
+    "Fit": (Fit._fields, FITTED),
+    "REGIMES": (atwood_cli.REGIMES, "no-slip verge slip"),
+    "STATUSES": (
+        [status.replace(" ", "_") for status in atwood_cli.STATUSES],
+        """valid m1 m2 M mu mu_k g inertia R wrap no_mass friction_at_a_free_end mu_k_without_mu mu_k_above_mu
+        NaN I axle I_and_inertia I_without_R I_with_M_=_0_or_inf""",
+    ),
+    "commands": (COMMANDS, "solve sweep contact fit batch quantities tradeoff"),
+    "quantities": (QUANTITIES, VALUES),
+    "quantities of every scene": (oracle.NAMES, " ".join(NAMES)),
+}
+
+
+@pytest.mark.parametrize("name", PYTHON)
+def test_what_a_version_promises_to_python(name: str) -> None:
+    has, promised = PYTHON[name]
+    assert [*has] == promised.split()
+
+
+@pytest.mark.parametrize("words", JSON)
+def test_what_a_version_promises_in_json(atwood: Atwood, words: str) -> None:
+    assert [*json.loads(atwood(*words.split(), "--json").out)] == JSON[words].split()
+
+
+def test_what_a_version_promises_of_statuses_and_csv(atwood: Atwood) -> None:
+    assert (DONE, COULD_NOT, WRONG_USAGE, INTERRUPTED) == (0, 1, 2, 130)
+    scene = ["--m1", "1", "--m2", "3"]
+    assert atwood("solve", *scene).status == DONE
+    assert atwood("solve", *scene, "--expect", "slip").status == COULD_NOT
+    assert atwood("solve", "--m1", "-1", "--m2", "3").status == WRONG_USAGE
+    columns = atwood("sweep", "--m1", "1:2:2", "--m2", "3", "--csv").out.split()[0]
+    assert columns == f"m1,regime,{','.join(VALUES.split()[:4])},friction_force,critical_pulley_mass"
+
+
+def test_every_quantity_is_described() -> None:
     for name, about in QUANTITIES.items():
         line = rf"\n    {name} +{re.escape(about.meaning)}.*{re.escape(about.unit)}.*{re.escape(about.equation)}\n"
-        assert re.search(line, described), name
+        assert re.search(line, str(Solution.__doc__)), name
 
 
 def test_solve_takes_no_other_inputs() -> None:

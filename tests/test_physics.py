@@ -58,12 +58,12 @@ def test_limits_are_points_of_the_one_formula(
 def test_newtons_equations_hold_exactly_at_the_verge_and_in_slip(
     l: Fraction, more: Fraction, k: Fraction, g: Fraction, f: Fraction, beta: Fraction
 ) -> None:
-    b, z = physics.axle_mass(f, g), physics.friction_mass_at_limit(l, k - 1)
+    b, z = physics.axle_mass(f, g), physics.friction_at_limit(l, k - 1)
     h = l * k + more
     d = physics.drive(l, h, z)
     a = physics.acceleration(d, physics.load(l, h, z), g)
     t_l = physics.light_tension(l, a, g)
-    difference = physics.difference_of_friction(t_l, k - 1)
+    difference = physics.friction_at_limit(t_l, k - 1)
     assert t_l - l * g == l * a
     assert h * g - (t_l + difference) == h * a
     assert t_l + difference == k * t_l

@@ -24,7 +24,7 @@ NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
 def error(**given: Any) -> str:
     with pytest.raises(SceneError) as caught:
-        Scene.read({"m1": "1", "m2": "3", **given})
+        solve(**{"m1": "1", "m2": "3", **given})
     return str(caught.value)
 
 
@@ -39,6 +39,8 @@ RULES: list[tuple[str, list[Any], str]] = [
     ("m1", [Decimal("1e9999999"), f"1.{'1' * 999}/{'7' * 999}e500"], TOO_LONG),
     ("m1", ["4" * 1000 + "lb"], "has 1008 digits, its unit included; at most 1000 are taken"),
     ("m1", [f"1 kg{'*st^9' * 20_000}"], NOT_A_NUMBER),
+    ("a", [nan, -inf], "must be finite"),
+    ("digits", [0, -1, 1001, 2.5, "", "six", "99999", True], "must be a whole number from 1 to 1000"),
     ("axle", [(1, "N")], TYPES),
     ("R", [Axle(1)], TYPES),
     ("m1", [True, b"1", 1j, np.timedelta64(1, "s"), np.timedelta64(1), np.datetime64("2020")], TYPES),
@@ -63,6 +65,7 @@ ERRORS: list[tuple[dict[str, Any], str]] = [
         {"mu": LONG, "mu_k": f"{LONG}1"},
         f"mu_k '0.{'3' * 37}...{'3' * 8}1' must not be above mu; exactly, 0.{'3' * 38}...{'3' * 9}1 > 0.{'3' * 38}...{'3' * 10}",
     ),
+    ({"mu": 0.2, "mu_k": 0.3}, "mu_k 0.3 must not be above mu; exactly, 0.3 > 0.2"),
     (
         {"mu": 0.3, "mu_k": "0.3"},
         "mu_k '0.3' must not be above mu; exactly, 0.3 > 0.299999999999999988897769753748434595763683319091796875",
@@ -77,16 +80,17 @@ def test_inputs_that_do_not_go_together(given: dict[str, Any], message: str) -> 
 
 def test_an_int_too_long_to_write_out_is_still_an_error_that_can_be_shown() -> None:
     for long in (Decimal("1." + "0" * 10**6), Decimal("1." + "3" * 10**6), Decimal("3" * 10**6)):
-        assert error(m1=long).endswith("is too long; numerator and denominator may have 1500 digits")
-    assert error(m1=10**5000) == "m1 <int> is too long; numerator and denominator may have 1500 digits"
+        assert error(m1=long).endswith(TOO_LONG)
+    assert error(m1=10**5000) == f"m1 <int> {TOO_LONG}"
+    assert error(m1=Fraction(1, 10**1500)).endswith(TOO_LONG)
+    assert Scene.read({"m1": Fraction(1, 10**1500 - 1), "m2": "1"}).m1.denominator == 10**1500 - 1
 
 
 def test_error_carries_its_parts() -> None:
     with pytest.raises(ValueError, match="mu_k") as caught:
         solve(m1=1, m2=3, mu_k=1)
-    assert isinstance(caught.value, SceneError)
-    assert (caught.value.parameter, caught.value.value) == ("mu_k", 1)
-    assert "needs mu" in caught.value.rule
+    rule = "needs mu, the coefficient that decides whether it slips"
+    assert vars(caught.value) == {"parameter": "mu_k", "value": 1, "rule": rule}
 
 
 @given(st.text(alphabet="0123456789.+-e ", max_size=12) | st.text(max_size=6))
@@ -137,6 +141,7 @@ OTHERS: dict[str, dict[str, Any]] = {
         "1.5 turn": 540, "90 deg": 90, "90°": 90, "1/2turn": 180, "pi": 180,
         **dict.fromkeys(["3pi/2", "3π/2", "1.5 PI", "3/2*pi", "3 / 2 π", "3π / 2 rad"], 270),
     },
+    "M": {" INF ": inf},
     "inertia": {"Hoop": 1, "ring": 1, "disk": "1/2", "sphere": "2/5", "Shell": "2/3"},
 }
 AXLES: dict[Any, Any] = {
@@ -167,25 +172,21 @@ def test_text_means_exactly_itself(text: str, value: Any) -> None:
 )
 def test_units_and_names_as_people_write_them(name: str, text: str, value: Any) -> None:
     scene = Scene.read({"m1": 1, "m2": 1, "R": 1, name: text})
-    assert getattr(scene, name) == Fraction(value)
+    read = getattr(scene, name)
+    assert getattr(read, "number", read) == (value if value == inf else Fraction(value))
 
 
 @pytest.mark.parametrize(("axle", "newtons"), AXLES.items())
 def test_an_axle_is_a_force_at_the_rim_or_a_torque(axle: Any, newtons: Any) -> None:
-    assert Decisions(Scene.read({"m1": 1, "m2": 3, "R": "5cm", "axle": axle})).axle_friction == Fraction(
-        newtons
-    )
+    scene = Scene.read({"m1": 1, "m2": 3, "R": "5cm", "axle": axle})
+    assert Decisions(scene).axle_friction == Fraction(newtons)
 
 
-def test_what_was_measured_takes_units_too() -> None:
-    a = solve(m1="55g", m2="60g", a="38cm/s2")
-    assert a == solve(m1="0.055", m2="0.060", a="0.38")
+def test_what_was_measured_takes_units_and_multiples_of_g() -> None:
+    """Of the scene's g: (m2 - m1)/(m1 + m2 + M/2) is 1/4 for M = 8."""
     fall = solve(m1="55g", m2="60g", drop="2 ft", time="2050 ms")
     assert fall == solve(m1="0.055", m2="0.060", drop="0.6096", time="2.05")
-
-
-def test_a_measured_acceleration_may_be_a_multiple_of_g() -> None:
-    """Of the scene's g: (m2 - m1)/(m1 + m2 + M/2) is 1/4 for M = 8."""
+    assert solve(m1=1, m2=3, a="38cm/s2") == solve(m1=1, m2=3, a="0.38")
     assert solve(m1=1, m2=3, a="g/4") == solve(m1=1, m2=3, a="2.4516625")
     for m1, m2, a in ((1, 3, "0.25g"), (3, 1, "-g/4"), (1, 3, "1/4 g")):
         assert solve(m1=m1, m2=m2, a=a, g="moon", digits=5).pulley_mass == 8
@@ -196,28 +197,22 @@ def test_a_measured_acceleration_may_be_a_multiple_of_g() -> None:
 
 
 def test_quotients_are_taken_wherever_numbers_are(atwood: Atwood) -> None:
-    scene = json.loads(atwood("solve", "--m1", "1/3", "--m2", "1/4", "--wrap", "2/3rad", "--json").out)[
-        "scene"
-    ]
+    shown = atwood("solve", "--m1", "1/3", "--m2", "1/4", "--wrap", "2/3rad", "--json").out
+    scene = json.loads(shown)["scene"]
     assert [scene[name] for name in ("m1", "m2", "wrap")] == [1 / 3, 0.25, "0.6666666666666666rad"]
-    assert atwood("solve", "--m1", "1/3", "--m2", "1").out.startswith("m1 = 1/3 kg, ")
     swept = atwood("sweep", "--m1", "1/3:2/3:3", "--m2", "1", "--csv", "--only", "regime")
     assert swept.out == "m1,regime\n0.333333,no-slip\n0.5,no-slip\n0.666667,no-slip\n"
-    assert atwood("sweep", "--m1", "1/0:2:3", "--m2", "1").err == "atwood: --m1 '1/0' divides by 0\n"
     ran = process(shell="printf 'm1 (g),m2\n1/3,1\n1/0,1\n' | atwood batch - --only acceleration")
-    third, error = ran.out.splitlines()[1:]
-    assert third == f"1/3,1,{solve(m1=1 / 3000, m2=1).acceleration},"
-    assert error == "1/0,1,,m1 '1/0' divides by 0"
+    third = f"1/3,1,{solve(m1=1 / 3000, m2=1).acceleration},"
+    assert ran.out.splitlines()[1:] == [third, "1/0,1,,m1 '1/0' divides by 0"]
 
 
-@pytest.mark.parametrize("number", [3, 0.1, Decimal("0.1"), Fraction(1, 3), Decimal("0e99999")])
+@pytest.mark.parametrize(
+    "number", [3, 0.1, Decimal("0.1"), Fraction(1, 3), Decimal("0e99999"), np.float32(0.1), np.int64(3)]
+)
 def test_numbers_mean_exactly_themselves(number: Any) -> None:
-    assert Scene.read({"m1": number, "m2": 1}).m1 == Fraction(number)
-
-
-@pytest.mark.parametrize("number", [np.float64(0.1), np.float32(0.1), np.int64(3)])
-def test_numbers_of_numpy_too(number: Any) -> None:
-    assert Scene.read({"m1": number, "m2": 1}).m1 == Fraction(number.item())
+    exact = number.item() if isinstance(number, np.generic) else number
+    assert Scene.read({"m1": number, "m2": 1}).m1 == Fraction(exact)
 
 
 @pytest.mark.parametrize("text", ["0.1", "1e4000", "1e-4000", "-inf", "nan"])
@@ -242,19 +237,15 @@ class Contrary(float):
     __ne__ = __lt__ = __gt__ = __eq__
 
 
-@pytest.mark.parametrize("name", ["m1", "M", "g", "inertia", "wrap"])
-def test_a_float_that_cannot_be_compared_is_its_number(name: str) -> None:
-    contrary, usual = (Scene.read({"m1": 1, "m2": 3, name: one}) for one in (Contrary(2.5), 2.5))
+def test_a_float_that_cannot_be_compared_is_its_number() -> None:
+    contrary, usual = (
+        Scene.read({"m2": 3, **dict.fromkeys(("m1", "M", "g", "inertia", "wrap"), number(2.5))})
+        for number in (Contrary, float)
+    )
     assert contrary == usual
     assert solve(m1=1, m2=3, M=Contrary(inf)).scene.M == inf
     with pytest.raises(SceneError):
         solve(m1=1, m2=Contrary(nan))
-
-
-def test_bodies_and_shapes_have_names() -> None:
-    for name, value in BODIES.items():
-        assert Scene.read({"m1": 1, "m2": 1, "g": name}).g == Fraction(value)
-    assert Scene.read({"m1": 1, "m2": 1, "M": " INF "}).M == inf
 
 
 GM_AND_RADIUS = {
@@ -273,11 +264,5 @@ GM_AND_RADIUS = {
 
 def test_gravity_is_that_of_a_mass_at_its_radius() -> None:
     wanted = {body: 1000 * gm / radius**2 for body, (gm, radius) in GM_AND_RADIUS.items()}
-    given = {body: float(gravity) for body, gravity in BODIES.items() if body != "earth"}
+    given = {body: float(Scene.read({"m1": 1, "m2": 1, "g": body}).g) for body in BODIES if body != "earth"}
     assert given == pytest.approx(wanted, abs=0.006)
-
-
-def test_a_fraction_of_1500_digits_is_the_longest() -> None:
-    assert Scene.read({"m1": Fraction(1, 10**1500 - 1), "m2": "1"}).m1.denominator == 10**1500 - 1
-    with pytest.raises(SceneError, match="is too long"):
-        Scene.read({"m1": Fraction(1, 10**1500), "m2": "1"})

@@ -82,19 +82,19 @@ class _GroupDecisions(Decisions):
 
     @lazy
     def long_wrap(self) -> bool:
-        wrap = self.scene.wrap
-        return wrap.is_beyond_half_turn if isinstance(wrap.number, Fraction) else self._decided("long_wrap")
+        is_column = not isinstance(self.scene.wrap.number, Fraction)
+        return self._decided("long_wrap") if is_column else super().long_wrap
 
     @lazy
     def ends_hang_down(self) -> bool:
-        wrap = self.scene.wrap
-        return wrap.ends_hang_down if isinstance(wrap.number, Fraction) else self._decided("ends_hang_down")
+        is_column = not isinstance(self.scene.wrap.number, Fraction)
+        return self._decided("ends_hang_down") if is_column else super().ends_hang_down
 
-    def slips_at(self, place: LimitingCase) -> bool:
-        return self._decided(f"slips_at {place}")
+    def slips_at(self, which: LimitingCase) -> bool:
+        return self._decided(f"slips_at {which}")
 
-    def slides_at(self, place: LimitingCase) -> bool:
-        return self.slips_at(place) if self.limit_is_static else self._decided(f"slides_at {place}")
+    def slides_at(self, which: LimitingCase) -> bool:
+        return self.slips_at(which) if self.limit_is_static else self._decided(f"slides_at {which}")
 
     def moves_axle(self, which: Literal["difference", "heavy"]) -> bool:
         return self._decided(f"moves_axle {which}")

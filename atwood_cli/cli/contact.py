@@ -48,11 +48,11 @@ def contact(
         from ..output.scene_figure import save
 
         save(answers, arc.kind, figure, target.force, bare, curves=True)
-    forms = Report(
+    report = Report(
         json=lambda: contact_record(answers, arc),
         records=lambda: arc.points,
         page=lambda: print_contact(answers, arc, tables=figure is None or target.file is not None),
         notes=lambda: arc.notes,
     )
-    say(*show(forms, target))
+    say(*show(report, target))
     return DONE

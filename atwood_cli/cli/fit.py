@@ -104,13 +104,13 @@ def fit(
         raise SceneError("only", "runs", "takes --json, or --csv and no other name")
     check_figure(figure, target.force)
     from ..laboratory import fit_of
-    from ..laboratory.report import forms_of
+    from ..laboratory.report import report_of
 
     best = fit_of(table, given, find or [], label or [], divided(without or []), column or [])
     if figure is not None:
         from ..laboratory.fit_figure import save
 
         save(best, bare, figure, target.force)
-    forms = forms_of(best, names)
-    say(*show(forms, target))
-    return COULD_NOT if best.whole.reason or "" in forms.bare else DONE
+    report = report_of(best, names)
+    say(*show(report, target))
+    return COULD_NOT if best.whole.reason or "" in report.bare else DONE

@@ -107,7 +107,7 @@ def solve(
     if figure is not None:
         _draw(answers, figure, bare, target.force)
     values = [cell(answers[name]) for name in names]
-    forms = Report(
+    report = Report(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
         page=lambda: _explain(answers, names, markdown) if explain else print_table(answers, all_, budget),
@@ -115,7 +115,7 @@ def solve(
         bare=[] if explain else values,
         below=lambda: print_budget(answers, names) if budget else None,
     )
-    aside = [*show(forms, target), *(_lacking(answers, names) if explain else [])]
+    aside = [*show(report, target), *(_lacking(answers, names) if explain else [])]
     failures = [why for condition in conditions if (why := failure(answers, condition))]
     say(*aside, *failures)
     return COULD_NOT if "" in values or failures else DONE

@@ -45,14 +45,14 @@ def sweep(
     drawn = drawable(swept, names) if figure is not None else []
     if figure is not None:
         save(swept, drawn, figure, target.force, bare)
-    forms = SweepPage(swept, names, precision)
+    swept_page = SweepPage(swept, names, precision)
     try:
         # What is drawn is not printed, too, but to a file that is asked for.
-        page = partial(forms.page, table=figure is None or target.file is not None)
-        aside = show(Report(forms.json, forms.records, page, forms.notes), target)
+        page = partial(swept_page.page, table=figure is None or target.file is not None)
+        aside = show(Report(swept_page.json, swept_page.records, page, swept_page.notes), target)
     except KeyboardInterrupt:
-        if forms.done:
-            say(f"stopped after {forms.done} of {counted(swept.total, 'row')}")
+        if swept_page.done:
+            say(f"stopped after {swept_page.done} of {counted(swept.total, 'row')}")
         raise
-    say(*aside or [f"{name} has no value in any row" for name in names if name in forms.missing])
-    return COULD_NOT if forms.missing else DONE
+    say(*aside or [f"{name} has no value in any row" for name in names if name in swept_page.missing])
+    return COULD_NOT if swept_page.missing else DONE

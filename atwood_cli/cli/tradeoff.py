@@ -77,10 +77,10 @@ def tradeoff(
         from ..tradeoff.tradeoff_page import save
 
         save(measured, figure, target.force, bare)
-    forms = Report(
+    report = Report(
         json=lambda: tradeoff_page.record(measured, count, start),
         records=list,
         page=lambda: tradeoff_page.print_table(measured, count, start),
     )
-    show(forms, target)
+    show(report, target)
     return DONE

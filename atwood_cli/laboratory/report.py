@@ -145,7 +145,7 @@ def results_of(fit: Fitted) -> Fit:
     )
 
 
-def forms_of(fit: Fitted, only: Sequence[str]) -> Report:
+def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     """Return a fit in the forms in which it may be asked for; ``only`` names results."""
     record: dict[str, Any] = results_of(fit)._asdict()
     lines: Sequence[Mapping[str, Any]] = record["runs"]

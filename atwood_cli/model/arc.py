@@ -14,7 +14,7 @@ profiles differ in s:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Generic, Literal, NamedTuple
 
@@ -78,27 +78,16 @@ def least_lead(ar: Arithmetic[N], mu: N, alpha: N, stuck: N, light: N, end: Knot
     return ar.root(slope, alpha)
 
 
-def _differences(arc: Arc[N]) -> tuple[N, N]:
-    start, end = arc.start, arc.end
-    return (
-        end.tension * end.cos - start.tension * start.cos,
-        end.tension * end.sin - start.tension * start.sin,
-    )
-
-
-def friction(pieces: Sequence[Arc[N]]) -> tuple[N, N]:
-    """Return the net friction force on the pulley (N), (x, y)."""
-    return _sum([physics.friction_vector(arc.mu, *_differences(arc)) for arc in pieces])
-
-
-def normal(pieces: Sequence[Arc[N]]) -> tuple[N, N]:
-    """Return the net normal force on the pulley (N), (x, y)."""
-    return _sum([physics.normal_vector(arc.mu, *_differences(arc)) for arc in pieces])
-
-
-def _sum(vectors: Sequence[tuple[N, N]]) -> tuple[N, N]:
-    x, y = vectors[0]
-    for dx, dy in vectors[1:]:
+def force(pieces: Sequence[Arc[N]], law: Callable[[N, N, N], tuple[N, N]]) -> tuple[N, N]:
+    """Return the net friction or normal force on the pulley (N), (x, y), by its law in `physics`."""
+    forces = []
+    for arc in pieces:
+        start, end = arc.start, arc.end
+        dx = end.tension * end.cos - start.tension * start.cos
+        dy = end.tension * end.sin - start.tension * start.sin
+        forces.append(law(arc.mu, dx, dy))
+    x, y = forces[0]
+    for dx, dy in forces[1:]:
         x, y = x + dx, y + dy
     return x, y
 

@@ -47,23 +47,6 @@ def is_zero(value: object) -> bool:
     return hasattr(value, "numerator") and not value
 
 
-def rim_mass(inputs: Any, mass: Fraction | None) -> Fraction | None:
-    """Return the inertia of a pulley of that mass as a mass at the rim (kg), c = βM; None if it is not known.
-
-    ``inputs`` has I, R and inertia.
-    """
-    if inputs.I is not None and inputs.R is not None:
-        c: Fraction = inputs.I / (inputs.R * inputs.R)
-        return c
-    return mass if mass is None or inputs.inertia is None else inputs.inertia * mass
-
-
-def axle_force(inputs: Any) -> Fraction:
-    """Return the axle's friction as a force at the rim, f (N). ``inputs`` has axle and R."""
-    force: Fraction = ZERO if inputs.axle is None else inputs.axle.force(inputs.R)
-    return force
-
-
 class Decisions:
     """The decisions about a scene, and the inputs seen from the lighter and the heavier mass.
 
@@ -111,7 +94,10 @@ class Decisions:
     @lazy
     def rim_mass(self) -> Fraction | None:
         """The pulley's inertia as a mass at the rim, c (kg); None if it is locked or not known."""
-        return rim_mass(self.scene, self.pulley_mass)
+        scene, mass = self.scene, self.pulley_mass
+        if scene.I is not None and scene.R is not None:
+            return physics.inertia_at_rim(scene.I, scene.R)
+        return mass if mass is None or scene.inertia is None else scene.inertia * mass
 
     @lazy
     def beta(self) -> Fraction | None:
@@ -123,7 +109,8 @@ class Decisions:
     @lazy
     def axle_friction(self) -> Fraction:
         """The axle's friction as a force at the rim, f (N)."""
-        return axle_force(self.scene)
+        axle = self.scene.axle
+        return ZERO if axle is None else axle.force(self.scene.R)
 
     @property
     def has_axle_friction(self) -> bool:
@@ -190,8 +177,8 @@ class Decisions:
     @lazy
     def slips(self) -> bool:
         """Whether the string slips on a pulley that is known and friction that is given."""
-        place: LimitingCase = "locked" if self.pulley_at_rest else "scene"
-        self._known_to_slip = not self.tensions_equal and self.slips_at(place)
+        which: LimitingCase = "locked" if self.pulley_at_rest else "scene"
+        self._known_to_slip = not self.tensions_equal and self.slips_at(which)
         return self._known_to_slip
 
     @lazy
@@ -257,16 +244,6 @@ class Decisions:
         return self.locked or self.slips_once_it_moves
 
     @lazy
-    def can_be_made_slip(self) -> bool:
-        """Whether the string slips under some heavier mass: second condition of (36)."""
-        return not self.pulley_is_ideal and (self.slips_once_it_moves or self.slips_at("heaviest"))
-
-    @lazy
-    def holds_again(self) -> bool:
-        """Whether the string slips under some heavier mass, but not under much heavier ones, as b > c."""
-        return self.rim_mass is not None and self.slips_once_it_moves and not self.slips_at("heaviest")
-
-    @lazy
     def rim_at_rest(self) -> bool:
         """Whether the pulley is at rest while the string slips over it."""
         if self.pulley_at_rest:
@@ -281,44 +258,48 @@ class Decisions:
     @lazy
     def long_wrap(self) -> bool:
         """Whether the wrap is beyond half a turn."""
-        return self.scene.wrap.is_beyond_half_turn
+        wrap = self.scene.wrap
+        if wrap.unit == "°":
+            return bool(wrap.number > 180)
+        return is_positive(lambda ar: wrap.radians(ar) - ar.pi)
 
     @lazy
     def ends_hang_down(self) -> bool:
-        """Whether both ends of the string leave the pulley downwards."""
-        return self.scene.wrap.ends_hang_down
+        """Whether both ends of the string hang down: half a turn of wrap, plus whole turns."""
+        wrap = self.scene.wrap
+        return bool(wrap.unit == "°" and (wrap.number - 180) % 360 == 0)
 
     # The tension ratio of a string that grips, against e^{μφ}
 
-    def ratio_minus_1(self, place: LimitingCase, ar: Arithmetic[N]) -> N:
-        """Return T_h/T_l - 1 of a string that grips, at a place of the table at the head; it is kept."""
-        if (place, ar) not in self._ratios_minus_1:
-            self._ratios_minus_1[place, ar] = self._new_ratio_minus_1(place, ar)
-        ratio_minus_1: N = self._ratios_minus_1[place, ar]
+    def ratio_minus_1(self, which: LimitingCase, ar: Arithmetic[N]) -> N:
+        """Return T_h/T_l - 1 of a string that grips, in a case of the table at the head; it is kept."""
+        if (which, ar) not in self._ratios_minus_1:
+            self._ratios_minus_1[which, ar] = self._new_ratio_minus_1(which, ar)
+        ratio_minus_1: N = self._ratios_minus_1[which, ar]
         return ratio_minus_1
 
-    def _new_ratio_minus_1(self, place: LimitingCase, ar: Arithmetic[N]) -> N:
+    def _new_ratio_minus_1(self, which: LimitingCase, ar: Arithmetic[N]) -> N:
         l, h, b = self.light, self.heavy, self.axle_mass
         # A limit does not read the pulley's mass: so a sweep of it computes the limit once.
-        c = self.rim_mass if place in ("scene", "heaviest") else ZERO
-        if place == "heaviest":
+        c = self.rim_mass if which in ("scene", "heaviest") else ZERO
+        if which == "heaviest":
             assert c is not None
             return physics.heaviest_ratio_minus_1(*map(ar.number, (l, c, b)))
-        if c is None or place == "locked" or (place == "scene" and self.pulley_at_rest):
+        if c is None or which == "locked" or (which == "scene" and self.pulley_at_rest):
             return physics.gripping_ratio_minus_1(*map(ar.number, (l, h, ONE, b, ZERO)))
-        if place == "lightest_at_rest":
+        if which == "lightest_at_rest":
             l = h - b
-        elif place == "heaviest_at_rest":
+        elif which == "heaviest_at_rest":
             h = l + b
         return physics.gripping_ratio_minus_1(*map(ar.number, (l, h, c, b, ONE)))
 
-    def slips_at(self, place: LimitingCase) -> bool:
-        """Decide whether the string slips at a place, as static friction cannot hold it."""
-        return self.exceeds(lambda ar: self.ratio_minus_1(place, ar), self.scene.mu)
+    def slips_at(self, which: LimitingCase) -> bool:
+        """Decide whether the string slips in a limiting case, as static friction cannot hold it."""
+        return self.exceeds(lambda ar: self.ratio_minus_1(which, ar), self.scene.mu)
 
-    def slides_at(self, place: LimitingCase) -> bool:
-        """Decide whether the string goes on sliding at a place, with the friction that acts in its regime."""
-        return self.exceeds(lambda ar: self.ratio_minus_1(place, ar), self.limiting_mu)
+    def slides_at(self, which: LimitingCase) -> bool:
+        """Decide whether the string goes on sliding there, with the friction that acts in its regime."""
+        return self.exceeds(lambda ar: self.ratio_minus_1(which, ar), self.limiting_mu)
 
     def exceeds(self, ratio_minus_1: Quantity, mu: Fraction | None) -> bool:
         """Decide whether 1 + ratio_minus_1 > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed.

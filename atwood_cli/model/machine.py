@@ -47,7 +47,7 @@ class Machine(Mechanics[N]):
         if self.case.slips_at_rest:
             return self.least_heavier_mass
         c = self._given(self.case.rim_mass, quantities.NEEDS_M)
-        if not self.case.can_be_made_slip:
+        if self.case.pulley_is_ideal or not self.case.slips_at("heaviest"):
             raise Undetermined(quantities.NO_CRITICAL_HEAVIER_MASS)
         return physics.critical_heavier_mass(self.l, c, friction_mass, self.b)
 
@@ -84,12 +84,10 @@ class Machine(Mechanics[N]):
     @lazy
     def least_wrap(self) -> N:
         _ = self.mu  # raises if it is not given
-        if self.case.tensions_equal:
+        if not self._tensions_differ():
             return self.ar.number(0)
         if not self.case.pulley_known:
-            if self.case.regime == "verge":
-                return self.scene.wrap.degrees(self.ar)
-            raise Undetermined(quantities.NEEDS_M)
+            return self.scene.wrap.degrees(self.ar)
         if is_zero(self.scene.mu):
             raise Undetermined(quantities.NO_WRAP)
         return self.alpha * 180 / self.ar.pi

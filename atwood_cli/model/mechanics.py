@@ -21,12 +21,13 @@ class Mechanics(Generic[N]):
 
     ``known`` has values by the names of attributes, which are then not computed.
 
-    The acceleration is a = g d/s, with a drive d and a load s (see `physics`):
+    The acceleration is a = g d/s, with a drive d and a load s (see `physics`), and T_l = l (g + a):
 
-        state            drive d                                   load s
-        no slip          h - l - b        `gripping_drive`         h + l + c
-        verge            h - l - z        `drive`                  h + l + z, z = l (k - 1)    `friction_mass`
-        slip             the same with μ_k: `limiting_drive`       `limiting_friction_mass`
+        state      drive d                load s                       T_h - T_l
+        at rest    0                                                   g (h - l)
+        no slip    h - l - b              h + l + c                    c a + f
+        verge      h - l - z   `drive`    h + l + z   `friction_mass`  (k - 1) T_l   `k_minus_1`
+        slip       the same with μ_k: `limiting_drive`, `limiting_friction_mass`, `limiting_k_minus_1`
     """
 
     def __init__(self, case: Decisions, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:
@@ -45,7 +46,7 @@ class Mechanics(Generic[N]):
 
     @lazy
     def phi(self) -> N:
-        """The angle of wrap φ (rad)."""
+        """The angle of wrap φ (rad), as in e^{μφ}. `_direction` and decisions read the wrap in degrees."""
         return self.scene.wrap.radians(self.ar)
 
     # Intermediate values
@@ -83,7 +84,7 @@ class Mechanics(Generic[N]):
     @lazy
     def friction_mass(self) -> N:
         """z = l (k - 1) of static friction (kg)."""
-        return physics.friction_mass_at_limit(self.l, self.k_minus_1)
+        return physics.friction_at_limit(self.l, self.k_minus_1)
 
     @lazy
     def drive(self) -> N:
@@ -105,7 +106,7 @@ class Mechanics(Generic[N]):
         """z on the verge and in slip (kg)."""
         if self.case.limit_is_static:
             return self.friction_mass
-        return physics.friction_mass_at_limit(self.l, self.limiting_k_minus_1)
+        return physics.friction_at_limit(self.l, self.limiting_k_minus_1)
 
     @lazy
     def limiting_drive(self) -> N:
@@ -113,11 +114,6 @@ class Mechanics(Generic[N]):
         if self.case.limit_is_static:
             return self.drive
         return self.ar.not_negative(physics.drive(self.l, self.h, self.limiting_friction_mass))
-
-    @lazy
-    def gripping_drive(self) -> N:
-        """Drive of a string that grips and moves (kg)."""
-        return self.ar.not_negative(physics.drive(self.l, self.h, self.b))
 
     @lazy
     def magnitude(self) -> N:
@@ -128,7 +124,7 @@ class Mechanics(Generic[N]):
         elif case.sign == 0 or case.pulley_at_rest:
             return self.ar.number(0)
         else:
-            drive = self.gripping_drive
+            drive = self.ar.not_negative(physics.drive(l, h, self.b))
             load = physics.load(l, h, self._given(case.rim_mass, quantities.NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
@@ -146,7 +142,7 @@ class Mechanics(Generic[N]):
     @lazy
     def friction_vector(self) -> tuple[N, N]:
         """Net friction force on the pulley (N), (x, y), seen from m1."""
-        return self.seen_from_m1(arc.friction(self.arcs("exponential")))
+        return self.seen_from_m1(arc.force(self.arcs("exponential"), physics.friction_vector))
 
     def seen_from_m1(self, vector: tuple[N, N]) -> tuple[N, N]:
         """Return a vector that is given from the lighter mass's end of the arc as seen from m1's end."""
@@ -208,7 +204,7 @@ class Mechanics(Generic[N]):
         """Magnitude of T2 - T1 (N)."""
         case = self.case
         if case.regime != "no-slip":
-            return physics.difference_of_friction(self.light_tension, self.limiting_k_minus_1)
+            return physics.friction_at_limit(self.light_tension, self.limiting_k_minus_1)
         if case.tensions_equal:
             return self.ar.number(0)
         if case.pulley_at_rest:
@@ -222,12 +218,24 @@ class Mechanics(Generic[N]):
         """T2 - T1 (N)."""
         return self.difference * self.case.sign
 
+    def _tensions_differ(self) -> bool:
+        """Decide whether a string that grips has unequal tensions. Raises Undetermined if they are not known.
+
+        If they differ and the pulley is not known, they are those on the verge.
+        """
+        if self.case.one_mass_is_0:
+            raise Undetermined(quantities.FREE_END)
+        if self.case.tensions_equal:
+            return False
+        if not self.case.pulley_known and self.case.regime != "verge":
+            raise Undetermined(quantities.NEEDS_M)
+        return True
+
     def _bounded(self) -> bool:
         """Decide whether the friction force has bounds above 0. Raises Undetermined if it has none."""
         if self.case.regime != "no-slip":
             raise Undetermined(quantities.DEFINITE)
-        _ = self.mu_verge  # raises if there is none
-        if self.case.tensions_equal:
+        if not self._tensions_differ():
             return False
         _ = self.mu  # raises if it is not given
         if self.case.long_wrap:
@@ -260,15 +268,10 @@ class Mechanics(Generic[N]):
 
     @lazy
     def mu_verge(self) -> N:
-        case = self.case
-        if case.one_mass_is_0:
-            raise Undetermined(quantities.FREE_END)
-        if case.tensions_equal:
+        if not self._tensions_differ():
             return self.ar.number(0)
-        if not case.pulley_known:
-            if case.regime == "verge":
-                return self.ar.number(case.limiting_mu)
-            raise Undetermined(quantities.NEEDS_M)
+        if not self.case.pulley_known:
+            return self.ar.number(self.case.limiting_mu)
         phi = self.phi  # first, as fractions give up on π sooner than on the ratio
         return physics.verge_coefficient(self.log_ratio, phi)
 
@@ -283,13 +286,7 @@ class Mechanics(Generic[N]):
     def tension_ratio(self) -> N:
         if self.case.regime != "no-slip":
             return self.limiting_k_minus_1 + 1
-        if self.case.one_mass_is_0:
-            raise Undetermined(quantities.FREE_END)
-        if self.case.tensions_equal:
-            return self.ar.number(1)
-        if not self.case.pulley_known:
-            raise Undetermined(quantities.NEEDS_M)
-        return self.ratio_minus_1 + 1
+        return self.ratio_minus_1 + 1 if self._tensions_differ() else self.ar.number(1)
 
     @lazy
     def capstan_ratio(self) -> N:
@@ -353,7 +350,7 @@ class Mechanics(Generic[N]):
         """Least net friction force (N) of a string that grips, if all friction acts one way."""
         if not self._bounded():
             return self.ar.number(0)
-        x, y = arc.friction(self.arcs("least"))
+        x, y = arc.force(self.arcs("least"), physics.friction_vector)
         return self.ar.sqrt(x * x + y * y)
 
     @lazy

@@ -4,16 +4,14 @@ Without slip a = g d/s, with the load s = l + h + c: whichever of M, g and a mas
 In slip the pulley's mass does not enter the motion, so that a gives the kinetic friction instead.
 """
 
-from collections.abc import Callable, Mapping
-from fractions import Fraction
-from functools import partial
+from collections.abc import Mapping
 from math import inf
 from types import SimpleNamespace
 from typing import Any
 
 from ..arithmetic.rational import EXACT
 from . import physics
-from .decisions import ZERO, Decisions, axle_force, rim_mass
+from .decisions import ZERO, Decisions
 from .digits import SHOWN_DIGITS, as_typed, format_number, strip_zeros, to_digits, to_double
 from .quantities import Undetermined
 from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError, checked
@@ -26,22 +24,21 @@ Values = Any
 def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     """Return the scene, with the input that follows from what was measured, and that. Raises SceneError."""
     a, drop, time = (inputs[name].value for name in MEASURED)
-    measured = a is not None or time is not None
-    missing = [mass for mass in MASSES if inputs[mass].value is None]
+    if a is None and time is None:
+        return Scene.of(inputs), Motion(drop=drop)
     name = "a" if time is None else "time"
-    unknown = missing[0] if measured and len(missing) == 1 else ""
+    missing = [mass for mass in MASSES if inputs[mass].value is None]
+    unknown = missing[0] if len(missing) == 1 else ""
     if unknown and inputs["M"].value is None is inputs["I"].value:
         raise SceneError(unknown, None, f"is missing; give it, or M, with which {name} finds it")
     values = SimpleNamespace(**checked(inputs, unknown))
-    if time is not None and drop is None:
-        raise SceneError("time", inputs["time"].given, "needs drop, the height of that fall")
-    if time is not None and a is not None:
-        raise SceneError(
-            "time", inputs["time"].given, "and a both give the acceleration; leave one of them out"
-        )
-    if not measured:
-        return Scene(**vars(values)), Motion(a, drop, time)
-    motion = Motion(a, drop, time, unknown or _unknown(values))
+    if unknown:
+        finds = unknown
+    elif values.M == inf or (values.mu is not None and values.M is not None):
+        finds = "mu_k"
+    else:
+        finds = "M" if values.M is None and values.I is None else "g"
+    motion = Motion(a, drop, time, finds)
     rule = _contradiction(values, motion, inputs["g"].given is not None)
     if not rule:
         try:
@@ -54,16 +51,13 @@ def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     return scene, motion
 
 
-def _unknown(values: Values) -> str:
-    """Return the input that an acceleration finds if both masses are given."""
-    if values.M == inf or (values.mu is not None and values.M is not None):
-        return "mu_k"
-    return "M" if values.M is None and values.I is None else "g"
-
-
 def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
-    """Return why an acceleration contradicts the other inputs, "" if it does not."""
-    m1, m2, M, mu, finds = values.m1, values.m2, values.M, values.mu, motion.finds
+    """Return why what was measured contradicts the other inputs, "" if it does not."""
+    case, finds, M, mu = Decisions(values), motion.finds, values.M, values.mu
+    if motion.time is not None and motion.drop is None:
+        return "needs drop, the height of that fall"
+    if motion.time is not None and motion.a is not None:
+        return "and a both give the acceleration; leave one of them out"
     if mu is not None and finds != "mu_k":
         why = "a slipping string moves alike on any pulley"
         if finds in MASSES:
@@ -78,22 +72,21 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
             )
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a instead, positive when m2 descends"
-        known = m1 if finds == "m2" else m2
-        if not known and not rim_mass(values, values.M):
+        if 0 in (values.m1, values.m2) and not case.rim_mass:
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         return ""
-    if finds == "M" and m1 != m2 and abs(m1 - m2) <= physics.axle_mass(axle_force(values), values.g):
+    if finds == "M" and case.axle_holds:
         return "conflicts with an axle whose friction holds the masses at rest; leave one of them out"
     if finds == "g" and g_given:
         pulley = "I" if M is None else "M"
         return f"leaves nothing to find if both {pulley} and g are given; leave one of them out"
-    if m1 == m2:
+    if case.sign == 0:
         return "says nothing about equal masses, which rest on any pulley; leave it out"
-    if finds == "mu_k" and not m1 * m2:
+    if finds == "mu_k" and not case.light:
         return "conflicts with M = inf and a mass of 0, an end that is fixed to the pulley; leave it out"
     if values.mu_k is not None:
         return "and mu_k both say how the string slides; leave one of them out"
-    if mu is not None and not Decisions(Scene(**vars(values))).slips:
+    if mu is not None and not case.slips:
         slips = f"would find mu_k, but with mu = {as_typed(mu)} the string does not slip"
         return f"{slips}; leave mu out (an acceleration forced by a motor is not modelled)"
     return ""
@@ -104,7 +97,9 @@ def _impossible(scene: Scene, motion: Motion) -> str:
     finds, case = str(motion.finds), Decisions(scene, motion)
     if finds == "mu_k":
         if case.slide_ratio_minus_1(EXACT) < 0:
-            return "is too large for any friction: without it the acceleration is " + _free_slide(case)
+            drive, load = (of(case.light, case.heavy, ZERO) for of in (physics.drive, physics.load))
+            most = to_digits(SHOWN_DIGITS)(case.sign * physics.acceleration(drive, load, scene.g))
+            return f"is too large for any friction: without it the acceleration is {format_number(most)} m/s²"
         if scene.mu is not None and case.exceeds(case.slide_ratio_minus_1, scene.mu):
             return "needs more kinetic friction than mu; check both"
         return ""
@@ -117,13 +112,6 @@ def _impossible(scene: Scene, motion: Motion) -> str:
     return f"implies {finds} = {shown} {domain.unit}, which {domain.domain}"
 
 
-def _free_slide(case: Decisions) -> str:
-    """Return the acceleration of a slide without friction, for a sentence."""
-    l, h = case.light, case.heavy
-    most = physics.acceleration(physics.drive(l, h, ZERO), physics.load(l, h, ZERO), case.scene.g)
-    return f"{format_number(to_digits(SHOWN_DIGITS)(case.sign * most))} m/s²"
-
-
 def number_of(scene: Scene, motion: Motion, x: str) -> Any:
     """Return the number given for an input, in the unit that it was given in."""
     value = getattr(scene if x in Scene._fields else motion, x)
@@ -134,15 +122,9 @@ def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scen
     """Return the scene, and what was measured, with another number for an input, in the same unit."""
     if x not in Scene._fields:
         return scene, motion._replace(**{x: number})
-    value = getattr(scene, x)
-    if isinstance(value, Angle):
-        number = Angle(number, value.unit)
-    elif isinstance(value, Axle):
-        number = Axle(number, value.unit)
-    return scene._replace(**{x: number}), motion
-
-
-# The unknown input, from the others
+    value: Any = getattr(scene, x)
+    given: Any = value._replace(number=number) if isinstance(value, Angle | Axle) else number
+    return scene._replace(**{x: given}), motion
 
 
 def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
@@ -150,58 +132,26 @@ def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
 
     Kinetic friction is no rational number: the machine computes it.
     """
-    if motion.finds is None:
+    m1, m2, g, finds = values.m1, values.m2, values.g, motion.finds
+    if finds is None:
         return {}
-    if motion.finds == "mu_k":
-        _moving(values, motion)
-        return {}
-    return {motion.finds: FINDERS[motion.finds](values, motion)}
-
-
-def _moving(values: Values, motion: Motion) -> tuple[Fraction, Fraction, Fraction]:
-    """Return the lighter and the heavier mass, and the acceleration of the latter. Raises Undetermined."""
-    m1, m2 = values.m1, values.m2
+    case: Any = Decisions(values)  # about the pulley, as a mass may be missing
+    c, f, b = case.rim_mass, case.axle_friction, case.axle_mass
+    if finds in MASSES:
+        known, down = (m1, motion.acceleration(1)) if finds == "m2" else (m2, motion.acceleration(-1))
+        if down >= g:
+            side, limit = ("below", g) if finds == "m2" else ("above", -g)
+            raise Undetermined(f"must be {side} {format_number(to_double(limit))} m/s², that of free fall")
+        if down > 0:
+            return {finds: physics.heavier_mass(known, c, down, g, f)}
+        return {finds: physics.lighter_mass(known, c, -down, g, f)}
     a = motion.acceleration((m2 > m1) - (m2 < m1))
     if a <= 0:
         heavier, side = ("m2", "above") if m2 > m1 else ("m1", "below")
         raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass")
-    return min(m1, m2), max(m1, m2), a
-
-
-def _pulley_mass(values: Values, motion: Motion) -> Fraction:
-    l, h, a = _moving(values, motion)
-    c = physics.rim_mass(l, h, a, values.g, physics.axle_mass(axle_force(values), values.g))
-    mass: Fraction = c / values.inertia
-    return mass
-
-
-def _gravity(values: Values, motion: Motion) -> Fraction:
-    l, h, a = _moving(values, motion)
-    c = rim_mass(values, values.M)
-    assert c is not None
-    return physics.gravity(l, h, c, a, axle_force(values))
-
-
-def _mass(unknown: str, values: Values, motion: Motion) -> Fraction:
-    """Return the mass that moves with the measured acceleration. Raises Undetermined beyond free fall."""
-    known: Fraction = values.m1 if unknown == "m2" else values.m2
-    g: Fraction = values.g
-    a = motion.acceleration(1)
-    down = a if unknown == "m2" else -a
-    if down >= g:
-        side, limit = ("below", g) if unknown == "m2" else ("above", -g)
-        raise Undetermined(f"must be {side} {format_number(to_double(limit))} m/s², that of free fall")
-    c, f = rim_mass(values, values.M), axle_force(values)
-    assert c is not None
-    if down > 0:
-        return physics.heavier_mass(known, c, down, g, f)
-    return physics.lighter_mass(known, c, -down, g, f)
-
-
-FINDERS: dict[str, Callable[[Values, Motion], Fraction]] = {
-    "M": _pulley_mass,
-    "g": _gravity,
-    "m1": partial(_mass, "m1"),
-    "m2": partial(_mass, "m2"),
-}
-"""The functions that find an unknown input, by its name."""
+    l, h = sorted((m1, m2))
+    if finds == "M":
+        return {"M": physics.rim_mass(l, h, a, g, b) / values.inertia}
+    if finds == "g":
+        return {"g": physics.gravity(l, h, c, a, f)}
+    return {}

@@ -29,13 +29,13 @@ Function = Callable[[N], N]
 Hypot = Callable[[N, N | int], N]
 
 
-def friction_mass_at_limit(l: N, k_minus_1: N) -> N:
-    """Return z = l (k - 1) (kg), the mass that friction at its limit adds, from (26).
+def friction_at_limit(light: N, k_minus_1: N) -> N:
+    """Return what friction at its limit adds to ``light``, (26): T_h - T_l (N) to T_l, z (kg) to the mass l.
 
-    >>> friction_mass_at_limit(1, 1)
-    1
+    >>> friction_at_limit(12, 1), friction_at_limit(1, 2)
+    (12, 2)
     """
-    return l * k_minus_1
+    return light * k_minus_1
 
 
 def drive(l: N, h: N, taken: N) -> N:
@@ -121,6 +121,15 @@ def slide_ratio_minus_1(l: N, h: N, a: N, g: N) -> N:
     return difference_of_moving_masses(l, h, a, g) / light_tension(l, a, g)
 
 
+def inertia_at_rim(I: N, R: N) -> N:
+    """Return c (kg), the moment of inertia I (kg m²) of a pulley of radius R (m) as a mass at its rim.
+
+    >>> inertia_at_rim(20, 2)
+    5.0
+    """
+    return I / (R * R)
+
+
 def moment_of_inertia(c: N, R: N) -> N:
     """Return the moment of inertia (kg m²) of a pulley of radius R (m), from its c as a mass at the rim.
 
@@ -191,15 +200,6 @@ def difference_of_moving_masses(l: N, h: N, a: N, g: N) -> N:
     (10, 18)
     """
     return g * (h - l) - a * (h + l)
-
-
-def difference_of_friction(light: N, k_minus_1: N) -> N:
-    """Return T_h - T_l (N) if friction is at its limit (26); ``light`` = T_l.
-
-    >>> difference_of_friction(12, 1)
-    12
-    """
-    return light * k_minus_1
 
 
 def gripping_ratio_minus_1(l: N, h: N, c: N, b: N, D: N) -> N:

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import chain
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple, cast, get_args
 
 from .scene import INPUTS, SceneError
 from .units import nearest
@@ -171,11 +171,7 @@ def read_quantities(words: Sequence[str] | None) -> list[str]:
 
 
 def read_name(
-    parameter: str,
-    word: str,
-    known: Collection[str] = NAMES,
-    kind: str = "quantity",
-    symbols: Mapping[str, str] = NAMES_BY_SYMBOL,
+    parameter: str, word: str, known: Collection[str], kind: str, symbols: Mapping[str, str]
 ) -> str:
     """Read one of the names ``known``, or its symbol as tables show it. Raises SceneError."""
     if word in known:
@@ -196,8 +192,7 @@ def read_accuracy(word: object) -> Accuracy:
     """Read the name of an accuracy. Raises SceneError."""
     if word == "fast":
         raise SceneError("accuracy", word, "is no longer there, as certified takes hardly longer; take that")
-    known = read_name("accuracy", str(word), ACCURACIES, "accuracy")
-    return next(accuracy for accuracy in ACCURACIES if accuracy == known)
+    return cast(Accuracy, read_name("accuracy", str(word), ACCURACIES, "accuracy", {}))
 
 
 def divided(typed: Iterable[str]) -> list[str]:

@@ -9,7 +9,7 @@ from fractions import Fraction
 from functools import cache
 from math import inf
 from numbers import Rational, Real
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, NoReturn
 
 from ..arithmetic.rational import OfFloat
 from . import physics
@@ -218,48 +218,38 @@ def checked(inputs: Mapping[str, Input], unknown: str = "") -> dict[str, Any]:
 
     ``unknown`` is a mass that is to be found.
     """
+
+    def refuse(name: str, rule: str) -> NoReturn:
+        raise SceneError(name, inputs[name].given, rule)
+
     values = {name: inputs[name].value for name in INPUTS}
+    m1, m2, M, mu, mu_k, _, inertia, I, R, _, axle = values.values()
     for mass in MASSES:
         if values[mass] is None and mass != unknown:
-            raise SceneError(mass, None, MISSING_MASS)
-    if values["inertia"] is None and values["I"] is None:
+            refuse(mass, MISSING_MASS)
+    if I is not None and inertia is not None:
+        refuse("I", "and inertia both describe the pulley; give one of them")
+    if I is None and inertia is None:
         values["inertia"] = Fraction(INERTIA_FACTORS["disk"])
-    elif values["inertia"] is not None and values["I"] is not None:
-        raise SceneError("I", inputs["I"].given, "and inertia both describe the pulley; give one of them")
-    if values["m1"] == values["m2"] == 0:
+    if m1 == m2 == 0:
         raise SceneError("m1", None, "and m2 are both 0; at least one mass must hang")
-    name, rule = _contradiction(inputs["M"].given, **values)
-    if rule:
-        raise SceneError(name, inputs[name].given, rule)
-    return values
-
-
-def _contradiction(
-    given: Given | None, /, m1: Any, m2: Any, M: Any, mu: Any, mu_k: Any, I: Any, R: Any, axle: Any, **_: Any
-) -> tuple[str, str]:
-    """Return an input that contradicts others, and why; two empty texts if none does.
-
-    ``given`` is the pulley's mass as it was given.
-    """
     if mu is not None and 0 in (m1, m2):
-        return (
-            "m1" if m1 == 0 else "m2",
-            "is an end of the string that is fixed to the pulley, where mu has no effect; leave mu out",
-        )
+        fixed = "is an end of the string that is fixed to the pulley, where mu has no effect; leave mu out"
+        refuse("m1" if m1 == 0 else "m2", fixed)
     if mu_k is not None and mu is None:
-        return "mu_k", "needs mu, the coefficient that decides whether it slips"
+        refuse("mu_k", "needs mu, the coefficient that decides whether it slips")
     if mu_k is not None and mu_k > mu:
         alike = to_double(mu_k) == to_double(mu)  # then a float's digits are the point
         both = [Fraction(x) if alike else x for x in (mu_k, mu)]
         sizes = " > ".join(shortened(as_typed(x, inf)) for x in both)
-        return "mu_k", f"must not be above mu; exactly, {sizes}"
+        refuse("mu_k", f"must not be above mu; exactly, {sizes}")
     if I is not None and R is None:
-        return "I", "needs the radius R as well"
+        refuse("I", "needs the radius R as well")
     if axle is not None and axle.unit == "N m" and R is None:
-        return "axle", "is a torque, which needs the radius R as well"
+        refuse("axle", "is a torque, which needs the radius R as well")
     if I is not None and M is not None and not 0 < M < inf:
-        return "I", f"contradicts M = {shortened(str(given))}; leave one of them out"
-    return "", ""
+        refuse("I", f"contradicts M = {shortened(str(inputs['M'].given))}; leave one of them out")
+    return values
 
 
 class Motion(NamedTuple):
@@ -392,18 +382,14 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
     return f"{NOT_A_NUMBER}{names}{locked}{nearest(word, parameter.names)}"
 
 
-def _longest(number: Decimal) -> int:
-    """Return the power of ten of the first digit, or the number of decimal places if that is more."""
-    return max(number.adjusted(), -int(number.as_tuple().exponent))
-
-
 def _exact_number(name: str, given: object) -> Fraction | float:
     is_duration = getattr(getattr(given, "dtype", None), "kind", "") == "m"  # NumPy's pass for integers
     if isinstance(given, bool) or is_duration or not isinstance(given, Real | Decimal):
         raise SceneError(name, given, "must be text or a number (str, int, float, Decimal, Fraction)")
-    # A Decimal that is too long is refused before it becomes a huge integer.
-    if isinstance(given, Decimal) and given.is_finite() and given and _longest(given) > MAX_MAGNITUDE:
-        raise SceneError(name, given, TOO_LONG)
+    if isinstance(given, Decimal) and given.is_finite() and given:
+        longest = max(given.adjusted(), -int(given.as_tuple().exponent))
+        if longest > MAX_MAGNITUDE:  # it must not become a huge integer
+            raise SceneError(name, given, TOO_LONG)
     try:
         if isinstance(given, Rational):
             ratio: tuple[Any, Any] = given.numerator, given.denominator

@@ -9,7 +9,6 @@ from fractions import Fraction
 from math import inf
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
-from ..arithmetic.settling import is_positive
 from .digits import as_typed, to_digits
 
 if TYPE_CHECKING:
@@ -102,28 +101,14 @@ class TypedNumber(NamedTuple):
     uncertainty: Fraction = Fraction(0)
 
 
-class Angle:
+class Angle(NamedTuple):
     """An angle of wrap, exact: a number of degrees or of radians, as it was given.
 
-    No rational number of degrees is a rational number of radians. ``number`` is a Fraction; in arrays, a
-    column of degrees. An angle in degrees equals its number.
+    No rational number of degrees is a rational number of radians. In arrays, ``number`` is a column.
     """
 
-    __slots__ = ("number", "unit")
-
-    def __init__(self, number: Any, unit: Literal["°", "rad"] = "°") -> None:
-        self.number, self.unit = number, unit
-
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, Angle):
-            return bool((self.number, self.unit) == (other.number, other.unit))
-        return bool(self.unit == "°" and self.number == other)
-
-    def __hash__(self) -> int:
-        return hash(self.number if self.unit == "°" else (self.number, self.unit))
-
-    def __repr__(self) -> str:
-        return f"Angle({self.number!r}, {self.unit!r})"
+    number: Any
+    unit: Literal["°", "rad"] = "°"
 
     def radians(self, ar: Arithmetic[N]) -> N:
         """Return the angle in radians."""
@@ -144,18 +129,7 @@ class Angle:
 
     @property
     def is_half_turn(self) -> bool:
-        return self == 180
-
-    @property
-    def is_beyond_half_turn(self) -> bool:
-        if self.unit == "°":
-            return bool(self.number > 180)
-        return is_positive(lambda ar: self.radians(ar) - ar.pi)
-
-    @property
-    def ends_hang_down(self) -> bool:
-        """Whether both ends of the string hang down: half a turn of wrap, plus whole turns."""
-        return bool(self.unit == "°" and (self.number - 180) % 360 == 0)
+        return bool(self.unit == "°" and self.number == 180)
 
 
 LONGEST_NAME = 255
@@ -304,16 +278,10 @@ def symbol_of(unit: str) -> str:
     return _SYMBOLS.get(unit.translate(_PLAIN), "")
 
 
-def near(word: str, words: Iterable[str]) -> str:
-    """Return the word that was probably meant, "" if none is near."""
+def nearest(word: str, words: Iterable[str]) -> str:
+    """Return a hint at the word that was probably meant, "" if none is near."""
     from difflib import get_close_matches
 
     words = list(words) if word else []
     close = get_close_matches(word.lower(), words, n=1) or [w for w in words if w.startswith(word.lower())]
-    return close[0] if close else ""
-
-
-def nearest(word: str, words: Iterable[str]) -> str:
-    """Return a hint at the word that was probably meant, "" if none is near."""
-    meant = near(word, words)
-    return f"; did you mean {meant}?" if meant else ""
+    return f"; did you mean {close[0]}?" if close else ""

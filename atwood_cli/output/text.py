@@ -94,17 +94,17 @@ class Form(NamedTuple):
     has_notes: bool
 
 
-def _write_json(forms: Report) -> None:
-    sys.stdout.writelines(as_json(forms.json()))
+def _write_json(report: Report) -> None:
+    sys.stdout.writelines(as_json(report.json()))
     print()
 
 
-def _write_csv(forms: Report) -> None:
+def _write_csv(report: Report) -> None:
     """Print a line of names, and a line for each record when it comes."""
     from csv import writer
 
     table = writer(Stdout(), lineterminator="\n")
-    for number, record in enumerate(forms.records()):
+    for number, record in enumerate(report.records()):
         if not number:
             table.writerow(record)
         table.writerow(map(cell, record.values()))
@@ -125,7 +125,7 @@ class Destination(NamedTuple):
     force: bool = False
 
 
-def show(forms: Report, target: Destination) -> Sequence[str]:
+def show(report: Report, target: Destination) -> Sequence[str]:
     """Print a result in a form, as bare values or as a page, whole or not at all. Raises OSError.
 
     Returns the notes if the form has no place for them, as CSV and bare values: they are to be said on
@@ -134,15 +134,15 @@ def show(forms: Report, target: Destination) -> Sequence[str]:
     form = FORMS.get(target.form)
     with stdout_into(target.file, target.force):
         if form:
-            form.write(forms)
-        elif forms.bare:
-            if any(forms.bare):  # an empty line for each value that does not exist
-                print(*forms.bare, sep="\n")
-            forms.below()
+            form.write(report)
+        elif report.bare:
+            if any(report.bare):  # an empty line for each value that does not exist
+                print(*report.bare, sep="\n")
+            report.below()
         else:
-            forms.page()
+            report.page()
         sys.stdout.flush()
-    return forms.notes() if forms.bare or (form and not form.has_notes) else ()
+    return report.notes() if report.bare or (form and not form.has_notes) else ()
 
 
 def as_json(value: object, indent: str = "\n") -> Iterator[str]:
@@ -239,7 +239,7 @@ def relevant_inputs(
         and (not heavy or scene.M == inf)
     ):
         idle.add("inertia")
-    if scene.wrap == 180 and not (has_friction or heavy or scene.axle is not None or "axle" in varied):
+    if scene.wrap.is_half_turn and not (has_friction or heavy or scene.axle is not None or "axle" in varied):
         idle.add("wrap")
     in_words = inputs_in_words(scene, motion, uncertain)
     return {name: words for name, words in in_words.items() if name not in idle or name in uncertain}

@@ -11,7 +11,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..model import arc
+from ..model import arc, physics
 from ..model.arc import Profile
 from ..model.decisions import Decisions
 from ..model.digits import rounding_to_place
@@ -125,10 +125,10 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
         return {"x": answers.settle(lambda m: of(m)[0]), "y": answers.settle(lambda m: of(m)[1])}
 
     def friction(m: Machine[Any]) -> tuple[Any, Any]:
-        return m.seen_from_m1(arc.friction(m.arcs(kind)))
+        return m.seen_from_m1(arc.force(m.arcs(kind), physics.friction_vector))
 
     def normal(m: Machine[Any]) -> tuple[Any, Any]:
-        return m.seen_from_m1(arc.normal(m.arcs(kind)))
+        return m.seen_from_m1(arc.force(m.arcs(kind), physics.normal_vector))
 
     forces = {"friction": vector(friction), "normal": vector(normal)}
     ends = vector(lambda m: m.resultant_vector)

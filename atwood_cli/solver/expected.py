@@ -7,7 +7,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, rounding_apart_from, to_digits
-from ..model.quantities import MEASURED_NAMES, NAMES, QUANTITIES, REGIMES, read_name
+from ..model.quantities import MEASURED_NAMES, NAMES, NAMES_BY_SYMBOL, QUANTITIES, REGIMES, read_name
 from ..model.scene import SceneError, with_unit
 from ..model.units import STANDARD_GRAVITY, Angle, Malformed, TypedNumber, in_quotes, read_number
 from .answers import TOO_SMALL, Answers
@@ -21,7 +21,7 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     ">=": operator.ge,
     "==": operator.eq,
 }
-FORMS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
+CONDITIONS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
 MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
 DIMENSIONS = {
@@ -50,9 +50,9 @@ def read_condition(typed: str) -> Condition:
     if (regime := re.sub(r"^\s*regime\s*==", "", typed).strip()) in REGIMES:
         return Condition(typed.strip(), regime)
     if not (match := COMPARISON.fullmatch(typed)):
-        raise SceneError("expect", typed, f"must be {FORMS}")
+        raise SceneError("expect", typed, f"must be {CONDITIONS}")
     word, sign, number = map(str.strip, match.groups())
-    name = read_name("expect", word, (*NAMES[1:], *MEASURED_NAMES))
+    name = read_name("expect", word, (*NAMES[1:], *MEASURED_NAMES), "quantity", NAMES_BY_SYMBOL)
     try:
         value = read_number(number, DIMENSIONS.get(QUANTITIES[name].unit))
     except Malformed as error:

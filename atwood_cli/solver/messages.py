@@ -172,7 +172,10 @@ def odd_inertia(answers: Answers) -> list[str]:
 
 def holding_again(answers: Answers) -> list[str]:
     """Say that a string which slips above the critical mass holds again under much greater ones."""
-    if answers.case.scene.mu is None or not answers.case.holds_again:
+    case = answers.case
+    if case.scene.mu is None or case.rim_mass is None or not case.slips_once_it_moves:
+        return []
+    if case.slips_at("heaviest"):
         return []
     return [
         "Far above `critical_heavier_mass` the string holds again, as axle friction matters less"

@@ -158,12 +158,7 @@ def _holds(condition: str, conditions: Mapping[str, bool]) -> bool:
     return conditions[condition.removeprefix("not ")] != condition.startswith("not ")
 
 
-FUNCTIONS: Mapping[str, Callable[..., Any]] = {
-    **vars(physics),
-    "product": mul,
-    "quotient": truediv,
-    "inertia_at_the_rim": lambda I, R: I / (R * R),
-}
+FUNCTIONS: Mapping[str, Callable[..., Any]] = {**vars(physics), "product": mul, "quotient": truediv}
 """Functions that equations of `derivation.md` name."""
 
 
