@@ -277,7 +277,6 @@ def test_columns_are_as_a_file_of_them(read: Any, tmp_path: Path) -> None:
     [
         (b'"p"q,3\n', "the row that begins in line 22 has a quotation mark"),
         (b'1,"' + b"\n" * 50 + b'"\n', "the cell that begins in line 22 has 51 lines, and the most is 50"),
-        (b"1,\x81\n", "line 22"),
     ],
 )
 def test_lines_are_counted_through_all_pieces(

@@ -42,7 +42,7 @@ def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str]) -> S
     if isinstance(source, str | PathLike):
         with ExitStack() as stack:
             content = _content(blocks_of(opened(fspath(source), stack)))
-        content = b"".join(lines for lines, _ in whole_lines(iter([content]), cells=True))
+        content = b"".join(whole_lines(iter([content]), cells=True))
         usual = "\t" if Path(source).suffix.lower() == ".tsv" else ","
         return read_sheet(content, usual, vocabulary, named)
     if not hasattr(source, "items") and not hasattr(source, "columns"):
