@@ -25,9 +25,18 @@ from atwood_cli.tables.sources import FORMATS
 
 T = TypeVar("T")
 COMMANDS: dict[str, Any] = cli.program().commands
-SHARES = {"--figure": 0.02, "--help": 0.01, "--explain": 0.1, "--digits": 0.3, "--wrap": 0.2}
-SHARES |= {"--m1": 0.97, "--m2": 0.97, "--M": 0.6, "--mu": 0.6}
-"""The shares of runs with an option."""
+PARAMS = {name: command.get_params(typer.Context(command)) for name, command in COMMANDS.items()}
+SHARES = {
+    "--m1": 0.97,
+    "--m2": 0.97,
+    "--M": 0.6,
+    "--mu": 0.6,
+    "--digits": 0.3,
+    "--wrap": 0.2,
+    "--explain": 0.1,
+}
+SHARES |= {"--figure": 0.02, "--help": 0.01}
+"""The shares of runs with an option; up to three others are as frequent as another."""
 
 GOOD = "1 3 2 0.3 10 0.25 1.5e-3 100 0.1 90 180 4 0.5".split()
 FREE = "1 3 2.5 0.3 1e-300 1e300 1.0000000000000001 0.99 1e-9 7e463".split()
@@ -87,7 +96,6 @@ class Dice:
     def __init__(self, draw: st.DrawFn, odd: Sequence[float] = (0.0, 0.03, 0.2)) -> None:
         self.draw = draw
         self.odd = self.choice(odd)
-        self.given = self.choice([0.04, 0.1, 0.2])
 
     def choice(self, values: Sequence[T]) -> T:
         return self.draw(st.sampled_from(values))
@@ -129,14 +137,15 @@ class Dice:
         return [self.number()]
 
     def options(self, command: str) -> list[list[str]]:
-        words = []  # some options are there twice
-        for param in COMMANDS[command].get_params(typer.Context(COMMANDS[command])):
-            flag = self.choice(param.opts)
+        params = {param.opts[0]: param for param in PARAMS[command] if param.param_type_name == "option"}
+        usual = [name for name, share in SHARES.items() if name in params and self.chance(share)]
+        others = st.sampled_from([name for name in params if name not in SHARES])
+        names = [*usual, *self.draw(st.lists(others, max_size=3, unique=True))]
+        words = []
+        for name in [*names, *names[-1:] * self.chance(0.1)]:  # the last may be there twice
+            param = params[name]
             behind = "" if getattr(param, "is_flag", False) else param.metavar or ""
-            if param.param_type_name == "option":
-                is_given = self.chance(SHARES.get(param.opts[0], self.given))
-                for _ in range(is_given * (1 + self.chance(0.2 if param.multiple else 0.01))):
-                    words.append([flag, *(self.value(command, behind) if behind else [])])
+            words.append([self.choice(param.opts), *(self.value(command, behind) if behind else [])])
         return words
 
     def scenes(self, kind: str) -> bytes:
