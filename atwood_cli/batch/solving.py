@@ -199,14 +199,15 @@ def _doubles(cells: "pl.DataFrame", layout: Layout) -> "tuple[dict[str, pl.Serie
             column = column.str.strip_chars()
             column = column.set(column.is_in(EMPTY), None)
         doubles = _in_bulk(column, heading, layout.comma)
-        odd = _odd_cells(column, doubles)
-        for row, cell in odd.items():
+        rows = (column.is_not_null() & doubles.is_null()).arg_true()
+        found: list[float | None] = []
+        for row, cell in zip(rows, column[rows], strict=True):
             try:
-                odd[row] = _double(heading, cell, layout.comma)
+                found.append(_double(heading, cell, layout.comma))
             except SceneError as error:
-                odd[row] = None
+                found.append(None)
                 errors.setdefault(row, str(error))
-        columns[heading.name] = doubles.scatter(list(odd), pl.Series(odd.values(), dtype=pl.Float64))
+        columns[heading.name] = doubles.scatter(rows, pl.Series(found, dtype=pl.Float64))
     return columns, errors
 
 
@@ -218,30 +219,21 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
     power = len(str(max(factor, 1 / factor))) - 1
     if max(factor, 1 / factor) != 10**power:
         return pl.repeat(None, len(cells), dtype=pl.Float64, eager=True)
-    if cells.dtype != pl.String:
+    if cells.dtype == pl.String:
+        texts = cells.set(cells.str.len_bytes() > LONG_CELL, None)
+        if comma:
+            texts = texts.set(texts.str.contains(".", literal=True), None).str.replace(",", ".", literal=True)
+        exact = texts + f"e{power if factor > 1 else -power}" if power else texts
+        doubles = exact.cast(pl.Float64, strict=False)
+    else:
         doubles = cells.cast(pl.Float64, strict=False)
         # A column, as polars would divide by a single number in two steps, and round twice.
         powers = pl.repeat(float(10**power), len(cells), eager=True)
-        return doubles * powers if factor > 1 else doubles / powers
-    if comma:
-        cells = cells.set(cells.str.contains(".", literal=True), None)
-        cells = cells.str.replace(",", ".", literal=True)
-    exact = cells + f"e{power if factor > 1 else -power}" if power else cells
-    return exact.cast(pl.Float64, strict=False)
-
-
-def _odd_cells(cells: "pl.Series", doubles: "pl.Series") -> dict[int, Any]:
-    """Return the cells, by row, that may not be equal to the doubles that polars read."""
-    import polars as pl
-
-    text = cells.dtype == pl.String
-    odd = cells.is_not_null() & ~doubles.is_finite().fill_null(False)
+        doubles = doubles * powers if factor > 1 else doubles / powers
     if (zero := doubles == 0).any():  # a number too small for a double would become 0, another scene
-        odd |= zero & (cells.str.contains("[1-9]") if text else cells != 0)  # the digit may be an exponent's
-    if text:
-        odd |= cells.str.len_bytes() > LONG_CELL
-    rows = odd.arg_true()
-    return dict(zip(rows, cells[rows], strict=True))
+        nonzero = cells.str.contains("[1-9]") if cells.dtype == pl.String else cells != 0
+        doubles = doubles.set(zero & nonzero, None)  # the digit may be an exponent's
+    return doubles.set(~doubles.is_finite(), None)
 
 
 def _double(heading: Heading, cell: str | float, comma: bool) -> float:

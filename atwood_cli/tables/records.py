@@ -6,6 +6,7 @@ A record of CSV is a row, which may have several lines. A record of NDJSON is a 
 import csv
 import json
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Sized
+from contextlib import suppress
 from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -61,13 +62,14 @@ class Csv:
         text = next(self._texts, "")
         mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
         text = text.removeprefix(BYTE_ORDER_MARK)
-        while text.count('"') % 2 and len(text) < LONGEST_RECORD:  # the header may have line ends
-            if not (more := next(self._texts, "")):
-                break
-            text += more
+        while text.count('"') % 2 and len(text) < LONGEST_RECORD and (more := next(self._texts, "")):
+            text += more  # the header may have line ends
 
         def score(separator: str) -> tuple[int, int]:
-            cells = _first_row(text, separator)
+            cells: list[str] = []
+            with suppress(csv.Error):
+                rows = csv.reader(_lines(text), delimiter=separator)
+                cells = next((row for row in rows if len(row) > 1 or "".join(row).strip()), [])
             return len(known(cells)), len(cells)
 
         self._text, self._line = _lines(text), 1
@@ -205,15 +207,6 @@ def _check_width(columns: Sized) -> None:
     """Raise Unreadable for too many columns."""
     if len(columns) > MOST_COLUMNS:
         raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
-
-
-def _first_row(text: str, separator: str) -> list[str]:
-    """Return the cells of the first row that is not blank, if the table has that separator."""
-    rows = csv.reader(_lines(text), delimiter=separator)
-    try:
-        return next((cells for cells in rows if len(cells) > 1 or "".join(cells).strip()), [])
-    except csv.Error:
-        return []
 
 
 # NDJSON
