@@ -152,7 +152,7 @@ def check_lines(table: tuple[list[str], str, int]) -> None:
 
 # Long texts, and values of tables that are deep or huge
 
-LONG = 20_000
+LONG = 10_000
 TYPED = [
     *(f"solve --m1 1 --m2 3 --{option} LONG" for option in ("M", "wrap", "axle", "g", "expect", "only")),
     *("sweep --m1 1 --m2 3 --M LONG", "batch - --column LONG", "fit - --without LONG", "solve LONG"),
@@ -221,10 +221,10 @@ def check_call(call: tuple[Callable[..., object], dict[str, Any]]) -> None:
             raise
 
 
-RUNS = {"solve": 600, "contact": 250, "sweep": 250, "batch": 350, "fit": 350, "tradeoff": 20}
+RUNS = {"solve": 500, "contact": 200, "sweep": 200, "batch": 300, "fit": 300, "tradeoff": 20}
 PROMISES: dict[str, tuple[Any, Callable[[Any], None], int]] = {
     **{command: (fuzz.runs(command), check_run, count) for command, count in RUNS.items()},
-    "cells": (fuzz.tables(), check_cells, 300),
+    "cells": (fuzz.tables(), check_cells, 240),
     "lines": (fuzz.lines(), check_lines, 100),
     "Python": (fuzz.calls(), check_call, 400),
 }
