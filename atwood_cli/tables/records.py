@@ -31,16 +31,16 @@ STRAY_RETURN = (
 
 
 class Piece(NamedTuple):
-    """Consecutive records of a table."""
+    """Consecutive records of a table without their line ends, and the cells of quantities by their names.
+
+    ``errors`` are the reasons of records that cannot be read, by their place. ``size`` is the length of the
+    piece in the file, to show progress.
+    """
 
     texts: "pl.Series"
-    """The records without their line ends."""
     cells: "pl.DataFrame"
-    """The cells of columns that hold a quantity, by its name."""
     errors: Mapping[int, str]
-    """The reasons of records that cannot be read, by their place."""
     size: int
-    """The length of the piece in the file, to show progress."""
 
 
 class Csv:
