@@ -78,7 +78,6 @@ def test_every_format(atwood: Atwood, tmp_path: Path, kind: str) -> None:
     "line",
     [
         "atwood batch <(cat in) --only regime > out",
-        "cat in | atwood batch /dev/stdin -o /dev/stdout --only regime | cat > out",
         "cat in | atwood batch - --from parquet --only regime > out",
     ],
 )
@@ -277,7 +276,7 @@ def test_a_polars_that_is_too_old_is_named(batch: Batch, monkeypatch: pytest.Mon
 
 
 def test_a_reader_that_leaves_early_ends_it_quietly(tmp_path: Path) -> None:
-    (tmp_path / "in.csv").write_text("m1,m2,M\n" + "1,3,10\n" * 300_000)
+    (tmp_path / "in.csv").write_text("m1,m2,M\n" + "1,3,10\n" * 100_000)
     ran = process(shell=f"set -o pipefail; atwood batch {tmp_path}/in.csv --only regime | head -1")
     assert (ran.status, ran.out, ran.err) == (0, "m1,m2,M,regime,error\n", "")
 

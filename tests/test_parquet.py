@@ -192,7 +192,7 @@ def test_a_damaged_file_is_an_error(solved: Any, pytestconfig: pytest.Config, by
     texts = [None if i % 7 else "abc" for i in range(300)]
     whole = written(by({"m1": [1] * 300, "m2": [3] * 300, "s": texts}))
     said, unsaid = set(), 0
-    for place in range(5, len(whole), 5 if pytestconfig.getoption("every_digit") else 13):
+    for place in range(5, len(whole), 5 if pytestconfig.getoption("every_digit") else 23):
         ran, result = solved(whole[:place] + b"\0" + whole[place + 1 :], "--only regime --allow-errors")
         said.add(ran.status)
         unsaid += "and has 0" in ran.err

@@ -23,8 +23,6 @@ from .solving import ERROR, VOCABULARY, Layout, Question, Tally, read_layout, so
 if TYPE_CHECKING:
     import polars as pl
 
-SEPARATORS = {"csv": ",", "tsv": "\t"}
-
 
 class Job(NamedTuple):
     """A table and its format, the file that it goes to, and the question that is asked of it."""
@@ -79,8 +77,8 @@ def _watched(pieces: Iterator[Piece], job: Job, source: IO[bytes]) -> Iterator[P
 
 def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
     """Solve rows of cells: results follow with the separator and the decimal mark of the table."""
-    usual, asked = SEPARATORS[job.kind], job.asked
-    table = Csv(blocks_of(source), usual, lambda columns: recognised(columns, VOCABULARY, asked.named))
+    asked = job.asked
+    table = Csv(blocks_of(source), lambda columns: recognised(columns, VOCABULARY, asked.named))
     layout = read_layout(table.columns, asked)
     pieces = table.pieces(layout.headings)
     first = [*islice(pieces, 1)]
@@ -93,7 +91,7 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
         results = solve_cells(piece.cells, layout, asked, tally, piece.errors)
         target.write(_csv(piece, results, table, layout.comma))
         target.flush()
-    return _remarks(layout, table.separator, usual)
+    return _remarks(layout, table.separator)
 
 
 def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memoryview:
@@ -154,8 +152,8 @@ def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tall
     return _remarks(layout)
 
 
-def _remarks(layout: Layout, separator: str = "", usual: str = "") -> list[str]:
+def _remarks(layout: Layout, separator: str = "") -> list[str]:
     """Return sentences on how a table was read, if not as usual."""
     headings = [heading for heading in layout.headings if heading.place >= 0]
     not_read = [f"not read: {listed(layout.not_read)}."] if layout.not_read else []
-    return [*read_as(headings, separator, usual, layout.comma), *not_read]
+    return [*read_as(headings, separator, layout.comma), *not_read]

@@ -16,7 +16,7 @@ from ..model.scene import Input, SceneError, parameter_of, read_input
 from ..model.units import PERCENT, Malformed, in_quotes, read_unit, symbol_of, without_blanks
 from .sources import Unreadable
 
-SEPARATOR_NAMES = {",": "commas", "\t": "tabs", ";": "semicolons"}
+SEPARATORS = ",\t;"
 NO_UNIT = ("", "-", "1")
 EMPTY = ("", "NA", "NULL", "null")
 """The texts of cells without a number: R and databases write a word."""
@@ -201,10 +201,10 @@ def listed(names: Sequence[str]) -> str:
 
 
 def read_as(
-    headings: Iterable[Heading], separator: str, usual: str, comma: bool, others: Iterable[str] = ()
+    headings: Iterable[Heading], separator: str, comma: bool, others: Iterable[str] = ()
 ) -> list[str]:
-    """Return a line that says how a table was read; none if it was read as usual."""
-    parts = [f"cells separated by {SEPARATOR_NAMES[separator]}"] if separator != usual else []
+    """Return a line that says how a table was read; none if there is nothing to say."""
+    parts = ["cells separated by semicolons"] if separator == ";" else []
     parts += ["decimal commas"] if comma else []
     read = {own.place: (own.column, own.name, own.unit) for own in headings}
     read |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit) for own in headings if own.u}

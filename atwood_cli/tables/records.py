@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from ..model.units import counted, in_quotes
 from . import sources
-from .headings import SEPARATOR_NAMES, Heading
+from .headings import SEPARATORS, Heading
 from .sources import LONGEST_RECORD, TOO_LONG, Unreadable, whole_lines
 
 if TYPE_CHECKING:
@@ -50,13 +50,8 @@ class Csv:
     bulk. Elsewhere Python's `csv` splits them, and is strict about quotation marks.
     """
 
-    def __init__(
-        self, blocks: Iterator[bytes], usual: str, known: Callable[[Sequence[str]], Collection[str]]
-    ):
-        """Read the header by the separator that makes most ``known`` columns, then most columns.
-
-        If several are as good, it is the ``usual`` one.
-        """
+    def __init__(self, blocks: Iterator[bytes], known: Callable[[Sequence[str]], Collection[str]]):
+        """Read the header by the separator that makes most ``known`` columns, then most columns."""
         csv.field_size_limit(LONGEST_RECORD)
         self._texts = map(_decoded, whole_lines(blocks, cells=True))
         text = next(self._texts, "")
@@ -73,7 +68,7 @@ class Csv:
             return len(known(cells)), len(cells)
 
         self._text, self._line = _lines(text), 1
-        self.separator = max((usual, *SEPARATOR_NAMES), key=score)
+        self.separator = max(SEPARATORS, key=score)
         _, header, self.columns = next(self._records(), (1, "", []))
         if not header:
             raise Unreadable("it is empty")

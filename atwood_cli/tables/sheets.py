@@ -7,11 +7,10 @@ from contextlib import ExitStack, suppress
 from io import StringIO
 from itertools import islice
 from os import PathLike, fspath
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..model.units import in_quotes
-from .headings import SEPARATOR_NAMES, Vocabulary, recognised
+from .headings import SEPARATORS, Vocabulary, recognised
 from .sources import Unreadable, blocks_of, opened, whole_lines
 
 MOST_ABOVE = 40
@@ -26,12 +25,11 @@ MISSING = ("nan", "None", "<NA>", "NaT")
 
 
 class Sheet(NamedTuple):
-    """A table of texts, its separator and that which is usual for its kind of file, and how it was read."""
+    """A table of texts, its separator, and how it was read."""
 
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     separator: str = ""
-    usual: str = ""
     remarks: Sequence[str] = ()
 
 
@@ -40,8 +38,7 @@ def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str]) -> S
     if isinstance(source, str | PathLike):
         with ExitStack() as stack:
             content = _content(blocks_of(opened(fspath(source), stack)))
-        usual = "\t" if Path(source).suffix.lower() == ".tsv" else ","
-        return read_sheet(content, usual, vocabulary, named)
+        return read_sheet(content, vocabulary, named)
     if not hasattr(source, "items") and not hasattr(source, "columns"):
         raise Unreadable(f"it is of type {type(source).__name__}; give a path, a mapping or a data frame")
     columns: list[tuple[str, list[str]]] = []
@@ -70,11 +67,10 @@ def _content(blocks: Iterator[bytes]) -> bytes:
     return b"".join(whole_lines(iter([content]), cells=True))
 
 
-def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
+def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
     """Return the table in a text, without blank rows; each row has as many cells as there are headings.
 
-    The separator is that by which most headings are known, the ``usual`` one if several are as good. Raises
-    Unreadable.
+    The separator is that by which most headings are known. Raises Unreadable.
     """
     remarks: list[str] = []
     try:
@@ -95,16 +91,16 @@ def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mappin
     lines = re.sub(r'\A"?sep=[,;\t]"?\r?\n', "", text, flags=re.IGNORECASE).split("\n")
     for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
         bare = lines[i].lstrip("# \t")  # NumPy writes headings so
-        is_header = max(header(bare, mark)[0] for mark in SEPARATOR_NAMES) > 1
+        is_header = max(header(bare, mark)[0] for mark in SEPARATORS) > 1
         lines[i] = bare if is_header else ""
         if not is_header and COMMENTS not in remarks:
             remarks.append(COMMENTS)
     text = "\n".join(lines)
-    found = {mark: header(text, mark) for mark in (usual, *SEPARATOR_NAMES)}
+    found = {mark: header(text, mark) for mark in SEPARATORS}
     separator = max(found, key=lambda mark: found[mark][:2])
     if start := found[separator][2]:
         remarks.append("lines above the headings left out")
-    return Sheet(*_rows(text, separator, start), separator, usual, remarks)
+    return Sheet(*_rows(text, separator, start), separator, remarks)
 
 
 def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[str]]]:
