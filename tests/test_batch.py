@@ -134,7 +134,7 @@ def test_a_cell_is_a_number_where_solve_takes_it_for_one(batch: Batch) -> None:
     words += "1_0 0x1 inf INF +inf infinity nan NaN \u0663 \uff11 true 1e5e5 1..5 --1 ١".split()
     words += ["1 e5", "\xa01", "1\u2009", f"0.{'0' * 600}1e600", "1" * 1001, f"{'0' * 1001}1"]
     words += [f"1.{'0' * 1000}", f"1{'0' * 300}e-501"]
-    words += ["".join(rng.choices("0159.e-+ _", k=rng.randint(1, 9))).strip() or "0" for _ in range(3000)]
+    words += ["".join(rng.choices("0159.e-+ _", k=rng.randint(1, 9))).strip() or "0" for _ in range(1500)]
     ran = batch("\n".join(["m1,m2,M", *(f"1,3,{word}" for word in words), ""]))
     for word, error in zip(words, errors_of(ran), strict=True):
         try:

@@ -159,7 +159,8 @@ class Csv:
             return Unreadable(f"a quotation mark is left open in {row}, or the file is truncated")
         if "limit" in error:
             return Unreadable(f"{row} {TOO_LONG}; is a quotation mark left open?")
-        return Unreadable(f"{row} {STRAY_RETURN if 'new-line' in error else STRAY_MARK}")
+        why = STRAY_RETURN if "new-line" in error else STRAY_MARK
+        return Unreadable(f"{row} {why}")
 
     def _error_of(self, line: int, cells: Sequence[str]) -> str | None:
         """Say what is wrong with the row that begins in that line; None if nothing is."""
