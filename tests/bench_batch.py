@@ -7,7 +7,6 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from functools import partial
-from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import polars as pl
@@ -29,13 +28,10 @@ def run(words: Sequence[str]) -> tuple[float, int]:
 
 def main(rounds: int = 7, rows: int = 1_000_000) -> None:
     with TemporaryDirectory() as folder:
-        scenes = pl.DataFrame(ordinary(rows))
-        scenes.write_csv(Path(folder, "in.csv"))
-        scenes.write_parquet(Path(folder, "in.parquet"))
-        works = {
-            kind: partial(run, [f"{folder}/in.{kind}", "-o", f"{folder}/out.{kind}"])
-            for kind in ("csv", "parquet")
-        }
+        works = {}
+        for kind in ("csv", "parquet"):
+            getattr(pl.DataFrame(ordinary(rows)), f"write_{kind}")(f"{folder}/in.{kind}")
+            works[kind] = partial(run, [f"{folder}/in.{kind}", "-o", f"{folder}/out.{kind}"])
         for name, turns in in_turn(works, rounds).items():
             seconds, memory = min(turns)[0], max(memory for _, memory in turns)
             print(f"{name:8} {seconds:6.2f} s, {rows / seconds:10,.0f} rows a second, {memory} MB")

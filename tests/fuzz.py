@@ -3,7 +3,6 @@
 import gzip
 import io
 import json
-import zipfile
 from collections.abc import Callable, Sequence
 from decimal import Decimal
 from fractions import Fraction
@@ -25,9 +24,10 @@ from atwood_cli.tables.sources import FORMATS
 
 T = TypeVar("T")
 COMMANDS: dict[str, Any] = cli.program().commands
-SHARES = {"--figure": 0.02, "--help": 0.01, "--explain": 0.1, "--digits": 0.3, "--wrap": 0.2}
-SHARES |= {"--m1": 0.97, "--m2": 0.97, "--M": 0.6, "--mu": 0.6}
-"""The shares of runs with an option."""
+PARAMS = {name: command.get_params(typer.Context(command)) for name, command in COMMANDS.items()}
+SHARES = {"--m1": 0.97, "--m2": 0.97, "--M": 0.6, "--mu": 0.6, "--digits": 0.3, "--wrap": 0.2}
+SHARES |= {"--explain": 0.1, "--figure": 0.02, "--help": 0.01}
+"""The shares of runs with an option; up to three others are as frequent as another."""
 
 GOOD = "1 3 2 0.3 10 0.25 1.5e-3 100 0.1 90 180 4 0.5".split()
 FREE = "1 3 2.5 0.3 1e-300 1e300 1.0000000000000001 0.99 1e-9 7e463".split()
@@ -36,7 +36,7 @@ EDGES = [
     *"0 -0 -1 inf -inf INF nan 1e500 1e-500 1e501 1e-501 1e9999999 1e308 1.8e308 4.9e-324 1e-400 .5 5. +2".split(),
     *"1e 1e+ 0x10 1_000 1,5 1,000 1.2.3 １ ٣ −1 ½ -- - = : ( ) ± % '' \" \\ moon disk hoop None".split(),
     *("", " ", " 1 ", "1\xa0kg", "\x1b[31m", "\udcff", "1\n", "1\t2", "0." + "3" * 500, "1kg" + " t^9/ug^9" * 5),
-    *("9" * 1000, "9" * 1001, "1" * 100_000, "1 kg" + "*st^9" * 20_000),
+    *("9" * 1001, "1" * 100_000, "m1:" * 30_000, "--" + "m1" * 50_000, "1 kg" + "*st^9" * 20_000),
 ]
 SOME_UNITS = "kg g lb t mg µg m cm mm in ft deg rad turn ° % s ms N m/s2 m/s² x µ kgg".split()
 OF_METAVAR = {name.split()[-1].upper(): list(units) for name, units in UNITS.items()}
@@ -44,8 +44,6 @@ OF_METAVAR["FORCE"] += UNITS["torque"]
 """Units by the metavar of an option."""
 UNCERTAIN = "175(7)|180(3)|90+/-2|540±0.5|1.5(1)rad|0.5(1)turn|1(1)|179.9(2)|360(1)|0.1(1)".split("|")
 HOSTILE = ["\x1b[31mRED", "\x1b]0;a\x07", "\x9b31mred", "a\x85b", "\u202edrow", "\u2066a", "a\u2028b", "\x7f"]
-LONG = [word * 100_000 for word in "x9"]
-LONG += ["1" + "kg " * 30_000, "--" + "m1" * 50_000, "1(" * 50_000, "m1:" * 30_000]
 TEXTS = [*"x µ =1+1 regime tension_1 ' \" , ;".split(), "", "a b", "M (kg)", "m1 ", "\t", *HOSTILE]
 FILES = ["in.csv", "a", *(f"a.{kind}" for kind in (*FORMATS, "svg", "json", "txt")), "-", "no/a.svg", "\x1b.csv"]
 COUNTS = "1 2 5 17 33 40 100 0 -1 10000001 1.5".split()
@@ -87,7 +85,6 @@ class Dice:
     def __init__(self, draw: st.DrawFn, odd: Sequence[float] = (0.0, 0.03, 0.2)) -> None:
         self.draw = draw
         self.odd = self.choice(odd)
-        self.given = self.choice([0.04, 0.1, 0.2])
 
     def choice(self, values: Sequence[T]) -> T:
         return self.draw(st.sampled_from(values))
@@ -115,7 +112,7 @@ class Dice:
         if metavar == "FILE NAME":
             return [*self.value(command, "FILE"), *self.value(command, "NAME")]
         if self.chance(self.odd / 5):
-            return [self.choice([*EDGES, *TEXTS, *LONG])]
+            return [self.choice([*EDGES, *TEXTS])]
         if words := WORDS.get(metavar, metavar.split("|") if "|" in metavar else []):
             return [self.choice(words)]
         if command == "sweep" and self.chance(0.3):
@@ -129,14 +126,15 @@ class Dice:
         return [self.number()]
 
     def options(self, command: str) -> list[list[str]]:
-        words = []  # some options are there twice
-        for param in COMMANDS[command].get_params(typer.Context(COMMANDS[command])):
-            flag = self.choice(param.opts)
+        params = {param.opts[0]: param for param in PARAMS[command] if param.param_type_name == "option"}
+        usual = [name for name, share in SHARES.items() if name in params and self.chance(share)]
+        others = st.sampled_from([name for name in params if name not in SHARES])
+        names = [*usual, *self.draw(st.lists(others, max_size=3, unique=True))]
+        words = []
+        for name in [*names, *names[-1:] * self.chance(0.1)]:  # the last may be there twice
+            param = params[name]
             behind = "" if getattr(param, "is_flag", False) else param.metavar or ""
-            if param.param_type_name == "option":
-                is_given = self.chance(SHARES.get(param.opts[0], self.given))
-                for _ in range(is_given * (1 + self.chance(0.2 if param.multiple else 0.01))):
-                    words.append([flag, *(self.value(command, behind) if behind else [])])
+            words.append([self.choice(param.opts), *(self.value(command, behind) if behind else [])])
         return words
 
     def scenes(self, kind: str) -> bytes:
@@ -194,12 +192,9 @@ class Dice:
             data[at : at + self.choice([0, 1, 5])] = self.draw(st.binary(max_size=3))
         if not self.is_odd():
             return bytes(data)
-        packed = io.BytesIO()
-        with zipfile.ZipFile(packed, "w") as book:
-            book.writestr(zipfile.ZipInfo("xl/worksheets/sheet1.xml"), data)
         wide = self.choice(["utf-16", "utf-16-le", "utf-16-be", "utf-32", "latin-1"])
         text = data.decode("utf-8", "replace").encode(wide, "replace")
-        return self.choice([gzip.compress(data, mtime=0), text, packed.getvalue()])
+        return self.choice([gzip.compress(data, mtime=0), text, b"PK\x03\x04" + data])
 
 
 @st.composite
@@ -217,7 +212,7 @@ def runs(draw: st.DrawFn, command: str) -> Run:
     line = [command, *(word for option in draw(st.permutations(words)) for word in option)]
     if dice.chance(dice.odd / 3):
         place = draw(st.integers(0, len(line)))
-        line.insert(place, dice.choice([*EDGES, *TEXTS, *LONG, "--m", "-m1", "-h", "--version"]))
+        line.insert(place, dice.choice([*EDGES, *TEXTS, "--m", "-m1", "-h", "--version"]))
     return Run(line, source if source != "-" else "in.csv", content)
 
 

@@ -7,7 +7,7 @@ import json
 import re
 import subprocess
 import sys
-from contextlib import redirect_stderr, redirect_stdout
+from contextlib import chdir, redirect_stderr, redirect_stdout
 from fractions import Fraction
 from functools import partial
 from itertools import count
@@ -78,7 +78,6 @@ def test_every_format(atwood: Atwood, tmp_path: Path, kind: str) -> None:
     "line",
     [
         "atwood batch <(cat in) --only regime > out",
-        "cat in | atwood batch /dev/stdin -o /dev/stdout --only regime | cat > out",
         "cat in | atwood batch - --from parquet --only regime > out",
     ],
 )
@@ -135,7 +134,7 @@ def test_a_cell_is_a_number_where_solve_takes_it_for_one(batch: Batch) -> None:
     words += "1_0 0x1 inf INF +inf infinity nan NaN \u0663 \uff11 true 1e5e5 1..5 --1 ١".split()
     words += ["1 e5", "\xa01", "1\u2009", f"0.{'0' * 600}1e600", "1" * 1001, f"{'0' * 1001}1"]
     words += [f"1.{'0' * 1000}", f"1{'0' * 300}e-501"]
-    words += ["".join(rng.choices("0159.e-+ _", k=rng.randint(1, 9))).strip() or "0" for _ in range(3000)]
+    words += ["".join(rng.choices("0159.e-+ _", k=rng.randint(1, 9))).strip() or "0" for _ in range(1500)]
     ran = batch("\n".join(["m1,m2,M", *(f"1,3,{word}" for word in words), ""]))
     for word, error in zip(words, errors_of(ran), strict=True):
         try:
@@ -158,14 +157,14 @@ def test_a_number_too_small_for_a_double_is_no_0(batch: Batch) -> None:
 
 LONG = "x" * 200_000
 """Python's own reader of CSV takes 131,072 characters at most."""
-MANY = ",".join(["m1,m2", *(f"x{i}" for i in range(1023))])
+MANY = ",".join(["m1,m2", *(f"x{i}" for i in range(1022))])
 LEFT_OPEN = "is longer than 1 MB, the most taken; is a quotation mark left open?"
 
 
 @pytest.mark.parametrize(
     ("name", "content", "why"),
     [
-        ("in.csv", MANY, "it has more than 1024 columns, the most taken"),
+        ("in.csv", f"{MANY},x", "it has more than 1024 columns, the most taken"),
         ("in.ndjson", "".join(f'{{"k{i}":1}}\n' for i in range(1025)), "it has more than 1024 columns, the most taken"),
         ("in.csv", 'm1,m2\n"1,2\n' + "1,2\n" * 700_000, f"the row that begins in line 2 {LEFT_OPEN}"),
         ("in.csv", "m1,m2\n" + "1" * (4 << 20), "the row that begins in line 2 is longer than 1 MB, the most taken"),
@@ -182,6 +181,7 @@ def test_what_is_too_large_for_a_table(
 
 
 def test_what_is_large_and_a_table(batch: Batch) -> None:
+    assert batch(f"{MANY}\n1,3\n", "--only a").err.endswith("the header has 1024\n")
     head, *rows = f"m1,m2,{LONG}", f"1,3,{LONG}", f'1,3,"{LONG}\n{LONG}"'
     answered = "".join([f"{head},regime,error\n", *(f"{row},no-slip,\n" for row in rows)])
     assert batch("\n".join([head, *rows]), "--only regime").out == answered
@@ -232,30 +232,25 @@ def test_what_a_unit_takes_beyond_the_doubles_is_an_error_of_the_row() -> None:
 # Usage and files
 
 
-@pytest.mark.skipif(not Path("/proc/self/mem").exists(), reason="needs a file that cannot be read")
-def test_what_reading_runs_into_is_said(atwood: Atwood) -> None:
-    why = "cannot read /proc/self/mem: Input/output error"
-    assert atwood("batch", "/proc/self/mem", "--from", "csv") == (1, "", f"atwood: {why}\n")
-
-
 @pytest.mark.parametrize(
     "line",
-    ["in.csv -o in.csv", "in.csv -o hard.csv", "in.csv -o soft.csv", "- -o in.csv <", "in.csv >>", "- < >>"],
-)
+    ["in.csv -o in.csv", "in.csv -o hard.csv", "in.csv -o soft.csv", "- -o in.csv < in.csv", "in.csv >> in.csv", "- < in.csv >> in.csv"],
+)  # fmt: skip
 def test_the_input_is_never_overwritten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, line: str) -> None:
-    monkeypatch.chdir(tmp_path)
-    scenes, said = Path("in.csv"), io.StringIO()
+    scenes, said = tmp_path / "in.csv", io.StringIO()
     scenes.write_text(TEXT)
-    Path("hard.csv").hardlink_to(scenes)
-    Path("soft.csv").symlink_to(scenes)
-    words = [word for word in line.split() if word not in ("<", ">>")]
-    with scenes.open() as stdin, scenes.open("a") as stdout, redirect_stderr(said):
+    (tmp_path / "hard.csv").hardlink_to(scenes)
+    (tmp_path / "soft.csv").symlink_to(scenes)
+    words = re.sub("[<>]+ in.csv", "", line).split()
+    with chdir(tmp_path), scenes.open() as stdin, scenes.open("a") as out, redirect_stderr(said):
         monkeypatch.setattr(sys, "stdin", stdin if "<" in line else None)
-        with redirect_stdout(stdout if ">>" in line else io.StringIO()):
+        with redirect_stdout(out if ">>" in line else io.StringIO()):
             assert run(["batch", *words, "--force"]) == 2
-    name = words[words.index("-o") + 1] if "-o" in words else "-"
-    why = f"--output {name!r} is the input, which is never overwritten; name another"
-    assert said.getvalue() == f"atwood: {why}\n"
+    name = words[-1] if "-o" in words else "-"
+    assert (
+        said.getvalue()
+        == f"atwood: --output {name!r} is the input, which is never overwritten; name another\n"
+    )
     assert scenes.read_text() == TEXT
 
 
@@ -281,7 +276,7 @@ def test_a_polars_that_is_too_old_is_named(batch: Batch, monkeypatch: pytest.Mon
 
 
 def test_a_reader_that_leaves_early_ends_it_quietly(tmp_path: Path) -> None:
-    (tmp_path / "in.csv").write_text("m1,m2,M\n" + "1,3,10\n" * 300_000)
+    (tmp_path / "in.csv").write_text("m1,m2,M\n" + "1,3,10\n" * 100_000)
     ran = process(shell=f"set -o pipefail; atwood batch {tmp_path}/in.csv --only regime | head -1")
     assert (ran.status, ran.out, ran.err) == (0, "m1,m2,M,regime,error\n", "")
 

@@ -8,11 +8,11 @@ fails as small as it can, and tries it first the next time.
 
 import json
 import re
-import signal
 import sys
 import warnings
 from collections.abc import Callable, Sequence
 from contextlib import chdir
+from datetime import timedelta
 from fractions import Fraction
 from itertools import product
 from pathlib import Path
@@ -33,7 +33,7 @@ from . import fuzz
 from .conftest import many
 from .running import Ran, called
 
-BUSY = 15  # seconds of processor time, for any run
+BUSY = timedelta(minutes=1)  # for any run, on a busy machine
 MOST_SAID = 2000  # characters of a sentence
 MARK = "\ufeff"
 
@@ -42,19 +42,17 @@ MARK = "\ufeff"
 
 
 def check_run(run: fuzz.Run) -> None:
-    """In a folder with the file of the run, where measurements are short and every warning is shown."""
+    """What is promised of a run in a folder with its file; measurements are short, every warning is shown.
+
+    Only a part of a result may stand beside status 1: of rows, values and fits that failed.
+    """
     short = patch.multiple(measure, RUN_SECONDS=1e-5, REPEATS=1, MOST_SCENES=20, MOST_ROWS=2)
     with TemporaryDirectory() as folder, chdir(folder), short, warnings.catch_warnings():
         warnings.simplefilter("always")
         Path("in.csv").touch()
         Path(run.source).write_bytes(run.content)
-        check(run.words, called(run.words, Path("in.csv").read_bytes()))
-
-
-def check(words: Sequence[str], ran: Ran) -> None:
-    """What is promised of any run."""
+        words, ran = run.words, called(run.words, Path("in.csv").read_bytes())
     assert ran.status in (0, 1, 2, 130)
-    # Rows that failed, values that do not exist, a fit that gives no result.
     partly = words[0] in ("batch", "fit") or "--only" in words
     assert not ran.out or ran.status == 0 or (ran.status == 1 and partly), "stdout beside an error"
     assert [line for line in ran.err.splitlines() if not re.match("atwood: .", line)] == []
@@ -120,20 +118,13 @@ def check_cells(table: tuple[str, str, int]) -> None:
     came = rows_of(ran.out.removeprefix(MARK), separator) or []
     assert came[0] == (separator.join([head, "acceleration", "error"]), [*columns, "acceleration", "error"])
     for (record, cells), (printed, (*kept, result, error)) in zip(rows, came[1:], strict=True):
-        lacking = max(0, len(columns) - len(cells))
-        surplus = len(cells) > len(columns)
-        right = (
-            None
-            if lacking or surplus
-            else acceleration([cells[columns.index(name)] for name in ("m1", "m2")])
-        )
+        lacking, surplus = len(columns) - len(cells), len(cells) > len(columns)
+        masses = [] if lacking else [cells[columns.index(name)] for name in ("m1", "m2")]
+        right = acceleration(masses) if masses else None
         assert surplus or printed.startswith(record + separator * (lacking + 1))
-        last = len(columns) - 1
-        assert kept == [
-            *cells[:last],
-            *([separator.join(cells[last:])] if cells[last:] else []),
-            *[""] * lacking,
-        ]
+        if surplus:
+            cells = [*cells[: len(columns) - 1], separator.join(cells[len(columns) - 1 :])]
+        assert kept == cells + [""] * lacking
         decimal = result if separator == "," else result.replace(",", ".")  # as the table has decimal commas
         assert decimal == ("" if right is None else repr(right))
         assert bool(error) == (right is None)
@@ -160,12 +151,16 @@ def check_lines(table: tuple[list[str], str, int]) -> None:
 
 # Long texts, and values of tables that are deep or huge
 
-LONG = 20_000
+LONG = 10_000
 TYPED = [
     *(f"solve --m1 1 --m2 3 --{option} LONG" for option in ("M", "wrap", "axle", "g", "expect", "only")),
     *("sweep --m1 1 --m2 3 --M LONG", "batch - --column LONG", "fit - --without LONG", "solve LONG"),
 ]
-HELD = ["m1,m2\nLONG,3\n", "m1,LONG\n1,3\n", 'm1,m2,n\n1,3,"LONG\n', '{"m1":"LONG","m2":3}\n', "LONG"]
+CELLS = ["m1,m2\nLONG,3\n", "m1,LONG\n1,3\n", 'm1,m2,n\n1,3,"LONG\n', "LONG"]
+HELD = [
+    *product(["batch -", "fit -"], CELLS),
+    *product(["batch - --from ndjson"], ['{"m1":"LONG","m2":3}\n', "LONG"]),
+]
 
 
 @pytest.mark.parametrize("unit", ["9", " ", "(", "1/", "1(2)", "1,", "a_", "pi", '"', "kg*"])
@@ -177,15 +172,14 @@ def test_a_long_text_takes_no_long_time(unit: str) -> None:
         for line in TYPED
         for long in (text, f"1{text}x")
     ]
-    for content, command in product(HELD, ("batch -", "batch - --from ndjson", "fit -")):
-        runs.append((command.split(), content.replace("LONG", text).encode()))
+    runs += [(command.split(), content.replace("LONG", text).encode()) for command, content in HELD]
     for words, stdin in runs:
         begun = process_time()
         called(words, stdin)
         assert process_time() - begun < 0.5, words
 
 
-SIZE = 900_000  # a record has less than 1 MB
+SIZE = 600_000  # a record has less than 1 MB
 ODD: dict[str, dict[str, str]] = {
     "csv": {"digits": "1," + "9" * SIZE, "brackets": "1," + "[" * SIZE, "cells": "1" + "," * SIZE},
     "ndjson": {
@@ -229,36 +223,23 @@ def check_call(call: tuple[Callable[..., object], dict[str, Any]]) -> None:
             raise
 
 
-RUNS = {"solve": 600, "contact": 250, "sweep": 250, "batch": 350, "fit": 350, "tradeoff": 20}
+RUNS = {"solve": 400, "contact": 160, "sweep": 200, "batch": 280, "fit": 280, "tradeoff": 20}
 PROMISES: dict[str, tuple[Any, Callable[[Any], None], int]] = {
     **{command: (fuzz.runs(command), check_run, count) for command, count in RUNS.items()},
-    "cells": (fuzz.tables(), check_cells, 300),
+    "cells": (fuzz.tables(), check_cells, 200),
     "lines": (fuzz.lines(), check_lines, 100),
     "Python": (fuzz.calls(), check_call, 400),
 }
 """What is drawn, what is promised of it, and how many are tried with --every-digit; otherwise a quarter."""
 
 
-def too_slow(*_: object) -> None:
-    raise AssertionError(f"it takes more than {BUSY} s of processor time")
-
-
 def try_many(kind: str, count: int) -> None:
     drawn, promise, _ = PROMISES[kind]
 
-    @settings(max_examples=count)
+    @settings(max_examples=count, deadline=BUSY)
     @given(drawn)
     def is_kept(example: object) -> None:
-        if not hasattr(signal, "setitimer"):  # a system without such alarms
-            promise(example)
-            return
-        before = signal.signal(signal.SIGPROF, too_slow)
-        signal.setitimer(signal.ITIMER_PROF, BUSY)
-        try:
-            promise(example)
-        finally:
-            signal.setitimer(signal.ITIMER_PROF, 0)
-            signal.signal(signal.SIGPROF, before)
+        promise(example)
 
     is_kept()
 
@@ -266,18 +247,6 @@ def try_many(kind: str, count: int) -> None:
 @pytest.mark.parametrize("kind", PROMISES)
 def test_nothing_that_is_typed_read_or_given_breaks_a_promise(kind: str) -> None:
     try_many(kind, many(PROMISES[kind][2]))
-
-
-@pytest.mark.parametrize(
-    ("status", "out", "err"),
-    [
-        *((1, "1\n", "atwood: an error\n"), (2, "", ""), (120, "", ""), (0, "", "x.py:1: UserWarning: log\n")),
-        *((2, "", "atwood: \x1b[31m\n"), (2, "", f"atwood: {'x' * 2000}\n"), (0, "a\x9bm\n", ""), (0, "a\u202eb\n", "")),
-    ],
-)  # fmt: skip
-def test_what_breaks_a_promise(status: int, out: str, err: str) -> None:
-    with pytest.raises(AssertionError):
-        check(["solve"], Ran(status, out, err))
 
 
 if __name__ == "__main__":

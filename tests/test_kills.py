@@ -5,15 +5,14 @@ two. The file is then as it was, or whole, and but for SIGKILL nothing is left b
 """
 
 import os
-import re
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Sequence
-from contextlib import ExitStack, chdir
+from contextlib import chdir
 from functools import cache, partial
-from itertools import count, product
+from itertools import count
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
@@ -55,9 +54,8 @@ def blow(*_, **__):
 sys.exit(main())
 """
 SOLVING = """
-import atwood_cli.cli.contact, atwood_cli.solver.answers, atwood_cli.sweep.ranges, atwood_cli.batch.run
-atwood_cli.cli.contact.Answers = atwood_cli.solver.answers.Answers = blow
-atwood_cli.sweep.ranges.Answers = atwood_cli.batch.run.run_batch = blow
+import atwood_cli.solver.answers, atwood_cli.sweep.ranges, atwood_cli.batch.run
+atwood_cli.solver.answers.Answers = atwood_cli.sweep.ranges.Answers = atwood_cli.batch.run.run_batch = blow
 """
 # Modules in C may turn the interrupt into another error while they are imported.
 TURNED = """
@@ -70,16 +68,25 @@ def run():
         raise ImportError("numpy._core.multiarray failed to import") from error
 cli.run = run
 """
+# Where Python drops an object, it can raise no interrupt: this one was lost, and all that followed were ignored.
+DROPPED = """
+class Dropped:
+    __del__ = blow
+def run():
+    Dropped()
+    time.sleep(60)
+cli.run = run
+"""
 
 
 @pytest.mark.parametrize(
     ("code", "blow", "typed"),
     [
         (SOLVING, "SIGHUP", f"solve {SCENE} --mu 0.3 --json"),
-        (SOLVING, "SIGTERM", f"contact {SCENE} --mu 0.3"),
         (SOLVING, "SIGINT", f"sweep {SCENE} --M 0:100:9"),
         (SOLVING, "SIGINT", "batch -"),
         (TURNED, "SIGTERM", ""),
+        (DROPPED, "SIGINT", ""),
     ],
     ids=count(),
 )
@@ -90,25 +97,24 @@ def test_a_signal_ends_it_quietly(code: str, blow: str, typed: str) -> None:
 
 
 def test_a_pipe_that_brings_nothing_is_waited_for_until_it_is_stopped(tmp_path: Path) -> None:
-    """All at once, as each has to be waited for; one way, nobody has opened the pipe to write."""
-    with ExitStack() as stack:
-        children = {}
-        for kind, blow in product(("csv", "parquet"), ("SIGTERM", "SIGINT")):
-            os.mkfifo(pipe := tmp_path / f"{kind}{blow}")
-            children[hearing("batch", str(pipe), "--from", kind)] = blow
-            if blow == "SIGINT":
-                stack.callback(os.close, os.open(pipe, os.O_RDWR))
-        time.sleep(1)
-        for child, blow in children.items():
-            assert child.poll() is None
-            assert blown(child, blow) == (STATUS[blow], b"", b"")
+    """Both at once, as each has to be waited for; to write, only the second pipe was opened."""
+    children = {}
+    for kind, blow in (("csv", "SIGTERM"), ("parquet", "SIGINT")):
+        os.mkfifo(pipe := tmp_path / kind)
+        children[hearing("batch", str(pipe), "--from", kind)] = blow
+    opened = os.open(pipe, os.O_RDWR)
+    time.sleep(1)
+    for child, blow in children.items():
+        assert child.poll() is None
+        assert blown(child, blow) == (STATUS[blow], b"", b"")
+    os.close(opened)
 
 
 # What it was writing
 
 
 @pytest.mark.parametrize(
-    ("blow", "times", "before"), [("SIGKILL", 1, ""), ("SIGTERM", 1, "as it was"), ("SIGHUP", 1, ""), ("SIGINT", 2, "")]
+    ("blow", "times", "before"), [("SIGKILL", 1, ""), ("SIGHUP", 1, "as it was"), ("SIGINT", 2, "")]
 )  # fmt: skip
 def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blow: str, times: int, before: str) -> None:
     out = tmp_path / "out.csv"
@@ -116,30 +122,25 @@ def test_a_run_cut_short_leaves_no_output(tmp_path: Path, blow: str, times: int,
         out.write_text(before)
     child = hearing("batch", "-", "-o", str(out), "--force", stdin=subprocess.PIPE)
     assert child.stdin is not None
-    child.stdin.write(b"m1,m2,M\n" + b"1,3.1,10\n" * 300_000)  # some pieces are done, more are awaited
+    child.stdin.write(b"m1,m2,M\n" + b"1,3.1,10\n" * 1000)  # these are solved, and more are awaited
     child.stdin.flush()
-    while not any(path.stat().st_size for path in tmp_path.glob(".atwood-*")):
+    while not any(path.stat().st_size > 50_000 for path in tmp_path.glob(".atwood-*")):
         assert child.poll() is None
         time.sleep(0.01)
     status, _, err = blown(child, blow, [0] * times)
-    assert status == STATUS[blow]
-    assert out.exists() == bool(before)
+    assert (status, out.exists()) == (STATUS[blow], bool(before))
     if blow == "SIGKILL":
         assert err == b""
         return
     assert [path.read_text() for path in tmp_path.iterdir()] == [before] * bool(before)
-    is_left = "stays as it was" if before else "was not written"
-    said = re.fullmatch(rf"atwood: stopped after (\d+) rows; {re.escape(str(out))} {is_left}\n", err.decode())
-    assert said
-    assert 0 < int(said[1]) <= 300_000
+    assert err == b"atwood: stopped after 1000 rows\n"
 
 
 def test_what_is_to_outlive_its_terminal_does(tmp_path: Path) -> None:
     """Under nohup, which has SIGHUP ignored."""
     ignore = partial(signal.signal, signal.SIGHUP, signal.SIG_IGN)
-    child = hearing(
-        "batch", "-", "--only", "a", "-o", str(tmp_path / "out.csv"), stdin=subprocess.PIPE, preexec_fn=ignore
-    )
+    words = ["batch", "-", "--only", "a", "-o", str(tmp_path / "out.csv")]
+    child = hearing(*words, stdin=subprocess.PIPE, preexec_fn=ignore)
     while not list(tmp_path.iterdir()):
         time.sleep(0.01)
     said = b"atwood: 1 row: 1 no-slip; no errors.\n"
@@ -161,7 +162,7 @@ def cut(
     with TemporaryDirectory() as folder, chdir(folder):
         out = Path(next(word for word in line.split() if word.startswith("out.")))
         if "batch" in line:
-            scenes = pl.DataFrame({"m1": [1.0] * 50_000, "m2": [3.0] * 50_000, "n": range(50_000)})
+            scenes = pl.DataFrame({"m1": [1.0] * 20_000, "m2": [3.0] * 20_000, "n": range(20_000)})
             getattr(scenes, f"write_{out.suffix[1:]}")(f"in{out.suffix}")
         given = {*Path().iterdir(), out}
         if before is not None:
@@ -179,7 +180,7 @@ def whole(line: str) -> tuple[bytes | None, float]:
     return cut(line)[2], time.perf_counter() - begun
 
 
-@pytest.mark.parametrize("run", range(3))
+@pytest.mark.parametrize("run", [73])  # Parquet, interrupted
 def test_what_is_killed_at_any_instant_leaves_its_file_whole_or_as_it_was(run: int) -> None:
     random = Random(run)
     line, blow = random.choice(RUNS), random.choice(list(STATUS))
@@ -192,8 +193,7 @@ def test_what_is_killed_at_any_instant_leaves_its_file_whole_or_as_it_was(run: i
     assert after in (before, whole_file), what
     assert status or after == whole_file is not None, what
     assert not left or (blow == "SIGKILL" and all(name.startswith(".atwood-") for name in left)), what
-    # Python itself reports a signal that it cannot raise, as while it drops an object; the run then goes on to its end.
-    assert not status or all(line.startswith(b"atwood: ") for line in said.splitlines()), what
+    assert all(line.startswith(b"atwood: ") for line in said.splitlines()), what
 
 
 if __name__ == "__main__":

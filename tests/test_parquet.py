@@ -1,4 +1,4 @@
-"""Parquet and frames of polars: columns keep their types, damage is a sentence, groups have a fixed number of rows."""
+"""Parquet and frames of polars: columns keep their types, and damage is a sentence."""
 
 import io
 import math
@@ -192,12 +192,14 @@ def test_a_damaged_file_is_an_error(solved: Any, pytestconfig: pytest.Config, by
     texts = [None if i % 7 else "abc" for i in range(300)]
     whole = written(by({"m1": [1] * 300, "m2": [3] * 300, "s": texts}))
     said, unsaid = set(), 0
-    for place in range(5, len(whole), 5 if pytestconfig.getoption("every_digit") else 13):
+    for place in range(5, len(whole), 5 if pytestconfig.getoption("every_digit") else 23):
         ran, result = solved(whole[:place] + b"\0" + whole[place + 1 :], "--only regime --allow-errors")
         said.add(ran.status)
         unsaid += "and has 0" in ran.err
-        begins = "atwood: cannot read IN: " if ran.status else "atwood: not read: 's'.\natwood: 300 rows: "
-        assert ran.err.startswith(begins), place
+        said_of_it = (
+            "cannot read IN: " if ran.status else "not read: '.*'.\natwood: 300 rows: "
+        )  # its name may change
+        assert re.match(f"atwood: {said_of_it}", ran.err), place
         assert ran.status == 1 or len(result) == 300
     assert said == {0, 1}
     assert unsaid < 5  # mostly polars knows what is wrong
@@ -214,21 +216,6 @@ def test_rows_that_are_not_there(batch: Batch, solved: Any) -> None:
 
 
 # What is written
-
-
-@pytest.mark.parametrize("columns", [1, 40])
-def test_groups_have_a_fixed_number_of_rows(solved: Any, tmp_path: Path, columns: int) -> None:
-    """Fewer where rows are wide, and as many groups as there are rows for."""
-    rows = 150_000 if columns == 1 else 50_000
-    frame = pl.DataFrame({"m1": 1.0, "m2": 3.0, "n": range(rows), **{str(i): "x" for i in range(columns)}})
-    ran, result = solved(written(frame, row_group_size=rows // 3), "--only a")
-    assert ran.err.endswith(f"atwood: {rows} rows: {rows} no-slip; no errors.\n")
-    assert result.select(frame.columns).equals(frame)
-    about = pq.read_metadata(tmp_path / "out.parquet")
-    *groups, last = [about.row_group(i).num_rows for i in range(about.num_row_groups)]
-    most = min(1 << 16, (1 << 20) // about.num_columns)
-    assert set(groups) == {most}
-    assert last <= most
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs a device that is always full")

@@ -3,15 +3,16 @@
 import os
 import re
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager, redirect_stderr, suppress
 from functools import partial
 from io import TextIOWrapper
 from queue import SimpleQueue
-from typing import IO, TYPE_CHECKING, Any, TypeVar
+from typing import IO, TYPE_CHECKING, TypeVar
 
 from ..model.quantities import read_quantities
+from ..output.page import with_progress
 from ..tables.sources import Unreadable
 from .solving import Layout, Question, Tally, read_layout, solve_cells
 
@@ -19,13 +20,6 @@ if TYPE_CHECKING:
     import polars as pl
 
 Table = TypeVar("Table", "pl.DataFrame", "pl.LazyFrame")
-Watch = Callable[[Iterator[Any], int | None, Callable[[Any], int], Callable[[Any], int]], Iterator[Any]]
-"""A function that passes parts on, and may show progress. It takes the parts, their whole size if that is
-known, and functions that give the size and the rows of a part."""
-GROUP_ROWS, GROUP_CELLS = 1 << 16, 1 << 20
-"""The most rows, and the most cells, of a row group that is written."""
-
-
 OLDEST_POLARS = "1.41.1"
 
 
@@ -33,13 +27,10 @@ def check_polars() -> None:
     """Raise ImportError if polars is older than what tables are tested with."""
     import polars as pl
 
-    version, oldest = (
-        list(map(int, re.findall(r"\d+", words)[:3])) for words in (pl.__version__, OLDEST_POLARS)
-    )
+    oldest, version = ([*map(int, re.findall(r"\d+", x)[:3])] for x in (OLDEST_POLARS, pl.__version__))
     if version < oldest:
-        raise ImportError(
-            f"this needs polars {OLDEST_POLARS} or newer, not {pl.__version__}; pip install --upgrade polars"
-        )
+        found = f"{OLDEST_POLARS} or newer, not {pl.__version__}"
+        raise ImportError(f"this needs polars {found}; pip install --upgrade polars")
 
 
 def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
@@ -90,10 +81,8 @@ def with_results(
     return frame.hstack(solve_cells(cells, layout, asked, tally or Tally(set())))
 
 
-def solve_parquet(
-    source: IO[bytes], target: IO[bytes], asked: Question, tally: Tally, watch: Watch
-) -> Layout:
-    """Write a file of scenes with their results, in the same order, in row groups of a fixed size.
+def solve_parquet(source: IO[bytes], target: IO[bytes], asked: Question, tally: Tally) -> Layout:
+    """Write a file of scenes with their results, in the same order.
 
     Raises Unreadable for a file that is no Parquet, or is damaged.
     """
@@ -105,28 +94,20 @@ def solve_parquet(
         total = int(table.select(pl.len()).collect().item())
         layout = read_layout(schema.names(), asked)
         head = with_results(pl.DataFrame(schema=schema), layout, asked)
-        rows = max(1, min(GROUP_ROWS, GROUP_CELLS // head.width))
-        groups = table.collect_batches(maintain_order=True)
-        frames = (
-            with_results(frame, layout, asked, tally) for group in groups for frame in group.iter_slices(rows)
+        parts = table.collect_batches(maintain_order=True)
+        written = _write(
+            (with_results(part, layout, asked, tally) for part in parts), head.schema, target, total
         )
-        written = _write(frames, head.schema, target, rows, lambda counts: watch(counts, total, int, int))
     if written != total:
         raise Unreadable(f"it is damaged: it should have {total} rows, and has {written}")
     return layout
 
 
-def _write(
-    frames: "Iterator[pl.DataFrame]",
-    schema: "pl.Schema",
-    target: IO[bytes],
-    rows: int,
-    watch: Callable[[Iterator[int]], Iterator[int]],
-) -> int:
-    """Write frames as Parquet in groups of at most ``rows`` rows. Returns the number of all rows.
+def _write(frames: "Iterator[pl.DataFrame]", schema: "pl.Schema", target: IO[bytes], total: int) -> int:
+    """Write frames as Parquet. Returns the number of all rows, which should be the ``total``.
 
-    A thread writes while this one waits, as polars would not hear Ctrl-C. An error ends the frames, since
-    polars would panic over an exception, and is raised here.
+    A thread writes while this one waits and shows progress, as polars would not hear Ctrl-C. An error ends
+    the frames, since polars would panic over an exception, and is raised here.
     """
     from polars.io.plugins import register_io_source
 
@@ -145,10 +126,10 @@ def _write(
 
     sink = register_io_source(source, schema=schema).sink_parquet
     with ThreadPoolExecutor(1) as writer:
-        writing = writer.submit(sink, target, compression="snappy", row_group_size=rows)
+        writing = writer.submit(sink, target, compression="snappy")
         writing.add_done_callback(lambda _: done.put(None))
         try:
-            written = sum(watch(iter(done.get, None)))
+            written = sum(with_progress(iter(done.get, None), total, int, int))
         except BaseException as error:
             failed.append(error)
             raise

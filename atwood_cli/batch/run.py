@@ -4,26 +4,24 @@ import os
 import signal
 import stat
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from io import BytesIO
-from operator import attrgetter
+from itertools import chain, islice
 from pathlib import Path
-from typing import IO, TYPE_CHECKING, Any, NamedTuple
+from typing import IO, TYPE_CHECKING, NamedTuple
 
 from ..model.scene import SceneError
 from ..output.files import STDOUT, Stdout, written_beside
+from ..output.page import with_progress
 from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream, opened
-from .frames import Watch, check_polars, solve_parquet
+from .frames import check_polars, solve_parquet
 from .solving import ERROR, VOCABULARY, Layout, Question, Tally, read_layout, solve_cells
 
 if TYPE_CHECKING:
     import polars as pl
-
-SIZE, ROWS = attrgetter("size"), attrgetter("rows")
-SEPARATORS = {"csv": ",", "tsv": "\t"}
 
 
 class Job(NamedTuple):
@@ -36,17 +34,12 @@ class Job(NamedTuple):
     asked: Question
 
 
-def run_batch(job: Job, watch: Watch, tally: Tally) -> list[str]:
-    """Solve a table of scenes. Returns sentences on how it was read. Raises OSError.
-
-    ``watch`` shows progress, unless results go to a terminal.
-    """
+def run_batch(job: Job, tally: Tally) -> list[str]:
+    """Solve a table of scenes. Returns sentences on how it was read. Raises OSError."""
     check_polars()
     if hasattr(signal, "siginterrupt"):  # as polars is imported, it has Ctrl-C wait for a pipe
         signal.siginterrupt(signal.SIGINT, True)
     _check_apart(job)
-    if job.target == STDOUT and sys.stdout.isatty():
-        watch = _unwatched
     with ExitStack() as stack:
         try:
             source = opened(job.source, stack)
@@ -55,15 +48,11 @@ def run_batch(job: Job, watch: Watch, tally: Tally) -> list[str]:
                 beside = stack.enter_context(written_beside(Path(job.target), job.force))
                 target = stack.enter_context(beside.open("wb"))
             solve = {"parquet": _solve_parquet, "ndjson": _solve_ndjson}.get(job.kind, _solve_csv)
-            remarks = solve(job, source, target, watch, tally)
+            remarks = solve(job, source, target, tally)
             target.flush()
         except Unreadable as error:
             raise cannot_read(job.source, error) from None
     return remarks
-
-
-def _unwatched(parts: Iterator[Any], *_: object) -> Iterator[Any]:
-    return parts
 
 
 def _check_apart(job: Job) -> None:
@@ -77,32 +66,32 @@ def _check_apart(job: Job) -> None:
         raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
 
 
-def _size(job: Job, source: IO[bytes]) -> int | None:
-    """Return the bytes of the input, None if they are not known."""
-    return None if is_stream(job.source) or is_packed(job.source) else os.fstat(source.fileno()).st_size
+def _watched(pieces: Iterator[Piece], job: Job, source: IO[bytes]) -> Iterator[Piece]:
+    """Show how far it is while pieces pass, unless results go to a terminal."""
+    if job.target == STDOUT and sys.stdout.isatty():
+        return pieces
+    is_known = not (is_stream(job.source) or is_packed(job.source))
+    size = os.fstat(source.fileno()).st_size if is_known else None
+    return with_progress(pieces, size, lambda piece: piece.size, lambda piece: len(piece.texts))
 
 
-def _solve_csv(
-    job: Job, source: IO[bytes], target: IO[bytes] | Stdout, watch: Watch, tally: Tally
-) -> list[str]:
+def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
     """Solve rows of cells: results follow with the separator and the decimal mark of the table."""
-    usual, asked = SEPARATORS[job.kind], job.asked
-    table = Csv(blocks_of(source), usual, lambda columns: recognised(columns, VOCABULARY, asked.named))
+    asked = job.asked
+    table = Csv(blocks_of(source), lambda columns: recognised(columns, VOCABULARY, asked.named))
     layout = read_layout(table.columns, asked)
-    is_first = True
-    head = table.separator.join([table.header, *asked.names, ERROR]) + table.line_end
-    for piece in watch(table.pieces(layout.headings), _size(job, source), SIZE, ROWS):
-        if is_first:
-            rows = piece.cells.iter_rows()
-            comma = decimal_commas_in(rows, range(piece.cells.width), table.separator)
-            layout, is_first = layout._replace(comma=comma), False
+    pieces = table.pieces(layout.headings)
+    first = [*islice(pieces, 1)]
+    for piece in first:
+        cells = piece.cells
+        comma = decimal_commas_in(cells.iter_rows(), range(cells.width), table.separator)
+        layout = layout._replace(comma=comma)
+    target.write((table.separator.join([table.header, *asked.names, ERROR]) + table.line_end).encode())
+    for piece in _watched(chain(first, pieces), job, source):
         results = solve_cells(piece.cells, layout, asked, tally, piece.errors)
-        target.write(head.encode())
         target.write(_csv(piece, results, table, layout.comma))
         target.flush()
-        head = ""
-    target.write(head.encode())
-    return _remarks(layout, table.separator, usual, tally)
+    return _remarks(layout, table.separator)
 
 
 def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memoryview:
@@ -125,23 +114,19 @@ def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memo
     return buffer.getbuffer()
 
 
-def _solve_ndjson(
-    job: Job, source: IO[bytes], target: IO[bytes] | Stdout, watch: Watch, tally: Tally
-) -> list[str]:
+def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
     """Solve lines, each of which is an object: results become its last members."""
     layout = Layout([])
 
-    def headings(keys: Any) -> list[Heading]:
+    def headings(keys: Sequence[str]) -> Sequence[Heading]:
         nonlocal layout
         layout = read_layout(keys, job.asked, whole=False)
-        return list(layout.headings)
+        return layout.headings
 
-    pieces = read_ndjson(blocks_of(source), headings)
-    for piece in watch(pieces, _size(job, source), SIZE, ROWS):
-        results = solve_cells(piece.cells, layout, job.asked, tally, piece.errors)
-        target.write(_ndjson(piece, results))
+    for piece in _watched(read_ndjson(blocks_of(source), headings), job, source):
+        target.write(_ndjson(piece, solve_cells(piece.cells, layout, job.asked, tally, piece.errors)))
         target.flush()
-    return _remarks(layout, "", "", tally)
+    return _remarks(layout)
 
 
 def _ndjson(piece: Piece, results: "pl.DataFrame") -> memoryview:
@@ -155,23 +140,20 @@ def _ndjson(piece: Piece, results: "pl.DataFrame") -> memoryview:
     return buffer.getbuffer()
 
 
-def _solve_parquet(
-    job: Job, source: IO[bytes], target: IO[bytes] | Stdout, watch: Watch, tally: Tally
-) -> list[str]:
+def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
     """Solve Parquet, whose columns keep their types."""
     # Parquet is not read from front to back, nor written so: a stream goes through memory.
     if is_stream(job.source) or is_packed(job.source):
         source = BytesIO(b"".join(blocks_of(source)))
     whole = BytesIO()
     file = whole if isinstance(target, Stdout) or is_stream(job.target) else target
-    layout = solve_parquet(source, file, job.asked, tally, watch)
+    layout = solve_parquet(source, file, job.asked, tally)
     target.write(whole.getbuffer())
-    return _remarks(layout, "", "", tally)
+    return _remarks(layout)
 
 
-def _remarks(layout: Layout, separator: str, usual: str, tally: Tally) -> list[str]:
+def _remarks(layout: Layout, separator: str = "") -> list[str]:
     """Return sentences on how a table was read, if not as usual."""
-    not_given = [f"{' and '.join(sorted(tally.not_given))} as not given"] if tally.not_given else []
     headings = [heading for heading in layout.headings if heading.place >= 0]
     not_read = [f"not read: {listed(layout.not_read)}."] if layout.not_read else []
-    return [*read_as(headings, separator, usual, layout.comma, not_given), *not_read]
+    return [*read_as(headings, separator, layout.comma), *not_read]

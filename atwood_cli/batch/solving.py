@@ -3,6 +3,7 @@
 import re
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cache, partial
@@ -25,7 +26,7 @@ from ..model.scene import (
     read_value,
 )
 from ..model.units import Malformed, counted, in_quotes, read_unit, shortened
-from ..solver.messages import reasons_at, unmarked
+from ..solver.messages import unmarked
 from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
 from ..tables.sources import Unreadable
 
@@ -99,17 +100,11 @@ def _meant(column: str) -> str | None:
     words = [word for word in re.split("[^0-9a-z]+", letters) if word]
     if meant := OTHER_NAMES.get("_".join(words)):
         return meant
-    meant = OTHER_NAMES.get("_".join(words[:-1]))
-    return meant if meant and _is_unit(re.split(r"[\W_]+", name)[-1], meant) else None
-
-
-def _is_unit(word: str, name: str) -> bool:
-    """Return whether an input may be given in that unit."""
-    dimension = parameter_of(name).dimension
-    try:
-        return dimension is not None and bool(read_unit(word, dimension))
-    except Malformed:
-        return False
+    if meant := OTHER_NAMES.get("_".join(words[:-1])):
+        with suppress(Malformed):
+            read_unit(re.split(r"[\W_]+", name)[-1], parameter_of(meant).dimension or "")
+            return meant
+    return None
 
 
 # Rows
@@ -117,7 +112,7 @@ def _is_unit(word: str, name: str) -> bool:
 
 @dataclass
 class Tally:
-    """The counts of a run, the results that its rows lack, and the words that stood for empty cells."""
+    """The counts of a run, and the results that its rows lack."""
 
     missing: set[str]
     """The results that no row has had."""
@@ -127,7 +122,6 @@ class Tally:
     first_error: str = ""
     beyond: int = 0
     reasons: Counter[tuple[str, str]] = field(default_factory=Counter)
-    not_given: set[str] = field(default_factory=set)
 
     def add(self, results: "pl.DataFrame", regimes: "pl.Series") -> None:
         """Count the next rows by their results."""
@@ -139,32 +133,22 @@ class Tally:
             self.errors += bad
         self.rows += results.height
 
-    def lines(self, every_reason: bool) -> list[str]:
-        """Return the messages: the summary, why valid rows lack results, and the first error.
-
-        Without ``every_reason`` only the most frequent reason is named.
-        """
+    def lines(self) -> list[str]:
+        """Return the messages: the summary, why most valid rows lack results, and the first error."""
         parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
         counts = [", ".join(parts)] if parts else []
         counts.append(counted(self.errors, "error") if self.errors else "no errors")
         if self.beyond:
             counts.append(f"{counted(self.beyond, 'value')} beyond the range of doubles left empty")
-        summary = f"{counted(self.rows, 'row')}: {'; '.join(counts)}."
-        first = [f"first error, in {self.first_error}"] if self.errors else []
-
-        def rank(counted: tuple[tuple[str, str], int]) -> tuple[int, int, str]:
-            (name, reason), count = counted
-            return -count, NAMES.index(name), reason
-
-        reasons = sorted(self.reasons.items(), key=rank)
-        if every_reason or not reasons:
-            lacking = reasons_at(dict(reasons), self.rows, "in {} of {} rows")
-        else:
-            (name, why), most = reasons[0]
-            others = sum(reason == why and count == most for (_, reason), count in reasons) - 1
-            names = f"{name} and {others} more" if others else name
-            lacking = [unmarked(f"{counted(most, 'row')} {'lacks' if most == 1 else 'lack'} {names}: {why}.")]
-        return [summary, *lacking, *first]
+        said = [f"{counted(self.rows, 'row')}: {'; '.join(counts)}."]
+        if self.reasons:
+            ranks = [(-count, NAMES.index(name), why) for (name, why), count in self.reasons.items()]
+            most, why = -min(ranks)[0], min(ranks)[2]
+            names = [name for name in NAMES if self.reasons[name, why] == most]
+            more = f" and {len(names) - 1} more" if names[1:] else ""
+            lack = "lacks" if most == 1 else "lack"
+            said.append(unmarked(f"{counted(most, 'row')} {lack} {names[0]}{more}: {why}."))
+        return [*said, *([f"first error, in {self.first_error}"] if self.errors else [])]
 
 
 def solve_cells(
@@ -179,13 +163,14 @@ def solve_cells(
     from ..arrays import solve_and_count
 
     doubles: Any
-    doubles, errors, not_given = _doubles(cells, layout)
+    doubles, errors = _doubles(cells, layout)
     errors |= unread
     doubles["m1"].scatter(list(errors), None)  # such a row has no results
     solved, reasons = solve_and_count(doubles, "exact", ["regime", *asked.names])
     regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
     bad = [row for row in regimes.is_null().arg_true() if row not in errors]
-    errors |= dict(zip(bad, _reasons(cells[bad], layout), strict=True))
+    why = cache(partial(_why, layout))  # as many rows may be alike
+    errors |= dict(zip(bad, map(why, cells[bad].iter_rows()), strict=True))
     error = pl.repeat(None, cells.height, dtype=pl.String, eager=True)
     error = error.scatter(list(errors), list(errors.values()))
     columns = pl.DataFrame({**solved, "regime": regimes})
@@ -195,44 +180,35 @@ def solve_cells(
     results = columns.select(*asked.names, error.alias(ERROR))
     tally.beyond += beyond
     tally.reasons += reasons
-    tally.not_given |= not_given
     tally.add(results, regimes)
     return results
 
 
-def _doubles(
-    cells: "pl.DataFrame", layout: Layout
-) -> "tuple[dict[str, pl.Series], dict[int, str], set[str]]":
-    """Return the inputs by name, the first error of each bad row, and the words that stand for empty cells.
-
-    An input is null if its cell is empty or wrong.
-    """
+def _doubles(cells: "pl.DataFrame", layout: Layout) -> "tuple[dict[str, pl.Series], dict[int, str]]":
+    """Return the inputs by name, null if a cell is empty or wrong, and the first error of each bad row."""
     import polars as pl
 
     columns: dict[str, pl.Series] = {}
     errors: dict[int, str] = {}
-    not_given: set[str] = set()
     for heading, column in zip(layout.headings, cells, strict=True):
         if column.dtype in (pl.Categorical, pl.Enum):
             column = column.cast(pl.String)
         if not (column.dtype.is_numeric() or column.dtype in (pl.String, pl.Null)):
             raise Unreadable(f"column {heading.name} holds {shortened(str(column.dtype))}, not numbers")
-        doubles = _in_bulk(column, heading, layout.comma)
-        if column.dtype == pl.String and doubles.null_count():
+        if column.dtype == pl.String:
             column = column.str.strip_chars()
-            empty = column.is_in(EMPTY)
-            not_given |= {*column.filter(empty).unique()} - {""}
-            column = column.set(empty, None)
-            doubles = _in_bulk(column, heading, layout.comma)
-        odd = _odd_cells(column, doubles)
-        for row, cell in odd.items():
+            column = column.set(column.is_in(EMPTY), None)
+        doubles = _in_bulk(column, heading, layout.comma)
+        rows = (column.is_not_null() & doubles.is_null()).arg_true()
+        found: list[float | None] = []
+        for row, cell in zip(rows, column[rows], strict=True):
             try:
-                odd[row] = _double(heading, cell, layout.comma)
+                found.append(_double(heading, cell, layout.comma))
             except SceneError as error:
-                odd[row] = None
+                found.append(None)
                 errors.setdefault(row, str(error))
-        columns[heading.name] = doubles.scatter(list(odd), pl.Series(odd.values(), dtype=pl.Float64))
-    return columns, errors, not_given
+        columns[heading.name] = doubles.scatter(rows, pl.Series(found, dtype=pl.Float64))
+    return columns, errors
 
 
 def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
@@ -243,30 +219,21 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
     power = len(str(max(factor, 1 / factor))) - 1
     if max(factor, 1 / factor) != 10**power:
         return pl.repeat(None, len(cells), dtype=pl.Float64, eager=True)
-    if cells.dtype != pl.String:
+    if cells.dtype == pl.String:
+        texts = cells.set(cells.str.len_bytes() > LONG_CELL, None)
+        if comma:
+            texts = texts.set(texts.str.contains(".", literal=True), None).str.replace(",", ".", literal=True)
+        exact = texts + f"e{power if factor > 1 else -power}" if power else texts
+        doubles = exact.cast(pl.Float64, strict=False)
+    else:
         doubles = cells.cast(pl.Float64, strict=False)
         # A column, as polars would divide by a single number in two steps, and round twice.
         powers = pl.repeat(float(10**power), len(cells), eager=True)
-        return doubles * powers if factor > 1 else doubles / powers
-    if comma:
-        cells = cells.set(cells.str.contains(".", literal=True), None)
-        cells = cells.str.replace(",", ".", literal=True)
-    exact = cells + f"e{power if factor > 1 else -power}" if power else cells
-    return exact.cast(pl.Float64, strict=False)
-
-
-def _odd_cells(cells: "pl.Series", doubles: "pl.Series") -> dict[int, Any]:
-    """Return the cells, by row, that may not be equal to the doubles that polars read."""
-    import polars as pl
-
-    text = cells.dtype == pl.String
-    odd = cells.is_not_null() & ~doubles.is_finite().fill_null(False)
+        doubles = doubles * powers if factor > 1 else doubles / powers
     if (zero := doubles == 0).any():  # a number too small for a double would become 0, another scene
-        odd |= zero & (cells.str.contains("[1-9]") if text else cells != 0)  # the digit may be an exponent's
-    if text:
-        odd |= cells.str.len_bytes() > LONG_CELL
-    rows = odd.arg_true()
-    return dict(zip(rows, cells[rows], strict=True))
+        nonzero = cells.str.contains("[1-9]") if cells.dtype == pl.String else cells != 0
+        doubles = doubles.set(zero & nonzero, None)  # the digit may be an exponent's
+    return doubles.set(~doubles.is_finite(), None)
 
 
 def _double(heading: Heading, cell: str | float, comma: bool) -> float:
@@ -285,12 +252,6 @@ def _double(heading: Heading, cell: str | float, comma: bool) -> float:
     return value
 
 
-def _reasons(cells: "pl.DataFrame", layout: Layout) -> list[str]:
-    """Return the errors of rows that are no scenes."""
-    why = cache(partial(_why, layout))  # as many rows may be alike
-    return [why(row) for row in cells.iter_rows()]
-
-
 def _why(layout: Layout, row: Sequence[Any]) -> str:
     """Return the error of a row, in the words of `solve`. It quotes numbers as they were typed."""
     cells: dict[str, Given | None] = {}
@@ -298,7 +259,7 @@ def _why(layout: Layout, row: Sequence[Any]) -> str:
         text = pointed(heading.name, cell, layout.comma) if isinstance(cell, str) else cell
         if text is None or text in EMPTY:
             continue
-        if (_double(heading, cell, layout.comma) if isinstance(cell, str) else cell) == inf:
+        if str(text).lower() == "inf":  # which has no unit
             cells[heading.name] = inf
         else:
             typed = f"{text}{heading.unit}" if heading.unit or isinstance(text, str) else float(text)

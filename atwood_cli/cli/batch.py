@@ -1,15 +1,14 @@
 """`atwood batch`: a table of scenes, solved row by row."""
 
-import os
 from typing import Annotated
 
 import typer
 
 from ..model.quantities import STANDARD, read_names
 from ..model.scene import INPUTS
-from ..model.units import LONGEST_NAME, counted, shortened
+from ..model.units import counted
 from ..output.text import say
-from ..tables.sources import FORMATS, check_format, is_stream, read_format
+from ..tables.sources import FORMATS, check_format, read_format
 from .options import COULD_NOT, DONE, Columns, Force, Labels, option
 
 Table = Annotated[
@@ -80,35 +79,19 @@ def batch(
 ) -> int:
     from ..batch.run import Job, run_batch
     from ..batch.solving import VOCABULARY, Question, Tally
-    from ..output.page import with_progress
     from ..tables.headings import read_named
 
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
     kind = read_format(from_, table)
     check_format(output, kind)
-    named = read_named(column or (), VOCABULARY)
-    job = Job(table, kind, output, force, Question(names, label or (), named))
+    job = Job(table, kind, output, force, Question(names, label or (), read_named(column or (), VOCABULARY)))
     tally = Tally(set(names))
-    before = _stamp(output)
     try:
-        remarks = run_batch(job, with_progress, tally)
+        remarks = run_batch(job, tally)
     except KeyboardInterrupt:
-        stopped = f"stopped after {counted(tally.rows, 'row')}"
-        if not is_stream(output) and _stamp(output) == before:
-            is_left = "stays as it was" if before else "was not written"
-            say(f"{stopped}; {shortened(output, LONGEST_NAME)} {is_left}")
-        elif tally.rows:
-            say(stopped)
+        if tally.rows:
+            say(f"stopped after {counted(tally.rows, 'row')}")
         raise
-    say(*remarks, *tally.lines(every_reason=bool(only)))
+    say(*remarks, *tally.lines())
     missing = only and tally.missing and tally.rows > tally.errors
     return COULD_NOT if missing or (tally.errors and not allow_errors) else DONE
-
-
-def _stamp(path: str) -> tuple[int, int] | None:
-    """Return the identity of a file and the time of its last change; None if there is no file."""
-    try:
-        about = os.stat(path)
-        return about.st_ino, about.st_mtime_ns
-    except (OSError, ValueError):
-        return None

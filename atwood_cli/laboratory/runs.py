@@ -104,7 +104,7 @@ def read_runs(
     _check(sheet, names, drop)
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
-    remarks = read_as(headings, sheet.separator, sheet.usual, comma, [*others, *sheet.remarks])
+    remarks = read_as(headings, sheet.separator, comma, [*others, *sheet.remarks])
     if drop:
         drop = drop._replace(uncertainty=Fraction(0))  # it counts for all runs together
     left_out = _read_without(without, len(sheet.rows), headings)

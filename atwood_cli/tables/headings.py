@@ -16,7 +16,7 @@ from ..model.scene import Input, SceneError, parameter_of, read_input
 from ..model.units import PERCENT, Malformed, in_quotes, read_unit, symbol_of, without_blanks
 from .sources import Unreadable
 
-SEPARATOR_NAMES = {",": "commas", "\t": "tabs", ";": "semicolons"}
+SEPARATORS = ",\t;"
 NO_UNIT = ("", "-", "1")
 EMPTY = ("", "NA", "NULL", "null")
 """The texts of cells without a number: R and databases write a word."""
@@ -48,7 +48,8 @@ class Vocabulary(NamedTuple):
 class Heading(NamedTuple):
     """A column that holds a quantity: its place, its heading, the unit of its cells, that unit in SI units.
 
-    ``number`` tells several columns of the quantity apart. ``u`` is the column of its uncertainties.
+    ``number`` tells several columns of the quantity apart. ``u`` is the column of its uncertainties, which is
+    ``uncertain``; without a name it belongs to the column before.
     """
 
     place: int
@@ -58,15 +59,7 @@ class Heading(NamedTuple):
     unit: str = ""
     factor: Fraction = ONE
     u: "Heading | None" = None
-
-
-class _Meaning(NamedTuple):
-    """The meaning of a heading. Without a name it is the uncertainty of the column before."""
-
-    name: str
-    number: str
-    unit: str
-    uncertain: bool
+    uncertain: bool = False
 
 
 # Headings
@@ -88,25 +81,25 @@ def read_headings(
         word = f"{named[absent[0]]}={absent[0]}"
         raise SceneError("column", word, f"is not there; there are {listed(columns)}")
     headings: dict[tuple[str, str], Heading] = {}
-    uncertain: list[tuple[int, _Meaning]] = []
+    uncertain: list[Heading] = []
     for place, column in enumerate(columns):
-        meaning = None if column in labels else _meaning(column, vocabulary, named)
-        if meaning and meaning.uncertain:
-            uncertain.append((place, meaning))
-        elif meaning:
-            key = meaning.name, meaning.number
-            if column in named and key in headings and meaning.name in vocabulary.repeated:
-                key = meaning.name, column  # a repeat that its user did not number
-            if key in headings:
-                way = "rename one"
-                if key[0] in vocabulary.repeated:
-                    way = f"number what is repeated, as '{key[0]} 1'"
-                same = f"{in_quotes(headings[key].column)} and {in_quotes(column)} are both {key[0]}"
-                raise Unreadable(f"columns {same}; {way}{_let_pass(column)}")
-            factor = unit_factor(key[0], meaning.unit, column)
-            headings[key] = Heading(place, column, *key, meaning.unit, factor)
-    for place, meaning in uncertain:
-        _add_uncertainty(headings, place, columns[place], meaning)
+        found = None if column in labels else _meaning(column, vocabulary, named)
+        if not found:
+            continue
+        found = found._replace(place=place)
+        if found.uncertain:
+            uncertain.append(found)
+            continue
+        is_repeat = found.name in vocabulary.repeated
+        key = found.name, found.number
+        if is_repeat and column in named and key in headings:
+            key = found.name, column  # a repeat that its user did not number
+        if same := headings.get(key):
+            way = f"number what is repeated, as '{found.name} 1'" if is_repeat else "rename one"
+            raise refused(column, f"holds {found.name}, as {in_quotes(same.column)} does; {way}")
+        headings[key] = found._replace(number=key[1], factor=unit_factor(found.name, found.unit, column))
+    for found in uncertain:
+        _add_uncertainty(headings, found)
     return list(headings.values())
 
 
@@ -119,25 +112,25 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
     """Return the names by their headings, from options --column NAME=HEADING. Raises SceneError."""
     named: dict[str, str] = {}
     for word in words:
-        name, equals, heading = word.partition("=")
-        if not equals or not heading or heading in named:
-            raise SceneError("column", word, "must be NAME=HEADING, as t='Fallzeit (s)', each heading once")
-        if not (meaning := _meaning(name, vocabulary, {})) or not meaning.name:
+        name, _, heading = word.partition("=")
+        meaning = _meaning(name, vocabulary, {})
+        if not heading or heading in named or not meaning or not meaning.name:
             there = ", ".join(dict.fromkeys(vocabulary.names.values()))
-            raise SceneError("column", word, f"has no name of a quantity before =; there are {there}")
+            rule = f"must be NAME=HEADING, as t='Fallzeit (s)', each heading once; names are {there}"
+            raise SceneError("column", word, rule)
         named[heading] = name
     return named
 
 
-def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> _Meaning | None:
-    """Return the meaning of a heading; None if it is not known."""
+def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Heading | None:
+    """Return what a column holds, without its place and factor; None if the heading is not known."""
     name = without_blanks(named.get(column, column))
     meanings = (_named(word, unit, vocabulary) for word, unit in divisions(name))
     meaning = next(filter(None, meanings), None)
     if meaning and column in named and not meaning.unit:  # the heading itself may have a unit
         *_, (_, unit) = divisions(without_blanks(column))
-        return meaning._replace(unit=unit)
-    return meaning
+        meaning = meaning._replace(unit=unit)
+    return meaning and meaning._replace(column=column)
 
 
 def divisions(text: str) -> Iterator[tuple[str, str]]:
@@ -149,39 +142,34 @@ def divisions(text: str) -> Iterator[tuple[str, str]]:
         yield match[1].strip(), "" if unit in NO_UNIT else unit
 
 
-def _named(word: str, unit: str, vocabulary: Vocabulary) -> _Meaning | None:
+def _named(word: str, unit: str, vocabulary: Vocabulary) -> Heading | None:
     """Return the meaning of a name without its unit; None if it is not known."""
-    uncertain = False
-    if vocabulary.uncertain:
-        if word in OF_COLUMN_BEFORE:
-            return _Meaning("", "", unit, True)
-        if found := UNCERTAINTY.fullmatch(word):
-            word, uncertain = found[1] or found[2], True
-    key = re.sub(r"[\s_]", "", normalize("NFKC", word))
-    if name := vocabulary.names.get(key):
-        return _Meaning(name, "", unit, uncertain)
-    letters = key.rstrip("0123456789")
+    if vocabulary.uncertain and word in OF_COLUMN_BEFORE:
+        return Heading(0, "", "", unit=unit, uncertain=True)
+    found = UNCERTAINTY.fullmatch(word) if vocabulary.uncertain else None
+    key = re.sub(r"[\s_]", "", normalize("NFKC", (found[1] or found[2]) if found else word))
+    letters = key if key in vocabulary.names else key.rstrip("0123456789")
     name = vocabulary.names.get(letters, "")
-    return _Meaning(name, key[len(letters) :], unit, uncertain) if name in vocabulary.repeated else None
+    if letters != key and name not in vocabulary.repeated:
+        return None
+    return Heading(0, "", name, key[len(letters) :], unit, uncertain=bool(found)) if name else None
 
 
-def _add_uncertainty(
-    headings: dict[tuple[str, str], Heading], place: int, column: str, meaning: _Meaning
-) -> None:
+def _add_uncertainty(headings: dict[tuple[str, str], Heading], found: Heading) -> None:
     """Give quantities their column of uncertainties. Raises Unreadable."""
-    name, number, unit, _ = meaning
-    uncertain = {
-        key: own
-        for key, own in headings.items()
-        if (own.name == name and number in ("", own.number) if name else own.place == place - 1)
-    }
-    if not uncertain:
-        raise refused(column, "could be an uncertainty, but no column is what it would be of")
-    for key, own in uncertain.items():
+    owners = [own for own in headings.values() if own.place == found.place - 1]
+    if found.name:
+        namesakes = [own for own in headings.values() if own.name == found.name]
+        owners = [own for own in namesakes if found.number in ("", own.number)]
+    if not owners:
+        raise refused(found.column, "could be an uncertainty, but no column is what it would be of")
+    for own in owners:
         if own.u:
-            raise refused(column, f"is a second uncertainty of {own.name}")
-        factor = unit_factor(own.name, unit, column) if unit not in ("", PERCENT) else own.factor
-        headings[key] = own._replace(u=Heading(place, column, own.name, own.number, unit, factor))
+            raise refused(found.column, f"is a second uncertainty of {own.name}")
+        plain = found.unit in ("", PERCENT)
+        factor = own.factor if plain else unit_factor(own.name, found.unit, found.column)
+        u = found._replace(name=own.name, number=own.number, factor=factor)
+        headings[own.name, own.number] = own._replace(u=u)
 
 
 def unit_factor(name: str, unit: str, column: str) -> Fraction:
@@ -201,11 +189,8 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
 
 def refused(column: str, why: str) -> Unreadable:
     """Return the error for a heading, with the option that lets it pass."""
-    return Unreadable(f"column {in_quotes(column)} {why}{_let_pass(column)}")
-
-
-def _let_pass(column: str) -> str:
-    return f"; or keep it with --label {in_quotes(column)}"
+    column = in_quotes(column)
+    return Unreadable(f"column {column} {why}; or keep it with --label {column}")
 
 
 def listed(names: Sequence[str]) -> str:
@@ -216,10 +201,10 @@ def listed(names: Sequence[str]) -> str:
 
 
 def read_as(
-    headings: Iterable[Heading], separator: str, usual: str, comma: bool, others: Iterable[str] = ()
+    headings: Iterable[Heading], separator: str, comma: bool, others: Iterable[str] = ()
 ) -> list[str]:
-    """Return a line that says how a table was read; none if it was read as usual."""
-    parts = [f"cells separated by {SEPARATOR_NAMES[separator]}"] if separator != usual else []
+    """Return a line that says how a table was read; none if there is nothing to say."""
+    parts = ["cells separated by semicolons"] if separator == ";" else []
     parts += ["decimal commas"] if comma else []
     read = {own.place: (own.column, own.name, own.unit) for own in headings}
     read |= {own.u.place: (own.u.column, f"u({own.name})", own.u.unit) for own in headings if own.u}

@@ -5,15 +5,15 @@ A record of CSV is a row, which may have several lines. A record of NDJSON is a 
 
 import csv
 import json
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Sized
 from contextlib import suppress
 from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..model.units import counted, in_quotes
 from . import sources
-from .headings import SEPARATOR_NAMES, Heading
-from .sources import LONGEST_RECORD, Unreadable, decoded, too_long, whole_lines
+from .headings import SEPARATORS, Heading
+from .sources import LONGEST_RECORD, TOO_LONG, Unreadable, whole_lines
 
 if TYPE_CHECKING:
     import polars as pl
@@ -31,20 +31,16 @@ STRAY_RETURN = (
 
 
 class Piece(NamedTuple):
-    """Consecutive records of a table."""
+    """Consecutive records of a table without their line ends, and the cells of quantities by their names.
+
+    ``errors`` are the reasons of records that cannot be read, by their place. ``size`` is the length of the
+    piece in the file, to show progress.
+    """
 
     texts: "pl.Series"
-    """The records without their line ends."""
     cells: "pl.DataFrame"
-    """The cells of columns that hold a quantity, by its name."""
     errors: Mapping[int, str]
-    """The reasons of records that cannot be read, by their place."""
     size: int
-    """The length of the piece in the file, to show progress."""
-
-    @property
-    def rows(self) -> int:
-        return len(self.texts)
 
 
 class Csv:
@@ -54,66 +50,58 @@ class Csv:
     bulk. Elsewhere Python's `csv` splits them, and is strict about quotation marks.
     """
 
-    def __init__(
-        self, blocks: Iterator[bytes], usual: str, known: Callable[[Sequence[str]], Collection[str]]
-    ):
-        """Read the header by the separator that makes most ``known`` columns, then most columns.
-
-        If several are as good, it is the ``usual`` one.
-        """
+    def __init__(self, blocks: Iterator[bytes], known: Callable[[Sequence[str]], Collection[str]]):
+        """Read the header by the separator that makes most ``known`` columns, then most columns."""
         csv.field_size_limit(LONGEST_RECORD)
-        self._texts = (decoded(*lines) for lines in whole_lines(blocks, cells=True))
-        self._text, self._at, self._line = next(self._texts, ""), 0, 1
-        self.mark = BYTE_ORDER_MARK if self._text.startswith(BYTE_ORDER_MARK) else ""
-        self._text = self._text.removeprefix(BYTE_ORDER_MARK)
-        while self._text.count('"') % 2 and len(self._text) < LONGEST_RECORD:  # the header may have line ends
-            if not (more := next(self._texts, "")):
-                break
-            self._text += more
+        self._texts = map(_decoded, whole_lines(blocks, cells=True))
+        text = next(self._texts, "")
+        mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
+        text = text.removeprefix(BYTE_ORDER_MARK)
+        while text.count('"') % 2 and len(text) < LONGEST_RECORD and (more := next(self._texts, "")):
+            text += more  # the header may have line ends
 
         def score(separator: str) -> tuple[int, int]:
-            cells = _first_row(self._text, separator)
+            cells: list[str] = []
+            with suppress(csv.Error):
+                rows = csv.reader(_lines(text), delimiter=separator)
+                cells = next((row for row in rows if len(row) > 1 or "".join(row).strip()), [])
             return len(known(cells)), len(cells)
 
-        self.separator = max((usual, *SEPARATOR_NAMES), key=score)
-        header, self.columns = next(self._records(), ("", []))
+        self._text, self._line = _lines(text), 1
+        self.separator = max(SEPARATORS, key=score)
+        _, header, self.columns = next(self._records(), (1, "", []))
         if not header:
             raise Unreadable("it is empty")
-        if len(self.columns) > MOST_COLUMNS:
-            raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
-        self.header = self.mark + header.rstrip("\r\n")
+        _check_width(self.columns)
+        self.header = mark + header.rstrip("\r\n")
         self.line_end = "\r\n" if header.endswith("\r\n") else "\n"
-        self._line += header.count("\n")
 
     def pieces(self, headings: Sequence[Heading]) -> Iterator[Piece]:
         """Yield the records below the header. Raises Unreadable."""
-        while text := self._text[self._at :] or next(self._texts, ""):
-            self._text, self._at = text, 0
-            if piece := self._in_bulk(headings):
+        while text := self._text.read() or next(self._texts, ""):
+            if piece := self._in_bulk(text, headings):
                 self._line += len(piece.texts)
-                self._at = len(text)
-                yield piece
             else:
-                yield from self._by_csv(headings)
+                self._text = _lines(text)
+                piece = self._by_csv(headings)
+            if len(piece.texts):
+                yield piece
 
-    def _in_bulk(self, headings: Sequence[Heading]) -> Piece | None:
-        """Return the records of the text if all of them are plain, else None."""
+    def _in_bulk(self, text: str, headings: Sequence[Heading]) -> Piece | None:
+        """Return the records of a text if all of them are plain, else None."""
         import polars as pl
 
-        text = self._text
         if '"' in text or ("\r" in text and text.count("\r") > text.count("\r\n")):
             return None
-        lines = pl.Series([text.removesuffix("\n")]).str.split("\n").explode()
-        if "\r" in text:
-            lines = lines.str.strip_suffix("\r")
+        lines = pl.Series([text.removesuffix("\n")]).str.split("\n").explode().str.strip_suffix("\r")
         cells = lines.str.split(self.separator)
         if not (cells.list.len() == len(self.columns)).all():
             return None
         frame = pl.DataFrame({heading.name: cells.list.get(heading.place) for heading in headings})
         return Piece(lines, frame, {}, len(text))
 
-    def _by_csv(self, headings: Sequence[Heading]) -> Iterator[Piece]:
-        """Yield the records from here to the first that ends where a text ends."""
+    def _by_csv(self, headings: Sequence[Heading]) -> Piece:
+        """Return the records from here to the first that ends where a text ends, or to the end of a block."""
         import polars as pl
 
         width = len(self.columns)
@@ -121,15 +109,9 @@ class Csv:
         rows: list[list[str]] = []
         errors: dict[int, str] = {}
         size = 0
-
-        def piece() -> Piece:
-            types = dict.fromkeys((heading.name for heading in headings), pl.String)
-            frame = pl.DataFrame(rows, types, orient="row")
-            return Piece(pl.Series(texts, dtype=pl.String), frame, errors, size)
-
-        for record, cells in self._records():
+        for line, record, cells in self._records():
             text, lacking = record.rstrip("\r\n"), width - len(cells)
-            if error := self._error_of(record, cells):
+            if error := self._error_of(line, cells):
                 errors[len(texts)] = error
             if lacking < 0:  # the last cell takes the rest, so that results stand in their columns
                 text = self._written([*cells[: width - 1], self.separator.join(cells[width - 1 :])])
@@ -138,35 +120,35 @@ class Csv:
             rows.append([cells[heading.place] for heading in headings])
             size += len(record)
             if size > sources.BLOCK_BYTES:
-                yield piece()
-                texts, rows, errors, size = [], [], {}, 0
-        if texts:
-            yield piece()
+                break
+        frame = pl.DataFrame(rows, [(heading.name, pl.String) for heading in headings], orient="row")
+        return Piece(pl.Series(texts, dtype=pl.String), frame, errors, size)
 
-    def _records(self) -> Iterator[tuple[str, list[str]]]:
-        """Yield rows that are not blank, with their cells, up to the first that ends where a text ends."""
+    def _records(self) -> Iterator[tuple[int, str, list[str]]]:
+        """Yield rows that are not blank up to the first that ends where a text ends.
+
+        Each has the number of its first line, its text and its cells. Raises Unreadable.
+        """
         taken: list[str] = []
 
         def lines() -> Iterator[str]:
             while True:
-                while self._at < len(self._text):
-                    end = self._text.find("\n", self._at) + 1 or len(self._text)
-                    taken.append(self._text[self._at : end])
-                    self._at = end
-                    yield taken[-1]
+                for line in self._text:
+                    taken.append(line)
+                    yield line
                 if not taken or not (text := next(self._texts, "")):
                     return
-                self._text, self._at = text, 0
+                self._text = _lines(text)
 
         try:
             for cells in csv.reader(lines(), delimiter=self.separator, strict=True):
-                record = "".join(taken)
-                taken.clear()
+                line, record = self._line, "".join(taken)
                 if "\r\r" in record[-3:]:  # csv would take both for line ends
                     raise csv.Error("new-line")
+                self._line += len(taken)
+                taken.clear()
                 if record.strip() or len(cells) > 1:
-                    yield record, cells
-                self._line += record.count("\n")
+                    yield line, record, cells
         except csv.Error as error:
             raise self._refused(str(error)) from None
 
@@ -176,19 +158,17 @@ class Csv:
         if "end of data" in error:
             return Unreadable(f"a quotation mark is left open in {row}, or the file is truncated")
         if "limit" in error:
-            return Unreadable(f"{too_long(self._line)}; is a quotation mark left open?")
+            return Unreadable(f"{row} {TOO_LONG}; is a quotation mark left open?")
         why = STRAY_RETURN if "new-line" in error else STRAY_MARK
         return Unreadable(f"{row} {why}")
 
-    def _error_of(self, record: str, cells: Sequence[str]) -> str | None:
-        """Say what is wrong with the row that was read last; None if nothing is."""
-        if record.count("\n") > MOST_LINES:
-            line = self._line
-            for cell in cells:
-                if (lines := cell.count("\n") + 1) > MOST_LINES:
-                    most = f"the most is {MOST_LINES}; is a quotation mark left open?"
-                    return f"the cell that begins in line {line} has {lines} lines, and {most}"
-                line += lines - 1
+    def _error_of(self, line: int, cells: Sequence[str]) -> str | None:
+        """Say what is wrong with the row that begins in that line; None if nothing is."""
+        for cell in cells:
+            if (ends := cell.count("\n")) >= MOST_LINES:
+                most = f"the most is {MOST_LINES}; is a quotation mark left open?"
+                return f"the cell that begins in line {line} has {ends + 1} lines, and {most}"
+            line += ends
         width = len(self.columns)
         if len(cells) == width:
             return None
@@ -204,13 +184,25 @@ class Csv:
         return buffer.getvalue()
 
 
-def _first_row(text: str, separator: str) -> list[str]:
-    """Return the cells of the first row that is not blank, if the table has that separator."""
-    rows = csv.reader(StringIO(text, newline="\n"), delimiter=separator)
+def _decoded(text: bytes) -> str:
+    """Return bytes as text. Raises Unreadable."""
     try:
-        return next((cells for cells in rows if len(cells) > 1 or "".join(cells).strip()), [])
-    except csv.Error:
-        return []
+        return text.decode()
+    except UnicodeDecodeError as error:
+        before = in_quotes(text[: error.start].decode().rpartition("\n")[2][-20:])
+        byte = f"byte 0x{text[error.start]:02x} behind {before}"
+        raise Unreadable(f"it is not UTF-8: {byte}; save it as UTF-8") from None
+
+
+def _lines(text: str) -> StringIO:
+    """Return a text to read by lines, which end with a line feed."""
+    return StringIO(text, newline="\n")
+
+
+def _check_width(columns: Sized) -> None:
+    """Raise Unreadable for too many columns."""
+    if len(columns) > MOST_COLUMNS:
+        raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
 
 
 # NDJSON
@@ -230,7 +222,7 @@ def read_ndjson(
     keys: dict[str, object] = {}
     known = -1
     wanted: Sequence[Heading] = ()
-    for text, _ in whole_lines(blocks, cells=False):
+    for text in whole_lines(blocks, cells=False):
         lines: list[str] = []
         objects: list[dict[str, object]] = []
         errors: dict[int, str] = {}
@@ -247,14 +239,13 @@ def read_ndjson(
             keys.update(row)
         if not lines:
             continue
-        if len(keys) > MOST_COLUMNS:
-            raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
+        _check_width(keys)
         if len(keys) > known:
             known = len(keys)
             wanted = headings(list(keys))
-        columns = {heading.name: [row.get(heading.column) for row in objects] for heading in wanted}
-        cells = {name: _column(values) for name, values in columns.items()}
-        yield Piece(pl.Series(lines), pl.DataFrame(cells), errors, len(text))
+        cells = {heading.name: [_text(row.get(heading.column)) for row in objects] for heading in wanted}
+        frame = pl.DataFrame(cells, dict.fromkeys(cells, pl.String))
+        yield Piece(pl.Series(lines), frame, errors, len(text))
     if known < 0:
         raise Unreadable("it is empty")
 
@@ -297,16 +288,9 @@ _DECODER = json.JSONDecoder(
 _COMPACT = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"))
 
 
-def _column(values: Sequence[object]) -> "pl.Series":
-    """Return values as texts. A value that is neither a text nor null is written as JSON."""
-    import polars as pl
-
-    if all(value is None or type(value) is str for value in values):  # polars takes long for nested lists
-        with suppress(UnicodeEncodeError):  # halves of surrogate pairs, which UTF-8 does not have
-            return pl.Series(values, dtype=pl.String, strict=True)
-    return pl.Series(map(_text, values), dtype=pl.String)
-
-
 def _text(value: object) -> str | None:
-    text = value if value is None or isinstance(value, str) else json.dumps(value, ensure_ascii=False)
-    return None if text is None else text.encode(errors="backslashreplace").decode()
+    """Return a value as a cell, one that is neither a text nor null as JSON."""
+    if value is None:
+        return None
+    text = value if isinstance(value, str) else json.dumps(value, ensure_ascii=False)
+    return text.encode(errors="backslashreplace").decode()  # UTF-8 has no halves of surrogate pairs

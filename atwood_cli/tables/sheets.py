@@ -7,11 +7,10 @@ from contextlib import ExitStack, suppress
 from io import StringIO
 from itertools import islice
 from os import PathLike, fspath
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..model.units import in_quotes
-from .headings import SEPARATOR_NAMES, Vocabulary, recognised
+from .headings import SEPARATORS, Vocabulary, recognised
 from .sources import Unreadable, blocks_of, opened, whole_lines
 
 MOST_ABOVE = 40
@@ -26,14 +25,11 @@ MISSING = ("nan", "None", "<NA>", "NaT")
 
 
 class Sheet(NamedTuple):
-    """A table of texts: its headings, its rows, the separator of its cells and that which is usual for its
-    kind of file, and how else it was read.
-    """
+    """A table of texts, its separator, and how it was read."""
 
     columns: Sequence[str]
     rows: Sequence[Sequence[str]]
     separator: str = ""
-    usual: str = ""
     remarks: Sequence[str] = ()
 
 
@@ -42,9 +38,7 @@ def sheet_of(source: Any, vocabulary: Vocabulary, named: Mapping[str, str]) -> S
     if isinstance(source, str | PathLike):
         with ExitStack() as stack:
             content = _content(blocks_of(opened(fspath(source), stack)))
-        content = b"".join(lines for lines, _ in whole_lines(iter([content]), cells=True))
-        usual = "\t" if Path(source).suffix.lower() == ".tsv" else ","
-        return read_sheet(content, usual, vocabulary, named)
+        return read_sheet(content, vocabulary, named)
     if not hasattr(source, "items") and not hasattr(source, "columns"):
         raise Unreadable(f"it is of type {type(source).__name__}; give a path, a mapping or a data frame")
     columns: list[tuple[str, list[str]]] = []
@@ -69,15 +63,14 @@ def _content(blocks: Iterator[bytes]) -> bytes:
             raise Unreadable(f"it is larger than {MOST_BYTES >> 20} MB, unpacked, the most that fit reads")
     if content.startswith(UTF_16_MARKS):
         with suppress(UnicodeDecodeError):
-            return content.decode("utf-16").encode()
-    return content
+            content = content.decode("utf-16").encode()
+    return b"".join(whole_lines(iter([content]), cells=True))
 
 
-def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
+def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:
     """Return the table in a text, without blank rows; each row has as many cells as there are headings.
 
-    The separator is that by which most headings are known, the ``usual`` one if several are as good. Raises
-    Unreadable.
+    The separator is that by which most headings are known. Raises Unreadable.
     """
     remarks: list[str] = []
     try:
@@ -88,29 +81,26 @@ def read_sheet(content: bytes, usual: str, vocabulary: Vocabulary, named: Mappin
 
     def header(text: str, separator: str) -> tuple[int, int, int]:
         """Count the headings and cells of the best header by that separator, and say in which row it is."""
-        best = (0, 0, 0)
+        counts = [(0, 0, 0)]
         with suppress(csv.Error):
             rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
             for i, row in enumerate(islice(rows, MOST_ABOVE)):
-                found = len(recognised(row, vocabulary, named)), len(row), i
-                if found[0] > 1:
-                    return found
-                best = best if i else found
-        return best
+                counts.append((len(recognised(row, vocabulary, named)), len(row), i))
+        return next((count for count in counts if count[0] > 1), counts[:2][-1])
 
     lines = re.sub(r'\A"?sep=[,;\t]"?\r?\n', "", text, flags=re.IGNORECASE).split("\n")
     for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
         bare = lines[i].lstrip("# \t")  # NumPy writes headings so
-        is_header = max(header(bare, mark)[0] for mark in SEPARATOR_NAMES) > 1
+        is_header = max(header(bare, mark)[0] for mark in SEPARATORS) > 1
         lines[i] = bare if is_header else ""
         if not is_header and COMMENTS not in remarks:
             remarks.append(COMMENTS)
     text = "\n".join(lines)
-    separator = max((usual, *SEPARATOR_NAMES), key=lambda mark: header(text, mark)[:2])
-    start = header(text, separator)[2]
-    if start:
+    found = {mark: header(text, mark) for mark in SEPARATORS}
+    separator = max(found, key=lambda mark: found[mark][:2])
+    if start := found[separator][2]:
         remarks.append("lines above the headings left out")
-    return Sheet(*_rows(text, separator, start), separator, usual, remarks)
+    return Sheet(*_rows(text, separator, start), separator, remarks)
 
 
 def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[str]]]:

@@ -28,6 +28,7 @@ BLOCK_BYTES = 2 << 20
 MOMENT = 0.05  # seconds
 LONGEST_RECORD = 1 << 20
 """The bytes of the longest record: an open quotation mark must not make one of the whole file."""
+TOO_LONG = f"is longer than {LONGEST_RECORD >> 20} MB, the most taken"
 FOREIGN = {
     rb"\x1f\x8b|BZh|\xfd7zXZ|\x28\xb5\x2f\xfd": "compressed; unpack it first",
     rb"PK\x03\x04|\xd0\xcf\x11\xe0": "a workbook (.xlsx, .xls), or an archive; save the sheet as CSV",
@@ -124,8 +125,8 @@ def _what_comes(pipe: Any, most: int) -> bytes:
     return block
 
 
-def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[tuple[bytes, int]]:
-    """Yield blocks of whole lines, each with the number of its first line.
+def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[bytes]:
+    """Yield blocks of whole lines.
 
     Raises Unreadable for a file of another kind: no text of ``cells``, or else of objects.
     """
@@ -139,25 +140,8 @@ def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[tuple[bytes, i
         rest += block
         end = rest.rfind(b"\n") + 1 if block else len(rest)
         if end:
-            yield rest[:end], line
+            yield rest[:end]
             line += rest.count(b"\n", 0, end)
             rest = rest[end:]
         if len(rest) > LONGEST_RECORD:
-            raise too_long(line)
-
-
-def too_long(line: int) -> Unreadable:
-    """Return the error for a row that is too long, as an open quotation mark makes it."""
-    return Unreadable(
-        f"the row that begins in line {line} is longer than {LONGEST_RECORD >> 20} MB, the most taken"
-    )
-
-
-def decoded(text: bytes, line: int) -> str:
-    """Return the text of bytes that begin in that line of the file. Raises Unreadable."""
-    try:
-        return text.decode()
-    except UnicodeDecodeError as error:
-        line += text.count(b"\n", 0, error.start)
-        byte = text[error.start]
-        raise Unreadable(f"line {line} is not UTF-8: byte 0x{byte:02x}; save it as UTF-8") from None
+            raise Unreadable(f"the row that begins in line {line} {TOO_LONG}")
