@@ -1,10 +1,8 @@
 """The entry of the program: `python -m atwood_cli` and the command `atwood`."""
 
 import gc
-import os
 import signal
 import sys
-from threading import Timer
 
 INTERRUPTED = 130
 """The exit status of a run that was interrupted."""
@@ -16,22 +14,11 @@ def main() -> int:
     status = 0
 
     def end(number: int, _: object) -> None:
-        """End as on Ctrl-C, with the status of a shell. A second signal does not stop cleaning up."""
+        """End as on Ctrl-C, with the status that a shell reports."""
         nonlocal status
-        if not status:
-            status = 128 + number
-            raise KeyboardInterrupt
+        status = 128 + number
+        raise KeyboardInterrupt
 
-    def again(lost: "sys.UnraisableHookArgs") -> None:
-        """Send a signal once more if Python was dropping an object, where it can raise no interrupt."""
-        nonlocal status
-        if not status or lost.exc_type is not KeyboardInterrupt:
-            sys.__unraisablehook__(lost)
-            return
-        number, status = status - 128, 0
-        Timer(0.01, os.kill, (os.getpid(), number)).start()
-
-    sys.unraisablehook = again
     for number in ENDING_SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
             signal.signal(number, end)
