@@ -6,13 +6,12 @@ the byte.
 
 import os
 import re
-import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import chdir, contextmanager
+from contextlib import contextmanager
 from importlib import import_module
-from importlib.util import find_spec
 from io import BytesIO
+from logging import ERROR, getLogger
 from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -110,17 +109,10 @@ def check_file(path: str, force: bool) -> None:
 
 
 def _load() -> None:
-    """Import matplotlib with its own settings. Raises ImportError.
-
-    It would prefer settings of the user, and above all a file of settings in the folder where it is imported.
-    So it is imported in the folder of its own file.
-    """
-    spec = find_spec("matplotlib")
-    if "matplotlib" not in sys.modules and spec and spec.origin:
-        os.environ.pop("MPLBACKEND", None)
-        with warnings.catch_warnings(action="ignore"), chdir(Path(spec.origin).with_name("mpl-data")):
-            import_module("matplotlib")
-    import_module("matplotlib").set_loglevel("error")
+    """Import matplotlib, silent about settings of the user, which are not used. Raises ImportError."""
+    os.environ["MPLBACKEND"] = "agg"
+    getLogger("matplotlib").setLevel(ERROR)
+    import_module("matplotlib")
 
 
 @contextmanager

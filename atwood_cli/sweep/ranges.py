@@ -117,13 +117,6 @@ class Range(NamedTuple):
         return self.suffix or INPUTS[self.name].unit
 
     @property
-    def rank(self) -> int:
-        """2 for a range, 1 for a list of numbers, 0 for one of names: curves run along the greatest."""
-        if not self.is_list:
-            return 2
-        return 0 if any(point.name for point in self.points) else 1
-
-    @property
     def locks(self) -> bool:
         """Whether a point is a locked pulley."""
         return self.is_list and LOCKED in self.points
@@ -178,25 +171,24 @@ class Sweep(NamedTuple):
         ranges = {range_.name: range_.words for range_ in self.ranges}
         return relevant_inputs(self.scene, varied=ranges) | ranges
 
-    def along(self, along: Range) -> Iterator[tuple[Scene, dict[str, Point]]]:
-        """Yield the scene at each point of the other range, if there is one, and that point."""
-        others = [range_ for range_ in self.ranges if range_ is not along]
-        for points in product(*(range_.points for range_ in others)):
-            place = dict(zip((range_.name for range_ in others), points, strict=True))
-            yield self.at(place), place
+    @property
+    def along(self) -> Range:
+        """The range along which curves and sentences run: no list, or one of numbers, and the longest."""
+        named = {range_.name: any(point.name for point in range_.points) for range_ in self.ranges}
+        return max(self.ranges[::-1], key=lambda x: (not x.is_list, not named[x.name], len(x.finite)))
 
-    def at(self, place: Mapping[str, Point]) -> Scene:
-        """Return the scene at a point, with the values of ``scene`` for ranges that the point leaves out."""
-        scene = self.scene
-        for range_ in self.ranges:
-            if range_.name in place:
-                scene = with_value(scene, range_.name, place[range_.name].exact)
-        return scene
+    @property
+    def others(self) -> list[Range]:
+        """The other range, if there is one."""
+        return [range_ for range_ in self.ranges if range_ is not self.along]
 
-    def in_words(self, place: Mapping[str, Point]) -> str:
-        """Return a place of a sweep in a sentence."""
-        ranges = (range_ for range_ in self.ranges if range_.name in place)
-        return ", ".join(range_.in_words(place[range_.name]) for range_ in ranges)
+    def scenes(self, ranges: Sequence[Range]) -> Iterator[tuple[Scene, dict[str, Point]]]:
+        """Yield the scene at each point of some of the ranges, and that point."""
+        for points in product(*(range_.points for range_ in ranges)):
+            scene, place = self.scene, dict[str, Point]()
+            for range_, point in zip(ranges, points, strict=True):
+                place[range_.name], scene = point, with_value(scene, range_.name, point.exact)
+            yield scene, place
 
 
 class Row(NamedTuple):
@@ -357,36 +349,9 @@ def scene_at(fixed: Mapping[str, Input], ranges: Sequence[Range], points: Sequen
         raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
 
 
-class _RecordingScene:
-    """A scene that records which of its inputs are read."""
-
-    def __init__(self, scene: Scene) -> None:
-        self.scene, self.read = scene, set[str]()
-
-    def __getattr__(self, name: str) -> Any:
-        self.read.add(name)
-        return getattr(self.scene, name)
-
-
-def _unchanged(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[tuple[str, Answers]]:
-    """Yield the quantities that do not read a swept input, and so are the same at all points."""
-    fixed = set(INPUTS) - {range_.name for range_ in sweep.ranges}
-    for name in names:
-        recording: Any = _RecordingScene(sweep.scene)
-        answers = Answers(recording, digits)
-        _ = answers[name]
-        if recording.read <= fixed:
-            yield name, answers
-
-
 def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[Row]:
     """Yield the quantities named at every point, each point solved by itself."""
-    swept = [range_.name for range_ in sweep.ranges]
-    unchanged = dict(_unchanged(sweep, ["regime", *names], digits))
-    for points in product(*(range_.points for range_ in sweep.ranges)):
-        place = dict(zip(swept, points, strict=True))
-        answers = Answers(sweep.at(place), digits)
-        found = {name: unchanged.get(name, answers).answer(name) for name in ["regime", *names]}
-        values = {name: found[name].value for name in names}
-        reasons = {name: found[name].reason for name in names if found[name].reason}
-        yield Row(place, found["regime"].value, values, reasons)
+    for scene, place in sweep.scenes(sweep.ranges):
+        answers = Answers(scene, digits)
+        reasons = {name: reason for name in names if (reason := answers.answer(name).reason)}
+        yield Row(place, answers.case.regime, {name: answers[name] for name in names}, reasons)

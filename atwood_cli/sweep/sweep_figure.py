@@ -66,7 +66,7 @@ def drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
     drawn = [name for name in names or DRAWN_UNNAMED if name in QUANTITIES]
     if not drawn:
         raise SceneError("only", names[0], "is not a number to draw; name a quantity")
-    along = longest(sweep)
+    along = sweep.along
     if len(along.finite) < 2:
         raise SceneError(along.name, along.typed, "has one finite value, which makes no axis; give another")
     if along.ends[1] > LARGEST_DRAWN or (along.log and along.ends[0] < 1 / LARGEST_DRAWN):
@@ -81,11 +81,6 @@ def drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
         rule = f"would draw {count} curves on one pair of axes, more than {MAX_CURVES}; {fewer}"
         raise SceneError("figure", None, rule)
     return drawn
-
-
-def longest(sweep: Sweep) -> Range:
-    """Return the range along which curves run; of two that come into question it has more points."""
-    return max(reversed(sweep.ranges), key=lambda range_: (range_.rank, len(range_.finite)))
 
 
 def _solve(along: Range, scene: Scene) -> tuple[list[Change], dict[float, Answers]]:
@@ -104,8 +99,8 @@ def panels_of(sweep: Sweep, names: Sequence[str]) -> tuple[list[list[Curve]], li
     Each runs along one range, for a point of the other range. Raises SceneError if numbers are too large to
     draw, ArithmeticError if there are none.
     """
-    along = longest(sweep)
-    scenes = [(_in_symbols(sweep, point), *_solve(along, scene)) for scene, point in sweep.along(along)]
+    along = sweep.along
+    scenes = [(_in_symbols(sweep, at), *_solve(along, scene)) for scene, at in sweep.scenes(sweep.others)]
     answers = [one for _, _, solved in scenes for one in solved.values()]
     lacking = {name: [one for one in answers if isnan(_height(one, name, "max"))] for name in names}
     missing = [(name, one) for name in names for one in lacking[name] if one[name] is None]
@@ -170,7 +165,7 @@ def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool)
     Raises SceneError, OSError, and ArithmeticError if there is nothing to draw.
     """
     check_file(path, force)
-    along, (panels, notes) = longest(sweep), panels_of(sweep, names)
+    along, (panels, notes) = sweep.along, panels_of(sweep, names)
     inputs = {name: words for name, words in sweep.inputs.items() if name != along.name}
     quantities = [dict.fromkeys(curve.quantity for curve in curves) for curves in panels]
     title = f"{axis_title(chain(*quantities))} against {axis_title([along.name])}"

@@ -5,7 +5,6 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import groupby, pairwise
-from operator import attrgetter
 
 from ..model.digits import SHOWN_DIGITS, to_digits, to_double
 from ..model.quantities import QUANTITIES, STANDARD
@@ -112,23 +111,19 @@ PULLEYS = "M is not given, so each row on the verge has its own critical pulley 
 
 
 def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:
-    """Say the regimes along one range, for each point of the other range, if these are few.
-
-    Of two ranges of the same rank, it is the one that varies fast.
-    """
-    along = max(reversed(sweep.ranges), key=attrgetter("rank"))
-    if sweep.total // len(along.points) <= MAX_CURVES:
-        said: dict[str, str] = {}
-        for scene, points in sweep.along(along):
-            part = [row for row in rows if points.items() <= row.at.items()]
+    """Say the regimes along one range, for each point of the other range, if these are few."""
+    along, said = sweep.along, dict[str, str]()
+    if sweep.total <= MAX_CURVES * len(along.points):
+        for scene, place in sweep.scenes(sweep.others):
+            part = [row for row in rows if place.items() <= row.at.items()]
             if along.is_list:
                 part = [row for point in along.finite for row in part if row.at[along.name] == point]
             pairs = [pair for pair in pairwise(part) if pair[0].regime != pair[1].regime]
             known = {Fraction(row.at[along.name].exact): row.regime for pair in pairs for row in pair}
-            words = ", ".join(regimes(along, list(changes(scene, along, digits, known)), scene))
-            said[sweep.in_words(points)] = words
+            where = ", ".join(other.in_words(place[other.name]) for other in sweep.others)
+            said[where] = regimes(along, list(changes(scene, along, digits, known)), scene)
         if len({*said.values()}) == 1:
-            said = {"Regimes": words}
+            said = {"Regimes": next(iter(said.values()))}
         yield from (f"{where}: {words}." for where, words in said.items())
     elif len({row.regime for row in rows}) == 1:
         yield f"Regime of all rows: {rows[0].regime}."

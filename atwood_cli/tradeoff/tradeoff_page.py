@@ -53,18 +53,14 @@ def save(measured: Sequence[Measured], path: str, force: bool, bare: bool = Fals
 
     ``bare`` leaves the sentence out. Raises OSError.
     """
-    from matplotlib.ticker import LogLocator, NullLocator
-
     families = {family: [*group] for family, group in groupby(measured, attrgetter("family"))}
     title = "Worst error of a scene, in units in the last place of a double (ulp), against its time"
     with page(path, force, [title], bare=bare) as figure:
         panels = figure.subplots(1, len(families), sharex=True, sharey=True, squeeze=False)[0]
         for axes, (family, settings) in zip(panels, families.items(), strict=True):
-            axes.set(title=family, xscale="log", yscale="log")
+            axes.set(title=family, xscale="log", yscale="log", xmargin=0.2)
             axes.set_yticks(list(TICKS), TICKS.values())
-            axes.set_yticks([], minor=True)
-            axes.xaxis.set_major_locator(LogLocator(base=100))
-            axes.xaxis.set_minor_locator(NullLocator())
+            axes.minorticks_off()
             axes.grid(alpha=0.3)
             for point, marker, colour in zip(settings, "oD^v", (RED, BLUE, GREEN, PURPLE), strict=True):
                 worst = GREATEST if point.worst_ulp is None else min(max(point.worst_ulp, LEAST), GREATEST)
