@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.path import Path as MatplotlibPath
-    from matplotlib.text import Text
 
 AXIS_WORDS = {
     "m1": ("mass", "m₁"),
@@ -59,7 +58,7 @@ BESIDE = [(x, y, by) for by in (6, 11, 17, 24, 32) for x, y in ((1, 0), (-1, 0),
 BESIDE += [(x, y, by) for by in (4, 8, 13, 19) for x in (1, -1) for y in (-1, 1)]
 """Where words may stand: right or left of a point, above or below it, and by how many points of 1/72 inch."""
 ALIGNED = {-1: ("right", "top"), 0: ("center", "center"), 1: ("left", "bottom")}
-NAMES_IN_WORDS = re.compile(r"\b(mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
+NAMES_IN_WORDS = re.compile(r"\b(mu|mu_k|(?:inertia|wrap|axle)(?= (?:=|from)))\b")
 SIDES_IN_WORDS = re.compile(r"\b[mTW][12]\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 EXPONENT, MINUS = re.compile(r"(?<=\d)e\+?(-?\d+)"), re.compile(r"(?<![\w.)])-(?=\d)")
@@ -168,15 +167,15 @@ def _in_lines(words: str) -> str:
     return "\n".join(next(split for split in lines if len(split) <= count))
 
 
-def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) -> list["Text"]:
-    """Write words at points (x, y, words, colour) where they cover no other words and no lines.
+def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) -> None:
+    """Write words at points (x, y, words, colour) if they cover no other words and no lines there.
 
-    No words are nearer to another point than to their own. Returns those for which there was room. Nothing
-    may change the size of the axes afterwards.
+    No words are nearer to another point than to their own. Nothing may change the size of the axes
+    afterwards.
     """
     figure: Any = axes.figure
     figure.draw_without_rendering()
-    paths, boxes, written = [*_drawn(axes)], [one.get_window_extent() for one in axes.texts], list["Text"]()
+    paths, boxes = [*_drawn(axes)], [one.get_window_extent() for one in axes.texts]
     edge, anchors = axes.bbox.padded(3), [axes.transData.transform(label[:2]) for label in labels]
     for (x, y, words, colour), anchor in zip(labels, anchors, strict=True):
         for right, up, by in BESIDE:
@@ -190,10 +189,8 @@ def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) 
             covers = box.count_overlaps(boxes) or any(path.intersects_bbox(box, False) for path in paths)
             if is_near and is_inside and not covers:
                 boxes.append(box)
-                written.append(text)
                 break
             text.remove()
-    return written
 
 
 def _drawn(axes: "Axes") -> Iterator["MatplotlibPath"]:

@@ -37,7 +37,7 @@ from ..model.decisions import Decisions
 from ..model.digits import SHOWN_DIGITS, to_digits
 from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
-from .ranges import LOCKED, Point, Range, about_power, decimal_point, exact_point, with_value
+from .ranges import LOCKED, Point, Range, decimal_point, exact_point, power, with_value
 
 NEIGHBOUR_SHARE = Fraction(1, 10**60)
 """A value's neighbour, at which it is decided whether the regime changes there, is off by this part of it."""
@@ -140,4 +140,4 @@ def _middle(last: Fraction, first: Fraction) -> Fraction:
     low, high = sorted((last, first))
     if low and high < 16 * low:
         return (low + high) / 2
-    return high * about_power(low / high if low else Fraction(1, 2**128), Fraction(1, 2))
+    return high * power(low / high if low else Fraction(1, 2**128), Fraction(1, 2))

@@ -1,6 +1,6 @@
 """The curves of a sweep, and their picture."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import chain
 from math import inf, isnan, log, nan
@@ -15,7 +15,7 @@ from ..output.text import wrapped
 from ..solver.answers import Answers
 from ..solver.messages import reasons_at, unmarked
 from .changes import Change, changes
-from .ranges import Point, Range, Sweep, decimal_point, with_value
+from .ranges import Range, Sweep, decimal_point, steps, with_value
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -75,21 +75,19 @@ def drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
         raise SceneError(along.name, along.typed, "has ends too close together to draw what is between them")
     scenes, units = sweep.total // len(along.points), [QUANTITIES[name].unit for name in drawn]
     if (count := scenes * max(map(units.count, units))) > MAX_CURVES:
-        fewer = "name fewer quantities, or give fewer points"
-        if count == scenes:
-            fewer = f"give one of the ranges at most {MAX_CURVES} points"
-        rule = f"would draw {count} curves on one pair of axes, more than {MAX_CURVES}; {fewer}"
-        raise SceneError("figure", None, rule)
+        rule = f"would draw {count} curves on one pair of axes; at most {MAX_CURVES} can be distinguished"
+        raise SceneError("figure", None, f"{rule}; name fewer quantities, or give one range fewer points")
     return drawn
 
 
 def _solve(along: Range, scene: Scene) -> tuple[list[Change], dict[float, Answers]]:
     """Return the changes along a range and the answers at its values: of a list, at its points alone."""
-    found, values = [], [point.exact for point in along.points]
+    found, values = list[Change](), [point.exact for point in along.points]
     if not along.is_list:
         corners = attrgetter("regime", "sign", "axle_holds")  # where one of these changes
         found = list(changes(scene, along, DRAWN_DIGITS, what=corners))
-        values = [*along.steps(CURVE_STEPS), *(x for change in found for x in (change.last, change.first))]
+        values = [*steps(*along.ends, CURVE_STEPS, along.log)]
+        values += [x for change in found for x in (change.last, change.first)]
     return found, {float(x): Answers(with_value(scene, along.name, x)) for x in sorted(values)}
 
 
@@ -100,12 +98,16 @@ def panels_of(sweep: Sweep, names: Sequence[str]) -> tuple[list[list[Curve]], li
     draw, ArithmeticError if there are none.
     """
     along = sweep.along
-    scenes = [(_in_symbols(sweep, at), *_solve(along, scene)) for scene, at in sweep.scenes(sweep.others)]
+    scenes = [
+        (typeset(sweep.in_words(place)), *_solve(along, scene)) for scene, place in sweep.scenes(sweep.others)
+    ]
     answers = [one for _, _, solved in scenes for one in solved.values()]
-    lacking = {name: [one for one in answers if isnan(_height(one, name, "max"))] for name in names}
-    missing = [(name, one) for name in names for one in lacking[name] if one[name] is None]
-    reasons = {(name, one.answer(name).reason): 1 for name, one in missing}
-    drawn = [name for name in names if len(lacking[name]) < len(answers)]
+    reasons, drawn = dict[tuple[str, str], int](), list[str]()
+    for name in names:
+        lacking = [one for one in answers if isnan(_height(one, name, "max"))]
+        reasons |= {(name, one.answer(name).reason): 1 for one in lacking if one[name] is None}
+        if len(lacking) < len(answers):
+            drawn.append(name)
     if not drawn:
         why = unmarked("; ".join(dict.fromkeys(reason for _, reason in reasons)))
         raise ArithmeticError(f"{', '.join(names)} exists at no point, so there is nothing to draw: {why}")
@@ -152,25 +154,18 @@ def axis_title(names: Iterable[str], unit: str = "") -> str:
     return f"{title} ({unit})" if unit else title
 
 
-def _in_symbols(sweep: Sweep, at: Mapping[str, Point]) -> str:
-    """Return the point of the other range: μ = 0.2, or disk; empty if there is none."""
-    found = ((range_, at[range_.name]) for range_ in sweep.ranges if range_.name in at)
-    words = (one.name or f"{axis_words(range_.name)[1]} = {range_.in_units(one)}" for range_, one in found)
-    return typeset("".join(words))
-
-
 def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool) -> None:
-    """Draw the curves of quantities to a file, below a caption unless it is to be bare.
+    """Draw the curves of quantities, or of the acceleration, to a file; if bare, without a caption.
 
     Raises SceneError, OSError, and ArithmeticError if there is nothing to draw.
     """
+    names = drawable(sweep, names)
     check_file(path, force)
     along, (panels, notes) = sweep.along, panels_of(sweep, names)
-    inputs = {name: words for name, words in sweep.inputs.items() if name != along.name}
+    inputs = [words for name, words in sweep.inputs.items() if name != along.name]
     quantities = [dict.fromkeys(curve.quantity for curve in curves) for curves in panels]
     title = f"{axis_title(chain(*quantities))} against {axis_title([along.name])}"
-    in_symbols = ", ".join(f"{axis_words(name)[1]}{words[len(name) :]}" for name, words in inputs.items())
-    above = [title[0].upper() + title[1:], in_symbols, *notes]
+    above = [title[0].upper() + title[1:], ", ".join(inputs), *notes]
     with page(path, force, above, bare=bare, panels=len(panels)) as figure:
         all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
         _set_places(all_axes[-1], along)
@@ -182,29 +177,23 @@ def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool)
             _set_heights(axes, [y for curve in curves for y in curve.numbers])
         _draw_legend(figure, panels)
         for axes, curves in zip(all_axes, panels, strict=True):
-            ends = [(y, colour) for curve, colour in zip(curves, COLOURS, strict=False) for y in curve.locked]
-            write_beside(axes, [(axes.get_xlim()[1], y, "locked", colour) for y, colour in ends])
+            end = axes.get_xlim()[1]
+            levels = [(y, COLOURS[place]) for place, curve in enumerate(curves) for y in curve.locked]
+            write_beside(axes, [(end, y, "locked", colour) for y, colour in levels])
         first = panels[0][: len(panels[0]) // len(quantities[0])]
-        labels = [(*mark, COLOURS[place]) for place, curve in enumerate(first) for mark in curve.marks]
-        written = write_beside(all_axes[0], labels)
-        if len(written) < len(labels):
-            for text in written:
-                text.remove()
-            _draw_legend(figure, panels, ["\n".join(words for *_, words in curve.marks) for curve in first])
+        marks = [(*mark, COLOURS[place]) for place, curve in enumerate(first) for mark in curve.marks]
+        write_beside(all_axes[0], marks)
 
 
-def _draw_legend(figure: "Figure", panels: Sequence[Sequence[Curve]], marks: Sequence[str] = ()) -> None:
-    """Write what curves are, in the order of their right ends, and ``marks``, if there is anything to say."""
-    for old in [*figure.legends]:
-        old.remove()
+def _draw_legend(figure: "Figure", panels: Sequence[Sequence[Curve]]) -> None:
+    """Write what curves are, in the order of their right ends, if there is anything to say."""
     most = max(panels, key=lambda curves: len(curves))
     several = any(curves[0].quantity != curves[-1].quantity for curves in panels)
     entries = {}
     for place in sorted(range(len(most)), key=lambda place: -most[place].numbers[-1]):
         alike = [curves[place] for curves in panels if place < len(curves)]
         symbols = [axis_words(curve.quantity)[1] for curve in alike] if several else []
-        words = ", ".join(words for words in (*symbols, alike[0].point) if words)
-        entries[place] = "\n".join([words, *marks[place : place + 1]]).strip()
+        entries[place] = ", ".join(words for words in (*symbols, alike[0].point) if words)
     lines = {line.get_label(): line for line in figure.axes[panels.index(most)].get_lines()}
     if any(entries.values()):
         handles = [lines[f"{place}"] for place in entries]
@@ -260,6 +249,6 @@ def _draw(axes: "Axes", curve: Curve, place: int, is_list: bool) -> None:
         look: Any = {"facecolor": (colour, 0.18), "edgecolor": colour, "lw": 0.8}
         axes.fill_between(xs, curve.least, curve.most, band, **look)
     for x, y, _ in curve.marks:
-        axes.plot([x], [y], "o", color=INK, ms=4, zorder=3)
+        axes.plot([x], [y], "o", color=INK, ms=4, zorder=3, clip_on=False)
     for y in curve.locked:
         axes.axhline(y, color=colour, ls=(0, (4, 3)), lw=1)

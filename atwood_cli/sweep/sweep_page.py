@@ -120,8 +120,7 @@ def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[
                 part = [row for point in along.finite for row in part if row.at[along.name] == point]
             pairs = [pair for pair in pairwise(part) if pair[0].regime != pair[1].regime]
             known = {Fraction(row.at[along.name].exact): row.regime for pair in pairs for row in pair}
-            where = ", ".join(other.in_words(place[other.name]) for other in sweep.others)
-            said[where] = regimes(along, list(changes(scene, along, digits, known)), scene)
+            said[sweep.in_words(place)] = regimes(along, list(changes(scene, along, digits, known)), scene)
         if len({*said.values()}) == 1:
             said = {"Regimes": next(iter(said.values()))}
         yield from (f"{where}: {words}." for where, words in said.items())
