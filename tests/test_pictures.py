@@ -417,15 +417,13 @@ def test_a_picture_is_the_same_to_the_byte_whenever_and_wherever_it_is_drawn(
         "sweep --m1 1 --m2 3 --M 0:50:2 --mu 0.15:0.4:6 --only friction_force",
     ],
 )
-def test_an_svg_is_small_has_its_text_as_text_a_title_and_a_description(
-    tmp_path: Path, line: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_svg_is_small_has_its_text_as_text_a_title_and_a_description(tmp_path: Path, line: str) -> None:
     from matplotlib.figure import Figure
 
-    file, saved, pages = tmp_path / "a.svg", Figure.savefig, list[Any]()
-    monkeypatch.setattr(Figure, "savefig", lambda page, *a, **k: (pages.append(page), saved(page, *a, **k)))
-    assert called([*line.split(), "--figure", str(file)]).status == 0
-    svg, (page,) = file.read_text(encoding="utf-8"), pages
+    file = tmp_path / "a.svg"
+    with patch.object(Figure, "savefig", autospec=True, side_effect=Figure.savefig) as saved:
+        assert called([*line.split(), "--figure", str(file)]).status == 0
+    svg, page = file.read_text(encoding="utf-8"), saved.call_args.args[0]
     assert len(svg) < 40_000
     title, described, *texts = labels(svg)
     said = [text for axes in page.axes for text in (axes.xaxis.label, axes.yaxis.label, *axes.texts)]

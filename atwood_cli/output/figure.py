@@ -95,7 +95,7 @@ def axis_words(name: str) -> tuple[str, str]:
 
 
 def check_file(path: str, force: bool) -> None:
-    """Check that a picture can be written, before anything is computed.
+    """Check that a picture can be written, before anything is computed, and import matplotlib.
 
     Raises SceneError if the suffix is no format, ImportError, and OSError if the file exists.
     """
@@ -103,15 +103,10 @@ def check_file(path: str, force: bool) -> None:
         raise SceneError("figure", path, f"must end in one of {', '.join(f'.{kind}' for kind in FORMATS)}")
     if is_stdout(path):
         raise SceneError("figure", path, "is where standard output goes; name another")
-    _load()
-    check_free(Path(path), force)
-
-
-def _load() -> None:
-    """Import matplotlib, silent about settings of the user, which are not used. Raises ImportError."""
     os.environ["MPLBACKEND"] = "agg"
-    getLogger("matplotlib").setLevel(ERROR)
+    getLogger("matplotlib").setLevel(ERROR)  # silent about settings of the user, which are not used
     import_module("matplotlib")
+    check_free(Path(path), force)
 
 
 @contextmanager
@@ -123,7 +118,6 @@ def page(
     The sentences ``above`` are written unless it is ``bare``. In the file, the first of them is the title,
     and all others, with those ``below``, are the description.
     """
-    _load()
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -174,7 +168,8 @@ def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) 
     afterwards.
     """
     figure: Any = axes.figure
-    figure.draw_without_rendering()
+    if labels:
+        figure.draw_without_rendering()
     paths, boxes = [*_drawn(axes)], [one.get_window_extent() for one in axes.texts]
     edge, anchors = axes.bbox.padded(3), [axes.transData.transform(label[:2]) for label in labels]
     for (x, y, words, colour), anchor in zip(labels, anchors, strict=True):

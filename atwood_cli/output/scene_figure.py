@@ -66,17 +66,16 @@ def save(
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
     above = [describe(case.scene, case.motion, answers.uncertain), unmarked(verdict(few))]
-    heights = [1.6, 1] if curves else [1]
-    with page(path, force, above, " ".join(below), bare, panels=len(heights)) as figure:
-        machine, *more = figure.subplots(len(heights), height_ratios=heights, squeeze=False)[:, 0]
+    with page(path, force, above, " ".join(below), bare, panels=1 + curves) as figure:
+        machine, *more = figure.subplots(1 + curves, height_ratios=[1.6, 1][: 1 + curves], squeeze=False).flat
         machine.axis("off")
         machine.set_aspect("equal", adjustable="datalim")
         machine.margins(0.01)
         _draw_pulley(machine, few, radians(wrap))
         if kind:
             _draw_contact(machine, few, kind, radians(wrap))
-        if kind and more:
-            _draw_curves(more[0], few, kind, wrap)
+            for axes in more:
+                _draw_curves(axes, few, kind, wrap)
         if case.ends_hang_down:
             _draw_masses(machine, few, lengths)
         else:
@@ -91,14 +90,11 @@ def _on_friction(few: Answers, kind: arc.Profile) -> list[str]:
         return [about(few.case, kind), *net]
     end = "last" if few.case.sign > 0 else "first"
     angle = format_number(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
-    drawn = f"Drawn: friction at its limit on the {end} {angle}°"
-    greatest, least = few["friction_force_max"], few["friction_force_min"]
-    if greatest is None:
-        return [f"{drawn}, as on a slightly elastic string."]
-    return [
-        f"{drawn}, which makes the net force greatest"
-        f" ({format_number(greatest)} N; least {format_number(least)} N)."
-    ]
+    why = "as on a slightly elastic string"
+    if few["friction_force_max"] is not None:
+        greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
+        why = f"which makes the net force greatest ({greatest} N; least {least} N)"
+    return [f"Drawn: friction at its limit on the {end} {angle}°, {why}."]
 
 
 def _on_drawing(few: Answers, kind: arc.Profile | None, wrap: float) -> list[str]:
@@ -138,9 +134,7 @@ def _draw_pulley(axes: "Axes", few: Answers, phi: float) -> None:
         elif few.case.ends_hang_down:
             axes.plot([end.real] * 2, [0, -STRING], color=FAINT, lw=2.4, solid_capstyle="butt")
     axes.text(0, 0.26, _pulley(few), ha="center", va="center", size=8)
-    above = np.exp(1j * np.radians(np.linspace(125, 55, 40)))
-    if few.case.sign < 0:  # anticlockwise
-        above = above[::-1]
+    above = 1j * np.exp(-1j * few.case.sign * np.linspace(-0.6, 0.6, 40))  # clockwise if m2 descends
     if few["rim_acceleration"]:
         _draw_arc(axes, ROTATION_AT * above, PURPLE, "white")
     if friction := _axle_friction(few):
@@ -183,10 +177,9 @@ def _number(few: Answers, value: Any) -> str:
 def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float) -> None:
     """Draw the arrows of normal force and friction over the turn at the heavier mass, with a legend."""
     drawn = min(1, TURN / phi)
-    count = int(drawn * phi / BETWEEN_ARROWS + 1e-9) + 1
-    shares = np.linspace(0, drawn, count) if count > 1 else np.array([drawn / 2])
-    if phi >= TURN:  # both ends of a turn are one place
-        shares = shares[:-1]
+    count = int(drawn * phi / BETWEEN_ARROWS + 1e-9)
+    both = phi < TURN  # both ends of a turn are one place
+    shares = np.linspace(0, drawn, count + both, endpoint=both) if count else np.array([drawn / 2])
     if few.case.sign >= 0:
         shares = 1 - shares
     outwards, (normal, friction) = _rim(phi * shares), _forces(few, kind, shares)
@@ -198,8 +191,7 @@ def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float) -> 
         _draw_arrows(axes, FRICTION_AT * outwards, around, RED)
         larger = normal.max() / greatest
         times = f"{larger:.3g} times larger" if larger > 1 else f"{1 / larger:.3g} times smaller"
-        words = typeset(f"friction fR, arrows {times}")
-        axes.plot([], [], color=RED, ls="--", marker=">", ms=4, label=words)
+        axes.plot([], [], color=RED, ls="--", marker=">", ms=4, label=typeset(f"friction fR, arrows {times}"))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), ncols=2, handlelength=3)
 
 
@@ -222,9 +214,11 @@ def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> No
             look: Any = {"color": colour, "ha": "left" if x > 0 else "right", "va": "center"}
             axes.text(x * (1 + away), height, typeset(words), **look)
         if acceleration:
-            half = -x * few.case.sign * ACCELERATION / 2 * 1j
-            centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
-            _draw_arc(axes, np.array([centre - half, centre + half]), PURPLE, "white")
+            centre, way = (
+                complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2),
+                -x * few.case.sign * 1j,
+            )
+            _draw_arc(axes, centre + way * ACCELERATION * np.array([-0.5, 0.5]), PURPLE, "white")
     words = typeset(f"a = {_number(few, abs(acceleration))} m/s²") if acceleration else "a = 0"
     height = -STRING - LARGER_SIDE - 0.17 - (LONGEST if len(words) > BETWEEN_WEIGHTS else 0)
     axes.text(0, height, words, color=PURPLE, ha="center", va="center")
@@ -241,8 +235,8 @@ def _draw_tensions(axes: "Axes", few: Answers, lengths: Mapping[str, float], phi
         tip, tension = _rim(angle) + arrow, _number(few, few[f"tension_{name[1]}"])
         labels.append((tip.real, tip.imag, typeset(f"{name} = {tension} N"), INK))
     axes.autoscale_view()
-    spokes = np.outer(_rim(np.linspace(0, TURN, 37)), [0, 1])
-    on_pulley = axes.plot(spokes.real.T, spokes.imag.T)
+    spokes = np.outer([0, 1], _rim(np.linspace(0, TURN, 37)))
+    on_pulley = axes.plot(spokes.real, spokes.imag)
     write_beside(axes, labels)
     for spoke in on_pulley:  # which kept words off it
         spoke.remove()

@@ -13,7 +13,7 @@ from ..model.scene import Scene, SceneError
 from ..output.figure import COLOURS, FAINT, INK, axis_words, check_file, page, typeset, write_beside
 from ..output.text import wrapped
 from ..solver.answers import Answers
-from ..solver.messages import reasons_at, unmarked
+from ..solver.messages import unmarked
 from .changes import Change, changes
 from .ranges import Range, Sweep, decimal_point, steps, with_value
 
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 MAX_CURVES = len(COLOURS)
 """The most curves on one pair of axes: everybody can distinguish six colours."""
-DRAWN_UNNAMED = ["acceleration"]
-"""The quantities that are drawn if none is named."""
 LARGEST_DRAWN = 1e100
 """The largest number that is drawn, in any unit."""
 UNDRAWABLE = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only, not such {{}}"
@@ -33,10 +31,8 @@ CURVE_STEPS, DRAWN_DIGITS = 200, 12
 BEGINS = {"slip": "slips", "no-slip": "holds", "verge": "on the verge"}
 LINE_STYLES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
 MARKERS = "osD^vP"
-TITLE_CHARACTERS, TITLE_OF_SEVERAL = 42, 24
-"""The most characters of a line beside the axis of the one panel, and of several."""
-TICK_CHARACTERS, TICK_POINTS, WIDE = 70, 12, 30
-"""The room below an axis, the height of a line, and the ratio from which a list's axis is logarithmic."""
+TITLE_CHARACTERS, TICK_CHARACTERS, TICK_POINTS, WIDE = 24, 70, 12, 30
+"""The room beside and below an axis, the height of a line, and from which ratio a list is logarithmic."""
 
 
 class Curve(NamedTuple):
@@ -63,7 +59,7 @@ class Curve(NamedTuple):
 
 def drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
     """Return the quantities to draw, which are numbers. Raises SceneError if they make no picture."""
-    drawn = [name for name in names or DRAWN_UNNAMED if name in QUANTITIES]
+    drawn = [name for name in names or ["acceleration"] if name in QUANTITIES]
     if not drawn:
         raise SceneError("only", names[0], "is not a number to draw; name a quantity")
     along = sweep.along
@@ -73,8 +69,8 @@ def drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
         raise SceneError("figure", None, UNDRAWABLE.format(along.name))
     if len({*map(float, along.ends)}) < 2:
         raise SceneError(along.name, along.typed, "has ends too close together to draw what is between them")
-    scenes, units = sweep.total // len(along.points), [QUANTITIES[name].unit for name in drawn]
-    if (count := scenes * max(map(units.count, units))) > MAX_CURVES:
+    units = [QUANTITIES[name].unit for name in drawn]
+    if (count := sweep.total // len(along.points) * max(map(units.count, units))) > MAX_CURVES:
         rule = f"would draw {count} curves on one pair of axes; at most {MAX_CURVES} can be distinguished"
         raise SceneError("figure", None, f"{rule}; name fewer quantities, or give one range fewer points")
     return drawn
@@ -91,25 +87,19 @@ def _solve(along: Range, scene: Scene) -> tuple[list[Change], dict[float, Answer
     return found, {float(x): Answers(with_value(scene, along.name, x)) for x in sorted(values)}
 
 
-def panels_of(sweep: Sweep, names: Sequence[str]) -> tuple[list[list[Curve]], list[str]]:
-    """Return curves, those of one unit together, and sentences on what is missing.
+def panels_of(sweep: Sweep, names: Sequence[str]) -> list[list[Curve]]:
+    """Return curves, those of one unit together: each along one range, for a point of the other range.
 
-    Each runs along one range, for a point of the other range. Raises SceneError if numbers are too large to
-    draw, ArithmeticError if there are none.
+    Raises SceneError if numbers are too large to draw, ArithmeticError if there are none.
     """
     along = sweep.along
     scenes = [
         (typeset(sweep.in_words(place)), *_solve(along, scene)) for scene, place in sweep.scenes(sweep.others)
     ]
     answers = [one for _, _, solved in scenes for one in solved.values()]
-    reasons, drawn = dict[tuple[str, str], int](), list[str]()
-    for name in names:
-        lacking = [one for one in answers if isnan(_height(one, name, "max"))]
-        reasons |= {(name, one.answer(name).reason): 1 for one in lacking if one[name] is None}
-        if len(lacking) < len(answers):
-            drawn.append(name)
+    drawn = [name for name in names if not all(isnan(_height(one, name, "max")) for one in answers)]
     if not drawn:
-        why = unmarked("; ".join(dict.fromkeys(reason for _, reason in reasons)))
+        why = unmarked("; ".join(dict.fromkeys(one.answer(name).reason for name in names for one in answers)))
         raise ArithmeticError(f"{', '.join(names)} exists at no point, so there is nothing to draw: {why}")
     panels: dict[str, list[Curve]] = {}
     for name in drawn:
@@ -117,7 +107,7 @@ def panels_of(sweep: Sweep, names: Sequence[str]) -> tuple[list[list[Curve]], li
         if max(abs(y) for curve in curves for y in curve.numbers) > LARGEST_DRAWN:
             raise SceneError("figure", None, UNDRAWABLE.format(name))
         panels.setdefault(QUANTITIES[name].unit, []).extend(curves)
-    return [*panels.values()], reasons_at(reasons, 1)
+    return [*panels.values()]
 
 
 def _curve(along: Range, name: str, point: str, found: list[Change], solved: dict[float, Answers]) -> Curve:
@@ -161,28 +151,29 @@ def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool)
     """
     names = drawable(sweep, names)
     check_file(path, force)
-    along, (panels, notes) = sweep.along, panels_of(sweep, names)
+    along, panels = sweep.along, panels_of(sweep, names)
     inputs = [words for name, words in sweep.inputs.items() if name != along.name]
     quantities = [dict.fromkeys(curve.quantity for curve in curves) for curves in panels]
     title = f"{axis_title(chain(*quantities))} against {axis_title([along.name])}"
-    above = [title[0].upper() + title[1:], ", ".join(inputs), *notes]
+    above = [title[0].upper() + title[1:], ", ".join(inputs)]
     with page(path, force, above, bare=bare, panels=len(panels)) as figure:
         all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
         _set_places(all_axes[-1], along)
         for axes, curves, drawn in zip(all_axes, panels, quantities, strict=True):
             words = axis_title(drawn, QUANTITIES[curves[0].quantity].unit)
-            axes.set_ylabel("\n".join(wrapped(words, TITLE_OF_SEVERAL if panels[1:] else TITLE_CHARACTERS)))
+            axes.set_ylabel("\n".join(wrapped(words, TITLE_CHARACTERS)))
             for place, curve in enumerate(curves):
                 _draw(axes, curve, place, along.is_list)
             _set_heights(axes, [y for curve in curves for y in curve.numbers])
         _draw_legend(figure, panels)
+        first = panels[0][: len(panels[0]) // len(quantities[0])]
+        labels = [(*mark, COLOURS[place]) for place, curve in enumerate(first) for mark in curve.marks]
         for axes, curves in zip(all_axes, panels, strict=True):
             end = axes.get_xlim()[1]
-            levels = [(y, COLOURS[place]) for place, curve in enumerate(curves) for y in curve.locked]
-            write_beside(axes, [(end, y, "locked", colour) for y, colour in levels])
-        first = panels[0][: len(panels[0]) // len(quantities[0])]
-        marks = [(*mark, COLOURS[place]) for place, curve in enumerate(first) for mark in curve.marks]
-        write_beside(all_axes[0], marks)
+            for place, curve in enumerate(curves):
+                labels += [(end, y, "locked", COLOURS[place]) for y in curve.locked]
+            write_beside(axes, labels)
+            labels = []
 
 
 def _draw_legend(figure: "Figure", panels: Sequence[Sequence[Curve]]) -> None:
@@ -211,10 +202,9 @@ def _set_places(axes: "Axes", along: Range) -> None:
         axes.set_xlim(low, high)
         return
     axes.margins(x=0.05)
-    axes.set_xticks(
-        [float(point.exact) for point in along.finite], [typeset(along.cell(x)) for x in along.finite]
-    )
-    axes.set_xticks([], minor=True)
+    names = {float(point.exact): typeset(along.cell(point)) for point in along.finite}
+    axes.set_xticks([*names], names.values())
+    axes.minorticks_off()
     ends = [-inf]
     for tick in axes.xaxis.get_major_ticks():
         x, width = tick.get_loc(), len(tick.label1.get_text()) + 2
