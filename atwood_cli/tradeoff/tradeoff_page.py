@@ -35,7 +35,11 @@ def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
     for family, group in groupby(measured, attrgetter("family")):
         heads = [family, "  error (ulp)", "  wrong"]
         cells = (
-            [in_seconds(point.seconds), short(point.worst_ulp), percent(point.share_wrong_regime)]
+            [
+                in_seconds(point.seconds),
+                short(point.worst_ulp),
+                f"{short(100 * point.share_wrong_regime, 3)} %",
+            ]
             for point in group
         )
         groups.append([list(row) for row in zip(heads, *cells, strict=True)])
@@ -82,8 +86,3 @@ def short(value: float | None, digits: int = 2) -> str:
     if value is None:
         return "-"
     return "inf" if isinf(value) else format_number(Decimal(f"{value:.{digits}g}"))
-
-
-def percent(share: float) -> str:
-    """Return a share in percent, to three digits."""
-    return f"{short(100 * share, 3)} %"
