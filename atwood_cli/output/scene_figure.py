@@ -4,7 +4,7 @@ Points and directions are complex numbers, lengths in radii of the pulley, whose
 on the left, where the string of m1 hangs down, and runs clockwise over the top. Strings leave along tangents.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
 from math import pi, radians, sqrt
 from typing import TYPE_CHECKING, Any
@@ -62,7 +62,7 @@ def save(
         forces = {name: force for name, force in forces.items() if name[0] == "T"}
     scale = LONGEST / (max(forces.values()) or 1)
     lengths = {name: max(scale * force, SHORTEST) if force else 0.0 for name, force in forces.items()}
-    below = [*(_on_friction(few, kind) if kind and not bare else []), *_on_drawing(few, kind, wrap)]
+    below = [*_caption(few, kind, wrap, bare)]
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
     above = [describe(case.scene, case.motion, answers.uncertain), unmarked(verdict(few))]
@@ -82,31 +82,26 @@ def save(
             _draw_tensions(machine, few, lengths, radians(wrap))
 
 
-def _on_friction(few: Answers, kind: arc.Profile) -> list[str]:
-    """Return sentences on the net friction on the pulley, and on the part of the arc over which it acts."""
-    if kind != "creep":
-        force = few["friction_force"]
-        net = [f"The net friction force is {format_number(force)} N."] if force else []
-        return [about(few.case, kind), *net]
-    end = "last" if few.case.sign > 0 else "first"
-    angle = format_number(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
-    why = "as on a slightly elastic string"
-    if few["friction_force_max"] is not None:
-        greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
-        why = f"which makes the net force greatest ({greatest} N; least {least} N)"
-    return [f"Drawn: friction at its limit on the {end} {angle}°, {why}."]
-
-
-def _on_drawing(few: Answers, kind: arc.Profile | None, wrap: float) -> list[str]:
-    """Return sentences on what is not drawn."""
-    said = []
+def _caption(few: Answers, kind: arc.Profile | None, wrap: float, bare: bool) -> Iterator[str]:
+    """Yield sentences on the friction along the arc, unless it is ``bare``, and on what is not drawn."""
+    if kind == "creep" and not bare:
+        end = "last" if few.case.sign > 0 else "first"
+        angle = format_number(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
+        why = "as on a slightly elastic string"
+        if few["friction_force_max"] is not None:
+            greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
+            why = f"which makes the net force greatest ({greatest} N; least {least} N)"
+        yield f"Drawn: friction at its limit on the {end} {angle}°, {why}."
+    elif kind and not bare:
+        yield about(few.case, kind)
+        if force := few["friction_force"]:
+            yield f"The net friction force is {format_number(force)} N."
     if wrap > 360:
         turns = _number(few, few.settle(lambda m: few.case.scene.wrap.degrees(m.ar) / 360))
         one = ", and the forces on the one at the heavier mass are drawn" if kind else ""
-        said.append(f"There are {turns} turns{one}.")
+        yield f"There are {turns} turns{one}."
     if not few.case.ends_hang_down:
-        said.append("The masses hang over guides that are not drawn." if kind else "The mass is not drawn.")
-    return said
+        yield "The masses hang over guides that are not drawn." if kind else "The mass is not drawn."
 
 
 def _forces(few: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:
@@ -214,11 +209,9 @@ def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> No
             look: Any = {"color": colour, "ha": "left" if x > 0 else "right", "va": "center"}
             axes.text(x * (1 + away), height, typeset(words), **look)
         if acceleration:
-            centre, way = (
-                complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2),
-                -x * few.case.sign * 1j,
-            )
-            _draw_arc(axes, centre + way * ACCELERATION * np.array([-0.5, 0.5]), PURPLE, "white")
+            centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
+            way = -1j * x * few.case.sign * ACCELERATION
+            _draw_arc(axes, centre + way * np.array([-0.5, 0.5]), PURPLE, "white")
     words = typeset(f"a = {_number(few, abs(acceleration))} m/s²") if acceleration else "a = 0"
     height = -STRING - LARGER_SIDE - 0.17 - (LONGEST if len(words) > BETWEEN_WEIGHTS else 0)
     axes.text(0, height, words, color=PURPLE, ha="center", va="center")
