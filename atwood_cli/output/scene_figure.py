@@ -229,10 +229,8 @@ def _draw_tensions(axes: "Axes", few: Answers, lengths: Mapping[str, float], phi
         labels.append((tip.real, tip.imag, typeset(f"{name} = {tension} N"), INK))
     axes.autoscale_view()
     spokes = np.outer([0, 1], _rim(np.linspace(0, TURN, 37)))
-    on_pulley = axes.plot(spokes.real, spokes.imag)
+    axes.plot(spokes.real, spokes.imag, visible=False)  # keeps words off the pulley
     write_beside(axes, labels)
-    for spoke in on_pulley:  # which kept words off it
-        spoke.remove()
 
 
 def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:

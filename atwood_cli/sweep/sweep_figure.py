@@ -63,12 +63,10 @@ def drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
     if not drawn:
         raise SceneError("only", names[0], "is not a number to draw; name a quantity")
     along = sweep.along
-    if len(along.finite) < 2:
-        raise SceneError(along.name, along.typed, "has one finite value, which makes no axis; give another")
     if along.ends[1] > LARGEST_DRAWN or (along.log and along.ends[0] < 1 / LARGEST_DRAWN):
         raise SceneError("figure", None, UNDRAWABLE.format(along.name))
     if len({*map(float, along.ends)}) < 2:
-        raise SceneError(along.name, along.typed, "has ends too close together to draw what is between them")
+        raise SceneError(along.name, along.typed, "has no two values that differ in a picture; give others")
     units = [QUANTITIES[name].unit for name in drawn]
     if (count := sweep.total // len(along.points) * max(map(units.count, units))) > MAX_CURVES:
         rule = f"would draw {count} curves on one pair of axes; at most {MAX_CURVES} can be distinguished"

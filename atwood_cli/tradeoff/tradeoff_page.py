@@ -35,12 +35,8 @@ def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
     for family, group in groupby(measured, attrgetter("family")):
         heads = [family, "  error (ulp)", "  wrong"]
         cells = (
-            [
-                in_seconds(point.seconds),
-                short(point.worst_ulp),
-                f"{short(100 * point.share_wrong_regime, 3)} %",
-            ]
-            for point in group
+            [in_seconds(one.seconds), short(one.worst_ulp), f"{short(100 * one.share_wrong_regime, 3)} %"]
+            for one in group
         )
         groups.append([list(row) for row in zip(heads, *cells, strict=True)])
     widths = [max(map(len, column)) for column in zip(*chain(*groups), strict=True)]
@@ -53,10 +49,7 @@ def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
 
 
 def save(measured: Sequence[Measured], path: str, force: bool, bare: bool = False) -> None:
-    """Draw errors against times to a file, whose suffix is its format, a panel for each family.
-
-    ``bare`` leaves the sentence out. Raises OSError.
-    """
+    """Draw errors against times to a file, for each family, without a title if bare. Raises OSError."""
     families = {family: [*group] for family, group in groupby(measured, attrgetter("family"))}
     title = "Worst error of a scene, in units in the last place of a double (ulp), against its time"
     with page(path, force, [title], bare=bare) as figure:
