@@ -137,7 +137,6 @@ def _between(
 
 def _middle(last: Fraction, first: Fraction) -> Fraction:
     """Return a value between two: their mean, or if their sizes differ much, about their geometric mean."""
-    low, high = sorted((last, first))
-    if low and high < 16 * low:
-        return (low + high) / 2
-    return high * power(low / high if low else Fraction(1, 2**128), Fraction(1, 2))
+    if last and first < 16 * last:
+        return (last + first) / 2
+    return first * power(last / first if last else Fraction(1, 2**128), Fraction(1, 2))

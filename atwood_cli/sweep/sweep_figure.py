@@ -57,7 +57,7 @@ class Curve(NamedTuple):
         return [y for y in (*self.locked, *self.least, *self.most) if not isnan(y)]
 
 
-def drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
+def _drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
     """Return the quantities to draw, which are numbers. Raises SceneError if they make no picture."""
     drawn = [name for name in names or ["acceleration"] if name in QUANTITIES]
     if not drawn:
@@ -147,7 +147,7 @@ def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool)
 
     Raises SceneError, OSError, and ArithmeticError if there is nothing to draw.
     """
-    names = drawable(sweep, names)
+    names = _drawable(sweep, names)
     check_file(path, force)
     along, panels = sweep.along, panels_of(sweep, names)
     inputs = [words for name, words in sweep.inputs.items() if name != along.name]

@@ -33,8 +33,6 @@ PRECISE = Context(prec=EXACT_DIGITS + 20)
 REPEATS, RUN_SECONDS = 5, 0.01
 FEWEST_ROWS, MOST_ROWS = 40, 10_000
 """The rows of a table that is timed."""
-MOST_ONE_BY_ONE = 100
-"""The most rows that are solved scene by scene: all have errors of about half a unit in the last digit."""
 LONG_SECONDS = 0.25
 """The time of a run from which on no more rows are added to it."""
 
@@ -106,11 +104,10 @@ def draw_scenes(family: str, count: int, seed: int) -> list[Inputs]:
 
 
 class Setting(NamedTuple):
-    """A way to solve scenes, at most so many of a family: from columns of inputs to columns of quantities."""
+    """A way to solve scenes: a function from columns of inputs to columns of quantities."""
 
     name: str
     run: Callable[..., Columns]
-    most: int = MOST_SCENES
 
 
 def in_numpy(m1: Any, m2: Any, M: Any, mu: Any) -> Columns:
@@ -141,7 +138,7 @@ def in_digits(digits: int, **given: Any) -> Columns:
 SETTINGS = (
     Setting("paper", in_numpy),
     *(Setting(accuracy, partial(solve_arrays, accuracy=accuracy)) for accuracy in ACCURACIES),
-    Setting("50 digits", partial(in_digits, 50), MOST_ONE_BY_ONE),
+    Setting("50 digits", partial(in_digits, 50)),
 )
 
 
@@ -177,15 +174,14 @@ class Measured(NamedTuple):
 
 def measure(family: str, scenes: Sequence[Inputs]) -> list[Measured]:
     """Measure every setting on these scenes, which have the same inputs; ``family`` names them."""
-    exact = in_digits(EXACT_DIGITS, **_columns(scenes, len(scenes)))
+    columns = _columns(scenes, len(scenes))
+    exact = in_digits(EXACT_DIGITS, **columns)
     tables = [_timed_table(setting, scenes) for setting in SETTINGS]
     times = timed([partial(setting.run, **table) for setting, table in zip(SETTINGS, tables, strict=True)])
     measured = []
     for setting, table, seconds in zip(SETTINGS, tables, times, strict=True):
-        count = min(len(scenes), setting.most)
-        solved = setting.run(**_columns(scenes, count))
-        found = errors(solved, {name: column[:count] for name, column in exact.items()})
-        worst, wrong = max(found, default=None), 1 - len(found) / count
+        found = errors(setting.run(**columns), exact)
+        worst, wrong = max(found, default=None), 1 - len(found) / len(scenes)
         measured.append(Measured(family, setting.name, seconds / len(table["m1"]), worst, wrong))
     return measured
 
@@ -197,9 +193,9 @@ def _columns(scenes: Sequence[Inputs], rows: int) -> Columns:
 
 def _timed_table(setting: Setting, scenes: Sequence[Inputs]) -> Columns:
     """Return the scenes in a table that is not too long to be timed."""
-    rows, most = FEWEST_ROWS, min(MOST_ROWS, setting.most)
-    while rows < most and _quickest(partial(setting.run, **_columns(scenes, rows))) < LONG_SECONDS:
-        rows = min(16 * rows, most)
+    rows = FEWEST_ROWS
+    while rows < MOST_ROWS and _quickest(partial(setting.run, **_columns(scenes, rows))) < LONG_SECONDS:
+        rows = min(4 * rows, MOST_ROWS)
     return _columns(scenes, rows)
 
 
