@@ -26,15 +26,12 @@ Inputs = dict[str, Any]
 """The inputs of a scene by parameter, as doubles."""
 Columns = Mapping[str, Any]
 """A column for each input, or for each quantity."""
-G = float(STANDARD_GRAVITY)
 MOST_SCENES = 100_000
 EXACT_DIGITS = 240
 PRECISE = Context(prec=EXACT_DIGITS + 20)
 REPEATS, RUN_SECONDS = 5, 0.01
-FEWEST_ROWS, MOST_ROWS = 40, 10_000
-"""The rows of a table that is timed."""
-LONG_SECONDS = 0.25
-"""The time of a run from which on no more rows are added to it."""
+FEWEST_ROWS, MOST_ROWS, LONG_SECONDS = 40, 10_000, 0.25
+"""The rows of a table that is timed, and the time of a run from which on no more rows are added to it."""
 
 
 # Every platform draws the same scenes: mantissas and exponents are drawn one by one, so that no library's
@@ -118,7 +115,7 @@ def in_numpy(m1: Any, m2: Any, M: Any, mu: Any) -> Columns:
     l, h, c = m1, m2, M / 2
     with np.errstate(all="ignore"):
         k = np.exp(mu * pi)
-        q = G / (l + h + c)
+        q = float(STANDARD_GRAVITY) / (l + h + c)
         t_l, t_h = (2 * h + c) * l * q, (2 * l + c) * h * q
         mu_verge = np.log(t_h / t_l) / pi  # (27)
         friction = mu / np.sqrt(1 + mu * mu) * (t_l + t_h)  # (32)
@@ -162,12 +159,11 @@ def _ulps(value: Any, exact: Decimal) -> float:
 
 
 class Measured(NamedTuple):
-    """A setting on a family of scenes. The error is None where no regime was right."""
+    """A setting on a family of scenes: the time of a scene, and its error, None if no regime was right."""
 
     family: str
     setting: str
     seconds: float
-    """The time of a scene, the median of the repeats."""
     worst_ulp: float | None
     share_wrong_regime: float
 
