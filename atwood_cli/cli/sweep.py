@@ -8,7 +8,7 @@ from ..model.scene import read_digits
 from ..model.units import counted
 from ..output.text import Destination, Report, say, show
 from ..sweep.ranges import read_sweep
-from ..sweep.sweep_figure import drawable, save
+from ..sweep.sweep_figure import save
 from ..sweep.sweep_page import SweepPage
 from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Columns, Digits, FigureFile, with_options
 
@@ -42,9 +42,8 @@ def sweep(
     names = list(dict.fromkeys(read_names("only", only or [])))
     precision = read_digits(digits)
     swept = read_sweep(given, precision)
-    drawn = drawable(swept, names) if figure is not None else []
     if figure is not None:
-        save(swept, drawn, figure, target.force, bare)
+        save(swept, names, figure, target.force, bare)
     swept_page = SweepPage(swept, names, precision)
     try:
         # What is drawn is not printed, too, but to a file that is asked for.

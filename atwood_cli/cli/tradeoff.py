@@ -74,9 +74,7 @@ def tradeoff(
     parts = (measure(name, draw_scenes(name, count, start)) for name in families)
     measured = list(chain.from_iterable(with_progress(parts, len(families))))
     if figure is not None:
-        from ..tradeoff.tradeoff_page import save
-
-        save(measured, figure, target.force, bare)
+        tradeoff_page.save(measured, figure, target.force, bare)
     report = Report(
         json=lambda: tradeoff_page.record(measured, count, start),
         records=list,

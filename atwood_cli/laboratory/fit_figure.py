@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from ..model import physics
-from ..output.figure import BLUE, FAINT, INK, RED, check_file, page, typeset, write_beside
+from ..output.figure import BLUE, FAINT, INK, RED, page, typeset, write_beside
 from .estimate import Data, accelerations, as_data, expected
 from .fitting import Fitted
 from .report import RARE, conditions, verdict
@@ -49,11 +49,7 @@ def view(data: Data, a: Column, values: Mapping[str, float], names: Sequence[str
 
 
 def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
-    """Draw runs and their line to a file, whose suffix is its format, below sentences unless it is bare.
-
-    Raises SceneError, OSError.
-    """
-    check_file(path, force)
+    """Draw runs and their line to a file, below sentences unless it is bare. Raises OSError."""
     best, data, delay = fit.whole.best, fit.whole.best.data, fit.whole.best.values["delay"]
     a = accelerations(data, data.measured, delay)
     u_a = best.sigma if data.drop is None else 2 * best.sigma * a / (data.measured - delay)

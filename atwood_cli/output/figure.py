@@ -6,13 +6,12 @@ the byte.
 
 import os
 import re
-import sys
 import warnings
 from collections.abc import Iterator, Sequence
-from contextlib import chdir, contextmanager
+from contextlib import contextmanager
 from importlib import import_module
-from importlib.util import find_spec
 from io import BytesIO
+from logging import ERROR, getLogger
 from math import hypot
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.path import Path as MatplotlibPath
-    from matplotlib.text import Text
 
 AXIS_WORDS = {
     "m1": ("mass", "m₁"),
@@ -60,7 +58,7 @@ BESIDE = [(x, y, by) for by in (6, 11, 17, 24, 32) for x, y in ((1, 0), (-1, 0),
 BESIDE += [(x, y, by) for by in (4, 8, 13, 19) for x in (1, -1) for y in (-1, 1)]
 """Where words may stand: right or left of a point, above or below it, and by how many points of 1/72 inch."""
 ALIGNED = {-1: ("right", "top"), 0: ("center", "center"), 1: ("left", "bottom")}
-NAMES_IN_WORDS = re.compile(r"\b(mu|mu_k|(?:inertia|wrap|axle)(?= =))\b")
+NAMES_IN_WORDS = re.compile(r"\b(mu|mu_k|(?:inertia|wrap|axle)(?= (?:=|from)))\b")
 SIDES_IN_WORDS = re.compile(r"\b[mTW][12]\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 EXPONENT, MINUS = re.compile(r"(?<=\d)e\+?(-?\d+)"), re.compile(r"(?<![\w.)])-(?=\d)")
@@ -97,7 +95,7 @@ def axis_words(name: str) -> tuple[str, str]:
 
 
 def check_file(path: str, force: bool) -> None:
-    """Check that a picture can be written, before anything is computed.
+    """Check that a picture can be written, before anything is computed, and import matplotlib.
 
     Raises SceneError if the suffix is no format, ImportError, and OSError if the file exists.
     """
@@ -105,22 +103,10 @@ def check_file(path: str, force: bool) -> None:
         raise SceneError("figure", path, f"must end in one of {', '.join(f'.{kind}' for kind in FORMATS)}")
     if is_stdout(path):
         raise SceneError("figure", path, "is where standard output goes; name another")
-    _load()
+    os.environ["MPLBACKEND"] = "agg"
+    getLogger("matplotlib").setLevel(ERROR)  # silent about settings of the user, which are not used
+    import_module("matplotlib")
     check_free(Path(path), force)
-
-
-def _load() -> None:
-    """Import matplotlib with its own settings. Raises ImportError.
-
-    It would prefer settings of the user, and above all a file of settings in the folder where it is imported.
-    So it is imported in the folder of its own file.
-    """
-    spec = find_spec("matplotlib")
-    if "matplotlib" not in sys.modules and spec and spec.origin:
-        os.environ.pop("MPLBACKEND", None)
-        with warnings.catch_warnings(action="ignore"), chdir(Path(spec.origin).with_name("mpl-data")):
-            import_module("matplotlib")
-    import_module("matplotlib").set_loglevel("error")
 
 
 @contextmanager
@@ -132,7 +118,6 @@ def page(
     The sentences ``above`` are written unless it is ``bare``. In the file, the first of them is the title,
     and all others, with those ``below``, are the description.
     """
-    _load()
     from matplotlib import rc_context, rcParamsDefault
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -176,15 +161,16 @@ def _in_lines(words: str) -> str:
     return "\n".join(next(split for split in lines if len(split) <= count))
 
 
-def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) -> list["Text"]:
-    """Write words at points (x, y, words, colour) where they cover no other words and no lines.
+def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) -> None:
+    """Write words at points (x, y, words, colour) if they cover no other words and no lines there.
 
-    No words are nearer to another point than to their own. Returns those for which there was room. Nothing
-    may change the size of the axes afterwards.
+    No words are nearer to another point than to their own. Nothing may change the size of the axes
+    afterwards.
     """
     figure: Any = axes.figure
-    figure.draw_without_rendering()
-    paths, boxes, written = [*_drawn(axes)], [one.get_window_extent() for one in axes.texts], list["Text"]()
+    if labels:
+        figure.draw_without_rendering()
+    paths, boxes = [*_drawn(axes)], [one.get_window_extent() for one in axes.texts]
     edge, anchors = axes.bbox.padded(3), [axes.transData.transform(label[:2]) for label in labels]
     for (x, y, words, colour), anchor in zip(labels, anchors, strict=True):
         for right, up, by in BESIDE:
@@ -198,10 +184,8 @@ def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) 
             covers = box.count_overlaps(boxes) or any(path.intersects_bbox(box, False) for path in paths)
             if is_near and is_inside and not covers:
                 boxes.append(box)
-                written.append(text)
                 break
             text.remove()
-    return written
 
 
 def _drawn(axes: "Axes") -> Iterator["MatplotlibPath"]:

@@ -4,9 +4,9 @@ Points and directions are complex numbers, lengths in radii of the pulley, whose
 on the left, where the string of m1 hangs down, and runs clockwise over the top. Strings leave along tangents.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
-from math import inf, pi, radians, sqrt
+from math import pi, radians, sqrt
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -34,6 +34,7 @@ STRING, LARGER_SIDE, LEAST_SIDE = 0.95, 0.5, 1 / 3  # of a mass; of its block; t
 BETWEEN_ARROWS = radians(20)  # along the arc
 LONGEST_ON_ARC, LEAST_ON_ARC = 0.9 * BETWEEN_ARROWS, 0.01
 NORMAL_AT, FRICTION_AT = 1.05, 0.9  # distances from the axle at which arrows end and start
+BETWEEN_WEIGHTS = 18  # characters for which there is room
 ROTATION_AT, AXLE_AT, ACCELERATION = 0.56, 0.24, 0.4  # two distances from the axle, and a length
 
 
@@ -47,8 +48,7 @@ def save(
     """
     check_file(path, force)
     case, few = answers.case, answers.to(min(answers.digits or SHOWN_DIGITS, SHOWN_DIGITS))
-    doubles = answers.to(None)
-    forces = dict[str, float]()
+    doubles, forces = answers.to(None), dict[str, float]()
     for end, mass in (("1", case.scene.m1), ("2", case.scene.m2)):
         if mass:
             forces |= {f"T{end}": float(doubles[f"tension_{end}"]), f"W{end}": to_double(mass * case.scene.g)}
@@ -60,64 +60,53 @@ def save(
         raise SceneError("figure", path, f"draws wraps between {WRAPS[0]} and {WRAPS[1]:.0e} degrees only")
     if not case.ends_hang_down:
         forces = {name: force for name, force in forces.items() if name[0] == "T"}
-    below = [*(_on_friction(few, kind) if kind and not bare else []), *_on_drawing(few, kind, wrap, forces)]
+    scale = LONGEST / (max(forces.values()) or 1)
+    lengths = {name: max(scale * force, SHORTEST) if force else 0.0 for name, force in forces.items()}
+    below = [*_caption(few, kind, wrap, bare)]
+    if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
+        below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
     above = [describe(case.scene, case.motion, answers.uncertain), unmarked(verdict(few))]
-    heights = [1.6, 1] if curves else [1]
-    with page(path, force, above, " ".join(below), bare, panels=len(heights)) as figure:
-        machine, *more = figure.subplots(len(heights), height_ratios=heights, squeeze=False)[:, 0]
+    with page(path, force, above, " ".join(below), bare, panels=1 + curves) as figure:
+        machine, *more = figure.subplots(1 + curves, height_ratios=[1.6, 1][: 1 + curves], squeeze=False).flat
         machine.axis("off")
         machine.set_aspect("equal", adjustable="datalim")
         machine.margins(0.01)
         _draw_pulley(machine, few, radians(wrap))
         if kind:
-            scale = _draw_contact(machine, doubles, kind, radians(wrap), legend=not curves)
-            if curves:
-                _draw_curves(more[0], few, kind, wrap, scale)
-        longest = max(forces.values()) or inf
-        lengths = {x: max(LONGEST * F / longest, SHORTEST) if F else 0.0 for x, F in forces.items()}
+            _draw_contact(machine, few, kind, radians(wrap))
+            for axes in more:
+                _draw_curves(axes, few, kind, wrap)
         if case.ends_hang_down:
             _draw_masses(machine, few, lengths)
         else:
             _draw_tensions(machine, few, lengths, radians(wrap))
 
 
-def _on_friction(few: Answers, kind: arc.Profile) -> list[str]:
-    """Return sentences on the net friction on the pulley, and on the part of the arc over which it acts."""
-    if kind != "creep":
-        force = few["friction_force"]
-        net = [f"The net friction force is {format_number(force)} N."] if force else []
-        return [about(few.case, kind), *net]
-    end = "last" if few.case.sign > 0 else "first"
-    angle = format_number(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
-    drawn = f"Drawn: friction at its limit on the {end} {angle}°"
-    greatest, least = few["friction_force_max"], few["friction_force_min"]
-    if greatest is None:
-        return [f"{drawn}, as on a slightly elastic string."]
-    return [
-        f"{drawn}, which makes the net force greatest"
-        f" ({format_number(greatest)} N; least {format_number(least)} N)."
-    ]
-
-
-def _on_drawing(
-    few: Answers, kind: arc.Profile | None, wrap: float, forces: Mapping[str, float]
-) -> list[str]:
-    """Return sentences on what is drawn otherwise than it is."""
-    said, least = [], max(forces.values()) * SHORTEST / LONGEST
+def _caption(few: Answers, kind: arc.Profile | None, wrap: float, bare: bool) -> Iterator[str]:
+    """Yield sentences on the friction along the arc, unless it is ``bare``, and on what is not drawn."""
+    if kind == "creep" and not bare:
+        end = "last" if few.case.sign > 0 else "first"
+        angle = format_number(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
+        why = "as on a slightly elastic string"
+        if few["friction_force_max"] is not None:
+            greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
+            why = f"which makes the net force greatest ({greatest} N; least {least} N)"
+        yield f"Drawn: friction at its limit on the {end} {angle}°, {why}."
+    elif kind and not bare:
+        yield about(few.case, kind)
+        if force := few["friction_force"]:
+            yield f"The net friction force is {format_number(force)} N."
     if wrap > 360:
         turns = _number(few, few.settle(lambda m: few.case.scene.wrap.degrees(m.ar) / 360))
         one = ", and the forces on the one at the heavier mass are drawn" if kind else ""
-        said.append(f"There are {turns} turns{one}.")
+        yield f"There are {turns} turns{one}."
     if not few.case.ends_hang_down:
-        said.append("The masses hang over guides that are not drawn." if kind else "The mass is not drawn.")
-    if longer := [name for name, force in forces.items() if 0 < force < least]:
-        said.append(f"Drawn longer than to scale: {', '.join(longer)}.")
-    return said
+        yield "The masses hang over guides that are not drawn." if kind else "The mass is not drawn."
 
 
-def _forces(doubles: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:
+def _forces(few: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:
     """Return tension and friction per radian (N) at shares of the arc; nR is the tension, too."""
-    points = [point(doubles, kind, Fraction(share)) for share in shares]
+    points = [point(few.to(None), kind, Fraction(share)) for share in shares]
     tension, friction = ([float(one[name]) for one in points] for name in ("tension", "friction_per_radian"))
     return np.array(tension), np.array(friction)
 
@@ -140,9 +129,7 @@ def _draw_pulley(axes: "Axes", few: Answers, phi: float) -> None:
         elif few.case.ends_hang_down:
             axes.plot([end.real] * 2, [0, -STRING], color=FAINT, lw=2.4, solid_capstyle="butt")
     axes.text(0, 0.26, _pulley(few), ha="center", va="center", size=8)
-    above = np.exp(1j * np.radians(np.linspace(125, 55, 40)))
-    if few.case.sign < 0:  # anticlockwise
-        above = above[::-1]
+    above = 1j * np.exp(-1j * few.case.sign * np.linspace(-0.6, 0.6, 40))  # clockwise if m2 descends
     if few["rim_acceleration"]:
         _draw_arc(axes, ROTATION_AT * above, PURPLE, "white")
     if friction := _axle_friction(few):
@@ -182,33 +169,25 @@ def _number(few: Answers, value: Any) -> str:
     return typeset(format_number(strip_zeros(few.round(value))))
 
 
-def _draw_contact(axes: "Axes", doubles: Answers, kind: arc.Profile, phi: float, legend: bool) -> str:
-    """Draw the arrows of normal force and friction over the turn at the heavier mass.
-
-    Returns the scale of those of friction, in words.
-    """
+def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float) -> None:
+    """Draw the arrows of normal force and friction over the turn at the heavier mass, with a legend."""
     drawn = min(1, TURN / phi)
-    count = int(drawn * phi / BETWEEN_ARROWS + 1e-9) + 1
-    shares = np.linspace(0, drawn, count) if count > 1 else np.array([drawn / 2])
-    if phi >= TURN:  # both ends of a turn are one place
-        shares = shares[:-1]
-    if doubles.case.sign >= 0:
+    count = int(drawn * phi / BETWEEN_ARROWS + 1e-9)
+    both = phi < TURN  # both ends of a turn are one place
+    shares = np.linspace(0, drawn, count + both, endpoint=both) if count else np.array([drawn / 2])
+    if few.case.sign >= 0:
         shares = 1 - shares
-    outwards, (normal, friction) = _rim(phi * shares), _forces(doubles, kind, shares)
+    outwards, (normal, friction) = _rim(phi * shares), _forces(few, kind, shares)
     lengths = normal / normal.max() * LONGEST_ON_ARC
     _draw_arrows(axes, (NORMAL_AT + lengths) * outwards, -lengths * outwards, BLUE)
     axes.plot([], [], color=BLUE, marker=">", ms=4, label="normal force nR")
-    scale = ""
     if greatest := abs(friction).max():
         around = friction / greatest * LONGEST_ON_ARC * 1j * np.exp(-1j * phi * shares)
         _draw_arrows(axes, FRICTION_AT * outwards, around, RED)
         larger = normal.max() / greatest
         times = f"{larger:.3g} times larger" if larger > 1 else f"{1 / larger:.3g} times smaller"
-        axes.plot([], [], color=RED, marker=">", ms=4, label=typeset(f"friction fR, drawn {times}"))
-        scale = typeset(f" (arrows {times})")
-    if legend:
-        axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), ncols=2)
-    return scale
+        axes.plot([], [], color=RED, ls="--", marker=">", ms=4, label=typeset(f"friction fR, arrows {times}"))
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), ncols=2, handlelength=3)
 
 
 def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> None:
@@ -230,11 +209,13 @@ def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> No
             look: Any = {"color": colour, "ha": "left" if x > 0 else "right", "va": "center"}
             axes.text(x * (1 + away), height, typeset(words), **look)
         if acceleration:
-            half = -x * few.case.sign * ACCELERATION / 2 * 1j
             centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
-            _draw_arc(axes, np.array([centre - half, centre + half]), PURPLE, "white")
-    words = f"a = {_number(few, abs(acceleration))} m/s²" if acceleration else "a = 0"
-    axes.text(0, -STRING - LARGER_SIDE - 0.17, words, color=PURPLE, ha="center", va="center")
+            way = -1j * x * few.case.sign * ACCELERATION
+            _draw_arc(axes, centre + way * np.array([-0.5, 0.5]), PURPLE, "white")
+    words = typeset(f"a = {_number(few, abs(acceleration))} m/s²") if acceleration else "a = 0"
+    height = -STRING - LARGER_SIDE - 0.17 - (LONGEST if len(words) > BETWEEN_WEIGHTS else 0)
+    axes.text(0, height, words, color=PURPLE, ha="center", va="center")
+    axes.update_datalim([(0, height - 0.1)])
 
 
 def _draw_tensions(axes: "Axes", few: Answers, lengths: Mapping[str, float], phi: float) -> None:
@@ -247,11 +228,9 @@ def _draw_tensions(axes: "Axes", few: Answers, lengths: Mapping[str, float], phi
         tip, tension = _rim(angle) + arrow, _number(few, few[f"tension_{name[1]}"])
         labels.append((tip.real, tip.imag, typeset(f"{name} = {tension} N"), INK))
     axes.autoscale_view()
-    spokes = np.outer(_rim(np.linspace(0, TURN, 37)), [0, 1])
-    on_pulley = axes.plot(spokes.real.T, spokes.imag.T)
+    spokes = np.outer([0, 1], _rim(np.linspace(0, TURN, 37)))
+    axes.plot(spokes.real, spokes.imag, visible=False)  # keeps words off the pulley
     write_beside(axes, labels)
-    for spoke in on_pulley:  # which kept words off it
-        spoke.remove()
 
 
 def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:
@@ -264,16 +243,15 @@ def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:
         axes.quiver(tails.real, tails.imag, along.real, along.imag, color=colour, **look)
 
 
-def _draw_curves(axes: "Axes", few: Answers, kind: arc.Profile, wrap: float, scale: str) -> None:
+def _draw_curves(axes: "Axes", few: Answers, kind: arc.Profile, wrap: float) -> None:
     """Draw normal force and friction along the arc, over grey where the string is stuck."""
-    doubles = few.to(None)
-    stuck = float(doubles.settle(lambda m: (m.phi - m.alpha) / m.phi)) if kind == "creep" else 0.0
+    stuck = float(few.settle(lambda m: (m.phi - m.alpha) / m.phi, to_double)) if kind == "creep" else 0.0
     edge, start = (stuck, 0) if few.case.sign >= 0 else (1 - stuck, 1)
     shares = np.sort([*np.linspace(0, 1, CURVE_POINTS), *np.nextafter(edge, [0, edge, 1])])
-    tension, friction = _forces(doubles, kind, shares)
+    tension, friction = _forces(few, kind, shares)
     axes.axhline(0, color=FAINT, lw=0.8)
-    axes.plot(wrap * shares, tension, color=BLUE, label="normal force nR = T")
-    axes.plot(wrap * shares, friction, color=RED, ls="--", label=f"friction fR = dT/dθ{scale}")
+    axes.plot(wrap * shares, tension, color=BLUE)
+    axes.plot(wrap * shares, friction, color=RED, ls="--")
     axes.set_xlim(0, wrap)
     axes.margins(y=0.2)
     if friction.min() >= 0:
@@ -283,7 +261,6 @@ def _draw_curves(axes: "Axes", few: Answers, kind: arc.Profile, wrap: float, sca
         axes.set_xticks(np.arange(0, wrap + 1e-6, step))
     axes.set_xlabel("angle θ along the arc, from m₁'s end on the left (°)")
     axes.set_ylabel("tension T = nR and\nfriction fR (N per radian)")
-    axes.legend(loc="lower right", bbox_to_anchor=(1, 1.1), ncols=2)
     t1, t2 = (typeset(f"T{end} = {_number(few, few[f'tension_{end}'])} N") for end in (1, 2))
     labels = [(0.0, tension[0], t1, BLUE), (wrap, tension[-1], t2, BLUE)]
     if stuck:

@@ -2,7 +2,7 @@
 
 The regime is decided at a few values, between which each condition that it depends on changes at most once.
 If it differs at two of them, it changes at one of these, or is decided between them, exactly by `Decisions`,
-until it changes between two neighbouring decimals.
+until both sides of the change round to the same decimal.
 
 **Why no change is missed.** With friction given, the string slips where ln r > μφ. By (1), and (3) with the
 friction of the axle, the tension ratio of a string that grips is
@@ -27,7 +27,6 @@ once, too. A condition that changes at most once, and is the same at both ends, 
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from decimal import ROUND_CEILING, ROUND_FLOOR
 from fractions import Fraction
 from itertools import pairwise
 from math import inf
@@ -38,7 +37,7 @@ from ..model.decisions import Decisions
 from ..model.digits import SHOWN_DIGITS, to_digits
 from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
-from .ranges import LOCKED, Point, Range, about_power, decimal_point, exact_point, with_value
+from .ranges import LOCKED, Point, Range, decimal_point, exact_point, power, with_value
 
 NEIGHBOUR_SHARE = Fraction(1, 10**60)
 """A value's neighbour, at which it is decided whether the regime changes there, is off by this part of it."""
@@ -86,7 +85,7 @@ def changes(
             last = first
 
 
-def regimes(along: Range, found: Sequence[Change], scene: Scene) -> list[str]:
+def regimes(along: Range, found: Sequence[Change], scene: Scene) -> str:
     """Say each regime along a range, and up to which value it holds."""
     parts = []
     for before, change in zip([None, *found], found, strict=False):
@@ -98,7 +97,7 @@ def regimes(along: Range, found: Sequence[Change], scene: Scene) -> list[str]:
     parts.append(f"{last} beyond" if found else last)
     if along.locks and (locked := Decisions(scene._replace(M=inf)).regime) != last:
         parts.append(f"{locked} at {along.in_words(LOCKED)}")
-    return parts
+    return ", ".join(parts)
 
 
 def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
@@ -117,33 +116,27 @@ def _between(
     The state is ``before`` at ``last``, and another one at ``first``.
     """
     gap = (first - last) / 2
-    above, below = (
-        last + min(gap, last * NEIGHBOUR_SHARE or LEAST_INPUT),
-        first - min(gap, first * NEIGHBOUR_SHARE),
-    )
+    above = last + min(gap, last * NEIGHBOUR_SHARE or LEAST_INPUT)
+    below = first - min(gap, first * NEIGHBOUR_SHARE)
     if state(above) != before:
         return exact_point(last, suffix), last, above
     if state(below) == before:
         return exact_point(first, suffix), below, first
-    ends = last, first
+    start, stop = last, first
     while True:
-        down, up = (to_digits(digits, way) for way in (ROUND_FLOOR, ROUND_CEILING))
-        middle = _middle(last, first)
-        between = next((x for x in map(Fraction, (down(middle), up(middle))) if last < x < first), None)
-        if between is not None:
-            last, first = (between, first) if state(between) == before else (last, between)
+        place = to_digits(digits)(first)
+        is_settled = to_digits(digits)(last) == place or first - last < first * NEIGHBOUR_SHARE
+        if is_settled and not start < place < stop:  # at the ends it is known that the state holds on
+            digits += 1
             continue
-        # Both are neighbouring decimals, or one is an end. The nearer one must not be an end of the search,
-        # at which the state is known to hold on: more digits tell them apart.
-        nearest = first if state((last + first) / 2) == before else last
-        if down(nearest) == nearest and nearest not in ends:
-            return decimal_point(down(nearest), suffix), last, first
-        digits += 1
+        value = Fraction(place) if is_settled else _middle(last, first)
+        last, first = (value, first) if state(value) == before else (last, value)
+        if is_settled:
+            return decimal_point(place, suffix), last, first
 
 
 def _middle(last: Fraction, first: Fraction) -> Fraction:
     """Return a value between two: their mean, or if their sizes differ much, about their geometric mean."""
-    low, high = sorted((last, first))
-    if low and high < 16 * low:
-        return (low + high) / 2
-    return high * about_power(low / high if low else Fraction(1, 2**128), Fraction(1, 2))
+    if last and first < 16 * last:
+        return (last + first) / 2
+    return first * power(last / first if last else Fraction(1, 2**128), Fraction(1, 2))

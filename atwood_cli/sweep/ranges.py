@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
 from itertools import product
-from math import inf, lcm
+from math import inf
 from typing import Any, NamedTuple
 
 from ..arithmetic.interval import decimal_context
@@ -47,6 +47,8 @@ UNIT_SUFFIXES = {"rad": "rad", "N m": "Nm"}
 """The units that points carry, as they are not the usual ones of their input."""
 MAX_POINTS, MAX_RANGES = 1_000_000, 2
 FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
+MORE_DIGITS = 20
+"""The digits by which points at equal ratios are more precise before they are rounded."""
 MOST_VALUES_SAID = 6
 """The most values of a list that a sentence writes out."""
 
@@ -117,13 +119,6 @@ class Range(NamedTuple):
         return self.suffix or INPUTS[self.name].unit
 
     @property
-    def rank(self) -> int:
-        """2 for a range, 1 for a list of numbers, 0 for one of names: curves run along the greatest."""
-        if not self.is_list:
-            return 2
-        return 0 if any(point.name for point in self.points) else 1
-
-    @property
     def locks(self) -> bool:
         """Whether a point is a locked pulley."""
         return self.is_list and LOCKED in self.points
@@ -138,15 +133,6 @@ class Range(NamedTuple):
         """The least and the greatest finite value, in the unit of the range."""
         points = self.finite
         return Fraction(points[0].exact), Fraction(points[-1].exact)
-
-    def steps(self, count: int) -> Iterator[Fraction]:
-        """Yield the ends of so many steps from one end to the other, about equal, or of equal ratios."""
-        start, stop = self.ends
-        yield start
-        for i in range(1, count):
-            share = Fraction(i, count)
-            yield start * about_power(stop / start, share) if self.log else start + (stop - start) * share
-        yield stop
 
     def cell(self, point: Point) -> str:
         """Return a point as a table shows it, which has the unit in a head."""
@@ -178,20 +164,24 @@ class Sweep(NamedTuple):
         ranges = {range_.name: range_.words for range_ in self.ranges}
         return relevant_inputs(self.scene, varied=ranges) | ranges
 
-    def along(self, along: Range) -> Iterator[tuple[Scene, dict[str, Point]]]:
-        """Yield the scene at each point of the other range, if there is one, and that point."""
-        others = [range_ for range_ in self.ranges if range_ is not along]
-        for points in product(*(range_.points for range_ in others)):
-            place = dict(zip((range_.name for range_ in others), points, strict=True))
-            yield self.at(place), place
+    @property
+    def along(self) -> Range:
+        """The range along which curves and sentences run: no list, or one of numbers, and the longest."""
+        named = {range_.name: any(point.name for point in range_.points) for range_ in self.ranges}
+        return max(self.ranges[::-1], key=lambda x: (not x.is_list, not named[x.name], len(x.finite)))
 
-    def at(self, place: Mapping[str, Point]) -> Scene:
-        """Return the scene at a point, with the values of ``scene`` for ranges that the point leaves out."""
-        scene = self.scene
-        for range_ in self.ranges:
-            if range_.name in place:
-                scene = with_value(scene, range_.name, place[range_.name].exact)
-        return scene
+    @property
+    def others(self) -> list[Range]:
+        """The other range, if there is one."""
+        return [range_ for range_ in self.ranges if range_ is not self.along]
+
+    def scenes(self, ranges: Sequence[Range]) -> Iterator[tuple[Scene, dict[str, Point]]]:
+        """Yield the scene at each point of some of the ranges, and that point."""
+        for points in product(*(range_.points for range_ in ranges)):
+            scene, place = self.scene, dict[str, Point]()
+            for range_, point in zip(ranges, points, strict=True):
+                place[range_.name], scene = point, with_value(scene, range_.name, point.exact)
+            yield scene, place
 
     def in_words(self, place: Mapping[str, Point]) -> str:
         """Return a place of a sweep in a sentence."""
@@ -258,9 +248,10 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     if kept > MAX_DIGITS:
         rule = f"has points closer together than {MAX_DIGITS} digits can tell"
         raise SceneError(name, typed, f"{rule}; take fewer points, or ends further apart")
-    ends = [strip_zeros(exact_or_rounded(end, to_digits(kept))) for end in (start, stop)]
-    points = [ends[0], *(_equal_ratios if log else _equal_steps)(start, stop, last, kept), ends[1]]
-    return Range(name, typed, [decimal_point(x, suffix) for x in points], log, suffix)
+    round_ = to_digits(kept)
+    first, *inner, end = steps(start, stop, last, log, kept + MORE_DIGITS)
+    points = [exact_or_rounded(first, round_), *map(round_, inner), exact_or_rounded(end, round_)]
+    return Range(name, typed, [decimal_point(strip_zeros(x), suffix) for x in points], log, suffix)
 
 
 def read_list(name: str, typed: str) -> Range:
@@ -312,24 +303,15 @@ def _digits_kept(start: Fraction, stop: Fraction, last: int, log: bool, digits: 
     return max(digits or SHOWN_DIGITS, len(str(int(1 / apart))) + 3)
 
 
-def _equal_steps(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
-    """Yield the points between the ends, each from integers over one denominator, rounded once."""
-    step = (stop - start) / last
-    unit = lcm(start.denominator, step.denominator)
-    context = decimal_context(kept, ROUND_HALF_EVEN)
-    first, by, whole = int(start * unit), int(step * unit), Decimal(unit)
-    for i in range(1, last):
-        yield strip_zeros(context.divide(Decimal(first + i * by), whole))
-
-
-def _equal_ratios(start: Fraction, stop: Fraction, last: int, kept: int) -> Iterator[Decimal]:
-    """Yield the points between the ends, each the one before times the same factor, in 20 digits more."""
-    context, finer = (decimal_context(n, ROUND_HALF_EVEN) for n in (kept, max(kept, DOUBLE_DIGITS) + 20))
-    value, whole = (finer.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (start, stop / start))
-    by = finer.exp(finer.divide(finer.ln(whole), Decimal(last)))
-    for _ in range(1, last):  # a million factors cost half of the further digits
-        value = finer.multiply(value, by)
-        yield strip_zeros(context.plus(value))
+def steps(
+    start: Fraction, stop: Fraction, count: int, log: bool, digits: int = DOUBLE_DIGITS
+) -> Iterator[Fraction]:
+    """Yield the ends of so many equal steps, or to so many digits those of equal ratios."""
+    yield start
+    for i in range(1, count):
+        share = Fraction(i, count)
+        yield start * power(stop / start, share, digits) if log else start + (stop - start) * share
+    yield stop
 
 
 def with_value(scene: Scene, name: str, value: Fraction | float) -> Scene:
@@ -337,9 +319,9 @@ def with_value(scene: Scene, name: str, value: Fraction | float) -> Scene:
     return with_number(scene, UNMEASURED, name, value)[0]
 
 
-def about_power(ratio: Fraction, share: Fraction) -> Fraction:
-    """Return a ratio to a power between 0 and 1, to a few digits."""
-    context = decimal_context(DOUBLE_DIGITS, ROUND_HALF_EVEN)
+def power(ratio: Fraction, share: Fraction, digits: int = DOUBLE_DIGITS) -> Fraction:
+    """Return a ratio to a power between 0 and 1, to so many digits."""
+    context = decimal_context(digits, ROUND_HALF_EVEN)
     number, exponent = (context.divide(Decimal(q.numerator), Decimal(q.denominator)) for q in (ratio, share))
     return Fraction(context.power(number, exponent))
 
@@ -357,36 +339,9 @@ def scene_at(fixed: Mapping[str, Input], ranges: Sequence[Range], points: Sequen
         raise SceneError(error.parameter, error.value, f"{error.rule} (at {where})") from None
 
 
-class _RecordingScene:
-    """A scene that records which of its inputs are read."""
-
-    def __init__(self, scene: Scene) -> None:
-        self.scene, self.read = scene, set[str]()
-
-    def __getattr__(self, name: str) -> Any:
-        self.read.add(name)
-        return getattr(self.scene, name)
-
-
-def _unchanged(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[tuple[str, Answers]]:
-    """Yield the quantities that do not read a swept input, and so are the same at all points."""
-    fixed = set(INPUTS) - {range_.name for range_ in sweep.ranges}
-    for name in names:
-        recording: Any = _RecordingScene(sweep.scene)
-        answers = Answers(recording, digits)
-        _ = answers[name]
-        if recording.read <= fixed:
-            yield name, answers
-
-
 def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterator[Row]:
     """Yield the quantities named at every point, each point solved by itself."""
-    swept = [range_.name for range_ in sweep.ranges]
-    unchanged = dict(_unchanged(sweep, ["regime", *names], digits))
-    for points in product(*(range_.points for range_ in sweep.ranges)):
-        place = dict(zip(swept, points, strict=True))
-        answers = Answers(sweep.at(place), digits)
-        found = {name: unchanged.get(name, answers).answer(name) for name in ["regime", *names]}
-        values = {name: found[name].value for name in names}
-        reasons = {name: found[name].reason for name in names if found[name].reason}
-        yield Row(place, found["regime"].value, values, reasons)
+    for scene, place in sweep.scenes(sweep.ranges):
+        answers = Answers(scene, digits)
+        reasons = {name: reason for name in names if (reason := answers.answer(name).reason)}
+        yield Row(place, answers.case.regime, {name: answers[name] for name in names}, reasons)

@@ -1,6 +1,6 @@
 """The curves of a sweep, and their picture."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from itertools import chain
 from math import inf, isnan, log, nan
@@ -13,9 +13,9 @@ from ..model.scene import Scene, SceneError
 from ..output.figure import COLOURS, FAINT, INK, axis_words, check_file, page, typeset, write_beside
 from ..output.text import wrapped
 from ..solver.answers import Answers
-from ..solver.messages import reasons_at, unmarked
+from ..solver.messages import unmarked
 from .changes import Change, changes
-from .ranges import Point, Range, Sweep, decimal_point, with_value
+from .ranges import Range, Sweep, decimal_point, steps, with_value
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,8 +23,6 @@ if TYPE_CHECKING:
 
 MAX_CURVES = len(COLOURS)
 """The most curves on one pair of axes: everybody can distinguish six colours."""
-DRAWN_UNNAMED = ["acceleration"]
-"""The quantities that are drawn if none is named."""
 LARGEST_DRAWN = 1e100
 """The largest number that is drawn, in any unit."""
 UNDRAWABLE = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only, not such {{}}"
@@ -33,10 +31,8 @@ CURVE_STEPS, DRAWN_DIGITS = 200, 12
 BEGINS = {"slip": "slips", "no-slip": "holds", "verge": "on the verge"}
 LINE_STYLES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
 MARKERS = "osD^vP"
-TITLE_CHARACTERS, TITLE_OF_SEVERAL = 42, 24
-"""The most characters of a line beside the axis of the one panel, and of several."""
-TICK_CHARACTERS, TICK_POINTS, WIDE = 70, 12, 30
-"""The room below an axis, the height of a line, and the ratio from which a list's axis is logarithmic."""
+TITLE_CHARACTERS, TICK_CHARACTERS, TICK_POINTS, WIDE = 24, 70, 12, 30
+"""The room beside and below an axis, the height of a line, and from which ratio a list is logarithmic."""
 
 
 class Curve(NamedTuple):
@@ -61,58 +57,47 @@ class Curve(NamedTuple):
         return [y for y in (*self.locked, *self.least, *self.most) if not isnan(y)]
 
 
-def drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
+def _drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
     """Return the quantities to draw, which are numbers. Raises SceneError if they make no picture."""
-    drawn = [name for name in names or DRAWN_UNNAMED if name in QUANTITIES]
+    drawn = [name for name in names or ["acceleration"] if name in QUANTITIES]
     if not drawn:
         raise SceneError("only", names[0], "is not a number to draw; name a quantity")
-    along = longest(sweep)
-    if len(along.finite) < 2:
-        raise SceneError(along.name, along.typed, "has one finite value, which makes no axis; give another")
+    along = sweep.along
     if along.ends[1] > LARGEST_DRAWN or (along.log and along.ends[0] < 1 / LARGEST_DRAWN):
         raise SceneError("figure", None, UNDRAWABLE.format(along.name))
     if len({*map(float, along.ends)}) < 2:
-        raise SceneError(along.name, along.typed, "has ends too close together to draw what is between them")
-    scenes, units = sweep.total // len(along.points), [QUANTITIES[name].unit for name in drawn]
-    if (count := scenes * max(map(units.count, units))) > MAX_CURVES:
-        fewer = "name fewer quantities, or give fewer points"
-        if count == scenes:
-            fewer = f"give one of the ranges at most {MAX_CURVES} points"
-        rule = f"would draw {count} curves on one pair of axes, more than {MAX_CURVES}; {fewer}"
-        raise SceneError("figure", None, rule)
+        raise SceneError(along.name, along.typed, "has no two values that differ in a picture; give others")
+    units = [QUANTITIES[name].unit for name in drawn]
+    if (count := sweep.total // len(along.points) * max(map(units.count, units))) > MAX_CURVES:
+        rule = f"would draw {count} curves on one pair of axes; at most {MAX_CURVES} can be distinguished"
+        raise SceneError("figure", None, f"{rule}; name fewer quantities, or give one range fewer points")
     return drawn
-
-
-def longest(sweep: Sweep) -> Range:
-    """Return the range along which curves run; of two that come into question it has more points."""
-    return max(reversed(sweep.ranges), key=lambda range_: (range_.rank, len(range_.finite)))
 
 
 def _solve(along: Range, scene: Scene) -> tuple[list[Change], dict[float, Answers]]:
     """Return the changes along a range and the answers at its values: of a list, at its points alone."""
-    found, values = [], [point.exact for point in along.points]
+    found, values = list[Change](), [point.exact for point in along.points]
     if not along.is_list:
         corners = attrgetter("regime", "sign", "axle_holds")  # where one of these changes
         found = list(changes(scene, along, DRAWN_DIGITS, what=corners))
-        values = [*along.steps(CURVE_STEPS), *(x for change in found for x in (change.last, change.first))]
+        values = [*steps(*along.ends, CURVE_STEPS, along.log)]
+        values += [x for change in found for x in (change.last, change.first)]
     return found, {float(x): Answers(with_value(scene, along.name, x)) for x in sorted(values)}
 
 
-def panels_of(sweep: Sweep, names: Sequence[str]) -> tuple[list[list[Curve]], list[str]]:
-    """Return curves, those of one unit together, and sentences on what is missing.
+def panels_of(sweep: Sweep, names: Sequence[str]) -> list[list[Curve]]:
+    """Return curves, those of one unit together: each along one range, for a point of the other range.
 
-    Each runs along one range, for a point of the other range. Raises SceneError if numbers are too large to
-    draw, ArithmeticError if there are none.
+    Raises SceneError if numbers are too large to draw, ArithmeticError if there are none.
     """
-    along = longest(sweep)
-    scenes = [(_in_symbols(sweep, point), *_solve(along, scene)) for scene, point in sweep.along(along)]
+    along = sweep.along
+    scenes = [
+        (typeset(sweep.in_words(place)), *_solve(along, scene)) for scene, place in sweep.scenes(sweep.others)
+    ]
     answers = [one for _, _, solved in scenes for one in solved.values()]
-    lacking = {name: [one for one in answers if isnan(_height(one, name, "max"))] for name in names}
-    missing = [(name, one) for name in names for one in lacking[name] if one[name] is None]
-    reasons = {(name, one.answer(name).reason): 1 for name, one in missing}
-    drawn = [name for name in names if len(lacking[name]) < len(answers)]
+    drawn = [name for name in names if not all(isnan(_height(one, name, "max")) for one in answers)]
     if not drawn:
-        why = unmarked("; ".join(dict.fromkeys(reason for _, reason in reasons)))
+        why = unmarked("; ".join(dict.fromkeys(one.answer(name).reason for name in names for one in answers)))
         raise ArithmeticError(f"{', '.join(names)} exists at no point, so there is nothing to draw: {why}")
     panels: dict[str, list[Curve]] = {}
     for name in drawn:
@@ -120,7 +105,7 @@ def panels_of(sweep: Sweep, names: Sequence[str]) -> tuple[list[list[Curve]], li
         if max(abs(y) for curve in curves for y in curve.numbers) > LARGEST_DRAWN:
             raise SceneError("figure", None, UNDRAWABLE.format(name))
         panels.setdefault(QUANTITIES[name].unit, []).extend(curves)
-    return [*panels.values()], reasons_at(reasons, 1)
+    return [*panels.values()]
 
 
 def _curve(along: Range, name: str, point: str, found: list[Change], solved: dict[float, Answers]) -> Curve:
@@ -157,59 +142,47 @@ def axis_title(names: Iterable[str], unit: str = "") -> str:
     return f"{title} ({unit})" if unit else title
 
 
-def _in_symbols(sweep: Sweep, at: Mapping[str, Point]) -> str:
-    """Return the point of the other range: μ = 0.2, or disk; empty if there is none."""
-    found = ((range_, at[range_.name]) for range_ in sweep.ranges if range_.name in at)
-    words = (one.name or f"{axis_words(range_.name)[1]} = {range_.in_units(one)}" for range_, one in found)
-    return typeset("".join(words))
-
-
 def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool) -> None:
-    """Draw the curves of quantities to a file, below a caption unless it is to be bare.
+    """Draw the curves of quantities, or of the acceleration, to a file; if bare, without a caption.
 
     Raises SceneError, OSError, and ArithmeticError if there is nothing to draw.
     """
+    names = _drawable(sweep, names)
     check_file(path, force)
-    along, (panels, notes) = longest(sweep), panels_of(sweep, names)
-    inputs = {name: words for name, words in sweep.inputs.items() if name != along.name}
+    along, panels = sweep.along, panels_of(sweep, names)
+    inputs = [words for name, words in sweep.inputs.items() if name != along.name]
     quantities = [dict.fromkeys(curve.quantity for curve in curves) for curves in panels]
     title = f"{axis_title(chain(*quantities))} against {axis_title([along.name])}"
-    in_symbols = ", ".join(f"{axis_words(name)[1]}{words[len(name) :]}" for name, words in inputs.items())
-    above = [title[0].upper() + title[1:], in_symbols, *notes]
+    above = [title[0].upper() + title[1:], ", ".join(inputs)]
     with page(path, force, above, bare=bare, panels=len(panels)) as figure:
         all_axes = figure.subplots(len(panels), sharex=True, squeeze=False)[:, 0]
         _set_places(all_axes[-1], along)
         for axes, curves, drawn in zip(all_axes, panels, quantities, strict=True):
             words = axis_title(drawn, QUANTITIES[curves[0].quantity].unit)
-            axes.set_ylabel("\n".join(wrapped(words, TITLE_OF_SEVERAL if panels[1:] else TITLE_CHARACTERS)))
+            axes.set_ylabel("\n".join(wrapped(words, TITLE_CHARACTERS)))
             for place, curve in enumerate(curves):
                 _draw(axes, curve, place, along.is_list)
             _set_heights(axes, [y for curve in curves for y in curve.numbers])
         _draw_legend(figure, panels)
-        for axes, curves in zip(all_axes, panels, strict=True):
-            ends = [(y, colour) for curve, colour in zip(curves, COLOURS, strict=False) for y in curve.locked]
-            write_beside(axes, [(axes.get_xlim()[1], y, "locked", colour) for y, colour in ends])
         first = panels[0][: len(panels[0]) // len(quantities[0])]
         labels = [(*mark, COLOURS[place]) for place, curve in enumerate(first) for mark in curve.marks]
-        written = write_beside(all_axes[0], labels)
-        if len(written) < len(labels):
-            for text in written:
-                text.remove()
-            _draw_legend(figure, panels, ["\n".join(words for *_, words in curve.marks) for curve in first])
+        for axes, curves in zip(all_axes, panels, strict=True):
+            end = axes.get_xlim()[1]
+            for place, curve in enumerate(curves):
+                labels += [(end, y, "locked", COLOURS[place]) for y in curve.locked]
+            write_beside(axes, labels)
+            labels = []
 
 
-def _draw_legend(figure: "Figure", panels: Sequence[Sequence[Curve]], marks: Sequence[str] = ()) -> None:
-    """Write what curves are, in the order of their right ends, and ``marks``, if there is anything to say."""
-    for old in [*figure.legends]:
-        old.remove()
+def _draw_legend(figure: "Figure", panels: Sequence[Sequence[Curve]]) -> None:
+    """Write what curves are, in the order of their right ends, if there is anything to say."""
     most = max(panels, key=lambda curves: len(curves))
     several = any(curves[0].quantity != curves[-1].quantity for curves in panels)
     entries = {}
     for place in sorted(range(len(most)), key=lambda place: -most[place].numbers[-1]):
         alike = [curves[place] for curves in panels if place < len(curves)]
         symbols = [axis_words(curve.quantity)[1] for curve in alike] if several else []
-        words = ", ".join(words for words in (*symbols, alike[0].point) if words)
-        entries[place] = "\n".join([words, *marks[place : place + 1]]).strip()
+        entries[place] = ", ".join(words for words in (*symbols, alike[0].point) if words)
     lines = {line.get_label(): line for line in figure.axes[panels.index(most)].get_lines()}
     if any(entries.values()):
         handles = [lines[f"{place}"] for place in entries]
@@ -227,10 +200,9 @@ def _set_places(axes: "Axes", along: Range) -> None:
         axes.set_xlim(low, high)
         return
     axes.margins(x=0.05)
-    axes.set_xticks(
-        [float(point.exact) for point in along.finite], [typeset(along.cell(x)) for x in along.finite]
-    )
-    axes.set_xticks([], minor=True)
+    names = {float(point.exact): typeset(along.cell(point)) for point in along.finite}
+    axes.set_xticks([*names], names.values())
+    axes.minorticks_off()
     ends = [-inf]
     for tick in axes.xaxis.get_major_ticks():
         x, width = tick.get_loc(), len(tick.label1.get_text()) + 2
@@ -265,6 +237,6 @@ def _draw(axes: "Axes", curve: Curve, place: int, is_list: bool) -> None:
         look: Any = {"facecolor": (colour, 0.18), "edgecolor": colour, "lw": 0.8}
         axes.fill_between(xs, curve.least, curve.most, band, **look)
     for x, y, _ in curve.marks:
-        axes.plot([x], [y], "o", color=INK, ms=4, zorder=3)
+        axes.plot([x], [y], "o", color=INK, ms=4, zorder=3, clip_on=False)
     for y in curve.locked:
         axes.axhline(y, color=colour, ls=(0, (4, 3)), lw=1)

@@ -4,8 +4,7 @@ import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from fractions import Fraction
-from itertools import groupby, pairwise
-from operator import attrgetter
+from itertools import groupby
 
 from ..model.digits import SHOWN_DIGITS, to_digits, to_double
 from ..model.quantities import QUANTITIES, STANDARD
@@ -14,7 +13,7 @@ from ..output.page import Page, aligned, one, with_progress
 from ..output.text import VERSION, cell, scene_record
 from ..solver.messages import reasons_at
 from .changes import changes, regimes
-from .ranges import Row, Sweep, solve_rows
+from .ranges import LOCKED, Row, Sweep, solve_rows
 from .sweep_figure import MAX_CURVES
 
 
@@ -112,23 +111,15 @@ PULLEYS = "M is not given, so each row on the verge has its own critical pulley 
 
 
 def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:
-    """Say the regimes along one range, for each point of the other range, if these are few.
-
-    Of two ranges of the same rank, it is the one that varies fast.
-    """
-    along = max(reversed(sweep.ranges), key=attrgetter("rank"))
-    if sweep.total // len(along.points) <= MAX_CURVES:
-        said: dict[str, str] = {}
-        for scene, points in sweep.along(along):
-            part = [row for row in rows if points.items() <= row.at.items()]
-            if along.is_list:
-                part = [row for point in along.finite for row in part if row.at[along.name] == point]
-            pairs = [pair for pair in pairwise(part) if pair[0].regime != pair[1].regime]
-            known = {Fraction(row.at[along.name].exact): row.regime for pair in pairs for row in pair}
-            words = ", ".join(regimes(along, list(changes(scene, along, digits, known)), scene))
-            said[sweep.in_words(points)] = words
+    """Say the regimes along one range, for each point of the other range, if these are few."""
+    along, said = sweep.along, dict[str, str]()
+    if sweep.total <= MAX_CURVES * len(along.points):
+        for scene, place in sweep.scenes(sweep.others):
+            here = [row for row in rows if place.items() <= row.at.items() and row.at[along.name] != LOCKED]
+            known = {Fraction(row.at[along.name].exact): row.regime for row in here}
+            said[sweep.in_words(place)] = regimes(along, list(changes(scene, along, digits, known)), scene)
         if len({*said.values()}) == 1:
-            said = {"Regimes": words}
+            said = {"Regimes": next(iter(said.values()))}
         yield from (f"{where}: {words}." for where, words in said.items())
     elif len({row.regime for row in rows}) == 1:
         yield f"Regime of all rows: {rows[0].regime}."

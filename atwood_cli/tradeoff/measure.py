@@ -22,32 +22,24 @@ from ..arrays import solve_arrays
 from ..model.quantities import ACCURACIES, REGIMES, STANDARD
 from ..model.units import STANDARD_GRAVITY
 
+Inputs = dict[str, Any]
+"""The inputs of a scene by parameter, as doubles."""
 Columns = Mapping[str, Any]
 """A column for each input, or for each quantity."""
-
-G = float(STANDARD_GRAVITY)
 MOST_SCENES = 100_000
 EXACT_DIGITS = 240
 PRECISE = Context(prec=EXACT_DIGITS + 20)
 REPEATS, RUN_SECONDS = 5, 0.01
-FEWEST_ROWS, MOST_ROWS = 40, 10_000
-"""The rows of a table that is timed."""
-MOST_ONE_BY_ONE = 100
-"""The most rows that are solved scene by scene: all have errors of about half a unit in the last digit."""
-LONG_SECONDS = 0.25
-"""The time of a run from which on no more rows are added to it."""
+FEWEST_ROWS, MOST_ROWS, LONG_SECONDS = 40, 10_000, 0.25
+"""The rows of a table that is timed, and the time of a run from which on no more rows are added to it."""
 
 
-# Scenes: every platform draws the same doubles. Mantissas and exponents are drawn one by one, so that no
-# library's powers or logarithms matter. Masses near the verge are solved exactly first. All scenes have M and
-# mu.
-
-Inputs = dict[str, Any]
-"""The inputs of a scene by parameter, as doubles."""
+# Every platform draws the same scenes: mantissas and exponents are drawn one by one, so that no library's
+# powers or logarithms matter, and masses near the verge are solved exactly first. All scenes have M and mu.
 
 
 def _between(rng: Random, low: int, high: int) -> float:
-    """A number from 2^low to 2^high, its exponent uniform; the same double on every platform."""
+    """Return a number from 2^low to 2^high, its exponent uniform."""
     return ldexp(1 + rng.random(), rng.randrange(low, high))
 
 
@@ -68,19 +60,15 @@ def _light_pulley(rng: Random) -> Inputs:
 
 
 def _near_critical(rng: Random) -> Inputs:
-    """A scene beside its critical pulley mass, or beside the least heavier mass that can slip."""
+    """Return a scene beside its critical pulley mass, or beside the least heavier mass that can slip."""
     m1, mu = _between(rng, -7, 7), _between(rng, -7, 0)
     off = 1 + rng.choice((-1, 1)) * _between(rng, -50, -10)
-    least: Any = _nearest("least_heavier_mass", m1=m1, m2=2 * m1, mu=mu)
+    least: Any = solve(m1=m1, m2=2 * m1, mu=mu).least_heavier_mass
     if rng.random() < 0.3:
         return {"m1": m1, "m2": least * off, "M": _between(rng, 0, 57), "mu": mu}
     m2 = least * (1 + _between(rng, -10, 4))
-    return {"m1": m1, "m2": m2, "M": _nearest("critical_pulley_mass", m1=m1, m2=m2, mu=mu) * off, "mu": mu}
-
-
-def _nearest(name: str, **given: Any) -> Any:
-    """The double nearest to a quantity of a scene."""
-    return getattr(solve(**given), name)
+    critical: Any = solve(m1=m1, m2=m2, mu=mu).critical_pulley_mass
+    return {"m1": m1, "m2": m2, "M": critical * off, "mu": mu}
 
 
 def _whole_range(rng: Random) -> Inputs:
@@ -107,34 +95,27 @@ FAMILIES = {
 
 
 def draw_scenes(family: str, count: int, seed: int) -> list[Inputs]:
-    """``count`` scenes of a family. The same seed draws the same scenes, whatever their number."""
+    """Return ``count`` scenes of a family. The same seed draws the same scenes, whatever their number."""
     rng = Random(f"{family} {seed}")
     return [FAMILIES[family].draw(rng) for _ in range(count)]
 
 
-# Settings
-
-
 class Setting(NamedTuple):
-    """A way to solve scenes: a function from columns of inputs to columns of quantities.
-
-    It solves at most ``most`` scenes of a family.
-    """
+    """A way to solve scenes: a function from columns of inputs to columns of quantities."""
 
     name: str
-    run: Callable[[Columns], Columns]
-    most: int = MOST_SCENES
+    run: Callable[..., Columns]
 
 
-def in_numpy(given: Columns) -> Columns:
-    """The paper's formulas, with shared sums computed once, for m1 <= m2 and half a turn over a disk.
+def in_numpy(m1: Any, m2: Any, M: Any, mu: Any) -> Columns:
+    """Evaluate the paper's formulas, with shared sums computed once, for m1 <= m2 and a disk.
 
     They know no regime and subtract nearly equal numbers, and intermediate values may overflow.
     """
-    l, h, M, mu = (given[name] for name in ("m1", "m2", "M", "mu"))
+    l, h, c = m1, m2, M / 2
     with np.errstate(all="ignore"):
-        k, c = np.exp(mu * pi), M / 2
-        q = G / (l + h + c)
+        k = np.exp(mu * pi)
+        q = float(STANDARD_GRAVITY) / (l + h + c)
         t_l, t_h = (2 * h + c) * l * q, (2 * l + c) * h * q
         mu_verge = np.log(t_h / t_l) / pi  # (27)
         friction = mu / np.sqrt(1 + mu * mu) * (t_l + t_h)  # (32)
@@ -143,30 +124,23 @@ def in_numpy(given: Columns) -> Columns:
     return dict(zip(STANDARD, (no_slip, (h - l) * q, t_l, t_h, mu_verge, friction, critical), strict=True))
 
 
-def in_digits(digits: int, given: Columns) -> Columns:
-    """`solve`, a scene at a time."""
+def in_digits(digits: int, **given: Any) -> Columns:
+    """Run `solve`, a scene at a time."""
     rows = zip(*(column.tolist() for column in given.values()), strict=True)
     solutions = [solve(**dict(zip(given, row, strict=True)), digits=digits) for row in rows]
     columns = {name: [getattr(solution, name) for solution in solutions] for name in STANDARD}
     return columns | {"regime": [REGIMES.index(regime) for regime in columns["regime"]]}
 
 
-def in_arrays(accuracy: Any, given: Columns) -> Columns:
-    return solve_arrays(**given, accuracy=accuracy)
-
-
 SETTINGS = (
     Setting("paper", in_numpy),
-    *(Setting(accuracy, partial(in_arrays, accuracy)) for accuracy in ACCURACIES),
-    Setting("50 digits", partial(in_digits, 50), MOST_ONE_BY_ONE),
+    *(Setting(accuracy, partial(solve_arrays, accuracy=accuracy)) for accuracy in ACCURACIES),
+    Setting("50 digits", partial(in_digits, 50)),
 )
 
 
-# Errors
-
-
 def errors(solved: Columns, exact: Columns) -> list[float]:
-    """The worst error (ulp) of each scene whose regime is right; infinite where a value is lost."""
+    """Return the worst error (ulp) of each scene whose regime is right; infinite where a value is lost."""
     rows, right = (zip(*(columns[name] for name in STANDARD), strict=True) for columns in (solved, exact))
     return [
         max((_ulps(*pair) for pair in zip(values, wanted, strict=True) if pair[1] is not None), default=0.0)
@@ -176,7 +150,7 @@ def errors(solved: Columns, exact: Columns) -> list[float]:
 
 
 def _ulps(value: Any, exact: Decimal) -> float:
-    """The error of a value, in units in the last place of the double nearest to the exact value."""
+    """Return the error of a value, in units in the last place of the double nearest to the exact value."""
     nearest = float(exact)
     if isinstance(value, float) and not (isfinite(value) and isfinite(nearest)):
         return 0.0 if value == nearest else inf
@@ -184,55 +158,50 @@ def _ulps(value: Any, exact: Decimal) -> float:
     return abs(float(PRECISE.divide(PRECISE.subtract(Decimal(value), exact), unit)))
 
 
-# Measuring
-
-
 class Measured(NamedTuple):
-    """A setting on a family of scenes. The error is None where no regime was right."""
+    """A setting on a family of scenes: the time of a scene, and its error, None if no regime was right."""
 
     family: str
     setting: str
     seconds: float
-    """The time of a scene, the median of the repeats."""
     worst_ulp: float | None
     share_wrong_regime: float
 
 
 def measure(family: str, scenes: Sequence[Inputs]) -> list[Measured]:
-    """Every setting on these scenes, which have the same inputs; ``family`` names them."""
-    exact = in_digits(EXACT_DIGITS, _columns(scenes, len(scenes)))
+    """Measure every setting on these scenes, which have the same inputs; ``family`` names them."""
+    columns = _columns(scenes, len(scenes))
+    exact = in_digits(EXACT_DIGITS, **columns)
     tables = [_timed_table(setting, scenes) for setting in SETTINGS]
-    times = timed([partial(setting.run, table) for setting, table in zip(SETTINGS, tables, strict=True)])
+    times = timed([partial(setting.run, **table) for setting, table in zip(SETTINGS, tables, strict=True)])
     measured = []
     for setting, table, seconds in zip(SETTINGS, tables, times, strict=True):
-        count = min(len(scenes), setting.most)
-        solved = setting.run(_columns(scenes, count))
-        found = errors(solved, {name: column[:count] for name, column in exact.items()})
-        worst, wrong = max(found, default=None), 1 - len(found) / count
+        found = errors(setting.run(**columns), exact)
+        worst, wrong = max(found, default=None), 1 - len(found) / len(scenes)
         measured.append(Measured(family, setting.name, seconds / len(table["m1"]), worst, wrong))
     return measured
 
 
 def _columns(scenes: Sequence[Inputs], rows: int) -> Columns:
-    """The scenes as columns of ``rows`` rows, in which they are repeated."""
+    """Return the scenes as columns of ``rows`` rows, in which they are repeated."""
     return {name: np.resize([scene[name] for scene in scenes], rows) for name in scenes[0]}
 
 
 def _timed_table(setting: Setting, scenes: Sequence[Inputs]) -> Columns:
-    """The scenes in a table that is not too long to be timed."""
-    rows, most = FEWEST_ROWS, min(MOST_ROWS, setting.most)
-    while rows < most and _quickest(partial(setting.run, _columns(scenes, rows))) < LONG_SECONDS:
-        rows = min(16 * rows, most)
+    """Return the scenes in a table that is not too long to be timed."""
+    rows = FEWEST_ROWS
+    while rows < MOST_ROWS and _quickest(partial(setting.run, **_columns(scenes, rows))) < LONG_SECONDS:
+        rows = min(4 * rows, MOST_ROWS)
     return _columns(scenes, rows)
 
 
 def _quickest(run: Callable[[], object]) -> float:
-    """The lesser time of two calls, in s: a single call may have been interrupted."""
+    """Return the lesser time of two calls, in s: a single call may have been interrupted."""
     return min(Timer(run, timer=perf_counter).repeat(2, 1))
 
 
 def timed(runs: Sequence[Callable[[], object]]) -> list[float]:
-    """The median time of a call of each run, in s.
+    """Return the median time of a call of each run, in s.
 
     The runs take turns, so that whatever slows the machine for a while slows all of them.
     """

@@ -35,8 +35,8 @@ def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
     for family, group in groupby(measured, attrgetter("family")):
         heads = [family, "  error (ulp)", "  wrong"]
         cells = (
-            [in_seconds(point.seconds), short(point.worst_ulp), percent(point.share_wrong_regime)]
-            for point in group
+            [in_seconds(one.seconds), short(one.worst_ulp), f"{short(100 * one.share_wrong_regime, 3)} %"]
+            for one in group
         )
         groups.append([list(row) for row in zip(heads, *cells, strict=True)])
     widths = [max(map(len, column)) for column in zip(*chain(*groups), strict=True)]
@@ -49,22 +49,15 @@ def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
 
 
 def save(measured: Sequence[Measured], path: str, force: bool, bare: bool = False) -> None:
-    """Draw errors against times to a file, whose suffix is its format, a panel for each family.
-
-    ``bare`` leaves the sentence out. Raises OSError.
-    """
-    from matplotlib.ticker import LogLocator, NullLocator
-
+    """Draw errors against times to a file, for each family, without a title if bare. Raises OSError."""
     families = {family: [*group] for family, group in groupby(measured, attrgetter("family"))}
     title = "Worst error of a scene, in units in the last place of a double (ulp), against its time"
     with page(path, force, [title], bare=bare) as figure:
         panels = figure.subplots(1, len(families), sharex=True, sharey=True, squeeze=False)[0]
         for axes, (family, settings) in zip(panels, families.items(), strict=True):
-            axes.set(title=family, xscale="log", yscale="log")
+            axes.set(title=family, xscale="log", yscale="log", xmargin=0.2)
             axes.set_yticks(list(TICKS), TICKS.values())
-            axes.set_yticks([], minor=True)
-            axes.xaxis.set_major_locator(LogLocator(base=100))
-            axes.xaxis.set_minor_locator(NullLocator())
+            axes.minorticks_off()
             axes.grid(alpha=0.3)
             for point, marker, colour in zip(settings, "oD^v", (RED, BLUE, GREEN, PURPLE), strict=True):
                 worst = GREATEST if point.worst_ulp is None else min(max(point.worst_ulp, LEAST), GREATEST)
@@ -86,8 +79,3 @@ def short(value: float | None, digits: int = 2) -> str:
     if value is None:
         return "-"
     return "inf" if isinf(value) else format_number(Decimal(f"{value:.{digits}g}"))
-
-
-def percent(share: float) -> str:
-    """Return a share in percent, to three digits."""
-    return f"{short(100 * share, 3)} %"
