@@ -2,7 +2,6 @@
 
 import re
 import zipfile
-from collections import Counter
 from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
@@ -24,7 +23,7 @@ from atwood_cli.output.typeset import as_markdown, as_text, chain, written
 from atwood_cli.solver.answers import Answers, read_answers
 from atwood_cli.solver.equations import Derivation, Equation
 from atwood_cli.solver.equations import plain as in_letters
-from atwood_cli.solver.steps import Explanation, Step, explain
+from atwood_cli.solver.steps import Explanation, explain
 
 from . import oracle
 from .conftest import examples, many
@@ -40,7 +39,7 @@ def told_of(kind: str, digits: int | None = None) -> Explanation:
 
 
 def all_equations(found: Explanation) -> list[Equation]:
-    return [part for step in found.steps for part in step.body if isinstance(part, Equation)]
+    return [one for paragraph in found.paragraphs for one in paragraph.equations]
 
 
 def equations(found: Explanation) -> list[Equation]:
@@ -49,7 +48,7 @@ def equations(found: Explanation) -> list[Equation]:
 
 
 def sentences(found: Explanation) -> list[str]:
-    return [*found.answer, *(part for step in found.steps for part in step.body if isinstance(part, str))]
+    return [*found.answer, *(words for paragraph in found.paragraphs for words in paragraph.sentences)]
 
 
 # Each line gives its result: read as a person reads it, and worked out with another library
@@ -86,9 +85,9 @@ def from_latex(words: str) -> str:
 
 def check_numbers(equation: Equation, digits: int) -> None:
     """The result is within the range of the numbers put in, those of all digits half a unit off either way."""
-    numbers = (equation.numbers or {}).values()
+    numbers = equation.numbers.values()
     # mpmath needs as many digits as a number is small.
-    if equation.numbers is None or any(abs(number.adjusted()) >= 3000 for number in numbers):
+    if not equation.numbers or any(abs(number.adjusted()) >= 3000 for number in numbers):
         return
     mp.mp.dps = mp.iv.dps = 100 + sum(len(str(number)) + max(0, -2 * number.adjusted()) for number in numbers)
     _, put_in, result = chain(equation)
@@ -141,7 +140,7 @@ def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits
     scene = Scene.read(next(scenes(family, 1, seed)))
     answers = Answers(scene, digits)
     found = explain(answers)
-    check_lesson(answers, (NAMES[seed % len(NAMES)], "tension_1"))
+    check_lesson(answers, found, (NAMES[seed % len(NAMES)], "tension_1"))
     check_results(found, scene, digits or 6)
     for equation in equations(found):
         check_numbers(equation, digits or 6)
@@ -229,9 +228,9 @@ def check_laws(found: Explanation, case: Decisions, env: dict[str, Any]) -> None
 # One lesson
 
 
-def check_lesson(answers: Answers, names: tuple[str, ...]) -> None:
+def check_lesson(answers: Answers, full: Explanation, names: tuple[str, ...]) -> None:
     """Each quantity that exists is derived; each symbol is given, or derived above or by its law; no more."""
-    full, lesson = explain(answers), explain(answers, names)
+    lesson = explain(answers, names)
     known = {*Derivation(answers).inputs} - derived(full)
     known |= {"π", "φ"} | {side for one in all_equations(full) for side in [symbol_of(one)] if not one.needs}
     known |= {"c"} if answers.case.locked else set()  # (33) is solved for it
@@ -257,28 +256,13 @@ def derived(found: Explanation) -> set[str]:
 @kinds
 def test_a_lesson_derives_what_is_asked_for_and_what_that_needs(kind: str) -> None:
     answers = read_answers(SCENES[kind], None)
+    full = explain(answers)
     for name in answers.names:
-        check_lesson(answers, (name,))
-    check_lesson(answers, ("acceleration", "tension_1"))
+        check_lesson(answers, full, (name,))
+    check_lesson(answers, full, ("acceleration", "tension_1"))
 
 
 # Every number in a sentence is known
-
-SIMPLER: dict[str, dict[str, str | None]] = {
-    "What if the axle had no friction?": {"axle": None},
-    "What if slipping is ignored?": {"mu": None, "mu_k": None},
-}
-"""What a simpler model is given in place of what the scene is."""
-
-
-def check_what_if(step: Step, given: Given, answers: Answers) -> None:
-    """Every number of a simpler model is that of `solve` with the simpler scene."""
-    simpler = Answers(Scene.read({**given, **SIMPLER[step.title]}))
-    names = ("acceleration", "tension_1", "tension_2")
-    for words, name in zip(step.body, names, strict=True):
-        numbers = re.findall(rf"(?<![\w/])[+-]?{NUMBER}", str(words).partition("would be ")[2])
-        expected = [simpler.to(6)[name], answers.to(6)[name]]
-        assert [Decimal(number) for number in numbers] == expected, (given, words)
 
 
 def known_numbers(given: Given) -> list[Decimal]:
@@ -300,18 +284,12 @@ def known_numbers(given: Given) -> list[Decimal]:
 
 def test_every_number_in_a_sentence_is_one_that_solve_gives() -> None:
     """The pulley without mass had no mu: where the string slips over that, too, the numbers were false."""
-    mp.mp.dps, checked, titles = 40, 0, Counter[str]()
+    mp.mp.dps, checked = 40, 0
     slips: Given = {"m1": "1", "m2": "3", "M": "10", "mu": "0.05", "axle": "6"}
     for typed in (slips, *of_all_kinds(many(350), seed=7)):
         answers, known = Answers(Scene.read(typed)), known_numbers(typed)
         found = explain(answers)
-        for step in found.steps:
-            if step.title in SIMPLER:
-                titles[step.title] += 1
-                check_what_if(step, typed, answers)
         for words in sentences(found):
-            if " instead of " in words:
-                continue
             values = re.sub(r"\(\d+\)|`[^`]*`|R\^2|\(180 degrees\)|1 and 2", "", words)
             for number in map(Decimal, re.findall(rf"(?<![\w.]){NUMBER}", values)):
                 short = number if "." in str(number) else number.normalize()
@@ -319,7 +297,6 @@ def test_every_number_in_a_sentence_is_one_that_solve_gives() -> None:
                 assert any(abs(number - one) < unit or number == one for one in known), (typed, words, number)
                 checked += 1
     assert checked > many(2000)
-    assert all(titles[title] > many(30) for title in SIMPLER), titles
 
 
 # No line is too wide
@@ -334,7 +311,7 @@ def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str) -> None:
         assert all(len(line) <= width or re.fullmatch(r" *(\S*\d )?\S+", line) for line in lines)
         words = " ".join(lines).split()
         for equation in equations(found):
-            for number in (equation.result, *(equation.numbers or {}).values()):
+            for number in (equation.result, *equation.numbers.values()):
                 assert any(str(number).lower().replace("e+", "e") in word for word in words)
         assert not re.search("[\xa0`]", "".join(lines))
         assert not any(re.search(r"^=|\w =$", line) for line in lines)

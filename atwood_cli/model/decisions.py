@@ -215,6 +215,11 @@ class Decisions:
         """Whether kinetic friction follows from a measured acceleration."""
         return self.motion.finds == "mu_k"
 
+    @property
+    def slides_by_mu_k(self) -> bool:
+        """Whether the string slides with the mu_k that is given."""
+        return self.regime == "slip" and self.scene.mu_k is not None and not self.slide_measured
+
     @lazy
     def measured_acceleration(self) -> Fraction:
         """The measured acceleration (m/s²), positive when the heavier mass descends."""

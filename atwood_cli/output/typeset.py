@@ -7,6 +7,8 @@ equations.
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from decimal import Decimal
+from itertools import groupby
+from operator import attrgetter
 from typing import Any
 
 from ..arithmetic.symbolic import Formula, Symbol, factors
@@ -14,7 +16,7 @@ from ..model.digits import format_number
 from ..model.quantities import QUANTITIES
 from ..model.scene import INPUTS
 from ..solver.equations import Equation, plain
-from ..solver.steps import Explanation
+from ..solver.steps import Explanation, Paragraph
 from .text import wrapped
 
 Written = tuple[str, int]
@@ -137,20 +139,27 @@ def as_text(given: Iterable[str], explanation: Explanation, width: int) -> Itera
 
     ``given`` has each input in words, as "m1 = 1 kg".
     """
-    labels = [part.label for step in explanation.steps for part in step.body if isinstance(part, Equation)]
+    labels = [one.label for paragraph in explanation.paragraphs for one in paragraph.equations]
     label_width = max(map(len, labels), default=0)
     for words in (scene(given), *explanation.answer, explanation.reading):
         style = "bold" if words in explanation.answer else ""
         yield from ((line, style) for line in wrapped(in_text(words), width))
-    for number, step in enumerate(explanation.steps, 1):
+    for title, paragraphs in steps(explanation):
         yield "", ""
-        yield f"{number}. {step.title}", "bold"
-        for part in step.body:
-            if isinstance(part, Equation):
-                lines = _equation_lines(part, width, f"  {part.label:<{label_width}} ")
-            else:
-                lines = wrapped(in_text(part), width)
-            yield from ((line, "") for line in lines)
+        yield title, "bold"
+        for paragraph in paragraphs:
+            for words in paragraph.sentences:
+                yield from ((line, "") for line in wrapped(in_text(words), width))
+            for one in paragraph.equations:
+                yield from (
+                    (line, "") for line in _equation_lines(one, width, f"  {one.label:<{label_width}} ")
+                )
+
+
+def steps(explanation: Explanation) -> Iterator[tuple[str, Iterator[Paragraph]]]:
+    """Yield the steps of an explanation: each its number and title, and its paragraphs."""
+    for number, (title, paragraphs) in enumerate(groupby(explanation.paragraphs, attrgetter("title")), 1):
+        yield f"{number}. {title}", paragraphs
 
 
 def scene(given: Iterable[str]) -> str:
@@ -173,20 +182,17 @@ def in_text(words: str) -> str:
 
 def chain(equation: Equation, latex: bool = False) -> list[str]:
     """Return the right sides of an equation, each with its sign: symbols, numbers put in, result."""
-    unit, result = equation.unit, equation.result
-    before, after = list(equation.signs)
-    if latex:
-        unit = rf"\ \mathrm{{{unit.translate(UNITS_IN_LATEX)}}}" if unit else ""
-        before, after, result = in_math(before), in_math(after), number_in_latex(result)
-    elif unit:
-        unit = f" {unit}"
+    before, after = (in_math(sign) if latex else sign for sign in equation.signs)
     sides = []
     if equation.right is not None:
         sides.append(f"= {written(equation.right, None, latex)}")
-    if equation.numbers is not None and not isinstance(equation.right, str | None):
+    if isinstance(equation.right, Formula) and equation.result:
         sides.append(f"{before} {written(equation.right, equation.numbers, latex)}")
-    if result:
-        sides.append(f"{after} {result}{unit}")
+    if equation.result and latex:
+        unit = rf"\ \mathrm{{{equation.unit.translate(UNITS_IN_LATEX)}}}" if equation.unit else ""
+        sides.append(f"{after} {number_in_latex(equation.result)}{unit}")
+    elif equation.result:
+        sides.append(f"{after} {equation.result} {equation.unit}".rstrip())
     return sides
 
 
@@ -212,16 +218,16 @@ def as_markdown(given: Iterable[str], explanation: Explanation) -> Iterator[str]
     for words in (scene(given), *explanation.answer, explanation.reading):
         yield ""
         yield in_markdown(words)
-    for number, step in enumerate(explanation.steps, 1):
+    for title, paragraphs in steps(explanation):
         yield ""
-        yield f"## {number}. {step.title}"
-        for part in step.body:
-            yield ""
-            if isinstance(part, str):
-                yield in_markdown(part)
-            else:
-                label = rf" \qquad {part.label}" if part.label else ""  # not every reader knows \tag
-                yield f"$$\n{_aligned(part)}{label}\n$$"
+        yield f"## {title}"
+        for paragraph in paragraphs:
+            for words in paragraph.sentences:
+                yield ""
+                yield in_markdown(words)
+            for one in paragraph.equations:
+                label = rf" \qquad {one.label}" if one.label else ""  # not every reader knows \tag
+                yield f"\n$$\n{_aligned(one)}{label}\n$$"
 
 
 def _aligned(equation: Equation) -> str:

@@ -26,16 +26,16 @@ GUARD_DIGITS = 2
 class Equation(NamedTuple):
     """An equation with the paper's number: a law, or a value worked out.
 
-    A side is a formula, or letters. A law has no ``result``. A value has ``numbers`` to put in unless its
-    formula is not shown; ``signs``, = or ≈, stand before the numbers and before the result. ``follows``
-    are symbols that it rests on besides those of its formulas.
+    A side is a formula, or letters, and the right one of a value may be missing. A law has no ``result``.
+    ``numbers`` are those of the symbols in the formula of a value. ``signs``, = or ≈, stand before the
+    numbers and before the result. ``follows`` are symbols that it rests on besides those of its formulas.
     """
 
     label: str
     left: str | Formula
     right: str | Formula | None
     follows: tuple[str, ...] = ()
-    numbers: Mapping[Symbol, Decimal] | None = None
+    numbers: Mapping[Symbol, Decimal] = {}
     signs: str = "=="
     result: str = ""
     unit: str = ""
@@ -48,11 +48,8 @@ class Equation(NamedTuple):
         return symbols.union(self.follows)
 
 
-Part = str | Equation
-"""A sentence or an equation. In sentences symbols stand between backticks."""
-
 MOTION = ("acceleration", "tension_1", "tension_2")
-"""Quantities that a derivation gives first, and by which simpler models are compared."""
+"""Quantities that a derivation gives first."""
 UNITS = {
     **dict.fromkeys(
         ("friction_mass", "limiting_friction_mass", "drive", "limiting_drive", "M", "c", "b"), "kg"
@@ -138,7 +135,7 @@ class Derivation:
             symbols["mu_verge"] = "μ*"
         if case.slide_measured:
             symbols |= {"limiting_k_minus_1": "x_kin", "mu_k": "μ_k"}
-        elif case.regime == "slip" and scene.mu_k is not None:
+        elif case.slides_by_mu_k:
             symbols |= {
                 "limiting_k_minus_1": "k_kin - 1",
                 "limiting_friction_mass": "z_kin",
@@ -186,20 +183,23 @@ class Derivation:
     def by(self, name: str, law: Callable[..., Any], letters: str, label: str = "") -> Equation:
         """Return the equation of an input that follows from others, or of a quantity, by a law."""
         result = self.inputs[name] if name in self.inputs else Symbol(self.symbol(name), name)
-        return self._worked_out(result, self.record(law, letters), label)
+        return self._worked_out(label, result, self.record(law, letters))
 
-    def _worked_out(self, result: Symbol, recorded: Formula, label: str) -> Equation:
-        """Return the equation with numbers put in."""
+    def _worked_out(
+        self, label: str, result: Symbol, recorded: Formula | None, follows: tuple[str, ...] = ()
+    ) -> Equation:
+        """Return the equation with numbers put in; without a formula if there is none, or no symbol in it."""
         value, exact = self.number(result, self.digits)
         rounded = {
             symbol: self.number(symbol, self.digits + GUARD_DIGITS, INPUT_DIGITS)
-            for symbol in sorted(recorded.symbols())
+            for symbol in (sorted(recorded.symbols()) if recorded else ())
         }
         numbers = {symbol: number for symbol, (number, _) in rounded.items()}
         put_in = "=" if all(is_exact for _, is_exact in rounded.values()) else "≈"
-        signs = put_in + ("=" if exact and (put_in == "=" or not value) else "≈")
+        signs = put_in + ("=" if not value or (exact and put_in == "=") else "≈")
         unit = unit_of(result.of if isinstance(result.of, str) else result.name)
-        return Equation(label, result.name, recorded, (), numbers, signs, format_number(value), unit)
+        right = recorded if numbers else None
+        return Equation(label, result.name, right, follows, numbers, signs, format_number(value), unit)
 
     def number(self, symbol: Symbol, digits: int, typed: int = 0) -> tuple[Decimal, bool]:
         """Return the number to put in for a symbol, and whether it is exact.
@@ -232,22 +232,8 @@ class Derivation:
         if name in self.shown or not self.exists(name):
             return
         self.shown.add(name)
-        symbol = Symbol(self.symbol(name), name)
-        value, exact = self.number(symbol, self.digits)
-        label, recorded = self._label(name), None if follows else self._formula(name)
-        if recorded is None or recorded.op == "number":
-            sign = "=" if exact or not value else "≈"
-            yield Equation(
-                label, symbol.name, None, follows, None, sign * 2, format_number(value), unit_of(name)
-            )
-        else:
-            yield self._worked_out(symbol, recorded, label)
-
-    def compared(self, other: Answers) -> Iterator[str]:
-        """Yield what another scene gives instead of this one."""
-        for name in MOTION:
-            here, there = (in_words(name, answers[name]) for answers in (self.answers, other))
-            yield f"`{plain(QUANTITIES[name].symbol)}` would be {there} instead of {here}."
+        recorded = None if follows else self._formula(name)
+        yield self._worked_out(self._label(name), Symbol(self.symbol(name), name), recorded, follows)
 
     def say(self, name: str) -> str:
         """Return a quantity's symbol with its value, for a sentence."""
