@@ -68,7 +68,7 @@ class Answers:
         if uncertain:
             from .uncertainty import Uncertainties
 
-            self.uncertainties = Uncertainties(self.case, uncertain, Answers)
+            self.uncertainties = Uncertainties(self.case, uncertain)
 
     def _round_to(self, digits: int | None) -> None:
         self.digits = digits

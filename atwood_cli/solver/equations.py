@@ -71,9 +71,6 @@ INTERMEDIATE_SYMBOLS = {
     "critical_pulley_mass": "M*",
 }
 """Symbols of what equations refer to, by the model's names."""
-LABELS = {"acceleration": "", "light_tension": "(1)", "tension_ratio": "", "massless_verge": "(27)"}
-LABELS |= dict.fromkeys(("k_minus_1", "limiting_k_minus_1"), "(26)")
-"""Numbers of equations that the table of quantities does not have."""
 WITHOUT_AXLE_FRICTION = {"f": 0, "b": 0, "D": 1}
 """Values of letters of `physics` if the axle has no friction."""
 
@@ -101,16 +98,12 @@ class Derivation:
         """Return what is given or found, by symbol."""
         case, scene, motion = self.case, self.scene, self.case.motion
         return {
-            "m1": scene.m1,
-            "m2": scene.m2,
+            **{name: getattr(scene, name) for name in ("m1", "m2", "g", "I", "R")},
             "M": case.pulley_mass,
             "c": case.rim_mass,
             "β": case.beta,
             "μ": scene.mu,
             "μ_k": scene.mu_k,
-            "g": scene.g,
-            "I": scene.I,
-            "R": scene.R,
             "f_axle": case.axle_friction if case.has_axle_friction else None,
             "b": case.axle_mass if case.has_axle_friction else None,
             self.symbols["magnitude"]: case.measured_acceleration if motion.finds else None,
@@ -168,19 +161,7 @@ class Derivation:
         recorded: Formula = getattr(Machine(self.case, arithmetic, known), name)
         return recorded
 
-    def _label(self, name: str) -> str:
-        """Return the paper's number for an equation in this regime."""
-        case, motion = self.case, QUANTITIES["acceleration"]
-        labels = {**LABELS, "magnitude": motion.equation_in_slip or "", "difference": "(26)"}
-        if case.regime == "no-slip":
-            labels |= {"magnitude": motion.equation, "difference": "(1)" if case.pulley_at_rest else "(3)"}
-        if case.slide_measured:
-            labels["limiting_k_minus_1"] = "(1)"
-        if name == "critical_heavier_mass" and self.case.slips_at_rest:
-            labels["critical_heavier_mass"] = QUANTITIES["least_heavier_mass"].equation
-        return labels.get(name, QUANTITIES[name].equation if name in QUANTITIES else "")
-
-    def by(self, name: str, law: Callable[..., Any], letters: str, label: str = "") -> Equation:
+    def by(self, label: str, name: str, law: Callable[..., Any], letters: str) -> Equation:
         """Return the equation of an input that follows from others, or of a quantity, by a law."""
         result = self.inputs[name] if name in self.inputs else Symbol(self.symbol(name), name)
         return self._worked_out(label, result, self.record(law, letters))
@@ -224,7 +205,7 @@ class Derivation:
             return False
         return not is_infinite(self.number(Symbol("", name), self.digits)[0])
 
-    def values(self, name: str, follows: tuple[str, ...] = ()) -> Iterator[Equation]:
+    def values(self, label: str, name: str, follows: tuple[str, ...] = ()) -> Iterator[Equation]:
         """Yield the equation of a value that exists, can be written out and has not been shown yet.
 
         Only the result is shown if it is said from which symbols it ``follows``.
@@ -233,7 +214,7 @@ class Derivation:
             return
         self.shown.add(name)
         recorded = None if follows else self._formula(name)
-        yield self._worked_out(self._label(name), Symbol(self.symbol(name), name), recorded, follows)
+        yield self._worked_out(label, Symbol(self.symbol(name), name), recorded, follows)
 
     def say(self, name: str) -> str:
         """Return a quantity's symbol with its value, for a sentence."""

@@ -69,9 +69,8 @@ def failure(answers: Answers, expected: Condition) -> str:
     if expected.name in REGIMES:
         if expected.name != case.regime:
             return f"expected {expected.typed}; it is {case.regime}"
-        uncertainties = answers.uncertainties
-        if uncertainties and (others := uncertainties.other_regimes()):
-            return f"expected {expected.typed}; within the uncertainties it may {MAY[others[0]]}"
+        if answers.uncertainties and (other := answers.uncertainties.other_regime()):
+            return f"expected {expected.typed}; within the uncertainties it may {MAY[other]}"
         if is_assumed(answers):
             return f"expected {expected.typed}; that is only assumed: give mu"
         return ""

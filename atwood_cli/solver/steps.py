@@ -6,7 +6,7 @@ paragraph that applies is filled in. `typeset` puts it on a page.
 A paragraph of `derivation.md` is sentences, each in a line, and indented equations. Words in brackets are
 conditions, which must all hold; before a title they are those of the step. A paragraph with equations goes if
 none is left. Whatever an equation rests on stands above it. An equation is one of
-- `tension_ratio`: a value of the model, with its formula and numbers, if it exists and was not shown;
+- `(27) mu_verge`: a value of the model, with its formula and numbers, if it exists and was not shown;
 - `half_sine from φ`: a value without its formula, and the symbols that it rests on;
 - `(4) c = rim_mass(l h a g b)`: an input that follows by a function of `physics`, with numbers put in;
 - `(34) pulley_mass_in_the_paper(l h k) = M*`: the formula for a symbol, without numbers;
@@ -75,11 +75,12 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
 
 CITATION = re.compile(r"\(\d+\)")
 LINE = re.compile(r"^(#* *)(?:\[(.*?)\] )?(.+)$", re.MULTILINE)
+EQUATION = re.compile(r"((?:\(\d+\),? )*)(.*?)(?: = (.*?))?(?: from (.*))?")
 LAW = re.compile(r"([a-z_][a-z_0-9]{2,})\((.*)\)")
 
 
 def _needed(paragraphs: Sequence[Paragraph], wanted: set[str]) -> list[Paragraph]:
-    """Keep the equations that give the symbols wanted, and all that these rest on, from the last to the first.
+    """Keep the equations that give the symbols wanted, and all that these rest on, which stands above them.
 
     An equation rests on its symbols, and on the equations whose numbers its label or the sentences before
     it cite: a number refers to the first paragraph that has it.
@@ -125,14 +126,14 @@ def _paragraphs(derivation: Derivation) -> Iterator[Paragraph]:
 
 def _equation(derivation: Derivation, line: str) -> Iterator[Equation]:
     """Yield the equation that a line of `derivation.md` stands for, if there is one to show."""
-    sides, _, symbols = line.partition(" from ")
-    follows = tuple(symbols.split(", ")) if symbols else ()
-    label = "".join(CITATION.findall(sides)[:1]) if sides.startswith("(") else ""
-    left, _, right = sides.removeprefix(label).strip().partition(" = ")
+    parts = EQUATION.fullmatch(line)
+    assert parts
+    label, left, right, symbols = (part or "" for part in parts.groups())
+    label, follows = label.rstrip(), tuple(symbols.split(", ")) if symbols else ()
     if not right:
-        yield from derivation.values(left, follows)
+        yield from derivation.values(label, left, follows)
     elif law := LAW.fullmatch(right):
-        yield derivation.by(left, FUNCTIONS[law[1]], law[2], label)
+        yield derivation.by(label, left, FUNCTIONS[law[1]], law[2])
     elif law := LAW.fullmatch(left):
         yield Equation(label, derivation.letter(right), derivation.record(FUNCTIONS[law[1]], law[2]))
     else:
