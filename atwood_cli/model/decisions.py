@@ -203,7 +203,8 @@ class Decisions:
     @property
     def mu_assumed(self) -> bool:
         """Whether friction is that with the least coefficient that holds the string, as mu is not given."""
-        return self.regime == "no-slip" and self.scene.mu is None and not self.tensions_equal
+        free = self.one_mass_is_0 or self.tensions_equal
+        return self.regime == "no-slip" and self.scene.mu is None and not free
 
     @lazy
     def limit_is_static(self) -> bool:

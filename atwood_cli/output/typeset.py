@@ -214,7 +214,8 @@ def _equation_lines(equation: Equation, width: int, label: str) -> list[str]:
     whole = f"{label}{left} {' '.join([first, *others])}"
     if len(whole) <= width:
         return [whole]
-    indent = " " * min(len(label) + len(left) + 1, width // 3)
+    room = len(label) + len(left) + 1
+    indent = " " * (room if room <= width // 3 else 4)
     lines = wrapped(f"{left} {first}", width, label, indent + "  ")
     for side in others:
         lines += wrapped(side, width, indent, indent + "  ")

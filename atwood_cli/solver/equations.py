@@ -11,6 +11,7 @@ from fractions import Fraction
 from operator import attrgetter
 from typing import Any, NamedTuple
 
+from ..arithmetic.rational import EXACT, Irrational
 from ..arithmetic.symbolic import Formula, Symbol, Symbols, formula
 from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, to_digits
 from ..model.machine import Machine
@@ -189,15 +190,16 @@ class Derivation:
         More than ``digits`` are wanted of an input, up to ``typed``.
         """
         if isinstance(symbol.of, Fraction):
-            exact: Fraction | None = symbol.of
-            keep = digits if symbol.name in self.found else max(digits, typed)
+            exact, keep = symbol.of, digits if symbol.name in self.found else max(digits, typed)
         else:
-            exact, keep = self.answers.exactly(attrgetter(symbol.of)), digits
-        if exact is not None and Fraction(to_digits(keep)(exact)) == exact:
+            quantity, keep = attrgetter(symbol.of), digits
+            try:
+                exact = self.answers.on_machines(quantity)(EXACT)
+            except Irrational:
+                return Decimal(self.answers.to(digits).settle(quantity)), False
+        if Fraction(to_digits(keep)(exact)) == exact:
             return Decimal(as_typed(exact)), True
-        if isinstance(symbol.of, Fraction):
-            return to_digits(digits)(symbol.of), False
-        return Decimal(self.answers.to(digits).settle(attrgetter(symbol.of))), False
+        return to_digits(digits)(exact), False
 
     def exists(self, name: str) -> bool:
         """Decide whether the scene determines a value that can be written out."""
@@ -218,17 +220,12 @@ class Derivation:
 
     def say(self, name: str) -> str:
         """Return a quantity's symbol with its value, for a sentence."""
-        return f"`{self.symbol(name)}` = {in_words(name, self.answers[name])}"
+        return f"`{self.symbol(name)}` = {format_number(self.answers[name])} {unit_of(name)}".rstrip()
 
 
 def unit_of(name: str) -> str:
     """Return the unit of a quantity, an intermediate value or an input."""
     return QUANTITIES[name].unit if name in QUANTITIES else UNITS.get(name, "")
-
-
-def in_words(name: str, value: Any) -> str:
-    """Return a value with its unit."""
-    return f"{format_number(value)} {unit_of(name)}".rstrip()
 
 
 def plain(symbol: str) -> str:

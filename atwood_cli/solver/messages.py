@@ -49,7 +49,6 @@ def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
     return [
         *said,
         *uncertainties.doubts(),
-        *uncertainties.lopsided([name for name, one in found.items() if one.uncertainty]),
         *map(unmarked, uncertainties.open_ended(without)),
         *reasons_at({(f"u_{name}", reason): 1 for name, reason in beyond.items()}, 1),
     ]

@@ -11,36 +11,28 @@ uncertainty is right to `RIGHT_DIGITS` digits.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal, localcontext
 from fractions import Fraction
-from typing import NamedTuple
+from operator import attrgetter
+from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.interval import ZERO, decimal_context
 from ..arithmetic.lazy import lazy
 from ..model.decisions import Decisions
-from ..model.digits import (
-    SHOWN_DIGITS,
-    as_typed,
-    format_number,
-    is_infinite,
-    rounding_to_place,
-    strip_zeros,
-    to_digits,
-    with_uncertainty,
-)
+from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, strip_zeros, to_digits
 from ..model.motion import found_inputs, number_of, with_number
 from ..model.quantities import QUANTITIES, Undetermined
-from ..model.scene import Scene, parameter_of, with_unit
-from .answers import TOO_SMALL, Answer, Answers
+from ..model.scene import Motion, Scene, parameter_of, with_unit
+
+if TYPE_CHECKING:
+    from .answers import Answers
 
 DIGITS, RIGHT_DIGITS = 48, 15
 NEGLIGIBLE = Decimal("1e-30")
 CONTEXT = decimal_context(2 * DIGITS, ROUND_HALF_EVEN)
 """Sums and products of values lose no digit that counts."""
 
-UNEVEN_SHARE = Decimal("0.2")
-"""A sentence says so if the steps to both sides differ by more than this part of the uncertainty."""
 MOST_NAMED = 3
 """The most quantities that a sentence names."""
 COVERAGE = 2
@@ -54,6 +46,13 @@ DOUBTFUL = {
 """The decisions that may differ at an end of an input, and their attributes of `Decisions`."""
 
 
+class Value(NamedTuple):
+    """The value of a quantity, or why it has none."""
+
+    number: Decimal | None
+    reason: str = ""
+
+
 class End(NamedTuple):
     """The scene with an input at an end of its range: the input, and the answers, or why there are none."""
 
@@ -61,22 +60,25 @@ class End(NamedTuple):
     answers: Answers | None
     reason: str = ""
 
-    def answer(self, name: str) -> Answer:
-        """Return the value of a quantity, or why it has none; one too small to be written out is 0."""
+    def value(self, name: str) -> Value:
+        """Return the value of a quantity; one too small to be written out is 0."""
         if self.answers is None:
-            return Answer(None, self.reason)
+            return Value(None, self.reason)
         try:
-            answer = self.answers.answer(name)
+            return Value(Decimal(self.answers.settle(attrgetter(name))))
+        except Undetermined as undetermined:
+            return Value(None, str(undetermined))
         except ZeroDivisionError:
-            return Answer(None, "unknown")
-        return Answer(ZERO) if answer.reason == TOO_SMALL else answer
+            return Value(None, "unknown")
+        except OverflowError:  # of a denominator
+            return Value(ZERO)
 
 
 class Spread(NamedTuple):
     """A quantity in the scene and at both ends of each input, and the steps that are not 0."""
 
     here: Decimal
-    ends: Mapping[str, Sequence[Answer]]
+    ends: Mapping[str, Sequence[Value]]
     steps: Mapping[str, Decimal]
 
     @property
@@ -87,11 +89,16 @@ class Spread(NamedTuple):
 
 
 class Uncertainties:
-    """The standard uncertainties of a scene: of its inputs, ``given`` in SI units, and of its quantities."""
+    """The standard uncertainties of a scene: of its inputs, ``given`` in SI units, and of its quantities.
 
-    def __init__(self, case: Decisions, given: Mapping[str, Fraction]) -> None:
-        self.case, self.given = case, given
-        self._here = End(Fraction(0), Answers(case.scene, DIGITS, case.motion))
+    ``solve`` returns the answers to a scene, to so many digits, with a motion.
+    """
+
+    def __init__(
+        self, case: Decisions, given: Mapping[str, Fraction], solve: Callable[[Scene, int, Motion], Answers]
+    ) -> None:
+        self.case, self.given, self._solve = case, given, solve
+        self._here = End(Fraction(0), solve(case.scene, DIGITS, case.motion))
         self._ends = {x: (self._end(x, -u), self._end(x, u)) for x, u in given.items()}
         self._spreads: dict[str, Spread | None] = {}
 
@@ -111,7 +118,7 @@ class Uncertainties:
             there = scene._replace(**found_inputs(scene, motion))
             if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
                 return End(number, None, NO_SCENE)
-            answers = Answers(there, DIGITS, motion)
+            answers = self._solve(there, DIGITS, motion)
             _ = answers.case.axle_mass, answers.case.rim_mass
         except (Undetermined, ZeroDivisionError):
             return End(number, None, NO_FIT)
@@ -120,18 +127,18 @@ class Uncertainties:
     def _spread(self, name: str) -> Spread | None:
         """Compute a quantity at all ends, once; None if it has no finite value in the scene."""
         if name not in self._spreads:
-            here = self._here.answer(name).value
+            here = self._here.value(name).number
             self._spreads[name] = None if here is None or is_infinite(here) else self._measure(name, here)
         return self._spreads[name]
 
     def _measure(self, name: str, here: Decimal) -> Spread:
-        ends = {x: [end.answer(name) for end in pair] for x, pair in self._ends.items()}
+        ends = {x: [end.value(name) for end in pair] for x, pair in self._ends.items()}
         steps = {}
         with localcontext(CONTEXT):
-            for x, answers in ends.items():
-                values = [here, *(answer.value for answer in answers if answer.value is not None)]
-                size = max(values) - min(values)
-                if size > NEGLIGIBLE * max(map(abs, values)) or is_infinite(size):
+            for x, values in ends.items():
+                numbers = [here, *(value.number for value in values if value.number is not None)]
+                size = max(numbers) - min(numbers)
+                if size > NEGLIGIBLE * max(map(abs, numbers)) or is_infinite(size):
                     steps[x] = size / 2
         return Spread(here, ends, steps)
 
@@ -141,7 +148,7 @@ class Uncertainties:
         It is None if the quantity has no value at an end of an input, or no finite one in the scene.
         """
         spread = self._spread(name)
-        if spread is None or any(answer.value is None for pair in spread.ends.values() for answer in pair):
+        if spread is None or any(value.number is None for pair in spread.ends.values() for value in pair):
             return None
         return to_digits(min(digits or RIGHT_DIGITS, RIGHT_DIGITS))(CONTEXT.sqrt(spread.variance))
 
@@ -187,38 +194,14 @@ class Uncertainties:
             spread = self._spread(name)
             if spread is None:
                 continue
-            for x, answers in spread.ends.items():
-                missing = [i for i in (0, 1) if answers[i].value is None]
+            for x, values in spread.ends.items():
+                missing = [i for i in (0, 1) if values[i].number is None]
                 if missing:
-                    place, why = self._at(x, self._ends[x][missing[0]]), answers[missing[0]].reason
+                    place, why = self._at(x, self._ends[x][missing[0]]), values[missing[0]].reason
                     reason = f"{place} {why}" if why == NO_SCENE else f"at {place}, {why}"
-                    other = answers[1 - missing[0]].value
+                    other = values[1 - missing[0]].number
                     found.setdefault(reason, []).append(_one_sided(name, spread.here, other))
         return [f"{_first_of(sentences)}: {reason}." for reason, sentences in found.items()]
-
-    def lopsided(self, names: Sequence[str]) -> list[str]:
-        """Say which quantities change by more to one side, or with a decision, within an uncertainty."""
-        found = {
-            x: [words for name in names if (words := self._from_end_to_end(name, x))] for x in self.given
-        }
-        return [f"{_first_of(said)}, as {x} varies by ±u." for x, said in found.items() if said]
-
-    def _from_end_to_end(self, name: str, x: str) -> str:
-        """Say from where to where a quantity goes with an input, "" if it goes evenly."""
-        spread, u, short = self._spread(name), self.of(name), self.of(name, 2)
-        if spread is None or not u or not short or is_infinite(u) or x not in spread.steps:
-            return ""
-        here, values = spread.here, [answer.value for answer in spread.ends[x]]
-        with localcontext(CONTEXT):
-            uneven = max(abs(abs(here - value) - spread.steps[x]) for value in values) > UNEVEN_SHARE * u
-        if not uneven and not any(
-            _otherwise(self.case, end.answers.case) for end in self._ends[x] if end.answers
-        ):
-            return ""
-        both = with_uncertainty(lambda place: rounding_to_place(place)(here), short)
-        round_ = rounding_to_place(short.adjusted() - 1)
-        least, most = (format_number(strip_zeros(round_(pick([here, *values])))) for pick in (min, max))
-        return f"{name} is {with_unit(both, QUANTITIES[name].unit)}, from {least} to {most}"
 
     def _at(self, x: str, end: End) -> str:
         """Say an input at an end, with its unit: "mu = 0.35"."""
