@@ -198,10 +198,6 @@ class Answers:
 
         return of
 
-    def with_pulley(self, mass: Fraction | float) -> Answers:
-        """Return the answers to this scene on a pulley of that mass (inf: locked), without slip."""
-        return Answers(self.case.scene._replace(M=mass, mu=None, mu_k=None), self.digits)
-
 
 def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answers:
     """Read the inputs, which may have uncertainties, and return the answers. Raises SceneError."""
