@@ -142,17 +142,6 @@ def at_end(given: Mapping[str, Any]) -> Any:
 
 Typed = dict[str, str]
 FIRST_ORDER: dict[str, tuple[Typed, Callable[..., dict[str, Any]]]] = {
-    "an axle": (
-        {
-            "m1": "0.2000(1)",
-            "m2": "0.2100(2)",
-            "M": "0.080(1)",
-            "g": "9.80(1)",
-            "axle": "0.80(1)mNm",
-            "R": "5.0(1)cm",
-        },
-        lambda m1, m2, M, g, axle, R: grips(m1, m2, g, (g * (m2 - m1) - axle / R) / (m1 + m2 + M / 2), R=R),
-    ),
     "a measured acceleration": (
         {
             "m1": "55.0(1)g",

@@ -6,15 +6,16 @@ from typing import Annotated
 from ..model.scene import Scene, read_digits
 from ..output.scene_page import contact_record, print_contact
 from ..output.text import Destination, Report, say, show
+from ..solver import balance
 from ..solver.answers import Answers
-from ..solver.balance import USUAL_POINTS
-from ..solver.balance import contact as solve_contact
 from .options import DONE, OUTPUT, SCENE, Bare, Digits, FigureFile, option, with_options
 
 Points = Annotated[
     str | None,
     option(
-        "Arc", metavar="N", help=f"Angles along the arc to show, with both ends; {USUAL_POINTS} if not given."
+        "Arc",
+        metavar="N",
+        help=f"Angles along the arc to show, with both ends; {balance.USUAL_POINTS} if not given.",
     ),
 ]
 
@@ -41,7 +42,7 @@ def contact(
     answers = Answers(Scene.read(given), read_digits(digits))
     if not target.form:
         answers = answers.shown
-    arc = solve_contact(answers, points or USUAL_POINTS)
+    arc = balance.contact(answers, points or balance.USUAL_POINTS)
     if figure is not None:
         from ..output.scene_figure import save
 

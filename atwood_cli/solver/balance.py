@@ -9,7 +9,7 @@ correctly, so their digits agree.
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from ..arithmetic.settling import is_positive
 from ..model import arc
@@ -128,21 +128,16 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
     forces = {"friction": vector(friction), "normal": vector(normal)}
     ends = vector(lambda m: m.resultant_vector)
 
-    def total(axis: int) -> Rounded:
+    def total(axis: Literal[0, 1]) -> Rounded:
         """Return a component of the sum, rounded once.
 
         If it is 0, as that of both ends, its enclosures have other numbers in them, too, however narrow they
         are. It is then 0 if `ZERO_DIGITS` digits of it, counted from those of its terms, are.
         """
-
-        def of(m: Machine[Any]) -> Any:
-            return friction(m)[axis] + normal(m)[axis]
-
-        term = forces["friction"]["xy"[axis]]
-        if term and ends["xy"[axis]] == 0:
-            rounded = answers.settle(of, rounding_to_place(Decimal(term).adjusted() - ZERO_DIGITS))
-            return rounded if rounded else ends["xy"[axis]]
-        return answers.settle(of)
+        term, end = forces["friction"]["xy"[axis]], ends["xy"[axis]]
+        round_ = rounding_to_place(Decimal(term).adjusted() - ZERO_DIGITS) if term and not end else None
+        rounded = answers.settle(lambda m: friction(m)[axis] + normal(m)[axis], round_)
+        return rounded if rounded else end  # a 0 of the type that was asked for
 
     torque = {
         "contact": answers.settle(

@@ -72,8 +72,8 @@ INTERMEDIATE_SYMBOLS = {
     "critical_pulley_mass": "M*",
 }
 """Symbols of what equations refer to, by the model's names."""
-WITHOUT_AXLE_FRICTION = {"f": 0, "b": 0, "D": 1}
-"""Values of letters of `physics` if the axle has no friction."""
+WITHOUT_AXLE_FRICTION = {"f_axle": 0, "b": 0, "D": 1}
+"""Values of symbols if the axle has no friction."""
 
 
 class Derivation:
@@ -141,17 +141,15 @@ class Derivation:
         """Return the symbol of a quantity."""
         return self.symbols.get(name) or plain(QUANTITIES[name].symbol)
 
-    def letter(self, letter: str) -> Formula:
-        """Return the symbol for a letter of `physics`, or its value without axle friction."""
-        masses = {"l": f"m{self.light}", "h": f"m{self.heavy}"}
-        name = {**masses, "a": self.symbols["magnitude"], "f": "f_axle"}.get(letter, letter)
-        if letter in WITHOUT_AXLE_FRICTION and name not in self.inputs:
-            return formula(WITHOUT_AXLE_FRICTION[letter])
-        return Formula("symbol", self.inputs.get(name, Symbol(name, name)))
+    def formula(self, symbol: str) -> Formula:
+        """Return the formula of a symbol, or of its value without axle friction."""
+        if symbol in WITHOUT_AXLE_FRICTION and symbol not in self.inputs:
+            return formula(WITHOUT_AXLE_FRICTION[symbol])
+        return Formula("symbol", self.inputs.get(symbol, Symbol(symbol, symbol)))
 
-    def record(self, law: Callable[..., Any], letters: str) -> Formula:
+    def record(self, law: Callable[..., Any], symbols: str) -> Formula:
         """Return the formula that an equation of `physics` gives on symbols."""
-        recorded: Formula = law(*map(self.letter, letters.split()))
+        recorded: Formula = law(*map(self.formula, symbols.split()))
         return recorded
 
     def _formula(self, name: str) -> Formula:
@@ -162,10 +160,10 @@ class Derivation:
         recorded: Formula = getattr(Machine(self.case, arithmetic, known), name)
         return recorded
 
-    def by(self, label: str, name: str, law: Callable[..., Any], letters: str) -> Equation:
+    def by(self, label: str, name: str, law: Callable[..., Any], symbols: str) -> Equation:
         """Return the equation of an input that follows from others, or of a quantity, by a law."""
         result = self.inputs[name] if name in self.inputs else Symbol(self.symbol(name), name)
-        return self._worked_out(label, result, self.record(law, letters))
+        return self._worked_out(label, result, self.record(law, symbols))
 
     def _worked_out(
         self, label: str, result: Symbol, recorded: Formula | None, follows: tuple[str, ...] = ()

@@ -8,8 +8,8 @@ conditions, which must all hold; before a title they are those of the step. A pa
 none is left. Whatever an equation rests on stands above it. An equation is one of
 - `(27) mu_verge`: a value of the model, with its formula and numbers, if it exists and was not shown;
 - `half_sine from φ`: a value without its formula, and the symbols that it rests on;
-- `(4) c = rim_mass(l h a g b)`: an input that follows by a function of `physics`, with numbers put in;
-- `(34) pulley_mass_in_the_paper(l h k) = M*`: the formula for a symbol, without numbers;
+- `(4) c = rim_mass(m1 m2 a g b)`: an input that follows by a function of `physics`, with numbers put in;
+- `(34) pulley_mass_in_the_paper(m1 m2 k) = M*`: the formula for a symbol, without numbers;
 - `(1) T1 - m1 g = m1 a`, or `α = 0 from b`: letters as they are, and the symbols that they rest on.
 """
 
@@ -135,7 +135,7 @@ def _equation(derivation: Derivation, line: str) -> Iterator[Equation]:
     elif law := LAW.fullmatch(right):
         yield derivation.by(label, left, FUNCTIONS[law[1]], law[2])
     elif law := LAW.fullmatch(left):
-        yield Equation(label, derivation.letter(right), derivation.record(FUNCTIONS[law[1]], law[2]))
+        yield Equation(label, derivation.formula(right), derivation.record(FUNCTIONS[law[1]], law[2]))
     else:
         yield Equation(label, left, right, follows)
 

@@ -75,17 +75,12 @@ class End(NamedTuple):
 
 
 class Spread(NamedTuple):
-    """A quantity in the scene and at both ends of each input, and the steps that are not 0."""
+    """A quantity in the scene and at both ends of each input, the steps that are not 0, and the variance."""
 
     here: Decimal
     ends: Mapping[str, Sequence[Value]]
     steps: Mapping[str, Decimal]
-
-    @property
-    def variance(self) -> Decimal:
-        """The sum of the squared steps."""
-        with localcontext(CONTEXT):
-            return sum((step * step for step in self.steps.values()), ZERO)
+    variance: Decimal
 
 
 class Uncertainties:
@@ -140,7 +135,8 @@ class Uncertainties:
                 size = max(numbers) - min(numbers)
                 if size > NEGLIGIBLE * max(map(abs, numbers)) or is_infinite(size):
                     steps[x] = size / 2
-        return Spread(here, ends, steps)
+            variance = sum((step * step for step in steps.values()), ZERO)
+        return Spread(here, ends, steps, variance)
 
     def of(self, name: str, digits: int | None = None) -> Decimal | None:
         """Return the standard uncertainty of a quantity, to `RIGHT_DIGITS` digits or to fewer.
