@@ -70,6 +70,7 @@ INTERMEDIATE_SYMBOLS = {
     "drive": "d",
     "alpha": "φ_lim",
     "critical_pulley_mass": "M*",
+    "mu_verge": "μ*",
 }
 """Symbols of what equations refer to, by the model's names."""
 WITHOUT_AXLE_FRICTION = {"f_axle": 0, "b": 0, "D": 1}
@@ -125,8 +126,6 @@ class Derivation:
             "tension_ratio": f"T{self.heavy}/T{self.light}",
             "rim_acceleration": "a_rim" if case.regime == "slip" else "a",
         }
-        if case.regime != "verge":  # on the verge it is the coefficient given
-            symbols["mu_verge"] = "μ*"
         if case.slide_measured:
             symbols |= {"limiting_k_minus_1": "x_kin", "mu_k": "μ_k"}
         elif case.slides_by_mu_k:

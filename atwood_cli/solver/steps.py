@@ -205,7 +205,6 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
         "half a turn": scene.wrap.is_half_turn,
         "axle torque": "τ_axle" in derivation.inputs and case.has_axle_friction,
         "paper's pulley": is_disk and not case.has_axle_friction and not case.pulley_at_rest,
-        "c is known": case.rim_mass is not None,
         "ratio is known": case.pulley_known and not case.tensions_equal,
         "mu is positive": bool(scene.mu),
         "held by the axle": case.axle_holds and not case.locked,
