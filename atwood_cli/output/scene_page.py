@@ -44,15 +44,10 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
 def csv_record(answers: Answers, names: Sequence[str], budget: bool) -> dict[str, object]:
     """Return the record for CSV: values, then uncertainties, then each input's share of the variances."""
     values = {name: answers[name] for name in names}
-    uncertain = {f"u_{name}": u for name, u in answers.standard_uncertainties(names).items()}
-    inputs = answers.uncertain if budget else ()
-    shares = {
-        f"budget_{name}_{given}": answers.budget(name).get(given)
-        for name in names
-        if name != "regime"
-        for given in inputs
-    }
-    return values | uncertain | shares
+    uncertainties = answers.standard_uncertainties(names)
+    columns = [(name, given) for name in uncertainties for given in answers.uncertain if budget]
+    shares = {f"budget_{name}_{given}": answers.budget(name).get(given) for name, given in columns}
+    return values | {f"u_{name}": u for name, u in uncertainties.items()} | shares
 
 
 def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> list[str]:
@@ -60,15 +55,10 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
 
     With ``values``, uncertain ones are said with their uncertainties.
     """
-    assumed = (
-        ["regime: assumed, as mu is not given."] if "regime" in names and answers.case.mu_assumed else []
-    )
-    uncertain = [name for name in names if values and answers.answer(name).uncertainty]
-    return [
-        *assumed,
-        *(_stated(answers, name) for name in uncertain),
-        *reasons(answers, names or answers.names),
-    ]
+    said = [_stated(answers, name) for name in names if values and answers.answer(name).uncertainty]
+    if "regime" in names and answers.case.mu_assumed:
+        said.insert(0, "regime: assumed, as mu is not given.")
+    return [*said, *reasons(answers, names or answers.names)]
 
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
