@@ -2,7 +2,7 @@
 
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Iterator, Mapping
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import chain
@@ -140,56 +140,37 @@ def at_end(given: Mapping[str, Any]) -> Any:
         return None
 
 
-Typed = dict[str, str]
-FIRST_ORDER: dict[str, tuple[Typed, Callable[..., dict[str, Any]]]] = {
-    "a measured acceleration": (
-        {
-            "m1": "55.0(1)g",
-            "m2": "60.0(2)g",
-            "a": "0.380(4)",
-            "g": "9.81(1)",
-            "R": "5.0(1)cm",
-            "drop": "0.80(1)",
-        },
-        lambda m1, m2, a, g, R, drop: (
-            grips(m1, m2, g, a, R=R)
-            | {"pulley_mass": 2 * (c := g * (m2 - m1) / a - m1 - m2), "moment_of_inertia": c * R**2}
-            | {"fall_time": (2 * drop / a) ** 0.5, "final_speed": (2 * drop * a) ** 0.5}
-            | {"axle_force": m1 * (g + a) + m2 * (g - a) + 2 * c * g}
-        ),
-    ),
-    "a slide": (
-        {"m1": "0.100(1)", "m2": "0.400(2)", "a": "2.141(5)", "g": "9.81(1)", "M": "inf"},
-        lambda m1, m2, a, g, M: {"mu_k": logarithm(m2 * (g - a) / (m1 * (g + a))) / pi},
-    ),
-}
-"""Scenes with no regime near, whose inputs are certain to 2 % or better, and what follows by (1) and (2)."""
-
-
-def logarithm(x: Any) -> Any:
-    return pytest.importorskip("uncertainties.umath").log(x)
-
-
-def grips(m1: Any, m2: Any, g: Any, a: Any, R: Any = None) -> dict[str, Any]:
-    t1, t2 = m1 * (g + a), m2 * (g - a)
-    motion = {"acceleration": a, "tension_1": t1, "tension_2": t2, "mu_verge": logarithm(t2 / t1) / pi}
-    return motion if R is None else motion | {"torque": (t2 - t1) * R}
-
-
-@pytest.mark.parametrize("name", FIRST_ORDER)
-def test_small_steps_are_those_of_the_first_order(name: str) -> None:
-    """By `uncertainties`, which takes derivatives."""
+def test_small_steps_are_those_of_the_first_order() -> None:
+    """By `uncertainties`, which takes derivatives: of (1) and (2), with inputs certain to 2 %, and no regime near."""
     unc = pytest.importorskip("uncertainties")
-    typed, follows = FIRST_ORDER[name]
-    read = {x: read_input(x, text) for x, text in typed.items()}
-    numbers = {}
-    for x, one in read.items():
-        value = float(getattr(one.value, "number", one.value))
-        numbers[x] = unc.ufloat(value, float(one.uncertainty)) if one.uncertainty else value
-    s: Any = solve(**typed)
-    for quantity, wanted in follows(**numbers).items():
-        assert getattr(s, quantity) == pytest.approx(wanted.nominal_value, rel=1e-12), quantity
-        assert s.uncertainty[quantity] == pytest.approx(wanted.std_dev, rel=1e-2), quantity
+    log = pytest.importorskip("uncertainties.umath").log
+
+    def with_steps(typed: Mapping[str, str]) -> Iterator[Any]:
+        for x, text in typed.items():
+            value, u, _ = read_input(x, text)
+            yield unc.ufloat(float(Fraction(value)), float(u))
+
+    fall = {
+        "m1": "55.0(1)g",
+        "m2": "60.0(2)g",
+        "a": "0.380(4)",
+        "g": "9.81(1)",
+        "R": "5.0(1)cm",
+        "drop": "0.80(1)",
+    }
+    slide = {"m1": "0.100(1)", "m2": "0.400(2)", "a": "2.141(5)", "g": "9.81(1)"}
+    m1, m2, a, g, R, drop = with_steps(fall)
+    t1, t2, c = m1 * (g + a), m2 * (g - a), g * (m2 - m1) / a - m1 - m2
+    follows = {"acceleration": a, "tension_1": t1, "tension_2": t2, "mu_verge": log(t2 / t1) / pi}
+    follows |= {"torque": (t2 - t1) * R, "pulley_mass": 2 * c, "moment_of_inertia": c * R**2}
+    follows |= {"fall_time": (2 * drop / a) ** 0.5, "final_speed": (2 * drop * a) ** 0.5}
+    m1, m2, a, g = with_steps(slide)
+    slides = {"mu_k": log(m2 * (g - a) / (m1 * (g + a))) / pi}
+    for typed, wanted in ((fall, follows), (slide | {"M": "inf"}, slides)):
+        s: Any = solve(**typed)
+        for name, value in wanted.items():
+            assert getattr(s, name) == pytest.approx(value.nominal_value, rel=1e-12), name
+            assert s.uncertainty[name] == pytest.approx(value.std_dev, rel=1e-2), name
 
 
 # Ends
