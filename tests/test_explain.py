@@ -23,7 +23,7 @@ from atwood_cli.solver.equations import plain as in_letters
 from atwood_cli.solver.steps import Explanation, explain
 
 from . import oracle
-from .conftest import examples
+from .conftest import examples, many
 from .scenes import FAMILIES, KINDS, inputs, scenes, table
 
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
@@ -238,7 +238,8 @@ def derived(found: Explanation) -> set[str]:
 def test_a_lesson_derives_what_is_asked_for_and_what_that_needs(kind: str) -> None:
     answers = read_answers(SCENES[kind], None)
     full = explain(answers)
-    for name in answers.names:
+    step = 100 // many(100)  # of every kind other names
+    for name in answers.names[len(kind) % step :: step]:
         check_lesson(answers, full, (name,))
     check_lesson(answers, full, ("acceleration", "tension_1"))
 

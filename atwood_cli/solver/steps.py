@@ -48,21 +48,21 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
 
     Digits are those of ``answers``, or as many as tables show.
     """
-    derivation = Derivation(answers.shown)
-    answers, digits, paragraphs = answers.shown, derivation.digits, [*_paragraphs(derivation)]
-    names = [name for name in only if name != "regime"]
+    answers, derivation = answers.shown, Derivation(answers.shown)
+    digits, paragraphs = derivation.digits, [*_paragraphs(derivation)]
+    names = dict.fromkeys(only or [*answers.found, *MOTION])
+    known = [name for name in names if name != "regime" and derivation.exists(name)]
     if only:
-        wanted = [name for name in names if derivation.exists(name)]
+        wanted = {*map(derivation.symbol, known)}
         if "regime" in only:
-            wanted += (
+            needed = (
                 ["mu_verge"] if derivation.case.pulley_known else ["least_heavier_mass", "massless_verge"]
             )
-        paragraphs = _needed(paragraphs, {*map(derivation.symbol, wanted)})
-    else:
-        names = [*answers.found, *(name for name in MOTION if name not in answers.found)]
+            wanted |= {*map(derivation.symbol, needed)}
+        paragraphs = _needed(paragraphs, wanted)
     answer = [verdict(answers)]
-    if values := [derivation.say(name) for name in names if derivation.exists(name)]:
-        answer.append(f"{', '.join(values)}.")
+    if known:
+        answer.append(f"{', '.join(map(derivation.say, known))}.")
     if not only:
         answer += remarks(answers)
     reading = (
