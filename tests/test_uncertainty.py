@@ -283,7 +283,7 @@ def test_all_that_have_no_uncertainty_are_counted() -> None:
     without = [
         name for name, u in solution.uncertainty.items() if u is None and getattr(solution, name) is not None
     ]
-    assert f"and so on for {len(without) - 3} more: R = 0 m makes no valid scene" in " ".join(solution.notes)
+    assert f"and {len(without) - 3} more: R = 0 m makes no valid scene" in " ".join(solution.notes)
 
 
 # How they are shown

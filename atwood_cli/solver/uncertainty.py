@@ -184,7 +184,7 @@ class Uncertainties:
         return next((regime for regime in regimes if regime != self.case.regime), "")
 
     def open_ended(self, names: Iterable[str]) -> list[str]:
-        """Say which quantities have no value at an end of an input, and which they have at the other one."""
+        """Say which quantities have no value at an end of an input, and their bound from the other end."""
         found: dict[str, list[str]] = {}
         for name in names:
             spread = self._spread(name)
@@ -197,7 +197,7 @@ class Uncertainties:
                     reason = f"{place} {why}" if why == NO_SCENE else f"at {place}, {why}"
                     other = values[1 - missing[0]].number
                     found.setdefault(reason, []).append(_one_sided(name, spread.here, other))
-        return [f"{_first_of(sentences)}: {reason}." for reason, sentences in found.items()]
+        return [f"No uncertainty of {_first_of(group)}: {reason}." for reason, group in found.items()]
 
     def _at(self, x: str, end: End) -> str:
         """Say an input at an end, with its unit: "mu = 0.35"."""
@@ -212,19 +212,14 @@ def _otherwise(case: Decisions, other: Decisions) -> str:
 
 
 def _one_sided(name: str, here: Decimal, other: Decimal | None) -> str:
-    """Say a value without an uncertainty, and the one at the only end that has one."""
-
-    def in_unit(value: Decimal) -> str:
-        shown = strip_zeros(to_digits(SHOWN_DIGITS)(value))
-        return with_unit(format_number(shown), QUANTITIES[name].unit)
-
+    """Name a quantity without an uncertainty, with the value at the only end that has one."""
     if other is None or other == here:
-        return f"{name} is {in_unit(here)}"
-    return f"{name} is {in_unit(here)}, at {'least' if other < here else 'most'} {in_unit(other)}"
+        return name
+    bound = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(other)))
+    return f"{name} (at {'least' if other < here else 'most'} {with_unit(bound, QUANTITIES[name].unit)})"
 
 
-def _first_of(sentences: Sequence[str]) -> str:
-    """Join the first sentences, and count the others."""
-    joined = "; ".join(sentences[:MOST_NAMED])
-    others = len(sentences) - MOST_NAMED
-    return f"{joined}, and so on for {others} more" if others > 0 else joined
+def _first_of(names: Sequence[str]) -> str:
+    """Join the first names, and count the others."""
+    joined, others = ", ".join(names[:MOST_NAMED]), len(names) - MOST_NAMED
+    return f"{joined} and {others} more" if others > 0 else joined
