@@ -64,10 +64,7 @@ def test_forces_along_the_arc_add_up_and_keep_to_the_limits_of_friction() -> Non
 GRIPPING = """
 m1=3.152 m2=3.735 M=24.299 mu=2.592 wrap=30
 m1=3.295 m2=2.697 M=33.193 mu=1.459 wrap=180
-m1=3.28 m2=4.514 M=0.219 mu=0.505 wrap=180
 m1=1.966 m2=0.6 M=0.56 mu=1.25 wrap=60
-m1=0.78 m2=3.126 M=0.24 mu=0.101 wrap=180
-m1=1.126 m2=1.156 M=88.565 mu=2.035 wrap=90
 m1=1 m2=3 M=10 mu=0.4 wrap=150
 """.strip().splitlines()
 HARDLY_LOADED = "m1=1 m2=3 M=1e-30 mu=1 wrap=180"

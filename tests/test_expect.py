@@ -1,6 +1,7 @@
 """`solve --expect`: conditions are decided exactly, and what does not hold is said with its value."""
 
 from fractions import Fraction
+from operator import eq, ge, gt, le, lt
 
 import mpmath
 from hypothesis import given
@@ -11,35 +12,23 @@ from atwood_cli.solver.expected import failure, read_condition
 
 from .conftest import examples
 
+MASSES = st.integers(1, 10**6)
+
 
 @examples(200)
-@given(
-    st.integers(1, 10**6),
-    st.integers(1, 10**6),
-    st.integers(0, 10**6),
-    st.sampled_from([-1, 0, 1]),
-    st.integers(1, 60),
-)
+@given(MASSES, MASSES, st.integers(0, 10**6), st.sampled_from([-1, 0, 1]), st.integers(1, 60))
 def test_it_is_decided_exactly(m1: int, m2: int, M: int, off: int, digits: int) -> None:
     """Beside a rational acceleration, and beside an irrational mass to sixty digits."""
     a = Fraction("9.80665") * (m2 - m1) / (m1 + m2 + Fraction(M, 2))
     answers = read_answers({"m1": m1, "m2": m2, "M": M, "mu": "1e3"}, None)
     bound = a + off * Fraction(1, 10**digits)
-    for sign, holds in {
-        "<": a < bound,
-        "<=": a <= bound,
-        ">": a > bound,
-        ">=": a >= bound,
-        "==": a == bound,
-    }.items():
-        assert (not failure(answers, read_condition(f"a {sign} {bound}"))) == holds
+    for sign, holds in {"<": lt, "<=": le, ">": gt, ">=": ge, "==": eq}.items():
+        assert (not failure(answers, read_condition(f"a {sign} {bound}"))) == holds(a, bound)
+    answers = read_answers({"m1": 1, "m2": 2, "mu": "0.01"}, None)
     with mpmath.workdps(digits + 30):
         k = mpmath.exp(mpmath.pi / 100)
-        critical = 2 * mpmath.mpf(2) * (k - 1) / (2 - k) * 2
-        below, above = (
-            mpmath.nstr(critical * (1 + part * mpmath.mpf(10) ** -digits), digits + 20) for part in (-1, 1)
-        )
-    answers = read_answers({"m1": 1, "m2": 2, "mu": "0.01"}, None)
+        critical, off_by = 8 * (k - 1) / (2 - k), mpmath.mpf(10) ** -digits
+        below, above = (mpmath.nstr(critical * (1 + part * off_by), digits + 20) for part in (-1, 1))
     assert not failure(answers, read_condition(f"M* > {below}"))
     assert not failure(answers, read_condition(f"M*<{above}"))
     assert failure(answers, read_condition(f"M* >= {above}")).startswith("expected M* >= ")

@@ -2,8 +2,6 @@
 
 import re
 import zipfile
-from collections import Counter
-from collections.abc import Iterator
 from decimal import Decimal
 from fractions import Fraction
 from pathlib import Path
@@ -14,9 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli.model import physics
-from atwood_cli.model.decisions import Decisions
-from atwood_cli.model.digits import is_infinite, to_digits
+from atwood_cli.model.digits import is_infinite
 from atwood_cli.model.quantities import NAMES, QUANTITIES
 from atwood_cli.model.scene import Scene
 from atwood_cli.output.text import inputs_in_words
@@ -24,11 +20,11 @@ from atwood_cli.output.typeset import as_markdown, as_text, chain, written
 from atwood_cli.solver.answers import Answers, read_answers
 from atwood_cli.solver.equations import Derivation, Equation
 from atwood_cli.solver.equations import plain as in_letters
-from atwood_cli.solver.steps import Explanation, Step, explain
+from atwood_cli.solver.steps import Explanation, explain
 
 from . import oracle
 from .conftest import examples, many
-from .scenes import FAMILIES, KINDS, Given, inputs, of_all_kinds, scenes, table
+from .scenes import FAMILIES, KINDS, inputs, scenes, table
 
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
 SCENES = {kind: inputs(words) for kind, words in table(KINDS)}
@@ -40,7 +36,7 @@ def told_of(kind: str, digits: int | None = None) -> Explanation:
 
 
 def all_equations(found: Explanation) -> list[Equation]:
-    return [part for step in found.steps for part in step.body if isinstance(part, Equation)]
+    return [one for paragraph in found.paragraphs for one in paragraph.equations]
 
 
 def equations(found: Explanation) -> list[Equation]:
@@ -49,7 +45,7 @@ def equations(found: Explanation) -> list[Equation]:
 
 
 def sentences(found: Explanation) -> list[str]:
-    return [*found.answer, *(part for step in found.steps for part in step.body if isinstance(part, str))]
+    return [*found.answer, *(words for paragraph in found.paragraphs for words in paragraph.sentences)]
 
 
 # Each line gives its result: read as a person reads it, and worked out with another library
@@ -86,9 +82,9 @@ def from_latex(words: str) -> str:
 
 def check_numbers(equation: Equation, digits: int) -> None:
     """The result is within the range of the numbers put in, those of all digits half a unit off either way."""
-    numbers = (equation.numbers or {}).values()
+    numbers = equation.numbers.values()
     # mpmath needs as many digits as a number is small.
-    if equation.numbers is None or any(abs(number.adjusted()) >= 3000 for number in numbers):
+    if not equation.numbers or any(abs(number.adjusted()) >= 3000 for number in numbers):
         return
     mp.mp.dps = mp.iv.dps = 100 + sum(len(str(number)) + max(0, -2 * number.adjusted()) for number in numbers)
     _, put_in, result = chain(equation)
@@ -141,7 +137,7 @@ def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits
     scene = Scene.read(next(scenes(family, 1, seed)))
     answers = Answers(scene, digits)
     found = explain(answers)
-    check_lesson(answers, (NAMES[seed % len(NAMES)], "tension_1"))
+    check_lesson(answers, found, (NAMES[seed % len(NAMES)], "tension_1"))
     check_results(found, scene, digits or 6)
     for equation in equations(found):
         check_numbers(equation, digits or 6)
@@ -188,7 +184,7 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
             env.setdefault(heavier, env[lighter])
         if left == "|a|":
             env["a"] = -env["|a|"]
-    check_laws(found, case, {spelled(name): x for name, x in env.items()})
+    check_laws(found, {spelled(name): x for name, x in env.items()})
 
 
 def spelled(words: str) -> str:
@@ -196,42 +192,26 @@ def spelled(words: str) -> str:
     return re.sub(r"\b([Mml])\*", r"\1_crit", words)
 
 
-def check_laws(found: Explanation, case: Decisions, env: dict[str, Any]) -> None:
-    """(1) holds as printed; the ratio on the verge with each critical mass in its place."""
-    light, heavy = ("m2", "m1") if case.sign < 0 else ("m1", "m2")
-    replaced = {
-        "c": env["β"] * env["M_crit"] if "M_crit" in env and "β" in env else None,
-        heavy: None if case.locked else env.get("m_crit"),
-        light: None if case.pulley_at_rest_until_it_slips else env.get("l_crit") or None,
-    }
+def check_laws(found: Explanation, env: dict[str, Any]) -> None:
+    """The laws hold that are not about friction at its limit, of which there may be less."""
     for equation in all_equations(found):
         words = spelled(f"{symbol_of(equation)} = {chain(equation)[0][2:]}")
-        in_letters_only = isinstance(equation.right, str)
         # Of what stands in letters, (1), what friction makes of (26) and what is 0 is of this scene alone.
-        if equation.result or (in_letters_only and not re.search("g - T|- m. g|T. k|= 0|^T. = T.$", words)):
+        if isinstance(equation.right, str) and not re.search("g - T|- m. g|T. k|= 0|^T. = T.$", words):
             continue
-        on_the_verge: list[dict[str, Any]] = [{}]
-        if in_letters_only:
-            if "T1" not in env or re.search("a_rim|α", words):  # the motion is open
-                continue
-        elif not re.search(r"\w_crit|^T\d/T\d = ", words):
-            on_the_verge = [{name: x} for name, x in replaced.items() if x is not None]
-            assert on_the_verge
-        for other in on_the_verge:
-            symbols = env | other
-            symbols["M"] = env["M_crit"] if "c" in other else 2 * symbols.get("c", 0)
-            symbols["z"] = symbols[light] * (env.get("k", 1) - 1)
-            left, right = (work_out(side, **symbols) for side in words.split(" = "))
-            close = mp.mpf(10) ** -28
-            assert mp.almosteq(left, right, rel_eps=close, abs_eps=close), (words, other)
+        if equation.result or words.startswith("k - 1") or re.search("a_rim|α", words) or "T1" not in env:
+            continue
+        left, right = (work_out(side, **env) for side in words.split(" = "))
+        close = mp.mpf(10) ** -28
+        assert mp.almosteq(left, right, rel_eps=close, abs_eps=close), words
 
 
 # One lesson
 
 
-def check_lesson(answers: Answers, names: tuple[str, ...]) -> None:
+def check_lesson(answers: Answers, full: Explanation, names: tuple[str, ...]) -> None:
     """Each quantity that exists is derived; each symbol is given, or derived above or by its law; no more."""
-    full, lesson = explain(answers), explain(answers, names)
+    lesson = explain(answers, names)
     known = {*Derivation(answers).inputs} - derived(full)
     known |= {"π", "φ"} | {side for one in all_equations(full) for side in [symbol_of(one)] if not one.needs}
     known |= {"c"} if answers.case.locked else set()  # (33) is solved for it
@@ -257,69 +237,11 @@ def derived(found: Explanation) -> set[str]:
 @kinds
 def test_a_lesson_derives_what_is_asked_for_and_what_that_needs(kind: str) -> None:
     answers = read_answers(SCENES[kind], None)
-    for name in answers.names:
-        check_lesson(answers, (name,))
-    check_lesson(answers, ("acceleration", "tension_1"))
-
-
-# Every number in a sentence is known
-
-SIMPLER: dict[str, dict[str, str | None]] = {
-    "What if the axle had no friction?": {"axle": None},
-    "What if slipping is ignored?": {"mu": None, "mu_k": None},
-}
-"""What a simpler model is given in place of what the scene is."""
-
-
-def check_what_if(step: Step, given: Given, answers: Answers) -> None:
-    """Every number of a simpler model is that of `solve` with the simpler scene."""
-    simpler = Answers(Scene.read({**given, **SIMPLER[step.title]}))
-    names = ("acceleration", "tension_1", "tension_2")
-    for words, name in zip(step.body, names, strict=True):
-        numbers = re.findall(rf"(?<![\w/])[+-]?{NUMBER}", str(words).partition("would be ")[2])
-        expected = [simpler.to(6)[name], answers.to(6)[name]]
-        assert [Decimal(number) for number in numbers] == expected, (given, words)
-
-
-def known_numbers(given: Given) -> list[Decimal]:
-    """All numbers that solve gives for a scene and those that a page compares it with, and its inputs."""
-    scene, none = Scene.read(given), dict.fromkeys(("mu", "mu_k"))
-    others: list[dict[str, str | None]] = [{}, none, {"axle": None}, {"mu": given.get("mu_k"), "mu_k": None}]
-    others += [{"M": "0", "I": None}, {"M": "0", "I": None, **none}, {"M": "inf", "I": None, **none}]
-    solved = [Answers(Scene.read({**given, **other}), 40) for other in others]
-    values: list[Any] = [answers[name] for answers in solved for name in NAMES[1:]]
-    beta, b, angle = (
-        Decisions(scene).beta,
-        Decisions(scene).axle_mass or 0,
-        mp.radians(exact(scene.wrap.number)),
-    )
-    inputs = [scene.m1, scene.m2, scene.M, scene.mu, scene.mu_k, beta, b, 1000 * b, scene.wrap.number]
-    values += [to_digits(40)(q) for q in inputs if isinstance(q, Fraction)]
-    return [Decimal(str(x)) for x in (*values, 1, 0, angle, mp.sin(angle / 2)) if x is not None]
-
-
-def test_every_number_in_a_sentence_is_one_that_solve_gives() -> None:
-    """The pulley without mass had no mu: where the string slips over that, too, the numbers were false."""
-    mp.mp.dps, checked, titles = 40, 0, Counter[str]()
-    slips: Given = {"m1": "1", "m2": "3", "M": "10", "mu": "0.05", "axle": "6"}
-    for typed in (slips, *of_all_kinds(many(350), seed=7)):
-        answers, known = Answers(Scene.read(typed)), known_numbers(typed)
-        found = explain(answers)
-        for step in found.steps:
-            if step.title in SIMPLER:
-                titles[step.title] += 1
-                check_what_if(step, typed, answers)
-        for words in sentences(found):
-            if " instead of " in words:
-                continue
-            values = re.sub(r"\(\d+\)|`[^`]*`|R\^2|\(180 degrees\)|1 and 2", "", words)
-            for number in map(Decimal, re.findall(rf"(?<![\w.]){NUMBER}", values)):
-                short = number if "." in str(number) else number.normalize()
-                unit = Decimal((0, (1,), int(short.as_tuple().exponent)))
-                assert any(abs(number - one) < unit or number == one for one in known), (typed, words, number)
-                checked += 1
-    assert checked > many(2000)
-    assert all(titles[title] > many(30) for title in SIMPLER), titles
+    full = explain(answers)
+    step = 100 // many(100)  # of every kind other names
+    for name in answers.names[len(kind) % step :: step]:
+        check_lesson(answers, full, (name,))
+    check_lesson(answers, full, ("acceleration", "tension_1"))
 
 
 # No line is too wide
@@ -334,17 +256,12 @@ def test_lines_keep_to_the_width_and_numbers_stay_whole(kind: str) -> None:
         assert all(len(line) <= width or re.fullmatch(r" *(\S*\d )?\S+", line) for line in lines)
         words = " ".join(lines).split()
         for equation in equations(found):
-            for number in (equation.result, *(equation.numbers or {}).values()):
+            for number in (equation.result, *equation.numbers.values()):
                 assert any(str(number).lower().replace("e+", "e") in word for word in words)
         assert not re.search("[\xa0`]", "".join(lines))
         assert not any(re.search(r"^=|\w =$", line) for line in lines)
-
-
-@kinds
-def test_no_function_of_the_program_is_printed(kind: str) -> None:
-    """After a rename, `gripping_ratio_minus_1(l h c b D)` stood where (33) stands."""
-    printed = "\n".join(line for line, _ in as_text([], told_of(kind), 80))
-    assert [name for name in vars(physics) if "_" in name[1:] and f"{name}(" in printed] == []
+        # After a rename, `gripping_ratio_minus_1(l h c b D)` stood where (33) stands.
+        assert not re.search(r"[a-z]_[a-z_0-9]+\(", "".join(lines))
 
 
 # A handout
@@ -384,26 +301,16 @@ def test_a_handout_has_words_and_symbols_only(kind: str) -> None:
     check_handout(handout(SCENES[kind]))
 
 
-def formulas(page: str) -> Iterator[str]:
-    """All that is between dollars, its numbers replaced by 2: what is left has few shapes."""
-    for found in IN_MATHEMATICS.findall(page):
-        yield re.sub(NUMBER, "2", found.strip("$\n"))
-
-
-def test_latex_takes_every_formula() -> None:
-    """It takes no second superscript: the square of the least coefficient had two."""
-    mathml = pytest.importorskip("latex2mathml.converter")
+def test_latex_takes_every_superscript() -> None:
+    """It takes no second one: the square of the least coefficient had two."""
     mathtext = pytest.importorskip("matplotlib.mathtext").MathTextParser("path")
-    pages = map(handout, [*SCENES.values(), *of_all_kinds(many(60))])
-    shapes = {shape: None for page in pages for shape in formulas(page)}
-    assert len(shapes) > 200
     rows = set()
-    for shape in shapes:
-        assert mathml.convert(shape).startswith("<math")
-        lines = re.sub(r"&|\\(begin|end)\{aligned\}", "", shape)  # mathtext does not know these
-        rows |= {re.sub(r"^(=|\\approx) ", "", " ".join(row.split())) for row in lines.split(r"\\")}
-    for row in rows:
-        mathtext.parse(f"${row}$")
+    for scene in SCENES.values():
+        for found in IN_MATHEMATICS.findall(handout(scene)):  # with 2 for each number, there are few rows
+            shape = re.sub(r"&|\\(begin|end)\{aligned\}", "", re.sub(NUMBER, "2", found.strip("$\n")))
+            rows |= {" ".join(row.split()) for row in shape.split(r"\\") if "^" in row}
+    assert len(rows) > 80
+    mathtext.parse(f"${' '.join(rows)}$")
 
 
 def test_pandoc_makes_other_pages_of_a_handout_without_complaint(tmp_path: Path) -> None:

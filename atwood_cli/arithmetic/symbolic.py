@@ -96,25 +96,11 @@ def _recorded(function: str) -> Callable[[Any, Formula], Formula]:
     return lambda _, x: Formula(function, x)
 
 
-class Formulas:
-    """Record each function under its name, as the arithmetic of formulas."""
-
-    def not_negative(self, x: Formula) -> Formula:
-        return x
-
-    exp, expm1, log1p, sqrt = map(_recorded, ("exp", "expm1", "log1p", "sqrt"))
-
-    def hypot(self, x: Formula, y: Formula | int) -> Formula:
-        return Formula("hypot", x, formula(y))
-
-    def cos_sin(self, x: Formula) -> tuple[Formula, Formula]:
-        return Formula("cos", x), Formula("sin", x)
-
-
-class Symbols(Formulas):
-    """Do the part of `Arithmetic` that derivations need, with symbols for inputs."""
+class Symbols:
+    """The part of `Arithmetic` that derivations need, with symbols for inputs. Functions are recorded."""
 
     pi = Formula("symbol", Symbol("π", "ar.pi"))
+    exp, expm1, log1p, sqrt = map(_recorded, ("exp", "expm1", "log1p", "sqrt"))
 
     def __init__(self, inputs: Sequence[Symbol]) -> None:
         self.symbols = {id(symbol.of): symbol for symbol in reversed(inputs)}  # two may be equal
@@ -128,3 +114,12 @@ class Symbols(Formulas):
 
     def is_zero(self, x: Formula) -> bool:
         return is_number(x, 0) or bool(x.op == "symbol" and x.parts[0].of == 0)
+
+    def not_negative(self, x: Formula) -> Formula:
+        return x
+
+    def hypot(self, x: Formula, y: Formula | int) -> Formula:
+        return Formula("hypot", x, formula(y))
+
+    def cos_sin(self, x: Formula) -> tuple[Formula, Formula]:
+        return Formula("cos", x), Formula("sin", x)

@@ -6,17 +6,16 @@ from typing import Annotated
 from ..model.scene import Scene, read_digits
 from ..output.scene_page import contact_record, print_contact
 from ..output.text import Destination, Report, say, show
+from ..solver import balance
 from ..solver.answers import Answers
-from ..solver.balance import contact as solve_contact
 from .options import DONE, OUTPUT, SCENE, Bare, Digits, FigureFile, option, with_options
 
-DEFAULT_POINTS = 13
 Points = Annotated[
     str | None,
     option(
         "Arc",
         metavar="N",
-        help=f"Angles along the arc to show, with both ends; {DEFAULT_POINTS} if not given.",
+        help=f"Angles along the arc to show, with both ends; {balance.USUAL_POINTS} if not given.",
     ),
 ]
 
@@ -43,7 +42,7 @@ def contact(
     answers = Answers(Scene.read(given), read_digits(digits))
     if not target.form:
         answers = answers.shown
-    arc = solve_contact(answers, points or DEFAULT_POINTS)
+    arc = balance.contact(answers, points or balance.USUAL_POINTS)
     if figure is not None:
         from ..output.scene_figure import save
 

@@ -9,7 +9,7 @@ from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print
 from ..output.text import FORMS, Destination, Report, cell, relevant_inputs, say, show
 from ..solver.answers import Answers, read_answers
 from ..solver.expected import failure, read_condition
-from ..solver.messages import reasons_at, unmarked
+from ..solver.messages import reasons, unmarked
 from .options import (
     COULD_NOT,
     DONE,
@@ -26,10 +26,6 @@ from .options import (
 FORM_NAMES = " ".join(FORMS)
 
 
-def _askable() -> Mapping[str, str]:
-    return {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from what was measured")}
-
-
 Acceleration = Annotated[str | None, scene_option("a", "Measured")]
 Drop = Annotated[str | None, scene_option("drop", "Measured")]
 Time = Annotated[str | None, scene_option("time", "Measured")]
@@ -38,7 +34,7 @@ Only = Annotated[
     option(
         "Output",
         metavar="NAME",
-        words=_askable,
+        words=lambda: {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from measurements")},
         help="Print only this, or several: a,T1; see atwood quantities.",
     ),
 ]
@@ -115,19 +111,14 @@ def solve(
         bare=[] if explain else values,
         below=lambda: print_budget(answers, names) if budget else None,
     )
-    aside = [*show(report, target), *(_lacking(answers, names) if explain else [])]
+    aside = [*show(report, target), *(reasons(answers.shown, names) if explain else [])]
     failures = [why for condition in conditions if (why := failure(answers, condition))]
     say(*aside, *failures)
     return COULD_NOT if "" in values or failures else DONE
 
 
-def _lacking(answers: Answers, names: Sequence[str]) -> list[str]:
-    """Return why quantities have no value."""
-    lacking = {(name, answers.answer(name).reason): 1 for name in names if not cell(answers[name])}
-    return reasons_at(lacking, 1)
-
-
 def _explain(answers: Answers, names: Sequence[str], markdown: bool) -> None:
+    """Print the derivation."""
     from ..output.page import print_explanation
     from ..solver.steps import explain
 

@@ -190,7 +190,8 @@ class Decisions:
     @property
     def mu_assumed(self) -> bool:
         """Whether friction is that with the least coefficient that holds the string, as mu is not given."""
-        return self.regime == "no-slip" and self.scene.mu is None and not self.tensions_equal
+        free = self.one_mass_is_0 or self.tensions_equal
+        return self.regime == "no-slip" and self.scene.mu is None and not free
 
     @lazy
     def limit_is_static(self) -> bool:
@@ -201,6 +202,11 @@ class Decisions:
     def slide_measured(self) -> bool:
         """Whether kinetic friction follows from a measured acceleration."""
         return self.motion.finds == "mu_k"
+
+    @property
+    def slides_by_mu_k(self) -> bool:
+        """Whether the string slides with the mu_k that is given."""
+        return self.regime == "slip" and self.scene.mu_k is not None and not self.slide_measured
 
     @lazy
     def measured_acceleration(self) -> Fraction:

@@ -11,7 +11,6 @@ from ..model.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..model.scene import with_unit
 from ..solver.answers import Answers
 from ..solver.balance import Contact
-from ..solver.expected import is_assumed
 from ..solver.messages import notes, reasons, remarks, unmarked, verdict
 from .text import VERSION, cell, scene_record
 
@@ -42,18 +41,13 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
     }
 
 
-def csv_record(answers: Answers, names: Sequence[str], budget: bool = False) -> dict[str, object]:
+def csv_record(answers: Answers, names: Sequence[str], budget: bool) -> dict[str, object]:
     """Return the record for CSV: values, then uncertainties, then each input's share of the variances."""
     values = {name: answers[name] for name in names}
-    uncertain = {f"u_{name}": u for name, u in answers.standard_uncertainties(names).items()}
-    inputs = answers.uncertain if budget else ()
-    shares = {
-        f"budget_{name}_{given}": answers.budget(name).get(given)
-        for name in names
-        if name != "regime"
-        for given in inputs
-    }
-    return values | uncertain | shares
+    uncertainties = answers.standard_uncertainties(names)
+    columns = [(name, given) for name in uncertainties for given in answers.uncertain if budget]
+    shares = {f"budget_{name}_{given}": answers.budget(name).get(given) for name, given in columns}
+    return values | {f"u_{name}": u for name, u in uncertainties.items()} | shares
 
 
 def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> list[str]:
@@ -61,13 +55,10 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
 
     With ``values``, uncertain ones are said with their uncertainties.
     """
-    assumed = ["regime: assumed, as mu is not given."] if "regime" in names and is_assumed(answers) else []
-    uncertain = [name for name in names if values and answers.answer(name).uncertainty]
-    return [
-        *assumed,
-        *(_stated(answers, name) for name in uncertain),
-        *reasons(answers, names or answers.names),
-    ]
+    said = [_stated(answers, name) for name in names if values and answers.answer(name).uncertainty]
+    if "regime" in names and answers.case.mu_assumed:
+        said.insert(0, "regime: assumed, as mu is not given.")
+    return [*said, *reasons(answers, names or answers.names)]
 
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
@@ -158,10 +149,7 @@ def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = N
 
 # The arc of contact
 
-POINT = (
-    *("angle", "tension", "normal_per_radian", "friction_per_radian"),
-    *("normal_per_metre", "friction_per_metre"),
-)
+POINT = "angle tension normal_per_radian friction_per_radian normal_per_metre friction_per_metre".split()
 """The keys of a point in JSON."""
 HEADS = {
     "angle": "angle (°)",
@@ -188,21 +176,15 @@ def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
     }
 
 
-def print_contact(answers: Answers, arc: Contact, tables: bool = True) -> None:
+def print_contact(answers: Answers, arc: Contact, tables: bool) -> None:
     """Print the scene, the verdict, with ``tables`` the forces along the arc and their sum, and the notes."""
-    from .page import Page
+    from .page import Page, aligned
 
     page = Page()
     page.head(answers)
-    if tables:
-        _print_forces(page, answers, arc)
-    page.say(*arc.notes)
-
-
-def _print_forces(page: "Page", answers: Answers, arc: Contact) -> None:
-    """Print the forces at points along the arc, and their sum."""
-    from .page import aligned
-
+    if not tables:
+        page.say(*arc.notes)
+        return
     names = [name for name in HEADS if name in arc.points[0]]
     rows = [{**point, "angle": strip_zeros(Decimal(point["angle"]))} for point in arc.points]
     columns = [aligned(cell(row[name]) for row in rows) for name in names]
@@ -215,3 +197,4 @@ def _print_forces(page: "Page", answers: Answers, arc: Contact) -> None:
     torques = aligned(map(cell, arc.balance["torque"].values()))
     kinds = ("friction along the arc", "R (T2 - T1)")
     page.table([f"Torque on the pulley ({unit})", ""], [list(zip(kinds, torques, strict=True))])
+    page.say(*arc.notes)

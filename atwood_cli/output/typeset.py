@@ -7,6 +7,9 @@ equations.
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from decimal import Decimal
+from functools import partial
+from itertools import groupby
+from operator import attrgetter
 from typing import Any
 
 from ..arithmetic.symbolic import Formula, Symbol, factors
@@ -14,7 +17,7 @@ from ..model.digits import format_number
 from ..model.quantities import QUANTITIES
 from ..model.scene import INPUTS
 from ..solver.equations import Equation, plain
-from ..solver.steps import Explanation
+from ..solver.steps import Explanation, Paragraph
 from .text import wrapped
 
 Written = tuple[str, int]
@@ -35,28 +38,22 @@ def written(side: str | Formula, numbers: Mapping[Symbol, Decimal] | None = None
 
 
 def _write(node: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool) -> Written:
-    def write(part: Formula) -> Written:
-        return _write(part, numbers, latex)
+    write = partial(_write, numbers=numbers, latex=latex)
 
     def tight(part: Formula, level: int = ATOM) -> str:
         words, its_level = write(part)
         return words if its_level >= level else f"({words})"
 
     match node.op:
-        case "symbol" if numbers is not None:
-            return _write_number(format_number(numbers[node.parts[0]]), latex)
-        case "symbol":
-            name = node.parts[0].name
-            level = POWER if "*" in name else ATOM  # LaTeX takes one superscript
-            return written(name, latex=latex), SUM if " " in name else level
-        case "number":
-            return _write_number(str(node.parts[0]), latex)
+        case "symbol" | "number":
+            return _write_atom(node.parts[0], numbers, latex)
         case "+" | "-":
             left, right = node.parts
             level = SUM if node.op == "+" == right.op else PRODUCT
             return f"{write(left)[0]} {node.op} {tight(right, level)}", SUM
         case "*" | "/":
-            return _quotient(node, write, numbers is not None, latex)
+            by_symbols, by_numbers = (r"\,", r" \cdot ") if latex else (" ", " · ")
+            return _quotient(node, tight, by_symbols if numbers is None else by_numbers, latex)
         case "square":
             return f"{tight(node.parts[0])}^2", POWER
         case "expm1":
@@ -74,28 +71,36 @@ def _write(node: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool)
     return (rf"\sqrt{{{inside}}}" if function == "√" else rf"\{function}({inside})"), ATOM
 
 
-def _quotient(node: Formula, write: Callable[[Formula], Written], has_numbers: bool, latex: bool) -> Written:
+def _write_atom(atom: Any, numbers: Mapping[Symbol, Decimal] | None, latex: bool) -> Written:
+    """Return a symbol, the number for it, or a number."""
+    if isinstance(atom, Symbol):
+        words = atom.name if numbers is None else format_number(numbers[atom])
+    else:
+        words = str(atom)
+    if " " in words or words.startswith("-"):
+        level = SUM
+    elif "*" in words:
+        level = POWER  # LaTeX takes one superscript
+    else:
+        level = PRODUCT if latex and re.search(r"\de", words) else ATOM
+    return in_math(words) if latex else words, level
+
+
+def _quotient(node: Formula, tight: Callable[[Formula, int], str], times: str, latex: bool) -> Written:
     """Return a product or quotient of all its factors, a minus in front, and all divisors below one line."""
     above, below = map(_powers, factors(node))
     minus = "-" if above[0].op == "number" and above[0].parts[0] < 0 else ""
     if minus:
         del above[0]
-    by_numbers, by_symbols = (r" \cdot ", r"\,") if latex else (" · ", " ")
-    times = by_numbers if has_numbers else by_symbols
-
-    def product(factors: list[Formula], alone: bool) -> str:
-        if alone and len(factors) == 1:
-            return write(factors[0])[0]
-        return times.join(word if level >= POWER else f"({word})" for word, level in map(write, factors))
-
-    quotient = product(above, alone=latex and bool(below))
-    if below:
-        lower = product(below, alone=latex)
-        if latex:
-            quotient = rf"\frac{{{quotient}}}{{{lower}}}"
-        else:
-            quotient += f"/({lower})" if len(below) > 1 else f"/{lower}"
-    return minus + quotient, SUM if minus else PRODUCT
+    upper, lower = (
+        times.join(tight(factor, SUM if latex and below and len(part) == 1 else POWER) for factor in part)
+        for part in (above, below)
+    )
+    if below and latex:
+        upper = rf"\frac{{{upper}}}{{{lower}}}"
+    elif below:
+        upper += f"/({lower})" if len(below) > 1 else f"/{lower}"
+    return minus + upper, SUM if minus else PRODUCT
 
 
 def _powers(factors: list[Formula]) -> list[Formula]:
@@ -105,17 +110,6 @@ def _powers(factors: list[Formula]) -> list[Formula]:
         same = factor.parts if factor.op == "symbol" else factor
         powers[same] = Formula("square", factor) if same in powers else factor
     return [*powers.values()]
-
-
-def _write_number(digits: str, latex: bool) -> Written:
-    level = SUM if digits.startswith("-") else ATOM
-    return (number_in_latex(digits), min(level, PRODUCT)) if latex and "e" in digits else (digits, level)
-
-
-def number_in_latex(digits: str) -> str:
-    """Return a number as LaTeX writes it, with its power of ten."""
-    mantissa, _, exponent = digits.partition("e")
-    return rf"{mantissa} \times 10^{{{exponent}}}" if exponent else digits
 
 
 def in_math(words: str) -> str:
@@ -137,20 +131,38 @@ def as_text(given: Iterable[str], explanation: Explanation, width: int) -> Itera
 
     ``given`` has each input in words, as "m1 = 1 kg".
     """
-    labels = [part.label for step in explanation.steps for part in step.body if isinstance(part, Equation)]
+    labels = [one.label for paragraph in explanation.paragraphs for one in paragraph.equations]
     label_width = max(map(len, labels), default=0)
     for words in (scene(given), *explanation.answer, explanation.reading):
         style = "bold" if words in explanation.answer else ""
         yield from ((line, style) for line in wrapped(in_text(words), width))
-    for number, step in enumerate(explanation.steps, 1):
-        yield "", ""
-        yield f"{number}. {step.title}", "bold"
-        for part in step.body:
-            if isinstance(part, Equation):
-                lines = _equation_lines(part, width, f"  {part.label:<{label_width}} ")
-            else:
-                lines = wrapped(in_text(part), width)
+    for title, paragraphs in steps(explanation):
+        yield from (("", ""), (title, "bold"))
+        for _, sentences, equations in paragraphs:
+            lines = [line for words in sentences for line in wrapped(in_text(words), width)]
+            for one in equations:
+                lines += _equation_lines(one, width, f"  {one.label:<{label_width}} ")
             yield from ((line, "") for line in lines)
+
+
+def as_markdown(given: Iterable[str], explanation: Explanation) -> Iterator[str]:
+    """Yield a page of Markdown, its mathematics in LaTeX between dollars."""
+    yield "# Atwood's machine, step by step"
+    for words in (scene(given), *explanation.answer, explanation.reading):
+        yield f"\n{in_markdown(words)}"
+    for title, paragraphs in steps(explanation):
+        yield f"\n## {title}"
+        for _, sentences, equations in paragraphs:
+            yield from (f"\n{in_markdown(words)}" for words in sentences)
+            for one in equations:
+                label = rf" \qquad {one.label}" if one.label else ""  # not every reader knows \tag
+                yield f"\n$$\n{_aligned(one)}{label}\n$$"
+
+
+def steps(explanation: Explanation) -> Iterator[tuple[str, Iterator[Paragraph]]]:
+    """Yield the steps of an explanation: each its number and title, and its paragraphs."""
+    for number, (title, paragraphs) in enumerate(groupby(explanation.paragraphs, attrgetter("title")), 1):
+        yield f"{number}. {title}", paragraphs
 
 
 def scene(given: Iterable[str]) -> str:
@@ -166,71 +178,7 @@ def with_symbols(words: str) -> str:
 
 def in_text(words: str) -> str:
     """Return a sentence without its backticks, between which no line breaks."""
-    pieces = with_symbols(words).split("`")
-    pieces[1::2] = [piece.replace(" ", "\xa0") for piece in pieces[1::2]]
-    return "".join(pieces)
-
-
-def chain(equation: Equation, latex: bool = False) -> list[str]:
-    """Return the right sides of an equation, each with its sign: symbols, numbers put in, result."""
-    unit, result = equation.unit, equation.result
-    before, after = list(equation.signs)
-    if latex:
-        unit = rf"\ \mathrm{{{unit.translate(UNITS_IN_LATEX)}}}" if unit else ""
-        before, after, result = in_math(before), in_math(after), number_in_latex(result)
-    elif unit:
-        unit = f" {unit}"
-    sides = []
-    if equation.right is not None:
-        sides.append(f"= {written(equation.right, None, latex)}")
-    if equation.numbers is not None and not isinstance(equation.right, str | None):
-        sides.append(f"{before} {written(equation.right, equation.numbers, latex)}")
-    if result:
-        sides.append(f"{after} {result}{unit}")
-    return sides
-
-
-def _equation_lines(equation: Equation, width: int, label: str) -> list[str]:
-    """Return an equation in one line if it fits, else in a line for each of its sides."""
-    left = written(equation.left)
-    first, *others = chain(equation)
-    whole = f"{label}{left} {' '.join([first, *others])}"
-    if len(whole) <= width:
-        return [whole]
-    indent = " " * (len(label) + len(left) + 1)
-    if len(indent) > width // 3:
-        indent = " " * 4
-    lines = wrapped(f"{left} {first}", width, label, indent + "  ")
-    for side in others:
-        lines += wrapped(side, width, indent, indent + "  ")
-    return lines
-
-
-def as_markdown(given: Iterable[str], explanation: Explanation) -> Iterator[str]:
-    """Yield a page of Markdown, its mathematics in LaTeX between dollars."""
-    yield "# Atwood's machine, step by step"
-    for words in (scene(given), *explanation.answer, explanation.reading):
-        yield ""
-        yield in_markdown(words)
-    for number, step in enumerate(explanation.steps, 1):
-        yield ""
-        yield f"## {number}. {step.title}"
-        for part in step.body:
-            yield ""
-            if isinstance(part, str):
-                yield in_markdown(part)
-            else:
-                label = rf" \qquad {part.label}" if part.label else ""  # not every reader knows \tag
-                yield f"$$\n{_aligned(part)}{label}\n$$"
-
-
-def _aligned(equation: Equation) -> str:
-    """Return an equation in LaTeX, its = signs below each other."""
-    left, sides = written(equation.left, latex=True), chain(equation, latex=True)
-    if len(sides) == 1:
-        return f"{left} {sides[0]}"
-    rows = " \\\\\n".join(f"&{side}" for side in sides)
-    return f"\\begin{{aligned}}\n{left} {rows}\n\\end{{aligned}}"
+    return re.sub("`([^`]*)`", lambda symbol: symbol[1].replace(" ", "\xa0"), with_symbols(words))
 
 
 def in_markdown(words: str) -> str:
@@ -242,6 +190,45 @@ def in_markdown(words: str) -> str:
     pieces[::2] = (re.sub(r"([][*_|<>$\\^~@#]|-(?=-))", r"\\\1", piece) for piece in pieces[::2])
     pieces[1::2] = (f"${in_math(piece.strip('`'))}$" for piece in pieces[1::2])
     return "".join(pieces)
+
+
+def chain(equation: Equation, latex: bool = False) -> list[str]:
+    """Return the right sides of an equation, each with its sign: symbols, numbers put in, result."""
+    before, after, result = (in_math(one) if latex else one for one in (*equation.signs, equation.result))
+    sides = []
+    if equation.right is not None:
+        sides.append(f"= {written(equation.right, None, latex)}")
+    if isinstance(equation.right, Formula) and result:
+        sides.append(f"{before} {written(equation.right, equation.numbers, latex)}")
+    if result and latex and equation.unit:
+        sides.append(rf"{after} {result}\ \mathrm{{{equation.unit.translate(UNITS_IN_LATEX)}}}")
+    elif result:
+        sides.append(f"{after} {result} {equation.unit}".rstrip())
+    return sides
+
+
+def _equation_lines(equation: Equation, width: int, label: str) -> list[str]:
+    """Return an equation in one line if it fits, else in a line for each of its sides."""
+    left = written(equation.left)
+    first, *others = chain(equation)
+    whole = f"{label}{left} {' '.join([first, *others])}"
+    if len(whole) <= width:
+        return [whole]
+    room = len(label) + len(left) + 1
+    indent = " " * (room if room <= width // 3 else 4)
+    lines = wrapped(f"{left} {first}", width, label, indent + "  ")
+    for side in others:
+        lines += wrapped(side, width, indent, indent + "  ")
+    return lines
+
+
+def _aligned(equation: Equation) -> str:
+    """Return an equation in LaTeX, its = signs below each other."""
+    left, sides = written(equation.left, latex=True), chain(equation, latex=True)
+    if len(sides) == 1:
+        return f"{left} {sides[0]}"
+    rows = " \\\\\n".join(f"&{side}" for side in sides)
+    return f"\\begin{{aligned}}\n{left} {rows}\n\\end{{aligned}}"
 
 
 SYMBOLS = {name: f"`{plain(about.symbol)}`" for name, about in QUANTITIES.items() if name not in INPUTS} | {

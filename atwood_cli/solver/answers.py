@@ -10,8 +10,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..arithmetic.interval import LARGEST_EXPONENT
-from ..arithmetic.rational import EXACT, Irrational
-from ..arithmetic.settling import is_positive, settle
+from ..arithmetic.settling import settle
 from ..model.decisions import Decisions
 from ..model.digits import DOUBLE_DIGITS, SHOWN_DIGITS, Rounding, is_infinite, to_digits, to_double
 from ..model.machine import Machine
@@ -142,7 +141,7 @@ class Answers:
 
     def _settled(self, quantity: OnMachine) -> tuple[Any, str]:
         """Return the rounded value of a quantity, or None, and why it cannot be shown as it is."""
-        on_machines = self._on_machines(quantity)
+        on_machines = self.on_machines(quantity)
         try:
             value = settle(on_machines, self.round, self._computed)
         except Undetermined as undetermined:
@@ -185,22 +184,12 @@ class Answers:
 
     def settle(self, quantity: OnMachine, round_: Rounding[Any] | None = None) -> float | Decimal:
         """Return any number of a machine, rounded as quantities are or by ``round_``. Raises Undetermined."""
-        value: float | Decimal = settle(self._on_machines(quantity), round_ or self.round, self._computed)
+        value: float | Decimal = settle(self.on_machines(quantity), round_ or self.round, self._computed)
         return value
 
-    def exactly(self, quantity: OnMachine) -> Fraction | None:
-        """Return any number of a machine, unrounded; None unless its formula is rational."""
-        try:
-            value: Fraction = self._on_machines(quantity)(EXACT)
-        except Irrational:
-            return None
-        return value
+    def on_machines(self, quantity: OnMachine) -> Quantity:
+        """Return any number of a machine as a function of the arithmetic."""
 
-    def is_positive(self, quantity: OnMachine) -> bool:
-        """Decide whether a number of a machine, which must be irrational, is positive."""
-        return is_positive(self._on_machines(quantity))
-
-    def _on_machines(self, quantity: OnMachine) -> Quantity:
         def of(ar: Arithmetic[N]) -> N:
             if ar not in self._machines:
                 self._machines[ar] = Machine(self.case, ar)
@@ -208,10 +197,6 @@ class Answers:
             return value
 
         return of
-
-    def with_pulley(self, mass: Fraction | float) -> Answers:
-        """Return the answers to this scene on a pulley of that mass (inf: locked), without slip."""
-        return Answers(self.case.scene._replace(M=mass, mu=None, mu_k=None), self.digits)
 
 
 def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answers:

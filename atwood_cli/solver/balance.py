@@ -9,8 +9,9 @@ correctly, so their digits agree.
 from collections.abc import Callable
 from decimal import Decimal
 from fractions import Fraction
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
+from ..arithmetic.settling import is_positive
 from ..model import arc, physics
 from ..model.arc import Profile
 from ..model.decisions import Decisions
@@ -23,7 +24,7 @@ from .messages import unmarked
 
 Rounded = float | Decimal
 
-MAX_POINTS = 100_000
+USUAL_POINTS, MAX_POINTS = 13, 100_000
 ZERO_DIGITS = 50
 """The digits of a sum that must be 0 if it is to be 0."""
 
@@ -60,7 +61,7 @@ def kind_of(case: Decisions) -> Profile:
     return "creep" if spare else "exponential"
 
 
-def contact(answers: Answers, points: int | str = 13) -> Contact:
+def contact(answers: Answers, points: int | str = USUAL_POINTS) -> Contact:
     """Solve the arc of contact of a scene at so many equally spaced angles.
 
     Raises SceneError if the scene does not determine the arc.
@@ -90,32 +91,26 @@ def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
     def friction(machine: Machine[Any]) -> Any:
         return machine.ar.number(0) if stuck else machine.arc_mu(kind) * tension(machine) * sign
 
-    def per_metre(of: Callable[[Machine[Any]], Any]) -> Rounded:
-        return answers.settle(lambda machine: of(machine) / _radius(machine))
-
+    settled = answers.settle(tension)
     row = {
         "angle": answers.settle(lambda machine: scene.wrap.degrees(machine.ar, q)),
-        "tension": answers.settle(tension),
-        "normal_per_radian": answers.settle(tension),
+        "tension": settled,
+        "normal_per_radian": settled,
         "friction_per_radian": answers.settle(friction),
     }
     if scene.R is not None:
-        row |= {"normal_per_metre": per_metre(tension), "friction_per_metre": per_metre(friction)}
+        row["normal_per_metre"] = answers.settle(lambda m: tension(m) / _radius(m))
+        row["friction_per_metre"] = answers.settle(lambda m: friction(m) / _radius(m))
     return row
 
 
 def _piece(answers: Answers, kind: Profile, from_light: Fraction) -> int:
     """Return the piece of the profile that has the point at a fraction of the arc from the light end."""
-    last = len(arc.STUCK[kind]) - 1
-    for piece in range(last):
 
-        def beyond(machine: Machine[Any], piece: int = piece) -> Any:
-            angle = machine.ar.number(from_light) * machine.phi
-            return angle - machine.arcs(kind)[piece].end.angle
+    def beyond_the_stuck_piece(machine: Machine[Any]) -> Any:
+        return machine.ar.number(from_light) * machine.phi - machine.arcs(kind)[0].end.angle
 
-        if not answers.is_positive(beyond):
-            return piece
-    return last
+    return int(kind == "creep" and is_positive(answers.on_machines(beyond_the_stuck_piece)))
 
 
 def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
@@ -133,21 +128,16 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
     forces = {"friction": vector(friction), "normal": vector(normal)}
     ends = vector(lambda m: m.resultant_vector)
 
-    def total(axis: int) -> Rounded:
+    def total(axis: Literal[0, 1]) -> Rounded:
         """Return a component of the sum, rounded once.
 
         If it is 0, as that of both ends, its enclosures have other numbers in them, too, however narrow they
         are. It is then 0 if `ZERO_DIGITS` digits of it, counted from those of its terms, are.
         """
-
-        def of(m: Machine[Any]) -> Any:
-            return friction(m)[axis] + normal(m)[axis]
-
-        term = forces["friction"]["xy"[axis]]
-        if term and ends["xy"[axis]] == 0:
-            rounded = answers.settle(of, rounding_to_place(Decimal(term).adjusted() - ZERO_DIGITS))
-            return rounded if rounded else ends["xy"[axis]]
-        return answers.settle(of)
+        term, end = forces["friction"]["xy"[axis]], ends["xy"[axis]]
+        round_ = rounding_to_place(Decimal(term).adjusted() - ZERO_DIGITS) if term and not end else None
+        rounded = answers.settle(lambda m: friction(m)[axis] + normal(m)[axis], round_)
+        return rounded if rounded else end  # a 0 of the type that was asked for
 
     torque = {
         "contact": answers.settle(
@@ -166,14 +156,11 @@ def about(case: Decisions, kind: Profile) -> str:
     """Return the sentence on a profile of the tension."""
     if case.frictionless:
         return WITHOUT_FRICTION
-    if case.regime == "no-slip" and case.scene.mu is None:
+    if case.mu_assumed:
         return WITHOUT_MU
     return ABOUT_KIND[kind]
 
 
 def _notes(answers: Answers, kind: Profile) -> list[str]:
-    notes = [about(answers.case, kind)]
-    for name in ("tension_1", "tension_2"):
-        if answers[name] is not None and answers.answer(name).reason:
-            notes.append(f"{name}: {answers.answer(name).reason}.")
-    return notes
+    said = ((name, answers.answer(name).reason) for name in ("tension_1", "tension_2"))
+    return [about(answers.case, kind), *(f"{name}: {reason}." for name, reason in said if reason)]

@@ -11,6 +11,7 @@ from fractions import Fraction
 from operator import attrgetter
 from typing import Any, NamedTuple
 
+from ..arithmetic.rational import EXACT, Irrational
 from ..arithmetic.symbolic import Formula, Symbol, Symbols, formula
 from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, to_digits
 from ..model.machine import Machine
@@ -26,16 +27,16 @@ GUARD_DIGITS = 2
 class Equation(NamedTuple):
     """An equation with the paper's number: a law, or a value worked out.
 
-    A side is a formula, or letters. A law has no ``result``. A value has ``numbers`` to put in unless its
-    formula is not shown; ``signs``, = or ≈, stand before the numbers and before the result. ``follows``
-    are symbols that it rests on besides those of its formulas.
+    A side is a formula, or letters, and the right one of a value may be missing. A law has no ``result``.
+    ``numbers`` are those of the symbols in the formula of a value. ``signs``, = or ≈, stand before the
+    numbers and before the result. ``follows`` are symbols that it rests on besides those of its formulas.
     """
 
     label: str
     left: str | Formula
     right: str | Formula | None
     follows: tuple[str, ...] = ()
-    numbers: Mapping[Symbol, Decimal] | None = None
+    numbers: Mapping[Symbol, Decimal] = {}
     signs: str = "=="
     result: str = ""
     unit: str = ""
@@ -48,11 +49,8 @@ class Equation(NamedTuple):
         return symbols.union(self.follows)
 
 
-Part = str | Equation
-"""A sentence or an equation. In sentences symbols stand between backticks."""
-
 MOTION = ("acceleration", "tension_1", "tension_2")
-"""Quantities that a derivation gives first, and by which simpler models are compared."""
+"""Quantities that a derivation gives first."""
 UNITS = {
     **dict.fromkeys(
         ("friction_mass", "limiting_friction_mass", "drive", "limiting_drive", "M", "c", "b"), "kg"
@@ -72,13 +70,11 @@ INTERMEDIATE_SYMBOLS = {
     "drive": "d",
     "alpha": "φ_lim",
     "critical_pulley_mass": "M*",
+    "mu_verge": "μ*",
 }
 """Symbols of what equations refer to, by the model's names."""
-LABELS = {"acceleration": "", "light_tension": "(1)", "tension_ratio": "", "massless_verge": "(27)"}
-LABELS |= dict.fromkeys(("k_minus_1", "limiting_k_minus_1"), "(26)")
-"""Numbers of equations that the table of quantities does not have."""
-WITHOUT_AXLE_FRICTION = {"f": 0, "b": 0, "D": 1}
-"""Values of letters of `physics` if the axle has no friction."""
+WITHOUT_AXLE_FRICTION = {"f_axle": 0, "b": 0, "D": 1}
+"""Values of symbols if the axle has no friction."""
 
 
 class Derivation:
@@ -104,16 +100,12 @@ class Derivation:
         """Return what is given or found, by symbol."""
         case, scene, motion = self.case, self.scene, self.case.motion
         return {
-            "m1": scene.m1,
-            "m2": scene.m2,
+            **{name: getattr(scene, name) for name in ("m1", "m2", "g", "I", "R")},
             "M": case.pulley_mass,
             "c": case.rim_mass,
             "β": case.beta,
             "μ": scene.mu,
             "μ_k": scene.mu_k,
-            "g": scene.g,
-            "I": scene.I,
-            "R": scene.R,
             "f_axle": case.axle_friction if case.has_axle_friction else None,
             "b": case.axle_mass if case.has_axle_friction else None,
             self.symbols["magnitude"]: case.measured_acceleration if motion.finds else None,
@@ -134,11 +126,9 @@ class Derivation:
             "tension_ratio": f"T{self.heavy}/T{self.light}",
             "rim_acceleration": "a_rim" if case.regime == "slip" else "a",
         }
-        if case.regime != "verge":  # on the verge it is the coefficient given
-            symbols["mu_verge"] = "μ*"
         if case.slide_measured:
             symbols |= {"limiting_k_minus_1": "x_kin", "mu_k": "μ_k"}
-        elif case.regime == "slip" and scene.mu_k is not None:
+        elif case.slides_by_mu_k:
             symbols |= {
                 "limiting_k_minus_1": "k_kin - 1",
                 "limiting_friction_mass": "z_kin",
@@ -150,17 +140,15 @@ class Derivation:
         """Return the symbol of a quantity."""
         return self.symbols.get(name) or plain(QUANTITIES[name].symbol)
 
-    def letter(self, letter: str) -> Formula:
-        """Return the symbol for a letter of `physics`, or its value without axle friction."""
-        masses = {"l": f"m{self.light}", "h": f"m{self.heavy}"}
-        name = {**masses, "a": self.symbols["magnitude"], "f": "f_axle"}.get(letter, letter)
-        if letter in WITHOUT_AXLE_FRICTION and name not in self.inputs:
-            return formula(WITHOUT_AXLE_FRICTION[letter])
-        return Formula("symbol", self.inputs.get(name, Symbol(name, name)))
+    def formula(self, symbol: str) -> Formula:
+        """Return the formula of a symbol, or of its value without axle friction."""
+        if symbol in WITHOUT_AXLE_FRICTION and symbol not in self.inputs:
+            return formula(WITHOUT_AXLE_FRICTION[symbol])
+        return Formula("symbol", self.inputs.get(symbol, Symbol(symbol, symbol)))
 
-    def record(self, law: Callable[..., Any], letters: str) -> Formula:
+    def record(self, law: Callable[..., Any], symbols: str) -> Formula:
         """Return the formula that an equation of `physics` gives on symbols."""
-        recorded: Formula = law(*map(self.letter, letters.split()))
+        recorded: Formula = law(*map(self.formula, symbols.split()))
         return recorded
 
     def _formula(self, name: str) -> Formula:
@@ -171,35 +159,26 @@ class Derivation:
         recorded: Formula = getattr(Machine(self.case, arithmetic, known), name)
         return recorded
 
-    def _label(self, name: str) -> str:
-        """Return the paper's number for an equation in this regime."""
-        case, motion = self.case, QUANTITIES["acceleration"]
-        labels = {**LABELS, "magnitude": motion.equation_in_slip or "", "difference": "(26)"}
-        if case.regime == "no-slip":
-            labels |= {"magnitude": motion.equation, "difference": "(1)" if case.pulley_at_rest else "(3)"}
-        if case.slide_measured:
-            labels["limiting_k_minus_1"] = "(1)"
-        if name == "critical_heavier_mass" and self.case.slips_at_rest:
-            labels["critical_heavier_mass"] = QUANTITIES["least_heavier_mass"].equation
-        return labels.get(name, QUANTITIES[name].equation if name in QUANTITIES else "")
-
-    def by(self, name: str, law: Callable[..., Any], letters: str, label: str = "") -> Equation:
+    def by(self, label: str, name: str, law: Callable[..., Any], symbols: str) -> Equation:
         """Return the equation of an input that follows from others, or of a quantity, by a law."""
         result = self.inputs[name] if name in self.inputs else Symbol(self.symbol(name), name)
-        return self._worked_out(result, self.record(law, letters), label)
+        return self._worked_out(label, result, self.record(law, symbols))
 
-    def _worked_out(self, result: Symbol, recorded: Formula, label: str) -> Equation:
-        """Return the equation with numbers put in."""
+    def _worked_out(
+        self, label: str, result: Symbol, recorded: Formula | None, follows: tuple[str, ...] = ()
+    ) -> Equation:
+        """Return the equation with numbers put in; without a formula if there is none, or no symbol in it."""
         value, exact = self.number(result, self.digits)
         rounded = {
             symbol: self.number(symbol, self.digits + GUARD_DIGITS, INPUT_DIGITS)
-            for symbol in sorted(recorded.symbols())
+            for symbol in (sorted(recorded.symbols()) if recorded else ())
         }
         numbers = {symbol: number for symbol, (number, _) in rounded.items()}
         put_in = "=" if all(is_exact for _, is_exact in rounded.values()) else "≈"
-        signs = put_in + ("=" if exact and (put_in == "=" or not value) else "≈")
+        signs = put_in + ("=" if not value or (exact and put_in == "=") else "≈")
         unit = unit_of(result.of if isinstance(result.of, str) else result.name)
-        return Equation(label, result.name, recorded, (), numbers, signs, format_number(value), unit)
+        right = recorded if numbers else None
+        return Equation(label, result.name, right, follows, numbers, signs, format_number(value), unit)
 
     def number(self, symbol: Symbol, digits: int, typed: int = 0) -> tuple[Decimal, bool]:
         """Return the number to put in for a symbol, and whether it is exact.
@@ -208,15 +187,16 @@ class Derivation:
         More than ``digits`` are wanted of an input, up to ``typed``.
         """
         if isinstance(symbol.of, Fraction):
-            exact: Fraction | None = symbol.of
-            keep = digits if symbol.name in self.found else max(digits, typed)
+            exact, keep = symbol.of, digits if symbol.name in self.found else max(digits, typed)
         else:
-            exact, keep = self.answers.exactly(attrgetter(symbol.of)), digits
-        if exact is not None and Fraction(to_digits(keep)(exact)) == exact:
+            quantity, keep = attrgetter(symbol.of), digits
+            try:
+                exact = self.answers.on_machines(quantity)(EXACT)
+            except Irrational:
+                return Decimal(self.answers.to(digits).settle(quantity)), False
+        if Fraction(to_digits(keep)(exact)) == exact:
             return Decimal(as_typed(exact)), True
-        if isinstance(symbol.of, Fraction):
-            return to_digits(digits)(symbol.of), False
-        return Decimal(self.answers.to(digits).settle(attrgetter(symbol.of))), False
+        return to_digits(digits)(exact), False
 
     def exists(self, name: str) -> bool:
         """Decide whether the scene determines a value that can be written out."""
@@ -224,7 +204,7 @@ class Derivation:
             return False
         return not is_infinite(self.number(Symbol("", name), self.digits)[0])
 
-    def values(self, name: str, follows: tuple[str, ...] = ()) -> Iterator[Equation]:
+    def values(self, label: str, name: str, follows: tuple[str, ...] = ()) -> Iterator[Equation]:
         """Yield the equation of a value that exists, can be written out and has not been shown yet.
 
         Only the result is shown if it is said from which symbols it ``follows``.
@@ -232,36 +212,17 @@ class Derivation:
         if name in self.shown or not self.exists(name):
             return
         self.shown.add(name)
-        symbol = Symbol(self.symbol(name), name)
-        value, exact = self.number(symbol, self.digits)
-        label, recorded = self._label(name), None if follows else self._formula(name)
-        if recorded is None or recorded.op == "number":
-            sign = "=" if exact or not value else "≈"
-            yield Equation(
-                label, symbol.name, None, follows, None, sign * 2, format_number(value), unit_of(name)
-            )
-        else:
-            yield self._worked_out(symbol, recorded, label)
-
-    def compared(self, other: Answers) -> Iterator[str]:
-        """Yield what another scene gives instead of this one."""
-        for name in MOTION:
-            here, there = (in_words(name, answers[name]) for answers in (self.answers, other))
-            yield f"`{plain(QUANTITIES[name].symbol)}` would be {there} instead of {here}."
+        recorded = None if follows else self._formula(name)
+        yield self._worked_out(label, Symbol(self.symbol(name), name), recorded, follows)
 
     def say(self, name: str) -> str:
         """Return a quantity's symbol with its value, for a sentence."""
-        return f"`{self.symbol(name)}` = {in_words(name, self.answers[name])}"
+        return f"`{self.symbol(name)}` = {format_number(self.answers[name])} {unit_of(name)}".rstrip()
 
 
 def unit_of(name: str) -> str:
     """Return the unit of a quantity, an intermediate value or an input."""
     return QUANTITIES[name].unit if name in QUANTITIES else UNITS.get(name, "")
-
-
-def in_words(name: str, value: Any) -> str:
-    """Return a value with its unit."""
-    return f"{format_number(value)} {unit_of(name)}".rstrip()
 
 
 def plain(symbol: str) -> str:

@@ -69,10 +69,9 @@ def failure(answers: Answers, expected: Condition) -> str:
     if expected.name in REGIMES:
         if expected.name != case.regime:
             return f"expected {expected.typed}; it is {case.regime}"
-        uncertainties = answers.uncertainties
-        if uncertainties and (others := uncertainties.other_regimes()):
-            return f"expected {expected.typed}; within the uncertainties it may {MAY[others[0]]}"
-        if is_assumed(answers):
+        if answers.uncertainties and (other := answers.uncertainties.other_regime()):
+            return f"expected {expected.typed}; within the uncertainties it may {MAY[other]}"
+        if case.mu_assumed:
             return f"expected {expected.typed}; that is only assumed: give mu"
         return ""
     value, reason, *_ = answers.answer(expected.name)
@@ -91,11 +90,6 @@ def failure(answers: Answers, expected: Condition) -> str:
         value = answers.rounded(expected.name, rounding_apart_from(given, answers.digits or SHOWN_DIGITS))
         shown = "too large to be written out" if is_infinite(value) else format_number(value)
     return f"expected {expected.typed}; it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
-
-
-def is_assumed(answers: Answers) -> bool:
-    """Decide whether the string is only assumed to hold, as mu is not given."""
-    return answers.case.mu_assumed and bool(answers.case.light)
 
 
 def _in_scene(scene: Any, number: TypedNumber) -> Fraction:

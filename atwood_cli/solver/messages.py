@@ -23,8 +23,6 @@ from ..model.scene import Scene, with_unit
 from ..model.units import MAX_MAGNITUDE
 from .answers import Answers
 
-ASSUMED = "`mu` is not given, so the string is assumed not to slip"
-
 
 def unmarked(words: str) -> str:
     """Return a sentence without backticks."""
@@ -49,7 +47,6 @@ def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
     return [
         *said,
         *uncertainties.doubts(),
-        *uncertainties.lopsided([name for name, one in found.items() if one.uncertainty]),
         *map(unmarked, uncertainties.open_ended(without)),
         *reasons_at({(f"u_{name}", reason): 1 for name, reason in beyond.items()}, 1),
     ]
@@ -83,17 +80,14 @@ def verdict(answers: Answers) -> str:
     if case.regime == "slip":
         return _slips(answers)
     if case.axle_holds:
-        return f"At rest: axle friction can balance up to {_held(answers)}.{_while_at_rest(answers)}"
+        held = f"At rest: axle friction can balance up to {_held(answers)}."
+        return f"{held} {_grips(answers)}" if case.light else held
     if case.tensions_equal:
         return "No slip: a massless pulley needs no friction to turn, so both tensions are equal."
     if not case.light:
         return "No slip: the string's end is fixed to the pulley."
-    if scene.mu is None:
-        where = " on a massless pulley" if scene.M is None and scene.I is None else ""
-        return f"{ASSUMED}: true{where} if `mu` is at least {_enough(answers)}."
-    if case.pulley_known:
-        start = "No slip from rest" if _sliding(answers) else "No slip"
-        return f"{start}: {_given_mu(scene)}, and at least {_enough(answers)} is needed."
+    if scene.mu is None or case.pulley_known:
+        return _grips(answers)
     least = answers.rounded("least_heavier_mass", _beside(answers, case.heavy))
     if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
         return "No slip on any pulley, for any heavier mass that can be typed."
@@ -110,19 +104,24 @@ def _enough(answers: Answers, name: str = "mu_verge") -> str:
     return format_number(answers.rounded(name, _beside(answers, answers.case.scene.mu)))
 
 
-def _while_at_rest(answers: Answers) -> str:
-    """Say what the string does while the axle holds the pulley, "" if it is fixed to the pulley."""
-    if not answers.case.light:
-        return ""
-    if mu := _given_mu(answers.case.scene):
-        return f" The string does not slip: {mu}, and at least {_enough(answers)} is needed."
-    return f" {ASSUMED}: true if `mu` is at least {_enough(answers)}."
+def _grips(answers: Answers) -> str:
+    """Say why the string does not slip on the pulley, or that this is assumed."""
+    case, scene = answers.case, answers.case.scene
+    if scene.mu is None:
+        no_mass = scene.M is None and scene.I is None and not case.axle_holds
+        where = " on a massless pulley" if no_mass else ""
+        return (
+            f"`mu` is not given, so the string is assumed not to slip: true{where} if `mu` is at least"
+            f" {_enough(answers)}."
+        )
+    start = "No slip from rest" if _sliding(answers) else "No slip"
+    return f"{start}: {_given_mu(scene)}, and at least {_enough(answers)} is needed."
 
 
 def _on_the_verge(answers: Answers) -> str:
     if not answers.case.scene.mu:
         return "Slips on any pulley with mass, as `mu` = 0; the values are for a massless pulley."
-    massless = answers.with_pulley(Fraction(0))
+    massless = _on_pulley(answers, Fraction(0))
     return (
         "On the verge of slipping: as `M` is not given, this is for the critical pulley mass,"
         f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on a"
@@ -155,48 +154,36 @@ def _held(answers: Answers) -> str:
 
 def remarks(answers: Answers) -> list[str]:
     """Return further sentences on the scene, as far as they apply."""
-    return [*odd_inertia(answers), *kinetic(answers), *holding_again(answers), *open_range(answers)]
+    case, said = answers.case, []
+    if case.beta is not None and case.beta > 1:
+        shown = strip_zeros(_beside(answers, Fraction(1))(case.beta))
+        said.append(
+            f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
+            " the string's rim. If none does, check `inertia`, `I` and `R`."
+        )
+    said += _kinetic(answers)
+    slips_above_a_mass = case.scene.mu is not None and case.rim_mass is not None and case.slips_once_it_moves
+    if slips_above_a_mass and not case.slips_at("heaviest"):
+        said.append(
+            "Far above `critical_heavier_mass` the string holds again, as axle friction matters less"
+            " under heavier masses."
+        )
+    if case.scene.mu is not None and answers["acceleration"] is None:  # it depends on the pulley's mass
+        ends = [_on_pulley(answers, mass) for mass in (Fraction(0), inf)]
+        ranges = (
+            f"`{name}` from {_say(ends[0], name)} to {with_unit(_say(ends[1], name), QUANTITIES[name].unit)}"
+            for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
+        )
+        said.append(f"As `M` goes from 0 to `inf`: {', '.join(ranges)}.")
+    return said
 
 
-def odd_inertia(answers: Answers) -> list[str]:
-    """Ask whether an inertia factor above 1 is meant, as few pulleys have one."""
-    beta = answers.case.beta
-    if beta is None or beta <= 1:
-        return []
-    shown = strip_zeros(_beside(answers, Fraction(1))(beta))
-    return [
-        f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
-        " the string's rim. If none does, check `inertia`, `I` and `R`."
-    ]
+def _on_pulley(answers: Answers, mass: Fraction | float) -> Answers:
+    """Return the answers to the scene on a pulley of that mass (inf: locked), without slip."""
+    return Answers(answers.case.scene._replace(M=mass, mu=None, mu_k=None), answers.digits)
 
 
-def holding_again(answers: Answers) -> list[str]:
-    """Say that a string which slips above the critical mass holds again under much greater ones."""
-    case = answers.case
-    if case.scene.mu is None or case.rim_mass is None or not case.slips_once_it_moves:
-        return []
-    if case.slips_at("heaviest"):
-        return []
-    return [
-        "Far above `critical_heavier_mass` the string holds again, as axle friction matters less"
-        " under heavier masses."
-    ]
-
-
-def open_range(answers: Answers) -> list[str]:
-    """Say the range of the motion, if it depends on a pulley mass that is not given."""
-    case = answers.case
-    if case.scene.mu is None or answers["acceleration"] is not None:
-        return []
-    ends = [answers.with_pulley(mass) for mass in (Fraction(0), inf)]
-    ranges = (
-        f"`{name}` from {_say(ends[0], name)} to {with_unit(_say(ends[1], name), QUANTITIES[name].unit)}"
-        for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
-    )
-    return [f"As `M` goes from 0 to `inf`: {', '.join(ranges)}."]
-
-
-def kinetic(answers: Answers) -> list[str]:
+def _kinetic(answers: Answers) -> list[str]:
     """Say whether a string that slides already goes on sliding, though it does not slip from rest."""
     case, mu_k = answers.case, answers.case.scene.mu_k
     if mu_k is None or case.regime == "slip" or case.tensions_equal:

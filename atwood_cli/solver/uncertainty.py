@@ -12,23 +12,15 @@ uncertainty is right to `RIGHT_DIGITS` digits.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from decimal import ROUND_HALF_EVEN, Decimal
+from decimal import ROUND_HALF_EVEN, Decimal, localcontext
 from fractions import Fraction
-from operator import attrgetter, itemgetter
+from operator import attrgetter
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..arithmetic.interval import ZERO, decimal_context
+from ..arithmetic.lazy import lazy
 from ..model.decisions import Decisions
-from ..model.digits import (
-    SHOWN_DIGITS,
-    as_typed,
-    format_number,
-    is_infinite,
-    rounding_to_place,
-    strip_zeros,
-    to_digits,
-    with_uncertainty,
-)
+from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, strip_zeros, to_digits
 from ..model.motion import found_inputs, number_of, with_number
 from ..model.quantities import QUANTITIES, Undetermined
 from ..model.scene import Motion, Scene, parameter_of, with_unit
@@ -41,22 +33,24 @@ NEGLIGIBLE = Decimal("1e-30")
 CONTEXT = decimal_context(2 * DIGITS, ROUND_HALF_EVEN)
 """Sums and products of values lose no digit that counts."""
 
-UNEVEN_SHARE = Decimal("0.2")
-"""A sentence says so if the steps to both sides differ by more than this part of the uncertainty."""
 MOST_NAMED = 3
 """The most quantities that a sentence names."""
 COVERAGE = 2
-"""The regime is in doubt if it differs within so many standard uncertainties of an input."""
-REGIME_WORDS = {"no-slip": "no slip", "verge": "on the verge", "slip": "slips"}
+"""A decision is in doubt if it differs within so many standard uncertainties of an input."""
 NO_SCENE, NO_FIT = "makes no valid scene", "nothing fits what was measured"
+DOUBTFUL = {
+    "Which mass is heavier": "sign",
+    "Whether the axle holds the difference": "axle_holds",
+    "Whether the string slips": "regime",
+}
+"""The decisions that may differ at an end of an input, and their attributes of `Decisions`."""
 
 
 class Value(NamedTuple):
-    """The value of a quantity, or why it has none; and the decisions about the scene that it is of."""
+    """The value of a quantity, or why it has none."""
 
     number: Decimal | None
     reason: str = ""
-    case: Decisions | None = None
 
 
 class End(NamedTuple):
@@ -71,14 +65,13 @@ class End(NamedTuple):
         if self.answers is None:
             return Value(None, self.reason)
         try:
-            number = Decimal(self.answers.settle(attrgetter(name)))
+            return Value(Decimal(self.answers.settle(attrgetter(name))))
         except Undetermined as undetermined:
             return Value(None, str(undetermined))
         except ZeroDivisionError:
             return Value(None, "unknown")
         except OverflowError:  # of a denominator
-            number = ZERO
-        return Value(number, case=self.answers.case)
+            return Value(ZERO)
 
 
 class Spread(NamedTuple):
@@ -135,15 +128,14 @@ class Uncertainties:
 
     def _measure(self, name: str, here: Decimal) -> Spread:
         ends = {x: [end.value(name) for end in pair] for x, pair in self._ends.items()}
-        steps, variance = {}, ZERO
-        for x, values in ends.items():
-            numbers = [here, *(value.number for value in values if value.number is not None)]
-            least, most = min(numbers), max(numbers)
-            size = CONTEXT.subtract(most, least)
-            scale = max(least.copy_abs(), most.copy_abs())
-            if size > CONTEXT.multiply(NEGLIGIBLE, scale) or is_infinite(size):
-                steps[x] = CONTEXT.divide(size, Decimal(2))
-                variance = CONTEXT.fma(steps[x], steps[x], variance)
+        steps = {}
+        with localcontext(CONTEXT):
+            for x, values in ends.items():
+                numbers = [here, *(value.number for value in values if value.number is not None)]
+                size = max(numbers) - min(numbers)
+                if size > NEGLIGIBLE * max(map(abs, numbers)) or is_infinite(size):
+                    steps[x] = size / 2
+            variance = sum((step * step for step in steps.values()), ZERO)
         return Spread(here, ends, steps, variance)
 
     def of(self, name: str, digits: int | None = None) -> Decimal | None:
@@ -161,37 +153,39 @@ class Uncertainties:
         spread = self._spread(name)
         if spread is None or not spread.steps or is_infinite(spread.variance):
             return {}
-        steps = {x: spread.steps.get(x, ZERO) for x in self.given}
-        shares = {
-            x: CONTEXT.divide(CONTEXT.multiply(step, step), spread.variance) for x, step in steps.items()
-        }
-        return {x: to_digits(RIGHT_DIGITS)(share.scaleb(2, CONTEXT)) for x, share in shares.items()}
+        with localcontext(CONTEXT):
+            shares = {x: 100 * spread.steps.get(x, ZERO) ** 2 / spread.variance for x in self.given}
+        return {x: to_digits(RIGHT_DIGITS)(share) for x, share in shares.items()}
 
     # In sentences
 
+    @lazy
+    def _far_ends(self) -> list[tuple[str, End, Decisions]]:
+        """Each input, at both ends of the range in which decisions are in doubt, and those made there."""
+        sides = ((x, side * u) for x, u in self.given.items() for side in (-COVERAGE, COVERAGE))
+        ends = ((x, self._end(x, step)) for x, step in sides)
+        return [(x, end, end.answers.case) for x, end in ends if end.answers]
+
     def doubts(self) -> list[str]:
-        """Say that the heavier mass, or the regime, is another within two standard uncertainties."""
+        """Say which of the `DOUBTFUL` decisions differ within two standard uncertainties of an input."""
         said: dict[str, str] = {}
-        for x, u in self.given.items():
-            for side in (-COVERAGE, COVERAGE):
-                end = self._end(x, side * u)
-                what = _otherwise(self.case, end.answers.case) if end.answers else ""
-                if what and what not in said:
-                    said[what] = (
-                        f"{what} is in doubt: the answer differs at {self._at(x, end)},"
-                        f" {COVERAGE} standard uncertainties away. Results use the inputs as given."
-                    )
+        for x, end, case in self._far_ends:
+            if what := _otherwise(self.case, case):
+                said.setdefault(
+                    what,
+                    f"{what} is in doubt: the answer differs at {self._at(x, end)},"
+                    f" {COVERAGE} standard uncertainties away. Results use the inputs as given.",
+                )
         return [*said.values()]
 
-    def other_regimes(self) -> list[str]:
-        """Return the regimes, other than the scene's, within two standard uncertainties of an input."""
-        ends = (self._end(x, side * u) for x, u in self.given.items() for side in (-COVERAGE, COVERAGE))
-        found = dict.fromkeys(end.answers.case.regime for end in ends if end.answers)
-        return [regime for regime in found if regime != self.case.regime]
+    def other_regime(self) -> str:
+        """Return another regime within two standard uncertainties of an input, "" if there is none."""
+        regimes = (case.regime for _, _, case in self._far_ends)
+        return next((regime for regime in regimes if regime != self.case.regime), "")
 
     def open_ended(self, names: Iterable[str]) -> list[str]:
-        """Say which quantities have no value at an end of an input, and which they have at the other one."""
-        found: dict[tuple[str, str], list[str]] = {}
+        """Say which quantities have no value at an end of an input, and their bound from the other end."""
+        found: dict[str, list[str]] = {}
         for name in names:
             spread = self._spread(name)
             if spread is None:
@@ -199,55 +193,11 @@ class Uncertainties:
             for x, values in spread.ends.items():
                 missing = [i for i in (0, 1) if values[i].number is None]
                 if missing:
-                    i = missing[0]
-                    place = self._at(x, self._ends[x][i]), values[i].reason
-                    found.setdefault(place, []).append(_one_sided(name, spread.here, values[1 - i]))
-        return [
-            f"{_first_of(sentences)}: {place} {why}."
-            if why == NO_SCENE
-            else f"{_first_of(sentences)}: at {place}, {why}."
-            for (place, why), sentences in found.items()
-        ]
-
-    def lopsided(self, names: Iterable[str]) -> list[str]:
-        """Say which quantities change by more to one side, or change sign or regime within an uncertainty."""
-        found: dict[str, list[str]] = {}
-        for x in self.given:
-            for name in names:
-                spread, u = self._spread(name), self.of(name)
-                if spread and u and self._is_lopsided(spread, x, u):
-                    found.setdefault(x, []).append(self._from_end_to_end(name, spread, x))
-        return [f"{_first_of(sentences)}, as {x} varies by ±u." for x, sentences in found.items()]
-
-    def _is_lopsided(self, spread: Spread, x: str, u: Decimal) -> bool:
-        if x not in spread.steps or is_infinite(u):
-            return False
-        for value in spread.ends[x]:
-            if value.case and _otherwise(self.case, value.case):
-                return True
-            if value.number is not None:
-                changes_sign = CONTEXT.multiply(value.number, spread.here) < 0
-                change = CONTEXT.subtract(spread.here, value.number).copy_abs()
-                uneven = CONTEXT.subtract(change, spread.steps[x]).copy_abs()
-                if changes_sign or uneven > CONTEXT.multiply(UNEVEN_SHARE, u):
-                    return True
-        return False
-
-    def _from_end_to_end(self, name: str, spread: Spread, x: str) -> str:
-        """Say a quantity with its uncertainty, and from where to where it goes with an input."""
-        short = self.of(name, 2)
-        assert short is not None
-        unit, round_ = QUANTITIES[name].unit, rounding_to_place(short.adjusted() - 1)
-        both = with_uncertainty(lambda place: rounding_to_place(place)(spread.here), short)
-        values = [(spread.here, self.case)]
-        values += [(end.number, end.case) for end in spread.ends[x] if end.number is not None and end.case]
-        values.sort(key=itemgetter(0))
-        changes = any(case.regime != self.case.regime for _, case in values)
-        ends = []
-        for value, case in (values[0], values[-1]):
-            regime = f" ({REGIME_WORDS[case.regime]})" if changes else ""
-            ends.append(f"{format_number(strip_zeros(round_(value)))}{regime}")
-        return f"{name} is {with_unit(both, unit)}, from {ends[0]} to {ends[1]}"
+                    place, why = self._at(x, self._ends[x][missing[0]]), values[missing[0]].reason
+                    reason = f"{place} {why}" if why == NO_SCENE else f"at {place}, {why}"
+                    other = values[1 - missing[0]].number
+                    found.setdefault(reason, []).append(_one_sided(name, spread.here, other))
+        return [f"No uncertainty of {_first_of(group)}: {reason}." for reason, group in found.items()]
 
     def _at(self, x: str, end: End) -> str:
         """Say an input at an end, with its unit: "mu = 0.35"."""
@@ -256,31 +206,20 @@ class Uncertainties:
         return f"{x} = {with_unit(as_typed(end.input), unit)}"
 
 
-DOUBTFUL = {
-    "Which mass is heavier": "sign",
-    "Whether the axle holds the difference": "axle_holds",
-    "Whether the string slips": "regime",
-}
-"""The decisions that may differ at an end of an input, and their attributes of `Decisions`."""
-
-
 def _otherwise(case: Decisions, other: Decisions) -> str:
-    """Name the first decision that differs between two scenes, "" if none does."""
+    """Name the first of the `DOUBTFUL` decisions that differs between two scenes, "" if none does."""
     return next((what for what, x in DOUBTFUL.items() if getattr(case, x) != getattr(other, x)), "")
 
 
-def _one_sided(name: str, here: Decimal, other: Value) -> str:
-    """Say a value without an uncertainty, and the one at the only end that has one."""
-    unit = QUANTITIES[name].unit
-    said = f"{name} is {with_unit(format_number(strip_zeros(to_digits(SHOWN_DIGITS)(here))), unit)}"
-    if other.number is None or other.number == here:
-        return said
-    bound = with_unit(format_number(strip_zeros(to_digits(SHOWN_DIGITS)(other.number))), unit)
-    return f"{said}, at {'least' if other.number < here else 'most'} {bound}"
+def _one_sided(name: str, here: Decimal, other: Decimal | None) -> str:
+    """Name a quantity without an uncertainty, with the value at the only end that has one."""
+    if other is None or other == here:
+        return name
+    bound = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(other)))
+    return f"{name} (at {'least' if other < here else 'most'} {with_unit(bound, QUANTITIES[name].unit)})"
 
 
-def _first_of(sentences: Sequence[str]) -> str:
-    """Join the first sentences, and count the others."""
-    joined = "; ".join(sentences[:MOST_NAMED])
-    others = len(sentences) - MOST_NAMED
-    return f"{joined}, and so on for {others} more" if others > 0 else joined
+def _first_of(names: Sequence[str]) -> str:
+    """Join the first names, and count the others."""
+    joined, others = ", ".join(names[:MOST_NAMED]), len(names) - MOST_NAMED
+    return f"{joined} and {others} more" if others > 0 else joined
