@@ -520,7 +520,7 @@ def test_options_in_notes_are_parameters_in_python() -> None:
         ({"m1": 1, "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type int; give a sequence of cells"),
         ({"m1": "12", "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type str; give a sequence of cells"),
         ({"m1": [], "m2": [], "a": []}, {}, ValueError, "cannot read the runs: it has no runs"),
-        ({"m1": [1], "m2": [True], "a": [1]}, {}, ValueError, "cannot read the runs: row 1: m2 'True' is not a number; write it like 2, 1/3, 1.5e-3, 2.0+-0.1 or 2.0(1); a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"),
+        ({"m1": [1], "m2": [True], "a": [1]}, {}, ValueError, "cannot read the runs: row 1: m2 'True' is not a number; write it like 2, 1/3 or 1.5e-3; a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"),
         (Path("none.csv"), {}, OSError, "cannot read none.csv: No such file or directory"),
         (TOP / "LICENSE", {}, OSError, f"cannot read {TOP / 'LICENSE'}: row 2 has 3 cells, and the header 1; is there a decimal comma (write a point), or one at its end?"),
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' is known by g; leave one of them out"),

@@ -62,7 +62,7 @@ def test_nan_is_bad_and_null_is_not_given(solved: Any) -> None:
 
 BELOW = "must be 0 or more, and finite"
 MISSING = "{} is missing; give both masses, m1 and m2"
-NO_NUMBER = "{} 'x' is not a number; write it like 2, 1/3, 1.5e-3, 2.0+-0.1 or 2.0(1)"
+NO_NUMBER = "{} 'x' is not a number; write it like 2, 1/3 or 1.5e-3"
 
 
 @pytest.mark.parametrize(

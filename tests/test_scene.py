@@ -28,7 +28,7 @@ def error(**given: Any) -> str:
     return str(caught.value)
 
 
-NOT_A_NUMBER = "is not a number; write it like 2, 1/3, 1.5e-3, 2.0+-0.1 or 2.0(1)"
+NOT_A_NUMBER = "is not a number; write it like 2, 1/3 or 1.5e-3"
 FINITE = "must be 0 or more, and finite"
 TYPES = "must be text or a number (str, int, float, Decimal, Fraction)"
 TOO_LONG = "is too long; numerator and denominator may have 1500 digits"

@@ -112,7 +112,7 @@ NEEDS_R = "`give` `R`, the pulley's radius"
 UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, with `I`"
 FREE_END = "not defined, as the string's end is fixed to the pulley and no friction holds it"
 NOT_BOUNDED = "indeterminate while the string grips with friction to spare"
-NOT_DEFINITE = "not unique while the string grips, but between `friction_force_min` and `friction_force_max`"
+NOT_DEFINITE = "not unique while the string grips; `friction_force_min` and `friction_force_max` bound the magnitude of friction"
 DEFINITE = "not needed, as `friction_force` has a single value here"
 LONG_WRAP = "known only up to half a turn of wrap (180 degrees)"
 NO_CRITICAL_MASS = "no value, as the string holds on any pulley, however heavy"
@@ -190,8 +190,6 @@ def read_name(
 
 def read_accuracy(word: object) -> Accuracy:
     """Read the name of an accuracy. Raises SceneError."""
-    if word == "fast":
-        raise SceneError("accuracy", word, "is no longer there, as certified takes hardly longer; take that")
     return cast(Accuracy, read_name("accuracy", str(word), ACCURACIES, "accuracy", {}))
 
 

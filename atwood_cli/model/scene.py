@@ -368,8 +368,6 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
         return "is empty; give a value, or leave it out"
     if word.lower() in ("nan", "inf", "+inf", "-inf", "infinity"):
         return parameter.domain
-    if re.match(r"[-+.]?\d.*:", word):
-        return "is a range, not a number; atwood sweep takes ranges"
     number, pointed = word.replace(",", ""), word.replace(",", ".")
     if THOUSANDS.fullmatch(word) and NUMBER.fullmatch(number):
         either = f" or {shortened(pointed)}, whichever is meant"
@@ -377,6 +375,9 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
         return f"is not a number; write {shortened(number)}{hint}"
     if pointed != word and NUMBER.fullmatch(pointed):
         return f"is not a number; write it with a decimal point, {shortened(pointed)}"
+    if re.match(r"[-+.]?\d.*[:,]", word):
+        kind = "range" if ":" in word else "list"
+        return f"is a {kind}, not a number; atwood sweep takes {kind}s"
     names = f", or one of {', '.join(parameter.names)}" if parameter.names else ""
     locked = "; inf is a locked pulley" if parameter.inf else ""
     return f"{NOT_A_NUMBER}{names}{locked}{nearest(word, parameter.names)}"

@@ -75,7 +75,7 @@ IN_BRACKETS = rf"\(([+-]?{_DIGITS}){_SIGN}({_DIGITS})( ?%)?\)({_POWER}{_TAIL})"
 WRITTEN_OUT = rf"({_QUOTIENT})({_TAIL}){_SIGN}(?![+-])({_QUOTIENT})({_TAIL}| ?%)"
 UNCERTAIN = ("(", "±", "+/-", "+-")
 PERCENT = "%"
-NOT_A_NUMBER = "is not a number; write it like 2, 1/3, 1.5e-3, 2.0+-0.1 or 2.0(1)"
+NOT_A_NUMBER = "is not a number; write it like 2, 1/3 or 1.5e-3"
 NOT_UNCERTAIN = (
     "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+-0.002 or 1.000(2),"
     " and a unit after that"

@@ -195,6 +195,6 @@ def print_contact(answers: Answers, arc: Contact, tables: bool) -> None:
     page.table(["Force on the pulley", "x (N)", "y (N)"], [force_rows[:2], force_rows[2:3], force_rows[3:]])
     unit = "N m" if answers.case.scene.R is not None else "N, per unit radius"
     torques = aligned(map(cell, arc.balance["torque"].values()))
-    kinds = ("friction along the arc", "R (T2 - T1)")
+    kinds = ("friction along the arc", "T2 - T1" if answers.case.scene.R is None else "R (T2 - T1)")
     page.table([f"Torque on the pulley ({unit})", ""], [list(zip(kinds, torques, strict=True))])
     page.say(*arc.notes)

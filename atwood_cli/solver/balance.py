@@ -17,7 +17,7 @@ from ..model.arc import Profile
 from ..model.decisions import Decisions
 from ..model.digits import rounding_to_place
 from ..model.machine import Machine
-from ..model.quantities import FREE_END, NEEDS_M
+from ..model.quantities import NEEDS_M
 from ..model.scene import SceneError, read_whole
 from .answers import Answers
 from .messages import unmarked
@@ -54,7 +54,11 @@ def kind_of(case: Decisions) -> Profile:
     Raises SceneError if the scene does not determine the arc.
     """
     if not case.light:
-        raise SceneError("m1" if case.scene.m1 == 0 else "m2", 0, f"leaves no arc: {FREE_END}")
+        raise SceneError(
+            "m1" if case.scene.m1 == 0 else "m2",
+            0,
+            "leaves no arc of contact, as that end is fixed to the pulley; give both masses above 0",
+        )
     if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
         raise SceneError("M", None, f"is missing: {unmarked(NEEDS_M)}")
     spare = case.regime == "no-slip" and case.scene.mu is not None and not case.tensions_equal

@@ -141,7 +141,7 @@ def _slips(answers: Answers) -> str:
             f" {_enough(answers, 'massless_verge')} needed even on a massless one{kinetic}."
         )
     slips = "Slips over a pulley held by axle friction" if case.rim_at_rest and not case.locked else "Slips"
-    return f"{slips}: {mu} is below the {_enough(answers)} needed to hold it{kinetic}."
+    return f"{slips}: {mu} is below the {_enough(answers)} needed to hold the string{kinetic}."
 
 
 def _held(answers: Answers) -> str:
