@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from math import isfinite
+from math import frexp, isfinite
 from random import Random
 from typing import Any
 
@@ -18,11 +18,9 @@ from atwood_cli import solve_arrays
 from atwood_cli.arithmetic.symbolic import Formula, Term
 from atwood_cli.arrays import doubles as doubles_
 from atwood_cli.arrays import pairs as pairs_
-from atwood_cli.arrays.constants import powers
 from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, LIMIT, PROMISE, UNIT, Bounded, Doubles, certified
-from atwood_cli.arrays.pairs import PAIRS, head_of, two_product
-from atwood_cli.arrays.pattern import COLUMN, Pattern, Task
-from atwood_cli.arrays.plan import answering
+from atwood_cli.arrays.pairs import PAIRS, STEP, TABLE_STEPS, head_of, powers, two_product
+from atwood_cli.arrays.plan import COLUMN, Pattern, Task, answering
 from atwood_cli.arrays.program import OPERATIONS, Program
 from atwood_cli.model.quantities import ACCURACIES, Accuracy
 from atwood_cli.model.scene import INPUTS
@@ -305,6 +303,8 @@ def test_tables_are_what_they_say() -> None:
     for i in (0, 1, 3, 16_383):
         got = sum(Fraction(float(column[i])) for column in powers())
         assert abs(arb(got) - (arb(Fraction(i, 16_384)) * arb(2).log()).expm1()) <= 2.0**-106
+    assert all((part * 2.0 ** (24 - frexp(part)[1])).is_integer() for part in STEP[:3])
+    assert abs(arb(sum(map(Fraction, STEP))) - arb(2).log() / TABLE_STEPS) <= 2.0**-146
 
 
 @pytest.mark.parametrize(("fixed_error", "row_error", "right"), [(1.9e-14, None, True), (9e-15, 9e-15, True), (9e-15, 1.1e-14, False), (2e-14, None, False)])  # fmt: skip

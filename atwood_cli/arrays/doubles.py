@@ -32,11 +32,13 @@ from math import frexp
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..arithmetic.interval import enclosures
 from ..arithmetic.lazy import lazy
+from ..arithmetic.rational import EXACT, Irrational
 from ..arithmetic.symbolic import Formula, Term, formula
 from ..model.quantities import Accuracy
-from .constants import pi, precise_cos_sin
 
 UNIT = 2.0**-53
 """u, the largest relative error of a rounded double."""
@@ -51,6 +53,10 @@ LIMIT = PROMISE - 5e-16
 END_ERROR = 2.0**-104
 """A bound on the relative rounding error of the ends between which a value lies."""
 
+EIGHTY_DIGITS = enclosures(80)
+"""The arithmetic of constants, which are computed once."""
+
+Column = NDArray[np.float64]
 Parts = tuple[Any, ...]
 
 
@@ -187,8 +193,6 @@ class Bounded:
 
     def _scaled(self, factor: float) -> Bounded:
         """Return this number times ±2^n."""
-        if factor == 1:
-            return self
         parts = [part * factor for part in self.parts]
         return Bounded(self.arithmetic, parts, self.fixed_error, self.row_error, self.positive and factor > 0)
 
@@ -263,7 +267,7 @@ class Doubles:
 
     @lazy
     def pi(self) -> Bounded:
-        return self.number(pi())
+        return self.number(Fraction(EIGHTY_DIGITS.pi.lo))
 
     def exp(self, x: Bounded) -> Bounded:
         return self.expm1(x) + 1
@@ -314,6 +318,15 @@ SIGNS = np.array([1.0, -1.0, -1.0, 1.0]), np.array([1.0, 1.0, -1.0, -1.0])
 """The signs of cosine and sine, by the number of quarter turns."""
 
 DOUBLES = Doubles()
+
+
+def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
+    """Return cosine and sine to 70 digits; exact if they are rational."""
+    try:
+        return EXACT.cos_sin_of_degrees(degrees)
+    except Irrational:
+        cos, sin = EIGHTY_DIGITS.cos_sin_of_degrees(degrees % 360)
+        return Fraction(cos.lo), Fraction(sin.lo)
 
 
 # When a double is right: within the promise of `certified`, or nearest to the exact value

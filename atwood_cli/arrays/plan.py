@@ -42,9 +42,10 @@ from ..model.decisions import Decisions, LimitingCase, is_zero
 from ..model.digits import to_double
 from ..model.machine import Machine
 from ..model.quantities import REGIMES, Accuracy, Undetermined
+from ..model.scene import INPUTS, Axle, Scene
+from ..model.units import Angle
 from .doubles import DOUBLES, Doubles, NoProgram, certified, equal, less
 from .pairs import PAIRS
-from .pattern import Branches, Pattern, Task
 from .program import Program
 
 LEVELS: dict[str, tuple[Doubles, ...]] = {"certified": (DOUBLES, PAIRS), "exact": (PAIRS,)}
@@ -53,6 +54,42 @@ ENOUGH_DIGITS = 32
 """The digits of a first computation: they settle most rows that doubles cannot certify."""
 KEPT_PLANS = 256
 """The number of plans that are kept: enough for ten patterns."""
+
+COLUMN = "column"
+"""The entry of a pattern for an input that each row has for itself."""
+
+
+class Pattern(NamedTuple):
+    """What rows have in common before any question: which mass is heavier (`Decisions.sign`), and each input.
+
+    An input is None (not given), inf, a Fraction that is the same in all rows, or COLUMN.
+    """
+
+    sign: int
+    inputs: tuple[Fraction | float | str | None, ...]
+
+    def scene(self, column: Callable[[str], Any]) -> Scene:
+        """Return the scene of a row, or of all rows; ``column`` gives the number of an input by its name."""
+        fields: dict[str, Any] = {
+            name: column(name) if value == COLUMN else value
+            for name, value in zip(INPUTS, self.inputs, strict=True)
+        }
+        fields["wrap"] = Angle(fields["wrap"])
+        fields["axle"] = None if fields["axle"] is None else Axle(fields["axle"])
+        return Scene(**fields)
+
+
+Branches = frozenset[tuple[str, bool]]
+"""Questions, each with the answer of a group's rows."""
+
+
+class Task(NamedTuple):
+    """Quantities to compute at a level of precision, for rows with one pattern and the same decisions."""
+
+    pattern: Pattern
+    branches: Branches
+    names: tuple[str, ...]
+    level: int
 
 
 class Undecided(Exception):

@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from ..model.decisions import Decisions
 from ..model.quantities import REGIMES, Accuracy
 from ..solver.answers import Answers
+from .doubles import Column
+from .inputs import Index
 from .pairs import PAIRS
-from .pattern import Column, Index, Task, select, size_of
-from .plan import LEVELS, Plan, answering, condition_of, nearest_double, plan
+from .plan import LEVELS, Plan, Task, answering, condition_of, nearest_double, plan
 from .program import Program, columns_for
 
 TILE_ROWS = 65_536
@@ -175,3 +176,17 @@ class Rows:
 def _gathered(column: Column, rows: NDArray[np.intp], out: Column) -> Column:
     """Return the rows of a column, copied to ``out``; a single number stays single."""
     return column.take(rows, out=out, mode="clip") if column.ndim else column
+
+
+def size_of(index: Index) -> int:
+    """Return the number of rows of a selection."""
+    return index.stop - index.start if isinstance(index, slice) else index.size
+
+
+def select(index: Any, places: Any) -> Any:
+    """Return the rows at places of a selection, which are a slice, an array or the number of one place."""
+    if not isinstance(index, slice):
+        return index[places]
+    if isinstance(places, slice):
+        return slice(index.start + places.start, min(index.start + places.stop, index.stop))
+    return places + index.start if index.start else places
