@@ -103,9 +103,9 @@ class Undecided(Exception):
 class _GroupDecisions(Decisions):
     """The decisions about a group of rows, or about a row in it, which has those of its group."""
 
-    def __init__(self, pattern: Pattern, branches: Branches, number: Callable[[str], Any]) -> None:
-        super().__init__(pattern.scene(number))
-        self.sign, self._branches = pattern.sign, dict(branches)
+    def __init__(self, task: Task, number: Callable[[str], Any]) -> None:
+        super().__init__(task.pattern.scene(number))
+        self.sign, self._branches = task.pattern.sign, dict(task.branches)
 
     @lazy
     def rim_mass(self) -> Any:
@@ -138,8 +138,7 @@ class _GroupDecisions(Decisions):
 
 
 def _machine_of_columns(task: Task, ar: Doubles) -> Machine[Any]:
-    case = _GroupDecisions(task.pattern, task.branches, lambda name: ar.number(Formula("symbol", name)))
-    return Machine(case, ar)
+    return Machine(_GroupDecisions(task, lambda name: ar.number(Formula("symbol", name))), ar)
 
 
 class Plan(NamedTuple):
@@ -147,9 +146,7 @@ class Plan(NamedTuple):
 
     program: Program | None
     computed: tuple[str, ...]
-    """Quantities that the program gives."""
-    conditional: tuple[str, ...]
-    """Computed ones for which the program also says which rows are certified, by the name `condition_of`."""
+    """Quantities that the program gives; where it is not sure of all rows, with a result `condition_of`."""
     constants: dict[str, float]
     """Values that are the same in all rows, by quantity."""
     missing: dict[str, str]
@@ -172,7 +169,7 @@ def plan(task: Task, accuracy: Accuracy) -> Plan:
     """Return the plan for a task, made by running the model on columns, quantity by quantity."""
     machine = _machine_of_columns(task, LEVELS[accuracy][task.level])
     values: dict[str, Term] = {}
-    conditions: dict[str, Formula] = {}
+    conditions: dict[str, Term] = {}
     constants: dict[str, float] = {}
     missing: dict[str, str] = {}
     row_by_row, asking, question = [], [], ""
@@ -191,14 +188,12 @@ def plan(task: Task, accuracy: Accuracy) -> Plan:
             row_by_row.append(name)
         else:
             if condition is not None:
-                conditions[name] = condition
-    formulas = values | {condition_of(name): condition for name, condition in conditions.items()}
+                conditions[condition_of(name)] = condition
+    formulas = values | conditions
     if question:
         formulas |= _answer(task, question, DOUBLES)
     program = Program(formulas) if formulas else None
-    return Plan(
-        program, (*values,), (*conditions,), constants, missing, tuple(row_by_row), question, tuple(asking)
-    )
+    return Plan(program, (*values,), constants, missing, (*row_by_row,), question, (*asking,))
 
 
 @lru_cache(KEPT_PLANS)
@@ -223,9 +218,9 @@ def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
     return {"sure": less(margin.bound, 0.25), "answer": less(0.0, margin.parts[0])}
 
 
-def nearest_double(task: Task, name: str, number: Callable[[str], Fraction]) -> float | None:
+def nearest_double(task: Task, name: str, number: Callable[[str], Any]) -> float | None:
     """Solve one quantity of one row exactly, by its group's decisions; None if they do not suffice."""
-    case = _GroupDecisions(task.pattern, task.branches, number)
+    case = _GroupDecisions(task, number)
     try:
         return settle(lambda ar: getattr(Machine(case, ar), name), to_double, ENOUGH_DIGITS)
     except (Undecided, Undetermined, OverflowError):

@@ -20,7 +20,7 @@ from ..solver.answers import Answers
 from .doubles import Column
 from .inputs import Index
 from .pairs import PAIRS
-from .plan import LEVELS, Plan, Task, answering, condition_of, nearest_double, plan
+from .plan import LEVELS, Task, answering, condition_of, nearest_double, plan
 from .program import Program, columns_for
 
 TILE_ROWS = 65_536
@@ -63,11 +63,16 @@ class Rows:
         for name, reason in plan_.missing.items():
             self.results[name][rows] = nan
             self.reasons[name, reason] += size_of(rows)
-        flags = self._run_plan(plan_, rows)
+        flags: dict[str, Flags] = {}
+        if plan_.program:
+            others = set(plan_.program.results).difference(plan_.computed)
+            flags = {name: np.empty(size_of(rows), np.bool_) for name in others}
+            self._run(plan_.program, rows, plan_.computed, flags)
         # A quantity that is not certified in a row goes to the next level.
-        for name in plan_.conditional:
-            failed = select(rows, np.flatnonzero(~flags[condition_of(name)]))
-            yield failed, task._replace(names=(name,), level=task.level + 1)
+        for name in plan_.computed:
+            if (condition := condition_of(name)) in flags:
+                failed = select(rows, np.flatnonzero(~flags[condition]))
+                yield failed, task._replace(names=(name,), level=task.level + 1)
         # A quantity that no program gives goes to the last level at once.
         if plan_.row_by_row:
             yield rows, task._replace(names=plan_.row_by_row, level=len(self.levels))
@@ -80,15 +85,6 @@ class Rows:
                 answered = rows if places.size == answers.size else select(rows, places)
                 decisions = task.branches | {(plan_.question, answer)}
                 yield answered, task._replace(branches=decisions, names=plan_.asking)
-
-    def _run_plan(self, plan_: Plan, rows: Index) -> dict[str, Flags]:
-        """Run the program of a plan, and return its conditions and answers, by their names."""
-        if plan_.program is None:
-            return {}
-        names = [name for name in plan_.program.results if name not in plan_.computed]
-        flags = {name: np.empty(size_of(rows), np.bool_) for name in names}
-        self._run(plan_.program, rows, plan_.computed, flags)
-        return flags
 
     def _run(
         self, program: Program, rows: Index, quantities: tuple[str, ...], flags: Mapping[str, Flags]
@@ -142,26 +138,22 @@ class Rows:
             row = select(rows, place)
             alike.setdefault(tuple(column[row] for column in columns), []).append(row)
         for same in alike.values():
-            self._solve_scene(same, task)
-
-    def _solve_scene(self, rows: list[int], task: Task) -> None:
-        """Solve the scene that is in each of these rows."""
-        number = self._number(rows[0])
-        # What the group has decided spares a single quantity all questions, if it suffices.
-        if len(task.names) == 1 and task.branches:
-            value = nearest_double(task, task.names[0], number)
-            if value is not None:
-                self.results[task.names[0]][rows] = value
-                return
-        answers = Answers(task.pattern.scene(number))
-        for name in task.names:
-            if name == "regime":
-                self.results[name][rows] = REGIMES.index(answers.case.regime)
-            else:
+            number = self._number(same[0])
+            # What the group has decided spares a single quantity all questions, if it suffices.
+            if task.branches and len(task.names) == 1:
+                double = nearest_double(task, task.names[0], number)
+                if double is not None:
+                    self.results[task.names[0]][same] = double
+                    continue
+            answers = Answers(task.pattern.scene(number))
+            for name in task.names:
+                if name == "regime":
+                    self.results[name][same] = REGIMES.index(answers.case.regime)
+                    continue
                 value = answers[name]
-                self.results[name][rows] = nan if value is None else float(value)
+                self.results[name][same] = nan if value is None else float(value)
                 if value is None:
-                    self.reasons[name, answers.answer(name).reason] += len(rows)
+                    self.reasons[name, answers.answer(name).reason] += len(same)
 
     def _number(self, row: int) -> Callable[[str], Fraction]:
         """Return the inputs of a row, exactly, by their names."""
