@@ -141,8 +141,8 @@ def columns_of(scenes: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 TEXTS = {
     "doubles": Door(of_solutions(None)),
-    "6 digits": Door(of_solutions(6), 6),
-    "40 digits": Door(of_solutions(40), 40),
+    "6 digits": Door(of_solutions(6), 6, every=4),
+    "40 digits": Door(of_solutions(40), 40, every=2),
     **{f"{digits} digits": Door(of_solutions(digits), digits, every=8) for digits in (1, 17, 200)},
     "JSON": Door(of_json, every=16, on_paper=True),
     "JSON, 30 digits": Door(of_json_with_digits, 30, every=16, on_paper=True),
@@ -154,7 +154,7 @@ TEXTS = {
 DOUBLES = {
     "certified": Door(of_arrays("certified"), certified=True),
     "exact": Door(of_arrays("exact")),
-    "batch": Door(of_batch, on_paper=True),
-    "a table": Door(of_table, on_paper=True),
+    "batch": Door(of_batch, every=4, on_paper=True),
+    "a table": Door(of_table, every=4, on_paper=True),
 }
 """Doors for scenes whose numbers are doubles."""

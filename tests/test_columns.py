@@ -189,13 +189,12 @@ def _without_amplification(x: Bounded) -> Bounded:
     return Bounded(DOUBLES, (Formula("expm1", x.parts[0]),), LIBRARY, 0.0 * x.parts[0] + x.bound)
 
 
-def bounds_hold() -> None:
-    for level in LEVELS:
-        for operation in OPERATIONS_:
-            test_bounds_hold(level, operation)
-        test_bounds_of_exponentials_hold(level)
-        test_bounds_of_functions_of_doubtful_numbers_hold(level)
-        test_bounds_of_angles_hold(level)
+def bounds_hold(level: str) -> None:
+    for operation in OPERATIONS_:
+        test_bounds_hold(level, operation)
+    test_bounds_of_exponentials_hold(level)
+    test_bounds_of_functions_of_doubtful_numbers_hold(level)
+    test_bounds_of_angles_hold(level)
     test_there_is_no_bound_where_an_exponential_is_too_large()
 
 
@@ -221,7 +220,7 @@ def test_a_smaller_constant_does_not_hold(
     monkeypatch.setattr(where, name, wrong)
     monkeypatch.delitem(vars(DOUBLES), "pi", raising=False)
     with pytest.raises(AssertionError):
-        bounds_hold()
+        bounds_hold("pairs" if where in (PAIRS, pairs_) else "doubles")
 
 
 # fmt: off
@@ -322,7 +321,7 @@ def test_what_may_be_off_by_more_than_promised_is_not_certified(
 
 def test_exact_takes_a_double_just_where_both_ends_of_the_bound_round_to_it() -> None:
     """Beside a boundary of rounding by 2^-54 to 2^-106, with bounds of any size, and infinite."""
-    count = 20_000
+    count = 4_000
     first = rng.uniform(0.5, 1, count) * rng.choice([-1, 1], count)
     first = np.where(rng.random(count) < 0.1, np.copysign(0.5, first), first)  # its neighbours differ
     half = np.spacing(np.abs(first)) / 2
