@@ -31,16 +31,11 @@ from atwood_cli.model.scene import INPUTS, MASSES, Scene
 from atwood_cli.solver.answers import Answers
 
 from .conftest import examples
-from .doors import columns_of, solve_any
+from .doors import columns_of, solve_any, within_promise
 from .running import HANGS
 from .scenes import DANGERS, ON_AN_AXLE, Given, Row, as_doubles, scenes
 
 Columns = dict[str, Any]
-
-
-def within_promise(got: float, nearest: float) -> bool:
-    """Whether a double is within 2e-14 of the exact value, to which `nearest` is the nearest double."""
-    return got == nearest or abs(got - nearest) <= 2e-14 * abs(nearest) + 0.5 * ulp(nearest)
 
 
 def assert_is_solve(results: Any, i: int, row: Row, accuracy: str) -> None:

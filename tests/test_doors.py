@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from math import inf, ulp
+from math import inf
 from random import Random
 from typing import Any
 
@@ -18,7 +18,7 @@ from atwood_cli.model.scene import Scene
 
 from . import oracle
 from .conftest import many
-from .doors import DOUBLES, TEXTS, Door, solve_any
+from .doors import DOUBLES, TEXTS, Door, solve_any, within_promise
 from .scenes import DANGERS, FAMILIES, ON_AN_AXLE, Given, as_doubles, scenes
 
 BOUNDS = ("friction_force_min", "friction_force_max")
@@ -31,9 +31,7 @@ def right(door: Door, got: Any, want: float | Decimal | None) -> bool:
     if want is None or (door.on_paper and want in INFINITE):
         return got is None
     if isinstance(want, float) and got is not None:
-        near = (
-            door.certified and want not in INFINITE and abs(got - want) <= 2e-14 * abs(want) + 0.5 * ulp(want)
-        )
+        near = door.certified and want not in INFINITE and within_promise(got, want)
         return near or repr(float(got)) == repr(want + 0.0)  # never -0.0
     whole = not want or want in INFINITE or len(got.as_tuple().digits) == door.digits
     return bool(got == want and whole)
