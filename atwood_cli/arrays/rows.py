@@ -91,26 +91,19 @@ class Rows:
     ) -> None:
         """Run a program tile by tile. ``flags`` are columns for those results that are no quantities."""
         adjoin, size = isinstance(rows, slice), size_of(rows)
-        types = [np.float64] * (len(program.inputs) + len(quantities)) + program.between
+        gathered = [] if adjoin else [np.float64] * (len(program.inputs) + len(quantities))
         tile_size = min(TILE_ROWS, size)
-        scratch = columns_for(program.between if adjoin else types, tile_size)
+        scratch = columns_for([*gathered, *program.between], tile_size)
         for start in range(0, size, tile_size):
             places = slice(start, min(start + tile_size, size))
             tile = select(rows, places)
-            free = iter([column[: size_of(tile)] for column in scratch])
-            results = {name: column[places] for name, column in flags.items()}
+            columns = [column[: size_of(tile)] for column in scratch]
+            free, between = iter(columns), columns[len(gathered) :]
             # Where rows adjoin each other, the program reads inputs and writes quantities in place.
-            if adjoin:
-                inputs = {
-                    name: self.inputs[name][tile] if self.inputs[name].ndim else self.inputs[name]
-                    for name in program.inputs
-                }
-                results |= {name: self.results[name][tile] for name in quantities}
             # Elsewhere, both are gathered in columns of their own.
-            else:
-                inputs = {name: _gathered(self.inputs[name], tile, next(free)) for name in program.inputs}
-                results |= {name: next(free) for name in quantities}
-            program.run(inputs, results, free)
+            inputs = {name: _rows_of(self.inputs[name], tile, free) for name in program.inputs}
+            results = {name: self.results[name][tile] if adjoin else next(free) for name in quantities}
+            program.run(inputs, results | {name: flags[name][places] for name in flags}, between)
             if not adjoin:
                 for name in quantities:
                     self.results[name][tile] = results[name]
@@ -165,9 +158,11 @@ class Rows:
         return number
 
 
-def _gathered(column: Column, rows: NDArray[np.intp], out: Column) -> Column:
-    """Return the rows of a column, copied to ``out``; a single number stays single."""
-    return column.take(rows, out=out, mode="clip") if column.ndim else column
+def _rows_of(column: Column, rows: Index, free: Iterator[Column]) -> Column:
+    """Return rows of a column, copied to a free one unless they adjoin each other; a number stays single."""
+    if not column.ndim:
+        return column
+    return column[rows] if isinstance(rows, slice) else column.take(rows, out=next(free), mode="clip")
 
 
 def size_of(index: Index) -> int:
