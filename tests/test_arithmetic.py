@@ -109,11 +109,11 @@ def test_a_logarithm_is_enclosed_whatever_is_guessed(wrong: str, digits: int, q:
         assert contains(at.log1p(at.number(q)), mpmath.log1p(mpmath.mpf(q.numerator) / q.denominator))
 
 
-@pytest.mark.parametrize("root", ["0", "0.0125", "345", "1e-400"])
-def test_roots_are_exact_where_they_can_be(root: str) -> None:
+def test_roots_are_exact_where_they_can_be() -> None:
     at = enclosures(30)
-    found = at.sqrt(at.number(Fraction(root) ** 2))
-    assert found.lo == found.hi == Decimal(root)
+    for root in ("0", "0.0125", "345", "1e-400"):
+        found = at.sqrt(at.number(Fraction(root) ** 2))
+        assert found.lo == found.hi == Decimal(root)
 
 
 @pytest.mark.parametrize("factor", ["-3", "0", "2"])
@@ -139,12 +139,6 @@ def test_large_exponentials_enclose(digits: int, power: int, digit: int) -> None
         assert beyond.lo == beyond.hi == inf
 
 
-@pytest.mark.parametrize("digits", [20, 50, 333, 2000])
-def test_pi_is_enclosed(digits: int) -> None:
-    with mpmath.workdps(digits + 20):
-        assert contains(enclosures(digits).pi, mpmath.pi())
-
-
 def test_zero_stays_exact() -> None:
     at = enclosures(30)
     zero = at.number(0)
@@ -160,10 +154,10 @@ def test_division_by_what_may_be_zero_asks_for_digits() -> None:
         at.number(1) / (third - third)
 
 
-@pytest.mark.parametrize("call", ["exp", "expm1", "log1p", "sqrt", "cos_sin"])
-def test_exact_fractions_refuse_to_leave_the_rationals(call: str) -> None:
-    with pytest.raises(Irrational):
-        getattr(EXACT, call)(Fraction(1, 2))
+def test_exact_fractions_refuse_to_leave_the_rationals() -> None:
+    for call in ("exp", "expm1", "log1p", "sqrt", "cos_sin"):
+        with pytest.raises(Irrational):
+            getattr(EXACT, call)(Fraction(1, 2))
     with pytest.raises(Irrational):
         _ = EXACT.pi
 
@@ -292,9 +286,8 @@ def test_to_digits(text: str) -> None:
     assert text_of(to_digits(digits)(value)) == text
 
 
-@pytest.mark.parametrize("zero", [Fraction(0), Decimal("-0"), Decimal("0e-12")])
-def test_zero_has_no_digits(zero: Fraction | Decimal) -> None:
-    assert str(to_digits(4)(zero)) == "0"
+def test_zero_has_no_digits() -> None:
+    assert {str(to_digits(4)(zero)) for zero in (Fraction(0), Decimal("-0"), Decimal("0e-12"))} == {"0"}
 
 
 def test_text_is_what_people_write() -> None:

@@ -31,16 +31,11 @@ from atwood_cli.model.scene import INPUTS, MASSES, Scene
 from atwood_cli.solver.answers import Answers
 
 from .conftest import examples
-from .doors import columns_of, solve_any
+from .doors import columns_of, solve_any, within_promise
 from .running import HANGS
 from .scenes import DANGERS, ON_AN_AXLE, Given, Row, as_doubles, scenes
 
 Columns = dict[str, Any]
-
-
-def within_promise(got: float, nearest: float) -> bool:
-    """Whether a double is within 2e-14 of the exact value, to which `nearest` is the nearest double."""
-    return got == nearest or abs(got - nearest) <= 2e-14 * abs(nearest) + 0.5 * ulp(nearest)
 
 
 def assert_is_solve(results: Any, i: int, row: Row, accuracy: str) -> None:
@@ -67,22 +62,22 @@ def hostile() -> list[tuple[Columns, Columns]]:
     """Rows that lose digits, and ordinary ones, with their exact results."""
     rng = np.random.default_rng(24)
     m1, M, mu, axle = (
-        10 ** rng.uniform(low, high, 48) for low, high in ((-1, 1), (-2, 3), (-2, 0.3), (-2, 2))
+        10 ** rng.uniform(low, high, 24) for low, high in ((-1, 1), (-2, 3), (-2, 0.3), (-2, 2))
     )
-    masses = {"m1": m1, "m2": m1 * (1 + 10 ** rng.uniform(-2, 1, 48)), "M": M, "R": 1.0}
-    wrap = {"wrap": rng.uniform(1, 720, 48)}
+    masses = {"m1": m1, "m2": m1 * (1 + 10 ** rng.uniform(-2, 1, 24)), "M": M, "R": 1.0}
+    wrap = {"wrap": rng.uniform(1, 720, 24)}
     families = [
-        *(columns_of(alike(danger, 48)) for danger in DANGERS),
+        *(columns_of(alike(danger, 24)) for danger in DANGERS),
         masses | {"mu": mu, "axle": axle},
         masses | wrap,
         masses | wrap | {"mu": mu},
-        masses | {"mu": 10 ** rng.uniform(0, 1.5, 48)},
+        masses | {"mu": 10 ** rng.uniform(0, 1.5, 24)},
     ]
     names = [name for name in NAMES if name not in ("regime", "friction_force_min", "friction_force_max")]
     return [(given, solve_arrays(**given, accuracy="exact", quantities=names)) for given in families]
 
 
-@pytest.mark.parametrize("limit", [5e-16, 2e-15, 5e-15, 2e-14])
+@pytest.mark.parametrize("limit", [5e-16, 2e-15, 2e-14])
 def test_errors_are_within_any_limit_that_bounds_are(limit: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Not only within the promise, from which most are far: so a bound that is too small shows."""
     monkeypatch.setattr(arrays.doubles, "LIMIT", limit)
@@ -232,17 +227,8 @@ def test_rows_that_are_computed_in_vain_are_not_counted(wraps: Any) -> None:
 @pytest.mark.parametrize("name", [name for name in INPUTS if name not in ("I", "inertia")])
 def test_rows_that_differ_in_one_input_are_not_alike(name: str) -> None:
     """Among those that are solved one by one, and once where they are alike."""
-    usual = {
-        "m1": 1.0,
-        "m2": 3.0,
-        "M": 10.0,
-        "mu": 0.4,
-        "mu_k": 0.2,
-        "g": 9.0,
-        "R": 0.1,
-        "wrap": 170.0,
-        "axle": 1.0,
-    }
+    usual = {"m1": 1.0, "m2": 3.0, "M": 10.0, "mu": 0.4, "mu_k": 0.2, "g": 9.0}
+    usual |= {"R": 0.1, "wrap": 170.0, "axle": 1.0}
     given: dict[str, Any] = {x: np.full(3, value) for x, value in usual.items()}
     given[name][1] *= 0.75
     results = solve_arrays(**given, quantities=["friction_force_max", "torque"], accuracy="exact")
@@ -288,8 +274,8 @@ def test_chunks_and_tiles_do_not_show(accuracy: Any, monkeypatch: pytest.MonkeyP
 def test_the_bytes_are_the_same_on_any_number_of_processors(
     accuracy: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(arrays, "CHUNK_ROWS", 50)
-    given = columns_of(alike("ordinary", 200) + alike("near_critical", 200))
+    monkeypatch.setattr(arrays, "CHUNK_ROWS", 20)
+    given = columns_of(alike("ordinary", 50) + alike("near_critical", 100))
     results = []
     for count in (None, 1, 2, 8):
         monkeypatch.setattr("os.cpu_count", Mock(return_value=count))
@@ -366,7 +352,7 @@ def test_rows_of_the_next_level_are_solved_together_or_one_by_one(
     few: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """And some need two more levels."""
-    given = columns_of(alike("ordinary", 200) + alike("near_critical", 800))
+    given = columns_of(alike("ordinary", 50) + alike("near_critical", 200))
     exact = solve_arrays(**given, accuracy="exact")
     monkeypatch.setattr(arrays.rows, "ROWS_ONE_BY_ONE", few)
     results = solve_arrays(**given)
@@ -550,12 +536,8 @@ def test_sums_of_negative_forces() -> None:
             assert abs(results[name].item() - getattr(one, name)) <= (0 if accuracy == "exact" else 1e-12)
 
 
-def test_no_rows() -> None:
-    results = solve_arrays([], [], mu=0.3)
-    assert {column.shape for column in results.values()} == {(0,)}
-
-
 def test_only_what_is_asked_for() -> None:
+    assert {column.shape for column in solve_arrays([], [], mu=0.3).values()} == {(0,)}
     results = solve_arrays([1, 3], [3, 1], 10, quantities=["torque", "acceleration"], R=[0.1, None])
     assert list(results) == ["torque", "acceleration", "status"]
     assert results["torque"][0] == pytest.approx(1.0896277777777778, rel=1e-15)
@@ -572,18 +554,21 @@ def test_quantities_by_their_symbols_have_their_names(words: Any) -> None:
     ("arguments", "message"),
     [
         ({"accuracy": "best"}, "accuracy 'best' is not an accuracy; there are certified, exact"),
-        (
-            {"accuracy": "fast"},
-            "accuracy 'fast' is no longer there, as certified takes hardly longer; take that",
-        ),
         ({"quantities": ["tension"]}, "quantities 'tension' is not a quantity; did you mean tension_2?"),
         ({"quantities": "a,t1"}, "quantities 't1' is not a quantity; did you mean tension_1?"),
         ({"quantities": [["torque"]]}, r"quantities .*torque.* is not a quantity.*"),
+        ({"m1": None}, "m1 is missing; give both masses, m1 and m2"),
+        ({"m2": None}, "m2 is missing; give both masses, m1 and m2"),
+        ({"inertia": [np.str_("hoop")]}, "inertia must be real numbers: .*: 'hoop'"),  # was np.str_('hoop')
+        (
+            {"m1": [1, 2, 3], "M": [1, 2]},
+            r"M of shape \(2,\) does not broadcast with \(3,\), the shape of what comes before it",
+        ),
     ],
 )
 def test_errors(arguments: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError, match="^" + message.replace("?", "[?]") + "$"):
-        solve_arrays(1, 3, **arguments)
+        solve_arrays(**{"m1": 1, "m2": 3, **arguments})
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)
@@ -600,22 +585,3 @@ def test_a_mirrored_zero_is_no_negative_zero(accuracy: Any) -> None:
                     results[name] == 0
                 )
             assert [repr(x) for x in results["torque"].tolist()] == ["0.0"] * rows_
-
-
-def test_a_mass_that_is_missing() -> None:
-    missing: Any = None
-    for mass, masses in (("m1", (missing, 3)), ("m2", (1, missing))):
-        with pytest.raises(SceneError, match=f"^{mass} is missing; give both masses, m1 and m2$"):
-            solve_arrays(*masses)
-
-
-def test_an_error_shows_text_as_it_was_given() -> None:
-    """Was np.str_('hoop')."""
-    with pytest.raises(SceneError, match=r"^inertia must be real numbers: .*: 'hoop'$"):
-        solve_arrays(1.0, 3.0, M=2.0, inertia=[np.str_("hoop")])
-
-
-def test_shapes_that_do_not_broadcast() -> None:
-    why = r"^M of shape \(2,\) does not broadcast with \(3,\), the shape of what comes before it$"
-    with pytest.raises(SceneError, match=why):
-        solve_arrays([1, 2, 3], 2, M=[1, 2])

@@ -7,7 +7,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
-from math import inf, ulp
+from math import inf
 from random import Random
 from typing import Any
 
@@ -18,30 +18,27 @@ from atwood_cli.model.scene import Scene
 
 from . import oracle
 from .conftest import many
-from .doors import DOUBLES, TEXTS, Door, solve_any
+from .doors import DOUBLES, TEXTS, Door, solve_any, within_promise
 from .scenes import DANGERS, FAMILIES, ON_AN_AXLE, Given, as_doubles, scenes
 
 BOUNDS = ("friction_force_min", "friction_force_max")
 """They have no closed form: test_contact checks those of `solve`, with which the other doors must agree."""
 USUAL = [f"{family}{axle}" for axle in ("", ON_AN_AXLE) for family in FAMILIES]
 INFINITE = (inf, -inf)
-PARTS = 4  # of a family, so that no test takes long
 
 
 def right(door: Door, got: Any, want: float | Decimal | None) -> bool:
     if want is None or (door.on_paper and want in INFINITE):
         return got is None
     if isinstance(want, float) and got is not None:
-        near = (
-            door.certified and want not in INFINITE and abs(got - want) <= 2e-14 * abs(want) + 0.5 * ulp(want)
-        )
+        near = door.certified and want not in INFINITE and within_promise(got, want)
         return near or repr(float(got)) == repr(want + 0.0)  # never -0.0
     whole = not want or want in INFINITE or len(got.as_tuple().digits) == door.digits
     return bool(got == want and whole)
 
 
 def check(door: Door, tried: Sequence[Given], truths: Sequence[Mapping[str, Any]]) -> None:
-    checked = Counter[str]()
+    checked, tried, truths = Counter[str](), tried[:: door.every], truths[:: door.every]
     for given, truth, values in zip(tried, truths, door.open(tried), strict=True):
         for name in truth.keys() & values.keys():
             want = truth[name] if name == "regime" else oracle.shown(truth[name], door.digits)
@@ -57,24 +54,23 @@ def truth(given: Given) -> dict[str, Any]:
 
 
 def count_of(family: str) -> int:
-    return many(2000 if family in FAMILIES else 600 if family in USUAL else 48)
+    return max(8, many(1000 if family in FAMILIES else 400 if family in USUAL else 96))
 
 
-@pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("family", [*USUAL, *DANGERS])
-def test_values_of_what_is_typed(family: str, part: int) -> None:
-    tried = list(scenes(family, count_of(family)))[part::PARTS]
+def test_values_of_what_is_typed(family: str) -> None:
+    tried = list(scenes(family, count_of(family)))
     truths = [truth(given) for given in tried]
     for door in TEXTS.values():
-        check(door, tried[:: door.every], truths[:: door.every])
+        check(door, tried, truths)
     regimes = Counter(found["regime"] for found in truths)
-    assert family not in FAMILIES or min(regimes["slip"], regimes["no-slip"]) >= many(25)
+    assert family not in FAMILIES or min(regimes["slip"], regimes["no-slip"]) >= many(50)
 
 
 @pytest.mark.parametrize("family", [*USUAL, *DANGERS])
 def test_values_of_doubles(family: str) -> None:
     """In columns, where rows that are alike are solved together. In every other one gravity is not given."""
-    drawn = map(as_doubles, scenes(family, max(48, count_of(family) // 2), seed=1))
+    drawn = map(as_doubles, scenes(family, max(16, count_of(family) // 2), seed=1))
     tried: list[Given] = [row for row in drawn if row is not None]
     tried[::2] = [{name: text for name, text in row.items() if name != "g"} for row in tried[::2]]
     truths = [truth(given) for given in tried]
@@ -95,4 +91,4 @@ def test_whole_numbers_have_one_answer_at_every_door() -> None:
     ]
     truths = [truth(given) for given in tried]
     for door in (TEXTS | DOUBLES).values():
-        check(door, tried[:: door.every], truths[:: door.every])
+        check(door, tried, truths)

@@ -24,6 +24,7 @@ from atwood_cli.model.scene import Scene
 from atwood_cli.solver.answers import Answers
 
 from .conftest import examples, many
+from .doors import solve_any
 from .scenes import DANGERS, FAMILIES, ON_AN_AXLE, G, Given, scenes
 
 mp: Any = MPContext()
@@ -31,7 +32,6 @@ mp.dps = 60
 
 DIGITS = 30
 UNIT = mp.mpf(10) ** (1 - DIGITS)
-solve_any: Any = solve  # with inputs that are put together here
 few = examples(40)
 
 masses = st.floats(1e-3, 1e3)

@@ -110,9 +110,9 @@ def test_a_tie_cannot_be_faked(more: str) -> None:
 
 def test_every_row_of_an_arc_may_be_a_tie() -> None:
     """T = 2.5, 25, 250 N and so on, which took 60 ms a row."""
-    answers = Answers(Scene.read({"m1": 1, "m2": F(10**29), "M": inf, "g": "2.5"}), 1)
-    tensions = [point["tension"] for point in contact(answers, 30).points]
-    assert tensions == [Decimal(f"2e{j}") for j in range(30)]
+    answers = Answers(Scene.read({"m1": 1, "m2": F(10**9), "M": inf, "g": "2.5"}), 1)
+    tensions = [point["tension"] for point in contact(answers, 10).points]
+    assert tensions == [Decimal(f"2e{j}") for j in range(10)]
 
 
 # Ties in what is printed: the oracle has 60 digits, and calls a tie what agrees with one in 45

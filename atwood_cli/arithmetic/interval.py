@@ -133,7 +133,7 @@ class Enclosures:
     @lazy
     def pi(self) -> Enclosure:
         bits = _bits(self.digits)
-        return self._fixed(_pi(bits), 2, bits)
+        return self._fixed(_constant(PI, bits), 2, bits)
 
     def sqrt(self, x: Enclosure) -> Enclosure:
         """Return the square root of x >= 0, exact if it is a decimal of so many digits.
@@ -261,9 +261,12 @@ def _cos_sin(ar: Enclosures, x: Decimal) -> tuple[Enclosure, Enclosure]:
     bits = _bits(ar.digits + max(0, -x.adjusted()))
     halvings = math.isqrt(bits) // 2
     w = bits + halvings + 2 * bits.bit_length() + (n // d).bit_length() + 8
-    angle, quarter = (n << w) // d, _pi(w) >> 1
+    angle, quarter = (n << w) // d, _constant(PI, w) >> 1
     turns = (angle + (quarter >> 1)) // quarter
-    c, s = _cos_sin_series(angle - turns * quarter, halvings, w)
+    sums = _exponential_series((angle - turns * quarter) >> halvings, w)
+    c, s = sums[0] - sums[2], sums[1] - sums[3]
+    for _ in range(halvings):
+        c, s = (c + s) * (c - s) >> w, c * s >> (w - 1)
     c, s = ((c, s), (-s, c), (-c, -s), (s, -c))[turns % 4]
     error = 8 * (w + turns) << halvings
     return ar._fixed(c, error, w), ar._fixed(s, error, w)
@@ -290,8 +293,10 @@ def _expm1(ar: Enclosures, x: Decimal) -> Enclosure:
     halvings = math.isqrt(bits)
     w = bits + halvings + 2 * bits.bit_length() + tens.bit_length() + 8
     n, d = x.as_integer_ratio()
-    rest = (n << w) // d - (tens * _ln10(w) if tens else 0)
-    u = _expm1_series(rest, halvings, w)
+    rest = (n << w) // d - (tens * _constant(LN10, w) if tens else 0)
+    u = sum(_exponential_series(rest >> halvings, w)) - (1 << w)
+    for _ in range(halvings):
+        u = u * ((2 << w) + u) >> w
     small = ar._fixed(u, (w + tens) << (halvings + 8), w)
     if not tens:
         return small
@@ -321,31 +326,14 @@ def _bits(digits: int) -> int:
     return digits * 10 // 3 + 8
 
 
-def _expm1_series(x: int, halvings: int, w: int) -> int:
-    """Return e^x - 1 by the series at x/2^halvings and as many doublings; both in units of 2^-w."""
-    r = x >> halvings
-    total, term, n = 0, r, 1
-    while term:
-        total += term
-        n += 1
-        term = (term * r >> w) // n
-    for _ in range(halvings):
-        total = total * ((2 << w) + total) >> w
-    return total
-
-
-def _cos_sin_series(x: int, halvings: int, w: int) -> tuple[int, int]:
-    """Return cosine and sine by the series at x/2^halvings and as many doublings; all in units of 2^-w."""
-    r = x >> halvings
+def _exponential_series(r: int, w: int) -> list[int]:
+    """Return the terms r^n/n! added up for n = 0, 1, 2 and 3 modulo 4; all in units of 2^-w."""
     sums, term, n = [0, 0, 0, 0], 1 << w, 0
     while term:
         sums[n % 4] += term
         n += 1
         term = (term * r >> w) // n
-    cos, sin = sums[0] - sums[2], sums[1] - sums[3]
-    for _ in range(halvings):
-        cos, sin = (cos + sin) * (cos - sin) >> w, cos * sin >> (w - 1)
-    return cos, sin
+    return sums
 
 
 def _inverse(q: int, sign: int, w: int) -> int:
@@ -359,29 +347,23 @@ def _inverse(q: int, sign: int, w: int) -> int:
     return total
 
 
+PI = ((16, 5, -1), (-4, 239, -1))
+"""π as terms of `_constant` (J. Machin, 1706)."""
+LN10 = ((46, 31, 1), (34, 49, 1), (20, 161, 1))
+"""ln 10: 10 = (32/30)^23 (50/48)^17 (162/160)^10."""
 GUARD_BITS = 40
-# The bits of cached constants are a power of two, at least twice this, so that precisions share them.
 LEAST_BITS = 256
 
 
-def _pi(bits: int) -> int:
-    """Return π in units of 2^-bits (J. Machin, 1706)."""
-    return _constant((16, 5, -1), (-4, 239, -1), bits=bits)
-
-
-def _ln10(bits: int) -> int:
-    """Return ln 10 in units of 2^-bits: 10 = (32/30)^23 (50/48)^17 (162/160)^10."""
-    return _constant((46, 31, 1), (34, 49, 1), (20, 161, 1), bits=bits)
-
-
-def _constant(*terms: tuple[int, int, int], bits: int) -> int:
+def _constant(terms: tuple[tuple[int, int, int], ...], bits: int) -> int:
     """Return the sum of factor · `_inverse`(q, sign) for terms (factor, q, sign), to two units of 2^-bits.
 
-    The series have fewer than w terms, each truncated by less than two units of 2^-w, and the factors add up
-    to at most 100. The 40 extra bits (`GUARD_BITS`) absorb that up to w = 2^32.
+    It is kept with a power of two of bits, so that precisions share it. The series have fewer than w terms,
+    each truncated by less than two units of 2^-w, and the factors add up to at most 100. The 40 extra bits
+    (`GUARD_BITS`) absorb that up to w = 2^32.
     """
-    wide = 1 << max(LEAST_BITS, bits).bit_length()
-    return _wide_constant(terms, wide + GUARD_BITS) >> (wide + GUARD_BITS - bits)
+    wide = GUARD_BITS + (1 << max(LEAST_BITS, bits).bit_length())
+    return _wide_constant(terms, wide) >> (wide - bits)
 
 
 @lru_cache

@@ -1,18 +1,17 @@
 """Attributes computed when they are first asked for."""
 
-import sys
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING or sys.version_info >= (3, 12):
+if TYPE_CHECKING:
     lazy = cached_property
 else:
 
     class Lazy(cached_property):
         """An attribute that is computed when it is first asked for, and kept.
 
-        This is `cached_property` of Python 3.12. Before 3.12 it held a lock for all objects of a class, so
-        that threads which each solve a chunk waited for each other.
+        Before Python 3.12, `cached_property` held a lock for all objects of a class, so that threads which
+        each solve a chunk waited for each other.
         """
 
         def __get__(self, instance: Any, owner: Any = None) -> Any:

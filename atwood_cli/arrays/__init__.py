@@ -19,9 +19,8 @@ from numpy.typing import NDArray
 from ..model.quantities import Accuracy, read_accuracy, read_quantities
 from ..model.scene import INPUTS, MASSES, MISSING_MASS, SceneError
 from .inputs import STATUSES as STATUSES
-from .inputs import GivenColumn, Numbers, groups, input_columns, read_column
-from .pattern import Task
-from .plan import LEVELS
+from .inputs import GivenColumn, Numbers, groups, read_column
+from .plan import LEVELS, Task
 from .rows import Rows
 
 CHUNK_ROWS = 1 << 20
@@ -131,7 +130,7 @@ def _read(given: Mapping[str, Numbers | None]) -> tuple[dict[str, GivenColumn], 
 def _solve(rows: Rows, given: Mapping[str, GivenColumn], names: tuple[str, ...]) -> None:
     """Write the status of all rows, and the quantities, which have no value in invalid rows."""
     size = len(rows.results["status"])
-    for group in groups(input_columns(given), size):
+    for group in groups(given, size):
         rows.results["status"][group.rows] = group.status
         if group.pattern:
             level = len(LEVELS[rows.accuracy]) if group.beyond_window else 0

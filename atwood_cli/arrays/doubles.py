@@ -32,11 +32,13 @@ from math import frexp
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ..arithmetic.interval import enclosures
 from ..arithmetic.lazy import lazy
+from ..arithmetic.rational import EXACT, Irrational
 from ..arithmetic.symbolic import Formula, Term, formula
 from ..model.quantities import Accuracy
-from .constants import pi, precise_cos_sin
 
 UNIT = 2.0**-53
 """u, the largest relative error of a rounded double."""
@@ -51,6 +53,10 @@ LIMIT = PROMISE - 5e-16
 END_ERROR = 2.0**-104
 """A bound on the relative rounding error of the ends between which a value lies."""
 
+EIGHTY_DIGITS = enclosures(80)
+"""The arithmetic of constants, which are computed once."""
+
+Column = NDArray[np.float64]
 Parts = tuple[Any, ...]
 
 
@@ -85,18 +91,18 @@ def looked_up(table: Any, index: Formula) -> Formula:
     return Formula("take", index, table)
 
 
-def joined(x: Term | None, y: Term | None) -> Any:
-    """Return the sum of two columns; None stands for 0."""
-    if x is None:
-        return y
-    return x if y is None else x + y
+def larger(x: Term, y: Term) -> Term:
+    """Return the larger of two row errors."""
+    if isinstance(x, Formula) and isinstance(y, Formula) and x is not y:
+        return maximum(x, y)
+    return x if isinstance(x, Formula) else y
 
 
 class Bounded:
     """A column of numbers with a bound on their relative error: ``fixed_error`` + ``row_error``.
 
     A number is the sum of its ``parts``. ``fixed_error`` is the same in all rows. ``row_error`` is a column,
-    or None; it is NaN or infinite in rows without a bound. ``positive`` says that no row is negative.
+    or 0; it is NaN or infinite in rows without a bound. ``positive`` says that no row is negative.
     """
 
     def __init__(
@@ -104,7 +110,7 @@ class Bounded:
         arithmetic: Doubles,
         parts: Sequence[Term],
         fixed_error: float = 0.0,
-        row_error: Term | None = None,
+        row_error: Term = 0.0,
         positive: bool = True,
     ) -> None:
         self.arithmetic, self.parts = arithmetic, tuple(parts)
@@ -112,12 +118,13 @@ class Bounded:
 
     @property
     def bound(self) -> Any:
-        return self.fixed_error if self.row_error is None else self.row_error + self.fixed_error
+        return self.row_error + self.fixed_error
 
     @property
     def size(self) -> Any:
         """The absolute value, to a double."""
-        return self.parts[0] if self.positive and self.row_error is None else absolute(self.parts[0])
+        certain = self.positive and not isinstance(self.row_error, Formula)
+        return self.parts[0] if certain else absolute(self.parts[0])
 
     @property
     def power(self) -> float:
@@ -130,7 +137,7 @@ class Bounded:
     @property
     def exact(self) -> bool:
         """Whether each row is a double without an error."""
-        return len(self.parts) == 1 and self.fixed_error == 0 and self.row_error is None
+        return len(self.parts) == 1 and self.bound == 0.0
 
     def __add__(self, other: Bounded | int) -> Bounded:
         return self._plus(other, 1.0)
@@ -150,14 +157,12 @@ class Bounded:
         positive = sign > 0 and left.positive and right.positive
         parts = ar.sum(left.parts, right.parts, sign, positive)
         if left.exact and right.exact:
-            return Bounded(ar, parts, ar.error_of_doubles, None, positive)
-        if positive and (ar.roughly or (left.row_error is None and right.row_error is None)):
-            row_errors = [term.row_error for term in (left, right) if term.row_error is not None]
-            row_error = None
-            if row_errors:
-                row_error = row_errors[0] if row_errors[0] is row_errors[-1] else maximum(*row_errors)
-            return Bounded(ar, parts, max(left.fixed_error, right.fixed_error) + ar.error_of_sum, row_error)
-        error = joined(ar.error(left), ar.error(right))
+            return Bounded(ar, parts, ar.error_of_doubles, positive=positive)
+        certain = not isinstance(left.row_error, Formula) and not isinstance(right.row_error, Formula)
+        if positive and (ar.roughly or certain):
+            fixed_error = max(left.fixed_error, right.fixed_error) + ar.error_of_sum
+            return Bounded(ar, parts, fixed_error, larger(left.row_error, right.row_error))
+        error = ar.error(left) + ar.error(right)
         return Bounded(ar, parts, ar.error_of_doubles, error / absolute(parts[0]), positive)
 
     def __mul__(self, other: Bounded | Fraction | float) -> Bounded:
@@ -187,14 +192,12 @@ class Bounded:
 
     def _scaled(self, factor: float) -> Bounded:
         """Return this number times ±2^n."""
-        if factor == 1:
-            return self
         parts = [part * factor for part in self.parts]
         return Bounded(self.arithmetic, parts, self.fixed_error, self.row_error, self.positive and factor > 0)
 
     def _joined(self, other: Bounded, operation: Any, fixed_error: float) -> Bounded:
         """Return a product or quotient: the bounds add up."""
-        parts, row_error = operation(self.parts, other.parts), joined(self.row_error, other.row_error)
+        parts, row_error = operation(self.parts, other.parts), self.row_error + other.row_error
         positive = self.positive and other.positive
         return Bounded(
             self.arithmetic, parts, self.fixed_error + other.fixed_error + fixed_error, row_error, positive
@@ -212,8 +215,8 @@ class Doubles:
     """Whether the row error of a sum is the larger one of its terms: a weaker bound that takes less time."""
 
     def error(self, x: Bounded) -> Any:
-        """Return the absolute error of a term that may cancel, and of adding it; None if there is none."""
-        return None if x.exact else x.size * x.bound
+        """Return the absolute error of a term that may cancel, and of adding it."""
+        return 0.0 if x.exact else x.size * x.bound
 
     # Parts, without bounds
 
@@ -255,15 +258,15 @@ class Doubles:
 
     def sqrt(self, x: Bounded) -> Bounded:
         """Return √x for x >= 0."""
-        row_error = None if x.row_error is None else 0.5 * x.row_error
-        return Bounded(self, self.root_of(x.parts), x.fixed_error / 2 + self.error_of_root, row_error)
+        error = x.fixed_error / 2 + self.error_of_root
+        return Bounded(self, self.root_of(x.parts), error, 0.5 * x.row_error)
 
     def hypot(self, x: Bounded, y: Bounded | int) -> Bounded:
         return self.sqrt(x * x + y * y)
 
     @lazy
     def pi(self) -> Bounded:
-        return self.number(pi())
+        return self.number(Fraction(EIGHTY_DIGITS.pi.lo))
 
     def exp(self, x: Bounded) -> Bounded:
         return self.expm1(x) + 1
@@ -316,6 +319,15 @@ SIGNS = np.array([1.0, -1.0, -1.0, 1.0]), np.array([1.0, 1.0, -1.0, -1.0])
 DOUBLES = Doubles()
 
 
+def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
+    """Return cosine and sine to 70 digits; exact if they are rational."""
+    try:
+        return EXACT.cos_sin_of_degrees(degrees)
+    except Irrational:
+        cos, sin = EIGHTY_DIGITS.cos_sin_of_degrees(degrees % 360)
+        return Fraction(cos.lo), Fraction(sin.lo)
+
+
 # When a double is right: within the promise of `certified`, or nearest to the exact value
 
 
@@ -324,7 +336,7 @@ def certified(value: Bounded, accuracy: Accuracy) -> tuple[Term, Formula | None]
     double: Any = value.parts[0] if value.positive else value.parts[0] + 0.0  # 0.0 makes 0 of -0
     if accuracy == "exact":
         return double, is_nearest(value)
-    if value.row_error is None and value.fixed_error <= LIMIT:
+    if not isinstance(value.row_error, Formula) and value.fixed_error <= LIMIT:
         return double, None
     return double, at_most(value.bound, LIMIT)
 

@@ -14,9 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..model.scene import DEFAULTS as SCENE_DEFAULTS
 from ..model.scene import INERTIA_FACTORS, INPUTS, MASSES, SceneError
-from .doubles import WINDOW
-from .pattern import COLUMN, Column, Index, Pattern
+from .doubles import WINDOW, Column
+from .plan import COLUMN, Pattern
 
+Index = slice | NDArray[np.intp]
+"""A selection of rows, in ascending order."""
 Numbers = ArrayLike | Sequence[str | float | Decimal | Fraction | None]
 """The types that a column may have: whatever NumPy makes an array of. A polars column is one too."""
 DISK = INERTIA_FACTORS["disk"]
@@ -128,16 +130,6 @@ SAME_IN_ALL: dict[int, Any] = {Kind.ABSENT: None, Kind.ZERO: Fraction(0), Kind.I
 """The values that stand in a `Pattern` for the numbers of a kind; for other kinds it has a column."""
 
 
-class InputColumn(NamedTuple):
-    """An input in the rows of a chunk: its numbers, and the kind of each, or the one kind of all."""
-
-    doubles: Column
-    kinds: int | NDArray[np.int_]
-
-    def kind(self, row: int) -> int:
-        return self.kinds if isinstance(self.kinds, int) else int(self.kinds[row])
-
-
 class Group(NamedTuple):
     """Rows of a chunk with the same status, and of valid rows the pattern that they have in common."""
 
@@ -148,27 +140,22 @@ class Group(NamedTuple):
     """Whether an input is beyond the window of `doubles`."""
 
 
-def input_columns(given: Mapping[str, GivenColumn]) -> dict[str, InputColumn]:
-    """Return the inputs of a chunk, with the kinds of their numbers."""
-    return {name: InputColumn(column.doubles, _kinds(name, given)) for name, column in given.items()}
-
-
-def _kinds(name: str, given: Mapping[str, GivenColumn]) -> int | NDArray[np.int_]:
-    """Return the kind of each number of an input, or the one kind of all.
+def _kinds(name: str, given: Mapping[str, GivenColumn]) -> NDArray[np.int_]:
+    """Return the kind of each number of an input, or the one kind of all, without dimension.
 
     The equations take I as the mass I/R² and the axle's friction as the mass f/g. So these must be within the
     window, too.
     """
     (doubles, absent), (low, high) = given[name], WINDOW
     if absent is not None and absent.all():
-        return Kind.ABSENT
+        return np.array(Kind.ABSENT)
     sizes = [doubles]
     if name == "I":
         sizes.append(doubles / given["R"].doubles / given["R"].doubles)
     if name == "axle":
         sizes.append(doubles / given["g"].doubles)
     if absent is None and all(low < size.min() and size.max() < high for size in sizes):
-        return Kind.USUAL
+        return np.array(Kind.USUAL)
     is_kind = [
         *([] if absent is None else [(Kind.ABSENT, absent)]),
         (Kind.NAN, np.isnan(doubles)),
@@ -181,17 +168,16 @@ def _kinds(name: str, given: Mapping[str, GivenColumn]) -> int | NDArray[np.int_
     for kind, rows in reversed(is_kind):  # the first kind overwrites the others
         if rows.any():
             kinds = np.where(rows, kind, kinds)
-    return kinds if kinds.ndim else int(kinds)
+    return kinds
 
 
-def groups(inputs: Mapping[str, InputColumn], size: int) -> Iterator[Group]:
+def groups(given: Mapping[str, GivenColumn], size: int) -> Iterator[Group]:
     """Yield the rows of a chunk, grouped by their status and pattern."""
-    m1, m2, mu, mu_k = (inputs[name].doubles for name in ("m1", "m2", "mu", "mu_k"))
+    m1, m2, mu, mu_k = (given[name].doubles for name in ("m1", "m2", "mu", "mu_k"))
+    columns = {name: _kinds(name, given) for name in given}
+    mu_k_above = mu_k > mu  # false where one is not given, as it is NaN there
     # Rows differ by the digits of a key, each with its base: kinds, the heavier mass, a mu_k above mu.
-    digits: list[tuple[int, NDArray[Any]]] = [
-        (len(Kind), column.kinds) for column in inputs.values() if not isinstance(column.kinds, int)
-    ]
-    mu_k_above = np.array(False) if inputs["mu_k"].kinds is Kind.ABSENT else mu_k > mu
+    digits: list[tuple[int, NDArray[Any]]] = [(len(Kind), kinds) for kinds in columns.values() if kinds.ndim]
     if not (m2 > m1).all():
         digits.append((3, 1 * (m1 > m2) + 2 * (m1 == m2)))
     if mu_k_above.any():
@@ -204,11 +190,11 @@ def groups(inputs: Mapping[str, InputColumn], size: int) -> Iterator[Group]:
     for key in np.unique(keys) if digits else keys[:1]:
         rows = np.flatnonzero(keys == key) if digits else slice(0, size)
         row = 0 if isinstance(rows, slice) else int(rows[0])
-        kinds = {name: column.kind(row) for name, column in inputs.items()}
+        kinds = {name: int(_number(column, row)) for name, column in columns.items()}
         if status := STATUSES.index(_fault(kinds, bool(_number(mu_k_above, row)))):
             yield Group(rows, status, None, False)
             continue
-        pattern = {name: _in_pattern(name, kinds[name], column.doubles) for name, column in inputs.items()}
+        pattern = {name: _in_pattern(name, kinds[name], column.doubles) for name, column in given.items()}
         if pattern["I"] is not None:
             pattern["inertia"] = None
         mass_1, mass_2 = _number(m1, row), _number(m2, row)

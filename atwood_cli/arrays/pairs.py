@@ -21,17 +21,65 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
+from functools import cache, lru_cache
+from itertools import accumulate
 from math import copysign, frexp, inf, ldexp, log
 from operator import add, sub
 from typing import Any
 
+import numpy as np
+
 from ..arithmetic.symbolic import Formula, Term, formula
-from .constants import TABLE_STEPS, in_parts, ln2, powers
-from .doubles import UNIT, Bounded, Doubles, Parts, less, looked_up, maximum, minimum, where
+from .doubles import (
+    EIGHTY_DIGITS,
+    UNIT,
+    Bounded,
+    Column,
+    Doubles,
+    Parts,
+    less,
+    looked_up,
+    maximum,
+    minimum,
+    precise_cos_sin,
+    where,
+)
 
 UNIT_SQUARED = UNIT**2
 BOUNDED_EXPONENT = 180.0
 """The largest x for which e^x has a bound: e^x and its square are doubles then."""
+TABLE_STEPS = 16_384
+"""The number of equal steps from ln 1 to ln 2 in the table of powers."""
+STEP = tuple(map(float.fromhex, "0x1.62e43p-15 -0x1.05c61p-43 -0x1.950d88p-68 0x1.d9cc01f97b57ap-93".split()))
+"""ln 2/16384 in three parts of 24 bits, whose small multiples are exact, and a rest."""
+BINARY_PLACES = 240
+"""The bits of the table's numbers after the binary point."""
+
+
+@cache
+def powers() -> tuple[Column, Column]:
+    """Return 2^(i/n) - 1 for each step i of the table's n, as the sum of two columns."""
+    places = 2**BINARY_PLACES
+    ln2 = EIGHTY_DIGITS.log1p(EIGHTY_DIGITS.number(1)).lo
+    step = int(Fraction(EIGHTY_DIGITS.expm1(EIGHTY_DIGITS.number(Fraction(ln2) / TABLE_STEPS)).lo) * places)
+    steps = range(1, TABLE_STEPS)
+    exact = [*accumulate(steps, lambda x, _: x + step + (x * step >> BINARY_PLACES), initial=0)]
+    firsts = [float(value) for value in exact]
+    rests = [float(value - int(first)) for value, first in zip(exact, firsts, strict=True)]
+    return np.array(firsts) / places, np.array(rests) / places
+
+
+@lru_cache(10_000)
+def cos_sin_in_doubles(degrees: float) -> tuple[float, ...]:
+    """Return cosine and sine, each as the sum of two doubles."""
+    cos, sin = precise_cos_sin(Fraction(degrees))
+    return *two_doubles(cos), *two_doubles(sin)
+
+
+def two_doubles(q: Fraction) -> tuple[float, float]:
+    """Return the nearest double and that nearest to the rest."""
+    first = float(q)
+    return first, float(q - Fraction(first))
 
 
 # Error-free transformations: sums and products of doubles with their rounding errors
@@ -120,8 +168,7 @@ class Pairs(Doubles):
         return fast_two_sum(root, _remainder(x, root, root) / (2.0 * root))
 
     def constant(self, q: Fraction) -> Parts:
-        first = float(q)
-        rest = float(q - Fraction(first))
+        first, rest = two_doubles(q)
         return (first, rest) if rest else (first,)
 
     # Functions
@@ -171,12 +218,13 @@ class Pairs(Doubles):
 
     def cos_sin_of_column(self, degrees: Formula) -> tuple[Bounded, Bounded]:
         """Return the cosine and the sine of angles in degrees; each angle that occurs is computed once."""
-        columns = [Formula(op, degrees) for op in ("cos°", "rest of cos°", "sin°", "rest of sin°")]
-        x, y = (
+        cos, sin = (
             Bounded(self, parts, self.error_of_constant, positive=False)
-            for parts in (columns[:2], columns[2:])
+            for parts in (
+                [Formula(op, degrees), Formula(f"rest of {op}", degrees)] for op in ("cos°", "sin°")
+            )
         )
-        return x, y
+        return cos, sin
 
 
 def _remainder(x: Parts, q: Term, y: Term) -> Any:
@@ -187,11 +235,8 @@ def _remainder(x: Parts, q: Term, y: Term) -> Any:
 
 
 def _rest(first: Term, others: Sequence[Term], count: Formula) -> Parts:
-    """Return x minus a multiple of ln 2/16384 that is near it (argument reduction).
-
-    The constant is split into parts of 24 bits, whose multiples are exact, and the rest.
-    """
-    near, middle, last, rest = in_parts(ln2() / TABLE_STEPS, 24, 3)
+    """Return x minus a multiple of ln 2/16384 that is near it (argument reduction)."""
+    near, middle, last, rest = STEP
     high, error = two_sum(first - count * near, count * -middle)
     high, next_error = two_sum(high, count * -last)
     low = error + next_error + count * -rest

@@ -42,9 +42,10 @@ from ..model.decisions import Decisions, LimitingCase, is_zero
 from ..model.digits import to_double
 from ..model.machine import Machine
 from ..model.quantities import REGIMES, Accuracy, Undetermined
+from ..model.scene import INPUTS, Axle, Scene
+from ..model.units import Angle
 from .doubles import DOUBLES, Doubles, NoProgram, certified, equal, less
 from .pairs import PAIRS
-from .pattern import Branches, Pattern, Task
 from .program import Program
 
 LEVELS: dict[str, tuple[Doubles, ...]] = {"certified": (DOUBLES, PAIRS), "exact": (PAIRS,)}
@@ -53,6 +54,42 @@ ENOUGH_DIGITS = 32
 """The digits of a first computation: they settle most rows that doubles cannot certify."""
 KEPT_PLANS = 256
 """The number of plans that are kept: enough for ten patterns."""
+
+COLUMN = "column"
+"""The entry of a pattern for an input that each row has for itself."""
+
+
+class Pattern(NamedTuple):
+    """What rows have in common before any question: which mass is heavier (`Decisions.sign`), and each input.
+
+    An input is None (not given), inf, a Fraction that is the same in all rows, or COLUMN.
+    """
+
+    sign: int
+    inputs: tuple[Fraction | float | str | None, ...]
+
+    def scene(self, column: Callable[[str], Any]) -> Scene:
+        """Return the scene of a row, or of all rows; ``column`` gives the number of an input by its name."""
+        fields: dict[str, Any] = {
+            name: column(name) if value == COLUMN else value
+            for name, value in zip(INPUTS, self.inputs, strict=True)
+        }
+        fields["wrap"] = Angle(fields["wrap"])
+        fields["axle"] = None if fields["axle"] is None else Axle(fields["axle"])
+        return Scene(**fields)
+
+
+Branches = frozenset[tuple[str, bool]]
+"""Questions, each with the answer of a group's rows."""
+
+
+class Task(NamedTuple):
+    """Quantities to compute at a level of precision, for rows with one pattern and the same decisions."""
+
+    pattern: Pattern
+    branches: Branches
+    names: tuple[str, ...]
+    level: int
 
 
 class Undecided(Exception):
@@ -66,9 +103,9 @@ class Undecided(Exception):
 class _GroupDecisions(Decisions):
     """The decisions about a group of rows, or about a row in it, which has those of its group."""
 
-    def __init__(self, pattern: Pattern, branches: Branches, number: Callable[[str], Any]) -> None:
-        super().__init__(pattern.scene(number))
-        self.sign, self._branches = pattern.sign, dict(branches)
+    def __init__(self, task: Task, number: Callable[[str], Any]) -> None:
+        super().__init__(task.pattern.scene(number))
+        self.sign, self._branches = task.pattern.sign, dict(task.branches)
 
     @lazy
     def rim_mass(self) -> Any:
@@ -101,8 +138,7 @@ class _GroupDecisions(Decisions):
 
 
 def _machine_of_columns(task: Task, ar: Doubles) -> Machine[Any]:
-    case = _GroupDecisions(task.pattern, task.branches, lambda name: ar.number(Formula("symbol", name)))
-    return Machine(case, ar)
+    return Machine(_GroupDecisions(task, lambda name: ar.number(Formula("symbol", name))), ar)
 
 
 class Plan(NamedTuple):
@@ -110,9 +146,7 @@ class Plan(NamedTuple):
 
     program: Program | None
     computed: tuple[str, ...]
-    """Quantities that the program gives."""
-    conditional: tuple[str, ...]
-    """Computed ones for which the program also says which rows are certified, by the name `condition_of`."""
+    """Quantities that the program gives; where it is not sure of all rows, with a result `condition_of`."""
     constants: dict[str, float]
     """Values that are the same in all rows, by quantity."""
     missing: dict[str, str]
@@ -135,7 +169,7 @@ def plan(task: Task, accuracy: Accuracy) -> Plan:
     """Return the plan for a task, made by running the model on columns, quantity by quantity."""
     machine = _machine_of_columns(task, LEVELS[accuracy][task.level])
     values: dict[str, Term] = {}
-    conditions: dict[str, Formula] = {}
+    conditions: dict[str, Term] = {}
     constants: dict[str, float] = {}
     missing: dict[str, str] = {}
     row_by_row, asking, question = [], [], ""
@@ -154,14 +188,12 @@ def plan(task: Task, accuracy: Accuracy) -> Plan:
             row_by_row.append(name)
         else:
             if condition is not None:
-                conditions[name] = condition
-    formulas = values | {condition_of(name): condition for name, condition in conditions.items()}
+                conditions[condition_of(name)] = condition
+    formulas = values | conditions
     if question:
         formulas |= _answer(task, question, DOUBLES)
     program = Program(formulas) if formulas else None
-    return Plan(
-        program, (*values,), (*conditions,), constants, missing, tuple(row_by_row), question, tuple(asking)
-    )
+    return Plan(program, (*values,), constants, missing, (*row_by_row,), question, (*asking,))
 
 
 @lru_cache(KEPT_PLANS)
@@ -186,9 +218,9 @@ def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
     return {"sure": less(margin.bound, 0.25), "answer": less(0.0, margin.parts[0])}
 
 
-def nearest_double(task: Task, name: str, number: Callable[[str], Fraction]) -> float | None:
+def nearest_double(task: Task, name: str, number: Callable[[str], Any]) -> float | None:
     """Solve one quantity of one row exactly, by its group's decisions; None if they do not suffice."""
-    case = _GroupDecisions(task.pattern, task.branches, number)
+    case = _GroupDecisions(task, number)
     try:
         return settle(lambda ar: getattr(Machine(case, ar), name), to_double, ENOUGH_DIGITS)
     except (Undecided, Undetermined, OverflowError):

@@ -6,7 +6,7 @@ the column of an intermediate value is used again after the value's last use.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from threading import local
 from typing import Any
 
@@ -14,10 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..arithmetic.symbolic import Formula, Term, formula
-from .constants import cos_sin_in_doubles
-from .pattern import Column
+from .doubles import Column
+from .pairs import cos_sin_in_doubles
 
 Operation = Callable[..., Any]
+Value = tuple[str, tuple[Any, ...]]
+"""An operation and the numbers of its operands' values; or "symbol" or "number" and what it holds."""
 HEAD_MASK = -1 << 27
 """The bits of a double without the last 27 of its mantissa's 53."""
 
@@ -61,37 +63,14 @@ def _of_degrees(which: int) -> Operation:
 
 
 OPERATIONS: dict[str, Operation] = {
-    "+": np.add,
-    "-": np.subtract,
-    "*": np.multiply,
-    "/": np.divide,
-    "sqrt": np.sqrt,
-    "expm1": np.expm1,
-    "log1p": np.log1p,
-    "cos": np.cos,
-    "sin": np.sin,
-    "abs": np.absolute,
-    "rint": np.rint,
-    "floor": np.floor,
-    "fmod": np.fmod,
-    "<": np.less,
-    "<=": np.less_equal,
-    "==": np.equal,
-    "and": np.logical_and,
-    "or": np.logical_or,
-    "bits": np.bitwise_and,
-    ">>": np.right_shift,
-    "maximum": _with_keyword(np.maximum),
-    "minimum": _with_keyword(np.minimum),
-    "where": _where,
-    "take": _take,
-    "int": _copy,
-    "head": _head,
-    "power": _power,
-    "cos°": _of_degrees(0),
-    "rest of cos°": _of_degrees(1),
-    "sin°": _of_degrees(2),
-    "rest of sin°": _of_degrees(3),
+    **{name: getattr(np, name) for name in "sqrt expm1 log1p cos sin rint floor fmod".split()},
+    **{"+": np.add, "-": np.subtract, "*": np.multiply, "/": np.divide, "abs": np.absolute},
+    **{"<": np.less, "<=": np.less_equal, "==": np.equal, "and": np.logical_and, "or": np.logical_or},
+    **{"bits": np.bitwise_and, ">>": np.right_shift, "int": _copy, "head": _head, "power": _power},
+    **{"maximum": _with_keyword(np.maximum), "minimum": _with_keyword(np.minimum)},
+    **{"where": _where, "take": _take},
+    **{"cos°": _of_degrees(0), "rest of cos°": _of_degrees(1)},
+    **{"sin°": _of_degrees(2), "rest of sin°": _of_degrees(3)},
 }
 RESULT_TYPES: dict[str, type[Any]] = {
     **dict.fromkeys(("<", "<=", "==", "and", "or"), np.bool_),
@@ -128,15 +107,14 @@ class Program:
     """
 
     def __init__(self, results: Mapping[str, Term]) -> None:
-        values = _Values()
-        wanted = [values.number(formula(result)) for result in results.values()]
+        values, wanted = _numbered(map(formula, results.values()))
         self.results = tuple(results)
         # Inputs and constants have the first slots, as they are there before any operation.
         inputs, constants = (
-            [value for value, (op, _) in enumerate(values.all) if op == leaf] for leaf in ("symbol", "number")
+            [value for value, (op, _) in enumerate(values) if op == leaf] for leaf in ("symbol", "number")
         )
-        self.inputs: list[str] = [values.all[value][1][0] for value in inputs]
-        self.constants = [values.all[value][1][0] for value in constants]
+        self.inputs: list[str] = [values[value][1][0] for value in inputs]
+        self.constants = [values[value][1][0] for value in constants]
         slots = {value: slot for slot, value in enumerate([*inputs, *constants])}
         leaves, copies = set(slots), []
         # Each result has the next slot, in which its value is computed. A value that is there already, as an
@@ -150,15 +128,15 @@ class Program:
         self.operations = [*self._operations(values, leaves, slots, len(leaves) + len(wanted)), *copies]
 
     def _operations(
-        self, values: _Values, leaves: set[int], slots: dict[int, int], first_between: int
+        self, values: Sequence[Value], leaves: set[int], slots: dict[int, int], first_between: int
     ) -> Iterator[tuple[Operation, tuple[int, ...]]]:
         """Yield the operations with their slots: operands first, the result last."""
         fixed, free = set(slots), dict[type[Any], list[int]]()
-        operations = [value for value in range(len(values.all)) if value not in leaves]
-        last_use = {part: value for value in operations for part in values.all[value][1]}
-        types = [RESULT_TYPES.get(op, np.float64) for op, _ in values.all]
+        operations = [value for value in range(len(values)) if value not in leaves]
+        last_use = {part: value for value in operations for part in values[value][1]}
+        types = [RESULT_TYPES.get(op, np.float64) for op, _ in values]
         for value in operations:
-            op, parts = values.all[value]
+            op, parts = values[value]
             # After the last use of an intermediate value its slot is free. Most operations may write in it.
             ended = dict.fromkeys(part for part in parts if last_use[part] == value and part not in fixed)
             in_place = op not in NOT_IN_PLACE
@@ -190,47 +168,39 @@ class Program:
             operation(*operands)
 
 
-class _Values:
-    """The distinct values in formulas, numbered so that operands come before their operations."""
+def _numbered(results: Iterable[Formula]) -> tuple[list[Value], list[int]]:
+    """Return the distinct values in formulas, operands first, and the number of each formula's value."""
+    values: list[Value] = []
+    numbers: dict[Value, int] = {}
+    number_of: dict[Formula, int] = {}
 
-    def __init__(self) -> None:
-        self.all: list[tuple[str, tuple[Any, ...]]] = []
-        self._numbers: dict[tuple[str, tuple[Any, ...]], int] = {}
-        self._of: dict[Formula, int] = {}
+    def number(op: str, parts: tuple[Any, ...], key: Any = None) -> int:
+        found = numbers.setdefault((op, parts if key is None else key), len(values))
+        if found == len(values):
+            values.append((op, parts))
+        return found
 
-    def number(self, root: Formula) -> int:
-        """Return the number of a formula's value. Formulas are too deep for recursion."""
-        numbers, waiting = self._of, [root]
-        while waiting:
-            top = waiting[-1]
-            if top in numbers:
-                waiting.pop()
-                continue
-            missing = [part for part in top.parts if isinstance(part, Formula) and part not in numbers]
-            if missing:
-                waiting += reversed(missing)
-            else:
-                numbers[waiting.pop()] = self._numbered(top)
-        return numbers[root]
+    def constant(value: Any) -> int:
+        return number(
+            "number", (np.asarray(value),), id(value) if isinstance(value, np.ndarray) else repr(value)
+        )
 
-    def _numbered(self, node: Formula) -> int:
-        """Return the number of a formula's value, whose operands have theirs."""
+    def number_by_operands(node: Formula) -> int:
         if node.op == "symbol":
-            return self._kept("symbol", node.parts)
+            return number("symbol", node.parts)
         if node.op == "number":
-            return self._constant(float(node.parts[0]))
-        numbers = self._of
-        parts = [numbers[part] if isinstance(part, Formula) else self._constant(part) for part in node.parts]
-        return self._kept(node.op, tuple(sorted(parts) if node.op in "+*" else parts))
+            return constant(float(node.parts[0]))
+        parts = [number_of[part] if isinstance(part, Formula) else constant(part) for part in node.parts]
+        return number(node.op, tuple(sorted(parts) if node.op in "+*" else parts))
 
-    def _constant(self, value: Any) -> int:
-        if isinstance(value, np.ndarray):  # a table
-            return self._kept("number", (value,), id(value))
-        return self._kept("number", (np.array(value),), (str(float(value)), type(value) is int))
-
-    def _kept(self, op: str, parts: tuple[Any, ...], key: Any = None) -> int:
-        key = op, parts if key is None else key
-        number = self._numbers.setdefault(key, len(self.all))
-        if number == len(self.all):
-            self.all.append((op, parts))
-        return number
+    wanted = []
+    for result in results:
+        waiting = [result]
+        while waiting:  # formulas are too deep for recursion
+            top = waiting[-1]
+            missing = [part for part in top.parts if isinstance(part, Formula) and part not in number_of]
+            waiting += reversed(missing)
+            if not missing:
+                number_of[waiting.pop()] = number_by_operands(top)
+        wanted.append(number_of[result])
+    return values, wanted

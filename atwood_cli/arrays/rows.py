@@ -17,9 +17,10 @@ from numpy.typing import NDArray
 from ..model.decisions import Decisions
 from ..model.quantities import REGIMES, Accuracy
 from ..solver.answers import Answers
+from .doubles import Column
+from .inputs import Index
 from .pairs import PAIRS
-from .pattern import Column, Index, Task, select, size_of
-from .plan import LEVELS, Plan, answering, condition_of, nearest_double, plan
+from .plan import LEVELS, Task, answering, condition_of, nearest_double, plan
 from .program import Program, columns_for
 
 TILE_ROWS = 65_536
@@ -62,11 +63,16 @@ class Rows:
         for name, reason in plan_.missing.items():
             self.results[name][rows] = nan
             self.reasons[name, reason] += size_of(rows)
-        flags = self._run_plan(plan_, rows)
+        flags: dict[str, Flags] = {}
+        if plan_.program:
+            others = set(plan_.program.results).difference(plan_.computed)
+            flags = {name: np.empty(size_of(rows), np.bool_) for name in others}
+            self._run(plan_.program, rows, plan_.computed, flags)
         # A quantity that is not certified in a row goes to the next level.
-        for name in plan_.conditional:
-            failed = select(rows, np.flatnonzero(~flags[condition_of(name)]))
-            yield failed, task._replace(names=(name,), level=task.level + 1)
+        for name in plan_.computed:
+            if (condition := condition_of(name)) in flags:
+                failed = select(rows, np.flatnonzero(~flags[condition]))
+                yield failed, task._replace(names=(name,), level=task.level + 1)
         # A quantity that no program gives goes to the last level at once.
         if plan_.row_by_row:
             yield rows, task._replace(names=plan_.row_by_row, level=len(self.levels))
@@ -80,40 +86,24 @@ class Rows:
                 decisions = task.branches | {(plan_.question, answer)}
                 yield answered, task._replace(branches=decisions, names=plan_.asking)
 
-    def _run_plan(self, plan_: Plan, rows: Index) -> dict[str, Flags]:
-        """Run the program of a plan, and return its conditions and answers, by their names."""
-        if plan_.program is None:
-            return {}
-        names = [name for name in plan_.program.results if name not in plan_.computed]
-        flags = {name: np.empty(size_of(rows), np.bool_) for name in names}
-        self._run(plan_.program, rows, plan_.computed, flags)
-        return flags
-
     def _run(
         self, program: Program, rows: Index, quantities: tuple[str, ...], flags: Mapping[str, Flags]
     ) -> None:
         """Run a program tile by tile. ``flags`` are columns for those results that are no quantities."""
         adjoin, size = isinstance(rows, slice), size_of(rows)
-        types = [np.float64] * (len(program.inputs) + len(quantities)) + program.between
+        gathered = [] if adjoin else [np.float64] * (len(program.inputs) + len(quantities))
         tile_size = min(TILE_ROWS, size)
-        scratch = columns_for(program.between if adjoin else types, tile_size)
+        scratch = columns_for([*gathered, *program.between], tile_size)
         for start in range(0, size, tile_size):
             places = slice(start, min(start + tile_size, size))
             tile = select(rows, places)
-            free = iter([column[: size_of(tile)] for column in scratch])
-            results = {name: column[places] for name, column in flags.items()}
+            columns = [column[: size_of(tile)] for column in scratch]
+            free, between = iter(columns), columns[len(gathered) :]
             # Where rows adjoin each other, the program reads inputs and writes quantities in place.
-            if adjoin:
-                inputs = {
-                    name: self.inputs[name][tile] if self.inputs[name].ndim else self.inputs[name]
-                    for name in program.inputs
-                }
-                results |= {name: self.results[name][tile] for name in quantities}
             # Elsewhere, both are gathered in columns of their own.
-            else:
-                inputs = {name: _gathered(self.inputs[name], tile, next(free)) for name in program.inputs}
-                results |= {name: next(free) for name in quantities}
-            program.run(inputs, results, free)
+            inputs = {name: _rows_of(self.inputs[name], tile, free) for name in program.inputs}
+            results = {name: self.results[name][tile] if adjoin else next(free) for name in quantities}
+            program.run(inputs, results | {name: flags[name][places] for name in flags}, between)
             if not adjoin:
                 for name in quantities:
                     self.results[name][tile] = results[name]
@@ -141,26 +131,22 @@ class Rows:
             row = select(rows, place)
             alike.setdefault(tuple(column[row] for column in columns), []).append(row)
         for same in alike.values():
-            self._solve_scene(same, task)
-
-    def _solve_scene(self, rows: list[int], task: Task) -> None:
-        """Solve the scene that is in each of these rows."""
-        number = self._number(rows[0])
-        # What the group has decided spares a single quantity all questions, if it suffices.
-        if len(task.names) == 1 and task.branches:
-            value = nearest_double(task, task.names[0], number)
-            if value is not None:
-                self.results[task.names[0]][rows] = value
-                return
-        answers = Answers(task.pattern.scene(number))
-        for name in task.names:
-            if name == "regime":
-                self.results[name][rows] = REGIMES.index(answers.case.regime)
-            else:
+            number = self._number(same[0])
+            # What the group has decided spares a single quantity all questions, if it suffices.
+            if task.branches and len(task.names) == 1:
+                double = nearest_double(task, task.names[0], number)
+                if double is not None:
+                    self.results[task.names[0]][same] = double
+                    continue
+            answers = Answers(task.pattern.scene(number))
+            for name in task.names:
+                if name == "regime":
+                    self.results[name][same] = REGIMES.index(answers.case.regime)
+                    continue
                 value = answers[name]
-                self.results[name][rows] = nan if value is None else float(value)
+                self.results[name][same] = nan if value is None else float(value)
                 if value is None:
-                    self.reasons[name, answers.answer(name).reason] += len(rows)
+                    self.reasons[name, answers.answer(name).reason] += len(same)
 
     def _number(self, row: int) -> Callable[[str], Fraction]:
         """Return the inputs of a row, exactly, by their names."""
@@ -172,6 +158,22 @@ class Rows:
         return number
 
 
-def _gathered(column: Column, rows: NDArray[np.intp], out: Column) -> Column:
-    """Return the rows of a column, copied to ``out``; a single number stays single."""
-    return column.take(rows, out=out, mode="clip") if column.ndim else column
+def _rows_of(column: Column, rows: Index, free: Iterator[Column]) -> Column:
+    """Return rows of a column, copied to a free one unless they adjoin each other; a number stays single."""
+    if not column.ndim:
+        return column
+    return column[rows] if isinstance(rows, slice) else column.take(rows, out=next(free), mode="clip")
+
+
+def size_of(index: Index) -> int:
+    """Return the number of rows of a selection."""
+    return index.stop - index.start if isinstance(index, slice) else index.size
+
+
+def select(index: Any, places: Any) -> Any:
+    """Return the rows at places of a selection, which are a slice, an array or the number of one place."""
+    if not isinstance(index, slice):
+        return index[places]
+    if isinstance(places, slice):
+        return slice(index.start + places.start, min(index.start + places.stop, index.stop))
+    return places + index.start if index.start else places
