@@ -1,7 +1,6 @@
 """The command line as scripts and people meet it: in process where that suffices, else as a process."""
 
 import json
-import marshal
 import os
 import re
 import subprocess
@@ -149,16 +148,6 @@ def test_an_error_that_is_no_interrupt_is_raised(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("signal.signal", lambda *_: None)  # this process goes on
     with pytest.raises(ImportError):
         main()
-
-
-def test_a_compiled_module_that_was_cut_off_is_no_interrupt(
-    atwood: Atwood, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Python raises this as it loads one, and typer takes it for Ctrl-D: it ended with 130, without a word."""
-    monkeypatch.setattr("atwood_cli.cli.solve.read_answers", lambda *_: marshal.loads(b""))
-    ran = atwood(*PAPER)
-    assert (ran.status, ran.out) == (1, "")
-    assert ran.err.lstrip() == "atwood: a file of the program is damaged; install it again\n"
 
 
 def test_python_dash_m_and_the_command_are_one() -> None:

@@ -82,9 +82,15 @@ def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> 
 
 
 Command = Callable[..., int]
-Rules = Mapping[str, str]
-"""The names of other options, with blanks between, by the name of an option."""
-NO_RULES: Rules = {}
+FORM_NAMES = " ".join(FORMS)
+NO_EFFECT = {
+    **dict.fromkeys(FORMS, FORM_NAMES),
+    "explain": f"{FORM_NAMES} budget",
+    "all_": f"{FORM_NAMES} only explain",
+}
+"""By option, the others that cannot be used with it, in any command."""
+NEEDS = {"markdown": "explain", "bare": "figure", "force": "output figure"}
+"""By option, the others of which it needs one, if the command has them."""
 
 
 class OptionGroup(NamedTuple):
@@ -95,21 +101,15 @@ class OptionGroup(NamedTuple):
     read: Callable[[Mapping[str, Any]], Any]
 
 
-def with_options(
-    *shared: OptionGroup, no_effect: Rules = NO_RULES, needs: Rules = NO_RULES
-) -> Callable[[Command], Command]:
-    """Give a command groups of options: typer sees each option, the command the arguments read from them.
-
-    An option in ``no_effect`` excludes each option named there. An option in ``needs`` needs an option named
-    there.
-    """
+def with_options(*shared: OptionGroup) -> Callable[[Command], Command]:
+    """Give a command groups of options: typer sees each option, the command the arguments read from them."""
 
     def taking(command: Command) -> Command:
         read = {group.argument for group in shared}
         own = [given for given in inspect.signature(command).parameters.values() if given.name not in read]
 
         def run(**options: Any) -> int:
-            _check(options, no_effect, needs)
+            _check(options)
             arguments = {group.argument: group.read(options) for group in shared}
             status = command(**{given.name: options[given.name] for given in own}, **arguments)
             _ask_about_radians(options.get("wrap"))
@@ -131,40 +131,37 @@ def _parameter(name: str, annotation: Any) -> inspect.Parameter:
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
 
 
-def _check(options: Mapping[str, Any], no_effect: Rules, needs: Rules) -> None:
+def _check(options: Mapping[str, Any]) -> None:
     """Raise SceneError if an option that is given excludes another, or lacks one that it needs."""
     given = {name: value for name, value in options.items() if value not in (None, False, [], ())}
     for name, value in given.items():
         shown = value[0] if isinstance(value, list | tuple) else value
         if shown is True:
             shown = None
-        for other in no_effect.get(name, "").split():
-            if other in given:
+        for other in NO_EFFECT.get(name, "").split():
+            if other in given and other != name:
                 raise SceneError(name, shown, f"cannot be used with {flag(other)}; leave one out")
-        needed = needs.get(name, "").split()
-        if needed and not given.keys() & set(needed):
+        needed = [other for other in NEEDS.get(name, "").split() if other in options]
+        if needed and not given.keys() & needed:
             raise SceneError(name, shown, f"needs {' or '.join(map(flag, needed))}")
 
 
 # A scene
 
 
-def _ask_about_radians(wrap: str | None) -> None:
-    if wrap and _may_be_radians(wrap):
-        typed = f"--wrap {shortened(wrap)}"
-        say(f"{typed} was read as degrees; for radians, write 3.14rad")
-
-
 LIKE_RADIANS = (0.3, 12.6)
 """The range of numbers that are probably radians: few degrees, but up to two turns in radians."""
 
 
-def _may_be_radians(typed: str) -> bool:
-    """Decide whether an angle, a range or a list has numbers without a unit, of the size of radians."""
-    least, most = LIKE_RADIANS
-    words = typed.split(":")[:2] if ":" in typed else typed.split(",")
+def _ask_about_radians(wrap: str | None) -> None:
+    """Say how an angle, a range or a list was read if it has no unit, and the size of radians."""
+    if not wrap:
+        return
+    words = wrap.split(":")[:2] if ":" in wrap else wrap.split(",")
     angles = [read_number(word, "angle") for word in words]
-    return not any(angle.unit for angle in angles) and least < max(angle.value for angle in angles) < most
+    least, most = LIKE_RADIANS
+    if least < max(angle.value for angle in angles) < most and not any(angle.unit for angle in angles):
+        say(f"--wrap {shortened(wrap)} was read as degrees; for radians, write 3.14rad")
 
 
 SCENE = OptionGroup(
@@ -238,19 +235,13 @@ def results(*forms: str) -> OptionGroup:
 
 def _read_target(options: Mapping[str, Any]) -> Destination:
     """Read the form and the file of a result. Raises SceneError, FileExistsError."""
-    asked = [form for form in FORMS if options.get(form)]
-    if asked[1:]:
-        raise SceneError(asked[0], None, f"cannot be used with {flag(asked[1])}; leave one out")
-    form, file, force = "".join(asked), options["output"], options["force"]
-    if force and not (file or options.get("figure")):
-        raise SceneError(
-            "force", None, "needs --output or --figure" if "figure" in options else "needs --output"
-        )
+    asked = next((form for form in FORMS if options.get(form)), "")
+    file, force, figure = options["output"], options["force"], options.get("figure")
     if file in (None, STDOUT):
-        return Destination(form, None, force)
-    if (figure := options.get("figure")) and os.path.realpath(figure) == os.path.realpath(file):
+        return Destination(asked, None, force)
+    if figure and os.path.realpath(figure) == os.path.realpath(file):
         raise SceneError("figure", figure, "is the file of --output; name another")
-    form = _form_of_file(file, form, options)
+    form = _form_of_file(file, asked, options)
     check_free(Path(file), force)
     return Destination(form, file, force)
 
@@ -258,20 +249,19 @@ def _read_target(options: Mapping[str, Any]) -> Destination:
 def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
     """Return the form of a file, as asked for or by its suffix. Raises SceneError if the two disagree."""
     name, suffix = os.path.splitext(file)
-    page = ".md" if options.get("markdown") else ".txt"
-    known = [] if options.get("explain") else [form for form in FORMS if form in options]
-    forms = {page: "", **{FORMS[form].suffix: form for form in known}}
-    if not suffix or (form := forms.get(suffix.lower())) == asked:
-        return asked
-    if form and not asked:
+    explain, page = options.get("explain"), ".md" if options.get("markdown") else ".txt"
+    forms = {page: ""}
+    if not explain:
+        forms |= {FORMS[form].suffix: form for form in FORMS if form in options}
+    form = forms.get(suffix.lower()) if suffix else asked
+    if form is not None and asked in ("", form):
         return form
-    if options.get("explain") and not asked and page == ".txt":
-        raise SceneError("output", file, f"would hold text; name it {name}.txt, or add --markdown")
-    if not asked and page == ".txt":
+    if not (asked or explain):
         raise SceneError("output", file, f"must end in one of {', '.join(forms)}")
-    right = name + (FORMS[asked].suffix if asked else page)
-    convert = "" if asked else f"; then pandoc {right} -o {file} makes the other"
-    raise SceneError("output", file, f"would hold {asked.upper() or 'Markdown'}; name it {right}{convert}")
+    kind = asked.upper() or {".md": "Markdown", ".txt": "text"}[page]
+    right = f"{name}{FORMS[asked].suffix if asked else page}"
+    instead = ", or add --markdown" if kind == "text" else ""
+    raise SceneError("output", file, f"would hold {kind}; name it {right}{instead}")
 
 
 OUTPUT = results(*FORMS)
