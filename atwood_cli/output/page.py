@@ -3,6 +3,7 @@
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack
 from itertools import chain, islice
 from shutil import get_terminal_size
 from time import monotonic
@@ -48,7 +49,7 @@ class Page:
             for line in wrapped(printable(words), self.width):
                 self.line(line, style)
 
-    def line(self, words: str, style: str = "") -> None:
+    def line(self, words: str, style: str) -> None:
         """Print a line as it is, however long."""
         from rich.text import Text
 
@@ -57,12 +58,9 @@ class Page:
     def head(self, answers: Answers, found: str = "") -> None:
         """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
         self.say(describe(answers.case.scene, answers.case.motion, answers.uncertain))
-        style = REGIME_STYLES[answers.case.regime]
         if found:
             self.say(found, style="bold")
-        else:
-            style = f"bold {style}"
-        self.say(unmarked(verdict(answers)), style=style)
+        self.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Groups, keys: int = 1) -> None:
         """Print a table, with a line between groups of rows.
@@ -185,23 +183,19 @@ def with_progress(
 
     The bar shows the share of ``total`` by the ``size`` of parts, and counts their ``rows`` if they have any.
     """
-    start, done, count = monotonic(), 0, 0
-    for part in parts:
-        yield part
-        done += size(part)
-        count += rows(part) if rows else 0
-        if monotonic() - start > 1 and sys.stderr.isatty():
-            break
-    else:
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True, redirect_stdout=False) as bar:
-        task = bar.add_task(counted(count, "row") if rows else "", total=total, completed=done)
+    start, done, count, bar = monotonic(), 0, 0, None
+    with ExitStack() as stack:
         for part in parts:
-            if rows:
-                bar.update(task, description=counted(count, "row"))
-                count += rows(part)
             yield part
-            bar.advance(task, size(part))
+            done += size(part)
+            count += rows(part) if rows else 0
+            so_far = counted(count, "row") if rows else ""
+            if bar:
+                bar.update(bar.task_ids[0], completed=done, description=so_far)
+            elif monotonic() - start > 1 and sys.stderr.isatty():
+                from rich.console import Console
+                from rich.progress import Progress
+
+                console = Console(stderr=True)
+                bar = stack.enter_context(Progress(console=console, transient=True, redirect_stdout=False))
+                bar.add_task(so_far, total=total, completed=done)
