@@ -52,9 +52,9 @@ class Kept(NamedTuple):
         return "" if not self.needs or find_spec(self.needs) else self.needs
 
 
-def printed(line: str) -> str:
+def printed(line: str, stdin: str = "") -> str:
     """What a line of bash prints at the top of the project, without an error."""
-    ran = process(shell=f"set -eu; cd '{TOP}'; {line}", PYTHONIOENCODING="utf-8")
+    ran = process(shell=f"set -eu; cd '{TOP}'; {line}", stdin=stdin, PYTHONIOENCODING="utf-8")
     assert (ran.status, ran.err) == (0, ""), ran
     return ran.out
 
@@ -65,12 +65,21 @@ def transcript(block: str) -> str:
 
 
 def shown(line: str) -> str:
-    """What a line of bash shows, called here if it does nothing but call the program."""
-    if not re.fullmatch(r"atwood( [^|;<>$&*?(){}~`]*)?", line):
+    """What a line of bash shows, its first command called here if that is a call of the program."""
+    found = re.fullmatch(r"atwood ?([^|;<>$&*?(){}~`]*)(?:\|((?:(?!atwood).)*))?", line)
+    if not found:
         return printed(f"{{ {line}; }} 2>&1 || true")
     with chdir(TOP):
-        ran = called(shlex.split(line)[1:])
-    return ran.out + ran.err
+        ran = called(shlex.split(found[1]))
+    return (printed(found[2], ran.out) if found[2] else ran.out) + ran.err
+
+
+def picture(line: str) -> str:
+    """The picture that a command line draws."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder, "a.svg")
+        called([*line.split(), "--figure", str(file)])
+        return file.read_text(encoding="utf-8")
 
 
 def answered(block: str) -> str:
@@ -134,14 +143,7 @@ KEPT = [
     whole(
         EXAMPLES / "handout.md", partial(shown, "atwood solve --m1 1 --m2 3 --mu 0.3 --explain --markdown")
     ),
-    *(
-        whole(
-            EXAMPLES / name,
-            f'cd $(mktemp -d); atwood {words} --figure {name} > table 2>&1; cat {name}; rm -r "$PWD"',
-            "matplotlib",
-        )
-        for name, words in PICTURES.items()
-    ),
+    *(whole(EXAMPLES / name, partial(picture, words), "matplotlib") for name, words in PICTURES.items()),
 ]
 
 

@@ -101,7 +101,7 @@ def hearing(*words: str, **how: Any) -> "subprocess.Popen[bytes]":
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
-def process(*arguments: str, shell: str = "", code: str = "", **asked: Any) -> Ran:
+def process(*arguments: str, shell: str = "", code: str = "", stdin: str = "", **asked: Any) -> Ran:
     """Run it as a process if Python or a module looks at what is asked for as it starts, and call it otherwise.
 
     With ``code``, run that; with ``shell``, a line of bash in which `atwood` is the command.
@@ -111,7 +111,7 @@ def process(*arguments: str, shell: str = "", code: str = "", **asked: Any) -> R
     words = [sys.executable, *(["-c", code] if code else ["-m", "atwood_cli"]), *arguments]
     if shell:
         words = ["bash", "-c", f'atwood() {{ "$PYTHON" -m atwood_cli "$@"; }}; {shell}']
-    done = subprocess.run(words, capture_output=True, env=around(asked), check=False, timeout=HANGS)
+    done = subprocess.run(words, input=stdin.encode(), capture_output=True, env=around(asked), timeout=HANGS)
     return Ran(done.returncode, *(said.decode("utf-8", "replace") for said in (done.stdout, done.stderr)))
 
 
