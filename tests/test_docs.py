@@ -35,10 +35,10 @@ PYTHON = {
 
 
 @pytest.mark.parametrize("file", dict.fromkeys(kept.file for kept in KEPT), ids=lambda file: file.name)
-def test_what_is_kept_is_what_is_printed_today(file: Path) -> None:
+def test_what_is_kept_is_what_is_printed_today(file: Path, pytestconfig: pytest.Config) -> None:
     for kept in (kept for kept in KEPT if kept.file == file):
-        if kept.lacks:
-            pytest.skip(f"needs {kept.lacks}")
+        if kept.lacks or (kept.needs == "matplotlib" and pytestconfig.getoption("quick")):
+            pytest.skip(f"needs {kept.needs}")
         assert essence(kept.today()) == essence(kept.text), "after a look: python -m tests.regenerate"
 
 
