@@ -46,25 +46,15 @@ Words = Callable[[], Mapping[str, str]]
 """A function that returns the words that a shell may complete, with their meanings."""
 
 
-def option(group: str, *flags: str, metavar: str = "", words: Words | None = None, **more: Any) -> Any:
-    """Return an option, with the ``group`` in which help shows it, and the words that it takes.
-
-    If there are no ``words``, it takes the words of a metavar a|b, or any text.
-    """
+def option(group: str, *flags: str, words: Words | None = None, **more: Any) -> Any:
+    """Return an option, with the ``group`` in which help shows it, and the words that complete it."""
 
     def complete(incomplete: str) -> list[tuple[str, str]]:
-        known = words() if words else dict.fromkeys(metavar.split("|"), "")
-        return list(known.items())
+        return list(words().items()) if words else []
 
-    return typer.Option(
-        *flags,
-        metavar=metavar or None,
-        rich_help_panel=group,
-        show_default=False,
-        # typer takes long over such a function, so there is none unless a word is to be completed.
-        autocompletion=complete if (words or "|" in metavar) and COMPLETING in os.environ else None,
-        **more,
-    )
+    # typer takes long over such a function, so there is none unless a word is to be completed.
+    completion = complete if words and COMPLETING in os.environ else None
+    return typer.Option(*flags, rich_help_panel=group, show_default=False, autocompletion=completion, **more)
 
 
 def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> Any:
@@ -249,19 +239,20 @@ def _read_target(options: Mapping[str, Any]) -> Destination:
 def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
     """Return the form of a file, as asked for or by its suffix. Raises SceneError if the two disagree."""
     name, suffix = os.path.splitext(file)
-    explain, page = options.get("explain"), ".md" if options.get("markdown") else ".txt"
-    forms = {page: ""}
-    if not explain:
-        forms |= {FORMS[form].suffix: form for form in FORMS if form in options}
-    form = forms.get(suffix.lower()) if suffix else asked
-    if form is not None and asked in ("", form):
-        return form
-    if not (asked or explain):
+    if asked:
+        forms = {FORMS[asked].suffix: asked}
+    elif options.get("explain"):
+        forms = {".md" if options["markdown"] else ".txt": ""}
+    else:
+        forms = {".txt": "", **{FORMS[form].suffix: form for form in FORMS if form in options}}
+    if not suffix or suffix.lower() in forms:
+        return forms.get(suffix.lower(), asked)
+    if len(forms) > 1:
         raise SceneError("output", file, f"must end in one of {', '.join(forms)}")
-    kind = asked.upper() or {".md": "Markdown", ".txt": "text"}[page]
-    right = f"{name}{FORMS[asked].suffix if asked else page}"
-    instead = ", or add --markdown" if kind == "text" else ""
-    raise SceneError("output", file, f"would hold {kind}; name it {right}{instead}")
+    (right,) = forms
+    kind = asked.upper() or {".md": "Markdown", ".txt": "text"}[right]
+    instead = ", or add --markdown" if right == ".txt" else ""
+    raise SceneError("output", file, f"would hold {kind}; name it {name}{right}{instead}")
 
 
 OUTPUT = results(*FORMS)
