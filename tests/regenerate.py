@@ -6,7 +6,6 @@ It stops if the exit status of a transcript has changed, or if it prints nothing
 
 import re
 import shlex
-import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, chdir
@@ -156,15 +155,10 @@ def essence(text: str) -> object:
 
 def measure() -> None:
     """Write what `atwood tradeoff` measures on this machine into its page and its picture."""
-    page, command = EXAMPLES / "tradeoff.md", ["-m", "atwood_cli", "tradeoff"]
-    figure = ["--figure", str(page.with_suffix(".svg")), "--force"]
-    ran = subprocess.run(
-        [sys.executable, *command, *figure], capture_output=True, check=True, encoding="utf-8"
-    )
-    before, _, rest = page.read_text(encoding="utf-8").partition("```text\n")
-    after = rest.partition("```\n")[2]
-    fresh = f"{before}```text\n$ atwood tradeoff\n{ran.stdout}```\n{after}"
-    page.write_text(fresh, encoding="utf-8", newline="\n")
+    page = EXAMPLES / "tradeoff.md"
+    ran = called(["tradeoff", "--figure", str(page.with_suffix(".svg")), "--force"])
+    before, after = re.split(r"(?<=```text\n)[^`]*", page.read_text(encoding="utf-8"), maxsplit=1)
+    page.write_text(f"{before}$ atwood tradeoff\n{ran.out}{after}", encoding="utf-8", newline="\n")
 
 
 def ends_otherwise(before: str, after: str) -> bool:
@@ -179,18 +173,12 @@ def ends_otherwise(before: str, after: str) -> bool:
 
 def regenerate(accept: bool) -> int:
     """Write what has changed, unless a transcript ends otherwise and nobody has accepted that; returns a status."""
-    changed = [
-        (kept, fresh)
-        for kept in KEPT
-        if not kept.lacks and essence(fresh := kept.today()) != essence(kept.text)
-    ]
+    today = [(kept, kept.today()) for kept in KEPT if not kept.lacks]
+    changed = [(kept, fresh) for kept, fresh in today if essence(fresh) != essence(kept.text)]
     doubtful = [fresh for kept, fresh in changed if ends_otherwise(kept.text, fresh)]
     if doubtful and not accept:
-        print(
-            *doubtful,
-            "Their exit status has changed, or they print nothing: mend them, or give --accept.",
-            sep="\n",
-        )
+        why = "Their exit status has changed, or they print nothing: mend them, or give --accept."
+        print(*doubtful, why, sep="\n")
         return 1
     for kept, fresh in changed:
         page = kept.file.read_text(encoding="utf-8") if kept.file.exists() else ""
