@@ -75,31 +75,6 @@ def test_every_symbol_names_its_quantity() -> None:
         assert {*read_names("only", [*ways, name.replace("_", "-")], QUANTITIES)} == {name}
 
 
-# Errors
-
-
-LONG = ["a" * 10**5, "1 kg" + "*st^9" * 20_000, "1" * 10**5, "1," * 20_000 + "1", "x " * 50_000, "-" * 10**5]
-LINES = """
-solve --m1 1 --m2 3 --M {}|solve --m1 1 --m2 3 --wrap {}|solve --m1 1 --m2 3 --I {}|contact --m1 1 --m2 3 --M {}
-sweep --m1 1 --m2 3 --M {}|sweep --m1 1 --m2 3 --M {}:2:3|sweep --m1 1 --m2 3 --M 1:2:{}|sweep --m1 1 --m2 3 --M 1:2:3:{}
-sweep --m1 1 --m2 3 --M 1:2:3 --only {}|sweep --m1 1 --m2 3 --M 1:2:3 --figure {}|sweep --m1 1 --m2 3 --M 1:2:3 -o {}
-sweep --m1 1 --m2 3 --M 1:2:3 --digits {}|{}|solve {}|solve --m1 1 --m2 3 {}|solve --m1 1 --m2 3 --M 1 {}
-solve --m1 1 --m2 3 --{}|solve --m1 1 --m2 3 --json={}|solve --m1 1 --m2 3 -{}=1|solve --m1 1 --m2 3 --M --mu={}
-contact --m1 1 --m2 3 --figure {}|batch {}|fit {}|batch - --from {}|batch - --only {}|batch - --accuracy {}
-fit - --find {}|fit - --only {}|fit - --drop {}|tradeoff --family {}
-"""
-
-
-@pytest.mark.parametrize("long", LONG, ids=lambda word: word[:8])
-def test_no_message_repeats_all_that_was_typed(atwood: Atwood, long: str) -> None:
-    """Nor does it take long: an unknown unit of 100 kB took a minute."""
-    lines = LINES.strip().replace("\n", "|").split("|")
-    for line in (*lines, *["solve" + " x" * 20_000] * (long == LONG[0])):
-        ran = atwood(*(word.format(long) for word in line.split()))
-        assert (ran.status in (1, 2), ran.out, ran.err.count("\n")) == (True, "", 1), line
-        assert len(ran.err) < 700, line
-
-
 # How it begins and ends
 
 

@@ -1,7 +1,6 @@
 """What the README and the examples show is run, and must come out as shown."""
 
 import doctest
-import os
 import re
 import runpy
 from collections import Counter
@@ -16,7 +15,7 @@ from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS
 from atwood_cli.tradeoff.tradeoff_page import LEGEND
 
 from .regenerate import CASES, KEPT, SCRIPTS, TOP, ends_otherwise, essence
-from .running import labels, process
+from .running import labels
 
 PAGES = {
     path.relative_to(TOP).as_posix(): path.read_text(encoding="utf-8")
@@ -127,32 +126,6 @@ def test_a_query_keeps_rows_that_are_no_scenes() -> None:
     found = run["by_regime"](frame).collect(engine="streaming")
     assert {row["regime"]: row["len"] for row in found.to_dicts()} == {"slip": 2, "no-slip": 1, None: 4}
     assert None not in found.filter(pl.col("regime") == "slip")["acceleration"].to_list()
-
-
-WORKER_KILLED = """
-import os, runpy, signal, sys
-from pathlib import Path
-from tempfile import TemporaryDirectory
-from distributed import Client, LocalCluster, wait
-example = runpy.run_path(sys.argv[1])
-cluster = LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None)
-with TemporaryDirectory() as folder, cluster, Client(cluster) as client:
-    example["write_scenes"](folder, 24, 5_000)
-    parts = example["tasks"](client, Path(folder).iterdir())
-    wait(parts, return_when="FIRST_COMPLETED")
-    os.kill(next(iter(client.run(os.getpid).values())), signal.SIGKILL)
-    open_parts = sum(part.status == "pending" for part in parts)
-    tables = client.gather(parts)
-    rows = {M for table in tables for M in table["M"]}
-    print(open_parts > 0, sum(map(len, tables)), len(rows), sum(table["error"].count() for table in tables))
-"""
-
-
-@pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
-def test_a_cluster_that_loses_a_worker_loses_no_row() -> None:
-    pytest.importorskip("distributed")
-    ran = process(str(TOP / "examples" / "dask_tables.py"), code=WORKER_KILLED, PYTHONPATH=str(TOP))
-    assert (ran.status, ran.out) == (0, "True 120000 120000 0\n"), ran.err
 
 
 def test_what_was_measured_is_of_todays_settings() -> None:
