@@ -7,7 +7,7 @@ It stops if the exit status of a transcript has changed, or if it prints nothing
 import re
 import shlex
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import ExitStack, chdir
 from functools import partial
 from importlib.util import find_spec
@@ -103,11 +103,6 @@ def answered(block: str) -> str:
     return f"{line}\n{shown}{end}{words}" + (f"[{ran.status}]\n" if ran.status else "")
 
 
-def blocks(page: Path) -> Iterator[str]:
-    """The transcripts that a page shows."""
-    yield from re.findall(r"```console\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
-
-
 def help_pages() -> str:
     """The pages of help, each behind its command."""
     commands = ["atwood -h", *(f"atwood {command} -h" for command in COMMANDS)]
@@ -125,10 +120,15 @@ KEPT = [
     *(
         Kept(page, command, partial(answered, command), "matplotlib" if page.stem == "pictures" else "")
         for page in CASES
-        for block in blocks(page)
-        for command in re.findall(r"^\$ .*\n(?:(?!\$ ).*\n)*", block, re.MULTILINE)
+        for command in re.findall(
+            r"^\$ .*\n(?:(?!\$ |```).*\n)*", page.read_text(encoding="utf-8"), re.MULTILINE
+        )
     ),
-    *(Kept(page, block, partial(transcript, block)) for page in PAGES for block in blocks(page)),
+    *(
+        Kept(page, block, partial(transcript, block))
+        for page in PAGES
+        for block in re.findall(r"```console\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
+    ),
     # The scripts call `atwood` and `python3`; both are this interpreter here.
     *(
         whole(script.with_suffix(".txt"), f'python3() {{ "$PYTHON" "$@"; }}; . "{script}"')

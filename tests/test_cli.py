@@ -148,26 +148,28 @@ def test_a_pipe_that_is_closed_on_windows_ends_a_run_quietly(monkeypatch: pytest
 
 
 ENDING = """
-import atexit, sys
+import atexit, gc, sys
 from atwood_cli.__main__ import main
 atexit.register(lambda: print("at exit"))
 sys.stdout.write("before ")
+frozen = gc.get_freeze_count()
 status = main()
-sys.stdout.write("after ")
+sys.stdout.write(f"after {gc.isenabled()} {gc.get_freeze_count() > frozen} ")
 sys.exit(status)
+"""
+LIBRARY = """
+import gc
+frozen = gc.get_freeze_count()
+from atwood_cli import cli, solve
+solve(m1=1, m2=3)
+cli.run(["--version"])
+print(gc.isenabled(), gc.get_freeze_count() > frozen)
 """
 
 
-def test_what_is_left_to_do_at_exit_is_done() -> None:
+def test_what_is_left_to_do_at_exit_is_done_and_a_library_is_left_alone() -> None:
     """main freezes what the garbage collector would look through; handlers run and streams are flushed."""
     for words, status, out in (("--only regime", 0, "verge\n"), ("--zzz", 2, "")):
         ran = process(*PAPER, *words.split(), code=ENDING)
-        assert (ran.status, ran.out) == (status, f"before {out}after at exit\n")
-
-
-def test_the_program_collects_garbage_and_a_library_is_left_alone() -> None:
-    code = "import gc, sys; frozen = gc.get_freeze_count(); {}; print(gc.isenabled(), gc.get_freeze_count() > frozen, file=sys.stderr)"
-    solved = "from atwood_cli import cli, solve; solve(m1=1, m2=3); cli.run(['--version'])"
-    program = "from atwood_cli.__main__ import main; sys.argv[1:] = ['--version']; main()"
-    for what, seen in ((solved, "True False\n"), (program, "True True\n")):
-        assert process(code=code.format(what)).err == seen
+        assert (ran.status, ran.out) == (status, f"before {out}after True True at exit\n")
+    assert process(code=LIBRARY).out.endswith("\nTrue False\n")

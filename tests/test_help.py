@@ -1,10 +1,7 @@
 """Help and completion, as people and shells ask for them."""
 
-import os
-import shutil
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -116,21 +113,3 @@ def test_every_shell_gets_names_with_what_they_mean() -> None:
     for words, status in (("solve --only tor", 0), ("batch in", 1)):
         asked = {"_TYPER_COMPLETE_ARGS": f"atwood {words}", "_TYPER_COMPLETE_FISH_ACTION": "is-args"}
         assert process(**asked, _ATWOOD_COMPLETE="complete_fish") == (status, "", "")
-
-
-def test_bash_completes() -> None:
-    """So do other shells, by scripts of typer's and by the protocols above."""
-    command, bash = Path(sys.executable).with_name("atwood"), shutil.which("bash")
-    if not (command.exists() and bash):
-        pytest.skip("needs bash and the installed program")
-    script = """
-    eval "$(_ATWOOD_COMPLETE=source_bash atwood)"
-    COMP_WORDS=(atwood solve --only ten) COMP_CWORD=3
-    _atwood_completion atwood
-    echo "${COMPREPLY[@]}"
-    complete -p atwood
-    """
-    env = os.environ | {"PATH": f"{command.parent}{os.pathsep}{os.environ['PATH']}"}
-    ran = subprocess.run([bash, "-c", script], capture_output=True, text=True, check=True, env=env)
-    shown = "tension_1 tension_2 tension_ratio\ncomplete -o default -F _atwood_completion atwood\n"
-    assert (ran.stdout, ran.stderr) == (shown, "")
