@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from itertools import chain
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, get_args
+from typing import Annotated, Any, get_args
 
 import typer
 
@@ -83,33 +83,33 @@ NEEDS = {"markdown": "explain", "bare": "figure", "force": "output figure"}
 """By option, the others of which it needs one, if the command has them."""
 
 
-class OptionGroup(NamedTuple):
-    """Options that several commands have, and the argument that a command gets instead of them."""
-
-    argument: str
-    options: Mapping[str, Any]
-    read: Callable[[Mapping[str, Any]], Any]
+SCENE = {name: Annotated[str | None, scene_option(name)] for name in INPUTS}
+"""The options of a scene, by name."""
 
 
-def with_options(*shared: OptionGroup) -> Callable[[Command], Command]:
-    """Give a command groups of options: typer sees each option, the command the arguments read from them."""
+def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
+    """Give a command groups of options by name, which typer sees one by one.
+
+    The command gets those of SCENE as ``given``, and those of `results` as ``target``.
+    """
 
     def taking(command: Command) -> Command:
-        read = {group.argument for group in shared}
-        own = [given for given in inspect.signature(command).parameters.values() if given.name not in read]
+        parameters = inspect.signature(command).parameters.values()
+        own = [parameter for parameter in parameters if parameter.name not in ("given", "target")]
 
         def run(**options: Any) -> int:
             _check(options)
-            arguments = {group.argument: group.read(options) for group in shared}
-            status = command(**{given.name: options[given.name] for given in own}, **arguments)
+            read = {"given": {name: options[name] for name in INPUTS}} if SCENE in groups else {}
+            arguments = {parameter.name: options[parameter.name] for parameter in own}
+            status = command(target=_read_target(options), **arguments, **read)
             _ask_about_radians(options.get("wrap"))
             return status
 
-        first, *others = ([_parameter(*named) for named in group.options.items()] for group in shared)
-        parameters = sorted([*first, *own, *chain(*others)], key=attrgetter("kind"))
+        first, *others = ([_parameter(*named) for named in group.items()] for group in groups)
+        seen = sorted([*first, *own, *chain(*others)], key=attrgetter("kind"))
         # typer reads this attribute, which type checkers do not know of a function.
-        run.__dict__["__signature__"] = inspect.Signature(parameters)
-        run.__annotations__ = {given.name: given.annotation for given in parameters}
+        run.__dict__["__signature__"] = inspect.Signature(seen)
+        run.__annotations__ = {parameter.name: parameter.annotation for parameter in seen}
         run.__name__ = command.__name__
         return run
 
@@ -136,9 +136,6 @@ def _check(options: Mapping[str, Any]) -> None:
             raise SceneError(name, shown, f"needs {' or '.join(map(flag, needed))}")
 
 
-# A scene
-
-
 LIKE_RADIANS = (0.3, 12.6)
 """The range of numbers that are probably radians: few degrees, but up to two turns in radians."""
 
@@ -152,13 +149,6 @@ def _ask_about_radians(wrap: str | None) -> None:
     least, most = LIKE_RADIANS
     if least < max(angle.value for angle in angles) < most and not any(angle.unit for angle in angles):
         say(f"--wrap {shortened(wrap)} was read as degrees; for radians, write 3.14rad")
-
-
-SCENE = OptionGroup(
-    "given",
-    {name: Annotated[str | None, scene_option(name)] for name in INPUTS},
-    lambda options: {name: options[name] for name in INPUTS},
-)
 
 
 def quantity_meanings() -> Mapping[str, str]:
@@ -203,10 +193,10 @@ Labels = Annotated[
 Force = Annotated[bool, option("Files", "--force", help="Replace an existing file.")]
 
 
-def results(*forms: str) -> OptionGroup:
+def results(*forms: str) -> dict[str, Any]:
     """Return the options that choose the form of a result among these, and the file that it goes to."""
     suffixes = ", ".join(FORMS[form].suffix for form in forms)
-    options = {
+    return {
         **{form: Annotated[bool, option("Output", flag(form), help=FORMS[form].help)] for form in forms},
         "output": Annotated[
             str | None,
@@ -220,7 +210,6 @@ def results(*forms: str) -> OptionGroup:
         ],
         "force": Force,
     }
-    return OptionGroup("target", options, _read_target)
 
 
 def _read_target(options: Mapping[str, Any]) -> Destination:
