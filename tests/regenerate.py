@@ -26,8 +26,6 @@ SCRIPTS = sorted(EXAMPLES.glob("*.sh"))
 ENGINES = {EXAMPLES / "dask_tables.py": "distributed", EXAMPLES / "polars_lazy.py": "polars"}
 """Examples that another package runs."""
 CASES = sorted((Path(__file__).parent / "cases").glob("*.md"))
-ESCAPES = {rb"\n": b"\n", rb"\r": b"\r", rb"\t": b"\t", b"\\\\": b"\\", b"%%": b"%"}
-"""What stands for bytes in the words of printf, besides \\xHH."""
 UNSEEN = "[\0-\x09\x0b-\x1f\x7f\xa0\u2009\u2028\ufeff]"
 SCENE = "--m1 1 --m2 3 --M 10 --mu 0.3"
 
@@ -86,11 +84,7 @@ def answered(block: str) -> str:
     line = block.splitlines()[0]
     found = re.fullmatch(r"\$ (?:printf '(.*)' \| )?atwood ?(.*)", line)
     assert found, line
-
-    def byte(escaped: re.Match[bytes]) -> bytes:
-        return bytes([int(escaped[1], 16)]) if escaped[1] else ESCAPES[escaped[0]]
-
-    content = re.sub(rb"\\x(..)|\\.|%%", byte, (found[1] or "").encode())
+    content = (found[1] or "").replace("%%", "%").encode().decode("unicode_escape").encode("latin-1")
     draws = "--figure" in line and find_spec("matplotlib")
     with TemporaryDirectory() as folder, chdir(folder), ExitStack() as stack:
         pages = stack.enter_context(pages_seen()) if draws else []
