@@ -22,7 +22,7 @@ from scipy import optimize, stats
 
 from atwood_cli import Fit, SceneError, solve
 from atwood_cli import fit as laboratory_fit
-from atwood_cli.laboratory.estimate import Data, estimate, expected, slopes
+from atwood_cli.laboratory.estimate import Data, estimate, expected, of_measured, slope
 from atwood_cli.laboratory.fitting import conditions_of, fitted
 from atwood_cli.laboratory.results import USUAL, in_small_unit, published
 from atwood_cli.laboratory.runs import Kind, Runs
@@ -165,7 +165,7 @@ def test_slopes_are_those_of_differences(kind: Kind) -> None:
         here: Any = values.get(name, getattr(data, name, None))
         ends = [expected(data, {**values, name: here * (1 + side * 1e-6)}) for side in (-1, 1)]
         by_difference = (ends[1] - ends[0]) / (2e-6 * here)
-        assert slopes(data, values, [name])[:, 0] == pytest.approx(by_difference, rel=1e-5)
+        assert -slope(of_measured, data, values, name) == pytest.approx(by_difference, rel=1e-5)
 
 
 # Against SciPy

@@ -58,7 +58,9 @@ def check(words: Sequence[str], ran: Ran) -> None:
     partly = words[0] in ("batch", "fit") or "--only" in words
     assert not ran.out or ran.status == 0 or (ran.status == 1 and partly), "stdout beside an error"
     assert [line for line in ran.err.splitlines() if not re.match("atwood: .", line)] == []
-    explained = ran.err or (words[0] == "fit" and ran.out)  # the page of a fit says itself why there is no result
+    explained = ran.err or (
+        words[0] == "fit" and ran.out
+    )  # the page of a fit says itself why there is no result
     assert explained or not ran.status, "an error without a word"
     assert "\x1b" not in ran.err
     assert max(map(len, ran.err.splitlines()), default=0) <= MOST_SAID

@@ -29,7 +29,7 @@ def test_a_run_is_judged_by_the_line_of_the_others() -> None:
     x, y = np.arange(6.0), np.array([0.1, 0.9, 2.1, 2.9, 9.0, 5.1])
     J, none = np.stack([np.ones(6), x], 1), np.zeros(6)
     ((outlier, distance),) = outliers(
-        4, 6, 6, 0.01, judge_of_line(J, y, none, none + 1, none, (0.0, 0))
+        4, 6, 6, 0.01, judge_of_line(J, y, none, none + 1, none + 1e-20, (0.0, 0))
     ).items()
     others = x != 4
     fit, covariance = np.polyfit(x[others], y[others], 1, cov=True)

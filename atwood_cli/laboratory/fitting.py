@@ -22,9 +22,10 @@ from .estimate import (
     as_data,
     estimate,
     expected,
-    line_of_forces,
+    linear,
     measurements,
-    slopes,
+    of_forces,
+    of_measured,
     step_of,
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
@@ -33,6 +34,8 @@ from .statistics import NORMAL_DOF, CannotSeparate, Column, judge_of_line, judge
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
+SELDOM = 0.05
+"""The p value below which runs are said to scatter more than their repeats."""
 LEAST_SINGULAR = 4e-4
 """Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
 MOST_RATIO = 100
@@ -93,13 +96,19 @@ class Outcome(NamedTuple):
         return max(pairs, key=lambda pair: abs(pair[2]), default=None)
 
 
+class Outlier(NamedTuple):
+    """A run, or the value at this ``place`` in it, that stands out by so many standard deviations."""
+
+    run: int
+    place: int | None
+    distance: float
+
+
 class Fitted(NamedTuple):
     """The fit of the runs that can be used, and their outliers.
 
-    ``unusable`` has the rows of the others, by the reason. ``repeats`` are outliers among the repeats of a
-    run, by the index of the run and the place in it, and ``outlying`` runs among all runs, both with their
-    distance in standard deviations. ``delay`` is that of a fit with a delay, and its p value; None if it was
-    not tried or is not possible.
+    ``unusable`` has the rows of the others, by the reason. ``delay`` is that of a fit with a delay, and its
+    p value; None if it was not tried or is not possible.
     """
 
     runs: Runs
@@ -107,14 +116,13 @@ class Fitted(NamedTuple):
     unusable: Mapping[str, Sequence[int]]
     given: Conditions
     whole: Outcome
-    repeats: Mapping[tuple[int, int], float]
-    outlying: Mapping[int, float]
+    outliers: Sequence[Outlier]
     delay: tuple[Result, float] | None
 
     @property
     def suspects(self) -> list[int]:
         """The runs that are outliers or have one among their repeats."""
-        return sorted({*(i for i, _ in self.repeats), *self.outlying})
+        return sorted({one.run for one in self.outliers})
 
     @property
     def left_out(self) -> list[Run]:
@@ -198,20 +206,11 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     if not used:
         raise Unreadable(f"no run can be used{left_out}")
     whole = outcome(runs, used, given, names, left_out)
-    repeats = _outlying_repeats(used, whole.best)
-    sound = [
-        run._replace(measured=tuple(one for k, one in enumerate(run.measured) if (i, k) not in repeats))
-        for i, run in enumerate(used)
-    ]
-    outlying = _outlying_runs(as_data(runs, sound), whole.best)
     delay = None
-    with suppress(CannotSeparate):
-        if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
-            late = outcome(runs, used, given, [*names, "delay"])
-            if found := late.results.get("delay"):
-                dof = min(late.best.line.dof, NORMAL_DOF)
-                delay = found, float(2 * stdtr(dof, -abs(found.value) / found.uncertainty))
-    return Fitted(runs, used, unusable, given, whole, repeats, outlying, delay)
+    if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
+        with suppress(CannotSeparate):
+            delay = _delay(whole, outcome(runs, used, given, [*names, "delay"]))
+    return Fitted(runs, used, unusable, given, whole, _outliers(runs, used, whole.best), delay)
 
 
 def outcome(
@@ -219,7 +218,7 @@ def outcome(
 ) -> Outcome:
     """Return the fit of these runs, with its uncertainties. Raises Unreadable, SceneError, CannotSeparate."""
     dof = len(used) - len(names)
-    data = as_data(runs, used) if used and dof >= 0 else None
+    data = as_data(runs, used) if dof >= 0 else None
     if not data or not (dof or data.scatter.any() or data.uncertain):
         count = "1 run is" if len(used) == 1 else f"{len(used)} runs are"
         raise CannotSeparate(f"{count} {TOO_FEW}{left_out}")
@@ -269,26 +268,44 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
     return {x: found[x] for x in QUANTITIES if x in found}
 
 
-def _outlying_repeats(used: Sequence[Run], best: Estimate) -> dict[tuple[int, int], float]:
-    """Return outliers among the repeats of each run, by the index of the run and the place in it."""
+def _delay(whole: Outcome, late: Outcome) -> tuple[Result, float] | None:
+    """Return the delay of the fit with one, and its p value.
+
+    This is the F test of what it takes off χ², by the scatter of runs and repeats together. If runs scatter
+    more than repeats with the delay, too, it is the t test of the delay by the scatter of runs.
+    """
+    delay = late.results.get("delay")
+    if not delay:
+        return None
+    if whole.chi2 is None or late.chi2 is None or (late.p_value or 0) < SELDOM:
+        return delay, float(
+            2 * stdtr(min(late.best.line.dof, NORMAL_DOF), -abs(delay.value) / delay.uncertainty)
+        )
+    chi2, dof = late.chi2 + late.best.data.repeats[0], late.best.dof + late.best.data.repeats[1]
+    return delay, float(fdtrc(1, dof, max(whole.chi2 - late.chi2, 0) * dof / chi2))
+
+
+def _outliers(runs: Runs, used: Sequence[Run], best: Estimate) -> list[Outlier]:
+    """Return outliers among the repeats of each run, and among the runs without these repeats.
+
+    Runs are judged by the line of forces, which outliers bend least.
+    """
     values, u, index = measurements(used)
     # Of two repeats, which are equally far from each other, that far from the line comes first.
     order = np.argsort(-np.abs(values - expected(best.data, best.values)[index]), kind="stable")
-    step = step_of([one for run in used for one in run.measured])
-    judge = judge_of_repeats(values[order], np.where(u > 0, u, 1)[order], index[order], step)
+    judge = judge_of_repeats(values[order], np.where(u > 0, u, 1)[order], index[order], step_of(used))
     judged = int((np.bincount(index)[index] > 1).sum())
     found = outliers(len(values) - len(used), judged, len(values), OUTLIER_LEVEL, judge)
-    first, places = np.searchsorted(index, index), dict[tuple[int, int], float]()
-    for i, distance in found.items():
-        j = int(order[i])
-        places[int(index[j]), int(j - first[j])] = distance
-    return places
-
-
-def _outlying_runs(data: Data, best: Estimate) -> Mapping[int, float]:
-    """Return outliers by the straight line of forces, which they bend least."""
-    judge = judge_of_line(*line_of_forces(data, best.values, best.names), data.repeats)
-    return outliers(best.dof, len(data.l), len(data.l), OUTLIER_LEVEL, judge)
+    first, places = np.searchsorted(index, index), {int(order[i]): distance for i, distance in found.items()}
+    said = [Outlier(int(index[i]), int(i - first[i]), distance) for i, distance in places.items()]
+    sound = [[*run.measured] for run in used]
+    for one in sorted(said, key=lambda one: -(one.place or 0)):
+        del sound[one.run][one.place or 0]
+    data = as_data(runs, [run._replace(measured=(*kept,)) for run, kept in zip(used, sound, strict=True)])
+    near = {**best.values, "rim_mass": max(best.values["rim_mass"], 0.0), "delay": 0.0}
+    judge = judge_of_line(*linear(of_forces, data, near, best.names), data.repeats)
+    found = outliers(best.dof, len(used), len(used), OUTLIER_LEVEL, judge)
+    return said + [Outlier(i, None, distance) for i, distance in found.items()]
 
 
 # Why there is no result
@@ -317,7 +334,7 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
     least = float((data.h - data.l).min()) * given["gravity"]
     values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), **given}
     values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
-    J: Any = slopes(design, values, names) / expected(design, values)[:, None]
+    J: Any = linear(of_measured, design, values, names)[0] / expected(design, values)[:, None]
     singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
     return not names or bool(singular.min() > LEAST_SINGULAR)
 
@@ -337,10 +354,8 @@ def _mistake(data: Data, used: Sequence[Run], kind: str, g: float, is_fitted: bo
             checks.append((name, f"the median {what}", column, median, 1 / MOST_RATIO, MOST_RATIO))
     if not is_fitted:
         name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
-        a, free = (
-            accelerations(data, data.measured),
-            physics.acceleration(data.h - data.l, data.h + data.l, g),
-        )
+        a = accelerations(data, data.measured)
+        free = physics.acceleration(data.h - data.l, data.h + data.l, g)
         most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
         checks.append((name, "what no friction and no pulley would give", a, free, LEAST_SHARE, most))
     said, is_mistaken = "", np.zeros(len(used), dtype=bool)

@@ -10,12 +10,12 @@ from ..model.units import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
 from .estimate import Data, as_data, expected
-from .fitting import Fitted
+from .fitting import SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
 from .runs import MEASURED, RUN_QUANTITIES, Run, in_words, rows_in_words
 
-RARE, SELDOM = 0.01, 0.05
-"""p values below which a delay, and scatter between runs, are reported."""
+RARE = 0.01
+"""The p value below which a delay is reported, and above 1 less which runs scatter less than repeats."""
 WIDE_DELAY = 0.1
 """The half width of a delay's interval (s) from which the runs cannot show it."""
 NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
@@ -55,14 +55,15 @@ def verdict(fit: Fitted) -> str:
 def _outliers(fit: Fitted) -> list[str]:
     """Return a sentence for each outlier."""
     unit, said = parameter_of(fit.runs.kind).unit, list[str]()
-    for (i, place), distance in fit.repeats.items():
-        cell, value = fit.used[i].cells[place], format_number(float(fit.used[i].measured[place].value))
-        what = f"{_capital(in_words(cell))} = {value} {unit} is {rounded(abs(distance))}"
-        said.append(f"{what} standard deviations from its repeats; --without {cell}.")
-    for i, distance in fit.outlying.items():
-        rows = fit.used[i].rows
-        what = f"{_capital(rows_in_words(rows))} {'are' if rows[1:] else 'is'} {rounded(abs(distance))}"
-        said.append(f"{what} standard deviations from the other runs; --without {','.join(map(str, rows))}.")
+    for i, place, distance in fit.outliers:
+        run, far = fit.used[i], f"{rounded(abs(distance))} standard deviations from"
+        if place is None:
+            are, rows = "are" if run.rows[1:] else "is", ",".join(map(str, run.rows))
+            said.append(f"{_capital(rows_in_words(run.rows))} {are} {far} the other runs; --without {rows}.")
+        else:
+            value = f"{format_number(float(run.measured[place].value))} {unit}"
+            cell = run.cells[place]
+            said.append(f"{_capital(in_words(cell))} = {value} is {far} its repeats; --without {cell}.")
     if said:
         said.append(f"The fit includes {'them' if said[1:] else 'it'}.")
     return said
