@@ -17,11 +17,11 @@ def test_a_repeat_is_an_outlier_if_chance_makes_one_as_far_on_either_side_too_se
     values, u, run = np.array([1.0, 1.1, 0.9, 1.05, 2.0]), np.ones(5), np.zeros(5, dtype=np.intp)
     scatter = np.var(values[:4]) * 4 / 3 + 0.05**2 / 12
     judge = judge_of_repeats(values, u, run, 0.05)
-    ((outlier, distance),) = outliers(4, 5, 5, 5.0, judge).items()
+    ((outlier, distance),) = outliers(judge, 5, 4, 5.0).items()
     assert outlier == 4
     assert distance == pytest.approx((2 - values[:4].mean()) / sqrt(scatter * 5 / 4))
     chance = 5 * 2 * float(stdtr(3, -distance))  # of any of five
-    assert [len(outliers(4, 5, 5, chance * by, judge)) for by in (0.99, 1.01)] == [0, 1]
+    assert [len(outliers(judge, 5, 4, chance * by)) for by in (0.99, 1.01)] == [0, 1]
 
 
 def test_a_run_is_judged_by_the_line_of_the_others() -> None:
@@ -29,7 +29,7 @@ def test_a_run_is_judged_by_the_line_of_the_others() -> None:
     x, y = np.arange(6.0), np.array([0.1, 0.9, 2.1, 2.9, 9.0, 5.1])
     J, none = np.stack([np.ones(6), x], 1), np.zeros(6)
     ((outlier, distance),) = outliers(
-        4, 6, 6, 0.01, judge_of_line(J, y, none, none + 1, none + 1e-20, (0.0, 0))
+        judge_of_line(J, y, none, none + 1, none + 1e-20, (0.0, 0)), 6, 4, 0.01
     ).items()
     others = x != 4
     fit, covariance = np.polyfit(x[others], y[others], 1, cov=True)

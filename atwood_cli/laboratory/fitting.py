@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from itertools import combinations
 from math import hypot, inf, isfinite, sqrt
 from typing import Any, NamedTuple
 
@@ -29,7 +28,7 @@ from .estimate import (
     step_of,
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
-from .runs import OUT_OF_RANGE, Run, Runs, in_range, rows_in_words
+from .runs import OUT_OF_RANGE, Run, Runs, in_range, read_as_of, rows_in_words
 from .statistics import NORMAL_DOF, CannotSeparate, Column, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
@@ -58,42 +57,19 @@ class Conditions(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """A fit of some runs: ``reason`` says why there are no ``results``, if there are none."""
+    """A fit of some runs: ``reason`` says why there are no ``results``, if there are none.
+
+    ``chi2`` is χ² of the runs by the uncertainties stated, or by the scatter of repeats; None without either.
+    If something is left to test the fit, ``p_value`` is the probability that chance gives a larger χ², and
+    ``between_runs`` the standard deviation between runs beyond that, as a mass (kg).
+    """
 
     best: Estimate
     results: Mapping[str, Result]
     reason: str
-
-    @property
-    def chi2(self) -> float | None:
-        """χ² of the runs by the uncertainties stated, or by the scatter of repeats; None without either."""
-        return self.best.line.chi2 if self.best.data.scatter.any() else None
-
-    @property
-    def p_value(self) -> float | None:
-        """The probability that chance gives a larger χ²; None if nothing is left to test the fit."""
-        chi2, dof, data = self.chi2, self.best.dof, self.best.data
-        if chi2 is None or not dof:
-            return None
-        if data.stated or not data.repeats[1]:
-            return float(chdtrc(dof, chi2))
-        return float(fdtrc(dof, data.repeats[1], chi2 / dof))
-
-    @property
-    def between_runs(self) -> float | None:
-        """The standard deviation between runs beyond that, as a mass (kg); None if nothing shows it."""
-        if self.chi2 is None or not self.best.dof:
-            return None
-        return sqrt(self.best.line.between) / abs(self.best.values["gravity"])
-
-    @property
-    def correlation(self) -> tuple[str, str, float] | None:
-        """The most correlated pair of fitted quantities."""
-        names, covariance = self.best.names, self.best.line.covariance
-        u = np.sqrt(covariance.diagonal())
-        ratios = covariance / np.outer(u, u)
-        pairs = [(names[i], names[j], float(ratios[i, j])) for i, j in combinations(range(len(names)), 2)]
-        return max(pairs, key=lambda pair: abs(pair[2]), default=None)
+    chi2: float | None
+    p_value: float | None
+    between_runs: float | None
 
 
 class Outlier(NamedTuple):
@@ -107,31 +83,21 @@ class Outlier(NamedTuple):
 class Fitted(NamedTuple):
     """The fit of the runs that can be used, and their outliers.
 
-    ``unusable`` has the rows of the others, by the reason. ``delay`` is that of a fit with a delay, and its
-    p value; None if it was not tried or is not possible.
+    ``unusable`` has the rows of the others, by the reason. ``left_out`` are those that the user leaves out,
+    each with its mean, if something can be expected of them. ``suspects`` are runs that are outliers or have
+    one among their repeats. ``delay`` is that of a fit with a delay, and its p value; None if it was not
+    tried or is not possible.
     """
 
     runs: Runs
     used: Sequence[Run]
     unusable: Mapping[str, Sequence[int]]
+    left_out: Sequence[Run]
     given: Conditions
     whole: Outcome
     outliers: Sequence[Outlier]
+    suspects: Sequence[int]
     delay: tuple[Result, float] | None
-
-    @property
-    def suspects(self) -> list[int]:
-        """The runs that are outliers or have one among their repeats."""
-        return sorted({one.run for one in self.outliers})
-
-    @property
-    def left_out(self) -> list[Run]:
-        """The runs that the user leaves out, each with its mean, if something can be expected of them."""
-        return [
-            run._replace(measured=(Input(Fraction(run.mean), Fraction(0), None),))
-            for run in self.runs.runs
-            if run.left_out and run.mean and run.m1.value != run.m2.value
-        ]
 
 
 # What is given, and what is to be fitted
@@ -179,8 +145,7 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
     if not names:
         return [x for x in USUAL if x not in given.values]
     if left := [x for x in USUAL if x not in names and x not in given.values]:
-        what, give = (" and ".join(map(words, left)) for words in (_words, GIVE.__getitem__))
-        find = " and ".join(left)
+        what, give, find = map(" and ".join, zip(*((_words(x), GIVE[x], x) for x in left), strict=True))
         raise SceneError("find", ",".join(names), f"leaves {what} open: give {give}, or find {find}, too")
     return names
 
@@ -202,31 +167,42 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
             unusable.setdefault(why, []).extend(run.rows)
         else:
             used.append(run)
-    left_out = "".join(f"; {rows_in_words(rows)}: {why}" for why, rows in unusable.items())
+    said = "".join(f"; {rows_in_words(rows)}: {why}" for why, rows in unusable.items())
+    said += read_as_of(runs.remarks)
     if not used:
-        raise Unreadable(f"no run can be used{left_out}")
-    whole = outcome(runs, used, given, names, left_out)
-    delay = None
+        raise Unreadable(f"no run can be used{said}")
+    whole, delay = outcome(runs, used, given, names, said), None
     if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
         with suppress(CannotSeparate):
             delay = _delay(whole, outcome(runs, used, given, [*names, "delay"]))
-    return Fitted(runs, used, unusable, given, whole, _outliers(runs, used, whole.best), delay)
+    left_out = [
+        run._replace(measured=(Input(Fraction(run.mean), Fraction(0), None),))
+        for run in runs.runs
+        if run.left_out and run.mean and run.m1.value != run.m2.value
+    ]
+    found = _outliers(runs, used, whole.best)
+    suspects = sorted({one.run for one in found})
+    return Fitted(runs, used, unusable, left_out, given, whole, found, suspects, delay)
 
 
 def outcome(
-    runs: Runs, used: Sequence[Run], given: Conditions, names: Sequence[str], left_out: str = ""
+    runs: Runs, used: Sequence[Run], given: Conditions, names: Sequence[str], said: str = ""
 ) -> Outcome:
-    """Return the fit of these runs, with its uncertainties. Raises Unreadable, SceneError, CannotSeparate."""
+    """Return the fit of these runs, with its uncertainties. Raises Unreadable, SceneError, CannotSeparate.
+
+    ``said`` stands behind an error: the rows that are not used, and how the table was read.
+    """
     dof = len(used) - len(names)
     data = as_data(runs, used) if dof >= 0 else None
     if not data or not (dof or data.scatter.any() or data.uncertain):
         count = "1 run is" if len(used) == 1 else f"{len(used)} runs are"
-        raise CannotSeparate(f"{count} {TOO_FEW}{left_out}")
+        raise CannotSeparate(f"{count} {TOO_FEW}{said}")
     mistake, is_of_most = _mistake(data, used, runs.kind, given.values["gravity"], "gravity" in names)
     reason = mistake or f"no rim mass and no axle friction of 0 or more fit these runs: {CHECK}"
     if not _separates(data, given.values, names):
         verb, what = "separate" if names[1:] else "determine", " from ".join(map(_words, names))
-        raise CannotSeparate(mistake or f"the runs do not {verb} {what}: {VARY}")
+        why = mistake or f"the runs do not {verb} {what}: {VARY}"
+        raise CannotSeparate(f"{why}{said}")
 
     def found(there: Conditions) -> dict[str, float]:
         moved = as_data(runs, used, there.inputs.get("drop"))
@@ -236,7 +212,7 @@ def outcome(
         best = estimate(data, given.values, names)
         ends = [[*map(found, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        raise CannotSeparate(reason) from None
+        raise CannotSeparate(f"{reason}{said}") from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
     times = float(stdtrit(min(best.line.dof, NORMAL_DOF), 0.975))  # Student's t
@@ -246,14 +222,19 @@ def outcome(
         u = hypot(spread[x], *steps)
         results[x] = Result(value, u, (value - times * u, value + times * u))
     if not all(isfinite(one.value) and isfinite(one.uncertainty) for one in results.values()):
-        raise CannotSeparate(reason)
-    if is_of_most:
-        return Outcome(best, {}, mistake)
-    for x in names:
-        if x != "delay" and results[x].interval[1] < 0:
-            negative = f"{equation(x, *results[x][:2])} is negative: {CHECK}, and the signs of accelerations"
-            return Outcome(best, {}, mistake or negative)
-    return Outcome(best, results, "")
+        raise CannotSeparate(f"{reason}{said}")
+    negative = next((x for x in names if x != "delay" and results[x].interval[1] < 0), "")
+    if negative and not mistake:
+        words = equation(negative, *results[negative][:2])
+        mistake = f"{words} is negative: {CHECK}, and the signs of accelerations"
+    if not (is_of_most or negative):
+        mistake = ""
+    chi2, between, p_value = best.line.chi2 if data.scatter.any() else None, None, None
+    if chi2 is not None and dof:
+        between = sqrt(best.line.between) / abs(best.values["gravity"])
+        is_f = data.repeats[1] and not data.stated
+        p_value = float(fdtrc(dof, data.repeats[1], chi2 / dof) if is_f else chdtrc(dof, chi2))
+    return Outcome(best, {} if mistake else results, mistake, chi2, p_value, between)
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
@@ -294,17 +275,21 @@ def _outliers(runs: Runs, used: Sequence[Run], best: Estimate) -> list[Outlier]:
     # Of two repeats, which are equally far from each other, that far from the line comes first.
     order = np.argsort(-np.abs(values - expected(best.data, best.values)[index]), kind="stable")
     judge = judge_of_repeats(values[order], np.where(u > 0, u, 1)[order], index[order], step_of(used))
-    judged = int((np.bincount(index)[index] > 1).sum())
-    found = outliers(len(values) - len(used), judged, len(values), OUTLIER_LEVEL, judge)
-    first, places = np.searchsorted(index, index), {int(order[i]): distance for i, distance in found.items()}
-    said = [Outlier(int(index[i]), int(i - first[i]), distance) for i, distance in places.items()]
-    sound = [[*run.measured] for run in used]
-    for one in sorted(said, key=lambda one: -(one.place or 0)):
-        del sound[one.run][one.place or 0]
-    data = as_data(runs, [run._replace(measured=(*kept,)) for run, kept in zip(used, sound, strict=True)])
+    found = outliers(judge, len(values), len(values) - len(used), OUTLIER_LEVEL)
+    first = np.searchsorted(index, index)
+    said = [
+        Outlier(int(index[k]), int(k - first[k]), far)
+        for k, far in ((order[i], far) for i, far in found.items())
+    ]
+    named = {(one.run, one.place) for one in said}
+    sound = [
+        run._replace(measured=tuple(one for k, one in enumerate(run.measured) if (i, k) not in named))
+        for i, run in enumerate(used)
+    ]
+    data = as_data(runs, sound)
     near = {**best.values, "rim_mass": max(best.values["rim_mass"], 0.0), "delay": 0.0}
     judge = judge_of_line(*linear(of_forces, data, near, best.names), data.repeats)
-    found = outliers(best.dof, len(used), len(used), OUTLIER_LEVEL, judge)
+    found = outliers(judge, len(used), best.dof, OUTLIER_LEVEL)
     return said + [Outlier(i, None, distance) for i, distance in found.items()]
 
 

@@ -111,7 +111,7 @@ def read_runs(
     try:
         rows = [_run(i, row, headings, comma, drop, left_out) for i, row in enumerate(sheet.rows, 1)]
     except Unreadable as error:
-        raise Unreadable(explained(error, remarks)) from None
+        raise Unreadable(f"{error}{read_as_of(remarks)}") from None
     remarks += [f"row {run.rows[0]} has no {kind}: it is not used." for run in rows if not run.measured]
     remarks += [f"{in_words(cell)} was left out, as asked." for cell in map(str, without) if ":" in cell]
     runs = _joined(run for run in rows if run.measured)
@@ -121,9 +121,9 @@ def read_runs(
     return Runs(kind, runs, signed, remarks)
 
 
-def explained(error: Exception, remarks: Sequence[str]) -> str:
-    """Return an error in words, and how the table was read."""
-    return "; ".join([f"{error}", *(one.rstrip(".") for one in remarks if one.startswith("read as"))])
+def read_as_of(remarks: Sequence[str]) -> str:
+    """Return how the table was read, to stand behind an error; empty if it was read as usual."""
+    return "".join(f"; {one.rstrip('.')}" for one in remarks if one.startswith("read as"))
 
 
 # Headings

@@ -97,24 +97,24 @@ Judge = Callable[[NDArray[np.bool_]], tuple[Column, float]]
 """Return how many standard deviations each value is from a fit of those kept, and degrees of freedom."""
 
 
-def outliers(free: int, tests: int, count: int, level: float, judge: Judge) -> Mapping[int, float]:
+def outliers(judge: Judge, count: int, free: int, level: float) -> Mapping[int, float]:
     """Return the outliers among ``count`` values, each with its distance in standard deviations (Rosner).
 
     The value that is farthest from the fit of those kept is left out, and judged by the fit of the others;
     this goes on, and all values are outliers up to the last that chance does not explain. ``free`` are the
-    degrees of freedom with all values, ``tests`` the number of values that are judged, and ``level`` the
-    probability that a sound set has an outlier.
+    degrees of freedom with all values, and ``level`` the probability that a sound set has an outlier.
     """
     kept, found, significant = np.ones(count, dtype=bool), dict[int, float](), 0
     with suppress(CannotSeparate):
         distance, _ = judge(kept)
+        level /= 2 * (int(np.count_nonzero(distance)) or 1)  # of one value that is judged, on one side
         for number in range(1, min(MOST_OUTLIERS, max(1, free // 3), free - 1) + 1):
             # Two repeats are equally far from each other: float32 keeps their order.
             i = int(np.argmax((np.abs(distance) * kept).astype(np.float32)))
             kept[i] = False
             distance, dof = judge(kept)
             found[i] = float(distance[i])
-            if 2 * tests * stdtr(min(dof, NORMAL_DOF), -abs(found[i])) < level:
+            if stdtr(min(dof, NORMAL_DOF), -abs(found[i])) < level:
                 significant = number
     return dict(list(found.items())[:significant])
 
