@@ -19,8 +19,8 @@ from .statistics import ROUNDING, Column, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
-CLOSE, MOST_STEPS = 1e-10, 50
-"""The weights follow the values until these change less than this share of what is measured."""
+NEAR, CLOSE, MOST_STEPS = 1e-3, 1e-11, 20
+"""Shares of what is expected: steps that change less are those of the line; with still less, all is done."""
 TINY = 1e-100
 
 
@@ -197,18 +197,18 @@ def estimate(
     lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
     least = {x: lightest if x == "rim_mass" else -inf for x in names}
     values |= {x: max(near[x], least[x] / 2) for x in names}
-    before = inf
     for _ in range(MOST_STEPS):
         problem = linear(of_measured, data, values, names)
         line = fit_line(*problem, data.repeats)
-        if not names:
+        share = problem[0] @ line.coefficients / data.measured
+        size = sqrt(sum_of_squares(share) / len(share))
+        if size < CLOSE:
             break
-        found = _least_squares(data, values, least, np.sqrt(line.variance))
-        step = problem[0] @ [found[x] - values[x] for x in names]
-        share = sqrt(sum_of_squares(step / data.measured) / len(step))
-        if share < CLOSE or share >= before:  # nothing but rounding is left
-            break
-        values, before = values | found, share
+        if size < NEAR:
+            steps = zip(names, line.coefficients.tolist(), strict=True)
+            values |= {x: max(values[x] + step, least[x]) for x, step in steps}
+        else:
+            values |= _least_squares(data, values, least, np.sqrt(line.variance))
     sigma = np.sqrt(line.scale * line.variance)
     return Estimate(data, values, names, line, sigma, len(data.l) - len(names))
 
@@ -227,6 +227,5 @@ def _least_squares(
         lambda x: np.stack([slope(of_measured, data, at(x), name) / sigma for name in least], 1),
         bounds=([*least.values()], inf),
         x_scale="jac",
-        **{"ftol": 1e-15, "xtol": 1e-12, "gtol": None},
     )
     return dict(zip(least, found.x.tolist(), strict=True))
