@@ -227,5 +227,6 @@ def _least_squares(
         lambda x: np.stack([slope(of_measured, data, at(x), name) / sigma for name in least], 1),
         bounds=([*least.values()], inf),
         x_scale="jac",
+        **{"ftol": 1e-15, "xtol": 1e-12, "gtol": None},
     )
     return dict(zip(least, found.x.tolist(), strict=True))

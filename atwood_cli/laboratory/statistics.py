@@ -93,7 +93,7 @@ def sum_of_squares(column: Any) -> float:
     return float(np.square(column).sum())
 
 
-Judge = Callable[[NDArray[np.bool_]], tuple[Column, float]]
+Judge = Callable[[NDArray[np.bool_]], tuple[Column, Column]]
 """Return how many standard deviations each value is from a fit of those kept, and degrees of freedom."""
 
 
@@ -114,7 +114,7 @@ def outliers(judge: Judge, count: int, free: int, level: float) -> Mapping[int, 
             kept[i] = False
             distance, dof = judge(kept)
             found[i] = float(distance[i])
-            if stdtr(min(dof, NORMAL_DOF), -abs(found[i])) < level:
+            if stdtr(min(dof[i], NORMAL_DOF), -abs(found[i])) < level:
                 significant = number
     return dict(list(found.items())[:significant])
 
@@ -122,15 +122,22 @@ def outliers(judge: Judge, count: int, free: int, level: float) -> Mapping[int, 
 def judge_of_line(
     J: Any, y: Column, known: Column, shape: Column, least: Column, repeats: tuple[float, int]
 ) -> Judge:
-    """Judge values by the line of those kept; the arguments are those of `fit_line`."""
+    """Judge values by the line of those kept; the arguments are those of `fit_line`.
 
-    def judge(kept: NDArray[np.bool_]) -> tuple[Column, float]:
+    The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite.
+    """
+
+    def judge(kept: NDArray[np.bool_]) -> tuple[Column, Column]:
         line = fit_line(J[kept], y[kept], known[kept], shape[kept], least[kept], repeats)
         variance = np.maximum(known + line.between * shape, least)
         of_line = np.einsum("ij,jk,ik->i", J, line.covariance, J)
         spread = variance + np.where(kept, -1, 1) * of_line
         distance: Column = (y - J @ line.coefficients) / np.sqrt(np.maximum(line.scale * spread, least))
-        return distance, line.dof
+        share = line.between * shape / variance
+        dof = np.full(len(y), line.dof)
+        if line.between:
+            dof = 1 / (share**2 / line.dof + (1 - share) ** 2 / (repeats[1] or inf))
+        return distance, dof
 
     return judge
 
@@ -142,7 +149,7 @@ def judge_of_repeats(values: Column, u: Column, run: NDArray[np.intp], step: flo
     """
     weight = u**-2
 
-    def judge(kept: NDArray[np.bool_]) -> tuple[Column, float]:
+    def judge(kept: NDArray[np.bool_]) -> tuple[Column, Column]:
         sums = np.bincount(run, weight * kept)
         total, dof = sums[run], int(kept.sum()) - int(np.count_nonzero(sums))
         others = total - weight * kept  # of the same run
@@ -151,6 +158,6 @@ def judge_of_repeats(values: Column, u: Column, run: NDArray[np.intp], step: flo
             variance = sum_of_squares((rest / u)[kept]) / max(dof, 1) * u**2 + step**2 / 12
             spread = variance * np.where(kept, others / total, 1 + weight / others)
             distance: Column = np.where((others > 0) & (spread > 0), rest / np.sqrt(spread), 0)
-        return distance, dof
+        return distance, np.full(len(values), float(dof))
 
     return judge
