@@ -15,6 +15,7 @@ from ..model.quantities import read_names
 from ..model.scene import Input, Scene, SceneError, parameter_of
 from ..tables.sources import Unreadable
 from .estimate import (
+    TINY,
     Data,
     Estimate,
     accelerations,
@@ -72,12 +73,8 @@ class Outcome(NamedTuple):
     between_runs: float | None
 
 
-class Outlier(NamedTuple):
-    """A run, or the value at this ``place`` in it, that stands out by so many standard deviations."""
-
-    run: int
-    place: int | None
-    distance: float
+Outlier = tuple[int, int | None, float]
+"""A run, the place of a value in it or None for all of it, and how many standard deviations it is away."""
 
 
 class Fitted(NamedTuple):
@@ -181,7 +178,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         if run.left_out and run.mean and run.m1.value != run.m2.value
     ]
     found = _outliers(runs, used, whole.best)
-    suspects = sorted({one.run for one in found})
+    suspects = sorted({i for i, *_ in found})
     return Fitted(runs, used, unusable, left_out, given, whole, found, suspects, delay)
 
 
@@ -227,14 +224,19 @@ def outcome(
     if negative and not mistake:
         words = equation(negative, *results[negative][:2])
         mistake = f"{words} is negative: {CHECK}, and the signs of accelerations"
-    if not (is_of_most or negative):
-        mistake = ""
-    chi2, between, p_value = best.line.chi2 if data.scatter.any() else None, None, None
-    if chi2 is not None and dof:
-        between = sqrt(best.line.between) / abs(best.values["gravity"])
-        is_f = data.repeats[1] and not data.stated
-        p_value = float(fdtrc(dof, data.repeats[1], chi2 / dof) if is_f else chdtrc(dof, chi2))
-    return Outcome(best, {} if mistake else results, mistake, chi2, p_value, between)
+    if is_of_most or negative:
+        return Outcome(best, {}, mistake, *_scatter(best))
+    return Outcome(best, results, "", *_scatter(best))
+
+
+def _scatter(best: Estimate) -> tuple[float | None, float | None, float | None]:
+    """Return χ², its p value and the standard deviation between runs, as `Outcome` has them."""
+    data, dof, chi2 = best.data, best.dof, best.line.chi2
+    if not data.scatter.any() or not dof:
+        return chi2 if data.scatter.any() else None, None, None
+    is_f = data.repeats[1] and not data.stated
+    p_value = fdtrc(dof, data.repeats[1], chi2 / dof) if is_f else chdtrc(dof, chi2)
+    return chi2, float(p_value), sqrt(best.line.between) / abs(best.values["gravity"])
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
@@ -263,7 +265,7 @@ def _delay(whole: Outcome, late: Outcome) -> tuple[Result, float] | None:
             2 * stdtr(min(late.best.line.dof, NORMAL_DOF), -abs(delay.value) / delay.uncertainty)
         )
     chi2, dof = late.chi2 + late.best.data.repeats[0], late.best.dof + late.best.data.repeats[1]
-    return delay, float(fdtrc(1, dof, max(whole.chi2 - late.chi2, 0) * dof / chi2))
+    return delay, float(fdtrc(1, dof, max(whole.chi2 - late.chi2, 0) * dof / max(chi2, TINY)))
 
 
 def _outliers(runs: Runs, used: Sequence[Run], best: Estimate) -> list[Outlier]:
@@ -276,12 +278,11 @@ def _outliers(runs: Runs, used: Sequence[Run], best: Estimate) -> list[Outlier]:
     order = np.argsort(-np.abs(values - expected(best.data, best.values)[index]), kind="stable")
     judge = judge_of_repeats(values[order], np.where(u > 0, u, 1)[order], index[order], step_of(used))
     found = outliers(judge, len(values), len(values) - len(used), OUTLIER_LEVEL)
-    first = np.searchsorted(index, index)
-    said = [
-        Outlier(int(index[k]), int(k - first[k]), far)
-        for k, far in ((order[i], far) for i, far in found.items())
-    ]
-    named = {(one.run, one.place) for one in said}
+    first, said = np.searchsorted(index, index), list[Outlier]()
+    for i, distance in found.items():
+        k = int(order[i])
+        said.append((int(index[k]), int(k - first[k]), distance))
+    named = {one[:2] for one in said}
     sound = [
         run._replace(measured=tuple(one for k, one in enumerate(run.measured) if (i, k) not in named))
         for i, run in enumerate(used)
@@ -290,7 +291,7 @@ def _outliers(runs: Runs, used: Sequence[Run], best: Estimate) -> list[Outlier]:
     near = {**best.values, "rim_mass": max(best.values["rim_mass"], 0.0), "delay": 0.0}
     judge = judge_of_line(*linear(of_forces, data, near, best.names), data.repeats)
     found = outliers(judge, len(used), best.dof, OUTLIER_LEVEL)
-    return said + [Outlier(i, None, distance) for i, distance in found.items()]
+    return said + [(i, None, distance) for i, distance in found.items()]
 
 
 # Why there is no result
