@@ -30,7 +30,7 @@ from .estimate import (
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
 from .runs import OUT_OF_RANGE, Run, Runs, in_range, read_as_of, rows_in_words
-from .statistics import NORMAL_DOF, CannotSeparate, Column, judge_of_line, judge_of_repeats, outliers
+from .statistics import NORMAL_DOF, CannotSeparate, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
@@ -333,17 +333,17 @@ def _mistake(data: Data, used: Sequence[Run], kind: str, g: float, is_fitted: bo
     """
     masses = np.array([[float(run.m1.value), float(run.m2.value)] for run in used])
     columns = {"m1": masses[:, 0], "m2": masses[:, 1], "drop": data.drop, kind: data.measured}
-    checks: list[tuple[str, str, Column, Any, float, Any]] = []
+    checks = list[tuple[str, str, Any, Any, float, Any]]()
     for name, column in columns.items():
         if column is not None:
-            median, what = (np.median(masses), "mass") if name in ("m1", "m2") else (np.median(column), name)
-            checks.append((name, f"the median {what}", column, median, 1 / MOST_RATIO, MOST_RATIO))
+            of, what = (masses, "mass") if name in ("m1", "m2") else (column, name)
+            checks.append((name, f"the median {what}", column, np.median(of), 1 / MOST_RATIO, MOST_RATIO))
     if not is_fitted:
         name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
-        a = accelerations(data, data.measured)
         free = physics.acceleration(data.h - data.l, data.h + data.l, g)
         most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
-        checks.append((name, "what no friction and no pulley would give", a, free, LEAST_SHARE, most))
+        what = "what no friction and no pulley would give"
+        checks.append((name, what, accelerations(data, data.measured), free, LEAST_SHARE, most))
     said, is_mistaken = "", np.zeros(len(used), dtype=bool)
     for name, what, values, usual, least, most in checks:
         with np.errstate(divide="ignore"):
@@ -351,9 +351,8 @@ def _mistake(data: Data, used: Sequence[Run], kind: str, g: float, is_fitted: bo
         is_unusual = (values > 0) & ((ratio < least) | (ratio > most))
         if is_unusual.any() and not said:
             i, unit = int(np.argmax(is_unusual)), parameter_of("a" if name[0] == "a" else name).unit
-            there = rounded(float(np.broadcast_to(usual, ratio.shape)[i]), 3)
-            value = f"{name} = {rounded(float(values[i]), 3)} {unit}"
-            times = f"{rounded(float(ratio[i]), 3)} times {there} {unit}, {what}"
-            said = f"{rows_in_words(used[i].rows)}: {value} is {times}; {CHECK}"
+            value, times, there = (rounded(float(x), 3) for x in (values[i], ratio[i], values[i] / ratio[i]))
+            far = f"{name} = {value} {unit} is {times} times {there} {unit}"
+            said = f"{rows_in_words(used[i].rows)}: {far}, {what}; {CHECK}"
         is_mistaken |= is_unusual
     return said, bool(is_mistaken.mean() > 0.5)

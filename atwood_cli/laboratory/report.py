@@ -213,15 +213,10 @@ def _print_page(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> None:
     page.say("u is the standard uncertainty of a run, scatter between runs included.", *notes(fit))
     page.say(*head(fit), style="bold")
     if fit.whole.results:
-        written = {x: published(*one) for x, one in fit.whole.results.items()}
-        results = {
-            "Quantity": list(written),
-            "Value": [value for value, _ in written.values()],
-            "Unit": [QUANTITIES[x].unit for x in written],
-            "Symbol": [QUANTITIES[x].symbol for x in written],
-            "95 % interval": [ends for _, ends in written.values()],
-        }
-        _print_table(page, results)
+        heads = "Quantity", "Value", "Unit", "Symbol", "95 % interval"
+        results = ((x, QUANTITIES[x], published(*one)) for x, one in fit.whole.results.items())
+        rows = [(x, value, words.unit, words.symbol, ends) for x, words, (value, ends) in results]
+        _print_table(page, dict(zip(heads, zip(*rows, strict=True), strict=True)))
 
 
 def _print_table(page: Page, columns: Mapping[str, Sequence[str]]) -> None:
