@@ -332,7 +332,7 @@ def test_runs_without_any_scatter_require_what_they_show() -> None:
     exact = "m1,m2,a\n1,2,2.5\n2,3,1.666666666666666666666666666667\n"  # 10 (2 - 1)/(1 + 2 + 1)
     assert found(exact, "--g 10 --axle 0")["rim_mass"] == pytest.approx(1, rel=1e-14)
     page = fit(exact, "--g 10 --axle 0").out
-    assert "│ rim_mass │ 1.0000000000" in page  # eleven digits, and no uncertainty of rounding
+    assert "│ rim_mass │ 1.0000000000000 ± 0.0000000000037 │" in page  # by the least uncertainty of a number
 
 
 def test_what_is_given_and_uncertain_counts_for_all_runs_together() -> None:
