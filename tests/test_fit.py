@@ -108,7 +108,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
         least = 0.95 if is_true or design.stated else 0.85
         assert min(one.within) / 100 > least - 3 * sqrt(least * (1 - least) / sets), design
         assert one.accused / 100 < 0.05 + 3 * sqrt(0.05 * 0.95 / sets), design
-        if is_true and not design.stated:
+        if is_true and not design.stated and design.runs > 3:  # a third of three runs are not pooled
             assert max(one.width) < 2.6, design  # the median of few sets
 
 

@@ -142,13 +142,11 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
     if not names:
         return [x for x in USUAL if x not in given.values]
     if left := [x for x in USUAL if x not in names and x not in given.values]:
-        what, give, find = map(" and ".join, zip(*((_words(x), GIVE[x], x) for x in left), strict=True))
+        what, give, find = map(
+            " and ".join, zip(*((QUANTITIES[x].words, GIVE[x], x) for x in left), strict=True)
+        )
         raise SceneError("find", ",".join(names), f"leaves {what} open: give {give}, or find {find}, too")
     return names
-
-
-def _words(name: str) -> str:
-    return QUANTITIES[name].words
 
 
 # From runs to a result
@@ -197,7 +195,10 @@ def outcome(
     mistake, is_of_most = _mistake(data, used, runs.kind, given.values["gravity"], "gravity" in names)
     reason = mistake or f"no rim mass and no axle friction of 0 or more fit these runs: {CHECK}"
     if not _separates(data, given.values, names):
-        verb, what = "separate" if names[1:] else "determine", " from ".join(map(_words, names))
+        verb, what = (
+            "separate" if names[1:] else "determine",
+            " from ".join(QUANTITIES[x].words for x in names),
+        )
         why = mistake or f"the runs do not {verb} {what}: {VARY}"
         raise CannotSeparate(f"{why}{said}")
 
