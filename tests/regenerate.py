@@ -18,9 +18,8 @@ from typing import NamedTuple
 
 from atwood_cli.cli import COMMANDS
 
-from .running import called, labels, pages_seen, process, words_on
+from .running import TOP, called, labels, pages_seen, process, words_on
 
-TOP = Path(__file__).parent.parent
 EXAMPLES = TOP / "examples"
 PAGES = [TOP / "README.md", *sorted(EXAMPLES.glob("*.md"))]
 SCRIPTS = sorted(EXAMPLES.glob("*.sh"))

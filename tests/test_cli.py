@@ -7,9 +7,11 @@ import subprocess
 import sys
 from errno import EINVAL
 from pathlib import Path
+from shutil import copytree
 from types import SimpleNamespace
 from typing import Any
 from unittest.mock import Mock
+from zipapp import create_archive
 
 import pytest
 
@@ -17,7 +19,7 @@ from atwood_cli import cli, solve
 from atwood_cli.__main__ import main
 from atwood_cli.model.quantities import ASCII, QUANTITIES, read_names
 
-from .running import LOADED, PAPER, Atwood, called, process
+from .running import LOADED, PAPER, TOP, Atwood, called, process
 from .scenes import inputs
 
 # The table
@@ -147,15 +149,23 @@ def test_a_pipe_that_is_closed_on_windows_ends_a_run_quietly(monkeypatch: pytest
     assert cli.run(PAPER) == 0
 
 
+def test_a_zipapp_keeps_the_status(tmp_path: Path) -> None:
+    copytree(TOP / "atwood_cli", tmp_path / "app" / "atwood_cli")
+    create_archive(tmp_path / "app", tmp_path / "atwood.pyz", main="atwood_cli.__main__:main")
+    for word, status in (("--explain", 0), ("--mu", 2)):
+        ran = subprocess.run(
+            [sys.executable, tmp_path / "atwood.pyz", *PAPER, word], capture_output=True, check=False
+        )
+        assert (ran.returncode, bool(ran.stdout)) == (status, not status)
+
+
 ENDING = """
 import atexit, gc, sys
 from atwood_cli.__main__ import main
-atexit.register(lambda: print("at exit"))
-sys.stdout.write("before ")
 frozen = gc.get_freeze_count()
-status = main()
-sys.stdout.write(f"after {gc.isenabled()} {gc.get_freeze_count() > frozen} ")
-sys.exit(status)
+atexit.register(lambda: print("at exit", gc.isenabled(), gc.get_freeze_count() > frozen))
+sys.stdout.write("before ")
+main()
 """
 LIBRARY = """
 import gc
@@ -171,5 +181,5 @@ def test_what_is_left_to_do_at_exit_is_done_and_a_library_is_left_alone() -> Non
     """main freezes what the garbage collector would look through; handlers run and streams are flushed."""
     for words, status, out in (("--only regime", 0, "verge\n"), ("--zzz", 2, "")):
         ran = process(*PAPER, *words.split(), code=ENDING)
-        assert (ran.status, ran.out) == (status, f"before {out}after True True at exit\n")
+        assert (ran.status, ran.out) == (status, f"before {out}at exit True True\n")
     assert process(code=LIBRARY).out.endswith("\nTrue False\n")

@@ -38,10 +38,9 @@ from atwood_cli.model.scene import read_input
 from .conftest import many
 from .coverage import CELLS, DELAYS, NOTHING, OTHERS, C, Design, F, G, blunders_named, by_scipy, counts, drawn
 from .coverage import expected as textbook
-from .running import FROM, Ran, called, pages_seen, process
+from .running import FROM, TOP, Ran, called, pages_seen, process
 
 pytestmark = pytest.mark.filterwarnings("error")
-TOP = Path(__file__).parent.parent
 TABLE = TOP / "examples" / "rit.csv"
 RIT = ["fit", str(TABLE), "--drop", "98cm", "--g", "9.804"]
 SIMMONS = "m1,m2,a\n0.055,0.060,0.380\n0.060,0.065,0.354\n0.065,0.070,0.323\n0.070,0.075,0.310\n"

@@ -13,9 +13,8 @@ from atwood_cli.laboratory import results as laboratory
 from atwood_cli.model.quantities import QUANTITIES
 from atwood_cli.model.scene import INPUTS, MEASURED
 
-from .running import Atwood
+from .running import TOP, Atwood
 
-TOP = Path(__file__).parent.parent
 PAGE = (TOP / "examples" / "json.md").read_text(encoding="utf-8")
 ROW = r"^- `(.*?)` \((.*?)(?:, (.*?))?\): .*?(?:; null: (.*))?$"
 SECTIONS = {

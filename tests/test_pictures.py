@@ -430,7 +430,7 @@ resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
 
 def test_a_picture_that_cannot_be_written_is_a_sentence_and_no_file(tmp_path: Path) -> None:
     pytest.importorskip("resource")
-    code, file = f"{SMALL_DISK}\nfrom atwood_cli.__main__ import main\nsys.exit(main())", tmp_path / "a.svg"
+    code, file = f"{SMALL_DISK}\nfrom atwood_cli.__main__ import main\nmain()", tmp_path / "a.svg"
     ran = process("solve", *FIGURE.split(), "--figure", str(file), code=code)
     assert ran == (1, "", f"atwood: cannot write {file}: File too large\n")
     assert list(tmp_path.iterdir()) == []
