@@ -16,8 +16,8 @@ from atwood_cli.model.units import UNITS
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS
 from atwood_cli.tradeoff.tradeoff_page import LEGEND
 
-from .regenerate import CASES, KEPT, SCRIPTS, TOP, ends_otherwise, essence
-from .running import labels, process
+from .regenerate import CASES, KEPT, SCRIPTS, ends_otherwise, essence
+from .running import TOP, labels, process
 
 PAGES = {
     path.relative_to(TOP).as_posix(): path.read_text(encoding="utf-8")
