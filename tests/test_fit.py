@@ -456,7 +456,7 @@ def test_in_python_it_is_what_json_has() -> None:
     assert lines[3:] == list(result.notes)
     odd = [*zip(*csv.reader(ODD.splitlines()), strict=True)]
     said = laboratory_fit({name: cells for name, *cells in odd}).notes
-    assert any(note.endswith("from the other runs; without='5'.") for note in said)
+    assert any(note.endswith("from the other runs; to leave that out: without='5'.") for note in said)
 
 
 @pytest.mark.parametrize(

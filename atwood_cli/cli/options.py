@@ -148,7 +148,7 @@ def _ask_about_radians(wrap: str | None) -> None:
     angles = [read_number(word, "angle") for word in words]
     least, most = LIKE_RADIANS
     if least < max(angle.value for angle in angles) < most and not any(angle.unit for angle in angles):
-        say(f"--wrap {shortened(wrap)} was read as degrees; for radians, write 3.14rad")
+        say(f"--wrap {shortened(wrap)} was read as degrees; for radians, write {shortened(words[0])}rad")
 
 
 def quantity_meanings() -> Mapping[str, str]:

@@ -343,7 +343,7 @@ def _mistake(data: Data, used: Sequence[Run], kind: str, g: float, is_fitted: bo
         name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
         free = physics.acceleration(data.h - data.l, data.h + data.l, g)
         most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
-        what = "what no friction and no pulley would give"
+        what = "the acceleration without friction and pulley"
         checks.append((name, what, accelerations(data, data.measured), free, LEAST_SHARE, most))
     said, is_mistaken = "", np.zeros(len(used), dtype=bool)
     for name, what, values, usual, least, most in checks:

@@ -50,14 +50,15 @@ def head(fit: Fitted) -> list[str]:
     """Return the verdict, and a sentence for each outlier."""
     said = [verdict(fit)]
     for i, place, distance in fit.outliers:
-        run, far = fit.used[i], f"{rounded(abs(distance))} standard deviations from"
+        run, far = fit.used[i], f"{rounded(abs(distance))} standard deviations"
         if place is None:
-            are, rows = "are" if run.rows[1:] else "is", ",".join(map(str, run.rows))
-            said.append(f"{_capital(rows_in_words(run.rows))} {are} {far} the other runs; --without {rows}.")
+            where, others = ",".join(map(str, run.rows)), "the other runs"
+            what = f"{rows_in_words(run.rows)} {'are' if run.rows[1:] else 'is'}"
         else:
+            where, others = run.cells[place], "its repeats"
             value = f"{format_number(float(run.measured[place].value))} {parameter_of(fit.runs.kind).unit}"
-            where = run.cells[place]
-            said.append(f"{_capital(in_words(where))} = {value} is {far} its repeats; --without {where}.")
+            what = f"{in_words(where)} = {value} is"
+        said.append(f"{_capital(what)} {far} from {others}; to leave that out: --without {where}.")
     if fit.outliers:
         said.append(f"The fit includes {'them' if fit.outliers[1:] else 'it'}.")
     return said
@@ -75,7 +76,7 @@ def _scatter(fit: Fitted) -> str:
     """Return how the scatter of the runs is known, and its p value."""
     chi2, p, stated = fit.whole.chi2, fit.whole.p_value, fit.whole.best.data.stated
     if chi2 is None:
-        return f"Only the residuals show the scatter of a single {MEASURED[fit.runs.kind]}."
+        return f"No {MEASURED[fit.runs.kind]} was repeated, so only the residuals show the scatter."
     if p is None:
         return "There are as many runs as results, so nothing is left to test the fit."
     source = "uncertainties" if stated else "repeats"

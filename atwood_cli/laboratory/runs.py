@@ -144,9 +144,9 @@ def _check(sheet: Sheet, headings: Sequence[Heading], drop: Input | None, named:
     if missing:
         raise Unreadable(_missing(sheet, missing))
     if drop is None and not names & {"a", "drop"}:
-        raise Unreadable("times need the height of fall: give drop, or a column of that name")
+        raise Unreadable("the height of fall is missing: give drop, or a column of that name")
     if drop is not None and (has := next((name for name in ("a", "drop") if name in names), "")):
-        raise SceneError("drop", drop.given, f"has no part here: the table has {has}")
+        raise SceneError("drop", drop.given, f"is not needed, as the table has {has}; leave it out")
 
 
 def _missing(sheet: Sheet, missing: Sequence[str]) -> str:
