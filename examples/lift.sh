@@ -12,7 +12,7 @@ for wrap in 180 160 120; do
 done
 
 echo "the car that would slip over 160 degrees at 0.15:"
-atwood solve --m1 $counterweight --m2 $car --M inf --wrap 160 --mu 0.15 --only least_heavier_mass --digits 5
+atwood solve --m1 $counterweight --m2 $car --M inf --wrap 160 --mu 0.15 --only critical_heavier_mass --digits 5
 
 echo "friction force on the sheave, least and greatest, in N:"
 atwood solve --m1 $counterweight --m2 $car --M inf --wrap 160 --mu 0.15 --digits 5 \

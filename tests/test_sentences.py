@@ -130,7 +130,7 @@ def holds(c: Claims, from_rest: str, mu: str, least: str, digits: int) -> None:
     c.least_mu(least)
 
 
-def holds_on_any(c: Claims, least: str, heavy: str, digits: int) -> None:
+def holds_on_any(c: Claims, heavy: str, least: str, digits: int) -> None:
     assert Fraction(heavy) == c.h < Fraction(least)
     assert c.any_pulley() == {"no-slip"}
     c.least_mass(least)
@@ -209,7 +209,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
     r"mu is not given, so the string is assumed not to slip: true( on a massless pulley)? if mu is at least"
     rf" {NUMBER}\.": assumed,
     rf"No slip( from rest)?: mu = {NUMBER}, and at least {NUMBER} is needed\.": holds,
-    rf"No slip on any pulley: slipping needs a heavier mass above {NUMBER} kg, not {NUMBER} kg\.": holds_on_any,
+    rf"No slip on any pulley: it could slip only if the heavier mass, {NUMBER} kg, were above {NUMBER} kg\.": holds_on_any,
     r"No slip on any pulley, for any heavier mass that can be typed\.": claimed(
         lambda c: c.regime(pulley=inf, h=Fraction(10**500)) == "no-slip"
     ),

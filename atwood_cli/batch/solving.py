@@ -78,7 +78,7 @@ def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> 
     passed = {*asked.labels, *(heading.column for heading in headings)}
     doubtful = {column: name for column in columns if column not in passed and (name := _meant(column))}
     for column, name in doubtful.items():
-        if name in INPUTS and name not in inputs:
+        if name in INPUTS and not (whole and name in inputs):  # in NDJSON, another row may lack the input
             way = f"give --column {name}={in_quotes(column)}"
             raise refused(column, f"may mean {name}; rename it, or {way}")
     missing = [mass for mass in MASSES if mass not in inputs]

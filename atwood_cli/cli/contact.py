@@ -26,6 +26,10 @@ Examples:
   atwood contact --m1 1 --m2 3 --mu 0.3
   atwood contact --m1 1 --m2 3 --M 10 --mu 0.3 --figure arc.svg
   atwood contact --m1 1 --m2 200 --M inf --mu 0.2 --wrap 2.5turn --csv
+
+Angles count from m1's end of the arc. x points from the axle to where m1's string meets the pulley, y
+upwards. m1's string hangs straight down; m2's does at half a turn, or goes to a guide. --figure replaces
+the table.
 """
 
 

@@ -148,7 +148,8 @@ def _ask_about_radians(wrap: str | None) -> None:
     angles = [read_number(word, "angle") for word in words]
     least, most = LIKE_RADIANS
     if least < max(angle.value for angle in angles) < most and not any(angle.unit for angle in angles):
-        say(f"--wrap {shortened(wrap)} was read as degrees; for radians, write {shortened(words[0])}rad")
+        word = shortened(words[0])
+        say(f"--wrap {shortened(wrap)} was read as degrees; else write {word}turn or {word}rad")
 
 
 def quantity_meanings() -> Mapping[str, str]:
@@ -172,10 +173,9 @@ Columns = Annotated[
     ),
 ]
 FigureFile = Annotated[
-    str | None,
-    option("Files", metavar="FILE", help="Also draw it to FILE.svg, .png or .pdf (extra: figure)."),
+    str | None, option("Files", metavar="FILE", help="Draw it to FILE.svg, .png or .pdf (extra: figure).")
 ]
-Bare = Annotated[bool, option("Files", "--bare", help="With --figure: no sentences, as for a report.")]
+Bare = Annotated[bool, option("Files", "--bare", help="With --figure: no title, as for a report.")]
 Labels = Annotated[
     list[str] | None,
     option(
@@ -240,7 +240,7 @@ def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
         raise SceneError("output", file, f"must end in one of {', '.join(forms)}")
     (right,) = forms
     kind = asked.upper() or {".md": "Markdown", ".txt": "text"}[right]
-    instead = ", or add --markdown" if right == ".txt" else ""
+    instead = f", or add --markdown and name it {name}.md" if right == ".txt" else ""
     raise SceneError("output", file, f"would hold {kind}; name it {name}{right}{instead}")
 
 

@@ -40,7 +40,7 @@ Expect = Annotated[
     option("Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."),
 ]
 Markdown = Annotated[
-    bool, option("Output", "--markdown", help="With --explain: a page of Markdown, with LaTeX.")
+    bool, option("Output", "--markdown", help="With --explain: Markdown with LaTeX (-o FILE.md).")
 ]
 All = Annotated[bool, option("Output", "--all", help="Show all quantities, and why any are missing.")]
 Budget = Annotated[

@@ -46,7 +46,7 @@ TOO_FEW = "too few for this fit: give more runs, repeats or uncertainties (as 2.
 VARY = "vary both m2 - m1 and m1 + m2 more"
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
-CHECK = "check masses, heights and units"
+CHECK = "check masses, heights, measurements and their units"
 
 
 class Conditions(NamedTuple):

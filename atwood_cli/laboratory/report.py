@@ -101,9 +101,11 @@ def _delay(fit: Fitted) -> list[str]:
     half = result.interval[1] - result.value if result else np.inf
     if fit.runs.kind != "time" or "delay" in names or fit.suspects or half <= WIDE_DELAY:
         return []
-    width = f" (it is uncertain by {rounded(half)} s)" if result else ""
-    how = "vary the height of fall, or both m2 - m1 and m1 + m2"
-    return [f"These runs cannot show a delay of all times{width}: {how}."]
+    seen = (
+        f"hardly show a delay of all times ({with_u(result.value, result.uncertainty)} s)" if result else ""
+    )
+    how = "vary the height of fall, or both m2 - m1 and m1 + m2, more"
+    return [f"These runs {seen or 'cannot show a delay of all times'}: {how}."]
 
 
 def _capital(words: str) -> str:

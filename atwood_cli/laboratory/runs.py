@@ -135,7 +135,7 @@ def _check(sheet: Sheet, headings: Sequence[Heading], drop: Input | None, named:
     measured = [heading for heading in headings if heading.name in MEASURED and heading.column not in named]
     alone = [heading.column for heading in measured if not heading.number]
     if alone and len(measured) > len(alone):
-        raise refused(alone[0], "stands beside repeats and may be their mean; number it if it is one")
+        raise refused(alone[0], "stands beside repeats and may be their mean; number it if it is a repeat")
     if names >= MEASURED.keys():
         raise Unreadable("there are columns a and time; keep one, or let one pass by --label")
     missing = [name for name in ("m1", "m2") if name not in names]
@@ -168,7 +168,8 @@ def _missing(sheet: Sheet, missing: Sequence[str]) -> str:
     said += f"; there {'are' if sheet.columns[1:] else 'is'} {listed(sheet.columns)}"
     if not options:
         return said
-    return f"{said}; name {'them' if missing[1:] else 'it'}, as {' '.join(options.values())}"
+    named = f"{said}; name {'them' if missing[1:] else 'it'}, as {' '.join(options.values())}"
+    return f"{named}, and --column t= for each repeat" if "time" in options else named
 
 
 def _has_numbers(sheet: Sheet, place: int) -> bool:
@@ -212,7 +213,7 @@ def _read_without(
     for word in map(str, words):
         number, colon, column = word.partition(":")
         if not (number.isascii() and number.isdigit() and 1 <= int(number[:9]) <= rows):
-            raise SceneError("without", word, f"is not a row; there are 1 to {rows}")
+            raise SceneError("without", word, f"is not a row; there are 1 to {rows}, and a cell is 1:t2")
         cells = [one for one in measured if not colon or column.strip() in (one.column, _cell_name(one))]
         if not cells:
             there = ", ".join(map(_cell_name, measured))

@@ -55,8 +55,8 @@ QUANTITIES = {
     "critical_pulley_mass": About("limits", "M*", "kg", "(34)", "pulley mass above which the string slips"),
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
     "critical_lighter_mass": About("limits", "l*", "kg", "", "lighter mass below which the string slips"),
-    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "heavier mass above which it can slip"),
-    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "pulley mass above which it can slip"),
+    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "heavier mass up to which no pulley makes it slip"),
+    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "pulley mass up to which no heavier mass makes it slip"),
     "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
     # Of a scene whose motion was measured:
     "pulley_mass": About("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration"),
@@ -107,7 +107,7 @@ STANDARD = ("regime", *MAIN, "critical_pulley_mass")
 # Why a scene does not determine a quantity, and what to give.
 
 NEEDS_MU = "`give` `mu`, the friction coefficient"
-NEEDS_M = "`give` `M`, the pulley's mass; this depends on it"
+NEEDS_M = "`give` `M`, the pulley's mass"
 NEEDS_R = "`give` `R`, the pulley's radius"
 UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, with `I`"
 FREE_END = "not defined, as the string's end is fixed to the pulley and no friction holds it"
@@ -123,8 +123,11 @@ AXLE_ENOUGH = "no value, as axle friction alone makes the string slip on any pul
 NO_NEED = "no value, as no friction is needed"
 NO_WRAP = "no value, as without friction no wrap holds"
 NOT_APPLICABLE = "no value, as conditions (36) do not apply without friction"
-LOCKED_AXLE = "not defined for a locked pulley: `M` = `inf` is not its weight"
-ONE_SIDED = "not computed unless both ends pull downwards (half a turn of wrap, plus whole turns)"
+LOCKED_AXLE = "not defined, as a locked pulley has no weight here; atwood contact has the force of the string"
+ONE_SIDED = (
+    "not computed unless both ends pull downwards (half a turn of wrap, plus whole turns); atwood contact has the"
+    " force of the string"
+)
 NEEDS_A = "`give` `a`, a measured acceleration, instead of `M`"
 NEEDS_A_BESIDE_M = "`give` `a`, a measured acceleration, with `M` and instead of `g`"
 NEEDS_A_AND_M = "`give` `a`, a measured acceleration, and `M` instead of `{}`"

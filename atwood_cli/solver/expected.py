@@ -3,11 +3,20 @@
 import operator
 import re
 from collections.abc import Callable
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, rounding_apart_from, to_digits
-from ..model.quantities import MEASURED_NAMES, NAMES, NAMES_BY_SYMBOL, QUANTITIES, REGIMES, read_name
+from ..model.quantities import (
+    MEASURED_NAMES,
+    NAMES,
+    NAMES_BY_SYMBOL,
+    QUANTITIES,
+    REGIMES,
+    Undetermined,
+    read_name,
+)
 from ..model.scene import SceneError, with_unit
 from ..model.units import STANDARD_GRAVITY, Angle, Malformed, TypedNumber, in_quotes, read_number
 from .answers import TOO_SMALL, Answers
@@ -24,6 +33,7 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
 CONDITIONS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
 MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
+MAY_FAIL = "within the uncertainties it may fail"
 DIMENSIONS = {
     "kg": "mass",
     "m/s²": "acceleration",
@@ -78,11 +88,10 @@ def failure(answers: Answers, expected: Condition) -> str:
     if value is None or reason == TOO_SMALL:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
         return unmarked(f"expected {expected.typed}; {expected.name} has {why}")
-    side = answers.settle(
-        lambda machine: getattr(machine, expected.name) - _bound(machine, expected.number), to_digits(1)
-    )
+    side = _above(answers, expected)
     if OPERATORS[expected.sign](side, 0):
-        return ""
+        ends = answers.uncertainties.far_answers() if answers.uncertainties else []
+        return "" if all(_holds(end, expected) for end in ends) else f"expected {expected.typed}; {MAY_FAIL}"
     given = None if expected.number.unit == "rad" else _in_scene(answers.case.scene, expected.number)
     if given is not None and not side:  # digits would not show that the two are equal
         shown = as_typed(given)
@@ -90,6 +99,23 @@ def failure(answers: Answers, expected: Condition) -> str:
         value = answers.rounded(expected.name, rounding_apart_from(given, answers.digits or SHOWN_DIGITS))
         shown = "too large to be written out" if is_infinite(value) else format_number(value)
     return f"expected {expected.typed}; it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
+
+
+def _above(answers: Answers, expected: Condition) -> float | Decimal:
+    """Return a quantity less the number that it is compared with, to one digit. Raises Undetermined."""
+
+    def difference(machine: Any) -> Any:
+        return getattr(machine, expected.name) - _bound(machine, expected.number)
+
+    return answers.settle(difference, to_digits(1))
+
+
+def _holds(answers: Answers, expected: Condition) -> bool:
+    """Decide if a comparison is true; a quantity without a value fails it."""
+    try:
+        return bool(OPERATORS[expected.sign](_above(answers, expected), 0))
+    except Undetermined:
+        return False
 
 
 def _in_scene(scene: Any, number: TypedNumber) -> Fraction:

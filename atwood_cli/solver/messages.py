@@ -91,8 +91,10 @@ def verdict(answers: Answers) -> str:
     least = answers.rounded("least_heavier_mass", _beside(answers, case.heavy))
     if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
         return "No slip on any pulley, for any heavier mass that can be typed."
-    masses = f"a heavier mass above {format_number(least)} kg, not {as_typed(case.heavy)} kg"
-    return f"No slip on any pulley: slipping needs {masses}."
+    heavy, above = as_typed(case.heavy), format_number(least)
+    return (
+        f"No slip on any pulley: it could slip only if the heavier mass, {heavy} kg, were above {above} kg."
+    )
 
 
 def _given_mu(scene: Scene) -> str:

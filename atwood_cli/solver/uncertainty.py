@@ -178,6 +178,10 @@ class Uncertainties:
                 )
         return [*said.values()]
 
+    def far_answers(self) -> list[Answers]:
+        """Return the answers two standard uncertainties of an input away, for each input and side."""
+        return [end.answers for _, end, _ in self._far_ends if end.answers]
+
     def other_regime(self) -> str:
         """Return another regime within two standard uncertainties of an input, "" if there is none."""
         regimes = (case.regime for _, _, case in self._far_ends)

@@ -201,6 +201,8 @@ class Row(NamedTuple):
 def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sweep:
     """Read a sweep: values, with one or two ranges or lists, for so many digits. Raises SceneError."""
     typed = {name: words for name in INPUTS if re.search("[:,]", words := given.get(name) or "")}
+    # An input that is wrong at every point is an error before there are points.
+    fixed = {name: read_exactly(name, given.get(name)) for name in INPUTS if name not in typed}
     if not typed:
         rule = f"or another option of the scene must carry a list, as 0,1,10, or a range: {FORM}"
         raise SceneError("M", None, rule)
@@ -209,8 +211,6 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
         third = names[MAX_RANGES]
         rule = f"is a third range or list, after {' and '.join(names[:2])}; give two"
         raise SceneError(third, typed[third], rule)
-    # An input that is wrong at every point is an error before there are points.
-    fixed = {name: read_exactly(name, given.get(name)) for name in INPUTS if name not in typed}
     ranges = [
         read_list(name, words) if "," in words else read_range(name, words, digits)
         for name, words in typed.items()
@@ -261,6 +261,9 @@ def read_list(name: str, typed: str) -> Range:
         raise SceneError(name, typed, "mixes a list with a range; give one of them")
     if not all(words):
         raise SceneError(name, typed, "has an empty place; write a list as 0,1,10")
+    if name not in ("M", "wrap") and re.fullmatch(r"0,\d+", typed.strip()):
+        decimal, other = typed.strip().replace(",", "."), ",".join(reversed(words))
+        raise SceneError(name, typed, f"may be a decimal; write {decimal}, or {other} for the list")
     if any(re.match(r"0\d", word) for word in words[1:]):
         read_value(name, typed)  # refuses 1,05 and 1,000: numbers rather than lists
     values, suffix = _read_numbers(name, typed, words)

@@ -48,7 +48,13 @@ class SweepPage:
 
     def _all_notes(self) -> Iterator[str]:
         """Say why any values are missing: an iterator that begins after all rows."""
-        yield from reasons_at(self.reasons, self.sweep.total)
+        yield from [*self._assumption(), *reasons_at(self.reasons, self.sweep.total)]
+
+    def _assumption(self) -> list[str]:
+        """Say that the string is assumed not to slip, if no slip needs friction and mu is not given."""
+        scene = self.sweep.scene
+        needs_friction = scene.M or scene.I is not None
+        return [ASSUMED] if scene.mu is None and needs_friction else []
 
     def json(self) -> Mapping[str, object]:
         ranges = {range_.name: range_.typed for range_ in self.sweep.ranges}
@@ -78,7 +84,7 @@ class SweepPage:
         cells = {name: [cell(row.values[name]) for row in rows] for name in names}
         shown = {name: column for name, column in cells.items() if any(column)}
         same = {name: column[0] for name, column in shown.items() if len(set(column)) == 1}
-        above = [", ".join(sweep.inputs.values()), *_regimes(sweep, rows, self.digits)]
+        above = [", ".join(sweep.inputs.values()), *self._assumption(), *_regimes(sweep, rows, self.digits)]
         if PULLEY not in same and any(row.regime == "verge" for row in rows):
             above.append(PULLEYS)
         units = {name: QUANTITIES[name].unit for name in same if name != "regime"}
@@ -107,6 +113,7 @@ class SweepPage:
 
 
 PULLEY = "critical_pulley_mass"
+ASSUMED = "mu is not given, so the string is assumed not to slip."
 PULLEYS = "M is not given, so each row on the verge has its own critical pulley mass."
 
 

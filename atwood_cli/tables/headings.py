@@ -190,7 +190,7 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
 def refused(column: str, why: str) -> Unreadable:
     """Return the error for a heading, with the option that lets it pass."""
     column = in_quotes(column)
-    return Unreadable(f"column {column} {why}; or keep it with --label {column}")
+    return Unreadable(f"column {column} {why}; or --label {column} passes it over")
 
 
 def listed(names: Sequence[str]) -> str:
