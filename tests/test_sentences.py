@@ -201,7 +201,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
     rf"Slips on any pulley, because of axle friction: mu = {NUMBER} is below the {NUMBER} needed even on a"
     rf" massless one{KINETIC}\.": slips_on_any,
     rf"Slips( over a pulley held by axle friction)?: mu = {NUMBER} is below the {NUMBER} needed to hold"
-    rf" it{KINETIC}\.": slips,
+    rf" the string{KINETIC}\.": slips,
     r"No slip: a massless pulley needs no friction to turn, so both tensions are equal\.": claimed(
         lambda c: c.l == 0 or c.expected(pulley=Fraction(0), mu=Fraction(0))["regime"] == "no-slip"
     ),
