@@ -78,6 +78,8 @@ def drawn(rng: Random) -> dict[str, str]:
     """A scene of any kind, with uncertainties from tiny to those that change the regime."""
     measured = inputs(rng.choice(MEASURED))
     exact = rng.choice([with_friction(rng), next(of_all_kinds(1, rng.randrange(10**6))), measured])
+    if "mu" in exact and exact is not measured and rng.random() < 0.4:
+        exact["mu_k"] = repr(float(exact["mu"]) * rng.choice([0.3, 0.99]))
     typed = dict(exact)
     for x, value in exact.items():
         number = re.fullmatch(r"([\d.e+-]+)( ?Nm?)?", value)
