@@ -77,7 +77,8 @@ m1=1 m2=2 time=2 drop=1.7 g=9.8 R=0.3
 def drawn(rng: Random) -> dict[str, str]:
     """A scene of any kind, with uncertainties from tiny to those that change the regime."""
     measured = inputs(rng.choice(MEASURED))
-    exact = rng.choice([with_friction(rng), next(of_all_kinds(1, rng.randrange(10**6))), measured])
+    others = next(of_all_kinds(1, rng.randrange(10**6)))
+    exact = rng.choice([with_friction(rng), with_friction(rng), others, measured])
     if "mu" in exact and exact is not measured and rng.random() < 0.4:
         exact["mu_k"] = repr(float(exact["mu"]) * rng.choice([0.3, 0.99]))
     typed = dict(exact)
@@ -197,6 +198,14 @@ def test_at_most_15_digits_and_none_below_1e_30_of_the_value(u: str) -> None:
     want = to_digits(15)(Fraction("9.80665") * (ends[0] - ends[1]) / 2)
     assert found == (want if Fraction(u) > Fraction("1e-30") else 0)
     assert solve(**given, digits=3).uncertainty["acceleration"] == to_digits(3)(found)
+
+
+def test_the_decimal_context_of_the_caller_does_not_matter() -> None:
+    given = {"m1": "1e300±1e299", "m2": "3e300", "M": "10e300", "mu": "0.21(2)"}
+    apart = solve(**given).to_dict()
+    with localcontext() as context:
+        context.prec, context.Emax = 3, 5
+        assert solve(**given).to_dict() == apart
 
 
 HOSTILE = {"m1": "1e500", "m2": "3e500", "M": "1e-500", "mu": "1e-500", "R": "1e500", "g": "1e500"}
