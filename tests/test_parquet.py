@@ -174,18 +174,6 @@ def test_what_is_no_table(solved: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     assert solved(whole)[0] == (1, "", f"{NO_PARQUET}out of something\n")
 
 
-@pytest.mark.parametrize(
-    "column", [pa.array([Decimal("1.1")], pa.decimal256(50, 2)), pa.array([[1]], pa.list_view(pa.int8()))]
-)
-def test_columns_that_cannot_be_carried(solved: Any, column: pa.Array) -> None:
-    try:
-        ran, _ = solved(pa.table({"m1": [1.0], "m2": [3], "x": column}))
-    except NotImplementedError:
-        pytest.skip("this pyarrow writes no such columns")
-    assert ran.status == 1
-    assert ran.err.startswith(NO_PARQUET)
-
-
 @pytest.mark.parametrize("by", [pl.DataFrame, pa.table])
 def test_a_damaged_file_is_an_error(solved: Any, pytestconfig: pytest.Config, by: Callable[..., Any]) -> None:
     """Whichever byte of it changes: no row is lost in silence, and nothing of polars' reaches stderr."""

@@ -15,6 +15,7 @@ import pytest
 from atwood_cli import SceneError, solve
 from atwood_cli.model.digits import rounding_to_place, to_digits, with_uncertainty
 from atwood_cli.model.scene import read_input
+from atwood_cli.model.units import Angle
 from atwood_cli.solver.answers import Answers, read_answers
 
 from .conftest import many
@@ -60,6 +61,7 @@ def test_a_wrap_in_radians_has_its_uncertainty_in_radians() -> None:
     found = uncertain(inputs("m1=2 m2=30 mu=0.3±0.01 wrap=3±0.05rad"))
     steps = [exp(0.31 * 3) - exp(0.29 * 3), exp(0.3 * 3.05) - exp(0.3 * 2.95)]
     assert found.answer("least_heavier_mass").uncertainty == pytest.approx(hypot(*steps), rel=1e-14)
+    assert read_input("wrap", "0.5±0.01turn")[:2] == (Angle(Fraction(180)), Fraction("3.6"))
     share = 100 * steps[0] ** 2 / (steps[0] ** 2 + steps[1] ** 2)
     assert found.budget("least_heavier_mass") == {
         "mu": pytest.approx(share, rel=1e-14),
