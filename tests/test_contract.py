@@ -83,13 +83,6 @@ def test_the_decimal_context_of_the_caller_has_no_part(trapped: bool) -> None:
 # What every solution has
 
 
-def test_floats_mean_their_binary_value() -> None:
-    exact, typed = (solve(m1=m1, m2=3, M=1, digits=30) for m1 in (0.1, "0.1"))
-    assert exact == solve(m1=Fraction(0.1), m2=3, M=1, digits=30)
-    assert exact.acceleration != typed.acceleration
-    assert repr(exact.scene.m1) == repr(Fraction(0.1))
-
-
 def test_notes_show_floats_as_they_are_written() -> None:
     """They had all 54 digits of 0.2."""
     slips, holds = (solve(m1=1.0, m2=3.3, M=9.5, mu=mu, mu_k=mu_k) for mu, mu_k in ((0.2, None), (0.31, 0.1)))

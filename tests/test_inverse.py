@@ -60,18 +60,6 @@ def test_a_slide_finds_kinetic_friction_and_moves_as_that_does() -> None:
     assert (massless.mu_k, massless.friction_force) == (0, 0)
 
 
-def test_the_wrap_that_just_holds() -> None:
-    assert solve(m1="1", m2="400", M="inf", mu="0.3").least_wrap == 1144.285438838495
-    for scene in ({"M": "inf"}, {"M": "100"}, {"M": "10"}, {"M": "10", "wrap": "90"}):
-        given_: dict[str, Any] = {"m1": "1", "m2": "3", "mu": "0.2", **scene}
-        wrap = Fraction(solve(**given_, digits=30).least_wrap or 0)
-        for off, regime in ((Fraction("1e-20"), "no-slip"), (Fraction("-1e-20"), "slip")):
-            assert solve(**{**given_, "wrap": wrap + off}).regime == regime
-    assert solve(m1="1", m2="3", mu="0.3", wrap="170").least_wrap == 170  # the verge itself
-    assert solve(m1="1", m2="3", mu="0.3", wrap="3rad", digits=5).least_wrap == Decimal("171.89")
-    assert solve(m1="1", m2="3", mu="0.3", M="0").least_wrap == 0
-
-
 def test_the_results_that_are_found() -> None:
     # c = 2 g - 4 = 15.6133, M = c/β.
     s = measured(a="1", R="0.1", drop="2")

@@ -415,22 +415,6 @@ def test_what_matplotlib_warns_of_reaches_nobody(monkeypatch: pytest.MonkeyPatch
     running.drawn(f"solve {FIGURE}")
 
 
-SMALL_DISK = """
-import resource, signal, sys
-signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-sys.dont_write_bytecode = True  # which would be cut off, too
-resource.setrlimit(resource.RLIMIT_FSIZE, (3000, 3000))
-"""
-
-
-def test_a_picture_that_cannot_be_written_is_a_sentence_and_no_file(tmp_path: Path) -> None:
-    pytest.importorskip("resource")
-    code, file = f"{SMALL_DISK}\nfrom atwood_cli.__main__ import main\nsys.exit(main())", tmp_path / "a.svg"
-    ran = process("solve", *FIGURE.split(), "--figure", str(file), code=code)
-    assert ran == (1, "", f"atwood: cannot write {file}: File too large\n")
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_a_picture_is_not_drawn_where_standard_output_goes(tmp_path: Path) -> None:
     there = shlex.quote(str(tmp_path))
     ran = process(shell=f"cd {there}; atwood contact --m1 1 --m2 3 --M 10 --figure a.svg --force > a.svg")

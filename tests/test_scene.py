@@ -1,6 +1,5 @@
 """Bad input: one clear sentence that names the parameter, the value and the rule."""
 
-import json
 import re
 from decimal import Decimal
 from fractions import Fraction
@@ -16,8 +15,6 @@ from atwood_cli import Scene, SceneError, solve
 from atwood_cli.model.decisions import Decisions
 from atwood_cli.model.scene import BODIES, Axle
 from atwood_cli.model.units import UNITS
-
-from .running import Atwood, process
 
 NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
@@ -79,7 +76,10 @@ def test_error_carries_its_parts() -> None:
     assert vars(caught.value) == {"parameter": "mu_k", "value": 1, "rule": rule}
 
 
-@given(st.text(alphabet="0123456789.+-e ", max_size=12) | st.text(max_size=6))
+@given(
+    st.text(alphabet="0123456789.+-e ", max_size=12)
+    | st.text("01.-e(/%_ktgµ²\xa0\u2212\u0663\uff11½", max_size=6)
+)
 def test_the_grammar_of_numbers(text: str) -> None:
     match = NUMBER.fullmatch(text)
     negative = text.strip().startswith("-")
@@ -174,17 +174,6 @@ def test_what_was_measured_takes_units_and_multiples_of_g() -> None:
     assert u == solve(m1=1, m2=3, a="2.5(1)", g=10).uncertainty
     with pytest.raises(SceneError, match="a 'g/4' is a multiple of g, which is uncertain; give it in m/s2"):
         solve(m1=1, m2=3, a="g/4", g="9.81(1)")
-
-
-def test_quotients_are_taken_wherever_numbers_are(atwood: Atwood) -> None:
-    shown = atwood("solve", "--m1", "1/3", "--m2", "1/4", "--wrap", "2/3rad", "--json").out
-    scene = json.loads(shown)["scene"]
-    assert [scene[name] for name in ("m1", "m2", "wrap")] == [1 / 3, 0.25, "0.6666666666666666rad"]
-    swept = atwood("sweep", "--m1", "1/3:2/3:3", "--m2", "1", "--csv", "--only", "regime")
-    assert swept.out == "m1,regime\n0.333333,no-slip\n0.5,no-slip\n0.666667,no-slip\n"
-    ran = process(shell="printf 'm1 (g),m2\n1/3,1\n1/0,1\n' | atwood batch - --only acceleration")
-    third = f"1/3,1,{solve(m1=1 / 3000, m2=1).acceleration},"
-    assert ran.out.splitlines()[1:] == [third, "1/0,1,,m1 '1/0' divides by 0"]
 
 
 @pytest.mark.parametrize(

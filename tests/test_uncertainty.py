@@ -16,21 +16,11 @@ from atwood_cli import SceneError, solve
 from atwood_cli.model.digits import rounding_to_place, to_digits, with_uncertainty
 from atwood_cli.model.scene import read_input
 from atwood_cli.model.units import Angle
-from atwood_cli.solver.answers import Answers, read_answers
+from atwood_cli.solver.answers import read_answers
 
 from .conftest import many
 from .running import LOADED, Atwood, process
-from .scenes import of_all_kinds, with_friction
-
-
-def inputs(words: str) -> dict[str, str]:
-    """The inputs in "m1=1 m2=3"."""
-    return dict(word.split("=") for word in words.split())
-
-
-def uncertain(given: Mapping[str, str], digits: int | None = None) -> Answers:
-    return read_answers(given, digits)
-
+from .scenes import inputs, of_all_kinds, with_friction
 
 # How they are typed
 
@@ -58,7 +48,7 @@ def test_text(text: str) -> None:
 
 def test_a_wrap_in_radians_has_its_uncertainty_in_radians() -> None:
     """The least heavier mass is l e^{μφ}."""
-    found = uncertain(inputs("m1=2 m2=30 mu=0.3±0.01 wrap=3±0.05rad"))
+    found = read_answers(inputs("m1=2 m2=30 mu=0.3±0.01 wrap=3±0.05rad"), None)
     steps = [exp(0.31 * 3) - exp(0.29 * 3), exp(0.3 * 3.05) - exp(0.3 * 2.95)]
     assert found.answer("least_heavier_mass").uncertainty == pytest.approx(hypot(*steps), rel=1e-14)
     assert read_input("wrap", "0.5±0.01turn")[:2] == (Angle(Fraction(180)), Fraction("3.6"))
@@ -175,8 +165,10 @@ def test_what_does_not_depend_on_an_input_is_certain(words: str, wrap: str) -> N
     """Was searched for in ever more digits: friction_force_max does not depend on the wrap."""
     given = inputs(f"{words} wrap={wrap}")
     for x in given:
-        answers = uncertain({**given, x: f"{given[x]}±0.0001"})
-        ends = [uncertain({**given, x: str(Decimal(given[x]) + step)}, 30) for step in (0, Decimal("1e-4"))]
+        answers = read_answers({**given, x: f"{given[x]}±0.0001"}, None)
+        ends = [
+            read_answers({**given, x: str(Decimal(given[x]) + step)}, 30) for step in (0, Decimal("1e-4"))
+        ]
         for name in answers.names[1:]:
             if (u := answers.answer(name).uncertainty) is not None:
                 assert (u > 0) == (ends[0][name] != ends[1][name]), (x, name)
@@ -228,13 +220,6 @@ def test_hostile_uncertainties_come_to_an_end(given: dict[str, str]) -> None:
     solution = solve(**given, digits=17)
     assert all(value is None or not value < 0 for value in solution.uncertainty.values())
     assert len(solution.notes) > 0
-
-
-def test_shares_that_are_rational() -> None:
-    """μ and φ are alike in e^{μφ}, so that their shares are 50 %, whatever it is."""
-    both = {"m1": "1", "m2": "3", "mu": "0.30±0.03", "wrap": "180±18"}
-    assert uncertain(both, 1).budget("least_heavier_mass") == {"mu": 50, "wrap": 50}
-    assert uncertain(both | {"wrap": "180"}).budget("least_heavier_mass") == {"mu": 100}
 
 
 # In sentences
