@@ -415,6 +415,19 @@ def test_what_matplotlib_warns_of_reaches_nobody(monkeypatch: pytest.MonkeyPatch
     running.drawn(f"solve {FIGURE}")
 
 
+def test_a_picture_that_cannot_be_written_is_a_sentence_and_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def on_a_full_disk(file: Path, content: bytes) -> None:
+        file.open("wb").write(content[:9])
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", on_a_full_disk)
+    ran = called(["solve", *FIGURE.split(), "--figure", f"{tmp_path}/a.svg"])
+    assert ran == (1, "", f"atwood: cannot write {tmp_path}/a.svg: No space left on device\n")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_picture_is_not_drawn_where_standard_output_goes(tmp_path: Path) -> None:
     there = shlex.quote(str(tmp_path))
     ran = process(shell=f"cd {there}; atwood contact --m1 1 --m2 3 --M 10 --figure a.svg --force > a.svg")
