@@ -236,13 +236,7 @@ def test_the_input_is_never_overwritten(tmp_path: Path, monkeypatch: pytest.Monk
     assert scenes.read_text() == TEXT
 
 
-def test_without_polars_one_line_says_what_to_install(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "polars", None)
-    why = f"this needs polars; install it with: pip install '{FROM}[batch]'"
-    assert batch(TEXT) == (1, "", f"atwood: {why}\n")
-
-
-def test_a_polars_that_is_too_old_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_polars_that_is_too_old_or_missing_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     oldest = re.search("polars>=([0-9.]+)", (TOP / "pyproject.toml").read_text(encoding="utf-8"))
     assert oldest
     monkeypatch.setattr(pl, "__version__", oldest[1])
@@ -252,6 +246,9 @@ def test_a_polars_that_is_too_old_is_named(batch: Batch, monkeypatch: pytest.Mon
     assert batch(TEXT) == (1, "", f"atwood: {why}\n")
     with pytest.raises(ImportError, match=re.escape(why)):
         solve_table(pl.DataFrame({"m1": [1.0], "m2": [3.0]}))
+    monkeypatch.setitem(sys.modules, "polars", None)
+    why = f"this needs polars; install it with: pip install '{FROM}[batch]'"
+    assert batch(TEXT) == (1, "", f"atwood: {why}\n")
 
 
 # How it ends
