@@ -138,12 +138,6 @@ def arrows_of(axes: Any) -> dict[str, list[tuple[complex, complex]]]:
     return {colour: sorted(pairs, key=lambda pair: pair[0].real) for colour, pairs in arrows.items()}
 
 
-def motions_of(axes: Any) -> list[tuple[complex, complex]]:
-    """The dashed arrows of motion: where each begins and ends."""
-    paths = [line.get_xydata() @ [1, 1j] for line in axes.lines if line.get_color() == figure.PURPLE]
-    return [(path[0], path[-1]) for path in paths if len(path) > 1]
-
-
 @pytest.mark.parametrize(("masses", "sign"), [("m1=1 m2=1.5", 1), ("m1=1.5 m2=1", -1)])
 @pytest.mark.parametrize("axle", [2, 30])
 def test_what_arrows_show(masses: str, sign: int, axle: int) -> None:
@@ -165,7 +159,8 @@ def test_what_arrows_show(masses: str, sign: int, axle: int) -> None:
     between = abs(normal[0][0] + normal[0][1] - normal[1][0] - normal[1][1])  # of places on the rim
     assert max(inwards) == pytest.approx(max(map(abs, around))) == pytest.approx(0.9 * between, rel=0.06)
     assert arrows == {}
-    motions = motions_of(axes)
+    paths = [line.get_xydata() @ [1, 1j] for line in axes.lines if line.get_color() == figure.PURPLE]
+    motions = [(path[0], path[-1]) for path in paths if len(path) > 1]
     if axle == 30:
         assert motions == []
         return

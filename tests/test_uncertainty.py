@@ -208,11 +208,9 @@ HOSTILE = {"m1": "1e500", "m2": "3e500", "M": "1e-500", "mu": "1e-500", "R": "1e
 @pytest.mark.parametrize(
     "given",
     [
-        {"m1": "13.36", "m2": "1e-500", "M": "1.79", "R": "710", "wrap": "1e-5", "mu": "4.01e300±1e-300"},
         {"m1": "0.115", "m2": "9.9766", "mu": "0.104438", "M": "0±0.00508", "mu_k": "0±0.0048"},
         {x: f"{v}±1e-500" for x, v in {**HOSTILE, "inertia": "1e-500", "wrap": "1e-500"}.items()},
         {x: f"{v}±1e500" for x, v in {**HOSTILE, "inertia": "1e500", "wrap": "1e500"}.items()},
-        {"m1": "0.04434406290011144", "m2": "0.0289", "M": "3.35448e-84", "mu": "0.23315545203923707(2)"},
     ],
 )
 def test_hostile_uncertainties_come_to_an_end(given: dict[str, str]) -> None:
