@@ -112,8 +112,8 @@ def test_an_uncertainty_is_made_of_steps_that_solve_makes() -> None:
             ends = {}
             for x, one in read.items():
                 if one.uncertainty:
-                    steps = (-one.uncertainty, one.uncertainty)
-                    ends[x] = [solved_if_valid(ends_of(x, given, step)) for step in steps]
+                    off = (-one.uncertainty, one.uncertainty)
+                    ends[x] = [solved_if_valid(ends_of(x, given, step)) for step in off]
             regimes += any(end and end.regime != here.regime for pair in ends.values() for end in pair)
             for name, u in found.uncertainty.items():
                 values: list[list[Any]] = [
