@@ -4,8 +4,6 @@ import json
 import pickle
 import pydoc
 import re
-import subprocess
-import sys
 from collections.abc import Iterable
 from contextlib import suppress
 from copy import copy, deepcopy
@@ -28,11 +26,8 @@ from atwood_cli.model.machine import Machine
 from atwood_cli.model.quantities import NAMES, QUANTITIES
 
 from . import oracle
-from .running import Atwood
+from .running import Atwood, process
 from .scenes import inputs, table
-
-USER_SCRIPT = str(Path(__file__).with_name("user_script.py"))
-
 
 # The table of what is given, and its corners
 
@@ -136,12 +131,12 @@ assert not set(atwood_cli.__all__ + ["__version__"]) - set(dir(atwood_cli))
 atwood_cli.solve(m1=1, m2=3, mu=0.3)
 assert not {"typer", "rich", "numpy"} & set(sys.modules)
 """
-    subprocess.run([sys.executable, "-c", code], check=True)
+    assert process(code=code) == (0, "", "")
 
 
 def test_a_users_script_runs() -> None:
     """`mypy` checks its types."""
-    run_path(USER_SCRIPT)
+    run_path(str(Path(__file__).with_name("user_script.py")))
 
 
 @pytest.mark.parametrize("function", [solve, solve_arrays])
