@@ -3,13 +3,19 @@
 import gc
 import signal
 import sys
+from typing import NoReturn
 
 INTERRUPTED = 130
 """The exit status of a run that was interrupted."""
 ENDING_SIGNALS = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
 
-def main() -> int:
+def main() -> NoReturn:
+    """Run the command line and end the process. A zipapp would drop a status that is returned."""
+    sys.exit(_status())
+
+
+def _status() -> int:
     """Run the command line and return its exit status. The process is to end then."""
     status = 0
 
@@ -49,4 +55,4 @@ def _run() -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

@@ -6,9 +6,8 @@ It stops if the exit status of a transcript has changed, or if it prints nothing
 
 import re
 import shlex
-import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import ExitStack, chdir
 from functools import partial
 from importlib.util import find_spec
@@ -19,17 +18,14 @@ from typing import NamedTuple
 
 from atwood_cli.cli import COMMANDS
 
-from .running import called, labels, pages_seen, process, words_on
+from .running import TOP, called, labels, pages_seen, process, words_on
 
-TOP = Path(__file__).parent.parent
 EXAMPLES = TOP / "examples"
 PAGES = [TOP / "README.md", *sorted(EXAMPLES.glob("*.md"))]
 SCRIPTS = sorted(EXAMPLES.glob("*.sh"))
 ENGINES = {EXAMPLES / "dask_tables.py": "distributed", EXAMPLES / "polars_lazy.py": "polars"}
 """Examples that another package runs."""
 CASES = sorted((Path(__file__).parent / "cases").glob("*.md"))
-ESCAPES = {rb"\n": b"\n", rb"\r": b"\r", rb"\t": b"\t", b"\\\\": b"\\", b"%%": b"%"}
-"""What stands for bytes in the words of printf, besides \\xHH."""
 UNSEEN = "[\0-\x09\x0b-\x1f\x7f\xa0\u2009\u2028\ufeff]"
 SCENE = "--m1 1 --m2 3 --M 10 --mu 0.3"
 
@@ -53,9 +49,9 @@ class Kept(NamedTuple):
         return "" if not self.needs or find_spec(self.needs) or which(self.needs) else self.needs
 
 
-def printed(line: str) -> str:
+def printed(line: str, stdin: str = "") -> str:
     """What a line of bash prints at the top of the project, without an error."""
-    ran = process(shell=f"set -eu; cd '{TOP}'; {line}", PYTHONIOENCODING="utf-8")
+    ran = process(shell=f"set -eu; cd '{TOP}'; {line}", stdin=stdin, PYTHONIOENCODING="utf-8")
     assert (ran.status, ran.err) == (0, ""), ran
     return ran.out
 
@@ -66,12 +62,21 @@ def transcript(block: str) -> str:
 
 
 def shown(line: str) -> str:
-    """What a line of bash shows, called here if it does nothing but call the program."""
-    if not re.fullmatch(r"atwood( [^|;<>$&*?(){}~`]*)?", line):
+    """What a line of bash shows, its first command called here if that is a call of the program."""
+    found = re.fullmatch(r"atwood ?([^|;<>$&*?(){}~`]*)(?:\|((?:(?!atwood).)*))?", line)
+    if not found:
         return printed(f"{{ {line}; }} 2>&1 || true")
     with chdir(TOP):
-        ran = called(shlex.split(line)[1:])
-    return ran.out + ran.err
+        ran = called(shlex.split(found[1]))
+    return (printed(found[2], ran.out) if found[2] else ran.out) + ran.err
+
+
+def picture(line: str) -> str:
+    """The picture that a command line draws."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder, "a.svg")
+        called([*line.split(), "--figure", str(file)])
+        return file.read_text(encoding="utf-8")
 
 
 def answered(block: str) -> str:
@@ -79,11 +84,7 @@ def answered(block: str) -> str:
     line = block.splitlines()[0]
     found = re.fullmatch(r"\$ (?:printf '(.*)' \| )?atwood ?(.*)", line)
     assert found, line
-
-    def byte(escaped: re.Match[bytes]) -> bytes:
-        return bytes([int(escaped[1], 16)]) if escaped[1] else ESCAPES[escaped[0]]
-
-    content = re.sub(rb"\\x(..)|\\.|%%", byte, (found[1] or "").encode())
+    content = (found[1] or "").replace("%%", "%").encode().decode("unicode_escape").encode("latin-1")
     draws = "--figure" in line and find_spec("matplotlib")
     with TemporaryDirectory() as folder, chdir(folder), ExitStack() as stack:
         pages = stack.enter_context(pages_seen()) if draws else []
@@ -94,11 +95,6 @@ def answered(block: str) -> str:
     end = "" if not shown or shown.endswith("\n") else "\n"
     words = "".join(f"| {words}\n" for page in pages for words in words_on(page))
     return f"{line}\n{shown}{end}{words}" + (f"[{ran.status}]\n" if ran.status else "")
-
-
-def blocks(page: Path) -> Iterator[str]:
-    """The transcripts that a page shows."""
-    yield from re.findall(r"```console\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
 
 
 def help_pages() -> str:
@@ -118,13 +114,14 @@ KEPT = [
     *(
         Kept(page, command, partial(answered, command), "matplotlib" if page.stem == "pictures" else "")
         for page in CASES
-        for block in blocks(page)
-        for command in re.findall(r"^\$ .*\n(?:(?!\$ ).*\n)*", block, re.MULTILINE)
+        for command in re.findall(
+            r"^\$ .*\n(?:(?!\$ |```).*\n)*", page.read_text(encoding="utf-8"), re.MULTILINE
+        )
     ),
     *(
         Kept(page, block, partial(transcript, block), "jq" if "| jq" in block else "")
         for page in PAGES
-        for block in blocks(page)
+        for block in re.findall(r"```console\n(.*?)```", page.read_text(encoding="utf-8"), re.DOTALL)
     ),
     # The scripts call `atwood` and `python3`; both are this interpreter here.
     *(
@@ -140,14 +137,7 @@ KEPT = [
         EXAMPLES / "handout.md",
         partial(shown, "atwood solve --m1 1 --m2 3 --M 10 --explain --only a,T1 --markdown"),
     ),
-    *(
-        whole(
-            EXAMPLES / name,
-            f'cd $(mktemp -d); atwood {words} --figure {name} > table 2>&1; cat {name}; rm -r "$PWD"',
-            "matplotlib",
-        )
-        for name, words in PICTURES.items()
-    ),
+    *(whole(EXAMPLES / name, partial(picture, words), "matplotlib") for name, words in PICTURES.items()),
 ]
 
 
@@ -160,15 +150,10 @@ def essence(text: str) -> object:
 
 def measure() -> None:
     """Write what `atwood tradeoff` measures on this machine into its page and its picture."""
-    page, command = EXAMPLES / "tradeoff.md", ["-m", "atwood_cli", "tradeoff"]
-    figure = ["--figure", str(page.with_suffix(".svg")), "--force"]
-    ran = subprocess.run(
-        [sys.executable, *command, *figure], capture_output=True, check=True, encoding="utf-8"
-    )
-    before, _, rest = page.read_text(encoding="utf-8").partition("```text\n")
-    after = rest.partition("```\n")[2]
-    fresh = f"{before}```text\n$ atwood tradeoff\n{ran.stdout}```\n{after}"
-    page.write_text(fresh, encoding="utf-8", newline="\n")
+    page = EXAMPLES / "tradeoff.md"
+    ran = called(["tradeoff", "--figure", str(page.with_suffix(".svg")), "--force"])
+    before, after = re.split(r"(?<=```text\n)[^`]*", page.read_text(encoding="utf-8"), maxsplit=1)
+    page.write_text(f"{before}$ atwood tradeoff\n{ran.out}{after}", encoding="utf-8", newline="\n")
 
 
 def ends_otherwise(before: str, after: str) -> bool:
@@ -183,18 +168,12 @@ def ends_otherwise(before: str, after: str) -> bool:
 
 def regenerate(accept: bool) -> int:
     """Write what has changed, unless a transcript ends otherwise and nobody has accepted that; returns a status."""
-    changed = [
-        (kept, fresh)
-        for kept in KEPT
-        if not kept.lacks and essence(fresh := kept.today()) != essence(kept.text)
-    ]
+    today = [(kept, kept.today()) for kept in KEPT if not kept.lacks]
+    changed = [(kept, fresh) for kept, fresh in today if essence(fresh) != essence(kept.text)]
     doubtful = [fresh for kept, fresh in changed if ends_otherwise(kept.text, fresh)]
     if doubtful and not accept:
-        print(
-            *doubtful,
-            "Their exit status has changed, or they print nothing: mend them, or give --accept.",
-            sep="\n",
-        )
+        why = "Their exit status has changed, or they print nothing: mend them, or give --accept."
+        print(*doubtful, why, sep="\n")
         return 1
     for kept, fresh in changed:
         page = kept.file.read_text(encoding="utf-8") if kept.file.exists() else ""

@@ -5,7 +5,8 @@ from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-TOP = Path(__file__).parent.parent
+from .running import TOP
+
 PATHS = {
     ".".join(path.relative_to(TOP).with_suffix("").parts).removesuffix(".__init__"): path
     for path in (TOP / "atwood_cli").rglob("*.py")

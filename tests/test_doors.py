@@ -70,7 +70,7 @@ def test_values_of_what_is_typed(family: str) -> None:
 @pytest.mark.parametrize("family", [*USUAL, *DANGERS])
 def test_values_of_doubles(family: str) -> None:
     """In columns, where rows that are alike are solved together. In every other one gravity is not given."""
-    drawn = map(as_doubles, scenes(family, max(16, count_of(family) // 2), seed=1))
+    drawn = map(as_doubles, scenes(family, max(many(64), count_of(family) // 2), seed=1))
     tried: list[Given] = [row for row in drawn if row is not None]
     tried[::2] = [{name: text for name, text in row.items() if name != "g"} for row in tried[::2]]
     truths = [truth(given) for given in tried]

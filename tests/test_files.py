@@ -21,16 +21,20 @@ def test_an_error_leaves_all_as_it_was(tmp_path: Path) -> None:
 
 def test_written_beside_follows_links(tmp_path: Path) -> None:
     (tmp_path / "data").mkdir()
-    file, link = tmp_path / "data" / "a.txt", tmp_path / "link.txt"
+    file, link, circle = tmp_path / "data" / "a.txt", tmp_path / "link.txt", tmp_path / "circle.txt"
     try:
         link.symlink_to(file)
+        circle.symlink_to(circle)
     except OSError:
         pytest.skip("no links here")
     with written_beside(link) as beside:
         assert beside.parent == file.parent
         beside.write_text("whole")
-    assert link.is_symlink()
-    assert file.read_text() == "whole"
+    assert (link.is_symlink(), file.read_text()) == (True, "whole")
+    for path in (tmp_path / "none" / "a.txt", circle):
+        with pytest.raises(OSError, match=r"No such file|symbolic links") as caught, written_beside(path):
+            pass
+        assert caught.value.filename == str(path)
 
 
 def test_written_beside_replaces_only_by_force(tmp_path: Path) -> None:
@@ -45,50 +49,34 @@ def test_written_beside_replaces_only_by_force(tmp_path: Path) -> None:
                 file.write_text("kept")
         assert file.read_text() == "kept"
     with written_beside(file, force=True) as beside:
-        assert file.read_text() == "kept"
-        assert beside.parent == tmp_path
+        assert (file.read_text(), beside.parent) == ("kept", tmp_path)
         beside.write_text("new")
     assert file.read_text() == "new"
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_written_beside_names_the_file_asked_for(tmp_path: Path) -> None:
-    link = tmp_path / "a.txt"
-    with suppress(OSError):  # no links here
-        link.symlink_to(link)
-    for file in (tmp_path / "none" / "a.txt", *[link] * link.is_symlink()):
-        with pytest.raises(OSError, match=r"No such file|symbolic links") as caught, written_beside(file):
-            pass
-        assert caught.value.filename == str(file)
-
-
 @pytest.mark.skipif(os.name == "nt", reason="needs modes")
 @pytest.mark.parametrize("mode", [0o600, 0o640, 0o444])
 def test_what_is_replaced_keeps_its_mode(tmp_path: Path, mode: int) -> None:
-    file = tmp_path / "a.txt"
-    file.write_text("before")
+    file, new, usual = (tmp_path / name for name in ("a.txt", "new.txt", "usual.txt"))
+    file.touch()
     file.chmod(mode)
-    with written_beside(file, force=True) as beside:
+    with written_beside(file, force=True) as beside, written_beside(new):
         assert beside.stat().st_mode & 0o777 == 0o600  # nobody else reads it before it is there
-        beside.write_text("after")
-    assert (file.read_text(), file.stat().st_mode & 0o777) == ("after", mode)
-    with written_beside(tmp_path / "new.txt") as beside:
-        pass
-    (tmp_path / "usual.txt").touch()
-    assert (tmp_path / "new.txt").stat().st_mode == (tmp_path / "usual.txt").stat().st_mode
+    assert file.stat().st_mode & 0o777 == mode
+    usual.touch()
+    assert new.stat().st_mode == usual.stat().st_mode
 
 
 def test_the_name_beside_is_foreseen_by_nobody(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    names = []
-    for _ in range(2):
-        with written_beside(tmp_path / "a.txt", force=True) as beside:
-            names.append(beside)
-    assert names[0] != names[1]
+    file = tmp_path / "a.txt"
+    with written_beside(tmp_path / "b.txt") as one, written_beside(file) as other:
+        assert one != other
     monkeypatch.setattr(os, "urandom", bytes)
-    with written_beside(tmp_path / "a.txt", force=True) as beside:
+    with written_beside(file, force=True) as foreseen:
         pass
-    beside.symlink_to(tmp_path / "precious")
-    with pytest.raises(FileExistsError), written_beside(tmp_path / "a.txt", force=True):
+    foreseen.symlink_to(tmp_path / "precious")
+    with pytest.raises(FileExistsError), written_beside(file, force=True):
         pass
     assert not (tmp_path / "precious").exists()
 

@@ -4,7 +4,6 @@ What it prints stands in `cases/fit.md`, with the words of its picture in `cases
 """
 
 import csv
-import io
 import json
 import pydoc
 import re
@@ -22,20 +21,26 @@ from scipy import optimize, stats
 
 from atwood_cli import Fit, SceneError, solve
 from atwood_cli import fit as laboratory_fit
-from atwood_cli.laboratory.estimate import Data, estimate, expected, slopes
+from atwood_cli.laboratory.estimate import Data, estimate, expected, of_measured, slope
 from atwood_cli.laboratory.fitting import conditions_of, fitted
+from atwood_cli.laboratory.report import _correlation
 from atwood_cli.laboratory.results import USUAL, in_small_unit, published
 from atwood_cli.laboratory.runs import Kind, Runs
-from atwood_cli.laboratory.statistics import CannotSeparate, sum_of_squares
+from atwood_cli.laboratory.statistics import (
+    CannotSeparate,
+    judge_of_line,
+    judge_of_repeats,
+    outliers,
+    sum_of_squares,
+)
 from atwood_cli.model.scene import read_input
 
 from .conftest import many
 from .coverage import CELLS, DELAYS, NOTHING, OTHERS, C, Design, F, G, blunders_named, by_scipy, counts, drawn
 from .coverage import expected as textbook
-from .running import FROM, Ran, called, on_terminal, pages_seen, plain, process
+from .running import FROM, TOP, Ran, called, pages_seen, process
 
 pytestmark = pytest.mark.filterwarnings("error")
-TOP = Path(__file__).parent.parent
 TABLE = TOP / "examples" / "rit.csv"
 RIT = ["fit", str(TABLE), "--drop", "98cm", "--g", "9.804"]
 SIMMONS = "m1,m2,a\n0.055,0.060,0.380\n0.060,0.065,0.354\n0.065,0.070,0.323\n0.070,0.075,0.310\n"
@@ -96,43 +101,28 @@ def test_what_made_exact_runs_is_found(kind: Kind) -> None:
 
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
     """A short `python -m tests.coverage`: coverage within 3 standard deviations of a binomial."""
-    sets = max(20, many(40))
-    for design in [*CELLS[::4], *OTHERS[::4]]:
-        one = counts(design, sets)
-        least = 0.95 if not (design.masses or design.axle) or design.stated else 0.85
+    sets = max(20, many(30))
+    for design in [*CELLS[::6], *OTHERS[::4]]:
+        one, is_true = counts(design, sets), not (design.masses or design.axle)
+        least = 0.95 if is_true or design.stated else 0.85
         assert min(one.within) / 100 > least - 3 * sqrt(least * (1 - least) / sets), design
         assert one.accused / 100 < 0.05 + 3 * sqrt(0.05 * 0.95 / sets), design
-        # Three runs of which a third is not pooled have no stable median: 1.6 of 300 sets, 1.6 to 7.6 of few.
-        if design.masses == design.axle == design.between == design.stated == 0 and design.runs > 3:
+        if is_true and not design.stated and design.runs > 3:  # a third of three runs are not pooled
             assert max(one.width) < 2.6, design  # the median of few sets
 
 
-def test_a_third_run_does_not_widen_the_intervals_of_two() -> None:
-    """Student's t had one degree of freedom, though twelve repeats were known: the width was 4.3 of the ideal."""
-    assert max(counts(CELLS[0], 40).width) < 1.6
-
-
-def test_readings_to_a_millisecond_are_not_accused() -> None:
-    """29 % of sound sets had outliers, and 84 % were said to scatter more than their repeats."""
-    one = counts(Design(8, 5, 1e-4, step=1e-3), 30)
-    assert (one.accused, one.scatters) == (0, 0)
-    assert max(one.width) < 2.4
-
-
-def test_a_delay_is_seen_and_can_be_fitted() -> None:
-    """Two parameters hold the truth in none of the sets, and nothing said so."""
-    late = counts(DELAYS[0]._replace(delay=0.15), 20)
-    assert min(late.within) < 20
-    assert late.delayed > 70
-    assert min(counts(DELAYS[0]._replace(delay=0.15), 20, "delay").within) >= 75
-    assert counts(DELAYS[0], 40).delayed <= 5
-
-
-def test_blunders_are_named_and_do_not_hide_each_other() -> None:
-    """At most an eighth of the degrees of freedom was open to be named: one of two masses in 10 % of sets."""
-    design = Design(8, 3, 0.05, step=0.01)
+def test_what_simulation_decided_is_so() -> None:
+    """Before, a third run had the width 4.3; 29 % of readings to 1 ms were accused; nothing said that a watch is late."""
+    assert max(counts(CELLS[0], 30).width) < 1.6
+    read = counts(Design(8, 5, 1e-4, step=1e-3), 20)
+    assert (read.accused, read.scatters, max(read.width) < 2.4) == (0, 0, True)
+    late = DELAYS[0]._replace(delay=0.15)
+    assert counts(late, 20).delayed > 85
+    assert min(counts(late, 20, "delay").within) >= 75
+    assert counts(DELAYS[0]._replace(masses=2e-4), 30).delayed <= 7
     for kind, number, share in (("mass", 1, 0.95), ("mass", 2, 0.75), ("time", 1, 0.8)):
-        assert blunders_named(design, kind, number, 40) > share - 3 * sqrt(share * (1 - share) / 40)
+        named = blunders_named(Design(8, 3, 0.05, step=0.01), kind, number, 20)
+        assert named > share - 3 * sqrt(share * (1 - share) / 20)
 
 
 def test_the_scatter_of_times_is_found_beside_uncertain_masses() -> None:
@@ -142,14 +132,6 @@ def test_the_scatter_of_times_is_found_beside_uncertain_masses() -> None:
     whole = fitted(runs._replace(runs=uncertain), conditions_of(NOTHING), USUAL).whole
     assert 0.01 < sqrt(whole.best.line.between) < 0.04
     assert (whole.chi2, whole.between_runs) == (None, None)
-
-
-@pytest.mark.parametrize("repeats", [1, 3])
-def test_both_terms_are_fitted_however_small(repeats: int) -> None:
-    """A term that was left out as "not significant" falsified the other: its interval covered 48 to 67 %."""
-    for seed in range(20):
-        results = fitted(made("a", seed, repeats), conditions_of(NOTHING), USUAL).whole.results
-        assert list(results) in (["rim_mass", "axle"], [])
 
 
 @pytest.mark.parametrize("kind", ["a", "time"])
@@ -165,7 +147,35 @@ def test_slopes_are_those_of_differences(kind: Kind) -> None:
         here: Any = values.get(name, getattr(data, name, None))
         ends = [expected(data, {**values, name: here * (1 + side * 1e-6)}) for side in (-1, 1)]
         by_difference = (ends[1] - ends[0]) / (2e-6 * here)
-        assert slopes(data, values, [name])[:, 0] == pytest.approx(by_difference, rel=1e-5)
+        assert -slope(of_measured, data, values, name) == pytest.approx(by_difference, rel=1e-5)
+
+
+# Outliers, by hand
+
+
+def test_a_repeat_is_an_outlier_if_chance_makes_one_as_far_on_either_side_too_seldom() -> None:
+    """The scatter of the others is at least that of their last digit."""
+    values = np.array([1.0, 1.1, 0.9, 1.05, 2.0])
+    judge = judge_of_repeats(values, np.ones(5), np.zeros(5, dtype=np.intp), 0.05)
+    ((outlier, distance),) = outliers(judge, 5, 4, 5.0).items()
+    scatter = np.var(values[:4], ddof=1) + 0.05**2 / 12
+    assert outlier == 4
+    assert distance == pytest.approx((2 - values[:4].mean()) / sqrt(scatter * 5 / 4))
+    chance = 5 * 2 * float(stats.t.sf(distance, 3))  # of any of five
+    assert [len(outliers(judge, 5, 4, chance * by)) for by in (0.99, 1.01)] == [0, 1]
+
+
+def test_a_run_is_judged_by_the_line_of_the_others() -> None:
+    """Its distance is over the uncertainty of its own prediction: a t statistic of n - p - 1 = 3."""
+    x, y, none = np.arange(6.0), np.array([0.1, 0.9, 2.1, 2.9, 9.0, 5.1]), np.zeros(6)
+    judge = judge_of_line(np.stack([np.ones(6), x], 1), y, none, none + 1, none + 1e-20, (0.0, 0))
+    ((outlier, distance),) = outliers(judge, 6, 4, 0.01).items()
+    others = x != 4
+    line, covariance = np.polyfit(x[others], y[others], 1, cov=True)
+    rest = y[others] - np.polyval(line, x[others])
+    own = np.array([4, 1]) @ covariance @ np.array([4, 1]) + rest @ rest / 3
+    assert outlier == 4
+    assert distance == pytest.approx((y[4] - np.polyval(line, 4)) / sqrt(own))
 
 
 # Against SciPy
@@ -176,18 +186,20 @@ def test_slopes_are_those_of_differences(kind: Kind) -> None:
     "more", [{}, {"stated": 1.0}, {"stated": 1.0, "masses": 2e-4}, {"masses": 2e-4, "repeats": 3}]
 )
 def test_values_and_uncertainties_are_those_of_scipy(kind: Kind, more: dict[str, Any]) -> None:
-    """With the variances found, the covariance is SciPy's own: scaled by χ²/(n - p)."""
+    """With the variances found, the covariance is SciPy's own, by the scatter of runs, and of repeats if no more."""
     for seed in range(5):
-        whole = fitted(made(kind, seed, **more), conditions_of(NOTHING), ["rim_mass", "axle"]).whole
-        data, sigma = whole.best.data, np.sqrt(whole.best.line.variance)
+        whole = fitted(made(kind, seed, **more), conditions_of(NOTHING), USUAL).whole
+        data, line, sigma = whole.best.data, whole.best.line, np.sqrt(whole.best.line.variance)
         values, covariance = by_scipy(kind, data.l, data.h, data.measured, sigma=sigma)
-        for i, (name, one) in enumerate(whole.results.items()):
-            assert list(whole.best.names)[i] == name
+        rest = sum_of_squares((data.measured - textbook(kind, data.l, data.h, *values)) / sigma)
+        chi2, dof = (0.0, 0) if line.between else data.repeats
+        covariance *= (rest + chi2) / (6 + dof) / (rest / 6)
+        assert [*whole.results] == [*USUAL]
+        for i, one in enumerate(whole.results.values()):
             assert one.value == pytest.approx(values[i], rel=1e-6)
             assert one.uncertainty == pytest.approx(sqrt(covariance[i, i]), rel=1e-4)
-        assert whole.correlation is not None
         both = sqrt(covariance[0, 0] * covariance[1, 1])
-        assert whole.correlation[2] == pytest.approx(covariance[0, 1] / both, rel=1e-4)
+        assert _correlation(whole.best) == pytest.approx(covariance[0, 1] / both, rel=1e-4)
 
 
 @pytest.mark.parametrize("kind", ["a", "time"])
@@ -195,39 +207,29 @@ def test_values_and_uncertainties_are_those_of_scipy(kind: Kind, more: dict[str,
 def test_contradictory_runs_are_fitted_as_well_as_by_scipy(kind: Kind, find: list[str]) -> None:
     """Tables of chance: 24 of 194 were more than 10 % above the best, some beyond m1 + m2 + c = 0."""
     fitted_tables = 0
-    for seed in range(25):
-        random = Random(seed)
+    for random in map(Random, range(15)):
         rows = np.array([[random.randint(1, most) for most in (6, 6, 9)] for _ in range(6)], float)
         m1, m2, measured = rows[rows[:, 0] != rows[:, 1]].T
         data = data_of(kind, np.minimum(m1, m2), np.maximum(m1, m2), np.ones(len(m1)), measured)
-        given = {x: value for x, value in (("rim_mass", 0.0), ("axle", 0.0), ("gravity", G)) if x not in find}
+        known = {"rim_mass": 0.0, "axle": 0.0, "gravity": G}
+        least = 1e-9 - float((data.l + data.h).min())
+        low = [least if x == "rim_mass" else -inf for x in find]
+
+        def rest(values: Any, data: Data = data, known: Any = known) -> Any:
+            c, f, g = (known | dict(zip(find, values, strict=True))).values()
+            return data.measured - textbook(kind, data.l, data.h, c, f, g, 1.0)
+
+        ends = {"rim_mass": (least + 0.01, least + 100), "axle": (-20, 20), "gravity": (0, 30)}
+        starts = ([random.uniform(*ends[x]) for x in find] for _ in range(8))
+        by = min(2 * optimize.least_squares(rest, start, bounds=(low, inf)).cost for start in starts)
         try:
-            best = estimate(data, given, find)
+            best = estimate(data, {x: value for x, value in known.items() if x not in find}, find)
         except CannotSeparate:  # an inertia without bounds
             continue
-        assert best.values["rim_mass"] > -float((data.l + data.h).min())
-        rest = sum_of_squares(data.measured - expected(data, best.values))
-        assert rest < 1.01 * least_by_scipy(data, given, find)
+        assert best.values["rim_mass"] > least - 1e-8
+        assert sum_of_squares(data.measured - expected(data, best.values)) < 1.01 * by
         fitted_tables += 1
     assert fitted_tables > 2
-
-
-def least_by_scipy(data: Data, given: dict[str, float], find: list[str]) -> float:
-    """The least sum of squares that SciPy finds from eight starts."""
-    least, random, best = float((data.l + data.h).min()), Random(1), inf
-
-    def rest(values: Any) -> Any:
-        x = given | dict(zip(find, values, strict=True))
-        of = data.l, data.h, x["rim_mass"], x["axle"], x["gravity"], 1.0
-        return data.measured - (textbook("a", *of) if data.drop is None else textbook("time", *of))
-
-    low = [-least + 1e-9 if x == "rim_mass" else -inf for x in find]
-    for _ in range(8):
-        ends = {"axle": (-20, 20), "gravity": (0, 30)}
-        c = -least + 10 ** random.uniform(-2, 2)
-        start = [c if x == "rim_mass" else random.uniform(*ends[x]) for x in find]
-        best = min(best, 2 * optimize.least_squares(rest, start, bounds=(low, inf)).cost)
-    return best
 
 
 def agrees_with(result: Any, names: list[str], values: Any, covariance: Any, dof: int, rel: float) -> None:
@@ -329,7 +331,7 @@ def test_runs_without_any_scatter_require_what_they_show() -> None:
     exact = "m1,m2,a\n1,2,2.5\n2,3,1.666666666666666666666666666667\n"  # 10 (2 - 1)/(1 + 2 + 1)
     assert found(exact, "--g 10 --axle 0")["rim_mass"] == pytest.approx(1, rel=1e-14)
     page = fit(exact, "--g 10 --axle 0").out
-    assert "│ rim_mass │ 1.0000000000" in page  # eleven digits, and no uncertainty of rounding
+    assert "│ rim_mass │ 1.0000000000000 ± 0.0000000000037 │" in page  # by the least uncertainty of a number
 
 
 def test_what_is_given_and_uncertain_counts_for_all_runs_together() -> None:
@@ -358,26 +360,25 @@ def test_two_runs_with_uncertainties_are_enough() -> None:
     assert "There are as many runs as results, so nothing is left to test the fit." in result["notes"]
 
 
-def test_rows_that_are_left_out_have_no_part() -> None:
+def test_repeats_are_columns_or_rows_and_either_side_may_be_the_heavier() -> None:
+    columns = found("m1,m2,t1,t2\n.2,.22,2.1,2.2\n.2,.23,1.8,1.7\n.2,.24,1.5,1.4\n", "--drop 1")
+    rows = "m1,m2,t\n.2,.22,2.1\n.2,.24,1.5\n.2,.22,2.2\n.2,.23,1.8\n.2,.23,1.7\n.2,.24,1.4\n"
+    assert found(rows, "--drop 1")["interval"]["axle"] == pytest.approx(columns["interval"]["axle"])
+    turned = SIMMONS.replace("0.070,0.075,", "0.075,0.070,")
+    for table in (turned, turned.replace("0.310", "-0.310")):
+        assert found(table)["interval"] == found(SIMMONS)["interval"]
+
+
+def test_what_is_left_out_has_no_part() -> None:
     left, without = found(ODD, "--without 5"), found(ODD.replace("0.075,0.080,0.103\n", ""))
     assert [left[x] for x in ("interval", "dof")] == [without[x] for x in ("interval", "dof")]
-    assert left["runs"][4] == {
-        **left["runs"][4],
-        "a": 0.103,
-        "u": None,
-        "expected": pytest.approx(0.2901, abs=1e-3),
-        "residual": None,
-    }
-
-
-def test_cells_that_are_left_out_have_no_part() -> None:
+    shown = {"a": 0.103, "u": None, "expected": pytest.approx(0.2901, abs=1e-3), "residual": None}
+    assert left["runs"][4] == left["runs"][4] | shown
     table = "m1,m2,t1,time 2,t3\n.2,.22,2.1,2.2,9\n.2,.23,1.8,1.7,1.6\n.2,.24,1.5,1.4,1.5\n"
     empty = found(table.replace("2.2,9", "2.2,").replace("1.8,1.7", "1.8,"), "--drop 1")
-    for words in ("--without 1:t3,2:t2", "--without 1:time3 --without '2:time 2'"):
-        left = found(table, f"--drop 1 {words}")
-        assert [left[x] for x in ("interval", "dof", "chi2")] == [
-            empty[x] for x in ("interval", "dof", "chi2")
-        ]
+    for cells in ("1:t3,2:t2", "1:t3 --without '2:time 2'"):
+        left = found(table, f"--drop 1 --without {cells}")
+        assert [left[x] for x in ("interval", "chi2")] == [empty[x] for x in ("interval", "chi2")]
     whole, row = (found(table, f"--drop 1 --without {one}") for one in ("1:t1,1:t2,1:t3", "1"))
     assert whole["interval"] == row["interval"]
 
@@ -389,50 +390,6 @@ def test_outliers_in_the_only_run_are_a_sentence() -> None:
     ran = fit(f"m1,m2,{names}\n1,2,{times}\n", "--drop 1 --axle 0")
     assert "t9 = 5.02 s is" in ran.out
     assert (ran.status, ran.err) == (0, "")
-
-
-def test_no_memory_is_a_sentence(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fails(*_: object) -> None:
-        raise MemoryError
-
-    monkeypatch.setattr("atwood_cli.laboratory.runs.read_runs", fails)
-    assert fit(SIMMONS).err == "atwood: cannot read stdin: it needs more memory than there is\n"
-
-
-def test_a_result_that_is_none_is_status_1_in_each_form() -> None:
-    for form in ("", "--json", "--csv", "--only dof"):
-        assert fit("m1,m2,a\n.1,.11,9\n.1,.12,8\n.1,.13,9\n.1,.15,9\n", form).status == 1
-
-
-def test_no_reason_blames_the_design_for_a_unit() -> None:
-    """Each was said not to separate the pulley's inertia from axle friction."""
-    rows = [line.split(",") for line in SIMMONS.splitlines()[1:]]
-    timed = table_of(((m1, m2, 1000 * sqrt(2 / float(a))) for m1, m2, a in rows), "m1,m2,t")
-    kilograms = table_of((1000 * float(m1), m2, a) for m1, m2, a in rows)
-    accelerations = table_of((m1, m2, 100 * float(a)) for m1, m2, a in rows)
-    good = table_of(((m1, m2, sqrt(2 / float(a))) for m1, m2, a in rows), "m1,m2,t")
-    for table, words in ((timed, "--drop 1"), (kilograms, ""), (accelerations, ""), (good, "--drop 100m")):
-        ran = fit(table, words)
-        assert ran.status == 1
-        assert "separate" not in ran.out + ran.err
-        assert "check" in ran.out + ran.err
-
-
-def test_a_design_is_blamed_whatever_was_measured() -> None:
-    for a in (0.3, 3.0, 30.0):
-        ran = fit(table_of((0.1, 0.11 + 1e-9 * i, a + i / 100) for i in range(5)))
-        if a < 0.4:
-            assert "the runs do not separate the pulley's inertia from axle friction" in ran.err
-        else:
-            assert "no pulley would give" in ran.err
-
-
-@pytest.mark.parametrize(
-    ("value", "unit", "shown"),
-    [(0.049, "kg", "49 g"), (0.0052, "N", "5.2 mN"), (3e-8, "kg", "0.03 mg"), (2.0, "kg", "2 kg"), (0.9996, "kg", "1 kg")],
-)  # fmt: skip
-def test_small_values_have_small_units(value: float, unit: str, shown: str) -> None:
-    assert in_small_unit(value, unit) == shown
 
 
 # What it needs and how it is printed
@@ -448,13 +405,6 @@ def test_scipy_alone_is_needed() -> None:
     assert err == f"atwood: this needs scipy; install it with: pip install '{FROM}[fit]'\n"
 
 
-def test_the_page_has_the_width_asked_for() -> None:
-    with_all = plain(on_terminal(*RIT, "--R", "25mm", "--inertia", "disk", columns=80)).splitlines()
-    assert sum("moment_of_inertia" in line for line in with_all) == 1  # one table
-    narrow = plain(on_terminal(*RIT, columns=60)).splitlines()
-    assert max(len(line) for line in narrow if not re.match("[│╭├╰]", line)) <= 60
-
-
 @pytest.mark.parametrize(
     ("value", "u", "both", "ends"),
     [
@@ -463,23 +413,23 @@ def test_the_page_has_the_width_asked_for() -> None:
         (-3e-7, 2e-5, "(0.0 ± 2.0)e-5", "(-4.0 to 4.0)e-5"),
         (0.764, 0.012, "0.764 ± 0.012", "0.740 to 0.788"),
         (12345.678, 1200, "12300 ± 1200", "9900 to 14700"),
-        (9.80665, 1.2e-10, "9.8066500000 ± 0.0000000001", "9.8066499998 to 9.8066500002"),
-        (9.80665, 1e-14, "9.8066500000", ""),
-        (0.25, 0.0, "0.250000", ""),
+        (9.80665, 1.2e-10, "9.80665000000 ± 0.00000000012", "9.80664999976 to 9.80665000024"),
     ],
 )
 def test_a_row_is_published_by_one_rule(value: float, u: float, both: str, ends: str) -> None:
     assert published(value, u, (value - 2 * u, value + 2 * u)) == (both, ends)
 
 
-def test_csv_has_a_row_a_run_and_bare_values_a_line_each() -> None:
-    ran = called([*RIT, "--csv", "--only", "runs"])
-    header, *rows = csv.reader(io.StringIO(ran.out))
-    assert header == "rows,m1,m2,drop,time,u,expected,residual".split(",")
-    assert len(rows) == 5
-    header, *results = csv.reader(io.StringIO(called([*RIT, "--csv"]).out))
-    assert header == "quantity,value,uncertainty,low,high,unit".split(",")
-    assert [row[0] for row in results] == ["rim_mass", "axle"]
+def test_small_values_have_small_units() -> None:
+    shown = {(0.049, "kg"): "49 g", (0.0052, "N"): "5.2 mN", (3e-8, "kg"): "0.03 mg", (0.9996, "kg"): "1 kg"}
+    assert [in_small_unit(*one) for one in shown] == [*shown.values()]
+
+
+def test_csv_has_a_row_a_run_or_a_result_and_bare_values_a_line_each() -> None:
+    runs, results = (called([*RIT, "--csv", *more]).out.splitlines() for more in (["--only", "runs"], []))
+    assert [runs[0], len(runs)] == ["rows,m1,m2,drop,time,u,expected,residual", 6]
+    assert results[0] == "quantity,value,uncertainty,low,high,unit"
+    assert [row.split(",")[0] for row in results[1:]] == ["rim_mass", "axle"]
     resting = fit("Team,m1,m2,a\nA,1,2,2.4\nA,1,3,3.9\nB,1,1,0\n", "--csv --axle 0 --only runs")
     assert resting.out.splitlines()[-1] == "3,1,1,0,,,"
     bare = called([*RIT, "--only", "c,axle"])
@@ -504,12 +454,9 @@ def test_in_python_it_is_what_json_has() -> None:
     assert [line.split()[0] for line in lines[:3]] == ["rim_mass", "axle", "moment_of_inertia"]
     assert lines[2] == "moment_of_inertia = (1.3 ± 2.1)e-5 kg m², 95 %: (-7.9 to 10.5)e-5"
     assert lines[3:] == list(result.notes)
-
-
-def test_options_in_notes_are_parameters_in_python() -> None:
-    (columns, *rows) = csv.reader(ODD.splitlines())
-    result = laboratory_fit(dict(zip(columns, zip(*rows, strict=True), strict=True)))
-    assert any(note.endswith("from the other runs; without='5'.") for note in result.notes)
+    odd = [*zip(*csv.reader(ODD.splitlines()), strict=True)]
+    said = laboratory_fit({name: cells for name, *cells in odd}).notes
+    assert any(note.endswith("from the other runs; to leave that out: without='5'.") for note in said)
 
 
 @pytest.mark.parametrize(
@@ -518,14 +465,8 @@ def test_options_in_notes_are_parameters_in_python() -> None:
         (3, {}, ValueError, "cannot read the runs: it is of type int; give a path, a mapping or a data frame"),
         ({"m1": [1], "m2": [2, 3]}, {}, ValueError, "cannot read the runs: its columns differ in length: 'm1' has 1 cells, 'm2' has 2 cells"),
         ({"m1": 1, "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type int; give a sequence of cells"),
-        ({"m1": "12", "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type str; give a sequence of cells"),
-        ({"m1": [], "m2": [], "a": []}, {}, ValueError, "cannot read the runs: it has no runs"),
-        ({"m1": [1], "m2": [True], "a": [1]}, {}, ValueError, "cannot read the runs: row 1: m2 'True' is not a number; write it like 2, 1/3 or 1.5e-3; a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"),
         (Path("none.csv"), {}, OSError, "cannot read none.csv: No such file or directory"),
-        (TOP / "LICENSE", {}, OSError, f"cannot read {TOP / 'LICENSE'}: row 2 has 3 cells, and the header 1; is there a decimal comma (write a point), or one at its end?"),
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' is known by g; leave one of them out"),
-        (EQUAL, {"find": "c", "I": 1, "R": 1}, SceneError, "find 'rim_mass' is known by I; leave one of them out"),
-        (EQUAL, {"without": [0]}, SceneError, "without '0' is not a row; there are 1 to 2"),
         (EQUAL, {}, ArithmeticError, "2 runs are too few for this fit: give more runs, repeats or uncertainties (as 2.05+/-0.02), or give M or axle"),
     ],
 )  # fmt: skip
@@ -540,26 +481,23 @@ def test_in_python_errors_say_what_is_wrong(table: Any, more: Any, kind: type[Ex
 MANY = table_of((1, 1.1 + i / 40, 0.45 + i / 12) for i in range(20))
 
 
-@pytest.mark.parametrize(
-    ("table", "more"), [(ODD, ""), (ODD, "--bare"), (ODD, "--without 5 --bare"), (SIMMONS, ""), (MANY, "")]
-)
+@pytest.mark.parametrize(("table", "more"), [(ODD, ""), (ODD, "--without 5 --bare"), (MANY, "")])
 def test_nothing_is_cut_from_the_picture(tmp_path: Path, table: str, more: str) -> None:
     """A bar of an outlier ran off; a run that is left out was not there; --bare has no sentences."""
     words = f"{more} --figure {tmp_path / 'line.png'}"
     with pages_seen() as pages:
         assert [fit(table, words).status for _ in range(2)] == [0, 1]  # the file is there
-    (page,) = pages
-    line = page.axes[0]
+    line = pages[0].axes[0]
     (left, right), (low, high) = line.get_xlim(), line.get_ylim()
     for (x, y), (to_x, to_y) in (ends for bars in line.collections for ends in bars.get_segments()):
         assert left <= x <= to_x <= right
         assert low <= y <= to_y <= high
     hollow = [one for one in line.lines if one.get_markerfacecolor() == "none" and one.get_markersize() < 9]
     assert [len(one.get_xdata()) for one in hollow] == [1] * ("--without" in more)
-    assert (page.get_suptitle() == "") == bool(more)
+    assert (pages[0].get_suptitle() == "") == bool(more)
 
 
-@pytest.mark.parametrize(("rows", "repeats"), [(1500, 1), (10, 400)])
+@pytest.mark.parametrize(("rows", "repeats"), [(800, 1), (6, 200)])
 def test_time_grows_as_the_rows_do(rows: int, repeats: int) -> None:
     """20,000 rows took 41 s, as the square of their number; a large part were said to be odd."""
     random, seconds = np.random.default_rng(20_000), []

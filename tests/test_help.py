@@ -1,10 +1,7 @@
 """Help and completion, as people and shells ask for them."""
 
-import os
-import shutil
 import subprocess
 import sys
-from pathlib import Path
 from typing import Any
 
 import pytest
@@ -100,43 +97,19 @@ def completed(shell: str, *lines: str) -> list[str]:
     """What the program offers for the last word of each line, by the protocol of the shell; all in one process."""
     ran = process(shell, *lines, code=COMPLETING, _ATWOOD_COMPLETE=f"complete_{shell}")
     assert (ran.status, ran.err) == (0, "")
-    return ran.out.split("\n\n")[: len(lines)]
-
-
-def test_completion() -> None:
-    assert [" ".join(lines.split()) for lines in completed("bash", *OFFERED)] == [*OFFERED.values()]
+    return [" ".join(offered.split()) for offered in ran.out.split("\n\n")[: len(lines)]]
 
 
 def test_every_shell_gets_names_with_what_they_mean() -> None:
+    """With fish, by the status, where files are to be completed."""
+    assert completed("bash", *OFFERED) == [*OFFERED.values()]
     meaning = "torque of the string on the pulley"
     for shell, offered in {
-        "fish": f"torque\t{meaning}",
+        "fish": f"torque {meaning}",
         "zsh": f"""_arguments '*: :(("torque":"{meaning}"))'""",
         "powershell": f"torque:::{meaning}",
     }.items():
         assert completed(shell, "solve --only tor") == [offered]
-
-
-@pytest.mark.parametrize(("words", "status"), [("solve --only tor", 0), ("batch in", 1)])
-def test_fish_is_told_where_files_are_to_be_completed(words: str, status: int) -> None:
-    asked = {"_TYPER_COMPLETE_ARGS": f"atwood {words}", "_TYPER_COMPLETE_FISH_ACTION": "is-args"}
-    assert process(**asked, _ATWOOD_COMPLETE="complete_fish") == (status, "", "")
-
-
-def test_bash_completes() -> None:
-    """So do other shells, by scripts of typer's and by the protocols above."""
-    command, bash = Path(sys.executable).with_name("atwood"), shutil.which("bash")
-    if not (command.exists() and bash):
-        pytest.skip("needs bash and the installed program")
-    script = """
-    eval "$(_ATWOOD_COMPLETE=source_bash atwood)"
-    COMP_WORDS=(atwood solve --only ten) COMP_CWORD=3
-    _atwood_completion atwood
-    echo "${COMPREPLY[@]}"
-    complete -p atwood
-    atwood --show-completion | grep -o complete_bash
-    """
-    env = os.environ | {"PATH": f"{command.parent}{os.pathsep}{os.environ['PATH']}"}
-    ran = subprocess.run([bash, "-c", script], capture_output=True, text=True, check=True, env=env)
-    shown = "tension_1 tension_2 tension_ratio\ncomplete -o default -F _atwood_completion atwood\n"
-    assert (ran.stdout, ran.stderr) == (f"{shown}complete_bash\n", "")
+    for words, status in (("solve --only tor", 0), ("batch in", 1)):
+        asked = {"_TYPER_COMPLETE_ARGS": f"atwood {words}", "_TYPER_COMPLETE_FISH_ACTION": "is-args"}
+        assert process(**asked, _ATWOOD_COMPLETE="complete_fish") == (status, "", "")

@@ -13,9 +13,8 @@ from atwood_cli.laboratory import results as laboratory
 from atwood_cli.model.quantities import QUANTITIES
 from atwood_cli.model.scene import INPUTS, MEASURED
 
-from .running import Atwood
+from .running import TOP, Atwood
 
-TOP = Path(__file__).parent.parent
 PAGE = (TOP / "examples" / "json.md").read_text(encoding="utf-8")
 ROW = r"^- `(.*?)` \((.*?)(?:, (.*?))?\): .*?(?:; null: (.*))?$"
 SECTIONS = {
@@ -84,27 +83,18 @@ def test_every_key_is_on_the_page_and_of_its_type(atwood: Atwood, tmp_path: Path
             fits = {*kinds.split(" or ")} & {*TYPES.get(type(value), "").split()}
             assert fits or (value is None and null), (words, key, value)
     assert found == page.keys()
+    for name in page.keys() & laboratory.QUANTITIES.keys() if command == "fit" else ():
+        assert page[name][1] == laboratory.QUANTITIES[name].unit
     assert all(one == top[0] for one in top)
 
 
-def test_units_of_a_fit_are_those_of_its_table() -> None:
-    for name, quantity in laboratory.QUANTITIES.items():
-        assert SECTIONS["fit"][name][1] == quantity.unit
-
-
-@pytest.mark.parametrize(
-    ("command", "listed"),
-    [("quantities", "quantities"), ("tradeoff --family ordinary --scenes 5", "settings")],
-)
-def test_keys_of_the_short_lists(
-    atwood: Atwood, command: str, listed: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_keys_of_the_short_lists(atwood: Atwood, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("atwood_cli.tradeoff.measure.REPEATS", 1)
-    result = json.loads(atwood(*command.split(), "--json").out)
-    section = re.search(rf"^## {command.split()[0]}\n\n(.*?)(?=^##|\Z)", PAGE, re.MULTILINE | re.DOTALL)
-    assert section
-    keys = {*result, *(key for item in result[listed] for key in item)}
-    assert keys == set(re.findall(r"`(\w+)`", section[1]))
+    for command in ("quantities", "tradeoff --family ordinary --scenes 5"):
+        result = json.loads(atwood(*command.split(), "--json").out)
+        (listed,) = (items for items in result.values() if isinstance(items, list))
+        section = PAGE.split(f"\n## {command.split()[0]}\n")[1].split("\n## ")[0]
+        assert {*result, *(key for item in listed for key in item)} == {*re.findall(r"`(\w+)`", section)}
 
 
 def test_what_no_double_holds_is_text_in_python() -> None:

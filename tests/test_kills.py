@@ -51,7 +51,7 @@ def blow(*_, **__):
     while True:  # as a signal that comes while Python enters a call is seen only behind it
         time.sleep(0.01)
 {}
-sys.exit(main())
+main()
 """
 SOLVING = """
 import atwood_cli.solver.answers, atwood_cli.sweep.ranges, atwood_cli.batch.run

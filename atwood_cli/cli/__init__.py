@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from errno import EINVAL
 from importlib import import_module
-from typing import Annotated, Any, cast
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperCommand
@@ -15,7 +15,6 @@ from typer.core import TyperCommand
 from .. import __version__
 from ..model.scene import SceneError
 from ..model.units import LONGEST_NAME, shortened
-from ..output.files import ClosedStdout
 from ..output.text import drop, finish, say
 from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag, write_options
 
@@ -49,14 +48,11 @@ class Command(TyperCommand):
         for word, value in zip(args, [*args[1:], ""], strict=False):
             name = word.partition("=")[0]
             meant = f"--{name.lstrip(DASHES)}"  # word processors make such dashes of two
-            alike = next((flag for flag in options if flag.lower() == meant.lower()), "")
-            if name not in options and alike and name[:1] in DASHES:
-                raise UsageError(f"No such option: {name}. Did you mean {alike}?", ctx)
-            if (
-                word in options
-                and value.partition("=")[0] in options
-                and not getattr(options[word], "is_flag", True)
-            ):
+            alike = [flag for flag in options if flag.lower() == meant.lower()]
+            if alike and name not in options and name[0] in DASHES:
+                raise UsageError(f"No such option: {name}. Did you mean {alike[0]}?", ctx)
+            takes_value = word in options and not getattr(options[word], "is_flag", True)
+            if takes_value and value.partition("=")[0] in options:
                 rule = f"needs a value before the option {shortened(value)}"
                 raise SceneError(str(options[word].name), None, rule)
         return super().parse_args(ctx, args)
@@ -70,19 +66,14 @@ class Command(TyperCommand):
         return ["[OPTIONS]", *(str(param.metavar) for param in arguments)]
 
 
-def _print_version(wanted: bool) -> None:
-    if wanted:
-        print(f"atwood {__version__}")
-        raise typer.Exit
-
-
-Version = Annotated[
-    bool, typer.Option("--version", "-V", callback=_print_version, is_eager=True, help="Print the version.")
-]
+Version = Annotated[bool, typer.Option("--version", "-V", help="Print the version.")]
 
 
 def root(context: typer.Context, version: Version = False) -> None:
-    """Print the help if no command is named."""
+    """Print the version, or the help if no command is named."""
+    if version:
+        print(f"atwood {__version__}")
+        raise typer.Exit
     if context.invoked_subcommand is None:
         print(context.get_help())
 
@@ -112,8 +103,9 @@ def _needed(arguments: list[str]) -> tuple[str, ...]:
 
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line. Every error ends in a sentence on stderr and an exit status."""
-    # A stream that the caller has closed is None. Lost results are an error; lost messages are not.
-    sys.stdout, sys.stderr = sys.stdout or cast(Any, ClosedStdout()), sys.stderr or io.StringIO()
+    # A stream that the caller has closed is None. Lost results are an error, lost messages are not.
+    sys.stdout = sys.stdout or os.fdopen(os.open(os.devnull, os.O_RDONLY))
+    sys.stderr = sys.stderr or io.StringIO()
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # for symbols that it cannot write
     try:
@@ -140,10 +132,7 @@ def run(arguments: list[str] | None = None) -> int:
         said = shortened(words, LONGEST_NAME)
         say(f"{said}{' ' if said.endswith('?') else '; '}{hint}" if hint else said)
         return WRONG_USAGE
-    except (KeyboardInterrupt, EOFError, typer.Abort) as error:
-        if EOFError in (type(error), type(error.__cause__)):  # a compiled module was cut off
-            say("a file of the program is damaged; install it again")
-            return COULD_NOT
+    except (KeyboardInterrupt, typer.Abort):
         drop(sys.stdout)  # its reader may have stopped, and writing would wait for ever
         raise KeyboardInterrupt from None
     except (ImportError, OSError, ArithmeticError, MemoryError) as error:
@@ -178,6 +167,8 @@ def _why(error: Exception) -> str:
         if package not in EXTRAS:
             raise error
         return f"this needs {package}; install it with: pip install '{_installed_from()}[{EXTRAS[package]}]'"
+    if isinstance(error, io.UnsupportedOperation):
+        return "cannot write the output: stdout is closed"
     if isinstance(error, OSError) and error.errno is not None:  # without a number, it is a sentence of ours
         file = shortened(str(error.filename or "the output"), LONGEST_NAME)
         return f"cannot write {file}: {error.strerror}"

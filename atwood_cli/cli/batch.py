@@ -33,7 +33,13 @@ OutTable = Annotated[
 ]
 FromFormat = Annotated[
     str | None,
-    option("Files", "--from", metavar="|".join(FORMATS), help="Format of IN, if not that of its suffix."),
+    option(
+        "Files",
+        "--from",
+        metavar="|".join(FORMATS),
+        words=lambda: dict.fromkeys(FORMATS, ""),
+        help="Format of IN, if not that of its suffix.",
+    ),
 ]
 Headings = Annotated[
     list[str] | None,

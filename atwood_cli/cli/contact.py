@@ -29,7 +29,7 @@ Examples:
 """
 
 
-@with_options(SCENE, OUTPUT, needs={"bare": "figure"})
+@with_options(SCENE, OUTPUT)
 def contact(
     given: Mapping[str, str | None],
     target: Destination,

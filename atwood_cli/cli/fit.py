@@ -78,7 +78,7 @@ which nothing moves or the lighter side falls; they are not used. Others are lef
 """
 
 
-@with_options(OUTPUT, needs={"bare": "figure"})
+@with_options(OUTPUT)
 def fit(
     table: Table,
     target: Destination,

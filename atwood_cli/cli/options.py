@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from itertools import chain
 from operator import attrgetter
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple, get_args
+from typing import Annotated, Any, get_args
 
 import typer
 
@@ -46,25 +46,15 @@ Words = Callable[[], Mapping[str, str]]
 """A function that returns the words that a shell may complete, with their meanings."""
 
 
-def option(group: str, *flags: str, metavar: str = "", words: Words | None = None, **more: Any) -> Any:
-    """Return an option, with the ``group`` in which help shows it, and the words that it takes.
-
-    If there are no ``words``, it takes the words of a metavar a|b, or any text.
-    """
+def option(group: str, *flags: str, words: Words | None = None, **more: Any) -> Any:
+    """Return an option, with the ``group`` in which help shows it, and the words that complete it."""
 
     def complete(incomplete: str) -> list[tuple[str, str]]:
-        known = words() if words else dict.fromkeys(metavar.split("|"), "")
-        return list(known.items())
+        return list(words().items()) if words else []
 
-    return typer.Option(
-        *flags,
-        metavar=metavar or None,
-        rich_help_panel=group,
-        show_default=False,
-        # typer takes long over such a function, so there is none unless a word is to be completed.
-        autocompletion=complete if (words or "|" in metavar) and COMPLETING in os.environ else None,
-        **more,
-    )
+    # typer takes long over such a function, so there is none unless a word is to be completed.
+    completion = complete if words and COMPLETING in os.environ else None
+    return typer.Option(*flags, rich_help_panel=group, show_default=False, autocompletion=completion, **more)
 
 
 def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> Any:
@@ -82,44 +72,44 @@ def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> 
 
 
 Command = Callable[..., int]
-Rules = Mapping[str, str]
-"""The names of other options, with blanks between, by the name of an option."""
-NO_RULES: Rules = {}
+FORM_NAMES = " ".join(FORMS)
+NO_EFFECT = {
+    **dict.fromkeys(FORMS, FORM_NAMES),
+    "explain": f"{FORM_NAMES} budget",
+    "all_": f"{FORM_NAMES} only explain",
+}
+"""By option, the others that cannot be used with it, in any command."""
+NEEDS = {"markdown": "explain", "bare": "figure", "force": "output figure"}
+"""By option, the others of which it needs one, if the command has them."""
 
 
-class OptionGroup(NamedTuple):
-    """Options that several commands have, and the argument that a command gets instead of them."""
-
-    argument: str
-    options: Mapping[str, Any]
-    read: Callable[[Mapping[str, Any]], Any]
+SCENE = {name: Annotated[str | None, scene_option(name)] for name in INPUTS}
+"""The options of a scene, by name."""
 
 
-def with_options(
-    *shared: OptionGroup, no_effect: Rules = NO_RULES, needs: Rules = NO_RULES
-) -> Callable[[Command], Command]:
-    """Give a command groups of options: typer sees each option, the command the arguments read from them.
+def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
+    """Give a command groups of options by name, which typer sees one by one.
 
-    An option in ``no_effect`` excludes each option named there. An option in ``needs`` needs an option named
-    there.
+    The command gets those of SCENE as ``given``, and those of `results` as ``target``.
     """
 
     def taking(command: Command) -> Command:
-        read = {group.argument for group in shared}
-        own = [given for given in inspect.signature(command).parameters.values() if given.name not in read]
+        parameters = inspect.signature(command).parameters.values()
+        own = [parameter for parameter in parameters if parameter.name not in ("given", "target")]
 
         def run(**options: Any) -> int:
-            _check(options, no_effect, needs)
-            arguments = {group.argument: group.read(options) for group in shared}
-            status = command(**{given.name: options[given.name] for given in own}, **arguments)
+            _check(options)
+            read = {"given": {name: options[name] for name in INPUTS}} if SCENE in groups else {}
+            arguments = {parameter.name: options[parameter.name] for parameter in own}
+            status = command(target=_read_target(options), **arguments, **read)
             _ask_about_radians(options.get("wrap"))
             return status
 
-        first, *others = ([_parameter(*named) for named in group.options.items()] for group in shared)
-        parameters = sorted([*first, *own, *chain(*others)], key=attrgetter("kind"))
+        first, *others = ([_parameter(*named) for named in group.items()] for group in groups)
+        seen = sorted([*first, *own, *chain(*others)], key=attrgetter("kind"))
         # typer reads this attribute, which type checkers do not know of a function.
-        run.__dict__["__signature__"] = inspect.Signature(parameters)
-        run.__annotations__ = {given.name: given.annotation for given in parameters}
+        run.__dict__["__signature__"] = inspect.Signature(seen)
+        run.__annotations__ = {parameter.name: parameter.annotation for parameter in seen}
         run.__name__ = command.__name__
         return run
 
@@ -131,47 +121,34 @@ def _parameter(name: str, annotation: Any) -> inspect.Parameter:
     return inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=annotation)
 
 
-def _check(options: Mapping[str, Any], no_effect: Rules, needs: Rules) -> None:
+def _check(options: Mapping[str, Any]) -> None:
     """Raise SceneError if an option that is given excludes another, or lacks one that it needs."""
     given = {name: value for name, value in options.items() if value not in (None, False, [], ())}
     for name, value in given.items():
         shown = value[0] if isinstance(value, list | tuple) else value
         if shown is True:
             shown = None
-        for other in no_effect.get(name, "").split():
-            if other in given:
+        for other in NO_EFFECT.get(name, "").split():
+            if other in given and other != name:
                 raise SceneError(name, shown, f"cannot be used with {flag(other)}; leave one out")
-        needed = needs.get(name, "").split()
-        if needed and not given.keys() & set(needed):
+        needed = [other for other in NEEDS.get(name, "").split() if other in options]
+        if needed and not given.keys() & needed:
             raise SceneError(name, shown, f"needs {' or '.join(map(flag, needed))}")
-
-
-# A scene
-
-
-def _ask_about_radians(wrap: str | None) -> None:
-    if wrap and _may_be_radians(wrap):
-        typed = f"--wrap {shortened(wrap)}"
-        say(f"{typed} was read as degrees; for radians, write 3.14rad")
 
 
 LIKE_RADIANS = (0.3, 12.6)
 """The range of numbers that are probably radians: few degrees, but up to two turns in radians."""
 
 
-def _may_be_radians(typed: str) -> bool:
-    """Decide whether an angle, a range or a list has numbers without a unit, of the size of radians."""
-    least, most = LIKE_RADIANS
-    words = typed.split(":")[:2] if ":" in typed else typed.split(",")
+def _ask_about_radians(wrap: str | None) -> None:
+    """Say how an angle, a range or a list was read if it has no unit, and the size of radians."""
+    if not wrap:
+        return
+    words = wrap.split(":")[:2] if ":" in wrap else wrap.split(",")
     angles = [read_number(word, "angle") for word in words]
-    return not any(angle.unit for angle in angles) and least < max(angle.value for angle in angles) < most
-
-
-SCENE = OptionGroup(
-    "given",
-    {name: Annotated[str | None, scene_option(name)] for name in INPUTS},
-    lambda options: {name: options[name] for name in INPUTS},
-)
+    least, most = LIKE_RADIANS
+    if least < max(angle.value for angle in angles) < most and not any(angle.unit for angle in angles):
+        say(f"--wrap {shortened(wrap)} was read as degrees; for radians, write {shortened(words[0])}rad")
 
 
 def quantity_meanings() -> Mapping[str, str]:
@@ -216,10 +193,10 @@ Labels = Annotated[
 Force = Annotated[bool, option("Files", "--force", help="Replace an existing file.")]
 
 
-def results(*forms: str) -> OptionGroup:
+def results(*forms: str) -> dict[str, Any]:
     """Return the options that choose the form of a result among these, and the file that it goes to."""
     suffixes = ", ".join(FORMS[form].suffix for form in forms)
-    options = {
+    return {
         **{form: Annotated[bool, option("Output", flag(form), help=FORMS[form].help)] for form in forms},
         "output": Annotated[
             str | None,
@@ -233,24 +210,17 @@ def results(*forms: str) -> OptionGroup:
         ],
         "force": Force,
     }
-    return OptionGroup("target", options, _read_target)
 
 
 def _read_target(options: Mapping[str, Any]) -> Destination:
     """Read the form and the file of a result. Raises SceneError, FileExistsError."""
-    asked = [form for form in FORMS if options.get(form)]
-    if asked[1:]:
-        raise SceneError(asked[0], None, f"cannot be used with {flag(asked[1])}; leave one out")
-    form, file, force = "".join(asked), options["output"], options["force"]
-    if force and not (file or options.get("figure")):
-        raise SceneError(
-            "force", None, "needs --output or --figure" if "figure" in options else "needs --output"
-        )
+    asked = next((form for form in FORMS if options.get(form)), "")
+    file, force, figure = options["output"], options["force"], options.get("figure")
     if file in (None, STDOUT):
-        return Destination(form, None, force)
-    if (figure := options.get("figure")) and os.path.realpath(figure) == os.path.realpath(file):
+        return Destination(asked, None, force)
+    if figure and os.path.realpath(figure) == os.path.realpath(file):
         raise SceneError("figure", figure, "is the file of --output; name another")
-    form = _form_of_file(file, form, options)
+    form = _form_of_file(file, asked, options)
     check_free(Path(file), force)
     return Destination(form, file, force)
 
@@ -258,20 +228,20 @@ def _read_target(options: Mapping[str, Any]) -> Destination:
 def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
     """Return the form of a file, as asked for or by its suffix. Raises SceneError if the two disagree."""
     name, suffix = os.path.splitext(file)
-    page = ".md" if options.get("markdown") else ".txt"
-    known = [] if options.get("explain") else [form for form in FORMS if form in options]
-    forms = {page: "", **{FORMS[form].suffix: form for form in known}}
-    if not suffix or (form := forms.get(suffix.lower())) == asked:
-        return asked
-    if form and not asked:
-        return form
-    if options.get("explain") and not asked and page == ".txt":
-        raise SceneError("output", file, f"would hold text; name it {name}.txt, or add --markdown")
-    if not asked and page == ".txt":
+    if asked:
+        forms = {FORMS[asked].suffix: asked}
+    elif options.get("explain"):
+        forms = {".md" if options["markdown"] else ".txt": ""}
+    else:
+        forms = {".txt": "", **{FORMS[form].suffix: form for form in FORMS if form in options}}
+    if not suffix or suffix.lower() in forms:
+        return forms.get(suffix.lower(), asked)
+    if len(forms) > 1:
         raise SceneError("output", file, f"must end in one of {', '.join(forms)}")
-    right = name + (FORMS[asked].suffix if asked else page)
-    convert = "" if asked else f"; then pandoc {right} -o {file} makes the other"
-    raise SceneError("output", file, f"would hold {asked.upper() or 'Markdown'}; name it {right}{convert}")
+    (right,) = forms
+    kind = asked.upper() or {".md": "Markdown", ".txt": "text"}[right]
+    instead = ", or add --markdown" if right == ".txt" else ""
+    raise SceneError("output", file, f"would hold {kind}; name it {name}{right}{instead}")
 
 
 OUTPUT = results(*FORMS)

@@ -1,7 +1,5 @@
 """`atwood quantities`: the quantities that can be asked for by name."""
 
-from collections.abc import Sequence
-
 from ..model.quantities import QUANTITIES, REGIMES
 from ..output.text import VERSION, Destination, Report, show
 from .options import DONE, OUTPUT, with_options
@@ -24,24 +22,18 @@ ON_FRICTION = (
 def quantities(target: Destination) -> int:
     """Run the command."""
     columns = ("name", "symbol", "unit", "meaning", "equation")
-    rows = [
-        ("regime", "", "", f"what the string does: {', '.join(REGIMES)}", ""),
-        *(
-            (name, about.symbol, about.unit, about.meaning, about.equation)
-            for name, about in QUANTITIES.items()
-        ),
+    rows = [("regime", "", "", f"what the string does: {', '.join(REGIMES)}", "")]
+    rows += [
+        (name, *(getattr(about, column) for column in columns[1:])) for name, about in QUANTITIES.items()
     ]
     records = [dict(zip(columns, row, strict=True)) for row in rows]
-    show(
-        Report(lambda: {"version": VERSION, "quantities": records}, lambda: records, lambda: _print(rows)),
-        target,
-    )
+
+    def print_page() -> None:
+        from ..output.page import Page
+
+        page = Page()
+        page.table([column.capitalize() for column in columns], [rows])
+        page.say(ON_FRICTION)
+
+    show(Report(lambda: {"version": VERSION, "quantities": records}, lambda: records, print_page), target)
     return DONE
-
-
-def _print(rows: Sequence[Sequence[str]]) -> None:
-    from ..output.page import Page
-
-    page = Page()
-    page.table(["Name", "Symbol", "Unit", "Meaning", "Equation"], [rows])
-    page.say(ON_FRICTION)

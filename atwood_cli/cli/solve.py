@@ -6,7 +6,7 @@ from typing import Annotated
 from ..model.quantities import MEASURED_NAMES, NAMES, read_names
 from ..model.scene import SceneError, read_digits
 from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_table, record
-from ..output.text import FORMS, Destination, Report, cell, relevant_inputs, say, show
+from ..output.text import Destination, Report, cell, relevant_inputs, say, show
 from ..solver.answers import Answers, read_answers
 from ..solver.expected import failure, read_condition
 from ..solver.messages import reasons, unmarked
@@ -22,9 +22,6 @@ from .options import (
     scene_option,
     with_options,
 )
-
-FORM_NAMES = " ".join(FORMS)
-
 
 Acceleration = Annotated[str | None, scene_option("a", "Measured")]
 Drop = Annotated[str | None, scene_option("drop", "Measured")]
@@ -70,12 +67,7 @@ Any number may carry its standard uncertainty; results then have theirs.
 """
 
 
-@with_options(
-    SCENE,
-    OUTPUT,
-    no_effect={"explain": f"{FORM_NAMES} budget", "all_": f"{FORM_NAMES} only explain"},
-    needs={"markdown": "explain", "bare": "figure"},
-)
+@with_options(SCENE, OUTPUT)
 def solve(
     given: Mapping[str, str | None],
     target: Destination,

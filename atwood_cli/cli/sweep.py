@@ -29,7 +29,7 @@ a range; a second one, or a list, is a curve for each value.
 """
 
 
-@with_options(SCENE, OUTPUT, needs={"bare": "figure"})
+@with_options(SCENE, OUTPUT)
 def sweep(
     given: Mapping[str, str | None],
     target: Destination,

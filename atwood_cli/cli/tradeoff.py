@@ -53,7 +53,7 @@ Examples:
 """
 
 
-@with_options(results("json"), needs={"bare": "figure"})
+@with_options(results("json"))
 def tradeoff(
     target: Destination,
     *,

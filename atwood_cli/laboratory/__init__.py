@@ -81,21 +81,15 @@ def fit_of(
     from ..tables.headings import read_named
     from ..tables.sources import cannot_read
     from .fitting import conditions_of, fitted, read_find
-    from .runs import VOCABULARY, explained, read_runs
-    from .statistics import CannotSeparate
+    from .runs import VOCABULARY, read_runs
 
     known = [x for x, value in given.items() if value is not None]
     inputs = {x: read_input(x, given.get(x)) for x in dict.fromkeys((*INPUTS, *known))}
     same, named = conditions_of(inputs), read_named(columns, VOCABULARY)
     names = read_find(find, same)
     try:
-        runs = read_runs(table, labels, inputs.get("drop"), without, named)
-        try:
-            return fitted(runs, same, names)
-        except (Unreadable, CannotSeparate) as error:
-            raise type(error)(explained(error, runs.remarks)) from None
-    except (Unreadable, MemoryError) as error:
-        why = error if isinstance(error, Unreadable) else Unreadable("it needs more memory than there is")
-        if not isinstance(table, str | PathLike):
-            raise ValueError(f"cannot read the runs: {why}") from None
-        raise cannot_read(fspath(table), why) from None
+        return fitted(read_runs(table, labels, inputs.get("drop"), without, named), same, names)
+    except Unreadable as why:
+        if isinstance(table, str | PathLike):
+            raise cannot_read(fspath(table), why) from None
+        raise ValueError(f"cannot read the runs: {why}") from None

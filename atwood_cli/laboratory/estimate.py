@@ -1,6 +1,6 @@
 """The rim mass c and the axle's friction f that fit runs best, by least squares: T_h - T_l = c a + f."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from math import inf, sqrt
 from typing import Any, NamedTuple
@@ -13,13 +13,14 @@ from ..model import physics
 from ..model.digits import exact_decimal
 from ..model.scene import Input
 from ..tables.sources import Unreadable
+from .results import FITTED
 from .runs import MEASURABLE, Run, Runs, rows_in_words
 from .statistics import ROUNDING, Column, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
-CLOSE, MOST_STEPS = 1e-11, 50
-"""The weights follow the values until these change less than this share of what is measured."""
+NEAR, CLOSE, MOST_STEPS = 1e-2, 1e-11, 20
+"""Shares of what is expected: steps that change less are those of the line; with still less, all is done."""
 TINY = 1e-100
 
 
@@ -84,7 +85,7 @@ def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -
         factor = max(factor, 1.0)
     variance = factor / total
     if dof and not stated:
-        variance = variance + step_of([one for run in used for one in run.measured]) ** 2 / 12
+        variance = variance + step_of(used) ** 2 / 12
     repeats = (chi2 / factor, dof) if factor else (0.0, 0)
     uncertain = {name: column for name, column in uncertain.items() if column.any()}
     counts = np.bincount(index).astype(float)
@@ -98,11 +99,10 @@ def measurements(used: Sequence[Run]) -> tuple[Column, Column, NDArray[np.intp]]
     return values * np.where(np.bincount(index, values) < 0, -1.0, 1.0)[index], u, index
 
 
-def step_of(readings: Sequence[Input]) -> float:
+def step_of(used: Sequence[Run]) -> float:
     """Return the step of readings, by the last digit that any of them has; 0 if one is no decimal."""
-    decimals = [exact_decimal(Fraction(one.value)) for one in readings]
-    places = [int(one.as_tuple().exponent) if one is not None else -inf for one in decimals]
-    return float(10.0 ** min(places))
+    decimals = [exact_decimal(Fraction(one.value)) for run in used for one in run.measured]
+    return float(10.0 ** min(-inf if one is None else int(one.as_tuple().exponent) for one in decimals))
 
 
 def _columns(inputs: Sequence[Input]) -> tuple[Column, Column]:
@@ -131,19 +131,52 @@ def expected(data: Data, values: Mapping[str, Any]) -> Any:
     return physics.fall_time(x["drop"], moving, root) * (1 + (moving - a) / (2 * moving)) + x["delay"]
 
 
-def slopes(data: Data, values: Mapping[str, Any], names: Sequence[str]) -> Any:
-    """Return the derivatives of what is expected of each run by each of ``names``: an array (runs, names).
-
-    The imaginary part by an imaginary step is the derivative to the last digit.
-    """
-    x: dict[str, Any] = {**data._asdict(), "delay": 0.0, **values}
-    columns = [expected(data, {**values, name: x[name] + 1j * TINY}).imag / TINY for name in names]
-    return np.stack(columns, 1) if names else np.empty((len(data.l), 0))
-
-
 def accelerations(data: Data, measured: Any, delay: float = 0.0) -> Any:
     """Convert fall times, less the delay, to accelerations; measured accelerations stay as they are."""
     return measured if data.drop is None else physics.acceleration_of_fall(data.drop, measured - delay)
+
+
+Residual = Callable[[Data, Mapping[str, Any]], Any]
+"""Return for each run what is left of an equation that holds; ``values`` may replace columns of the data."""
+
+
+def of_measured(data: Data, values: Mapping[str, Any]) -> Any:
+    """Return what is measured less what is expected."""
+    return values.get("measured", data.measured) - expected(data, values)
+
+
+def of_forces(data: Data, values: Mapping[str, Any]) -> Any:
+    """Return T_h - T_l less c a + f by the accelerations measured: c, f and gravity are linear in it."""
+    x: dict[str, Any] = {**data._asdict(), "delay": 0.0, **values}
+    a = accelerations(data._replace(drop=x["drop"]), x["measured"], x["delay"])
+    tensions = physics.difference_of_moving_masses(x["l"], x["h"], a, x["gravity"])
+    return tensions - x["rim_mass"] * a - x["axle"]
+
+
+def slope(residual: Residual, data: Data, values: Mapping[str, Any], name: str) -> Any:
+    """Return the derivative by a value or a column, to the last digit: the imaginary part by a small one."""
+    x = {**data._asdict(), "delay": 0.0, **values}[name]
+    return residual(data, {**values, name: x + 1j * TINY}).imag / TINY
+
+
+def linear(
+    residual: Residual, data: Data, values: Mapping[str, float], names: Sequence[str]
+) -> tuple[Any, Column, Column, Column, Column]:
+    """Return the arguments of `fit_line` for changes of the ``names``, at these values.
+
+    The unknown variance has the shape of a force that differs between runs, or of the scatter of single
+    values if nothing shows that.
+    """
+    J = np.zeros((len(data.l), len(names)))
+    for i, name in enumerate(names):
+        J[:, i] = -slope(residual, data, values, name)
+    by_measured = slope(residual, data, values, "measured")
+    known = (by_measured * data.scatter) ** 2
+    for name, u in data.uncertain.items():
+        known = known + (slope(residual, data, values, name) * u) ** 2
+    is_force = data.scatter.any()
+    shape = slope(residual, data, values, "axle") ** 2 if is_force else by_measured**2 / data.counts
+    return J, residual(data, values), known, shape, np.square(ROUNDING * by_measured * data.measured)
 
 
 # Least squares
@@ -156,87 +189,44 @@ def estimate(
 
     Variances follow the values (effective variance), and least squares the variances.
     """
-    values = {**dict.fromkeys(("rim_mass", "axle", "gravity", "delay"), 0.0), **given}
-    start = near or _start(data, values, names)
-    values |= {x: max(start[x], _lightest(data) / 2) if x == "rim_mass" else start[x] for x in names}
-    before = inf
+    values = {**dict.fromkeys(FITTED, 0.0), **given}
+    if near is None:
+        J, y, *_ = linear(of_forces, data, values, names)
+        changes = np.linalg.lstsq(J, y, rcond=None)[0].tolist() if names else []
+        near = {x: values[x] + change for x, change in zip(names, changes, strict=True)}
+    lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
+    least = {x: lightest if x == "rim_mass" else -inf for x in names}
+    values |= {x: max(near[x], least[x] / 2) for x in names}
     for _ in range(MOST_STEPS):
-        J = slopes(data, values, names)
-        line = fit_line(J, data.measured - expected(data, values), *variances(data, values), data.repeats)
-        if not names:
+        problem = linear(of_measured, data, values, names)
+        line = fit_line(*problem, data.repeats)
+        share = problem[0] @ line.coefficients / data.measured
+        size = sqrt(sum_of_squares(share) / len(share))
+        if size < CLOSE:
             break
-        found = _least_squares(data, values, names, np.sqrt(line.variance))
-        step = J @ [found[x] - values[x] for x in names]
-        share = sqrt(sum_of_squares(step / data.measured) / len(step))
-        if share < CLOSE or share >= before:  # nothing but rounding is left
-            break
-        values, before = values | found, share
+        if size < NEAR:
+            steps = zip(names, line.coefficients.tolist(), strict=True)
+            values |= {x: max(values[x] + step, least[x]) for x, step in steps}
+        else:
+            values |= _least_squares(data, values, least, np.sqrt(line.variance))
     sigma = np.sqrt(line.scale * line.variance)
     return Estimate(data, values, names, line, sigma, len(data.l) - len(names))
 
 
-def variances(data: Data, values: Mapping[str, float]) -> tuple[Column, Column, Column]:
-    """Return the known variance of each run, the shape of the unknown one, and the least of their sum.
-
-    The unknown variance has the shape of a force that differs between runs, or of the scatter of single
-    values if nothing shows that.
-    """
-    known = data.scatter**2
-    for name, u in data.uncertain.items():
-        known = known + (slopes(data, values, [name])[:, 0] * u) ** 2
-    shape = slopes(data, values, ["axle"])[:, 0] ** 2 if data.scatter.any() else 1 / data.counts
-    return known, shape, np.square(ROUNDING * data.measured)
-
-
 def _least_squares(
-    data: Data, values: Mapping[str, float], names: Sequence[str], sigma: Column
+    data: Data, values: Mapping[str, float], least: Mapping[str, float], sigma: Column
 ) -> dict[str, float]:
-    """Return the values with the least sum of squares, each run with its standard uncertainty."""
+    """Return the values with the least sum of squares, none below the ``least``, by uncertainties of runs."""
 
     def at(x: Column) -> dict[str, float]:
-        return {**values, **dict(zip(names, x.tolist(), strict=True))}
+        return {**values, **dict(zip(least, x.tolist(), strict=True))}
 
     found = least_squares(
-        lambda x: (expected(data, at(x)) - data.measured) / sigma,
-        [values[x] for x in names],
-        lambda x: slopes(data, at(x), names) / sigma[:, None],
-        bounds=([_lightest(data) if x == "rim_mass" else -inf for x in names], inf),
+        lambda x: of_measured(data, at(x)) / sigma,
+        [values[x] for x in least],
+        lambda x: np.stack([slope(of_measured, data, at(x), name) / sigma for name in least], 1),
+        bounds=([*least.values()], inf),
         x_scale="jac",
-        **{"ftol": 1e-15, "xtol": 1e-15, "gtol": None},
+        **{"ftol": 1e-15, "xtol": 1e-12, "gtol": None},
     )
-    return dict(zip(names, found.x.tolist(), strict=True))
-
-
-def _lightest(data: Data) -> float:
-    """Return the rim mass with which next to nothing would be left to move: less is beyond the pole."""
-    return -(1 - 1e-9) * float((data.l + data.h).min())
-
-
-def _start(data: Data, values: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
-    """Return the values that fit the straight line of forces best."""
-    J, y, *_ = line_of_forces(data, values, names)
-    solution = np.linalg.lstsq(J, y, rcond=None)[0] if names else np.empty(0)
-    return dict(zip(names, solution.tolist(), strict=True))
-
-
-def line_of_forces(
-    data: Data, values: Mapping[str, float], names: Sequence[str]
-) -> tuple[Any, Column, Column, Column, Column]:
-    """Return the straight line a (l + h) = g (h - l) - c a - f as the arguments of `fit_line`.
-
-    It hardly depends on ``values``, of which c counts for variances. A delay is taken to be small.
-    """
-    a, load, g = accelerations(data, data.measured), data.l + data.h, values["gravity"]
-    inert = load + max(values["rim_mass"], 0.0)
-    by_measured = inert if data.drop is None else inert * 2 * a / data.measured
-    columns = {"gravity": data.h - data.l, "rim_mass": -a, "axle": -np.ones_like(a), "delay": -by_measured}
-    y = a * load - sum(values[x] * column for x, column in columns.items() if x not in names)
-    J = np.stack([columns[x] for x in names], 1) if names else np.empty((len(a), 0))
-    by_input = {"l": g + a, "h": g - a}
-    if data.drop is not None:
-        by_input["drop"] = inert * a / data.drop
-    known = (data.scatter * by_measured) ** 2
-    for name, u in data.uncertain.items():
-        known = known + (by_input[name] * u) ** 2
-    shape = np.ones_like(a) if data.scatter.any() else by_measured**2 / data.counts
-    return J, y, known, shape, np.square(ROUNDING * data.measured * by_measured)
+    return dict(zip(least, found.x.tolist(), strict=True))

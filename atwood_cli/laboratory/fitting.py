@@ -3,7 +3,6 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from itertools import combinations
 from math import hypot, inf, isfinite, sqrt
 from typing import Any, NamedTuple
 
@@ -16,23 +15,27 @@ from ..model.quantities import read_names
 from ..model.scene import Input, Scene, SceneError, parameter_of
 from ..tables.sources import Unreadable
 from .estimate import (
+    TINY,
     Data,
     Estimate,
     accelerations,
     as_data,
     estimate,
     expected,
-    line_of_forces,
+    linear,
     measurements,
-    slopes,
+    of_forces,
+    of_measured,
     step_of,
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
-from .runs import OUT_OF_RANGE, Run, Runs, in_range, rows_in_words
-from .statistics import NORMAL_DOF, CannotSeparate, Column, judge_of_line, judge_of_repeats, outliers
+from .runs import OUT_OF_RANGE, Run, Runs, in_range, read_as_of, rows_in_words
+from .statistics import NORMAL_DOF, CannotSeparate, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
+SELDOM = 0.05
+"""The p value below which runs are said to scatter more than their repeats."""
 LEAST_SINGULAR = 4e-4
 """Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
 MOST_RATIO = 100
@@ -55,75 +58,43 @@ class Conditions(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """A fit of some runs: ``reason`` says why there are no ``results``, if there are none."""
+    """A fit of some runs: ``reason`` says why there are no ``results``, if there are none.
+
+    ``chi2`` is χ² of the runs by the uncertainties stated, or by the scatter of repeats; None without either.
+    If something is left to test the fit, ``p_value`` is the probability that chance gives a larger χ², and
+    ``between_runs`` the standard deviation between runs beyond that, as a mass (kg).
+    """
 
     best: Estimate
     results: Mapping[str, Result]
     reason: str
+    chi2: float | None
+    p_value: float | None
+    between_runs: float | None
 
-    @property
-    def chi2(self) -> float | None:
-        """χ² of the runs by the uncertainties stated, or by the scatter of repeats; None without either."""
-        return self.best.line.chi2 if self.best.data.scatter.any() else None
 
-    @property
-    def p_value(self) -> float | None:
-        """The probability that chance gives a larger χ²; None if nothing is left to test the fit."""
-        chi2, dof, data = self.chi2, self.best.dof, self.best.data
-        if chi2 is None or not dof:
-            return None
-        if data.stated or not data.repeats[1]:
-            return float(chdtrc(dof, chi2))
-        return float(fdtrc(dof, data.repeats[1], chi2 / dof))
-
-    @property
-    def between_runs(self) -> float | None:
-        """The standard deviation between runs beyond that, as a mass (kg); None if nothing shows it."""
-        if self.chi2 is None or not self.best.dof:
-            return None
-        return sqrt(self.best.line.between) / abs(self.best.values["gravity"])
-
-    @property
-    def correlation(self) -> tuple[str, str, float] | None:
-        """The most correlated pair of fitted quantities."""
-        names, covariance = self.best.names, self.best.line.covariance
-        u = np.sqrt(covariance.diagonal())
-        ratios = covariance / np.outer(u, u)
-        pairs = [(names[i], names[j], float(ratios[i, j])) for i, j in combinations(range(len(names)), 2)]
-        return max(pairs, key=lambda pair: abs(pair[2]), default=None)
+Outlier = tuple[int, int | None, float]
+"""A run, the place of a value in it or None for all of it, and how many standard deviations it is away."""
 
 
 class Fitted(NamedTuple):
     """The fit of the runs that can be used, and their outliers.
 
-    ``unusable`` has the rows of the others, by the reason. ``repeats`` are outliers among the repeats of a
-    run, by the index of the run and the place in it, and ``outlying`` runs among all runs, both with their
-    distance in standard deviations. ``delay`` is that of a fit with a delay, and its p value; None if it was
-    not tried or is not possible.
+    ``unusable`` has the rows of the others, by the reason. ``left_out`` are those that the user leaves out,
+    each with its mean, if something can be expected of them. ``suspects`` are runs that are outliers or have
+    one among their repeats. ``delay`` is that of a fit with a delay, and its p value; None if it was not
+    tried or is not possible.
     """
 
     runs: Runs
     used: Sequence[Run]
     unusable: Mapping[str, Sequence[int]]
+    left_out: Sequence[Run]
     given: Conditions
     whole: Outcome
-    repeats: Mapping[tuple[int, int], float]
-    outlying: Mapping[int, float]
+    outliers: Sequence[Outlier]
+    suspects: Sequence[int]
     delay: tuple[Result, float] | None
-
-    @property
-    def suspects(self) -> list[int]:
-        """The runs that are outliers or have one among their repeats."""
-        return sorted({*(i for i, _ in self.repeats), *self.outlying})
-
-    @property
-    def left_out(self) -> list[Run]:
-        """The runs that the user leaves out, each with its mean, if something can be expected of them."""
-        return [
-            run._replace(measured=(Input(Fraction(run.mean), Fraction(0), None),))
-            for run in self.runs.runs
-            if run.left_out and run.mean and run.m1.value != run.m2.value
-        ]
 
 
 # What is given, and what is to be fitted
@@ -171,14 +142,11 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
     if not names:
         return [x for x in USUAL if x not in given.values]
     if left := [x for x in USUAL if x not in names and x not in given.values]:
-        what, give = (" and ".join(map(words, left)) for words in (_words, GIVE.__getitem__))
-        find = " and ".join(left)
+        what, give, find = map(
+            " and ".join, zip(*((QUANTITIES[x].words, GIVE[x], x) for x in left), strict=True)
+        )
         raise SceneError("find", ",".join(names), f"leaves {what} open: give {give}, or find {find}, too")
     return names
-
-
-def _words(name: str) -> str:
-    return QUANTITIES[name].words
 
 
 # From runs to a result
@@ -194,40 +162,45 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
             unusable.setdefault(why, []).extend(run.rows)
         else:
             used.append(run)
-    left_out = "".join(f"; {rows_in_words(rows)}: {why}" for why, rows in unusable.items())
+    said = "".join(f"; {rows_in_words(rows)}: {why}" for why, rows in unusable.items())
+    said += read_as_of(runs.remarks)
     if not used:
-        raise Unreadable(f"no run can be used{left_out}")
-    whole = outcome(runs, used, given, names, left_out)
-    repeats = _outlying_repeats(used, whole.best)
-    sound = [
-        run._replace(measured=tuple(one for k, one in enumerate(run.measured) if (i, k) not in repeats))
-        for i, run in enumerate(used)
+        raise Unreadable(f"no run can be used{said}")
+    whole, delay = outcome(runs, used, given, names, said), None
+    if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
+        with suppress(CannotSeparate):
+            delay = _delay(whole, outcome(runs, used, given, [*names, "delay"]))
+    left_out = [
+        run._replace(measured=(Input(Fraction(run.mean), Fraction(0), None),))
+        for run in runs.runs
+        if run.left_out and run.mean and run.m1.value != run.m2.value
     ]
-    outlying = _outlying_runs(as_data(runs, sound), whole.best)
-    delay = None
-    with suppress(CannotSeparate):
-        if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
-            late = outcome(runs, used, given, [*names, "delay"])
-            if found := late.results.get("delay"):
-                dof = min(late.best.line.dof, NORMAL_DOF)
-                delay = found, float(2 * stdtr(dof, -abs(found.value) / found.uncertainty))
-    return Fitted(runs, used, unusable, given, whole, repeats, outlying, delay)
+    found = _outliers(runs, used, whole.best)
+    suspects = sorted({i for i, *_ in found})
+    return Fitted(runs, used, unusable, left_out, given, whole, found, suspects, delay)
 
 
 def outcome(
-    runs: Runs, used: Sequence[Run], given: Conditions, names: Sequence[str], left_out: str = ""
+    runs: Runs, used: Sequence[Run], given: Conditions, names: Sequence[str], said: str = ""
 ) -> Outcome:
-    """Return the fit of these runs, with its uncertainties. Raises Unreadable, SceneError, CannotSeparate."""
+    """Return the fit of these runs, with its uncertainties. Raises Unreadable, SceneError, CannotSeparate.
+
+    ``said`` stands behind an error: the rows that are not used, and how the table was read.
+    """
     dof = len(used) - len(names)
-    data = as_data(runs, used) if used and dof >= 0 else None
+    data = as_data(runs, used) if dof >= 0 else None
     if not data or not (dof or data.scatter.any() or data.uncertain):
         count = "1 run is" if len(used) == 1 else f"{len(used)} runs are"
-        raise CannotSeparate(f"{count} {TOO_FEW}{left_out}")
+        raise CannotSeparate(f"{count} {TOO_FEW}{said}")
     mistake, is_of_most = _mistake(data, used, runs.kind, given.values["gravity"], "gravity" in names)
     reason = mistake or f"no rim mass and no axle friction of 0 or more fit these runs: {CHECK}"
     if not _separates(data, given.values, names):
-        verb, what = "separate" if names[1:] else "determine", " from ".join(map(_words, names))
-        raise CannotSeparate(mistake or f"the runs do not {verb} {what}: {VARY}")
+        verb, what = (
+            "separate" if names[1:] else "determine",
+            " from ".join(QUANTITIES[x].words for x in names),
+        )
+        why = mistake or f"the runs do not {verb} {what}: {VARY}"
+        raise CannotSeparate(f"{why}{said}")
 
     def found(there: Conditions) -> dict[str, float]:
         moved = as_data(runs, used, there.inputs.get("drop"))
@@ -237,7 +210,7 @@ def outcome(
         best = estimate(data, given.values, names)
         ends = [[*map(found, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        raise CannotSeparate(reason) from None
+        raise CannotSeparate(f"{reason}{said}") from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
     times = float(stdtrit(min(best.line.dof, NORMAL_DOF), 0.975))  # Student's t
@@ -247,14 +220,24 @@ def outcome(
         u = hypot(spread[x], *steps)
         results[x] = Result(value, u, (value - times * u, value + times * u))
     if not all(isfinite(one.value) and isfinite(one.uncertainty) for one in results.values()):
-        raise CannotSeparate(reason)
-    if is_of_most:
-        return Outcome(best, {}, mistake)
-    for x in names:
-        if x != "delay" and results[x].interval[1] < 0:
-            negative = f"{equation(x, *results[x][:2])} is negative: {CHECK}, and the signs of accelerations"
-            return Outcome(best, {}, mistake or negative)
-    return Outcome(best, results, "")
+        raise CannotSeparate(f"{reason}{said}")
+    negative = next((x for x in names if x != "delay" and results[x].interval[1] < 0), "")
+    if negative and not mistake:
+        words = equation(negative, *results[negative][:2])
+        mistake = f"{words} is negative: {CHECK}, and the signs of accelerations"
+    if is_of_most or negative:
+        return Outcome(best, {}, mistake, *_scatter(best))
+    return Outcome(best, results, "", *_scatter(best))
+
+
+def _scatter(best: Estimate) -> tuple[float | None, float | None, float | None]:
+    """Return χ², its p value and the standard deviation between runs, as `Outcome` has them."""
+    data, dof, chi2 = best.data, best.dof, best.line.chi2
+    if not data.scatter.any() or not dof:
+        return chi2 if data.scatter.any() else None, None, None
+    is_f = data.repeats[1] and not data.stated
+    p_value = fdtrc(dof, data.repeats[1], chi2 / dof) if is_f else chdtrc(dof, chi2)
+    return chi2, float(p_value), sqrt(best.line.between) / abs(best.values["gravity"])
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
@@ -269,26 +252,47 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
     return {x: found[x] for x in QUANTITIES if x in found}
 
 
-def _outlying_repeats(used: Sequence[Run], best: Estimate) -> dict[tuple[int, int], float]:
-    """Return outliers among the repeats of each run, by the index of the run and the place in it."""
+def _delay(whole: Outcome, late: Outcome) -> tuple[Result, float] | None:
+    """Return the delay of the fit with one, and its p value.
+
+    This is the F test of what it takes off χ², by the scatter of runs and repeats together. If runs scatter
+    more than repeats with the delay, too, it is the t test of the delay by the scatter of runs.
+    """
+    delay = late.results.get("delay")
+    if not delay:
+        return None
+    if whole.chi2 is None or late.chi2 is None or (late.p_value or 0) < SELDOM:
+        return delay, float(
+            2 * stdtr(min(late.best.line.dof, NORMAL_DOF), -abs(delay.value) / delay.uncertainty)
+        )
+    chi2, dof = late.chi2 + late.best.data.repeats[0], late.best.dof + late.best.data.repeats[1]
+    return delay, float(fdtrc(1, dof, max(whole.chi2 - late.chi2, 0) * dof / max(chi2, TINY)))
+
+
+def _outliers(runs: Runs, used: Sequence[Run], best: Estimate) -> list[Outlier]:
+    """Return outliers among the repeats of each run, and among the runs without these repeats.
+
+    Runs are judged by the line of forces, which outliers bend least.
+    """
     values, u, index = measurements(used)
     # Of two repeats, which are equally far from each other, that far from the line comes first.
     order = np.argsort(-np.abs(values - expected(best.data, best.values)[index]), kind="stable")
-    step = step_of([one for run in used for one in run.measured])
-    judge = judge_of_repeats(values[order], np.where(u > 0, u, 1)[order], index[order], step)
-    judged = int((np.bincount(index)[index] > 1).sum())
-    found = outliers(len(values) - len(used), judged, len(values), OUTLIER_LEVEL, judge)
-    first, places = np.searchsorted(index, index), dict[tuple[int, int], float]()
+    judge = judge_of_repeats(values[order], np.where(u > 0, u, 1)[order], index[order], step_of(used))
+    found = outliers(judge, len(values), len(values) - len(used), OUTLIER_LEVEL)
+    first, said = np.searchsorted(index, index), list[Outlier]()
     for i, distance in found.items():
-        j = int(order[i])
-        places[int(index[j]), int(j - first[j])] = distance
-    return places
-
-
-def _outlying_runs(data: Data, best: Estimate) -> Mapping[int, float]:
-    """Return outliers by the straight line of forces, which they bend least."""
-    judge = judge_of_line(*line_of_forces(data, best.values, best.names), data.repeats)
-    return outliers(best.dof, len(data.l), len(data.l), OUTLIER_LEVEL, judge)
+        k = int(order[i])
+        said.append((int(index[k]), int(k - first[k]), distance))
+    named = {one[:2] for one in said}
+    sound = [
+        run._replace(measured=tuple(one for k, one in enumerate(run.measured) if (i, k) not in named))
+        for i, run in enumerate(used)
+    ]
+    data = as_data(runs, sound)
+    near = {**best.values, "rim_mass": max(best.values["rim_mass"], 0.0), "delay": 0.0}
+    judge = judge_of_line(*linear(of_forces, data, near, best.names), data.repeats)
+    found = outliers(judge, len(used), best.dof, OUTLIER_LEVEL)
+    return said + [(i, None, distance) for i, distance in found.items()]
 
 
 # Why there is no result
@@ -317,7 +321,7 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
     least = float((data.h - data.l).min()) * given["gravity"]
     values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), **given}
     values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
-    J: Any = slopes(design, values, names) / expected(design, values)[:, None]
+    J: Any = linear(of_measured, design, values, names)[0] / expected(design, values)[:, None]
     singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
     return not names or bool(singular.min() > LEAST_SINGULAR)
 
@@ -330,19 +334,17 @@ def _mistake(data: Data, used: Sequence[Run], kind: str, g: float, is_fitted: bo
     """
     masses = np.array([[float(run.m1.value), float(run.m2.value)] for run in used])
     columns = {"m1": masses[:, 0], "m2": masses[:, 1], "drop": data.drop, kind: data.measured}
-    checks: list[tuple[str, str, Column, Any, float, Any]] = []
+    checks = list[tuple[str, str, Any, Any, float, Any]]()
     for name, column in columns.items():
         if column is not None:
-            median, what = (np.median(masses), "mass") if name in ("m1", "m2") else (np.median(column), name)
-            checks.append((name, f"the median {what}", column, median, 1 / MOST_RATIO, MOST_RATIO))
+            of, what = (masses, "mass") if name in ("m1", "m2") else (column, name)
+            checks.append((name, f"the median {what}", column, np.median(of), 1 / MOST_RATIO, MOST_RATIO))
     if not is_fitted:
         name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
-        a, free = (
-            accelerations(data, data.measured),
-            physics.acceleration(data.h - data.l, data.h + data.l, g),
-        )
+        free = physics.acceleration(data.h - data.l, data.h + data.l, g)
         most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
-        checks.append((name, "what no friction and no pulley would give", a, free, LEAST_SHARE, most))
+        what = "the acceleration without friction and pulley"
+        checks.append((name, what, accelerations(data, data.measured), free, LEAST_SHARE, most))
     said, is_mistaken = "", np.zeros(len(used), dtype=bool)
     for name, what, values, usual, least, most in checks:
         with np.errstate(divide="ignore"):
@@ -350,9 +352,8 @@ def _mistake(data: Data, used: Sequence[Run], kind: str, g: float, is_fitted: bo
         is_unusual = (values > 0) & ((ratio < least) | (ratio > most))
         if is_unusual.any() and not said:
             i, unit = int(np.argmax(is_unusual)), parameter_of("a" if name[0] == "a" else name).unit
-            there = rounded(float(np.broadcast_to(usual, ratio.shape)[i]), 3)
-            value = f"{name} = {rounded(float(values[i]), 3)} {unit}"
-            times = f"{rounded(float(ratio[i]), 3)} times {there} {unit}, {what}"
-            said = f"{rows_in_words(used[i].rows)}: {value} is {times}; {CHECK}"
+            value, times, there = (rounded(float(x), 3) for x in (values[i], ratio[i], values[i] / ratio[i]))
+            far = f"{name} = {value} {unit} is {times} times {there} {unit}"
+            said = f"{rows_in_words(used[i].rows)}: {far}, {what}; {CHECK}"
         is_mistaken |= is_unusual
     return said, bool(is_mistaken.mean() > 0.5)

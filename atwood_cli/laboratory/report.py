@@ -1,21 +1,23 @@
 """A fit as sentences, tables, JSON and CSV: what the runs determine, their outliers, what to vary."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
+
+import numpy as np
 
 from ..model.digits import format_number, rounding_to_place
 from ..model.scene import UNMEASURED, parameter_of
 from ..model.units import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
-from .estimate import Data, as_data, expected
-from .fitting import Fitted
+from .estimate import Estimate, as_data, expected
+from .fitting import SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
-from .runs import MEASURED, RUN_QUANTITIES, Run, in_words, rows_in_words
+from .runs import MEASURED, RUN_QUANTITIES, in_words, rows_in_words
 
-RARE, SELDOM = 0.01, 0.05
-"""p values below which a delay, and scatter between runs, are reported."""
+RARE = 0.01
+"""The p value below which a delay is reported, and above 1 less which runs scatter less than repeats."""
 WIDE_DELAY = 0.1
 """The half width of a delay's interval (s) from which the runs cannot show it."""
 NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
@@ -28,11 +30,6 @@ NEEDS = {
 # Sentences
 
 
-def head(fit: Fitted) -> list[str]:
-    """Return the result in words, and the outliers."""
-    return [verdict(fit), *_outliers(fit)]
-
-
 def verdict(fit: Fitted) -> str:
     """Return how many runs there are, and which quantities differ from 0, unless there are outliers."""
     measurements = counted(int(fit.whole.best.data.counts.sum()), MEASURED[fit.runs.kind])
@@ -41,30 +38,29 @@ def verdict(fit: Fitted) -> str:
         said.append(f"No result: {fit.whole.reason}.")
     elif not fit.whole.best.names:
         said.append("Nothing is left to fit: the pulley and its axle are given.")
-    for name in [] if fit.suspects else [name for name in USUAL if name in fit.whole.results]:
-        quantity, (low, high) = QUANTITIES[name], fit.whole.results[name].interval
-        words = _capital(quantity.words)
-        if low > 0:
-            said.append(f"{words} is clearly above 0.")
-        else:
-            most = in_small_unit(high, quantity.unit)
-            said.append(f"{words} is not distinguishable from 0; it may be up to {most}.")
+    for name in USUAL:
+        if name in fit.whole.results and not fit.suspects:
+            (low, high), unit = fit.whole.results[name].interval, QUANTITIES[name].unit
+            may_be = f"is not distinguishable from 0; it may be up to {in_small_unit(high, unit)}."
+            said.append(_capital(f"{QUANTITIES[name].words} {'is clearly above 0.' if low > 0 else may_be}"))
     return " ".join(said)
 
 
-def _outliers(fit: Fitted) -> list[str]:
-    """Return a sentence for each outlier."""
-    unit, said = parameter_of(fit.runs.kind).unit, list[str]()
-    for (i, place), distance in fit.repeats.items():
-        cell, value = fit.used[i].cells[place], format_number(float(fit.used[i].measured[place].value))
-        what = f"{_capital(in_words(cell))} = {value} {unit} is {rounded(abs(distance))}"
-        said.append(f"{what} standard deviations from its repeats; --without {cell}.")
-    for i, distance in fit.outlying.items():
-        rows = fit.used[i].rows
-        what = f"{_capital(rows_in_words(rows))} {'are' if rows[1:] else 'is'} {rounded(abs(distance))}"
-        said.append(f"{what} standard deviations from the other runs; --without {','.join(map(str, rows))}.")
-    if said:
-        said.append(f"The fit includes {'them' if said[1:] else 'it'}.")
+def head(fit: Fitted) -> list[str]:
+    """Return the verdict, and a sentence for each outlier."""
+    said = [verdict(fit)]
+    for i, place, distance in fit.outliers:
+        run, far = fit.used[i], f"{rounded(abs(distance))} standard deviations"
+        if place is None:
+            where, others = ",".join(map(str, run.rows)), "the other runs"
+            what = f"{rows_in_words(run.rows)} {'are' if run.rows[1:] else 'is'}"
+        else:
+            where, others = run.cells[place], "its repeats"
+            value = f"{format_number(float(run.measured[place].value))} {parameter_of(fit.runs.kind).unit}"
+            what = f"{in_words(where)} = {value} is"
+        said.append(f"{_capital(what)} {far} from {others}; to leave that out: --without {where}.")
+    if fit.outliers:
+        said.append(f"The fit includes {'them' if fit.outliers[1:] else 'it'}.")
     return said
 
 
@@ -73,16 +69,14 @@ def notes(fit: Fitted) -> list[str]:
     said = [_capital(words) for words in fit.runs.remarks]
     for why, rows in fit.unusable.items():
         said.append(f"{_capital(rows_in_words(rows))} {'are' if rows[1:] else 'is'} not used: {why}.")
-    if fit.whole.reason:
-        return said
-    return [*said, _scatter(fit), *_delay(fit)]
+    return said if fit.whole.reason else [*said, _scatter(fit), *_delay(fit)]
 
 
 def _scatter(fit: Fitted) -> str:
     """Return how the scatter of the runs is known, and its p value."""
     chi2, p, stated = fit.whole.chi2, fit.whole.p_value, fit.whole.best.data.stated
     if chi2 is None:
-        return f"Only the residuals show the scatter of a single {MEASURED[fit.runs.kind]}."
+        return f"No {MEASURED[fit.runs.kind]} was repeated, so only the residuals show the scatter."
     if p is None:
         return "There are as many runs as results, so nothing is left to test the fit."
     source = "uncertainties" if stated else "repeats"
@@ -96,20 +90,20 @@ def _scatter(fit: Fitted) -> str:
     return f"Scatter as expected from the {source} {by}."
 
 
-def _delay(fit: Fitted) -> Iterator[str]:
-    """Yield a sentence if all times seem too long, or if the runs cannot show that."""
+def _delay(fit: Fitted) -> list[str]:
+    """Return a sentence if all times seem too long, or if the runs cannot show that."""
     names = fit.whole.best.names
-    if fit.runs.kind != "time" or "delay" in names:
-        return
     result, p = fit.delay or (None, 1.0)
     if result and p < RARE:
         size = with_u(abs(result.value), result.uncertainty)
         long, find = "long" if result.value > 0 else "short", ",".join([*names, "delay"])
-        yield f"All times seem {size} s too {long}: --find {find} fits that, too."
-    elif not fit.suspects and (not result or result.interval[1] - result.value > WIDE_DELAY):
-        width = f" (it is uncertain by {rounded(result.interval[1] - result.value)} s)" if result else ""
-        how = "vary the height of fall, or both m2 - m1 and m1 + m2"
-        yield f"These runs cannot show a delay of all times{width}: {how}."
+        return [f"All times seem {size} s too {long}: --find {find} fits that, too."]
+    half = result.interval[1] - result.value if result else np.inf
+    if fit.runs.kind != "time" or "delay" in names or fit.suspects or half <= WIDE_DELAY:
+        return []
+    width = f" (it is uncertain by {rounded(half)} s)" if result else ""
+    how = "vary the height of fall, or both m2 - m1 and m1 + m2"
+    return [f"These runs cannot show a delay of all times{width}: {how}."]
 
 
 def _capital(words: str) -> str:
@@ -131,12 +125,12 @@ def conditions(fit: Fitted) -> str:
 
 def results_of(fit: Fitted) -> Fit:
     """Return all of a fit by name, with its sentences."""
-    whole, pair = fit.whole, fit.whole.correlation
+    whole = fit.whole
     return Fit(
         **{name: whole.results[name].value if name in whole.results else None for name in QUANTITIES},
         uncertainty={name: one.uncertainty for name, one in whole.results.items()},
         interval={name: list(one.interval) for name, one in whole.results.items()},
-        correlation=pair[2] if pair else None,
+        correlation=_correlation(whole.best),
         chi2=whole.chi2,
         dof=whole.best.dof,
         between_runs=whole.between_runs,
@@ -151,18 +145,15 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     lines: Sequence[Mapping[str, Any]] = record["runs"]
     absent = dict.fromkeys(QUANTITIES)
     by_name = {name: {**absent, **record[name]} for name in ("uncertainty", "interval")}
-    runs = [{**line, **{x: line.get(x) for x in RUN_QUANTITIES}} for line in lines]
+    full = {"version": VERSION, **record, **by_name}
+    full["runs"] = [{**line, **{x: line.get(x) for x in RUN_QUANTITIES}} for line in lines]
 
     def json() -> Any:
-        if only:
-            return {name: runs if name == "runs" else record[name] for name in only}
-        return {"version": VERSION, **record, **by_name, "runs": runs}
+        return {name: full[name] for name in only or full}
 
     def records() -> Iterable[Mapping[str, object]]:
-        if only == ["runs"]:
-            return lines
         if only:
-            return [json()]
+            return lines if only == ["runs"] else [json()]
         return [
             {"quantity": x, "value": one.value, "uncertainty": one.uncertainty}
             | {"low": one.interval[0], "high": one.interval[1], "unit": QUANTITIES[x].unit}
@@ -177,36 +168,40 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
         why = (f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None)
         return [*values, *why, *head(fit)[1:]]
 
-    values = [cell(record[name]) for name in only]
-    return Report(json, records, lambda: _print_page(fit, lines), beside, values)
+    bare = [cell(record[name]) for name in only]
+    return Report(json, records, lambda: _print_page(fit, lines), beside, bare)
+
+
+def _correlation(best: Estimate) -> float | None:
+    """Return the correlation of the two fitted quantities that have most of it."""
+    u = np.sqrt(best.line.covariance.diagonal())
+    pairs = (best.line.covariance / np.outer(u, u))[np.triu_indices(len(u), 1)]
+    return float(max(pairs, key=abs)) if len(pairs) else None
 
 
 def _records(fit: Fitted) -> list[dict[str, Any]]:
     """Return the runs, as JSON and CSV have them; the residual is in standard uncertainties."""
-    values, best = fit.whole.best.values, fit.whole.best
-    groups: list[tuple[Sequence[Run], Data, list[Any]]] = [(fit.used, best.data, best.sigma.tolist())]
-    if left_out := fit.left_out:
-        groups.append((left_out, as_data(fit.runs, left_out), [None] * len(left_out)))
+    best, kind = fit.whole.best, fit.runs.kind
+    groups = [(fit.used, best.data, best.sigma.tolist())]
+    if fit.left_out:
+        groups.append((fit.left_out, as_data(fit.runs, fit.left_out), [None] * len(fit.left_out)))
     found: dict[tuple[int, ...], Any] = {}
     for runs, data, u in groups:
-        moves = expected(data._replace(drop=None), values) > 0
-        columns = data.measured.tolist(), expected(data, values).tolist(), u, moves.tolist()
-        found |= {run.rows: one for run, *one in zip(runs, *columns, strict=True)}
+        moves = expected(data._replace(drop=None), best.values) > 0
+        ideal = np.where(moves, expected(data, best.values), None)
+        found |= zip(
+            (run.rows for run in runs), zip(data.measured.tolist(), ideal, u, strict=True), strict=True
+        )
     lines = []
     for run in fit.runs.runs:
         sign = -1 if run.mean < 0 else 1
-        measured, ideal, u_run, moving = found.get(run.rows, (abs(run.mean), 0.0, None, False))
+        measured, ideal, u = found.get(run.rows, (abs(run.mean), None, None))
+        numbers = {"m1": run.m1, "m2": run.m2, "drop": run.drop}
         lines.append(
-            {
-                "rows": " ".join(map(str, run.rows)),
-                "m1": float(run.m1.value),
-                "m2": float(run.m2.value),
-                **({} if run.drop is None else {"drop": float(run.drop.value)}),
-                fit.runs.kind: sign * measured,
-                "u": u_run,
-                "expected": sign * ideal if moving else None,
-                "residual": sign * (measured - ideal) / u_run if moving and u_run else None,
-            }
+            {"rows": " ".join(map(str, run.rows))}
+            | {x: float(one.value) for x, one in numbers.items() if one}
+            | {kind: sign * measured, "u": u, "expected": None if ideal is None else sign * ideal}
+            | {"residual": None if ideal is None or u is None else sign * (measured - ideal) / u}
         )
     return lines
 
@@ -216,21 +211,13 @@ def _print_page(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> None:
     page = Page()
     page.say(conditions(fit))
     _print_table(page, _columns(fit, lines))
-    u = "u is the standard uncertainty of a run, scatter between runs included"
-    if (pair := fit.whole.correlation) is not None:
-        u += f"; {pair[0]} and {pair[1]} have correlation {rounded(pair[2])}"
-    page.say(f"{u}.", *notes(fit))
+    page.say("u is the standard uncertainty of a run, scatter between runs included.", *notes(fit))
     page.say(*head(fit), style="bold")
     if fit.whole.results:
-        written = {x: published(*one) for x, one in fit.whole.results.items()}
-        results = {
-            "Quantity": list(written),
-            "Value": [value for value, _ in written.values()],
-            "Unit": [QUANTITIES[x].unit for x in written],
-            "Symbol": [QUANTITIES[x].symbol for x in written],
-            "95 % interval": [ends for _, ends in written.values()],
-        }
-        _print_table(page, results)
+        heads = "Quantity", "Value", "Unit", "Symbol", "95 % interval"
+        results = ((x, QUANTITIES[x], published(*one)) for x, one in fit.whole.results.items())
+        rows = [(x, value, words.unit, words.symbol, ends) for x, words, (value, ends) in results]
+        _print_table(page, dict(zip(heads, zip(*rows, strict=True), strict=True)))
 
 
 def _print_table(page: Page, columns: Mapping[str, Sequence[str]]) -> None:
@@ -239,26 +226,21 @@ def _print_table(page: Page, columns: Mapping[str, Sequence[str]]) -> None:
 
 def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
     """Return for each run the measurement, what is expected, and the residual."""
-    kind, data = fit.runs.kind, fit.whole.best.data
+    kind, data, unit = fit.runs.kind, fit.whole.best.data, parameter_of(fit.runs.kind).unit
     suspects = {" ".join(map(str, fit.used[i].rows)) for i in fit.suspects}
-    unit = parameter_of(kind).unit
-    finest = min((line["u"] for line in lines if line["u"]), default=None)
-    if data.scatter.any() and finest:  # the mean has the digits of its own scatter
-        finest = min(finest, float(data.scatter.min()))
+    # The mean has the digits of its own scatter.
+    finest = float(min(data.scatter.min() or np.inf, fit.whole.best.sigma.min()))
 
-    def column(name: str) -> list[str]:
-        return ["" if line[name] is None else cut(line[name], finest) for line in lines]
+    def column(name: str, write: Any) -> list[str]:
+        return ["" if line[name] is None else write(line[name]) for line in lines]
 
-    residuals = [line["residual"] for line in lines]
     return {
         "row": [
             line["rows"].replace(" ", ",") + (" !" if line["rows"] in suspects else "") for line in lines
         ],
-        **{f"{name} (kg)": [format_number(line[name]) for line in lines] for name in ("m1", "m2")},
-        f"{kind} ({unit})": column(kind),
-        f"expected ({unit})": column("expected"),
-        f"u ({unit})": ["" if line["u"] is None else cut(line["u"], line["u"]) for line in lines],
-        "residual/u": [
-            "" if one is None else f"{rounding_to_place(-2)(Fraction(one)):f}" for one in residuals
-        ],
+        **{f"{name} (kg)": column(name, format_number) for name in ("m1", "m2")},
+        f"{kind} ({unit})": column(kind, lambda value: cut(value, finest)),
+        f"expected ({unit})": column("expected", lambda value: cut(value, finest)),
+        f"u ({unit})": column("u", lambda u: cut(u, u)),
+        "residual/u": column("residual", lambda ratio: f"{rounding_to_place(-2)(Fraction(ratio)):f}"),
     }

@@ -1,17 +1,11 @@
 """The quantities that a fit gives, and their numbers as published: cut where their uncertainty begins."""
 
 from collections.abc import Mapping, Sequence
+from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..model.digits import (
-    DOUBLE_DIGITS,
-    format_number,
-    rounding_to_place,
-    share_exponent,
-    strip_zeros,
-    to_digits,
-)
+from ..model.digits import Rounding, format_number, rounding_to_place, share_exponent, strip_zeros, to_digits
 
 
 class Quantity(NamedTuple):
@@ -46,7 +40,7 @@ RESULTS = {
 }
 SMALLER_UNITS = {"kg": ("kg", "g", "mg"), "N": ("N", "mN", "µN")}
 """Units that are each a thousandth of the one before."""
-MOST_DIGITS = 11
+MOST_DIGITS = 15
 """Digits that doubles leave right."""
 
 
@@ -58,25 +52,20 @@ class Result(NamedTuple):
     interval: tuple[float, float]
 
 
-def published(value: float, uncertainty: float, interval: Sequence[float] = (0, 0)) -> tuple[str, str]:
-    """Return a value ± its uncertainty, and its interval: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.
+def published(value: float, uncertainty: float, interval: Sequence[float] = ()) -> tuple[str, str]:
+    """Return a value ± its uncertainty, and its interval, all cut at the second digit of the uncertainty.
 
-    All are cut at the second digit of the uncertainty. A value without uncertainty has six digits, and no
-    interval. No number has more digits than a double.
+    They share a power of ten: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.
     """
-    largest = max(map(abs, (value, uncertainty, *interval)))
-    place = max(_place(value, uncertainty), _place(largest, largest) - (DOUBLE_DIGITS - 2))
-    numbers = [rounding_to_place(place)(Fraction(x)) for x in (value, uncertainty, *interval)]
-    if not numbers[1]:
-        return format_number(to_digits(MOST_DIGITS if uncertainty else 6)(Fraction(value))), ""
+    numbers = [_cutter(value, uncertainty)(Fraction(x)) for x in (value, uncertainty, *interval)]
     power = max(number.adjusted() for number in numbers[:2] if number)
     both = share_exponent("{:f} ± {:f}", numbers[:2], power)
-    return both, share_exponent("{:f} to {:f}", numbers[2:], power)
+    return both, share_exponent("{:f} to {:f}", numbers[2:], power) if interval else ""
 
 
-def with_u(value: float, uncertainty: float | None) -> str:
-    """Return a value ± its uncertainty, if it has one."""
-    return published(value, uncertainty or 0)[0]
+def with_u(value: float, uncertainty: float) -> str:
+    """Return a value ± its uncertainty."""
+    return published(value, uncertainty)[0]
 
 
 def equation(name: str, value: float, uncertainty: float) -> str:
@@ -88,13 +77,13 @@ def cut(value: float, uncertainty: float | None) -> str:
     """Return a value cut at the second digit of an uncertainty; to six digits if there is none."""
     if not uncertainty:
         return format_number(to_digits(6)(Fraction(value)))
-    return f"{rounding_to_place(_place(value, uncertainty))(Fraction(value)):f}"
+    return f"{_cutter(value, uncertainty)(Fraction(value)):f}"
 
 
-def _place(value: float, uncertainty: float) -> int:
-    """Return the place of the last digit, as a power of ten."""
-    first, of_u = (to_digits(2)(Fraction(x)).adjusted() if x else -(10**3) for x in (value, uncertainty))
-    return max(of_u - 1, first - MOST_DIGITS + 1)
+def _cutter(value: float, uncertainty: float) -> Rounding[Decimal]:
+    """Return a function that cuts numbers there, and before the digits that doubles have not."""
+    of_u, first = (to_digits(2)(Fraction(x)).adjusted() for x in (uncertainty, value or uncertainty))
+    return rounding_to_place(max(of_u - 1, first - (MOST_DIGITS - 1)))
 
 
 def rounded(value: float, digits: int = 2) -> str:

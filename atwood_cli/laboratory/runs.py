@@ -2,12 +2,13 @@
 
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence, Set
+from contextlib import suppress
 from fractions import Fraction
 from shlex import quote
 from typing import Any, Literal, NamedTuple
 
-from ..model.scene import INPUTS, Input, SceneError, parameter_of
-from ..model.units import Malformed, in_quotes, read_unit
+from ..model.scene import INPUTS, Input, SceneError
+from ..model.units import in_quotes
 from ..tables.headings import (
     EMPTY,
     Heading,
@@ -21,6 +22,7 @@ from ..tables.headings import (
     read_uncertainty,
     recognised,
     refused,
+    unit_factor,
 )
 from ..tables.sheets import Sheet, sheet_of
 from ..tables.sources import Unreadable
@@ -96,12 +98,10 @@ def read_runs(
     """
     sheet = sheet_of(source, VOCABULARY, named)
     headings = read_headings(sheet.columns, VOCABULARY, labels, named)
-    names = {heading.name for heading in headings}
-    kind: Kind = "a" if "a" in names else "time"
+    _check(sheet, headings, drop, named)
+    kind: Kind = "a" if any(heading.name == "a" for heading in headings) else "time"
     headings = [heading for heading in headings if kind == "time" or heading.name != "drop"]
-    _check_mean(headings, named)
-    headings, others = _with_unnamed(sheet, headings, labels)
-    _check(sheet, names, drop)
+    others = _labels(sheet, headings, labels)
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     remarks = read_as(headings, sheet.separator, comma, [*others, *sheet.remarks])
@@ -109,11 +109,9 @@ def read_runs(
         drop = drop._replace(uncertainty=Fraction(0))  # it counts for all runs together
     left_out = _read_without(without, len(sheet.rows), headings)
     try:
-        rows = [
-            _run(i, row, headings, comma, drop, left_out.get(i, set())) for i, row in enumerate(sheet.rows, 1)
-        ]
+        rows = [_run(i, row, headings, comma, drop, left_out) for i, row in enumerate(sheet.rows, 1)]
     except Unreadable as error:
-        raise Unreadable(explained(error, remarks)) from None
+        raise Unreadable(f"{error}{read_as_of(remarks)}") from None
     remarks += [f"row {run.rows[0]} has no {kind}: it is not used." for run in rows if not run.measured]
     remarks += [f"{in_words(cell)} was left out, as asked." for cell in map(str, without) if ":" in cell]
     runs = _joined(run for run in rows if run.measured)
@@ -123,64 +121,32 @@ def read_runs(
     return Runs(kind, runs, signed, remarks)
 
 
-def explained(error: Exception, remarks: Sequence[str]) -> str:
-    """Return an error in words, and how the table was read."""
-    return "; ".join([f"{error}", *(one.rstrip(".") for one in remarks if one.startswith("read as"))])
+def read_as_of(remarks: Sequence[str]) -> str:
+    """Return how the table was read, to stand behind an error; empty if it was read as usual."""
+    return "".join(f"; {one.rstrip('.')}" for one in remarks if one.startswith("read as"))
 
 
-def _with_unnamed(
-    sheet: Sheet, headings: Sequence[Heading], labels: Collection[str]
-) -> tuple[list[Heading], list[str]]:
-    """Return the columns of quantities, and the other columns of numbers in words.
-
-    A column without a heading behind a measured one, as below a merged heading, is a repeat.
-
-    Raises Unreadable for a column that could hold a quantity, unless it is one of the ``labels``.
-    """
-    found = {heading.place: heading for heading in headings}
-    taken = {*found, *(heading.u.place for heading in headings if heading.u)}
-    others: list[str] = []
-    for place, column in enumerate(sheet.columns):
-        if place in taken or column in labels:
-            continue
-        if column in INPUTS:
-            option = column.replace("_", "-")
-            raise refused(column, f"holds for all runs, so it is an option: give --{option}")
-        if not any(LIKE_NUMBER.match(row[place]) for row in sheet.rows):
-            continue
-        if not column.strip():
-            before, name = found.get(place - 1), f"column {place + 1}"
-            if not before or before.name not in MEASURED or before.u:
-                raise Unreadable(f"{name} has numbers and no heading; give it one")
-            found[place] = before._replace(place=place, column=name, number=name)
-        elif LIKE_UNCERTAINTY.search(column):
-            raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
-        else:
-            others.append(f"{in_quotes(column)} as a label")
-    return [found[place] for place in sorted(found)], others
+# Headings
 
 
-def _check_mean(headings: Sequence[Heading], named: Mapping[str, str]) -> None:
-    """Refuse a column without a number beside numbered repeats: it may be their mean. Raises Unreadable."""
-    measured = [heading for heading in headings if heading.name in MEASURED and heading.column not in named]
-    alone = [heading for heading in measured if not heading.number]
-    if alone and len(measured) > len(alone):
-        raise refused(alone[0].column, "stands beside repeats and may be their mean; number it if it is one")
-
-
-def _check(sheet: Sheet, names: Set[str], drop: Input | None) -> None:
+def _check(sheet: Sheet, headings: Sequence[Heading], drop: Input | None, named: Mapping[str, str]) -> None:
     """Check that runs have all columns, and times or accelerations. Raises Unreadable, SceneError."""
-    if "a" in names and "time" in names:
+    names = {heading.name for heading in headings}
+    measured = [heading for heading in headings if heading.name in MEASURED and heading.column not in named]
+    alone = [heading.column for heading in measured if not heading.number]
+    if alone and len(measured) > len(alone):
+        raise refused(alone[0], "stands beside repeats and may be their mean; number it if it is one")
+    if names >= MEASURED.keys():
         raise Unreadable("there are columns a and time; keep one, or let one pass by --label")
     missing = [name for name in ("m1", "m2") if name not in names]
-    if not names & {"a", "time"}:
+    if not names & MEASURED.keys():
         missing.append("time")
     if missing:
         raise Unreadable(_missing(sheet, missing))
     if drop is None and not names & {"a", "drop"}:
-        raise Unreadable("times need the height of fall: give drop, or a column of that name")
+        raise Unreadable("the height of fall is missing: give drop, or a column of that name")
     if drop is not None and (has := next((name for name in ("a", "drop") if name in names), "")):
-        raise SceneError("drop", drop.given, f"has no part here: the table has {has}")
+        raise SceneError("drop", drop.given, f"is not needed, as the table has {has}; leave it out")
 
 
 def _missing(sheet: Sheet, missing: Sequence[str]) -> str:
@@ -191,59 +157,74 @@ def _missing(sheet: Sheet, missing: Sequence[str]) -> str:
         return f"{said}: give the columns headings, as m1 (g),m2 (g),t (s)"
     if len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
         return f"{said}: quantities stand in the first column; make each run a row, with headings above"
-    known = recognised(sheet.columns, VOCABULARY)
-    free = [
-        (column, unit)
-        for place, column in enumerate(sheet.columns)
-        if column.strip() and column not in known
-        for *_, (_, unit) in [divisions(column)]
-        if any(LIKE_NUMBER.match(row[place]) for row in sheet.rows)
-    ]
-    options = []
-    for name in missing:
-        if one := next((one for one in free if _may_be(name, one[1])), None):
-            free.remove(one)
-            options.append(f"--column {'t' if name == 'time' else name}={quote(one[0])}")
+    known, options = recognised(sheet.columns, VOCABULARY), dict[str, str]()
+    for place, column in enumerate(sheet.columns):
+        if column.strip() and column not in known and _has_numbers(sheet, place):
+            *_, (_, unit) = divisions(column)
+            for name in [name for name in missing if name not in options][:1]:
+                with suppress(Unreadable):  # it has the unit of something else
+                    unit_factor(name, unit, column)
+                    options[name] = f"--column {'t' if name == 'time' else name}={quote(column)}"
     said += f"; there {'are' if sheet.columns[1:] else 'is'} {listed(sheet.columns)}"
     if not options:
         return said
-    return f"{said}; name {'them' if missing[1:] else 'it'}, as {' '.join(options)}"
+    return f"{said}; name {'them' if missing[1:] else 'it'}, as {' '.join(options.values())}"
 
 
-def _may_be(name: str, unit: str) -> bool:
-    """Decide if a column with that unit, or without any, may hold a quantity."""
-    try:
-        return not unit or bool(read_unit(unit, parameter_of(name).dimension or ""))
-    except Malformed:
-        return False
+def _has_numbers(sheet: Sheet, place: int) -> bool:
+    return any(LIKE_NUMBER.match(row[place]) for row in sheet.rows)
+
+
+def _labels(sheet: Sheet, headings: Sequence[Heading], labels: Collection[str]) -> list[str]:
+    """Return in words the columns of numbers that hold no quantity.
+
+    Raises Unreadable for one that could hold a quantity, unless it is one of the ``labels``.
+    """
+    taken = {column.place for heading in headings for column in (heading, heading.u) if column}
+    others: list[str] = []
+    for place, column in enumerate(sheet.columns):
+        if place in taken or column in labels:
+            continue
+        if column in INPUTS:
+            option = column.replace("_", "-")
+            raise refused(column, f"holds for all runs, so it is an option: give --{option}")
+        if _has_numbers(sheet, place):
+            if not column.strip():
+                raise Unreadable(f"column {place + 1} has numbers and no heading; give it one")
+            if LIKE_UNCERTAINTY.search(column):
+                raise refused(column, "could be an uncertainty; name what of, as in 'u(t)'")
+            others.append(f"{in_quotes(column)} as a label")
+    return others
+
+
+# Rows
 
 
 def _read_without(
     words: Collection[int | str], rows: int, headings: Sequence[Heading]
-) -> dict[int, set[int]]:
-    """Return the places of cells to leave out by row, all of its measurements for a whole row.
+) -> set[tuple[int, int]]:
+    """Return the rows and places of measurements to leave out, all of them for a whole row.
 
     Raises SceneError for a row or a column that is not there.
     """
-    measured = {heading.place: _cell_names(heading) for heading in headings if heading.name in MEASURED}
-    found: dict[int, set[int]] = {}
+    measured = [heading for heading in headings if heading.name in MEASURED]
+    found: set[tuple[int, int]] = set()
     for word in map(str, words):
         number, colon, column = word.partition(":")
         if not (number.isascii() and number.isdigit() and 1 <= int(number[:9]) <= rows):
             raise SceneError("without", word, f"is not a row; there are 1 to {rows}")
-        places = {place for place, names in measured.items() if not colon or column.strip() in names}
-        if not places:
-            there = ", ".join(names[0] for names in measured.values())
+        cells = [one for one in measured if not colon or column.strip() in (one.column, _cell_name(one))]
+        if not cells:
+            there = ", ".join(map(_cell_name, measured))
             raise SceneError("without", word, f"names no column that is measured; there are {there}")
-        found[int(number)] = found.get(int(number), set()) | places
+        found |= {(int(number), one.place) for one in cells}
     return found
 
 
-def _cell_names(heading: Heading) -> list[str]:
-    """Return the names of a measured column in --without, the shortest first: t2, time2, its heading."""
-    numbered = re.fullmatch(r"\d*", heading.number)
-    names = sorted((f"{word}{heading.number}" for word in WORDS[heading.name].split()), key=len)
-    return [*(names if numbered else []), heading.column]
+def _cell_name(heading: Heading) -> str:
+    """Return the name of a measured column in --without: t2, or its heading if the user has named it."""
+    letter = "t" if heading.name == "time" else heading.name
+    return f"{letter}{heading.number}" if re.fullmatch(r"\d*", heading.number) else heading.column
 
 
 def in_words(cell: str) -> str:
@@ -276,29 +257,28 @@ def _run(
     headings: Sequence[Heading],
     comma: bool,
     drop: Input | None,
-    without: Set[int],
+    without: Set[tuple[int, int]],
 ) -> Run:
     """Return the run of one row, marked as left out if all its measurements are. Raises Unreadable."""
-    given, measured = dict[str, Input](), dict[int, Input]()
+    given, measured = dict[str, Input](), dict[Heading, Input]()
     try:
         for heading in headings:
-            value = _read_cell(heading, row, comma)
-            if value and heading.name in MEASURED:
-                measured[heading.place] = value
-            elif value:
-                given[heading.name] = value
+            if value := _read_cell(heading, row, comma):
+                if heading.name in MEASURED:
+                    measured[heading] = value
+                else:
+                    given[heading.name] = value
             elif heading.name not in MEASURED:
                 raise Unreadable(f"row {number} has no {heading.name}; write it in each row")
     except SceneError as error:
-        why = f"; {NO_RUN}" if not LIKE_NUMBER.match(row[heading.place]) else ""
+        why = f"; {NO_RUN}" if not LIKE_NUMBER.match(f"{error.value}") else ""
         raise Unreadable(f"row {number}: {error}{why}") from None
-    left_out = bool(measured) and without >= measured.keys()
-    kept = {place: one for place, one in measured.items() if left_out or place not in without}
-    names = {heading.place: _cell_names(heading)[0] for heading in headings if heading.name in MEASURED}
-    cells = tuple(f"{number}:{quote(names[place])}" for place in kept)
-    return Run(
-        (number,), given["m1"], given["m2"], given.get("drop", drop), (*kept.values(),), left_out, cells
-    )
+    kept = {column: one for column, one in measured.items() if (number, column.place) not in without}
+    left_out = bool(measured) and not kept
+    used = kept or measured
+    cells = tuple(f"{number}:{quote(_cell_name(column))}" for column in used)
+    m1, m2, drop = given["m1"], given["m2"], given.get("drop", drop)
+    return Run((number,), m1, m2, drop, (*used.values(),), left_out, cells)
 
 
 def _read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None:

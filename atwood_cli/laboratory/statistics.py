@@ -8,6 +8,7 @@ freedom; B. Rosner, "Percentage points for a generalized ESD many-outlier proced
 """
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from math import inf
 from typing import Any, NamedTuple
 
@@ -23,7 +24,6 @@ SINGULAR_RATIO = 1e-7
 """Below this ratio of singular values a linear fit has no unique solution."""
 ROUNDING = 1e-12
 """The least standard uncertainty of a measured number, as a share of it."""
-TINY = 1e-300
 MOST_OUTLIERS = 20
 """Outliers that are looked for; there is at most one for three degrees of freedom."""
 
@@ -37,7 +37,7 @@ class Line(NamedTuple):
 
     Covariance and variances are still to be multiplied by ``scale``, which is known with ``dof`` degrees of
     freedom. ``between`` is the factor of the estimated part of the variance, and ``chi2`` is by the known
-    part alone, None if there is none.
+    part alone.
     """
 
     coefficients: Column
@@ -45,42 +45,33 @@ class Line(NamedTuple):
     variance: Column
     scale: float
     dof: float
-    chi2: float | None
+    chi2: float
     between: float
 
 
 def fit_line(
-    J: Any, y: Column, known: Column, shape: Column, least: Column, repeats: tuple[float, int] = (0.0, 0)
+    J: Any, y: Column, known: Column, shape: Column, least: Column, repeats: tuple[float, int]
 ) -> Line:
     """Return the coefficients b (p) for which J b is nearest to y (n), with J (n, p). Raises CannotSeparate.
 
     The variance of y is ``known`` + v ``shape``. Paule and Mandel's v makes χ² equal to n - p; it is 0 if χ²
     is no more than that without it. Knapp and Hartung's scale is χ²/(n - p). If v is 0, χ² and degrees of
-    freedom of the ``repeats`` about their means are pooled with those of the line. Without known variances
-    the shape alone is scaled, which is ordinary least squares. No variance comes out below the ``least``.
+    freedom of the ``repeats`` about their means are pooled with those of the line. No variance comes out
+    below the ``least``; with nothing else known, this is ordinary least squares, weighted by the shape.
     """
-    dof, between, chi2, variance = len(y) - int(J.shape[1]), 0.0, None, shape
-    pooled_chi2, pooled_dof = 0.0, 0
-    if known.any():
-        floor: Column = np.maximum(known, ROUNDING * known.max())  # no weight is without bound
-
-        def excess(v: float) -> float:
-            return _solved(J, y, floor + v * shape)[2] - dof
-
-        chi2 = excess(0.0) + dof
-        if dof and chi2 > dof:
-            most = float((floor / shape).min())
-            while excess(most) > 0:
-                most *= 10
-            between = float(brentq(excess, 0, most, xtol=1e-15 * most))
-        else:
-            pooled_chi2, pooled_dof = repeats
-        variance = floor + between * shape
+    known = np.maximum(known, max(least.max(), ROUNDING * known.max()))  # no weight is without bound
+    dof, between, (pooled_chi2, pooled_dof) = len(y) - int(J.shape[1]), 0.0, repeats
+    chi2 = _solved(J, y, known)[2]
+    if dof and chi2 > dof:
+        most = 1.001 * _solved(J, y, shape)[2] / dof  # χ² is less than n - p there
+        between = brentq(lambda v: 1 - dof / _solved(J, y, known + v * shape)[2], 0, most, xtol=1e-15 * most)
+        pooled_chi2, pooled_dof = 0.0, 0
+    variance = known + between * shape
     coefficients, covariance, rest = _solved(J, y, variance)
-    all_dof = dof + pooled_dof
-    scale = (rest + pooled_chi2) / all_dof if all_dof else 1.0
+    dof += pooled_dof
+    scale = (rest + pooled_chi2) / dof if dof else 1.0
     scale = max(scale, float((least / variance).max()))
-    return Line(coefficients, covariance, variance, scale, all_dof or inf, chi2, between)
+    return Line(coefficients, covariance, variance, scale, dof or inf, chi2, between)
 
 
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
@@ -106,28 +97,25 @@ Judge = Callable[[NDArray[np.bool_]], tuple[Column, Column]]
 """Return how many standard deviations each value is from a fit of those kept, and degrees of freedom."""
 
 
-def outliers(free: int, tests: int, count: int, level: float, judge: Judge) -> Mapping[int, float]:
+def outliers(judge: Judge, count: int, free: int, level: float) -> Mapping[int, float]:
     """Return the outliers among ``count`` values, each with its distance in standard deviations (Rosner).
 
     The value that is farthest from the fit of those kept is left out, and judged by the fit of the others;
     this goes on, and all values are outliers up to the last that chance does not explain. ``free`` are the
-    degrees of freedom with all values, ``tests`` the number of values that are judged, and ``level`` the
-    probability that a sound set has an outlier.
+    degrees of freedom with all values, and ``level`` the probability that a sound set has an outlier.
     """
     kept, found, significant = np.ones(count, dtype=bool), dict[int, float](), 0
-    with np.errstate(invalid="ignore"):
-        try:
-            distance, _ = judge(kept)
-            for number in range(1, min(MOST_OUTLIERS, max(1, free // 3), free - 1) + 1):
-                # Two repeats are equally far from each other: float32 keeps their order.
-                i = int(np.argmax((np.abs(distance) * kept).astype(np.float32)))
-                kept[i] = False
-                distance, dof = judge(kept)
-                found[i] = float(distance[i])
-                if 2 * tests * stdtr(min(dof[i], NORMAL_DOF), -abs(found[i])) < level:
-                    significant = number
-        except CannotSeparate:
-            pass
+    with suppress(CannotSeparate):
+        distance, _ = judge(kept)
+        level /= 2 * (int(np.count_nonzero(distance)) or 1)  # of one value that is judged, on one side
+        for number in range(1, min(MOST_OUTLIERS, max(1, free // 3), free - 1) + 1):
+            # Two repeats are equally far from each other: float32 keeps their order.
+            i = int(np.argmax((np.abs(distance) * kept).astype(np.float32)))
+            kept[i] = False
+            distance, dof = judge(kept)
+            found[i] = float(distance[i])
+            if stdtr(min(dof[i], NORMAL_DOF), -abs(found[i])) < level:
+                significant = number
     return dict(list(found.items())[:significant])
 
 
@@ -141,14 +129,14 @@ def judge_of_line(
 
     def judge(kept: NDArray[np.bool_]) -> tuple[Column, Column]:
         line = fit_line(J[kept], y[kept], known[kept], shape[kept], least[kept], repeats)
-        variance = shape if line.chi2 is None else known + line.between * shape
+        variance = np.maximum(known + line.between * shape, least)
+        of_line = np.einsum("ij,jk,ik->i", J, line.covariance, J)
+        spread = variance + np.where(kept, -1, 1) * of_line
+        distance: Column = (y - J @ line.coefficients) / np.sqrt(np.maximum(line.scale * spread, least))
         share = line.between * shape / variance
         dof = np.full(len(y), line.dof)
         if line.between:
             dof = 1 / (share**2 / line.dof + (1 - share) ** 2 / (repeats[1] or inf))
-        of_line = np.einsum("ij,jk,ik->i", J, line.covariance, J)
-        of_rest = np.where(kept, np.maximum(variance - of_line, 1e-9 * variance), variance + of_line)
-        distance: Column = (y - J @ line.coefficients) / np.sqrt(np.maximum(line.scale * of_rest, least))
         return distance, dof
 
     return judge
@@ -162,15 +150,14 @@ def judge_of_repeats(values: Column, u: Column, run: NDArray[np.intp], step: flo
     weight = u**-2
 
     def judge(kept: NDArray[np.bool_]) -> tuple[Column, Column]:
-        total = np.bincount(run, weight * kept)
-        means = np.bincount(run, weight * kept * values) / np.maximum(total, TINY)
-        share = weight / np.maximum(total[run], TINY)
-        rest = (values - means[run]) / u
-        dof = int(kept.sum() - np.count_nonzero(total))
-        variance = sum_of_squares(rest[kept]) / max(dof, 1) + (step / u) ** 2 / 12
-        spread = np.where(kept, 1 - share, 1 + share)
-        is_judged = (spread > 1e-9) & (total[run] > 0) & (variance > 0)
-        distance: Column = np.where(is_judged, rest / np.sqrt(np.where(is_judged, spread * variance, 1)), 0)
+        sums = np.bincount(run, weight * kept)
+        total, dof = sums[run], int(kept.sum()) - int(np.count_nonzero(sums))
+        others = total - weight * kept  # of the same run
+        with np.errstate(divide="ignore", invalid="ignore"):
+            rest = values - (np.bincount(run, weight * kept * values) / sums)[run]
+            variance = sum_of_squares((rest / u)[kept]) / max(dof, 1) * u**2 + step**2 / 12
+            spread = variance * np.where(kept, others / total, 1 + weight / others)
+            distance: Column = np.where((others > 0) & (spread > 0), rest / np.sqrt(spread), 0)
         return distance, np.full(len(values), float(dof))
 
     return judge

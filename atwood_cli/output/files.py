@@ -7,7 +7,6 @@ import stat
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout, suppress
-from io import TextIOBase
 from pathlib import Path
 
 STDOUT = "-"
@@ -39,17 +38,6 @@ class Stdout:
 
     def flush(self) -> None:
         self.file.flush()
-
-
-class ClosedStdout(TextIOBase):
-    """A stand-in for a standard output that the caller has closed: writing to it is an error."""
-
-    @property
-    def buffer(self) -> "ClosedStdout":
-        return self
-
-    def write(self, words: object) -> int:
-        raise OSError("cannot write the output: stdout is closed")
 
 
 def check_free(path: Path, force: bool) -> None:

@@ -3,6 +3,7 @@
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import ExitStack
 from itertools import chain, islice
 from shutil import get_terminal_size
 from time import monotonic
@@ -48,7 +49,7 @@ class Page:
             for line in wrapped(printable(words), self.width):
                 self.line(line, style)
 
-    def line(self, words: str, style: str = "") -> None:
+    def line(self, words: str, style: str) -> None:
         """Print a line as it is, however long."""
         from rich.text import Text
 
@@ -57,12 +58,9 @@ class Page:
     def head(self, answers: Answers, found: str = "") -> None:
         """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
         self.say(describe(answers.case.scene, answers.case.motion, answers.uncertain))
-        style = REGIME_STYLES[answers.case.regime]
         if found:
             self.say(found, style="bold")
-        else:
-            style = f"bold {style}"
-        self.say(unmarked(verdict(answers)), style=style)
+        self.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Groups, keys: int = 1) -> None:
         """Print a table, with a line between groups of rows.
@@ -72,37 +70,28 @@ class Page:
         """
         rows = [[printable(word, keep="") for word in row] for row in chain.from_iterable(groups)]
         heads, cells = [printable(head) for head in columns], list(zip(*rows, strict=True))
-        sizes = [len(group) for group in groups]
-        widths = list(map(_widest, heads, cells))
-        if not self.room or _width(widths) <= self.room:
-            self._print_table(heads, cells, widths, sizes)
-            return
-        heads = [re.sub("_(?=[a-z])", "_\n", head) for head in heads]
-        widths = list(map(_narrowest, heads, cells))
-        for block in _blocks(widths, keys, self.room):
-            part = [heads[i] for i in block], [cells[i] for i in block], [widths[i] for i in block]
-            self._print_table(*part, sizes)
+        widths, blocks = list(map(_widest, heads, cells)), [list(range(len(heads)))]
+        if self.room and _width(widths) > self.room:
+            heads = [re.sub("_(?=[a-z])", "_\n", head) for head in heads]
+            widths = list(map(_narrowest, heads, cells))
+            blocks = _blocks(widths, keys, self.room)
+        sizes = list(map(len, groups))
+        for block in blocks:
+            self._print_table([(heads[i], cells[i], widths[i]) for i in block], sizes)
 
-    def _print_table(
-        self,
-        heads: Sequence[str],
-        cells: Sequence[Sequence[str]],
-        widths: Sequence[int],
-        sizes: Sequence[int],
-    ) -> None:
-        """Print columns of at least these widths. ``sizes`` are the numbers of rows of the groups."""
+    def _print_table(self, columns: Sequence[tuple[str, Sequence[str], int]], sizes: Sequence[int]) -> None:
+        """Print columns, each a heading, cells and the least width, in groups of these numbers of rows."""
         from rich import box
         from rich.table import Table
         from rich.text import Text
 
-        self.console.width = max(self.console.width, _width(widths))
+        self.console.width = max(self.console.width, _width(width for *_, width in columns))
         table = Table(box=box.ROUNDED)
-        wraps = []
-        for head, column, width in zip(heads, cells, widths, strict=True):
-            wraps.append(_widest("", column) > width)
+        wraps = [_widest("", cells) > width for _, cells, width in columns]
+        for (head, _, width), wrap in zip(columns, wraps, strict=True):
             # Not as markup, which a file's heading may look like.
-            table.add_column(Text(head), no_wrap=not wraps[-1], min_width=width)
-        left = zip(*cells, strict=True)
+            table.add_column(Text(head), no_wrap=not wrap, min_width=width)
+        left = zip(*(cells for _, cells, _ in columns), strict=True)
         for size in sizes:
             lines = list(islice(left, size))
             # Rows are joined if none is wrapped, as rich takes five times as long over single ones.
@@ -143,16 +132,17 @@ def _narrowest(head: str, cells: Sequence[str]) -> int:
     return _widest(head, chain.from_iterable(cell.split(" ") for cell in cells))
 
 
-def _blocks(widths: Sequence[int], keys: int, room: int) -> Iterator[list[int]]:
-    """Yield the columns of tables that stand below each other, each with the first ``keys`` columns."""
+def _blocks(widths: Sequence[int], keys: int, room: int) -> list[list[int]]:
+    """Return the columns of tables that stand below each other, each with the first ``keys`` columns."""
     first = list(range(keys))
-    block = list(first)
+    blocks = [first]
     for column in range(keys, len(widths)):
-        if len(block) > keys and _width(widths[i] for i in (*block, column)) > room:
-            yield block
-            block = list(first)
-        block.append(column)
-    yield block
+        block = blocks.pop()
+        if block != first and _width(widths[i] for i in (*block, column)) > room:
+            blocks.append(block)
+            block = first
+        blocks.append([*block, column])
+    return blocks
 
 
 def aligned(numbers: Iterable[str]) -> list[str]:
@@ -170,38 +160,29 @@ def _integer_part(value: str) -> int:
     return len(value.partition(" ")[0].partition(".")[0].partition("e")[0]) if _is_number(value) else 0
 
 
-def one(_: object) -> int:
-    """Return 1, the size of a part if only their number counts."""
-    return 1
-
-
 def with_progress(
     parts: Iterator[Part],
     total: int | None,
-    size: Callable[[Part], int] = one,
+    size: Callable[[Part], int] = lambda part: 1,
     rows: Callable[[Part], int] | None = None,
 ) -> Iterator[Part]:
     """Pass the parts on, with a bar on a terminal's stderr once they take longer than a second.
 
     The bar shows the share of ``total`` by the ``size`` of parts, and counts their ``rows`` if they have any.
     """
-    start, done, count = monotonic(), 0, 0
-    for part in parts:
-        yield part
-        done += size(part)
-        count += rows(part) if rows else 0
-        if monotonic() - start > 1 and sys.stderr.isatty():
-            break
-    else:
-        return
-    from rich.console import Console
-    from rich.progress import Progress
-
-    with Progress(console=Console(stderr=True), transient=True, redirect_stdout=False) as bar:
-        task = bar.add_task(counted(count, "row") if rows else "", total=total, completed=done)
+    start, done, count, bar = monotonic(), 0, 0, None
+    with ExitStack() as stack:
         for part in parts:
-            if rows:
-                bar.update(task, description=counted(count, "row"))
-                count += rows(part)
             yield part
-            bar.advance(task, size(part))
+            done += size(part)
+            count += rows(part) if rows else 0
+            so_far = counted(count, "row") if rows else ""
+            if bar:
+                bar.update(bar.task_ids[0], completed=done, description=so_far)
+            elif monotonic() - start > 1 and sys.stderr.isatty():
+                from rich.console import Console
+                from rich.progress import Progress
+
+                console = Console(stderr=True)
+                bar = stack.enter_context(Progress(console=console, transient=True, redirect_stdout=False))
+                bar.add_task(so_far, total=total, completed=done)

@@ -248,25 +248,18 @@ def relevant_inputs(
 def inputs_in_words(
     scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}
 ) -> dict[str, str]:
-    """Say each input, as m1 = 1 kg."""
+    """Say each input, as m1 = 1 kg, with at least as many decimals as its uncertainty: 3.00 ± 0.02."""
     parts = {}
     for name, (value, unit) in _given(scene, motion).items():
-        u = as_typed(uncertain[name]) if name in uncertain else ""
+        words = as_typed(value) if isinstance(value, Fraction) else value
+        if name in uncertain:
+            u = as_typed(uncertain[name])
+            if not {"e", "/"} & {*words, *u}:
+                decimals = max(len(number.partition(".")[2]) for number in (words, u))
+                words = f"{Decimal(words):.{decimals}f}"
+            words = f"{words} ± {u}"
         if isinstance(value, Fraction):
-            number = _as_fine(as_typed(value), u)
-            if u:
-                number = f"{number} ± {u}"
-            in_units = f"{number}{unit}" if unit else with_unit(number, parameter_of(name).unit)
-            parts[name] = f"{name} = {in_units}"
-        elif value is not None:
-            parts[name] = f"{name} = {value}"
+            words = f"{words}{unit}" if unit else with_unit(words, parameter_of(name).unit)
+        if value is not None:
+            parts[name] = f"{name} = {words}"
     return parts
-
-
-def _as_fine(number: str, uncertainty: str) -> str:
-    """Return the number with at least as many decimals as its uncertainty: 3 with 0.02 is 3.00."""
-    decimals = len(uncertainty.partition(".")[2]) - len(number.partition(".")[2])
-    if decimals <= 0 or set("e/") & {*number, *uncertainty}:
-        return number
-    pointed = number if "." in number else f"{number}."
-    return pointed + "0" * decimals

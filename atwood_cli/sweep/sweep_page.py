@@ -9,7 +9,7 @@ from itertools import groupby
 from ..model.digits import SHOWN_DIGITS, to_digits, to_double
 from ..model.quantities import QUANTITIES, STANDARD
 from ..model.scene import with_unit
-from ..output.page import Page, aligned, one, with_progress
+from ..output.page import Page, aligned, with_progress
 from ..output.text import VERSION, cell, scene_record
 from ..solver.messages import reasons_at
 from .changes import changes, regimes
@@ -35,7 +35,7 @@ class SweepPage:
     def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
         """Yield the rows, and count the reasons for missing values."""
         rows = solve_rows(self.sweep, names, digits)
-        for row in with_progress(rows, self.sweep.total, rows=one) if watch else rows:
+        for row in with_progress(rows, self.sweep.total, rows=lambda row: 1) if watch else rows:
             self.reasons.update(row.reasons.items())
             self.missing = {name for name in self.missing if not cell(row.values[name])}
             yield row
