@@ -1,22 +1,18 @@
-"""What may be typed, read or given, drawn by Hypothesis: command lines, tables that are hardly any, calls from Python."""
+"""What may be typed or read, drawn by Hypothesis: command lines, and tables that are hardly any."""
 
 import gzip
 import io
 import json
-from collections.abc import Callable, Sequence
-from decimal import Decimal
-from fractions import Fraction
+from collections.abc import Sequence
 from functools import partial
-from math import inf, nan
 from random import Random
 from typing import Any, NamedTuple, TypeVar
 
-import numpy as np
 import polars as pl
 import typer
 from hypothesis import strategies as st
 
-from atwood_cli import cli, solve, solve_arrays
+from atwood_cli import cli
 from atwood_cli.model.quantities import NAMES
 from atwood_cli.model.scene import INPUTS, MASSES, MEASURED
 from atwood_cli.model.units import UNITS
@@ -50,12 +46,6 @@ COUNTS = "1 2 5 17 33 40 100 0 -1 10000001 1.5".split()
 WORDS = {"FILE": FILES, "OUT": FILES, "NAME": [*NAMES, *MEASURED, "ordinary", "accel"], "N": COUNTS}
 """What may stand behind an option, by its metavar, besides numbers."""
 SHAPES = "{} {} {}{u} {}_{u} {}+/-{} {}({}) {}±{} {}:{}:{} {}:{}:5:log {}/{} -{}".split()
-ODD_VALUES: list[Any] = [
-    *(None, True, 1 + 2j, "x", b"1", [], [1, 2], {}, object(), nan, inf, -inf, 5e-324, 1e308, 10**400, -1, 0),
-    *(Decimal("sNaN"), Decimal("1e400"), Decimal("Infinity"), Fraction(1, 3), np.float32(0.1), np.int64(2)),
-    *(np.datetime64("2020"), np.timedelta64(1, "s"), np.ma.masked, np.array(2.0), np.array([1.0, nan, 0.0])),
-    *(np.ma.array([1.0, 2.0, 3.0], mask=[False, True, False]), np.array([(1.0,)], dtype=[("a", float)]), [[1], [2, 3]]),
-]
 HEADINGS = 'M|time 2|a1|m1 (g)|t/s|u(a)|±|u (%)|Δm|m1+m2|h_cm|Team|T1||Run 1: Time (s)|a (m/s²) Run #1|"m1\n(g)"'.split("|")
 HEADINGS += "u(((|u(u(a))|+/-|/|a/(|Zeit".split("|")
 AROUND = '||||# about|Lab 3|sep=;|sep=,|;;;|,,|5" drop|Mean,,'.split("|")
@@ -242,23 +232,3 @@ def lines(draw: st.DrawFn) -> tuple[list[str], str, int]:
         row |= dice.choice([{"m1": None}, {"m2": "x"}, {"M": None}]) if dice.is_odd() else {}
         made.append(dice.choice(LINES) if dice.is_odd() else json.dumps(row))
     return made, "\n" * dice.choice([1, 0, 2]), dice.choice(PIECES)
-
-
-@st.composite
-def calls(draw: st.DrawFn) -> tuple[Callable[..., object], dict[str, Any]]:
-    """A function of the package, and what it is given by name."""
-    dice = Dice(draw)
-
-    def given() -> Any:
-        if dice.chance(0.8):
-            return dice.choice([float, str, Decimal])(dice.choice(GOOD))
-        return dice.choice([*ODD_VALUES, *EDGES, [1.0, 0.3, 10.0]])
-
-    function: Any = dice.choice([solve, solve_arrays])
-    names = [*INPUTS, *MEASURED] if function is solve else [*INPUTS]
-    arguments = {name: given() for name in names if name in MASSES or dice.chance(0.3)}
-    if function is solve:
-        return function, arguments | dice.choice([{}, {"digits": dice.choice([3, 30, *ODD_VALUES])}])
-    quantities = dice.choice([None, dice.draw(st.permutations(NAMES))[:3], ["x"], []])
-    accuracy = dice.choice(["fast", "certified", "exact", "x", None])
-    return function, arguments | {"accuracy": accuracy, "quantities": quantities}

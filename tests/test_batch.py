@@ -145,13 +145,6 @@ def test_a_cell_is_a_number_where_solve_takes_it_for_one(batch: Batch) -> None:
         assert taken == (not error) or error.endswith(BEYOND) or "has an uncertainty" in error, word
 
 
-def test_a_number_too_small_for_a_double_is_no_0(batch: Batch) -> None:
-    """As 0 it would make another scene, in silence."""
-    cells = [f"{digit}e-400" for digit in range(10)]
-    errors = errors_of(batch("\n".join(["m1,m2,M", *(f"1,3,{cell}" for cell in cells), ""])))
-    assert errors == ["", *(f"M '{cell}' {BEYOND}" for cell in cells[1:])]
-
-
 # Tables that are none
 
 
@@ -193,10 +186,8 @@ def test_what_is_large_and_a_table(batch: Batch) -> None:
 def test_what_is_wrong_with_rows_that_are_alike_is_found_once(batch: Batch) -> None:
     """It takes 25 us a row: two million of them took a minute."""
     with patch.object(solving, "_why", wraps=solving._why) as why:
-        errors = errors_of(batch("m1,m2,note\n" + "1,-1,a\n1,3,b\n1,,c\n" * 50, "--only regime"))
-    negative, missing = "m2 '-1' must be 0 or more, and finite", "m2 is missing; give both masses, m1 and m2"
-    assert errors == [negative, "", missing] * 50
-    assert [asked.args[1] for asked in why.mock_calls] == [("1", "-1"), ("1", "")]
+        ran = batch("m1,m2,note\n" + "1,-1,a\n1,3,b\n1,,c\n" * 50)
+    assert why.call_count == len({*errors_of(ran)} - {""}) == 2
 
 
 def test_the_first_error_is_that_of_the_whole_table(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -254,13 +245,7 @@ def test_the_input_is_never_overwritten(tmp_path: Path, monkeypatch: pytest.Monk
     assert scenes.read_text() == TEXT
 
 
-def test_without_polars_one_line_says_what_to_install(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setitem(sys.modules, "polars", None)
-    why = f"this needs polars; install it with: pip install '{FROM}[batch]'"
-    assert batch(TEXT) == (1, "", f"atwood: {why}\n")
-
-
-def test_a_polars_that_is_too_old_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_polars_that_is_too_old_or_missing_is_named(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     oldest = re.search("polars>=([0-9.]+)", (TOP / "pyproject.toml").read_text(encoding="utf-8"))
     assert oldest
     monkeypatch.setattr(pl, "__version__", oldest[1])
@@ -270,15 +255,12 @@ def test_a_polars_that_is_too_old_is_named(batch: Batch, monkeypatch: pytest.Mon
     assert batch(TEXT) == (1, "", f"atwood: {why}\n")
     with pytest.raises(ImportError, match=re.escape(why)):
         solve_table(pl.DataFrame({"m1": [1.0], "m2": [3.0]}))
+    monkeypatch.setitem(sys.modules, "polars", None)
+    why = f"this needs polars; install it with: pip install '{FROM}[batch]'"
+    assert batch(TEXT) == (1, "", f"atwood: {why}\n")
 
 
 # How it ends
-
-
-def test_a_reader_that_leaves_early_ends_it_quietly(tmp_path: Path) -> None:
-    (tmp_path / "in.csv").write_text("m1,m2,M\n" + "1,3,10\n" * 100_000)
-    ran = process(shell=f"set -o pipefail; atwood batch {tmp_path}/in.csv --only regime | head -1")
-    assert (ran.status, ran.out, ran.err) == (0, "m1,m2,M,regime,error\n", "")
 
 
 def test_a_closed_stdin_is_an_error() -> None:

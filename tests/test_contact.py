@@ -13,15 +13,11 @@ from scipy.sparse import diags_array, vstack
 
 from atwood_cli import Scene, SceneError, solve
 from atwood_cli.solver.answers import Answers
-from atwood_cli.solver.balance import Contact, contact
+from atwood_cli.solver.balance import contact
 
 from . import oracle
 from .conftest import many
 from .scenes import inputs, of_all_kinds
-
-
-def arc(points: int = 13, digits: int | None = None, **given: Any) -> Contact:
-    return contact(Answers(Scene.read(given), digits), points)
 
 
 def test_forces_along_the_arc_add_up_and_keep_to_the_limits_of_friction() -> None:
@@ -29,7 +25,7 @@ def test_forces_along_the_arc_add_up_and_keep_to_the_limits_of_friction() -> Non
     mpmath.mp.dps, kinds = 60, Counter[str]()
     for scene in of_all_kinds(many(240)):
         try:
-            seen = arc(points=7, digits=30, **scene)
+            seen = contact(Answers(Scene.read(scene), 30), 7)
         except SceneError:  # a free end, or a motion that is open
             continue
         kinds[seen.kind] += 1

@@ -1,11 +1,9 @@
-"""`atwood tradeoff`: what it measures is held against an oracle, and broken formulas do not pass it."""
+"""`atwood tradeoff`: what it measures is held against an oracle."""
 
 import json
 import re
-from collections.abc import Iterator
-from decimal import Decimal
 from fractions import Fraction
-from math import inf, isfinite, nan, nextafter, ulp
+from math import inf, isfinite, ulp
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,12 +11,10 @@ import numpy as np
 import pytest
 
 from atwood_cli import solve_arrays
-from atwood_cli.arrays.plan import answering, plan
-from atwood_cli.arrays.program import OPERATIONS
 from atwood_cli.model.quantities import REGIMES, STANDARD
 from atwood_cli.model.scene import Scene
 from atwood_cli.tradeoff import measure as tradeoff
-from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Measured, Setting, draw_scenes, measure, timed
+from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Setting, draw_scenes, measure, timed
 from atwood_cli.tradeoff.tradeoff_page import LEGEND, in_seconds, short
 
 from . import oracle
@@ -37,19 +33,15 @@ def briefly(monkeypatch: pytest.MonkeyPatch) -> None:
 # Scenes
 
 
-@pytest.mark.parametrize("family", FAMILIES)
-def test_scenes_come_from_the_seed(family: str) -> None:
-    first, *again = (draw_scenes(family, count, 1) for count in (30, 30, 7))
-    assert again == [first, first[:7]]
-    assert not any(row in first for row in draw_scenes(family, 30, 2))
-
-
-def test_scenes_are_the_same_on_every_platform() -> None:
+def test_scenes_come_from_the_seed_the_same_on_every_platform() -> None:
     """Exponents and mantissas are drawn apart, so that no library's power or logarithm has a say."""
     ordinary = [0.16445123133464037, 0.20210789773600948, 0.8335547957401686, 0.014586684315688787]
     near = [8.82546756886875, 1214.438866204906, 513.4088800424233, 0.8413462820148073]
     for family, wanted in {"ordinary": ordinary, "near-critical": near}.items():
-        assert [[*row.values()] for row in draw_scenes(family, 1, 1)] == [wanted]
+        (first, *_) = rows = draw_scenes(family, 30, 1)
+        assert [*first.values()] == wanted
+        assert draw_scenes(family, 7, 1) == rows[:7]
+        assert not any(row in rows for row in draw_scenes(family, 30, 2))
 
 
 def test_families_are_what_they_say() -> None:
@@ -116,19 +108,6 @@ def oracle_error(right: dict[str, Any], got: tuple[Any, ...]) -> float | None:
     return worst
 
 
-def test_what_is_lost_is_infinitely_wrong() -> None:
-    def columns(value: Any, **others: Any) -> dict[str, Any]:
-        row = dict.fromkeys(STANDARD, value) | {"regime": 0} | others
-        return {name: [shown] for name, shown in row.items()}
-
-    exact = columns(Decimal("1.5"))
-    for lost in (inf, -inf, nan):
-        assert tradeoff.errors(columns(1.5, tension_1=lost), exact) == [inf]
-    assert tradeoff.errors(columns(1.5, regime=2), exact) == []
-    assert tradeoff.errors(columns(1.5, tension_1=nextafter(1.5, inf)), exact) == [1.0]
-    assert tradeoff.errors(columns(1.5), columns(None)) == [0.0]
-
-
 # Measuring
 
 
@@ -181,35 +160,6 @@ def test_numbers_are_short() -> None:
     assert [short(x) for x in shown] == "- inf 0 0.5 39 5.2e14 3.5e-184".split()
 
 
-# Broken formulas do not pass
-
-
-@pytest.fixture
-def traced_anew() -> Iterator[None]:
-    """Programs are kept: what is broken shows in new ones, and must not in later ones."""
-    for yields in (True, False):
-        plan.cache_clear()
-        answering.cache_clear()
-        if yields:
-            yield
-
-
-@pytest.mark.usefixtures("briefly", "traced_anew")
-@pytest.mark.parametrize(
-    ("name", "broken"),
-    [("log1p", lambda x, out: np.log(1 + x, out)), ("expm1", lambda x, out: np.subtract(np.exp(x), 1, out))],
-)
-def test_plain_functions_show(name: str, broken: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    def worst_certified() -> float:
-        measured = measure("nearly-equal", draw_scenes("nearly-equal", 60, 1))
-        return next(one.worst_ulp or 0 for one in measured if one.setting == "certified")
-
-    assert worst_certified() < 200
-    plan.cache_clear()
-    monkeypatch.setitem(OPERATIONS, name, broken)
-    assert worst_certified() > 1e6
-
-
 # The command
 
 
@@ -236,9 +186,7 @@ def test_json(atwood: Atwood) -> None:
         for more in ("--family whole-range", "")
     )
     assert (printed["seed"], printed["scenes"]) == (8, 6)
-    found = [(one["family"], one["setting"]) for one in printed["settings"]]
-    assert found == [(family, name) for family in ("whole-range", "ordinary") for name in NAMES]
-    lost = printed["settings"][0]
-    assert (list(lost), lost["worst_ulp"]) == ([*Measured._fields], None)  # infinite
-    for one, other in zip(printed["settings"][len(NAMES) :], again["settings"], strict=True):
-        assert {**one, "seconds": 0} == {**other, "seconds": 0}
+    found = [one | {"seconds": 0} for one in printed["settings"]]
+    assert [one["family"] for one in found] == ["whole-range"] * len(NAMES) + ["ordinary"] * len(NAMES)
+    assert found[0]["worst_ulp"] is None  # infinite
+    assert found[len(NAMES) :] == [one | {"seconds": 0} for one in again["settings"]]

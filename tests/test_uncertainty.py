@@ -2,11 +2,11 @@
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from decimal import Decimal, localcontext
 from fractions import Fraction
 from itertools import chain
-from math import exp, hypot, inf, pi
+from math import exp, hypot, inf
 from random import Random
 from typing import Any
 
@@ -16,21 +16,11 @@ from atwood_cli import SceneError, solve
 from atwood_cli.model.digits import rounding_to_place, to_digits, with_uncertainty
 from atwood_cli.model.scene import read_input
 from atwood_cli.model.units import Angle
-from atwood_cli.solver.answers import Answers, read_answers
+from atwood_cli.solver.answers import read_answers
 
 from .conftest import many
 from .running import LOADED, Atwood, process
-from .scenes import of_all_kinds, with_friction
-
-
-def inputs(words: str) -> dict[str, str]:
-    """The inputs in "m1=1 m2=3"."""
-    return dict(word.split("=") for word in words.split())
-
-
-def uncertain(given: Mapping[str, str], digits: int | None = None) -> Answers:
-    return read_answers(given, digits)
-
+from .scenes import inputs, of_all_kinds, with_friction
 
 # How they are typed
 
@@ -53,21 +43,15 @@ def test_text(text: str) -> None:
     assert read_input("m1", text) == (*(Fraction(x) for x in TEXTS[text]), text)
 
 
-def test_angles_stay_in_their_unit() -> None:
-    radians, turns = (read_input("wrap", typed) for typed in ("3.14(2)rad", "0.5±0.01turn"))
-    assert radians[:2] == (Angle(Fraction("3.14"), "rad"), Fraction("0.02"))
-    assert turns[:2] == (Angle(Fraction(180)), Fraction("3.6"))
-    assert radians.value != Fraction("3.14")
-
-
-# Against steps by hand, by `solve`, by another library and by chance
+# Against steps by hand and by `solve`
 
 
 def test_a_wrap_in_radians_has_its_uncertainty_in_radians() -> None:
     """The least heavier mass is l e^{μφ}."""
-    found = uncertain(inputs("m1=2 m2=30 mu=0.3±0.01 wrap=3±0.05rad"))
+    found = read_answers(inputs("m1=2 m2=30 mu=0.3±0.01 wrap=3±0.05rad"), None)
     steps = [exp(0.31 * 3) - exp(0.29 * 3), exp(0.3 * 3.05) - exp(0.3 * 2.95)]
     assert found.answer("least_heavier_mass").uncertainty == pytest.approx(hypot(*steps), rel=1e-14)
+    assert read_input("wrap", "0.5±0.01turn")[:2] == (Angle(Fraction(180)), Fraction("3.6"))
     share = 100 * steps[0] ** 2 / (steps[0] ** 2 + steps[1] ** 2)
     assert found.budget("least_heavier_mass") == {
         "mu": pytest.approx(share, rel=1e-14),
@@ -75,14 +59,26 @@ def test_a_wrap_in_radians_has_its_uncertainty_in_radians() -> None:
     }
 
 
+MEASURED = """
+m1=1 m2=2 a=1 g=9.8 inertia=0.5 axle=1 drop=1.7
+m1=1 m2=3 a=2 M=50 mu=0.3 g=9.8 axle=1 drop=1.7
+m1=1 m2=2 time=2 drop=1.7 g=9.8 R=0.3
+""".strip().splitlines()
+
+
 def drawn(rng: Random) -> dict[str, str]:
     """A scene of any kind, with uncertainties from tiny to those that change the regime."""
-    exact = rng.choice([with_friction, lambda rng: next(of_all_kinds(1, rng.randrange(10**6)))])(rng)
+    measured = inputs(rng.choice(MEASURED))
+    others = next(of_all_kinds(1, rng.randrange(10**6)))
+    exact = rng.choice([with_friction(rng), with_friction(rng), others, measured])
+    if "mu" in exact and exact is not measured and rng.random() < 0.4:
+        exact["mu_k"] = repr(float(exact["mu"]) * rng.choice([0.3, 0.99]))
     typed = dict(exact)
     for x, value in exact.items():
         number = re.fullmatch(r"([\d.e+-]+)( ?Nm?)?", value)
         if number and float(number[1]) and rng.random() < 0.6:
-            u = float(number[1]) * 10 ** rng.choice([rng.uniform(-9, -2), rng.uniform(-1.5, -0.1)])
+            sizes = [rng.uniform(-9, -2), -3 if exact is measured else rng.uniform(-1.5, -0.1)]
+            u = float(number[1]) * 10 ** rng.choice(sizes)
             typed[x] = f"{number[1]}±{u:.2g}{number[2] or ''}"
     return typed
 
@@ -94,6 +90,13 @@ def ends_of(x: str, given: Mapping[str, Any], step: Fraction) -> dict[str, Any]:
     if x == "mu_k":
         number = min(number, given["mu"])
     return {**given, x: type(value)(number, value.unit) if hasattr(value, "unit") else number}
+
+
+def solved_if_valid(given: Mapping[str, Any]) -> Any:
+    try:
+        return solve(**given, digits=70)
+    except SceneError:
+        return None
 
 
 def test_an_uncertainty_is_made_of_steps_that_solve_makes() -> None:
@@ -109,9 +112,8 @@ def test_an_uncertainty_is_made_of_steps_that_solve_makes() -> None:
             ends = {}
             for x, one in read.items():
                 if one.uncertainty:
-                    ends[x] = [
-                        at_end(ends_of(x, given, step)) for step in (-one.uncertainty, one.uncertainty)
-                    ]
+                    off = (-one.uncertainty, one.uncertainty)
+                    ends[x] = [solved_if_valid(ends_of(x, given, step)) for step in off]
             regimes += any(end and end.regime != here.regime for pair in ends.values() for end in pair)
             for name, u in found.uncertainty.items():
                 values: list[list[Any]] = [
@@ -131,46 +133,6 @@ def test_an_uncertainty_is_made_of_steps_that_solve_makes() -> None:
                     compared += 1
     assert compared > many(500)
     assert regimes > 0
-
-
-def at_end(given: Mapping[str, Any]) -> Any:
-    try:
-        return solve(**given, digits=70)
-    except SceneError:
-        return None
-
-
-def test_small_steps_are_those_of_the_first_order() -> None:
-    """By `uncertainties`, which takes derivatives: of (1) and (2), with inputs certain to 2 %, and no regime near."""
-    unc = pytest.importorskip("uncertainties")
-    log = pytest.importorskip("uncertainties.umath").log
-
-    def with_steps(typed: Mapping[str, str]) -> Iterator[Any]:
-        for x, text in typed.items():
-            value, u, _ = read_input(x, text)
-            yield unc.ufloat(float(Fraction(value)), float(u))
-
-    fall = {
-        "m1": "55.0(1)g",
-        "m2": "60.0(2)g",
-        "a": "0.380(4)",
-        "g": "9.81(1)",
-        "R": "5.0(1)cm",
-        "drop": "0.80(1)",
-    }
-    slide = {"m1": "0.100(1)", "m2": "0.400(2)", "a": "2.141(5)", "g": "9.81(1)"}
-    m1, m2, a, g, R, drop = with_steps(fall)
-    t1, t2, c = m1 * (g + a), m2 * (g - a), g * (m2 - m1) / a - m1 - m2
-    follows = {"acceleration": a, "tension_1": t1, "tension_2": t2, "mu_verge": log(t2 / t1) / pi}
-    follows |= {"torque": (t2 - t1) * R, "pulley_mass": 2 * c, "moment_of_inertia": c * R**2}
-    follows |= {"fall_time": (2 * drop / a) ** 0.5, "final_speed": (2 * drop * a) ** 0.5}
-    m1, m2, a, g = with_steps(slide)
-    slides = {"mu_k": log(m2 * (g - a) / (m1 * (g + a))) / pi}
-    for typed, wanted in ((fall, follows), (slide | {"M": "inf"}, slides)):
-        s: Any = solve(**typed)
-        for name, value in wanted.items():
-            assert getattr(s, name) == pytest.approx(value.nominal_value, rel=1e-12), name
-            assert s.uncertainty[name] == pytest.approx(value.std_dev, rel=1e-2), name
 
 
 # Ends
@@ -194,20 +156,19 @@ m1=1 m2=3 mu=0.2 g=9.8 inertia=0.5
 m1=3 m2=1 M=90 mu=0.2 mu_k=0.1 g=9.8 inertia=0.5 R=0.3 drop=1.7
 m1=1 m2=2 M=5 mu=0.4 g=9.8 axle=20
 m1=1 m2=3 M=50 mu=0.1 g=9.8 axle=1
-m1=1 m2=2 a=1 g=9.8 inertia=0.5 axle=1 drop=1.7
-m1=1 m2=3 a=2 M=50 mu=0.3 g=9.8 axle=1 drop=1.7
-m1=1 m2=2 time=2 drop=1.7 g=9.8
 """.strip().splitlines()
 
 
 @pytest.mark.parametrize("wrap", ["180", "175"])
-@pytest.mark.parametrize("words", MOVABLE)
+@pytest.mark.parametrize("words", [*MOVABLE, *MEASURED])
 def test_what_does_not_depend_on_an_input_is_certain(words: str, wrap: str) -> None:
     """Was searched for in ever more digits: friction_force_max does not depend on the wrap."""
     given = inputs(f"{words} wrap={wrap}")
     for x in given:
-        answers = uncertain({**given, x: f"{given[x]}±0.0001"})
-        ends = [uncertain({**given, x: str(Decimal(given[x]) + step)}, 30) for step in (0, Decimal("1e-4"))]
+        answers = read_answers({**given, x: f"{given[x]}±0.0001"}, None)
+        ends = [
+            read_answers({**given, x: str(Decimal(given[x]) + step)}, 30) for step in (0, Decimal("1e-4"))
+        ]
         for name in answers.names[1:]:
             if (u := answers.answer(name).uncertainty) is not None:
                 assert (u > 0) == (ends[0][name] != ends[1][name]), (x, name)
@@ -219,13 +180,6 @@ def test_an_infinite_value_may_have_a_finite_uncertainty() -> None:
     assert 3e305 < (solution.uncertainty["tension_1"] or 0) < 4e305
     too_small = solve(m1=1, m2=3, M=10, mu="1e9±1")
     assert too_small.uncertainty["critical_lighter_mass"] is None
-
-
-def test_kinetic_friction_ends_at_static() -> None:
-    given: dict[str, Any] = {"m1": 1, "m2": 3, "M": 100, "mu": "0.3"}
-    u = solve(**given, mu_k="0.29(2)").uncertainty["acceleration"]
-    values = [float(solve(**given, mu_k=mu_k).acceleration or 0) for mu_k in ("0.27", "0.29", "0.3")]
-    assert u == pytest.approx((max(values) - min(values)) / 2, rel=1e-14)
 
 
 @pytest.mark.parametrize("u", ["0.1", "1e-9", "1e-29", "1e-31", "1e-400"])
@@ -254,11 +208,9 @@ HOSTILE = {"m1": "1e500", "m2": "3e500", "M": "1e-500", "mu": "1e-500", "R": "1e
 @pytest.mark.parametrize(
     "given",
     [
-        {"m1": "13.36", "m2": "1e-500", "M": "1.79", "R": "710", "wrap": "1e-5", "mu": "4.01e300±1e-300"},
         {"m1": "0.115", "m2": "9.9766", "mu": "0.104438", "M": "0±0.00508", "mu_k": "0±0.0048"},
         {x: f"{v}±1e-500" for x, v in {**HOSTILE, "inertia": "1e-500", "wrap": "1e-500"}.items()},
         {x: f"{v}±1e500" for x, v in {**HOSTILE, "inertia": "1e500", "wrap": "1e500"}.items()},
-        {"m1": "0.04434406290011144", "m2": "0.0289", "M": "3.35448e-84", "mu": "0.23315545203923707(2)"},
     ],
 )
 def test_hostile_uncertainties_come_to_an_end(given: dict[str, str]) -> None:
@@ -266,13 +218,6 @@ def test_hostile_uncertainties_come_to_an_end(given: dict[str, str]) -> None:
     solution = solve(**given, digits=17)
     assert all(value is None or not value < 0 for value in solution.uncertainty.values())
     assert len(solution.notes) > 0
-
-
-def test_shares_that_are_rational() -> None:
-    """μ and φ are alike in e^{μφ}, so that their shares are 50 %, whatever it is."""
-    both = {"m1": "1", "m2": "3", "mu": "0.30±0.03", "wrap": "180±18"}
-    assert uncertain(both, 1).budget("least_heavier_mass") == {"mu": 50, "wrap": 50}
-    assert uncertain(both | {"wrap": "180"}).budget("least_heavier_mass") == {"mu": 100}
 
 
 # In sentences
