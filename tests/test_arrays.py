@@ -18,7 +18,7 @@ from unittest.mock import Mock
 import numpy as np
 import polars as pl
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
@@ -101,6 +101,7 @@ odd_rows = st.fixed_dictionaries(
 )
 
 
+MIRRORED = {"m1": 2.0, "m2": 1.0, "mu": 0.0, "R": 1.0}  # without a -0 in its results
 usual = st.floats(0.1, 10)
 mixed_rows = st.fixed_dictionaries(
     {"m1": usual, "m2": usual},
@@ -115,6 +116,8 @@ mixed_rows = st.fixed_dictionaries(
 )
 
 
+@example([MIRRORED], NAMES)
+@example([MIRRORED] * 5, NAMES)
 @examples(40)
 @given(
     st.lists(odd_rows | mixed_rows, min_size=1, max_size=30),
@@ -174,10 +177,10 @@ def test_inputs_are_broadcast(
     grid = np.array(mu, object).reshape(3, 4)
     others: Any = OTHERS if None not in mu else {x: OTHERS[x] for x in OTHERS if x != "mu_k"}
     mixed: Any = {x: np.full(4, value) if x in columns else value for x, value in others.items()}
-    results = solve_arrays(np.array(m1)[:, None], m2, M, grid, **mixed)
+    results = solve_arrays(np.array(m1)[:, None], m2, M, grid, **mixed, quantities=NAMES)
     for i in range(3):
         for j in range(4):
-            one = solve_arrays(m1[i], m2[j], M, grid[i, j], **others)
+            one = solve_arrays(m1[i], m2[j], M, grid[i, j], **others, quantities=NAMES)
             for name, column in results.items():
                 assert column.shape == (3, 4)
                 np.testing.assert_allclose(column[i, j], one[name], rtol=4e-14)
@@ -200,7 +203,6 @@ def test_why_values_are_missing_is_counted(
     numbers = {"m1": (1, 2, 0), "m2": (1, 2, 3), "M": (None, 0, 1, 100, inf), "mu": (None, 0, 0.1, 1)}
     numbers |= {"R": (None, 1), "wrap": (90, 180, 360, 540), "axle": (*[None] * 4, 0, 10)}
     given: list[Any] = [{name: rng.choice(some) for name, some in numbers.items()} for _ in range(60)]
-    given += [dict.fromkeys(numbers) | {"m1": 1, "m2": 3, "M": 1e300, "mu": 0.9}] * 5  # solved once
     whole: dict[str, Any] = {name: [row[name] for row in given] for name in numbers}
     results, reasons = arrays.solve_and_count(whole, accuracy, NAMES)
     assert reasons == reasons_of([row for row in given if row["m1"] or row["mu"] is None])
@@ -231,6 +233,12 @@ def test_rows_that_differ_in_one_input_are_not_alike(name: str) -> None:
     results = solve_arrays(**given, quantities=["friction_force_max", "torque"], accuracy="exact")
     for i, row in enumerate((usual, usual | {name: usual[name] * 0.75}, usual)):
         assert_is_solve(results, i, row, "exact")
+
+
+def test_missing_values_of_rows_that_are_alike_are_counted_for_each() -> None:
+    row = {"m1": 1.0, "m2": 3.0, "M": 1e300, "mu": 0.9}
+    given = {name: [value] * 5 for name, value in row.items()}
+    assert arrays.solve_and_count(given, "exact", NAMES)[1] == reasons_of([row] * 5)
 
 
 def test_a_quantity_without_a_program_is_not_traced_for_long() -> None:
