@@ -243,20 +243,6 @@ def with_axle(rng: Random, given: Given) -> Given:
     return given | {"axle": f"{text} N" if rng.random() < 0.8 or "R" not in given else f"{text} Nm"}
 
 
-def of_all_kinds(count: int, seed: int = 2026) -> Iterator[Given]:
-    """Scenes as people have them, some on an axle that rubs, with a free end or equal masses."""
-    rng = Random(f"all kinds {seed}")
-    for _ in range(count):
-        scene = _vary(rng, ordinary(rng))
-        if rng.random() < 0.1:
-            scene["m2"] = rng.choice([scene["m1"], "0"][: 1 + ("mu" not in scene)])
-        if rng.random() < 0.5:
-            difference = abs(float(scene["m1"]) - float(scene["m2"])) or 1.0
-            force = 9.8 * difference * _log_uniform(rng, -2, 0.2)
-            scene["axle"] = repr(force) + ("Nm" if "R" in scene and rng.random() < 0.5 else "")
-        yield scene
-
-
 def with_friction(rng: Random, size: float = 1) -> Given:
     """A scene of masses of about that size in which friction decides, mostly, in all ways there are."""
     m1 = size * _log_uniform(rng, -2, 2)
@@ -282,6 +268,15 @@ def with_friction(rng: Random, size: float = 1) -> Given:
     if rng.random() < 0.75:
         words["mu"] = rng.choice(["0", *[f"{_log_uniform(rng, -3, 0.2):.3g}"] * 5, "1e9"])
     return words
+
+
+def of_all_kinds(count: int, seed: int = 2026) -> Iterator[Given]:
+    """Scenes as people have them, some with a free end or kinetic friction."""
+    rng = Random(f"all kinds {seed}")
+    for _ in range(count):
+        scene = with_friction(rng)
+        more = {"mu_k": repr(float(scene["mu"]) * rng.random())} if "mu" in scene else {"m2": "0"}
+        yield scene | more if rng.random() < 0.3 else scene
 
 
 # Dangers of numbers, each by its name: rows of doubles of few patterns, so that columns solve them together
