@@ -3,7 +3,6 @@
 import csv
 import io
 import json
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from math import isnan, ulp
@@ -84,15 +83,6 @@ def of_contact(scenes: Sequence[Given]) -> Iterator[Values]:
         yield {"regime": found["regime"], **ends} if found else {}
 
 
-def of_explanations(scenes: Sequence[Given]) -> Iterator[Values]:
-    """What stands in the line below the verdict."""
-    symbols = {"a": "acceleration", "T1": "tension_1", "T2": "tension_2"}
-    for given in scenes:
-        line = re.search(r"^a = .*\.$", out_of("solve", given, "--explain"), re.MULTILINE)
-        found = re.findall(r"(\w+) = ([-\d.e]+)", line[0]) if line else []
-        yield {symbols[symbol]: Decimal(value) for symbol, value in found}
-
-
 def of_csv(text: str) -> Iterator[Values]:
     for row in csv.DictReader(io.StringIO(text)):
         yield {
@@ -150,7 +140,6 @@ TEXTS = {
     "JSON, 30 digits": Door(of_json("--digits", "30"), 30, every=16, on_paper=True),
     "a sweep": Door(of_sweeps, every=16, on_paper=True),
     "contact": Door(of_contact, every=16, on_paper=True),
-    "an explanation": Door(of_explanations, 6, every=16),
 }
 """Doors for scenes as people type them."""
 DOUBLES = {

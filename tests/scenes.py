@@ -243,20 +243,6 @@ def with_axle(rng: Random, given: Given) -> Given:
     return given | {"axle": f"{text} N" if rng.random() < 0.8 or "R" not in given else f"{text} Nm"}
 
 
-def of_all_kinds(count: int, seed: int = 2026) -> Iterator[Given]:
-    """Scenes as people have them, some on an axle that rubs, with a free end or equal masses."""
-    rng = Random(f"all kinds {seed}")
-    for _ in range(count):
-        scene = _vary(rng, ordinary(rng))
-        if rng.random() < 0.1:
-            scene["m2"] = rng.choice([scene["m1"], "0"][: 1 + ("mu" not in scene)])
-        if rng.random() < 0.5:
-            difference = abs(float(scene["m1"]) - float(scene["m2"])) or 1.0
-            force = 9.8 * difference * _log_uniform(rng, -2, 0.2)
-            scene["axle"] = repr(force) + ("Nm" if "R" in scene and rng.random() < 0.5 else "")
-        yield scene
-
-
 def with_friction(rng: Random, size: float = 1) -> Given:
     """A scene of masses of about that size in which friction decides, mostly, in all ways there are."""
     m1 = size * _log_uniform(rng, -2, 2)
@@ -284,12 +270,19 @@ def with_friction(rng: Random, size: float = 1) -> Given:
     return words
 
 
-# Dangers of numbers, each by its name: rows of doubles that have the same inputs, so that columns solve them together
+def of_all_kinds(count: int, seed: int = 2026) -> Iterator[Given]:
+    """Scenes as people have them, some with a free end or kinetic friction."""
+    rng = Random(f"all kinds {seed}")
+    for _ in range(count):
+        scene = with_friction(rng)
+        more = {"mu_k": repr(float(scene["mu"]) * rng.random())} if "mu" in scene else {"m2": "0"}
+        yield scene | more if rng.random() < 0.3 else scene
+
+
+# Dangers of numbers, each by its name: rows of doubles of few patterns, so that columns solve them together
 
 Row = dict[str, float]
 G = 9.80665
-
-
 DANGERS: dict[str, Callable[[Random], Row]] = {}
 
 
@@ -318,6 +311,11 @@ def _masses(rng: Random) -> Row:
     return {"m1": m1, "m2": m1 * (1 + _log_uniform(rng, -2, 1)), "R": _log_uniform(rng, -1, 1)}
 
 
+def _with_pulley(rng: Random, given: Row, most: float = 1) -> Row:
+    """The row, with a pulley's mass in every other one."""
+    return given | rng.choice([{}, {"M": _log_uniform(rng, -1, most)}])
+
+
 def _turns(rng: Random) -> float:
     return 360.0 * rng.randint(1, 3)
 
@@ -336,13 +334,9 @@ def _capstan(mu: float) -> flint.arb:
 
 
 @danger
-def light_pulley_whole_turns(rng: Random) -> Row:
-    return _masses(rng) | {"M": _tiny(rng), "wrap": _turns(rng)}
-
-
-@danger
-def light_pulley_short_wrap(rng: Random) -> Row:
-    return _masses(rng) | {"M": _tiny(rng, most=150), "wrap": _tiny(rng, 1, 150)}
+def pulley_of_hardly_any_mass(rng: Random) -> Row:
+    wrap = rng.choice([_turns(rng), _tiny(rng, 1, 150)])
+    return _masses(rng) | {"M": _tiny(rng, most=150 if wrap < 1 else 305), "wrap": wrap}
 
 
 @danger
@@ -351,28 +345,10 @@ def heavy_pulley(rng: Random) -> Row:
 
 
 @danger
-def slip_on_a_short_wrap(rng: Random) -> Row:
-    return _masses(rng) | {
-        "M": _log_uniform(rng, -1, 1),
-        "wrap": _tiny(rng, 4),
-        "mu": _log_uniform(rng, -1, 0),
-    }
-
-
-@danger
-def slip_with_weak_friction(rng: Random) -> Row:
-    return _masses(rng) | {"M": _log_uniform(rng, -1, 1), "wrap": _turns(rng), "mu": _tiny(rng)}
-
-
-@danger
-def verge_with_weak_friction(rng: Random) -> Row:
-    return _masses(rng) | {"wrap": _turns(rng), "mu": _tiny(rng)}
-
-
-@danger
-def weak_friction_on_nearly_equal_masses(rng: Random) -> Row:
-    m1, apart = _log_uniform(rng, -3, 3), _log_uniform(rng, -14, -8)
-    return {"m1": m1, "m2": m1 * (1 + apart), "mu": apart * rng.uniform(0.1, 0.9) / pi}
+def weak_friction(rng: Random) -> Row:
+    """Or friction on a short wrap."""
+    mu, wrap = rng.choice([(_tiny(rng), _turns(rng)), (_log_uniform(rng, -1, 0), _tiny(rng, 4))])
+    return _with_pulley(rng, _masses(rng) | {"mu": mu, "wrap": wrap})
 
 
 @danger
@@ -384,28 +360,20 @@ def masses_a_few_doubles_apart(rng: Random) -> Row:
 
 @danger
 def near_the_least_heavier_mass(rng: Random) -> Row:
-    m1, apart = _log_uniform(rng, -1, 1), _tiny(rng, 0, 15)
-    mu = log1p(apart) / pi * _near_1(rng, 16)
-    return {"m1": m1, "m2": m1 * (1 + apart), "mu": mu, "M": _log_uniform(rng, 0, 30), "R": 1.0}
+    """Next to it, or where friction is weak and the masses are nearly equal."""
+    m1, mu = _log_uniform(rng, -3, 3), rng.choice([rng.uniform(0.01, 2), _log_uniform(rng, -15, -1)])
+    apart = expm1(mu * pi) / rng.choice([_near_1(rng, 16), rng.uniform(0.1, 0.9)])
+    m2 = rng.choice([_beside(rng, m1 * (1 + _capstan(mu))), m1 * (1 + apart)])
+    return _with_pulley(rng, {"m1": m1, "m2": m2, "mu": mu, "R": 1.0}, most=30)
 
 
 @danger
 def near_the_least_pulley_mass(rng: Random) -> Row:
-    given, mu = _masses(rng), _log_uniform(rng, -10, 0)
-    return given | {"mu": mu, "M": 4 * given["m1"] * expm1(mu * pi) * _near_1(rng, 16)}
-
-
-@danger
-def beside_the_mass_that_any_pulley_holds(rng: Random) -> Row:
-    m1, mu = _log_uniform(rng, -3, 3), rng.uniform(0.01, 2)
-    return {"m1": m1, "m2": _beside(rng, m1 * (1 + _capstan(mu))), "mu": mu}
-
-
-@danger
-def beside_the_pulley_that_any_mass_leaves_holding(rng: Random) -> Row:
-    """The mass is beyond what a double next to the limit needs to slip."""
-    m1, mu = _log_uniform(rng, -3, 3), rng.uniform(0.01, 2)
-    return {"m1": m1, "m2": 1e25 * m1 * exp(mu * pi), "M": _beside(rng, 4 * m1 * _capstan(mu)), "mu": mu}
+    """The heavier mass may be beyond what a double next to the limit needs to slip."""
+    given, mu = _masses(rng), rng.choice([rng.uniform(0.01, 2), _log_uniform(rng, -10, 0)])
+    least = 4 * given["m1"] * _capstan(mu)
+    M = rng.choice([_beside(rng, least), float(least.mid()) * _near_1(rng, 16)])
+    return given | {"m2": rng.choice([given["m2"], 1e25 * given["m1"] * exp(mu * pi)]), "mu": mu, "M": M}
 
 
 @danger
@@ -427,14 +395,10 @@ def grip_with_little_to_spare(rng: Random) -> Row:
 
 @danger
 def capstan_ratio_beyond_the_doubles(rng: Random) -> Row:
-    return {"m1": 2.0**-1000, "m2": 2.0**1000, "M": inf, "mu": rng.uniform(230, 440)}
-
-
-@danger
-def capstan_ratio_that_a_mass_brings_back(rng: Random) -> Row:
-    """Or that leaves the doubles only beside a mass."""
-    mu, power = rng.choice([(235.0, -110), (690 / pi, rng.randint(26, 32))])
-    return {"m1": 2.0**power, "m2": 2.0 ** (power + 1), "M": 1.0, "mu": mu}
+    """Or such that a mass brings it back to them, or takes it beyond."""
+    mu, power = rng.choice([(rng.uniform(230, 440), -1000), (235.0, -110), (690 / pi, rng.randint(26, 32))])
+    far = power == -1000
+    return {"m1": 2.0**power, "m2": 2.0 ** (1000 if far else power + 1), "M": inf if far else 1.0, "mu": mu}
 
 
 @danger
@@ -451,15 +415,11 @@ def friction_straight_up(rng: Random) -> Row:
 
 @danger
 def axle_that_just_holds(rng: Random) -> Row:
-    given = _masses(rng)
-    return given | {"M": _log_uniform(rng, -1, 1), "axle": G * (given["m2"] - given["m1"]) * _near_1(rng, 16)}
-
-
-@danger
-def axle_that_just_moves_on_a_rough_string(rng: Random) -> Row:
-    given = _masses(rng)
-    axle = G * (given["m2"] - given["m1"]) * (1 - abs(1 - _near_1(rng, 15)))
-    return given | {"M": rng.choice([0.0, inf, 3.0]), "mu": _log_uniform(rng, -2, 0), "axle": axle}
+    """The difference of the masses, or just about the heavier one."""
+    given = _masses(rng) | {"M": rng.choice([0.0, inf, 3.0])}
+    borne = rng.choice([given["m2"] - given["m1"], given["m2"]])
+    rough = rng.choice([{}, {"mu": _log_uniform(rng, -2, 1)}])
+    return given | {"axle": G * borne * _near_1(rng, 16)} | rough
 
 
 @danger
@@ -479,29 +439,12 @@ def slip_on_an_axle_that_just_turns(rng: Random) -> Row:
 
 
 @danger
-def axle_that_just_bears_the_heavier_mass(rng: Random) -> Row:
-    given = _masses(rng)
-    axle = G * given["m2"] * _near_1(rng, 12)
-    return given | {"M": _log_uniform(rng, -1, 1), "mu": _log_uniform(rng, -1, 1), "axle": axle}
-
-
-@danger
-def pulley_of_a_tiny_moment_of_inertia(rng: Random) -> Row:
-    given = _masses(rng)
-    return given | {"I": _tiny(rng, 4, 60), "axle": G * _tiny(rng, 4, 60), "wrap": _turns(rng), "mu": 0.2}
-
-
-@danger
-def masses_at_an_end_of_the_doubles(rng: Random) -> Row:
+def numbers_at_an_end_of_the_doubles(rng: Random) -> Row:
     """Sums of the largest overflow, products of the smallest vanish; only results may."""
     power = rng.choice([-1074, 1020])
-    return {x: ldexp(rng.randint(1, 15), power) for x in ("m1", "m2", "M")} | {"mu": rng.uniform(0.01, 2)}
-
-
-@danger
-def gravity_at_an_end_of_the_doubles(rng: Random) -> Row:
-    g = rng.choice([5e-324, 1e-310, 1e-200, 1e200, 1.7e308])
-    return _masses(rng) | {"M": _log_uniform(rng, -1, 1), "mu": _log_uniform(rng, -2, 0), "g": g}
+    masses = {x: ldexp(rng.randint(1, 15), power) for x in ("m1", "m2", "M")}
+    far = {"M": 2.0, "g": rng.choice([5e-324, 1e-310, 1e-200, 1e200, 1.7e308])}
+    return rng.choice([masses, _masses(rng) | far]) | {"mu": _log_uniform(rng, -2, 0.3)}
 
 
 @danger

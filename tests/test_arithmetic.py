@@ -109,11 +109,13 @@ def test_a_logarithm_is_enclosed_whatever_is_guessed(wrong: str, digits: int, q:
         assert contains(at.log1p(at.number(q)), mpmath.log1p(mpmath.mpf(q.numerator) / q.denominator))
 
 
-def test_roots_are_exact_where_they_can_be() -> None:
+def test_roots_and_zero_are_exact_where_they_can_be() -> None:
     at = enclosures(30)
     for root in ("0", "0.0125", "345", "1e-400"):
         found = at.sqrt(at.number(Fraction(root) ** 2))
         assert found.lo == found.hi == Decimal(root)
+    for result in (at.expm1(at.number(0)), at.log1p(at.number(0))):
+        assert result.lo == 0 <= result.hi <= Decimal("1e-20")
 
 
 @pytest.mark.parametrize("factor", ["-3", "0", "2"])
@@ -137,14 +139,6 @@ def test_large_exponentials_enclose(digits: int, power: int, digit: int) -> None
     for function in (at.exp, at.expm1):
         beyond = function(at.number(10**9))  # exactly: a width of 0 times infinity would be nan
         assert beyond.lo == beyond.hi == inf
-
-
-def test_zero_stays_exact() -> None:
-    at = enclosures(30)
-    zero = at.number(0)
-    for result in (at.expm1(zero), at.log1p(zero), at.sqrt(zero)):
-        assert result.lo == 0
-        assert result.hi <= Decimal("1e-20")
 
 
 def test_division_by_what_may_be_zero_asks_for_digits() -> None:
@@ -203,7 +197,7 @@ def test_to_double_is_pythons_exact_division(q: Fraction) -> None:
 
 
 # fmt: off
-DOUBLES = [
+DOUBLES: list[tuple[Fraction | Decimal, float]] = [
     (Fraction(10) ** 400, inf), (-(Fraction(10) ** 400), -inf), (Fraction(1, 10**400), 0.0),
     (Decimal("1e400"), inf), (Decimal("-1e-400"), 0.0), (Decimal("4.9e-324"), 5e-324),
 ]
@@ -275,22 +269,12 @@ def test_a_difference_that_is_0_in_all_its_digits_is_0() -> None:
     assert settle(quantity, to_digits(3), 3) == 0
 
 
-@pytest.mark.parametrize(("value", "double"), DOUBLES)
-def test_to_double_at_the_ends(value: Fraction | Decimal, double: float) -> None:
-    assert (to_double(value), str(to_double(value))) == (double, str(double))
-
-
-@pytest.mark.parametrize("text", ROUNDED)
-def test_to_digits(text: str) -> None:
-    value, digits = ROUNDED[text]
-    assert text_of(to_digits(digits)(value)) == text
-
-
-def test_zero_has_no_digits() -> None:
-    assert {str(to_digits(4)(zero)) for zero in (Fraction(0), Decimal("-0"), Decimal("0e-12"))} == {"0"}
-
-
 def test_text_is_what_people_write() -> None:
+    assert [str(to_double(value)) for value, _ in DOUBLES] == [str(double) for _, double in DOUBLES]
+    assert {text: text_of(to_digits(digits)(q)) for text, (q, digits) in ROUNDED.items()} == {
+        x: x for x in ROUNDED
+    }
+    assert {str(to_digits(4)(zero)) for zero in (Fraction(0), Decimal("-0"), Decimal("0e-12"))} == {"0"}
     assert {value: text_of(value) for value in SHORTEST} == SHORTEST
     assert {q: as_typed(q) for q in AS_TYPED} == AS_TYPED
     whole = {q: typed for q, typed in AS_TYPED.items() if q.denominator == 1}

@@ -18,7 +18,7 @@ from unittest.mock import Mock
 import numpy as np
 import polars as pl
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
@@ -46,7 +46,7 @@ def assert_is_solve(results: Any, i: int, row: Row, accuracy: str) -> None:
         want = nan if value is None else value
         if name in ("regime", "status"):
             assert (REGIMES[got] == want) if name == "regime" else got == 0, row
-        elif accuracy == "exact" or not isfinite(want):
+        elif accuracy == "exact" or not isfinite(want) or want == 0:  # never -0
             assert repr(got) == repr(want), (row, name)
         else:
             assert within_promise(got, want), (row, name, got)
@@ -77,7 +77,7 @@ def hostile() -> list[tuple[Columns, Columns]]:
     return [(given, solve_arrays(**given, accuracy="exact", quantities=names)) for given in families]
 
 
-@pytest.mark.parametrize("limit", [5e-16, 2e-15, 2e-14])
+@pytest.mark.parametrize("limit", [5e-16, 2e-15])
 def test_errors_are_within_any_limit_that_bounds_are(limit: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Not only within the promise, from which most are far: so a bound that is too small shows."""
     monkeypatch.setattr(arrays.doubles, "LIMIT", limit)
@@ -101,6 +101,7 @@ odd_rows = st.fixed_dictionaries(
 )
 
 
+MIRRORED = {"m1": 2.0, "m2": 1.0, "mu": 0.0, "R": 1.0}  # without a -0 in its results
 usual = st.floats(0.1, 10)
 mixed_rows = st.fixed_dictionaries(
     {"m1": usual, "m2": usual},
@@ -115,8 +116,13 @@ mixed_rows = st.fixed_dictionaries(
 )
 
 
+@example([MIRRORED], NAMES)
+@example([MIRRORED] * 5, NAMES)
 @examples(40)
-@given(st.lists(odd_rows | mixed_rows, min_size=1, max_size=30), st.permutations(NAMES))
+@given(
+    st.lists(odd_rows | mixed_rows, min_size=1, max_size=30),
+    st.lists(st.sampled_from(NAMES), min_size=1, unique=True),
+)
 def test_any_rows_side_by_side(some: list[dict[str, float]], names: list[str]) -> None:
     """Bad rows get a code and stop nobody, and whoever stands beside whom, each gets its own."""
     for accuracy in ACCURACIES:
@@ -127,8 +133,8 @@ def test_any_rows_side_by_side(some: list[dict[str, float]], names: list[str]) -
                 assert_is_solve(results, i, row, accuracy)
             else:
                 assert fault == STATUSES[results["status"][i]], row
-                assert results["regime"][i] == -1
-                assert all(isnan(results[name][i]) for name in NAMES[1:])
+                for name in names:
+                    assert results[name][i] == -1 if name == "regime" else isnan(results[name][i])
 
 
 def _fault(row: Row) -> str | None:
@@ -153,6 +159,7 @@ FAULTS = {
 
 
 numbers = st.floats(1e-3, 1e3)
+OTHERS = {"mu_k": 0.2, "g": 9.81, "inertia": 0.4, "wrap": 170.0, "axle": 2.5}
 
 
 @examples(30)
@@ -160,31 +167,23 @@ numbers = st.floats(1e-3, 1e3)
     st.lists(numbers, min_size=3, max_size=3),
     st.lists(numbers, min_size=4, max_size=4),
     numbers | st.none(),
-    st.lists(st.floats(0, 2) | st.none(), min_size=12, max_size=12),
+    st.lists(st.floats(0.2, 2) | st.none(), min_size=12, max_size=12),
+    st.sets(st.sampled_from([*OTHERS])),
 )
 def test_inputs_are_broadcast(
-    m1: list[float], m2: list[float], M: float | None, mu: list[float | None]
+    m1: list[float], m2: list[float], M: float | None, mu: list[float | None], columns: set[str]
 ) -> None:
+    """A number is a column of it."""
     grid = np.array(mu, object).reshape(3, 4)
-    results = solve_arrays(np.array(m1)[:, None], m2, M, grid)
+    others: Any = OTHERS if None not in mu else {x: OTHERS[x] for x in OTHERS if x != "mu_k"}
+    mixed: Any = {x: np.full(4, value) if x in columns else value for x, value in others.items()}
+    results = solve_arrays(np.array(m1)[:, None], m2, M, grid, **mixed, quantities=NAMES)
     for i in range(3):
         for j in range(4):
-            one = solve_arrays(m1[i], m2[j], M, grid[i, j])
+            one = solve_arrays(m1[i], m2[j], M, grid[i, j], **others, quantities=NAMES)
             for name, column in results.items():
                 assert column.shape == (3, 4)
-                np.testing.assert_array_equal(column[i, j], one[name])
-
-
-@pytest.mark.parametrize("accuracy", ACCURACIES)
-def test_a_number_is_a_column_of_it(accuracy: Any) -> None:
-    names = ["m1", "m2", "M", "mu", "mu_k", "g", "inertia", "wrap", "axle"]
-    row = dict(zip(names, [1.25, 3.7, 40.0, 0.31, 0.2, 9.81, 0.4, 170.0, 2.5], strict=True))
-    whole = solve_arrays(**{k: np.full(5, v) for k, v in row.items()}, accuracy=accuracy, quantities=NAMES)
-    for name in row:
-        mixed: dict[str, Any] = row | {name: np.full(5, row[name])}
-        results = solve_arrays(**mixed, accuracy=accuracy, quantities=NAMES)
-        for quantity in NAMES:
-            np.testing.assert_allclose(results[quantity], whole[quantity], rtol=1e-14, atol=0)
+                np.testing.assert_allclose(column[i, j], one[name], rtol=4e-14)
 
 
 def reasons_of(rows: list[Row]) -> Counter[tuple[str, str]]:
@@ -337,16 +336,6 @@ def test_temporaries_are_bounded() -> None:
     assert most - left < 200e6
 
 
-def test_many_rows_beside_the_least_mass_that_slips_are_solved() -> None:
-    """Their critical pulley mass alone goes to the next level, where it asks a question of its own."""
-    mu = np.linspace(0.02, 0.2, 100)
-    (least, _) = solve_arrays(1.0, 2.0, mu=mu, accuracy="exact", quantities=["least_heavier_mass"]).values()
-    given: dict[str, Any] = {"m1": 1.0, "m2": np.nextafter(least, inf), "M": 4e16, "mu": mu}
-    results = solve_arrays(**given, accuracy="exact")
-    for i in range(0, 100, 9):
-        assert_is_solve(results, i, given | {"m2": float(given["m2"][i]), "mu": float(mu[i])}, "exact")
-
-
 @pytest.mark.parametrize("few", [0, 1, 4, 1000])
 def test_rows_of_the_next_level_are_solved_together_or_one_by_one(
     few: int, monkeypatch: pytest.MonkeyPatch
@@ -362,25 +351,12 @@ def test_rows_of_the_next_level_are_solved_together_or_one_by_one(
 
 def test_a_weight_that_is_a_tie_is_settled_in_columns(monkeypatch: pytest.MonkeyPatch) -> None:
     """3 g has 55 bits: half-way between two doubles, for a quarter of the values of g."""
-    rng = np.random.default_rng(1)
-    load, odd = 3 * 2.0 ** rng.integers(-20, 20, 100), 9.80665 + 2.0**-49 * np.arange(100)
-    given: dict[str, Any] = {"m1": load, "m2": 4 * load, "M": np.inf, "g": odd}
+    given: dict[str, Any] = {"m1": 3.0, "M": np.inf, "g": 9.80665 + 2.0**-49 * np.arange(100)}
     monkeypatch.setattr(arrays.rows.Rows, "_solve_one_by_one", Mock(side_effect=AssertionError))
-    (tension, _) = solve_arrays(**given, accuracy="exact", quantities=["tension_1"]).values()
-    exact = [Fraction(float(g)) * Fraction(float(m)) for g, m in zip(odd, load, strict=True)]
+    (tension, _) = solve_arrays(m2=4.0, **given, accuracy="exact", quantities=["tension_1"]).values()
+    exact = [3 * Fraction(float(g)) for g in given["g"]]
     assert tension.tolist() == [float(e) for e in exact]
-    halves = [abs(Fraction(float(e)) - e) == Fraction(ulp(float(e))) / 2 for e in exact]
-    assert sum(halves) > 20
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_far_rows_are_solved_for_one_quantity_too(name: str) -> None:
-    """From 1e-300 to 1e300."""
-    rng = np.random.default_rng(2)
-    given = {x: 10.0 ** rng.uniform(-300, 300, 40) for x in ("m1", "m2", "M")} | {"mu": rng.uniform(0, 2, 40)}
-    results = solve_arrays(**given, accuracy="exact", quantities=[name])
-    for i in range(0, 40, 7):
-        assert_is_solve(results, i, {x: float(column[i]) for x, column in given.items()}, "exact")
+    assert sum(abs(Fraction(float(e)) - e) == Fraction(ulp(float(e))) / 2 for e in exact) > 20
 
 
 def test_threads_do_not_wait_for_each_others_attributes() -> None:
@@ -526,16 +502,6 @@ def test_a_table_of_many_kinds_is_planned_once() -> None:
     assert plan.cache_info().misses == planned
 
 
-def test_sums_of_negative_forces() -> None:
-    """The smaller in size, not in value, must come second where two operations give a sum's error."""
-    row = {"m1": 1.7564649058808377, "m2": 865.29649231545, "mu": 0.7514867515890271, "wrap": 270.0}
-    for accuracy in ACCURACIES:
-        results = solve_arrays(**row, accuracy=accuracy, quantities=NAMES)
-        one = solve_any(**row)
-        for name in ("friction_force_x", "friction_force_y"):
-            assert abs(results[name].item() - getattr(one, name)) <= (0 if accuracy == "exact" else 1e-12)
-
-
 def test_only_what_is_asked_for() -> None:
     assert {column.shape for column in solve_arrays([], [], mu=0.3).values()} == {(0,)}
     results = solve_arrays([1, 3], [3, 1], 10, quantities=["torque", "acceleration"], R=[0.1, None])
@@ -569,19 +535,3 @@ def test_quantities_by_their_symbols_have_their_names(words: Any) -> None:
 def test_errors(arguments: dict[str, Any], message: str) -> None:
     with pytest.raises(SceneError, match="^" + message.replace("?", "[?]") + "$"):
         solve_arrays(**{"m1": 1, "m2": 3, **arguments})
-
-
-@pytest.mark.parametrize("accuracy", ACCURACIES)
-def test_a_mirrored_zero_is_no_negative_zero(accuracy: Any) -> None:
-    """The rest of a pair that is turned round is -0 as well, and -0 and -0 is -0."""
-    signed = ["torque", "friction_force_x", "friction_force_y", "rim_acceleration", "angular_acceleration"]
-    for masses in ((2.0, 1.0), (1.0, 2.0)):
-        for rows_ in (1, 5):
-            results = solve_arrays(
-                np.full(rows_, masses[0]), masses[1], mu=0.0, R=1.0, accuracy=accuracy, quantities=signed
-            )
-            for name in signed:
-                assert [repr(x) for x in results[name].tolist() if x == 0] == ["0.0"] * sum(
-                    results[name] == 0
-                )
-            assert [repr(x) for x in results["torque"].tolist()] == ["0.0"] * rows_
