@@ -49,9 +49,8 @@ def pytest_configure(config: pytest.Config) -> None:
     told = [name for name in os.environ if name.startswith("PYTHON") and name != "PYTHONPATH"]
     for name in {*told, *HOW_TO_PRINT} & {*os.environ}:
         del os.environ[name]
-    for (
-        name
-    ) in HEARD:  # an ignored signal, as under nohup, would be ignored by children; a handled one is not
+    # An ignored signal, as under nohup, would be ignored by children; a handled one is not.
+    for name in HEARD:
         if (number := getattr(signal, name, None)) and signal.getsignal(number) is signal.SIG_IGN:
             signal.signal(number, lambda *_: None)
 

@@ -38,13 +38,12 @@ PYTHON = {
 @pytest.mark.parametrize("file", dict.fromkeys(kept.file for kept in KEPT), ids=lambda file: file.name)
 def test_what_is_kept_is_what_is_printed_today(file: Path, pytestconfig: pytest.Config) -> None:
     lacking = {kept.lacks for kept in KEPT if kept.file == file and kept.lacks}
-    if pytestconfig.getoption("quick"):
-        lacking.add("matplotlib")
+    lacking |= {"matplotlib"} if pytestconfig.getoption("quick") else set()
     tried = [kept for kept in KEPT if kept.file == file and kept.needs not in lacking]
     for kept in tried:
         assert essence(kept.today()) == essence(kept.text), "after a look: python -m tests.regenerate"
     if not tried:
-        pytest.skip(f"needs {' '.join(lacking)}")
+        pytest.skip(f"needs {' '.join(lacking)}, or no --quick")
 
 
 @pytest.mark.parametrize("page", CASES, ids=lambda page: page.stem)

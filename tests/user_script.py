@@ -1,7 +1,4 @@
-"""A user's script. It runs, and mypy and pyright must know of each result what it is.
-
-mypy checks it with the whole tree, `test_contract` has pyright check it.
-"""
+"""A user's script. It runs, and mypy, which checks the whole tree, must know of each result what it is."""
 
 from collections.abc import Mapping
 from decimal import Decimal
