@@ -191,7 +191,8 @@ def outcome(
     data = as_data(runs, used) if dof >= 0 else None
     if not data or not (dof or data.scatter.any() or data.uncertain):
         count = "1 run is" if len(used) == 1 else f"{len(used)} runs are"
-        raise CannotSeparate(f"{count} {TOO_FEW}{said}")
+        more = f"too few to fit {len(names)} quantities: give more runs, or M or axle" if dof < 0 else TOO_FEW
+        raise CannotSeparate(f"{count} {more}{said}")
     mistake, is_of_most = _mistake(data, used, runs.kind, given.values["gravity"], "gravity" in names)
     reason = mistake or f"no rim mass and no axle friction of 0 or more fit these runs: {CHECK}"
     if not _separates(data, given.values, names):
