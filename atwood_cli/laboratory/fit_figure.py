@@ -61,9 +61,8 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     bars_are = "widened to the scatter between runs" if fit.whole.between_runs else "not widened"
     if fit.whole.chi2 is None:
         bars_are = "by the scatter of the runs"
-    below = f"Error bars are standard uncertainties, {bars_are}. Numbers at points are those of rows."
-    if "delay" in best.names:
-        below += " The fitted delay is subtracted from the times."
+    delayed = " The fitted delay is subtracted from the times." if "delay" in best.names else ""
+    below = f"Error bars are standard uncertainties, {bars_are}. Points are numbered as rows.{delayed}"
     with page(path, force, above, below, bare, panels=2) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
         end = 1.06 * max(seen.x + u_x)

@@ -97,7 +97,7 @@ def _caption(few: Answers, kind: arc.Profile | None, wrap: float, bare: bool) ->
         if force := few["friction_force"]:
             yield f"The net friction force is {format_number(force)} N."
     if wrap > 360:
-        turns = _number(few, few.settle(lambda m: few.case.scene.wrap.degrees(m.ar) / 360))
+        turns = _number(few.settle(lambda m: few.case.scene.wrap.degrees(m.ar) / 360), few)
         one = ", and the forces on the one at the heavier mass are drawn" if kind else ""
         yield f"There are {turns} turns{one}."
     if not few.case.ends_hang_down:
@@ -150,9 +150,9 @@ def _pulley(few: Answers) -> str:
     if case.locked:
         return "locked"
     if scene.I is not None and scene.M is None:
-        return f"I = {_number(few, scene.I)} kg m²"
+        return f"I = {_number(scene.I, few)} kg m²"
     mass = few["critical_pulley_mass"] if case.regime == "verge" else case.pulley_mass
-    return "" if mass is None else f"M = {_number(few, mass)} kg"
+    return "" if mass is None else f"M = {_number(mass, few)} kg"
 
 
 def _axle_friction(few: Answers) -> str:
@@ -161,17 +161,12 @@ def _axle_friction(few: Answers) -> str:
     if not case.has_axle_friction or case.locked or not case.sign:
         return ""
     held = case.rim_at_rest if case.regime == "slip" else case.axle_holds
-    return _number(few, few.settle(lambda m: m.difference if held else m.f))
+    return _number(few.settle(lambda m: m.difference if held else m.f), few)
 
 
-def _number(few: Answers, value: Any) -> str:
-    """Return an input, or what replaces it, with at most as many digits as results have."""
-    return typeset(format_number(strip_zeros(few.round(value))))
-
-
-def _result(value: Any) -> str:
-    """Return a rounded result with all its digits, as tables have it."""
-    return typeset(format_number(value))
+def _number(value: Any, few: Answers | None = None) -> str:
+    """Return a result as tables have it, or with ``few`` an input with no more digits than its results."""
+    return typeset(format_number(strip_zeros(few.round(value)) if few else value))
 
 
 def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float) -> None:
@@ -207,9 +202,9 @@ def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> No
         _draw_arrows(axes, [x + top * 1j], [pull * 1j], INK)
         _draw_arrows(axes, [x + bottom * 1j], [-weight * 1j], GREEN)
         for away, height, words, colour in (
-            (0.12, top + max(pull / 2, 0.17), f"T{end} = {_result(few[f'tension_{end}'])} N", INK),
-            (side / 2 + 0.08, (top + bottom) / 2, f"m{end} = {_number(few, mass)} kg", INK),
-            (0.12, bottom - max(weight / 2, 0.17), f"W{end} = {_result(few.round(mass * scene.g))} N", GREEN),
+            (0.12, top + max(pull / 2, 0.17), f"T{end} = {_number(few[f'tension_{end}'])} N", INK),
+            (side / 2 + 0.08, (top + bottom) / 2, f"m{end} = {_number(mass, few)} kg", INK),
+            (0.12, bottom - max(weight / 2, 0.17), f"W{end} = {_number(few.round(mass * scene.g))} N", GREEN),
         ):
             look: Any = {"color": colour, "ha": "left" if x > 0 else "right", "va": "center"}
             axes.text(x * (1 + away), height, typeset(words), **look)
@@ -217,7 +212,7 @@ def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> No
             centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
             way = -1j * x * few.case.sign * ACCELERATION
             _draw_arc(axes, centre + way * np.array([-0.5, 0.5]), PURPLE, "white")
-    words = typeset(f"a = {_result(abs(acceleration))} m/s²") if acceleration else "a = 0"
+    words = typeset(f"a = {_number(abs(acceleration))} m/s²") if acceleration else "a = 0"
     height = -STRING - LARGER_SIDE - 0.17 - (LONGEST if len(words) > BETWEEN_WEIGHTS else 0)
     axes.text(0, height, words, color=PURPLE, ha="center", va="center")
     axes.update_datalim([(0, height - 0.1)])
@@ -230,7 +225,7 @@ def _draw_tensions(axes: "Axes", few: Answers, lengths: Mapping[str, float], phi
         angle = 0 if name == "T1" else phi
         arrow = length * (-1j if name == "T1" else 1j) * np.exp(-1j * angle)
         _draw_arrows(axes, [_rim(angle)], [arrow], INK)
-        tip, tension = _rim(angle) + arrow, _result(few[f"tension_{name[1]}"])
+        tip, tension = _rim(angle) + arrow, _number(few[f"tension_{name[1]}"])
         labels.append((tip.real, tip.imag, typeset(f"{name} = {tension} N"), INK))
     axes.autoscale_view()
     spokes = np.outer([0, 1], _rim(np.linspace(0, TURN, 37)))
@@ -261,12 +256,11 @@ def _draw_curves(axes: "Axes", few: Answers, kind: arc.Profile, wrap: float) -> 
     axes.margins(y=0.2)
     if friction.min() >= 0:
         axes.set_ylim(bottom=0)
-    step = next((step for step in ANGLE_TICKS if 2 * step <= wrap <= 8 * step), None)
-    if step:
+    if step := next((step for step in ANGLE_TICKS if 2 * step <= wrap <= 8 * step), None):
         axes.set_xticks(np.arange(0, wrap + 1e-6, step))
     axes.set_xlabel("angle θ along the arc, from m₁'s end on the left (°)")
     axes.set_ylabel("tension T = nR and\nfriction fR (N per radian)")
-    t1, t2 = (typeset(f"T{end} = {_result(few[f'tension_{end}'])} N") for end in (1, 2))
+    t1, t2 = (typeset(f"T{end} = {_number(few[f'tension_{end}'])} N") for end in (1, 2))
     labels = [(0.0, tension[0], t1, BLUE), (wrap, tension[-1], t2, BLUE)]
     if stuck:
         axes.axvspan(wrap * edge, wrap * start, color=FAINT, alpha=0.2, lw=0)

@@ -117,8 +117,7 @@ def _curve(along: Range, name: str, point: str, found: list[Change], solved: dic
     for change in found:
         if change.before[0] != change.after[0]:
             beside = (_height(solved[float(x)], name, "max") for x in (change.first, change.last))
-            exact = Fraction(change.at.exact)
-            place = to_digits(SHOWN_DIGITS)(exact)  # as the table has it
+            place = to_digits(SHOWN_DIGITS)(exact := Fraction(change.at.exact))  # as the table has it
             at = along.in_units(decimal_point(strip_zeros(place) if place == exact else place, along.suffix))
             height = next((y for y in beside if not isnan(y)), nan)
             marks.append((float(change.first), height, f"{BEGINS[change.after[0]]} from {at}"))
