@@ -81,6 +81,8 @@ def _scatter(fit: Fitted) -> str:
         return "There are as many runs as results, so nothing is left to test the fit."
     source = "uncertainties" if stated else "repeats"
     probability = f"p = {rounded(p)}" if p >= 0.001 else "p < 0.001"
+    if fit.whole.best.data.repeats[1] and not stated:
+        probability += " by an F test"
     by = f"(χ² = {rounded(chi2, 3)}, {counted(fit.whole.best.dof, 'degree')} of freedom, {probability})"
     if p < SELDOM:
         more = f"The runs scatter more than their {source} {by}"

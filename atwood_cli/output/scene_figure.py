@@ -73,7 +73,7 @@ def save(
         machine.margins(0.01)
         _draw_pulley(machine, few, radians(wrap))
         if kind:
-            _draw_contact(machine, few, kind, radians(wrap))
+            _draw_contact(machine, few, kind, radians(wrap), "--" if curves else "-")
             for axes in more:
                 _draw_curves(axes, few, kind, wrap)
         if case.ends_hang_down:
@@ -169,7 +169,7 @@ def _number(value: Any, few: Answers | None = None) -> str:
     return typeset(format_number(strip_zeros(few.round(value)) if few else value))
 
 
-def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float) -> None:
+def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float, dash: str) -> None:
     """Draw the arrows of normal force and friction over the turn at the heavier mass, with a legend."""
     drawn = min(1, TURN / phi)
     count = int(drawn * phi / BETWEEN_ARROWS + 1e-9)
@@ -186,7 +186,7 @@ def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float) -> 
         _draw_arrows(axes, FRICTION_AT * outwards, around, RED)
         larger = normal.max() / greatest
         times = f"{larger:.3g} times larger" if larger > 1 else f"{1 / larger:.3g} times smaller"
-        axes.plot([], [], color=RED, ls="--", marker=">", ms=4, label=typeset(f"friction fR, arrows {times}"))
+        axes.plot([], [], color=RED, ls=dash, marker=">", ms=4, label=typeset(f"friction fR, arrows {times}"))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), ncols=2, handlelength=3)
 
 
