@@ -51,10 +51,7 @@ def around(asked: Mapping[str, str]) -> dict[str, str]:
 
 
 def called(words: Sequence[str], stdin: bytes = b"", on_terminal: bool = False, **asked: str) -> Ran:
-    """Call the command line in this process, in which nothing tells how to print but what is asked for.
-
-    A terminal shows stderr where it shows stdout, and no second goes by on it: on a slow machine it would show bars.
-    """
+    """Call the command line in this process. A terminal shows stderr where it shows stdout, and no progress bar."""
     encoding = asked.pop("PYTHONIOENCODING", "utf-8")
     errors = "surrogateescape" if encoding == "utf-8" else "strict"
     printed = BytesIO()

@@ -19,7 +19,7 @@ from .statistics import ROUNDING, Column, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
-NEAR, CLOSE, MOST_STEPS = 1e-2, 1e-11, 20
+NEAR, CLOSE, MOST_STEPS = 1e-2, 1e-13, 30
 """Shares of what is expected: steps that change less are those of the line; with still less, all is done."""
 TINY = 1e-100
 
