@@ -30,7 +30,7 @@ REMARKS = {
     "inertia": ", or disk, hoop, ring, sphere, shell; 0.5 if not given",
     "I": ", instead of inertia; needs R",
     "wrap": ": degrees, 3rad, pi/2, 2.5turn (two turns more); 180 if not given",
-    "axle": ", as 15mN, or 0.4mNm with R",
+    "axle": ", as 15mN, or with R a torque, as 0.4mNm",
     "a": ": finds M, or a mass, g, mu_k",
     "drop": ": finds time and speed",
     "time": ", with drop instead of a",

@@ -25,7 +25,7 @@ Examples:
   atwood sweep --m1 1 --m2 3 --M 0:60:61 --only T1,T2 --figure t.svg
 
 --figure draws, in place of the table, what --only names, or the acceleration, with one pair of axes for each
-unit. Curves run along a range; a second one, or a list, is a curve for each value.
+unit. A curve runs along a range, one for each value of a second range or a list; a list alone is points.
 """
 
 

@@ -134,7 +134,7 @@ INPUTS = {
     "R": Parameter("radius of the pulley", "m", dimension="length"),
     "wrap": Parameter("angle over which the string touches the pulley", "°", dimension="angle"),
     "axle": Parameter(
-        "friction of the axle: a force at the rim, or a torque", "N", zero=True, dimension="torque or force"
+        "friction of the axle: a force at the rim", "N", zero=True, dimension="torque or force"
     ),
 }
 """The inputs of a scene, which columns of arrays and of tables may have, too."""

@@ -17,10 +17,8 @@ from ..model.arc import Profile
 from ..model.decisions import Decisions
 from ..model.digits import rounding_to_place
 from ..model.machine import Machine
-from ..model.quantities import NEEDS_M
 from ..model.scene import SceneError, read_whole
 from .answers import Answers
-from .messages import unmarked
 
 Rounded = float | Decimal
 
@@ -30,8 +28,9 @@ ZERO_DIGITS = 50
 
 ABOUT_KIND = {
     "creep": (
-        "The tension is not unique while the string grips with friction to spare. Shown is the tension of a"
-        " slightly elastic string, which slips only over the last part of the arc, at the heavier mass."
+        "The tension is not unique while the string grips with friction to spare. Shown is that of a slightly"
+        " elastic string: friction is at its limit over the last part of the arc, at the heavier mass, and 0"
+        " elsewhere."
     ),
     "exponential": "Friction is at its limit all along the arc.",
 }
@@ -60,7 +59,7 @@ def kind_of(case: Decisions) -> Profile:
             "leaves no arc of contact, as that end is fixed to the pulley; give both masses above 0",
         )
     if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
-        raise SceneError("M", None, f"is missing: {unmarked(NEEDS_M)}")
+        raise SceneError("M", None, "is missing: the forces depend on the pulley's mass; give M")
     spare = case.regime == "no-slip" and case.scene.mu is not None and not case.tensions_equal
     return "creep" if spare else "exponential"
 
