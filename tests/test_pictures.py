@@ -379,7 +379,7 @@ def test_a_picture_is_the_same_to_the_byte_whenever_and_wherever_it_is_drawn(
     "line",
     [
         f"contact {FIGURE} --wrap 2.5turn",
-        "sweep --m1 1 --m2 3 --M 0:50:6 --mu 0.15:0.4:6 --only friction_force",
+        "sweep --m1 0.1:30:7 --m2 3 --M 50 --mu 0.05:0.3:6 --only a,friction_force",
     ],
 )
 def test_an_svg_is_small_has_its_text_as_text_a_title_and_a_description(tmp_path: Path, line: str) -> None:

@@ -119,6 +119,7 @@ def test_every_row_and_every_column_is_shown() -> None:
         "solve --m1 1 --m2 3 --M 10 --axle 1 --all",
         "sweep --m1 1 --m2 3 --M 1:1000:3:log --mu 0.2:0.4:2",
         "contact --m1 1 --m2 3 --M 10 --mu 0.3 --R 0.1",
+        f"fit {TOP}/examples/rit.csv --drop 98cm",
     ],
 )
 def test_no_cell_is_folded(line: str) -> None:
