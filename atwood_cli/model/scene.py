@@ -375,6 +375,8 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
         return f"is not a number; write {shortened(number)}{hint}"
     if pointed != word and NUMBER.fullmatch(pointed):
         return f"is not a number; write it with a decimal point, {shortened(pointed)}"
+    if re.fullmatch(r"[\d.]+-[\d.]+", word):
+        return "is not a number; atwood sweep takes a range as start:stop:count"
     if re.match(r"[-+.]?\d.*[:,]", word):
         kind = "range" if ":" in word else "list"
         return f"is a {kind}, not a number; atwood sweep takes {kind}s"

@@ -111,10 +111,10 @@ def _above(answers: Answers, expected: Condition) -> float | Decimal:
 
 
 def _holds(answers: Answers, expected: Condition) -> bool:
-    """Decide if a comparison is true; a quantity without a value fails it."""
+    """Decide if a comparison is true; a quantity without a finite value fails it."""
     try:
         return bool(OPERATORS[expected.sign](_above(answers, expected), 0))
-    except Undetermined:
+    except (Undetermined, ArithmeticError):
         return False
 
 
