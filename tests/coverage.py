@@ -7,7 +7,6 @@ least squares with the true variances, of the same quantities).
 
 import sys
 from collections.abc import Iterator
-from fractions import Fraction
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,9 +14,9 @@ from scipy import optimize
 
 from atwood_cli.laboratory.fitting import Fitted, conditions_of, fitted
 from atwood_cli.laboratory.results import USUAL
-from atwood_cli.laboratory.runs import Kind, Run, Runs
+from atwood_cli.laboratory.runs import Kind, Runs
 from atwood_cli.laboratory.statistics import CannotSeparate
-from atwood_cli.model.scene import INPUTS, Input, read_input
+from atwood_cli.model.scene import INPUTS, read_input
 
 C, F, G, DROP = 0.028, 0.009, 9.80665, 1.1
 BLUNDER = 0.01
@@ -103,16 +102,15 @@ class Set(NamedTuple):
     values: Any
 
     def runs(self) -> Runs:
-        def exact(value: float, u: float = 0.0) -> Input:
-            return Input(Fraction(str(round(float(value), 13))), Fraction(u), None)
-
-        d, runs = self.design, []
-        for i, (l, h, drop, some) in enumerate(zip(self.l, self.h, self.drop, self.values, strict=True), 1):
-            m1, m2 = (exact(m, d.masses * bool(d.stated)) for m in (l, h))
-            measured = tuple(exact(value, d.stated * d.u) for value in some)
-            cells = tuple(f"{i}:t{k}" for k in range(len(some)))
-            runs.append(Run((i,), m1, m2, exact(drop) if d.kind == "time" else None, measured, False, cells))
-        return Runs(d.kind, runs, False, [])
+        d, n, none = self.design, len(self.l), 0 * self.l
+        given = {"m1": self.l.round(13), "m2": self.h.round(13)}
+        u = dict.fromkeys(given, none + d.masses * bool(d.stated))
+        if d.kind == "time":
+            given, u = given | {"drop": self.drop}, u | {"drop": none}
+        values, run = self.values.round(13).ravel(), np.repeat(np.arange(n), d.repeats)
+        cells = [f"{i + 1}:t{k}" for i in range(n) for k in range(d.repeats)]
+        rows, u_values, step = [[i + 1] for i in range(n)], np.full(len(run), d.stated * d.u), d.step or 1e-13
+        return Runs(d.kind, given, u, rows, none > 0, self.values.mean(1), values, u_values, run, cells, step)
 
     def fit(self, *more: str) -> Fitted:
         return fitted(self.runs(), conditions_of(NOTHING), [*USUAL, *more])
@@ -219,7 +217,7 @@ def counts(design: Design, sets: int, *more: str, seed: int = 1) -> Counts:
         except CannotSeparate:
             continue
         p, delay = fit.whole.p_value, fit.delay
-        said += bool(fit.suspects), p is not None and p < 0.05, delay is not None and delay[1] < 0.01
+        said += bool(fit.outliers), p is not None and p < 0.05, delay is not None and delay[1] < 0.01
         if not fit.whole.reason:
             ends = np.array([one.interval for one in fit.whole.results.values()])
             within.append((ends[:, 0] <= truth) & (truth <= ends[:, 1]))

@@ -8,7 +8,6 @@ import json
 import pydoc
 import re
 import shlex
-from fractions import Fraction
 from math import inf, sqrt
 from pathlib import Path
 from random import Random
@@ -21,7 +20,7 @@ from scipy import optimize, stats
 
 from atwood_cli import Fit, SceneError, solve
 from atwood_cli import fit as laboratory_fit
-from atwood_cli.laboratory.estimate import Data, estimate, expected, of_measured, slope
+from atwood_cli.laboratory.estimate import Data, as_data, estimate, expected, of_measured, slope
 from atwood_cli.laboratory.fitting import conditions_of, fitted
 from atwood_cli.laboratory.report import _correlation
 from atwood_cli.laboratory.results import USUAL, in_small_unit, published
@@ -73,8 +72,20 @@ def without_nulls(value: Any) -> Any:
 
 def data_of(kind: Kind, l: Any, h: Any, drop: Any, measured: Any) -> Data:
     """Runs without repeats and uncertainties."""
-    ones = np.ones(len(l))
-    return Data(l, h, drop if kind == "time" else None, measured, ones, 0 * ones, False, (0.0, 0), {})
+    n = len(l)
+    runs = Runs(
+        kind,
+        {"m1": l, "m2": h, "drop": drop},
+        dict.fromkeys(("m1", "m2", "drop"), 0 * l),
+        [],
+        l < 0,
+        measured,
+        measured,
+        0 * l,
+        np.arange(n),
+        [],
+    )
+    return as_data(runs, l > 0)._replace(drop=drop if kind == "time" else None)
 
 
 # Data made from the model
@@ -128,8 +139,8 @@ def test_what_simulation_decided_is_so() -> None:
 def test_the_scatter_of_times_is_found_beside_uncertain_masses() -> None:
     """It was taken to be 0, and the same stopwatch had an uncertainty of 0.028 s and of 0.006 s."""
     runs = made("time", 4)
-    uncertain = [run._replace(m1=run.m1._replace(uncertainty=Fraction("1e-4"))) for run in runs.runs]
-    whole = fitted(runs._replace(runs=uncertain), conditions_of(NOTHING), USUAL).whole
+    uncertain = runs._replace(u={**runs.u, "m1": 0 * runs.u["m1"] + 1e-4})
+    whole = fitted(uncertain, conditions_of(NOTHING), USUAL).whole
     assert 0.01 < sqrt(whole.best.line.between) < 0.04
     assert (whole.chi2, whole.between_runs) == (None, None)
 
@@ -456,7 +467,9 @@ def test_in_python_it_is_what_json_has() -> None:
     assert lines[3:] == list(result.notes)
     odd = [*zip(*csv.reader(ODD.splitlines()), strict=True)]
     said = laboratory_fit({name: cells for name, *cells in odd}).notes
-    assert any(note.endswith("from the other runs; to leave that out: without='5'.") for note in said)
+    assert any(
+        note.endswith("from a fit of the other runs; to leave that out: without='5'.") for note in said
+    )
 
 
 @pytest.mark.parametrize(

@@ -140,14 +140,17 @@ def read(tmp_path: Path) -> Any:
     return call
 
 
-def numbers(runs: Runs) -> list[list[Fraction]]:
+def numbers(runs: Runs) -> list[list[float]]:
     """Of each run m1, m2, what was measured, and the uncertainties of all these."""
-    inputs: list[Any] = [(run.m1, run.m2, *run.measured) for run in runs.runs]
-    return [[one[i] for i in (0, 1) for one in some] for some in inputs]
+    columns = [(runs.given, runs.values), (runs.u, runs.u_values)]
+    return [
+        [x for given, of in columns for x in (given["m1"][i], given["m2"][i], *of[runs.run == i])]
+        for i in range(len(runs.rows))
+    ]
 
 
-def exactly(*rows: str) -> list[list[Fraction]]:
-    return [[*map(Fraction, row.split())] for row in rows]
+def exactly(*rows: str) -> list[list[float]]:
+    return [[*map(float, row.split())] for row in rows]
 
 
 def test_uncertainties_are_in_the_unit_of_their_column(read: Any) -> None:
@@ -195,7 +198,7 @@ def test_uncertainties_are_in_the_unit_of_their_column(read: Any) -> None:
 def test_what_stands_around_a_table(read: Any, table: str | bytes, remark: str) -> None:
     runs = read(table)
     assert numbers(runs) == exactly("0.2 0.207 3.99 0 0 0", "0.201 0.206 5.02 0 0 0")
-    assert [run.rows for run in runs.runs] == [(1,), (2,)]
+    assert runs.rows == [[1], [2]]
     assert runs.remarks == ([f"read as: {remark}."] if remark else [])
 
 

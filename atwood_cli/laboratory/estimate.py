@@ -1,21 +1,16 @@
 """The rim mass c and the axle's friction f that fit runs best, by least squares: T_h - T_l = c a + f."""
 
 from collections.abc import Callable, Mapping, Sequence
-from fractions import Fraction
 from math import inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import least_squares
 
 from ..model import physics
-from ..model.digits import exact_decimal
-from ..model.scene import Input
-from ..tables.sources import Unreadable
 from .results import FITTED
-from .runs import MEASURABLE, Run, Runs, rows_in_words
-from .statistics import ROUNDING, Column, Line, fit_line, sum_of_squares
+from .runs import MEASURABLE, Column, Places, Runs, Selection
+from .statistics import ROUNDING, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
@@ -25,22 +20,26 @@ TINY = 1e-100
 
 
 class Data(NamedTuple):
-    """Runs as columns, light and heavy masses apart.
+    """Runs as a fit sees them (n): light and heavy masses apart, and what was measured, positive.
 
-    ``measured`` are means of so many values as ``counts`` says. ``scatter`` is the standard uncertainty of
-    such a mean, ``stated`` or by its repeats, 0 without either. ``repeats`` are χ² and the degrees of
-    freedom of the repeats about their means. ``uncertain`` has uncertainties of other columns, by name.
+    ``drop`` is None for accelerations. ``measured`` are means of so many ``values`` as ``counts`` says, each
+    with an uncertainty ``u`` if they are ``stated``, and the number of its ``run``. ``scatter`` is the
+    standard uncertainty of a mean, stated or by its repeats, 0 without either. ``repeats`` are χ² and the
+    degrees of freedom of the repeats about their means. ``uncertain`` has uncertainties of other columns.
     """
 
     l: Column
     h: Column
     drop: Column | None
     measured: Column
-    counts: Column
+    counts: Places
     scatter: Column
     stated: bool
     repeats: tuple[float, int]
     uncertain: Mapping[str, Column]
+    values: Column
+    u: Column
+    run: Places
 
 
 class Estimate(NamedTuple):
@@ -61,54 +60,34 @@ class Estimate(NamedTuple):
 # Runs as columns
 
 
-def as_data(runs: Runs, used: Sequence[Run], drop_of_all: Input | None = None) -> Data:
-    """Return the runs as columns. Raises Unreadable if only some measurements have an uncertainty."""
-    sides = zip(*(sorted((run.m1, run.m2), key=lambda mass: mass.value) for run in used), strict=True)
-    (l, u_l), (h, u_h) = map(_columns, sides)
-    drop, uncertain = None, {"l": u_l, "h": u_h}
-    if runs.kind == "time":
-        drop, uncertain["drop"] = _columns([one for run in used if (one := drop_of_all or run.drop)])
-    values, u, index = measurements(used)
-    if (stated := bool(u.any())) and not u.all():
-        name = rows_in_words(used[int(index[np.argmin(u > 0)])].rows)
-        raise Unreadable(f"{name} has no uncertainty of its {runs.kind}, as others have; give all")
+def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
+    """Return the runs that are ``used``, by their measurements that are ``kept``."""
+    here = used[runs.run] if kept is None else used[runs.run] & kept
+    run = (np.cumsum(used) - 1)[runs.run[here]]
+    values, u = runs.values[here], runs.u_values[here]
+    stated = bool(u.all())
     weight = u**-2 if stated else np.ones_like(values)
-    total = np.bincount(index, weight)
-    measured = np.array([abs(run.mean) for run in used])
-    if stated:
-        measured = np.bincount(index, weight * values) / total
-    measured = np.maximum(measured, MEASURABLE[0])  # the mean of accelerations to both sides may be 0
-    chi2 = sum_of_squares(np.sqrt(weight) * (values - measured[index]))
-    dof = len(values) - len(used)
+    total, counts = np.bincount(run, weight), np.bincount(run)
+    mean = np.bincount(run, weight * values) / total
+    values = values * np.where(mean < 0, -1.0, 1.0)[run]
+    measured = np.maximum(abs(mean), MEASURABLE[0])  # the mean of accelerations to both sides may be 0
+    chi2 = sum_of_squares(np.sqrt(weight) * (values - measured[run]))
+    dof = len(values) - len(counts)
     factor = chi2 / dof if dof else 0.0  # the variance of a value, in units of what is stated
     if stated:
         factor = max(factor, 1.0)
     variance = factor / total
     if dof and not stated:
-        variance = variance + step_of(used) ** 2 / 12
+        variance = variance + runs.step**2 / 12
     repeats = (chi2 / factor, dof) if factor else (0.0, 0)
-    uncertain = {name: column for name, column in uncertain.items() if column.any()}
-    counts = np.bincount(index).astype(float)
-    return Data(l, h, drop, measured, counts, np.sqrt(variance), stated, repeats, uncertain)
-
-
-def measurements(used: Sequence[Run]) -> tuple[Column, Column, NDArray[np.intp]]:
-    """Return all measurements, their uncertainties and runs; positive if the heavier side falls."""
-    index = np.repeat(np.arange(len(used)), [len(run.measured) for run in used])
-    values, u = _columns([one for run in used for one in run.measured])
-    return values * np.where(np.bincount(index, values) < 0, -1.0, 1.0)[index], u, index
-
-
-def step_of(used: Sequence[Run]) -> float:
-    """Return the step of readings, by the last digit that any of them has; 0 if one is no decimal."""
-    decimals = [exact_decimal(Fraction(one.value)) for run in used for one in run.measured]
-    return float(10.0 ** min(-inf if one is None else int(one.as_tuple().exponent) for one in decimals))
-
-
-def _columns(inputs: Sequence[Input]) -> tuple[Column, Column]:
-    """Return the values of inputs, and their uncertainties."""
-    values = np.array([float(one.value) for one in inputs])
-    return values, np.array([float(one.uncertainty) for one in inputs])
+    columns = {x: np.stack([runs.given[x][used], runs.u[x][used]]) for x in runs.given}
+    is_swapped = columns["m1"][0] > columns["m2"][0]
+    (l, u_l), (h, u_h) = (
+        np.where(is_swapped, columns[x], columns[y]) for x, y in (("m2", "m1"), ("m1", "m2"))
+    )
+    drop, u_drop = columns.get("drop", (None, l * 0))
+    uncertain = {x: u for x, u in (("l", u_l), ("h", u_h), ("drop", u_drop)) if u.any()}
+    return Data(l, h, drop, measured, counts, np.sqrt(variance), stated, repeats, uncertain, values, u, run)
 
 
 # What is expected of runs

@@ -11,7 +11,7 @@ from .estimate import Data, accelerations, as_data, expected
 from .fitting import Fitted
 from .report import RARE, conditions, verdict
 from .results import QUANTITIES, rounded, with_u
-from .statistics import Column
+from .runs import Column
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -74,8 +74,9 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         for level in (-2, 2):
             rest.axhline(level, color=FAINT, lw=0.8, ls="--")
         rest.plot(seen.x, residual, "o", ms=4, color=INK)
+        odd = np.isin(np.flatnonzero(fit.used), fit.suspects)
         for axes, heights in ((line, seen.y), (rest, residual)):
-            axes.plot(seen.x[fit.suspects], heights[fit.suspects], "o", ms=9, mfc="none", color=RED)
+            axes.plot(seen.x[odd], heights[odd], "o", ms=9, mfc="none", color=RED)
         line.set_xlim(1.06 * min(0.0, min(seen.x - u_x)), end)
         low, high = min(*(seen.y - u_y), seen.intercept, 0.0), max(*(seen.y + u_y), seen.intercept, 0.0)
         line.set_ylim(low - 0.05 * (high - low) if low < 0 else 0, high + 0.3 * (high - low))
@@ -84,21 +85,22 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         line.set_ylabel(seen.labels[1])
         rest.set_ylabel("residual/u")
         rest.set_xlabel(seen.labels[0])
-        _name_points(line, fit, seen)
+        _name_points(line, fit)
 
 
-def _name_points(line: "Axes", fit: Fitted, seen: View) -> None:
+def _name_points(line: "Axes", fit: Fitted) -> None:
     """Write the numbers of rows at the points, and mark runs that are left out, at the edge if outside."""
-    named = fit.suspects if len(fit.used) > MOST_NAMED else range(len(fit.used))
-    labels = [(seen.x[i], seen.y[i], ",".join(map(str, fit.used[i].rows)), INK) for i in named]
-    if out := fit.left_out:
-        data, best = as_data(fit.runs, out), fit.whole.best
-        a = accelerations(data, data.measured, best.values["delay"])
-        there = view(data, a, best.values, best.names)
-        x, y = np.clip(there.x, *line.get_xlim()), np.clip(there.y, *line.get_ylim())
-        line.plot(x, y, "o", ms=4, mfc="none", color=INK, clip_on=False)
-        rows = [",".join(map(str, run.rows)) + ", left out" for run in out]
-        labels += zip(x, y, rows, [INK] * len(out), strict=True)
+    data, best = as_data(fit.runs, fit.shown), fit.whole.best
+    there = view(data, accelerations(data, data.measured, best.values["delay"]), best.values, best.names)
+    x, y = np.clip(there.x, *line.get_xlim()), np.clip(there.y, *line.get_ylim())
+    out = ~fit.used[fit.shown]
+    if out.any():
+        line.plot(x[out], y[out], "o", ms=4, mfc="none", color=INK, clip_on=False)
+    labels = []
+    for i, run in enumerate(np.flatnonzero(fit.shown).tolist()):
+        if out[i] or len(out) <= MOST_NAMED or run in fit.suspects:
+            rows = ",".join(map(str, fit.runs.rows[run]))
+            labels.append((x[i], y[i], f"{rows}, left out" if out[i] else rows, INK))
     write_beside(line, labels)
 
 

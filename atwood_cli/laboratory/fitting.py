@@ -3,16 +3,18 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from math import hypot, inf, isfinite, sqrt
+from math import hypot, inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import chdtrc, fdtrc, stdtr, stdtrit
+from numpy.typing import NDArray
+from scipy.special import chdtrc, fdtrc, stdtrit
 
 from ..model import physics
 from ..model.decisions import Decisions
 from ..model.quantities import read_names
 from ..model.scene import Input, Scene, SceneError, parameter_of
+from ..model.units import counted
 from ..tables.sources import Unreadable
 from .estimate import (
     TINY,
@@ -23,13 +25,11 @@ from .estimate import (
     estimate,
     expected,
     linear,
-    measurements,
     of_forces,
     of_measured,
-    step_of,
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
-from .runs import OUT_OF_RANGE, Run, Runs, in_range, read_as_of, rows_in_words
+from .runs import OUT_OF_RANGE, Runs, Selection, in_range, read_as_of
 from .statistics import NORMAL_DOF, CannotSeparate, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
@@ -47,6 +47,8 @@ VARY = "vary both m2 - m1 and m1 + m2 more"
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
 CHECK = "check masses, heights, measurements and their units"
+NO_FIT = f"no rim mass and no axle friction of 0 or more fit these runs: {CHECK}"
+LEFT_OUT = "left out, as asked"
 
 
 class Conditions(NamedTuple):
@@ -73,28 +75,38 @@ class Outcome(NamedTuple):
     between_runs: float | None
 
 
-Outlier = tuple[int, int | None, float]
-"""A run, the place of a value in it or None for all of it, and how many standard deviations it is away."""
+class Outlier(NamedTuple):
+    """A run, or a measurement by its cell, and how many standard deviations it is away from the others."""
+
+    run: int
+    place: int | None
+    distance: float
 
 
 class Fitted(NamedTuple):
-    """The fit of the runs that can be used, and their outliers.
+    """The fit of the runs that are ``used``, and their outliers.
 
-    ``unusable`` has the rows of the others, by the reason. ``left_out`` are those that the user leaves out,
-    each with its mean, if something can be expected of them. ``suspects`` are runs that are outliers or have
-    one among their repeats. ``delay`` is that of a fit with a delay, and its p value; None if it was not
-    tried or is not possible.
+    ``why`` says of each run why it is not used; it is empty if it is. ``delay`` is that of a fit with a
+    delay, and its p value; None if it was not tried or is not possible.
     """
 
     runs: Runs
-    used: Sequence[Run]
-    unusable: Mapping[str, Sequence[int]]
-    left_out: Sequence[Run]
+    used: Selection
+    why: Sequence[str]
     given: Conditions
     whole: Outcome
     outliers: Sequence[Outlier]
-    suspects: Sequence[int]
     delay: tuple[Result, float] | None
+
+    @property
+    def suspects(self) -> list[int]:
+        """The runs that are outliers or have one among their repeats."""
+        return sorted({one.run for one in self.outliers})
+
+    @property
+    def shown(self) -> Selection:
+        """The runs of which something can be expected, also those that are left out."""
+        return self.used | [why == LEFT_OUT for why in self.why]
 
 
 # What is given, and what is to be fitted
@@ -156,72 +168,60 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit of these quantities, and outliers. Raises Unreadable, SceneError, CannotSeparate."""
     if "delay" in names and runs.kind != "time":
         raise SceneError("find", "delay", "needs times; the table has accelerations")
-    used, unusable = list[Run](), dict[str, list[int]]()
-    for run in runs.runs:
-        if why := _unusable(runs, run, given, names):
-            unusable.setdefault(why, []).extend(run.rows)
-        else:
-            used.append(run)
-    said = "".join(f"; {rows_in_words(rows)}: {why}" for why, rows in unusable.items())
-    said += read_as_of(runs.remarks)
-    if not used:
+    why = _unusable(runs, given, names)
+    used = why == ""
+    unusable = ((reason, runs.rows_in_words(*np.flatnonzero(why == reason))) for reason in dict.fromkeys(why))
+    said = "".join(f"; {rows}: {reason}" for reason, rows in unusable if reason) + read_as_of(runs.remarks)
+    if not used.any():
         raise Unreadable(f"no run can be used{said}")
-    whole, delay = outcome(runs, used, given, names, said), None
+    is_stated = runs.u_values > 0
+    lacking = runs.run[used[runs.run] & ~is_stated]
+    if is_stated[used[runs.run]].any() and len(lacking):
+        row = runs.rows_in_words(lacking[0])
+        raise Unreadable(f"{row} has no uncertainty of its {runs.kind}, as others have; give all")
+    try:
+        whole, delay = outcome(runs, used, given, names), None
+    except CannotSeparate as error:
+        raise CannotSeparate(f"{error}{said}") from None
     if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
         with suppress(CannotSeparate):
             delay = _delay(whole, outcome(runs, used, given, [*names, "delay"]))
-    left_out = [
-        run._replace(measured=(Input(Fraction(run.mean), Fraction(0), None),))
-        for run in runs.runs
-        if run.left_out and run.mean and run.m1.value != run.m2.value
-    ]
-    found = _outliers(runs, used, whole.best)
-    suspects = sorted({i for i, *_ in found})
-    return Fitted(runs, used, unusable, left_out, given, whole, found, suspects, delay)
+    return Fitted(runs, used, why.tolist(), given, whole, _outliers(runs, used, whole.best), delay)
 
 
-def outcome(
-    runs: Runs, used: Sequence[Run], given: Conditions, names: Sequence[str], said: str = ""
-) -> Outcome:
-    """Return the fit of these runs, with its uncertainties. Raises Unreadable, SceneError, CannotSeparate.
-
-    ``said`` stands behind an error: the rows that are not used, and how the table was read.
-    """
-    dof = len(used) - len(names)
+def outcome(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Outcome:
+    """Return the fit of the runs that are used, with its uncertainties. Raises Unreadable, CannotSeparate."""
+    count = int(used.sum())
+    dof = count - len(names)
     data = as_data(runs, used) if dof >= 0 else None
     if not data or not (dof or data.scatter.any() or data.uncertain):
-        count = "1 run is" if len(used) == 1 else f"{len(used)} runs are"
         more = f"too few to fit {len(names)} quantities: give more runs, or M or axle" if dof < 0 else TOO_FEW
-        raise CannotSeparate(f"{count} {more}{said}")
-    mistake, is_of_most = _mistake(data, used, runs.kind, given.values["gravity"], "gravity" in names)
-    reason = mistake or f"no rim mass and no axle friction of 0 or more fit these runs: {CHECK}"
+        raise CannotSeparate(f"{counted(count, 'run')} {'is' if count == 1 else 'are'} {more}")
+    mistake, is_of_most = _mistake(runs, used, data, given.values["gravity"], "gravity" in names)
     if not _separates(data, given.values, names):
-        verb, what = (
-            "separate" if names[1:] else "determine",
-            " from ".join(QUANTITIES[x].words for x in names),
-        )
-        why = mistake or f"the runs do not {verb} {what}: {VARY}"
-        raise CannotSeparate(f"{why}{said}")
+        verb = "separate" if names[1:] else "determine"
+        what = " from ".join(QUANTITIES[x].words for x in names)
+        raise CannotSeparate(mistake or f"the runs do not {verb} {what}: {VARY}")
 
     def found(there: Conditions) -> dict[str, float]:
-        moved = as_data(runs, used, there.inputs.get("drop"))
+        drop = there.inputs.get("drop")
+        moved = data._replace(drop=np.full(count, float(drop.value))) if drop else data
         return _with_derived(estimate(moved, there.values, names, best.values).values, names, there)
 
     try:
         best = estimate(data, given.values, names)
         ends = [[*map(found, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        raise CannotSeparate(f"{reason}{said}") from None
+        raise CannotSeparate(mistake or NO_FIT) from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
     times = float(stdtrit(min(best.line.dof, NORMAL_DOF), 0.975))  # Student's t
     results = dict[str, Result]()
     for x, value in _with_derived(best.values, names, given).items():
-        steps = (float(np.ptp([value, *(end[x] for end in pair)])) / 2 for pair in ends)
-        u = hypot(spread[x], *steps)
+        u = hypot(spread[x], *(float(np.ptp([value, *(end[x] for end in pair)])) / 2 for pair in ends))
         results[x] = Result(value, u, (value - times * u, value + times * u))
-    if not all(isfinite(one.value) and isfinite(one.uncertainty) for one in results.values()):
-        raise CannotSeparate(f"{reason}{said}")
+    if not np.isfinite([one[:2] for one in results.values()]).all():
+        raise CannotSeparate(mistake or NO_FIT)
     negative = next((x for x in names if x != "delay" and results[x].interval[1] < 0), "")
     if negative and not mistake:
         words = equation(negative, *results[negative][:2])
@@ -243,14 +243,14 @@ def _scatter(best: Estimate) -> tuple[float | None, float | None, float | None]:
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
     """Return the fitted values, with what follows from the rim mass by R and by the shape, if given."""
-    found = {x: values[x] for x in names}
+    found = {x: values[x] for x in FITTED if x in names}
     if "rim_mass" in found:
         if given.inputs["inertia"].value is not None:
             found["pulley_mass"] = found["rim_mass"] / float(given.inputs["inertia"].value)
         if given.inputs["R"].value is not None:
             R = float(given.inputs["R"].value)
             found["moment_of_inertia"] = physics.moment_of_inertia(found["rim_mass"], R)
-    return {x: found[x] for x in QUANTITIES if x in found}
+    return found
 
 
 def _delay(whole: Outcome, late: Outcome) -> tuple[Result, float] | None:
@@ -259,58 +259,57 @@ def _delay(whole: Outcome, late: Outcome) -> tuple[Result, float] | None:
     This is the F test of what it takes off χ², by the scatter of runs and repeats together. If runs scatter
     more than repeats with the delay, too, it is the t test of the delay by the scatter of runs.
     """
-    delay = late.results.get("delay")
-    if not delay:
+    if "delay" not in late.results:
         return None
+    delay, line, data = late.results["delay"], late.best.line, late.best.data
     if whole.chi2 is None or late.chi2 is None or (late.p_value or 0) < SELDOM:
-        return delay, float(
-            2 * stdtr(min(late.best.line.dof, NORMAL_DOF), -abs(delay.value) / delay.uncertainty)
-        )
-    chi2, dof = late.chi2 + late.best.data.repeats[0], late.best.dof + late.best.data.repeats[1]
-    return delay, float(fdtrc(1, dof, max(whole.chi2 - late.chi2, 0) * dof / max(chi2, TINY)))
+        return delay, float(fdtrc(1, line.dof, (delay.value / delay.uncertainty) ** 2))  # the square of t
+    dof = late.best.dof + data.repeats[1]
+    taken_off = max(whole.chi2 - late.chi2, 0) / max(late.chi2 + data.repeats[0], TINY)
+    return delay, float(fdtrc(1, dof, taken_off * dof))
 
 
-def _outliers(runs: Runs, used: Sequence[Run], best: Estimate) -> list[Outlier]:
+def _outliers(runs: Runs, used: Selection, best: Estimate) -> list[Outlier]:
     """Return outliers among the repeats of each run, and among the runs without these repeats.
 
     Runs are judged by the line of forces, which outliers bend least.
     """
-    values, u, index = measurements(used)
+    data, here, places = best.data, np.flatnonzero(used), np.flatnonzero(used[runs.run])
     # Of two repeats, which are equally far from each other, that far from the line comes first.
-    order = np.argsort(-np.abs(values - expected(best.data, best.values)[index]), kind="stable")
-    judge = judge_of_repeats(values[order], np.where(u > 0, u, 1)[order], index[order], step_of(used))
-    found = outliers(judge, len(values), len(values) - len(used), OUTLIER_LEVEL)
-    first, said = np.searchsorted(index, index), list[Outlier]()
-    for i, distance in found.items():
-        k = int(order[i])
-        said.append((int(index[k]), int(k - first[k]), distance))
-    named = {one[:2] for one in said}
-    sound = [
-        run._replace(measured=tuple(one for k, one in enumerate(run.measured) if (i, k) not in named))
-        for i, run in enumerate(used)
-    ]
-    data = as_data(runs, sound)
+    order = np.argsort(-np.abs(data.values - expected(data, best.values)[data.run]), kind="stable")
+    u = data.u if data.stated else np.ones(len(order))
+    judge = judge_of_repeats(data.values[order], u[order], data.run[order], runs.step)
+    odd = {
+        int(places[order[i]]): far
+        for i, far in outliers(judge, len(order), len(order) - len(here), OUTLIER_LEVEL).items()
+    }
+    kept = np.ones(len(runs.values), dtype=bool)
+    kept[[*odd]] = False
+    sound = as_data(runs, used, kept)
     near = {**best.values, "rim_mass": max(best.values["rim_mass"], 0.0), "delay": 0.0}
-    judge = judge_of_line(*linear(of_forces, data, near, best.names), data.repeats)
-    found = outliers(judge, len(used), best.dof, OUTLIER_LEVEL)
-    return said + [(i, None, distance) for i, distance in found.items()]
+    judge = judge_of_line(*linear(of_forces, sound, near, best.names), sound.repeats)
+    found = outliers(judge, len(here), best.dof, OUTLIER_LEVEL)
+    return [
+        *(Outlier(int(runs.run[place]), place, far) for place, far in odd.items()),
+        *(Outlier(int(here[i]), None, far) for i, far in found.items()),
+    ]
 
 
 # Why there is no result
 
 
-def _unusable(runs: Runs, run: Run, given: Conditions, names: Sequence[str]) -> str:
-    """Return why nothing can be expected of a run; empty if something can."""
-    difference = float(run.m2.value - run.m1.value)
+def _unusable(runs: Runs, given: Conditions, names: Sequence[str]) -> NDArray[np.str_]:
+    """Return for each run why nothing can be expected of it; "" if something can."""
+    difference, mean = runs.given["m2"] - runs.given["m1"], runs.mean
     held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
     reasons = {
-        "left out, as asked": run.left_out,
-        "the masses are equal": not difference,
-        "nothing moved": not run.mean,
-        "the lighter side falls": runs.signed and (run.mean > 0) != (difference > 0),
+        "the masses are equal": difference == 0,
+        "nothing moved": mean == 0,
+        "the lighter side falls": (runs.values < 0).any() & ((mean > 0) != (difference > 0)),
         "an axle with the friction given holds the masses": abs(difference) <= held,
+        LEFT_OUT: runs.left_out,
     }
-    return next((why for why, holds in reasons.items() if holds), "")
+    return np.select([*reasons.values()], [*reasons], "")
 
 
 def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> bool:
@@ -327,34 +326,33 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
     return not names or bool(singular.min() > LEAST_SINGULAR)
 
 
-def _mistake(data: Data, used: Sequence[Run], kind: str, g: float, is_fitted: bool) -> tuple[str, bool]:
-    """Return what must be a mistake in the table, if anything, and if most runs have one.
+def _mistake(runs: Runs, used: Selection, data: Data, g: float, is_fitted: bool) -> tuple[str, bool]:
+    """Return what must be a mistake in the table, "" if nothing must, and if most runs have one.
 
     Each value is compared with the median of its kind, and each acceleration with that of free masses,
     unless gravity is fitted.
     """
-    masses = np.array([[float(run.m1.value), float(run.m2.value)] for run in used])
-    columns = {"m1": masses[:, 0], "m2": masses[:, 1], "drop": data.drop, kind: data.measured}
-    checks = list[tuple[str, str, Any, Any, float, Any]]()
-    for name, column in columns.items():
-        if column is not None:
-            of, what = (masses, "mass") if name in ("m1", "m2") else (column, name)
-            checks.append((name, f"the median {what}", column, np.median(of), 1 / MOST_RATIO, MOST_RATIO))
+    masses = {x: runs.given[x][used] for x in ("m1", "m2")}
+    lengths = {} if data.drop is None else {"drop": data.drop}
+    checks: list[tuple[str, str, Any, Any, float, Any]] = []
+    for x, values in {**masses, **lengths, runs.kind: data.measured}.items():
+        of, what = ([*masses.values()], "mass") if x in masses else (values, x)
+        checks.append((x, f"the median {what}", values, np.median(of), 1 / MOST_RATIO, MOST_RATIO))
     if not is_fitted:
         name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
         free = physics.acceleration(data.h - data.l, data.h + data.l, g)
         most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
         what = "the acceleration without friction and pulley"
         checks.append((name, what, accelerations(data, data.measured), free, LEAST_SHARE, most))
-    said, is_mistaken = "", np.zeros(len(used), dtype=bool)
-    for name, what, values, usual, least, most in checks:
+    said, is_mistaken = "", np.zeros(len(data.l), dtype=bool)
+    for name, what, values, typical, least, most in checks:
         with np.errstate(divide="ignore"):
-            ratio = values / usual
+            ratio = values / typical
         is_unusual = (values > 0) & ((ratio < least) | (ratio > most))
         if is_unusual.any() and not said:
             i, unit = int(np.argmax(is_unusual)), parameter_of("a" if name[0] == "a" else name).unit
             value, times, there = (rounded(float(x), 3) for x in (values[i], ratio[i], values[i] / ratio[i]))
             far = f"{name} = {value} {unit} is {times} times {there} {unit}"
-            said = f"{rows_in_words(used[i].rows)}: {far}, {what}; {CHECK}"
+            said = f"{runs.rows_in_words(np.flatnonzero(used)[i])}: {far}, {what}; {CHECK}"
         is_mistaken |= is_unusual
     return said, bool(is_mistaken.mean() > 0.5)

@@ -12,9 +12,9 @@ from ..model.units import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
 from .estimate import Estimate, as_data, expected
-from .fitting import SELDOM, Fitted
+from .fitting import LEFT_OUT, SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
-from .runs import MEASURED, RUN_QUANTITIES, in_words, rows_in_words
+from .runs import MEASURED, WORDS, in_words
 
 RARE = 0.01
 """The p value below which a delay is reported, and above 1 less which runs scatter less than repeats."""
@@ -32,14 +32,14 @@ NEEDS = {
 
 def verdict(fit: Fitted) -> str:
     """Return how many runs there are, and which quantities differ from 0, unless there are outliers."""
-    measurements = counted(int(fit.whole.best.data.counts.sum()), MEASURED[fit.runs.kind])
-    said = [f"{counted(len(fit.used), 'run')}, {measurements}."]
+    measurements = counted(len(fit.whole.best.data.values), MEASURED[fit.runs.kind])
+    said = [f"{counted(len(fit.whole.best.data.l), 'run')}, {measurements}."]
     if fit.whole.reason:
         said.append(f"No result: {fit.whole.reason}.")
     elif not fit.whole.best.names:
         said.append("Nothing is left to fit: the pulley and its axle are given.")
     for name in USUAL:
-        if name in fit.whole.results and not fit.suspects:
+        if name in fit.whole.results and not fit.outliers:
             (low, high), unit = fit.whole.results[name].interval, QUANTITIES[name].unit
             may_be = f"is not distinguishable from 0; it may be up to {in_small_unit(high, unit)}."
             said.append(_capital(f"{QUANTITIES[name].words} {'is clearly above 0.' if low > 0 else may_be}"))
@@ -48,15 +48,15 @@ def verdict(fit: Fitted) -> str:
 
 def head(fit: Fitted) -> list[str]:
     """Return the verdict, and a sentence for each outlier."""
-    said = [verdict(fit)]
+    said, runs = [verdict(fit)], fit.runs
     for i, place, distance in fit.outliers:
-        run, far = fit.used[i], f"{rounded(abs(distance))} standard deviations"
+        far = f"{rounded(abs(distance))} standard deviations"
         if place is None:
-            where, others = ",".join(map(str, run.rows)), "the other runs"
-            what = f"{rows_in_words(run.rows)} {'are' if run.rows[1:] else 'is'}"
+            where, others = ",".join(map(str, runs.rows[i])), "a fit of the other runs"
+            what = f"{runs.rows_in_words(i)} {'are' if runs.rows[i][1:] else 'is'}"
         else:
-            where, others = run.cells[place], "its repeats"
-            value = f"{format_number(float(run.measured[place].value))} {parameter_of(fit.runs.kind).unit}"
+            where, others = runs.cells[place], "its repeats"
+            value = f"{format_number(float(runs.values[place]))} {parameter_of(runs.kind).unit}"
             what = f"{in_words(where)} = {value} is"
         said.append(f"{_capital(what)} {far} from {others}; to leave that out: --without {where}.")
     if fit.outliers:
@@ -67,9 +67,12 @@ def head(fit: Fitted) -> list[str]:
 def notes(fit: Fitted) -> list[str]:
     """Return what else there is to say, first how the table was read."""
     said = [_capital(words) for words in fit.runs.remarks]
-    for why, rows in fit.unusable.items():
-        said.append(f"{_capital(rows_in_words(rows))} {'are' if rows[1:] else 'is'} not used: {why}.")
-    return said if fit.whole.reason else [*said, _scatter(fit), *_delay(fit)]
+    for why in dict.fromkeys(fit.why):
+        unusable = [i for i, reason in enumerate(fit.why) if reason == why]
+        if why not in ("", LEFT_OUT):
+            is_or_are = "are" if sum(len(fit.runs.rows[i]) for i in unusable) > 1 else "is"
+            said.append(f"{_capital(fit.runs.rows_in_words(*unusable))} {is_or_are} not used: {why}.")
+    return said if fit.whole.reason or fit.outliers else [*said, _scatter(fit), *_delay(fit)]
 
 
 def _scatter(fit: Fitted) -> str:
@@ -101,13 +104,11 @@ def _delay(fit: Fitted) -> list[str]:
         long, find = "long" if result.value > 0 else "short", ",".join([*names, "delay"])
         return [f"All times seem {size} s too {long}: --find {find} fits that, too."]
     half = result.interval[1] - result.value if result else np.inf
-    if fit.runs.kind != "time" or "delay" in names or fit.suspects or half <= WIDE_DELAY:
+    if fit.runs.kind != "time" or "delay" in names or half <= WIDE_DELAY:
         return []
-    seen = (
-        f"hardly show a delay of all times ({with_u(result.value, result.uncertainty)} s)" if result else ""
-    )
+    seen = f" (a fitted delay is {with_u(result.value, result.uncertainty)} s)" if result else ""
     how = "vary the height of fall, or both m2 - m1 and m1 + m2, more"
-    return [f"These runs {seen or 'cannot show a delay of all times'}: {how}."]
+    return [f"These runs cannot show if all times are too long{seen}: {how}."]
 
 
 def _capital(words: str) -> str:
@@ -147,10 +148,8 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     """Return a fit in the forms in which it may be asked for; ``only`` names results."""
     record: dict[str, Any] = results_of(fit)._asdict()
     lines: Sequence[Mapping[str, Any]] = record["runs"]
-    absent = dict.fromkeys(QUANTITIES)
-    by_name = {name: {**absent, **record[name]} for name in ("uncertainty", "interval")}
-    full = {"version": VERSION, **record, **by_name}
-    full["runs"] = [{**line, **{x: line.get(x) for x in RUN_QUANTITIES}} for line in lines]
+    full = {"version": VERSION, **record, "runs": [{**dict.fromkeys(WORDS), **line} for line in lines]}
+    full |= {name: dict.fromkeys(QUANTITIES) | record[name] for name in ("uncertainty", "interval")}
 
     def json() -> Any:
         return {name: full[name] for name in only or full}
@@ -167,7 +166,7 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     def beside() -> Sequence[str]:
         """Return the sentences that CSV and bare values have no place for."""
         if not only or only == ["runs"]:
-            return [*head(fit), *notes(fit)]
+            return list(record["notes"])
         values = [equation(x, *fit.whole.results[x][:2]) for x in only if x in fit.whole.results]
         why = (f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None)
         return [*values, *why, *head(fit)[1:]]
@@ -185,29 +184,26 @@ def _correlation(best: Estimate) -> float | None:
 
 def _records(fit: Fitted) -> list[dict[str, Any]]:
     """Return the runs, as JSON and CSV have them; the residual is in standard uncertainties."""
-    best, kind = fit.whole.best, fit.runs.kind
-    groups = [(fit.used, best.data, best.sigma.tolist())]
-    if fit.left_out:
-        groups.append((fit.left_out, as_data(fit.runs, fit.left_out), [None] * len(fit.left_out)))
-    found: dict[tuple[int, ...], Any] = {}
-    for runs, data, u in groups:
-        moves = expected(data._replace(drop=None), best.values) > 0
-        ideal = np.where(moves, expected(data, best.values), None)
-        found |= zip(
-            (run.rows for run in runs), zip(data.measured.tolist(), ideal, u, strict=True), strict=True
-        )
-    lines = []
-    for run in fit.runs.runs:
-        sign = -1 if run.mean < 0 else 1
-        measured, ideal, u = found.get(run.rows, (abs(run.mean), None, None))
-        numbers = {"m1": run.m1, "m2": run.m2, "drop": run.drop}
-        lines.append(
-            {"rows": " ".join(map(str, run.rows))}
-            | {x: float(one.value) for x, one in numbers.items() if one}
-            | {kind: sign * measured, "u": u, "expected": None if ideal is None else sign * ideal}
-            | {"residual": None if ideal is None or u is None else sign * (measured - ideal) / u}
-        )
-    return lines
+    runs, best, shown = fit.runs, fit.whole.best, as_data(fit.runs, fit.shown)
+    moves = expected(shown._replace(drop=None), best.values) > 0
+    measured, sign = runs.mean.copy(), np.where(runs.mean < 0, -1, 1)
+    if best.data.stated:
+        measured[fit.used] = sign[fit.used] * best.data.measured  # weighted means
+    u, ideal = np.full((2, len(sign)), np.nan)
+    u[fit.used], ideal[fit.shown] = best.sigma, np.where(moves, expected(shown, best.values), np.nan)
+    ideal *= sign
+    columns = {
+        **runs.given,
+        runs.kind: measured,
+        "u": u,
+        "expected": ideal,
+        "residual": (measured - ideal) / u,
+    }
+    return [
+        {"rows": " ".join(map(str, rows))}
+        | {x: None if np.isnan(column[i]) else float(column[i]) for x, column in columns.items()}
+        for i, rows in enumerate(runs.rows)
+    ]
 
 
 def _print_page(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> None:
@@ -230,18 +226,16 @@ def _print_table(page: Page, columns: Mapping[str, Sequence[str]]) -> None:
 
 def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
     """Return for each run the measurement, what is expected, and the residual."""
-    kind, data, unit = fit.runs.kind, fit.whole.best.data, parameter_of(fit.runs.kind).unit
-    suspects = {" ".join(map(str, fit.used[i].rows)) for i in fit.suspects}
+    kind, best, unit = fit.runs.kind, fit.whole.best, parameter_of(fit.runs.kind).unit
     # The mean has the digits of its own scatter.
-    finest = float(min(data.scatter.min() or np.inf, fit.whole.best.sigma.min()))
+    finest = float(min(best.data.scatter.min() or np.inf, best.sigma.min()))
 
     def column(name: str, write: Any) -> list[str]:
         return ["" if line[name] is None else write(line[name]) for line in lines]
 
+    marks = [" !" if i in fit.suspects else "" for i in range(len(lines))]
     return {
-        "row": [
-            line["rows"].replace(" ", ",") + (" !" if line["rows"] in suspects else "") for line in lines
-        ],
+        "row": [line["rows"].replace(" ", ",") + mark for line, mark in zip(lines, marks, strict=True)],
         **{f"{name} (kg)": column(name, format_number) for name in ("m1", "m2")},
         f"{kind} ({unit})": column(kind, lambda value: cut(value, finest)),
         f"expected ({unit})": column("expected", lambda value: cut(value, finest)),

@@ -7,6 +7,10 @@ from fractions import Fraction
 from shlex import quote
 from typing import Any, Literal, NamedTuple
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ..model.digits import exact_decimal
 from ..model.scene import INPUTS, Input, SceneError
 from ..model.units import in_quotes
 from ..tables.headings import (
@@ -27,12 +31,14 @@ from ..tables.headings import (
 from ..tables.sheets import Sheet, sheet_of
 from ..tables.sources import Unreadable
 
+Column = NDArray[np.float64]
+Places = NDArray[np.intp]
+Selection = NDArray[np.bool_]
 Kind = Literal["a", "time"]
 MEASURED = {"a": "acceleration", "time": "time"}
 """The quantities that are measured, which may be repeated in further columns."""
-RUN_QUANTITIES = ("m1", "m2", "drop", "a", "time")
-"""The quantities of a run; all others are the same in all runs."""
 WORDS = {"m1": "m1", "m2": "m2", "drop": "drop h height", "a": "a acceleration", "time": "t time"}
+"""The quantities of a run, by the words of headings; all others are the same in all runs."""
 SPELLINGS = {word: name for name, words in WORDS.items() for word in words.split()}
 SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
 VOCABULARY = Vocabulary(SPELLINGS, repeated=MEASURED, uncertain=True)
@@ -43,43 +49,36 @@ MEASURABLE = 1e-30, 1e30
 OUT_OF_RANGE = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
 
 
-class Run(NamedTuple):
-    """A pair of masses, the height of fall if there is one, and what was measured, once or more often.
-
-    ``rows`` are the numbers of its rows, which differ only in what was measured. ``cells`` say where each
-    measurement stands, as --without takes it: 8:t2. ``left_out`` says that the user leaves the run out of the
-    fit.
-    """
-
-    rows: tuple[int, ...]
-    m1: Input
-    m2: Input
-    drop: Input | None
-    measured: tuple[Input, ...]
-    left_out: bool = False
-    cells: tuple[str, ...] = ()
-
-    @property
-    def mean(self) -> float:
-        """The double nearest to the mean of what was measured."""
-        return float(sum((Fraction(one.value) for one in self.measured), Fraction(0)) / len(self.measured))
-
-
-def rows_in_words(rows: Sequence[int]) -> str:
-    """Return rows for a sentence: row 1, or rows 1, 2."""
-    return f"row{'s' if rows[1:] else ''} {', '.join(map(str, rows))}"
-
-
 class Runs(NamedTuple):
-    """The runs of a table, and how it was read.
+    """The n runs of a table, and all their measurements, run by run.
 
-    ``signed`` means that accelerations have signs, as one is negative: they are positive when m2 descends.
+    Columns of runs (n): ``given`` has m1 and m2 (kg), and drop (m) if times were measured, ``u`` their
+    uncertainties; ``rows`` are the numbers of their rows. Columns of measurements: ``values``, ``u_values``
+    (0 if no uncertainty is stated), the ``run`` of each, and ``cells``, where they stand, as --without takes
+    it: 8:t2. ``step`` is that of the last digit of any, 0 if one is no decimal.
     """
 
     kind: Kind
-    runs: Sequence[Run]
-    signed: bool
-    remarks: Sequence[str]
+    given: Mapping[str, Column]
+    u: Mapping[str, Column]
+    rows: Sequence[Sequence[int]]
+    left_out: Selection
+    mean: Column
+    values: Column
+    u_values: Column
+    run: Places
+    cells: Sequence[str]
+    step: float = 0.0
+    remarks: Sequence[str] = ()
+
+    def rows_in_words(self, *runs: int) -> str:
+        """Return the rows of these runs for a sentence: row 1, or rows 1, 2."""
+        rows = [str(row) for i in runs for row in self.rows[i]]
+        return f"row{'s' if rows[1:] else ''} {', '.join(rows)}"
+
+
+Row = tuple[int, Mapping[str, Input], Mapping[str, Input]]
+"""The number of a row, its masses and its height by name, and its measurements by their cells."""
 
 
 def read_runs(
@@ -89,7 +88,7 @@ def read_runs(
     without: Collection[int | str] = (),
     named: Mapping[str, str] = {},
 ) -> Runs:
-    """Return the runs of a table, a row a run.
+    """Return the runs of a table; rows that differ only in what was measured are one run.
 
     ``source`` is the path of a CSV or .tsv file, "-" for stdin, or columns by their headings: a mapping or a
     data frame. ``labels`` are headings that belong to no run, ``named`` maps headings to what they mean, and
@@ -105,20 +104,54 @@ def read_runs(
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     remarks = read_as(headings, sheet.separator, comma, [*others, *sheet.remarks])
-    if drop:
-        drop = drop._replace(uncertainty=Fraction(0))  # it counts for all runs together
     left_out = _read_without(without, len(sheet.rows), headings)
     try:
-        rows = [_run(i, row, headings, comma, drop, left_out) for i, row in enumerate(sheet.rows, 1)]
+        rows = [_read_row(number, row, headings, comma) for number, row in enumerate(sheet.rows, 1)]
     except Unreadable as error:
         raise Unreadable(f"{error}{read_as_of(remarks)}") from None
-    remarks += [f"row {run.rows[0]} has no {kind}: it is not used." for run in rows if not run.measured]
-    remarks += [f"{in_words(cell)} was left out, as asked." for cell in map(str, without) if ":" in cell]
-    runs = _joined(run for run in rows if run.measured)
-    if not runs:
+    remarks += [f"row {number} has no {kind}: it is not used." for number, _, cells in rows if not cells]
+    if without:
+        remarks.append(f"left out, as asked: {', '.join(in_words(str(word)) for word in without)}.")
+    same: dict[object, list[Row]] = {}
+    for row in rows:
+        if row[2]:
+            same.setdefault(tuple(one[:2] for one in row[1].values()), []).append(row)
+    if not same:
         raise Unreadable("it has no runs")
-    signed = any(one.value < 0 for run in runs for one in run.measured)
-    return Runs(kind, runs, signed, remarks)
+    return _as_columns(kind, [*same.values()], drop, left_out, remarks)
+
+
+def _as_columns(
+    kind: Kind, runs: Sequence[Sequence[Row]], drop: Input | None, left_out: Set[str], remarks: Sequence[str]
+) -> Runs:
+    """Return runs of some rows as columns, without the cells that are left out, unless all of a run are."""
+    given = {name: [rows[0][1][name] for rows in runs] for name in runs[0][0][1]}
+    if drop:
+        given["drop"] = [drop._replace(uncertainty=Fraction(0))] * len(runs)  # it counts for all together
+    measured = [{cell: one for *_, cells in rows for cell, one in cells.items()} for rows in runs]
+    kept = [{cell: one for cell, one in cells.items() if cell not in left_out} for cells in measured]
+    used = [some or cells for some, cells in zip(kept, measured, strict=True)]
+    values = [one for some in used for one in some.values()]
+    decimals = [exact_decimal(Fraction(one.value)) for one in values]
+    step = 0.0 if None in decimals else 10.0 ** min(int(one.as_tuple().exponent) for one in decimals if one)
+    return Runs(
+        kind,
+        {name: _column(one.value for one in inputs) for name, inputs in given.items()},
+        {name: _column(one.uncertainty for one in inputs) for name, inputs in given.items()},
+        [[number for number, *_ in rows] for rows in runs],
+        np.array([not some for some in kept]),
+        _column(sum(Fraction(one.value) for one in some.values()) / len(some) for some in used),
+        _column(one.value for one in values),
+        _column(one.uncertainty for one in values),
+        np.repeat(np.arange(len(used)), [*map(len, used)]),
+        [cell for some in used for cell in some],
+        step,
+        remarks,
+    )
+
+
+def _column(numbers: Iterable[Any]) -> Column:
+    return np.array([float(number) for number in numbers])
 
 
 def read_as_of(remarks: Sequence[str]) -> str:
@@ -201,28 +234,31 @@ def _labels(sheet: Sheet, headings: Sequence[Heading], labels: Collection[str]) 
 # Rows
 
 
-def _read_without(
-    words: Collection[int | str], rows: int, headings: Sequence[Heading]
-) -> set[tuple[int, int]]:
-    """Return the rows and places of measurements to leave out, all of them for a whole row.
+def _read_without(words: Collection[int | str], rows: int, headings: Sequence[Heading]) -> set[str]:
+    """Return the cells to leave out, all that are measured for a whole row.
 
     Raises SceneError for a row or a column that is not there.
     """
     measured = [heading for heading in headings if heading.name in MEASURED]
-    found: set[tuple[int, int]] = set()
+    found: set[str] = set()
     for word in map(str, words):
         number, colon, column = word.partition(":")
         if not (number.isascii() and number.isdigit() and 1 <= int(number[:9]) <= rows):
             raise SceneError("without", word, f"is not a row; there are 1 to {rows}, and a cell is 1:t2")
-        cells = [one for one in measured if not colon or column.strip() in (one.column, _cell_name(one))]
+        cells = [one for one in measured if not colon or column.strip() in (one.column, _short_name(one))]
         if not cells:
-            there = ", ".join(map(_cell_name, measured))
+            there = ", ".join(map(_short_name, measured))
             raise SceneError("without", word, f"names no column that is measured; there are {there}")
-        found |= {(int(number), one.place) for one in cells}
+        found |= {_cell(int(number), one) for one in cells}
     return found
 
 
-def _cell_name(heading: Heading) -> str:
+def _cell(row: int, heading: Heading) -> str:
+    """Return where a measurement stands, as --without takes it: 8:t2."""
+    return f"{row}:{quote(_short_name(heading))}"
+
+
+def _short_name(heading: Heading) -> str:
     """Return the name of a measured column in --without: t2, or its heading if the user has named it."""
     letter = "t" if heading.name == "time" else heading.name
     return f"{letter}{heading.number}" if re.fullmatch(r"\d*", heading.number) else heading.column
@@ -240,46 +276,22 @@ def in_range(one: Input) -> bool:
     return all(low <= abs(size) <= high for size in sizes if size)
 
 
-def _joined(rows: Iterable[Run]) -> list[Run]:
-    """Return the runs of rows: those that differ only in what was measured are one."""
-    by_key: dict[object, Run] = {}
-    for run in rows:
-        key = run.m1[:2], run.m2[:2], run.drop and run.drop[:2], run.left_out
-        if first := by_key.get(key):
-            measured, cells = first.measured + run.measured, first.cells + run.cells
-            run = first._replace(rows=first.rows + run.rows, measured=measured, cells=cells)
-        by_key[key] = run
-    return [*by_key.values()]
-
-
-def _run(
-    number: int,
-    row: Sequence[str],
-    headings: Sequence[Heading],
-    comma: bool,
-    drop: Input | None,
-    without: Set[tuple[int, int]],
-) -> Run:
-    """Return the run of one row, marked as left out if all its measurements are. Raises Unreadable."""
-    given, measured = dict[str, Input](), dict[Heading, Input]()
+def _read_row(number: int, row: Sequence[str], headings: Sequence[Heading], comma: bool) -> Row:
+    """Return what a row gives and measures. Raises Unreadable."""
+    given, measured = dict[str, Input](), dict[str, Input]()
     try:
         for heading in headings:
-            if value := _read_cell(heading, row, comma):
-                if heading.name in MEASURED:
-                    measured[heading] = value
-                else:
-                    given[heading.name] = value
-            elif heading.name not in MEASURED:
-                raise Unreadable(f"row {number} has no {heading.name}; write it in each row")
+            one = _read_cell(heading, row, comma)
+            if heading.name not in MEASURED:
+                if not one:
+                    raise Unreadable(f"row {number} has no {heading.name}; write it in each row")
+                given[heading.name] = one
+            elif one:
+                measured[_cell(number, heading)] = one
     except SceneError as error:
         why = f"; {NO_RUN}" if not LIKE_NUMBER.match(f"{error.value}") else ""
         raise Unreadable(f"row {number}: {error}{why}") from None
-    kept = {column: one for column, one in measured.items() if (number, column.place) not in without}
-    left_out = bool(measured) and not kept
-    used = kept or measured
-    cells = tuple(f"{number}:{quote(_cell_name(column))}" for column in used)
-    m1, m2, drop = given["m1"], given["m2"], given.get("drop", drop)
-    return Run((number,), m1, m2, drop, (*used.values(),), left_out, cells)
+    return number, given, measured
 
 
 def _read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None:

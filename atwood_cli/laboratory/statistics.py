@@ -13,11 +13,11 @@ from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import stdtr
 
-Column = NDArray[np.float64]
+from .runs import Column, Places, Selection
+
 NORMAL_DOF = 1e8
 """Degrees of freedom with which Student's t is the normal distribution."""
 SINGULAR_RATIO = 1e-7
@@ -93,7 +93,7 @@ def sum_of_squares(column: Any) -> float:
     return float(np.square(column).sum())
 
 
-Judge = Callable[[NDArray[np.bool_]], tuple[Column, Column]]
+Judge = Callable[[Selection], tuple[Column, Column]]
 """Return how many standard deviations each value is from a fit of those kept, and degrees of freedom."""
 
 
@@ -127,7 +127,7 @@ def judge_of_line(
     The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite.
     """
 
-    def judge(kept: NDArray[np.bool_]) -> tuple[Column, Column]:
+    def judge(kept: Selection) -> tuple[Column, Column]:
         line = fit_line(J[kept], y[kept], known[kept], shape[kept], least[kept], repeats)
         variance = np.maximum(known + line.between * shape, least)
         of_line = np.einsum("ij,jk,ik->i", J, line.covariance, J)
@@ -142,14 +142,14 @@ def judge_of_line(
     return judge
 
 
-def judge_of_repeats(values: Column, u: Column, run: NDArray[np.intp], step: float) -> Judge:
+def judge_of_repeats(values: Column, u: Column, run: Places, step: float) -> Judge:
     """Judge values by the mean of those kept of the same ``run``; a value without others is not judged.
 
     The scatter is the same in all runs, times ``u``, and at least that of readings rounded to the ``step``.
     """
     weight = u**-2
 
-    def judge(kept: NDArray[np.bool_]) -> tuple[Column, Column]:
+    def judge(kept: Selection) -> tuple[Column, Column]:
         sums = np.bincount(run, weight * kept)
         total, dof = sums[run], int(kept.sum()) - int(np.count_nonzero(sums))
         others = total - weight * kept  # of the same run
