@@ -161,6 +161,14 @@ def linear(
 # Least squares
 
 
+def by_forces(data: Data, given: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
+    """Return the values with the least squares of forces, by which others start, and the given ones."""
+    values = {**dict.fromkeys(FITTED, 0.0), **given}
+    J, y, *_ = linear(of_forces, data, values, names)
+    changes = np.linalg.lstsq(J, y, rcond=None)[0] if names else []
+    return values | {x: values[x] + float(change) for x, change in zip(names, changes, strict=True)}
+
+
 def estimate(
     data: Data, given: Mapping[str, float], names: Sequence[str], near: Mapping[str, float] | None = None
 ) -> Estimate:
@@ -169,10 +177,7 @@ def estimate(
     Variances follow the values (effective variance), and least squares the variances.
     """
     values = {**dict.fromkeys(FITTED, 0.0), **given}
-    if near is None:
-        J, y, *_ = linear(of_forces, data, values, names)
-        changes = np.linalg.lstsq(J, y, rcond=None)[0].tolist() if names else []
-        near = {x: values[x] + change for x, change in zip(names, changes, strict=True)}
+    near = near or by_forces(data, given, names)
     lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
     least = {x: lightest if x == "rim_mass" else -inf for x in names}
     values |= {x: max(near[x], least[x] / 2) for x in names}

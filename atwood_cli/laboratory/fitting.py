@@ -12,6 +12,7 @@ from scipy.special import chdtrc, fdtrc, stdtrit
 
 from ..model import physics
 from ..model.decisions import Decisions
+from ..model.digits import format_number
 from ..model.quantities import read_names
 from ..model.scene import Input, Scene, SceneError, parameter_of
 from ..model.units import counted
@@ -22,6 +23,7 @@ from .estimate import (
     Estimate,
     accelerations,
     as_data,
+    by_forces,
     estimate,
     expected,
     linear,
@@ -29,7 +31,7 @@ from .estimate import (
     of_measured,
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
-from .runs import OUT_OF_RANGE, Runs, Selection, in_range, read_as_of
+from .runs import OUT_OF_RANGE, Runs, Selection, in_range, in_words, read_as_of
 from .statistics import NORMAL_DOF, CannotSeparate, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
@@ -81,6 +83,18 @@ class Outlier(NamedTuple):
     run: int
     place: int | None
     distance: float
+
+    def in_words(self, runs: Runs) -> str:
+        """Return the sentence that names it and the option that leaves it out."""
+        if self.place is None:
+            where, others = ",".join(map(str, runs.rows[self.run])), "a fit of the other runs"
+            what = f"{runs.rows_in_words(self.run)} {'are' if runs.rows[self.run][1:] else 'is'}"
+        else:
+            where, others = runs.cells[self.place], "its repeats"
+            value = f"{format_number(float(runs.values[self.place]))} {parameter_of(runs.kind).unit}"
+            what = f"{in_words(where)} = {value} is"
+        far = f"{rounded(abs(self.distance))} standard deviations"
+        return f"{what} {far} from {others}; to leave that out: --without {where}"
 
 
 class Fitted(NamedTuple):
@@ -186,7 +200,15 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
         with suppress(CannotSeparate):
             delay = _delay(whole, outcome(runs, used, given, [*names, "delay"]))
-    return Fitted(runs, used, why.tolist(), given, whole, _outliers(runs, used, whole.best), delay)
+    return Fitted(
+        runs,
+        used,
+        why.tolist(),
+        given,
+        whole,
+        _outliers(runs, used, whole.best.data, whole.best.values, names),
+        delay,
+    )
 
 
 def outcome(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Outcome:
@@ -212,7 +234,9 @@ def outcome(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]
         best = estimate(data, given.values, names)
         ends = [[*map(found, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        raise CannotSeparate(mistake or NO_FIT) from None
+        near = by_forces(data, given.values, names)
+        odd = "; ".join(one.in_words(runs) for one in _outliers(runs, used, data, near, names))
+        raise CannotSeparate(mistake or odd or NO_FIT) from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
     times = float(stdtrit(min(best.line.dof, NORMAL_DOF), 0.975))  # Student's t
@@ -269,14 +293,16 @@ def _delay(whole: Outcome, late: Outcome) -> tuple[Result, float] | None:
     return delay, float(fdtrc(1, dof, taken_off * dof))
 
 
-def _outliers(runs: Runs, used: Selection, best: Estimate) -> list[Outlier]:
+def _outliers(
+    runs: Runs, used: Selection, data: Data, values: Mapping[str, float], names: Sequence[str]
+) -> list[Outlier]:
     """Return outliers among the repeats of each run, and among the runs without these repeats.
 
     Runs are judged by the line of forces, which outliers bend least.
     """
-    data, here, places = best.data, np.flatnonzero(used), np.flatnonzero(used[runs.run])
+    here, places = np.flatnonzero(used), np.flatnonzero(used[runs.run])
     # Of two repeats, which are equally far from each other, that far from the line comes first.
-    order = np.argsort(-np.abs(data.values - expected(data, best.values)[data.run]), kind="stable")
+    order = np.argsort(-np.abs(data.values - expected(data, values)[data.run]), kind="stable")
     u = data.u if data.stated else np.ones(len(order))
     judge = judge_of_repeats(data.values[order], u[order], data.run[order], runs.step)
     odd = {
@@ -286,9 +312,9 @@ def _outliers(runs: Runs, used: Selection, best: Estimate) -> list[Outlier]:
     kept = np.ones(len(runs.values), dtype=bool)
     kept[[*odd]] = False
     sound = as_data(runs, used, kept)
-    near = {**best.values, "rim_mass": max(best.values["rim_mass"], 0.0), "delay": 0.0}
-    judge = judge_of_line(*linear(of_forces, sound, near, best.names), sound.repeats)
-    found = outliers(judge, len(here), best.dof, OUTLIER_LEVEL)
+    near = {**values, "rim_mass": max(values["rim_mass"], 0.0), "delay": 0.0}
+    judge = judge_of_line(*linear(of_forces, sound, near, names), sound.repeats)
+    found = outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL)
     return [
         *(Outlier(int(runs.run[place]), place, far) for place, far in odd.items()),
         *(Outlier(int(here[i]), None, far) for i, far in found.items()),

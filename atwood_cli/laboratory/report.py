@@ -14,7 +14,7 @@ from ..output.text import VERSION, Report, cell, inputs_in_words
 from .estimate import Estimate, as_data, expected
 from .fitting import LEFT_OUT, SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
-from .runs import MEASURED, WORDS, in_words
+from .runs import MEASURED, WORDS
 
 RARE = 0.01
 """The p value below which a delay is reported, and above 1 less which runs scatter less than repeats."""
@@ -48,17 +48,7 @@ def verdict(fit: Fitted) -> str:
 
 def head(fit: Fitted) -> list[str]:
     """Return the verdict, and a sentence for each outlier."""
-    said, runs = [verdict(fit)], fit.runs
-    for i, place, distance in fit.outliers:
-        far = f"{rounded(abs(distance))} standard deviations"
-        if place is None:
-            where, others = ",".join(map(str, runs.rows[i])), "a fit of the other runs"
-            what = f"{runs.rows_in_words(i)} {'are' if runs.rows[i][1:] else 'is'}"
-        else:
-            where, others = runs.cells[place], "its repeats"
-            value = f"{format_number(float(runs.values[place]))} {parameter_of(runs.kind).unit}"
-            what = f"{in_words(where)} = {value} is"
-        said.append(f"{_capital(what)} {far} from {others}; to leave that out: --without {where}.")
+    said = [verdict(fit), *(f"{_capital(one.in_words(fit.runs))}." for one in fit.outliers)]
     if fit.outliers:
         said.append(f"The fit includes {'them' if fit.outliers[1:] else 'it'}.")
     return said
