@@ -110,7 +110,20 @@ class Set(NamedTuple):
         values, run = self.values.round(13).ravel(), np.repeat(np.arange(n), d.repeats)
         cells = [f"{i + 1}:t{k}" for i in range(n) for k in range(d.repeats)]
         rows, u_values, step = [[i + 1] for i in range(n)], np.full(len(run), d.stated * d.u), d.step or 1e-13
-        return Runs(d.kind, given, u, rows, none > 0, self.values.mean(1), values, u_values, run, cells, step)
+        return Runs(
+            d.kind,
+            given,
+            u,
+            rows,
+            none > 0,
+            none + 1,
+            self.values.mean(1),
+            values,
+            u_values,
+            run,
+            cells,
+            step,
+        )
 
     def fit(self, *more: str) -> Fitted:
         return fitted(self.runs(), conditions_of(NOTHING), [*USUAL, *more])

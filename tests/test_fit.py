@@ -79,6 +79,7 @@ def data_of(kind: Kind, l: Any, h: Any, drop: Any, measured: Any) -> Data:
         dict.fromkeys(("m1", "m2", "drop"), 0 * l),
         [],
         l < 0,
+        0 * l + 1,
         measured,
         measured,
         0 * l,

@@ -9,7 +9,7 @@ from scipy.optimize import least_squares
 
 from ..model import physics
 from .results import FITTED
-from .runs import MEASURABLE, Column, Places, Runs, Selection
+from .runs import Column, Places, Runs, Selection
 from .statistics import ROUNDING, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
@@ -65,12 +65,10 @@ def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
     here = used[runs.run] if kept is None else used[runs.run] & kept
     run = (np.cumsum(used) - 1)[runs.run[here]]
     values, u = runs.values[here], runs.u_values[here]
-    stated = bool(u.all())
+    stated = bool(u.any())
     weight = u**-2 if stated else np.ones_like(values)
     total, counts = np.bincount(run, weight), np.bincount(run)
-    mean = np.bincount(run, weight * values) / total
-    values = values * np.where(mean < 0, -1.0, 1.0)[run]
-    measured = np.maximum(abs(mean), MEASURABLE[0])  # the mean of accelerations to both sides may be 0
+    measured = np.bincount(run, weight * values) / total
     chi2 = sum_of_squares(np.sqrt(weight) * (values - measured[run]))
     dof = len(values) - len(counts)
     factor = chi2 / dof if dof else 0.0  # the variance of a value, in units of what is stated

@@ -7,7 +7,6 @@ from math import hypot, inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import chdtrc, fdtrc, stdtrit
 
 from ..model import physics
@@ -31,7 +30,7 @@ from .estimate import (
     of_measured,
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
-from .runs import OUT_OF_RANGE, Runs, Selection, in_range, in_words, read_as_of
+from .runs import OUT_OF_RANGE, Runs, Selection, behind_an_error, in_range, in_words
 from .statistics import NORMAL_DOF, CannotSeparate, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
@@ -50,7 +49,6 @@ GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
 CHECK = "check masses, heights, measurements and their units"
 NO_FIT = f"no rim mass and no axle friction of 0 or more fit these runs: {CHECK}"
-LEFT_OUT = "left out, as asked"
 
 
 class Conditions(NamedTuple):
@@ -91,8 +89,8 @@ class Outlier(NamedTuple):
             what = f"{runs.rows_in_words(self.run)} {'are' if runs.rows[self.run][1:] else 'is'}"
         else:
             where, others = runs.cells[self.place], "its repeats"
-            value = f"{format_number(float(runs.values[self.place]))} {parameter_of(runs.kind).unit}"
-            what = f"{in_words(where)} = {value} is"
+            value = format_number(float(runs.sign[self.run] * runs.values[self.place]))
+            what = f"{in_words(where)} = {value} {parameter_of(runs.kind).unit} is"
         far = f"{rounded(abs(self.distance))} standard deviations"
         return f"{what} {far} from {others}; to leave that out: --without {where}"
 
@@ -100,13 +98,13 @@ class Outlier(NamedTuple):
 class Fitted(NamedTuple):
     """The fit of the runs that are ``used``, and their outliers.
 
-    ``why`` says of each run why it is not used; it is empty if it is. ``delay`` is that of a fit with a
-    delay, and its p value; None if it was not tried or is not possible.
+    Something can be expected of all runs that are ``shown``; the others of these are left out. ``delay`` is
+    that of a fit with a delay, and its p value; None if it was not tried or is not possible.
     """
 
     runs: Runs
     used: Selection
-    why: Sequence[str]
+    shown: Selection
     given: Conditions
     whole: Outcome
     outliers: Sequence[Outlier]
@@ -116,11 +114,6 @@ class Fitted(NamedTuple):
     def suspects(self) -> list[int]:
         """The runs that are outliers or have one among their repeats."""
         return sorted({one.run for one in self.outliers})
-
-    @property
-    def shown(self) -> Selection:
-        """The runs of which something can be expected, also those that are left out."""
-        return self.used | [why == LEFT_OUT for why in self.why]
 
 
 # What is given, and what is to be fitted
@@ -182,33 +175,23 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit of these quantities, and outliers. Raises Unreadable, SceneError, CannotSeparate."""
     if "delay" in names and runs.kind != "time":
         raise SceneError("find", "delay", "needs times; the table has accelerations")
-    why = _unusable(runs, given, names)
-    used = why == ""
-    unusable = ((reason, runs.rows_in_words(*np.flatnonzero(why == reason))) for reason in dict.fromkeys(why))
-    said = "".join(f"; {rows}: {reason}" for reason, rows in unusable if reason) + read_as_of(runs.remarks)
+    shown, remarks = np.ones(len(runs.rows), dtype=bool), [*runs.remarks]
+    for reason, holds in _unusable(runs, given, names).items():
+        if (shown & holds).any():
+            remarks.append(f"{runs.rows_in_words(*np.flatnonzero(shown & holds))}: not used, as {reason}.")
+        shown = shown & ~holds
+    runs, used = runs._replace(remarks=remarks), shown & ~runs.left_out
     if not used.any():
-        raise Unreadable(f"no run can be used{said}")
-    is_stated = runs.u_values > 0
-    lacking = runs.run[used[runs.run] & ~is_stated]
-    if is_stated[used[runs.run]].any() and len(lacking):
-        row = runs.rows_in_words(lacking[0])
-        raise Unreadable(f"{row} has no uncertainty of its {runs.kind}, as others have; give all")
+        raise Unreadable(f"no run can be used{behind_an_error(remarks)}")
     try:
         whole, delay = outcome(runs, used, given, names), None
     except CannotSeparate as error:
-        raise CannotSeparate(f"{error}{said}") from None
+        raise CannotSeparate(f"{error}{behind_an_error(remarks)}") from None
     if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
         with suppress(CannotSeparate):
             delay = _delay(whole, outcome(runs, used, given, [*names, "delay"]))
-    return Fitted(
-        runs,
-        used,
-        why.tolist(),
-        given,
-        whole,
-        _outliers(runs, used, whole.best.data, whole.best.values, names),
-        delay,
-    )
+    odd = _outliers(runs, used, whole.best.data, whole.best.values, names)
+    return Fitted(runs, used, shown, given, whole, odd, delay)
 
 
 def outcome(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Outcome:
@@ -324,18 +307,16 @@ def _outliers(
 # Why there is no result
 
 
-def _unusable(runs: Runs, given: Conditions, names: Sequence[str]) -> NDArray[np.str_]:
-    """Return for each run why nothing can be expected of it; "" if something can."""
-    difference, mean = runs.given["m2"] - runs.given["m1"], runs.mean
+def _unusable(runs: Runs, given: Conditions, names: Sequence[str]) -> dict[str, Selection]:
+    """Return the reasons why nothing can be expected of a run, with the runs for which they hold."""
+    difference = runs.given["m2"] - runs.given["m1"]
     held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
-    reasons = {
+    return {
         "the masses are equal": difference == 0,
-        "nothing moved": mean == 0,
-        "the lighter side falls": (runs.values < 0).any() & ((mean > 0) != (difference > 0)),
+        "nothing moved": runs.mean == 0,
+        "the lighter side falls": runs.mean < 0,
         "an axle with the friction given holds the masses": abs(difference) <= held,
-        LEFT_OUT: runs.left_out,
     }
-    return np.select([*reasons.values()], [*reasons], "")
 
 
 def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> bool:

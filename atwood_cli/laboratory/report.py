@@ -1,6 +1,6 @@
 """A fit as sentences, tables, JSON and CSV: what the runs determine, their outliers, what to vary."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -12,7 +12,7 @@ from ..model.units import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
 from .estimate import Estimate, as_data, expected
-from .fitting import LEFT_OUT, SELDOM, Fitted
+from .fitting import SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
 from .runs import MEASURED, WORDS
 
@@ -57,11 +57,6 @@ def head(fit: Fitted) -> list[str]:
 def notes(fit: Fitted) -> list[str]:
     """Return what else there is to say, first how the table was read."""
     said = [_capital(words) for words in fit.runs.remarks]
-    for why in dict.fromkeys(fit.why):
-        unusable = [i for i, reason in enumerate(fit.why) if reason == why]
-        if why not in ("", LEFT_OUT):
-            is_or_are = "are" if sum(len(fit.runs.rows[i]) for i in unusable) > 1 else "is"
-            said.append(f"{_capital(fit.runs.rows_in_words(*unusable))} {is_or_are} not used: {why}.")
     return said if fit.whole.reason or fit.outliers else [*said, _scatter(fit), *_delay(fit)]
 
 
@@ -140,29 +135,21 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     lines: Sequence[Mapping[str, Any]] = record["runs"]
     full = {"version": VERSION, **record, "runs": [{**dict.fromkeys(WORDS), **line} for line in lines]}
     full |= {name: dict.fromkeys(QUANTITIES) | record[name] for name in ("uncertainty", "interval")}
-
-    def json() -> Any:
-        return {name: full[name] for name in only or full}
-
-    def records() -> Iterable[Mapping[str, object]]:
-        if only:
-            return lines if only == ["runs"] else [json()]
-        return [
+    asked = {name: full[name] for name in only or full}
+    rows: Sequence[Mapping[str, Any]] = [asked]
+    said = [equation(x, *fit.whole.results[x][:2]) for x in only if x in fit.whole.results]
+    said += [f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None]
+    said += head(fit)[1:]
+    if not only or only == ["runs"]:
+        rows, said = lines, record["notes"]
+    if not only:
+        rows = [
             {"quantity": x, "value": one.value, "uncertainty": one.uncertainty}
             | {"low": one.interval[0], "high": one.interval[1], "unit": QUANTITIES[x].unit}
             for x, one in fit.whole.results.items()
         ]
-
-    def beside() -> Sequence[str]:
-        """Return the sentences that CSV and bare values have no place for."""
-        if not only or only == ["runs"]:
-            return list(record["notes"])
-        values = [equation(x, *fit.whole.results[x][:2]) for x in only if x in fit.whole.results]
-        why = (f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None)
-        return [*values, *why, *head(fit)[1:]]
-
     bare = [cell(record[name]) for name in only]
-    return Report(json, records, lambda: _print_page(fit, lines), beside, bare)
+    return Report(lambda: asked, lambda: rows, lambda: _print_page(fit, lines), lambda: said, bare)
 
 
 def _correlation(best: Estimate) -> float | None:
@@ -176,18 +163,18 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
     """Return the runs, as JSON and CSV have them; the residual is in standard uncertainties."""
     runs, best, shown = fit.runs, fit.whole.best, as_data(fit.runs, fit.shown)
     moves = expected(shown._replace(drop=None), best.values) > 0
-    measured, sign = runs.mean.copy(), np.where(runs.mean < 0, -1, 1)
+    measured, (u, ideal) = runs.mean.copy(), np.full((2, len(runs.rows)), np.nan)
     if best.data.stated:
-        measured[fit.used] = sign[fit.used] * best.data.measured  # weighted means
-    u, ideal = np.full((2, len(sign)), np.nan)
-    u[fit.used], ideal[fit.shown] = best.sigma, np.where(moves, expected(shown, best.values), np.nan)
-    ideal *= sign
+        measured[fit.used] = best.data.measured  # weighted means
+    u[fit.used] = best.sigma
+    ideal[fit.shown] = np.where(moves, expected(shown, best.values), np.nan)
+    residual = runs.sign * (measured - ideal) / u
     columns = {
         **runs.given,
-        runs.kind: measured,
+        runs.kind: runs.sign * measured,
         "u": u,
-        "expected": ideal,
-        "residual": (measured - ideal) / u,
+        "expected": runs.sign * ideal,
+        "residual": residual,
     }
     return [
         {"rows": " ".join(map(str, rows))}

@@ -56,6 +56,9 @@ class Runs(NamedTuple):
     uncertainties; ``rows`` are the numbers of their rows. Columns of measurements: ``values``, ``u_values``
     (0 if no uncertainty is stated), the ``run`` of each, and ``cells``, where they stand, as --without takes
     it: 8:t2. ``step`` is that of the last digit of any, 0 if one is no decimal.
+
+    If an acceleration is negative, all have signs, and the ``sign`` of a run is that of m2 - m1: values and
+    their ``mean`` are multiplied by it, so that they are positive if the heavier side falls.
     """
 
     kind: Kind
@@ -63,6 +66,7 @@ class Runs(NamedTuple):
     u: Mapping[str, Column]
     rows: Sequence[Sequence[int]]
     left_out: Selection
+    sign: Column
     mean: Column
     values: Column
     u_values: Column
@@ -108,7 +112,7 @@ def read_runs(
     try:
         rows = [_read_row(number, row, headings, comma) for number, row in enumerate(sheet.rows, 1)]
     except Unreadable as error:
-        raise Unreadable(f"{error}{read_as_of(remarks)}") from None
+        raise Unreadable(f"{error}{behind_an_error(remarks)}") from None
     remarks += [f"row {number} has no {kind}: it is not used." for number, _, cells in rows if not cells]
     if without:
         remarks.append(f"left out, as asked: {', '.join(in_words(str(word)) for word in without)}.")
@@ -131,20 +135,30 @@ def _as_columns(
     measured = [{cell: one for *_, cells in rows for cell, one in cells.items()} for rows in runs]
     kept = [{cell: one for cell, one in cells.items() if cell not in left_out} for cells in measured]
     used = [some or cells for some, cells in zip(kept, measured, strict=True)]
-    values = [one for some in used for one in some.values()]
-    decimals = [exact_decimal(Fraction(one.value)) for one in values]
+    inputs, cells = [one for some in used for one in some.values()], [cell for some in used for cell in some]
+    values, u_values = _column(one.value for one in inputs), _column(one.uncertainty for one in inputs)
+    if u_values.any() and not u_values.all():
+        lacking = in_words(cells[int(np.argmin(u_values))])
+        raise Unreadable(f"{lacking} has no uncertainty, as others have; give all")
+    columns = {name: _column(one.value for one in some) for name, some in given.items()}
+    sign, run = np.ones(len(runs)), np.repeat(np.arange(len(used)), [*map(len, used)])
+    if (values < 0).any():
+        sign = np.where(columns["m2"] < columns["m1"], -1.0, 1.0)
+    means = (sum(Fraction(one.value) for one in some.values()) / len(some) for some in used)
+    decimals = [exact_decimal(Fraction(one.value)) for one in inputs]
     step = 0.0 if None in decimals else 10.0 ** min(int(one.as_tuple().exponent) for one in decimals if one)
     return Runs(
         kind,
-        {name: _column(one.value for one in inputs) for name, inputs in given.items()},
-        {name: _column(one.uncertainty for one in inputs) for name, inputs in given.items()},
+        columns,
+        {name: _column(one.uncertainty for one in some) for name, some in given.items()},
         [[number for number, *_ in rows] for rows in runs],
         np.array([not some for some in kept]),
-        _column(sum(Fraction(one.value) for one in some.values()) / len(some) for some in used),
-        _column(one.value for one in values),
-        _column(one.uncertainty for one in values),
-        np.repeat(np.arange(len(used)), [*map(len, used)]),
-        [cell for some in used for cell in some],
+        sign,
+        sign * _column(means),
+        sign[run] * values,
+        u_values,
+        run,
+        cells,
         step,
         remarks,
     )
@@ -154,9 +168,9 @@ def _column(numbers: Iterable[Any]) -> Column:
     return np.array([float(number) for number in numbers])
 
 
-def read_as_of(remarks: Sequence[str]) -> str:
-    """Return how the table was read, to stand behind an error; empty if it was read as usual."""
-    return "".join(f"; {one.rstrip('.')}" for one in remarks if one.startswith("read as"))
+def behind_an_error(remarks: Sequence[str]) -> str:
+    """Return how the table was read, and which rows are not used, to stand behind an error."""
+    return "".join(f"; {one.rstrip('.')}" for one in remarks)
 
 
 # Headings
