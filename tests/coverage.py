@@ -92,6 +92,20 @@ WRONG = [
 """Laboratories of which the model is not true."""
 
 
+def runs_of(
+    kind: Kind, l: Any, h: Any, drop: Any, values: Any, u: float = 0.0, u_mass: float = 0.0, step: float = 0.0
+) -> Runs:
+    """Runs with these masses and heights (n), of repeats ``values`` (n, repeats)."""
+    (n, repeats), none = values.shape, 0 * l
+    given, u_given = {"m1": l.round(13), "m2": h.round(13)}, dict.fromkeys(("m1", "m2"), none + u_mass)
+    if kind == "time":
+        given, u_given = given | {"drop": drop}, u_given | {"drop": none}
+    run, rows = np.repeat(np.arange(n), repeats), [[i + 1] for i in range(n)]
+    all_, cells = values.round(13).ravel(), [f"{i + 1}:t{k}" for i in range(n) for k in range(repeats)]
+    mean = values.mean(1)
+    return Runs(kind, given, u_given, rows, none > 0, none + 1, mean, all_, 0 * all_ + u, run, cells, step)
+
+
 class Set(NamedTuple):
     """The masses and heights as the table has them, and what is measured: (runs, repeats)."""
 
@@ -102,27 +116,9 @@ class Set(NamedTuple):
     values: Any
 
     def runs(self) -> Runs:
-        d, n, none = self.design, len(self.l), 0 * self.l
-        given = {"m1": self.l.round(13), "m2": self.h.round(13)}
-        u = dict.fromkeys(given, none + d.masses * bool(d.stated))
-        if d.kind == "time":
-            given, u = given | {"drop": self.drop}, u | {"drop": none}
-        values, run = self.values.round(13).ravel(), np.repeat(np.arange(n), d.repeats)
-        cells = [f"{i + 1}:t{k}" for i in range(n) for k in range(d.repeats)]
-        rows, u_values, step = [[i + 1] for i in range(n)], np.full(len(run), d.stated * d.u), d.step or 1e-13
-        return Runs(
-            d.kind,
-            given,
-            u,
-            rows,
-            none > 0,
-            none + 1,
-            self.values.mean(1),
-            values,
-            u_values,
-            run,
-            cells,
-            step,
+        d, u_mass = self.design, self.design.masses * bool(self.design.stated)
+        return runs_of(
+            d.kind, self.l, self.h, self.drop, self.values, d.stated * d.u, u_mass, d.step or 1e-13
         )
 
     def fit(self, *more: str) -> Fitted:

@@ -34,6 +34,7 @@ from atwood_cli.laboratory.statistics import (
 )
 from atwood_cli.model.scene import read_input
 
+from . import coverage
 from .conftest import many
 from .coverage import CELLS, DELAYS, NOTHING, OTHERS, C, Design, F, G, blunders_named, by_scipy, counts, drawn
 from .coverage import expected as textbook
@@ -72,21 +73,7 @@ def without_nulls(value: Any) -> Any:
 
 def data_of(kind: Kind, l: Any, h: Any, drop: Any, measured: Any) -> Data:
     """Runs without repeats and uncertainties."""
-    n = len(l)
-    runs = Runs(
-        kind,
-        {"m1": l, "m2": h, "drop": drop},
-        dict.fromkeys(("m1", "m2", "drop"), 0 * l),
-        [],
-        l < 0,
-        0 * l + 1,
-        measured,
-        measured,
-        0 * l,
-        np.arange(n),
-        [],
-    )
-    return as_data(runs, l > 0)._replace(drop=drop if kind == "time" else None)
+    return as_data(coverage.runs_of(kind, l, h, drop, measured[:, None]), l > 0)
 
 
 # Data made from the model
@@ -468,9 +455,7 @@ def test_in_python_it_is_what_json_has() -> None:
     assert lines[3:] == list(result.notes)
     odd = [*zip(*csv.reader(ODD.splitlines()), strict=True)]
     said = laboratory_fit({name: cells for name, *cells in odd}).notes
-    assert any(
-        note.endswith("from a fit of the other runs; to leave that out: without='5'.") for note in said
-    )
+    assert any(note.endswith("fit of the other runs; to leave that out: without='5'.") for note in said)
 
 
 @pytest.mark.parametrize(

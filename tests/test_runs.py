@@ -142,11 +142,9 @@ def read(tmp_path: Path) -> Any:
 
 def numbers(runs: Runs) -> list[list[float]]:
     """Of each run m1, m2, what was measured, and the uncertainties of all these."""
-    columns = [(runs.given, runs.values), (runs.u, runs.u_values)]
-    return [
-        [x for given, of in columns for x in (given["m1"][i], given["m2"][i], *of[runs.run == i])]
-        for i in range(len(runs.rows))
-    ]
+    m1, m2 = (np.transpose([columns[x] for columns in (runs.given, runs.u)]) for x in ("m1", "m2"))
+    of = [np.transpose([runs.values, runs.u_values])[runs.run == i] for i in range(len(m1))]
+    return [np.concatenate([[m1[i], m2[i]], of[i]]).ravel("F").tolist() for i in range(len(m1))]
 
 
 def exactly(*rows: str) -> list[list[float]]:
