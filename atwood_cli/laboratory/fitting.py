@@ -48,7 +48,7 @@ VARY = "vary both m2 - m1 and m1 + m2 more"
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
 CHECK = "check masses, heights, measurements and their units"
-NO_FIT = f"no rim mass and no axle friction of 0 or more fit these runs: {CHECK}"
+NO_FIT = "no pulley explains these runs, whatever its inertia and its axle's friction"
 
 
 class Conditions(NamedTuple):
@@ -219,7 +219,7 @@ def outcome(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
         near = by_forces(data, given.values, names)
         odd = "; ".join(one.in_words(runs) for one in _outliers(runs, used, data, near, names))
-        raise CannotSeparate(mistake or odd or NO_FIT) from None
+        raise CannotSeparate(mistake or f"{NO_FIT}: {odd or CHECK}") from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
     times = float(stdtrit(min(best.line.dof, NORMAL_DOF), 0.975))  # Student's t
@@ -228,7 +228,7 @@ def outcome(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]
         u = hypot(spread[x], *(float(np.ptp([value, *(end[x] for end in pair)])) / 2 for pair in ends))
         results[x] = Result(value, u, (value - times * u, value + times * u))
     if not np.isfinite([one[:2] for one in results.values()]).all():
-        raise CannotSeparate(mistake or NO_FIT)
+        raise CannotSeparate(mistake or f"{NO_FIT}: {CHECK}")
     negative = next((x for x in names if x != "delay" and results[x].interval[1] < 0), "")
     if negative and not mistake:
         words = equation(negative, *results[negative][:2])

@@ -45,6 +45,8 @@ VOCABULARY = Vocabulary(SPELLINGS, repeated=MEASURED, uncertain=True)
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
 NO_RUN = "a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"
+HEAVY = 10
+"""The mass (kg) above which a laboratory may have left out a unit."""
 MEASURABLE = 1e-30, 1e30
 OUT_OF_RANGE = f"is beyond what a fit computes with, {MEASURABLE[0]} to {MEASURABLE[1]:.0e}"
 
@@ -141,6 +143,8 @@ def _as_columns(
         lacking = in_words(cells[int(np.argmin(u_values))])
         raise Unreadable(f"{lacking} has no uncertainty, as others have; give all")
     columns = {name: _column(one.value for one in some) for name, some in given.items()}
+    if max(columns["m1"].max(), columns["m2"].max()) > HEAVY:
+        remarks = [*remarks, f"some masses are above {HEAVY} kg; if they are in g, write m1 (g)."]
     sign, run = np.ones(len(runs)), np.repeat(np.arange(len(used)), [*map(len, used)])
     if (values < 0).any():
         sign = np.where(columns["m2"] < columns["m1"], -1.0, 1.0)
