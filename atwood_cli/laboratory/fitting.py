@@ -270,7 +270,7 @@ def _delay(whole: Outcome, late: Outcome) -> tuple[Result, float] | None:
         return None
     delay, line, data = late.results["delay"], late.best.line, late.best.data
     if whole.chi2 is None or late.chi2 is None or (late.p_value or 0) < SELDOM:
-        return delay, float(fdtrc(1, line.dof, (delay.value / delay.uncertainty) ** 2))  # the square of t
+        return delay, float(fdtrc(1, min(line.dof, NORMAL_DOF), (delay.value / delay.uncertainty) ** 2))  # t²
     dof = late.best.dof + data.repeats[1]
     taken_off = max(whole.chi2 - late.chi2, 0) / max(late.chi2 + data.repeats[0], TINY)
     return delay, float(fdtrc(1, dof, taken_off * dof))
