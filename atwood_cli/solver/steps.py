@@ -67,8 +67,8 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
         answer += remarks(answers)
     reading = (
         f"In equations, = is exact. After ≈, results have {digits} significant digits, and computed values"
-        f" put into a formula have {digits + GUARD_DIGITS}. Equation numbers are those of de Oliveira and Lemos,"
-        " Force and torque of a string on a pulley, arXiv:1706.10139."
+        f" put into a formula have {digits + GUARD_DIGITS}. Equation numbers are those of de Oliveira and"
+        " Lemos, Force and torque of a string on a pulley, arXiv:1706.10139."
     )
     return Explanation(answer, reading, paragraphs)
 
