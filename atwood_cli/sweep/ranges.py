@@ -243,7 +243,9 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     try:
         last = read_whole(name, words[2], 2, MAX_POINTS) - 1
     except SceneError as error:
-        raise SceneError(name, typed, f"has the count {in_quotes(words[2])}, which {error.rule}") from None
+        hint = "; write a unit at both ends" if re.match(r"\d.*[a-z]", words[2]) else ""
+        rule = f"has the count {in_quotes(words[2])}, which {error.rule}{hint}"
+        raise SceneError(name, typed, rule) from None
     kept = _digits_kept(start, stop, last, log, digits)
     if kept > MAX_DIGITS:
         rule = f"has points closer together than {MAX_DIGITS} digits can tell"
