@@ -54,7 +54,7 @@ def test_what_is_given_decides_what_follows(corner: list[str]) -> None:
 @pytest.mark.parametrize("masses", ["m1=1", "m1=3 m2=1", "m2=1.1", "m1=7 m2=2.9", "m1=0.1 m2=0.3"])
 def test_about_the_greatest_acceleration_that_an_error_names_is_taken(masses: str) -> None:
     given = inputs(f"{masses} M=inf")
-    with pytest.raises(SceneError, match="without it the acceleration is") as caught:
+    with pytest.raises(SceneError, match="without friction the acceleration is") as caught:
         solve(**given, a=9 if Fraction(given["m2"]) > Fraction(given["m1"]) else -9)
     [greatest] = re.findall("the acceleration is (.*) m/s²", str(caught.value))
     assert solve(**given, a=Fraction(greatest) * Fraction("0.99999")).mu_k is not None

@@ -19,7 +19,7 @@ from atwood_cli.model.units import Angle
 from atwood_cli.solver.answers import read_answers
 
 from .conftest import many
-from .running import LOADED, Atwood, process
+from .running import LOADED, process
 from .scenes import inputs, of_all_kinds, with_friction
 
 # How they are typed
@@ -260,9 +260,3 @@ def test_exact_inputs_import_nothing_and_have_an_empty_mapping() -> None:
         assert (json.loads(ran.out)["uncertainty"] is not None) == loaded
     assert solve(m1="1", m2="3").uncertainty == {}
     assert hash(solve(m1="1", m2="3")) == hash(solve(m1="1", m2="3.0"))
-
-
-def test_a_budget_without_shares_is_left_out(atwood: Atwood) -> None:
-    """Ended in a traceback: at m2 = 0, an uncertainty off, there is no such scene, so nothing has a variance."""
-    given = ["solve", "--m1", "1", "--m2", "0.5+-0.5", "--M", "inf", "--mu", "0"]
-    assert atwood(*given, "--budget") == atwood(*given)

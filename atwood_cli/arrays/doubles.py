@@ -17,7 +17,7 @@ The proof. Let u = 2^-53.
 - An error of x counts (1 + x) times in e^x - 1, as x e^x < (1 + x) (e^x - 1), at most once in ln(1 + x), and
   at most once in the sine and cosine of an angle that is folded to 45° or less.
 - Inputs are 0 or within 2^±120 (`WINDOW`). I/R² and f/g are, too, which stand for I and the axle's friction.
-  The caller checks this. A value whose μφ is 90 or more is not certified, as its bound is (1 + x) times as
+  `inputs` checks this. A value whose μφ is 90 or more is not certified, as its bound is (1 + x) times as
   large. So no operation on a certified value leaves the normal doubles, but for squares that are negligible
   beside the term to which they are added.
 - Bounds are of first order: products of two bounds are left out. They are below 1e-27, and the limit that

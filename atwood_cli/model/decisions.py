@@ -143,7 +143,7 @@ class Decisions:
         return self.locked or self.axle_holds
 
     def by_side(self, of_m1: N, of_m2: N) -> tuple[N, N]:
-        """Return (of m1, of m2) as (of the lighter mass, of the heavier mass); or the other way round."""
+        """Turn (of m1, of m2) into (of the lighter mass, of the heavier mass), or these into those."""
         return (of_m1, of_m2) if self.sign >= 0 else (of_m2, of_m1)
 
     @property

@@ -26,8 +26,11 @@ class Mechanics(Generic[N]):
         state      drive d                load s                       T_h - T_l
         at rest    0                                                   g (h - l)
         no slip    h - l - b              h + l + c                    c a + f
-        verge      h - l - z   `drive`    h + l + z   `friction_mass`  (k - 1) T_l   `k_minus_1`
-        slip       the same with μ_k: `limiting_drive`, `limiting_friction_mass`, `limiting_k_minus_1`
+        verge      h - l - z              h + l + z                    (k - 1) T_l
+        slip       the same with μ_k
+
+    On the verge and in slip, d, z and k - 1 are those of friction at its limit (`limiting_drive` and so on).
+    Critical masses are made of those of static friction (`drive` and so on).
     """
 
     def __init__(self, case: Decisions, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:

@@ -88,7 +88,7 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
         return "and mu_k both say how the string slides; leave one of them out"
     if mu is not None and not case.slips:
         slips = f"would find mu_k, but with mu = {as_typed(mu)} the string does not slip"
-        return f"{slips}; leave mu out (an acceleration forced by a motor is not modelled)"
+        return f"{slips}; leave mu out, or for a motor give masses T/g and no a (examples/hoist.md)"
     return ""
 
 
@@ -99,7 +99,7 @@ def _impossible(scene: Scene, motion: Motion) -> str:
         if case.slide_ratio_minus_1(EXACT) < 0:
             drive, load = (of(case.light, case.heavy, ZERO) for of in (physics.drive, physics.load))
             most = to_digits(SHOWN_DIGITS)(case.sign * physics.acceleration(drive, load, scene.g))
-            return f"is too large for any friction: without it the acceleration is {format_number(most)} m/s²"
+            return f"is too large: even without friction the acceleration is {format_number(most)} m/s²"
         if scene.mu is not None and case.exceeds(case.slide_ratio_minus_1, scene.mu):
             return "needs more kinetic friction than mu; check both"
         return ""

@@ -255,6 +255,15 @@ def critical_heavier_mass(l: N, c: N, friction_mass: N, b: N) -> N:
     return (c - b) / (c + b - 2 * friction_mass) * least_heavier_mass(l, friction_mass)
 
 
+def heavier_mass_that_holds(l: N, c: N, friction_mass: N, b: N) -> N:
+    """Return the heavier mass (kg) above which it holds again, (35) for c < b and c + b < 2 l (k - 1).
+
+    >>> heavier_mass_that_holds(1, 1, 2, 2)
+    3.0
+    """
+    return (b - c) / (2 * friction_mass - c - b) * least_heavier_mass(l, friction_mass)
+
+
 def critical_lighter_mass(h: N, c: N, k_minus_1: N, b: N) -> N:
     """Return the lighter mass (kg) below which the string slips: (33) solved for it, like (34) and (35).
 

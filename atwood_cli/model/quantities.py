@@ -55,8 +55,8 @@ QUANTITIES = {
     "critical_pulley_mass": About("limits", "M*", "kg", "(34)", "pulley mass above which the string slips"),
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
     "critical_lighter_mass": About("limits", "l*", "kg", "", "lighter mass below which the string slips"),
-    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "heavier mass up to which no pulley makes it slip"),
-    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "pulley mass up to which no heavier mass makes it slip"),
+    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "heavier mass above which some pulley makes it slip"),
+    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "pulley mass above which some heavier mass makes it slip"),
     "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
     # Of a scene whose motion was measured:
     "pulley_mass": About("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration"),
@@ -113,7 +113,7 @@ UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, with `I`"
 FREE_END = "not defined, as the string's end is fixed to the pulley and no friction holds it"
 NOT_BOUNDED = "indeterminate while the string grips with friction to spare"
 NOT_DEFINITE = "not unique while the string grips; `friction_force_min` and `friction_force_max` bound the magnitude of friction"
-DEFINITE = "not needed, as `friction_force` has a single value here"
+DEFINITE = "no value, as `friction_force` is unique"
 LONG_WRAP = "known only up to half a turn of wrap (180 degrees)"
 NO_CRITICAL_MASS = "no value, as the string holds on any pulley, however heavy"
 NO_CRITICAL_HEAVIER_MASS = "no value, as the string holds under any heavier mass"
@@ -128,7 +128,7 @@ ONE_SIDED = (
     "not computed unless both ends pull downwards (half a turn of wrap, plus whole turns); atwood contact has the"
     " force of the string"
 )
-NEEDS_A = "`give` `a`, a measured acceleration, instead of `M`"
+NEEDS_A = "`give` `a`, a measured acceleration, without `M`; see also `critical_pulley_mass`"
 NEEDS_A_BESIDE_M = "`give` `a`, a measured acceleration, with `M` and instead of `g`"
 NEEDS_A_AND_M = "`give` `a`, a measured acceleration, and `M` instead of `{}`"
 NEEDS_A_OF_A_SLIDE = (

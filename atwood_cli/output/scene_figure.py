@@ -184,9 +184,8 @@ def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float, das
     if greatest := abs(friction).max():
         around = friction / greatest * LONGEST_ON_ARC * 1j * np.exp(-1j * phi * shares)
         _draw_arrows(axes, FRICTION_AT * outwards, around, RED)
-        larger = normal.max() / greatest
-        times = f"{larger:.3g} times larger" if larger > 1 else f"{1 / larger:.3g} times smaller"
-        axes.plot([], [], color=RED, ls=dash, marker=">", ms=4, label=typeset(f"friction fR, arrows {times}"))
+        scale = f"{normal.max() / greatest:.3g} times the scale of nR"
+        axes.plot([], [], color=RED, ls=dash, marker=">", ms=4, label=typeset(f"friction fR, at {scale}"))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), ncols=2, handlelength=3)
 
 

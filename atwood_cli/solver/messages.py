@@ -9,6 +9,7 @@ from decimal import Decimal
 from fractions import Fraction
 from math import inf
 
+from ..model import physics
 from ..model.digits import (
     SHOWN_DIGITS,
     Rounding,
@@ -164,12 +165,18 @@ def remarks(answers: Answers) -> list[str]:
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
     said += _kinetic(answers)
-    slips_above_a_mass = case.scene.mu is not None and case.rim_mass is not None and case.slips_once_it_moves
-    if slips_above_a_mass and not case.slips_at("heaviest"):
-        said.append(
-            "Far above `critical_heavier_mass` the string holds again, as axle friction matters less"
-            " under heavier masses."
+    slips_above_a_mass = case.scene.mu is not None and case.slips_once_it_moves
+    if slips_above_a_mass and case.rim_mass is not None and not case.slips_at("heaviest"):
+        c, round_ = case.rim_mass, _beside(answers, case.heavy)
+        again = answers.settle(
+            lambda m: physics.heavier_mass_that_holds(m.l, m.ar.number(c), m.friction_mass, m.b), round_
         )
+        said.append(
+            f"Under a heavier mass above {format_number(again)} kg the string holds again, as axle friction"
+            " then matters less."
+        )
+    if case.locked and case.has_axle_friction:
+        said.append("A locked pulley does not turn, so `axle` has no effect.")
     if case.scene.mu is not None and answers["acceleration"] is None:  # it depends on the pulley's mass
         ends = [_on_pulley(answers, mass) for mass in (Fraction(0), inf)]
         ranges = (

@@ -66,9 +66,9 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
     if not only:
         answer += remarks(answers)
     reading = (
-        f"In equations, = is exact, and ≈ means rounded to {digits} significant digits, or"
-        f" {digits + GUARD_DIGITS} for numbers put in. Equation numbers are those of de Oliveira and Lemos,"
-        " Force and torque of a string on a pulley, arXiv:1706.10139."
+        f"In equations, = is exact. After ≈, results have {digits} significant digits, and computed values"
+        f" put into a formula have {digits + GUARD_DIGITS}. Equation numbers are those of de Oliveira and"
+        " Lemos, Force and torque of a string on a pulley, arXiv:1706.10139."
     )
     return Explanation(answer, reading, paragraphs)
 

@@ -243,7 +243,9 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     try:
         last = read_whole(name, words[2], 2, MAX_POINTS) - 1
     except SceneError as error:
-        raise SceneError(name, typed, f"has the count {in_quotes(words[2])}, which {error.rule}") from None
+        hint = "; write a unit at both ends" if re.match(r"\d.*[a-z]", words[2]) else ""
+        rule = f"has the count {in_quotes(words[2])}, which {error.rule}{hint}"
+        raise SceneError(name, typed, rule) from None
     kept = _digits_kept(start, stop, last, log, digits)
     if kept > MAX_DIGITS:
         rule = f"has points closer together than {MAX_DIGITS} digits can tell"
@@ -262,8 +264,8 @@ def read_list(name: str, typed: str) -> Range:
     if not all(words):
         raise SceneError(name, typed, "has an empty place; write a list as 0,1,10")
     if name not in ("M", "wrap") and re.fullmatch(r"0,\d+", typed.strip()):
-        decimal, other = typed.strip().replace(",", "."), ",".join(reversed(words))
-        raise SceneError(name, typed, f"may be a decimal; write {decimal}, or {other} for the list")
+        decimal, spaced = typed.strip().replace(",", "."), ", ".join(words)
+        raise SceneError(name, typed, f"can mean {decimal} or a list; write {decimal}, or '{spaced}'")
     if any(re.match(r"0\d", word) for word in words[1:]):
         read_value(name, typed)  # refuses 1,05 and 1,000: numbers rather than lists
     values, suffix = _read_numbers(name, typed, words)
