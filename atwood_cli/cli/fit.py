@@ -56,6 +56,8 @@ Column = Annotated[
     ),
 ]
 
+SHAPES = ", or disk, hoop, ring, sphere, shell, which gives the pulley's mass"
+
 HELP = """Fit laboratory runs: pulley inertia and axle friction.
 
 \b
@@ -87,7 +89,7 @@ def fit(
     without: Without = None,
     drop: Annotated[str | None, scene_option("drop", "Measured", ", if all runs have the same")] = None,
     M: Annotated[str | None, scene_option("M", remark=", if it is known")] = None,
-    inertia: Annotated[str | None, scene_option("inertia", remark=", which gives the pulley's mass")] = None,
+    inertia: Annotated[str | None, scene_option("inertia", remark=SHAPES)] = None,
     I: Annotated[str | None, scene_option("I", remark=", if it is known; needs R")] = None,
     R: Annotated[str | None, scene_option("R", remark=", which gives the moment of inertia")] = None,
     axle: Annotated[str | None, scene_option("axle", remark=", if it is known")] = None,
