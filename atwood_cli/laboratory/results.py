@@ -40,8 +40,6 @@ RESULTS = {
 }
 SMALLER_UNITS = {"kg": ("kg", "g", "mg"), "N": ("N", "mN", "µN")}
 """Units that are each a thousandth of the one before."""
-MOST_DIGITS = 15
-"""Digits that doubles leave right."""
 
 
 class Result(NamedTuple):
@@ -57,7 +55,7 @@ def published(value: float, uncertainty: float, interval: Sequence[float] = ()) 
 
     They share a power of ten: (1.49 ± 0.13)e-5 and (1.24 to 1.74)e-5.
     """
-    numbers = [_cutter(value, uncertainty)(Fraction(x)) for x in (value, uncertainty, *interval)]
+    numbers = [_cutting(uncertainty)(Fraction(x)) for x in (value, uncertainty, *interval)]
     power = max(number.adjusted() for number in numbers[:2] if number)
     both = share_exponent("{:f} ± {:f}", numbers[:2], power)
     return both, share_exponent("{:f} to {:f}", numbers[2:], power) if interval else ""
@@ -77,13 +75,12 @@ def cut(value: float, uncertainty: float | None) -> str:
     """Return a value cut at the second digit of an uncertainty; to six digits if there is none."""
     if not uncertainty:
         return format_number(to_digits(6)(Fraction(value)))
-    return f"{_cutter(value, uncertainty)(Fraction(value)):f}"
+    return f"{_cutting(uncertainty)(Fraction(value)):f}"
 
 
-def _cutter(value: float, uncertainty: float) -> Rounding[Decimal]:
-    """Return a function that cuts numbers there, and before the digits that doubles have not."""
-    of_u, first = (to_digits(2)(Fraction(x)).adjusted() for x in (uncertainty, value or uncertainty))
-    return rounding_to_place(max(of_u - 1, first - (MOST_DIGITS - 1)))
+def _cutting(uncertainty: float) -> Rounding[Decimal]:
+    """Return a function that cuts numbers there."""
+    return rounding_to_place(to_digits(2)(Fraction(uncertainty)).adjusted() - 1)
 
 
 def rounded(value: float, digits: int = 2) -> str:
@@ -102,13 +99,12 @@ class Fit(NamedTuple):
     """The results of a fit by name; None if the runs do not determine a result.
 
     ``rim_mass`` (kg) is the pulley's inertia as a mass at its rim, c = I/R². ``axle`` (N) is the friction of
-    its axle as a force at the rim. ``gravity`` (m/s²) and ``delay`` (s), by which all times are too long, are
-    fitted only if asked for. ``pulley_mass`` (kg) needs the pulley's shape, and ``moment_of_inertia`` (kg m²)
-    its radius. ``uncertainty`` and ``interval`` (95 %) have the standard uncertainty and both ends of the
-    interval, by the name of the result. ``correlation`` is that of the two results that are most correlated.
-    ``chi2`` is χ² by the uncertainties stated, or by the scatter of repeats, and ``dof`` the number of
-    degrees of freedom. ``between_runs`` (kg) is the standard deviation between runs beyond that, as a mass.
-    ``runs`` has a record for each run. As text it has a line for each result, and the notes.
+    its axle as a force at the rim, ``gravity`` is in m/s², and all times are too long by ``delay`` (s).
+    ``pulley_mass`` (kg) needs the pulley's shape, and ``moment_of_inertia`` (kg m²) its radius.
+    ``uncertainty`` and ``interval`` have the standard uncertainty of a result and both ends of its interval
+    of 95 %. ``correlation`` is that of the two results that have most of it. ``chi2`` is χ² by the
+    uncertainties stated, or by the scatter of repeats, with ``dof`` degrees of freedom; ``between_runs`` (kg)
+    is the standard deviation between runs beyond that. ``runs`` has a record for each run.
     """
 
     rim_mass: float | None
