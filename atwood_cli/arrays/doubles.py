@@ -261,15 +261,9 @@ class Doubles:
         error = x.fixed_error / 2 + self.error_of_root
         return Bounded(self, self.root_of(x.parts), error, 0.5 * x.row_error)
 
-    def hypot(self, x: Bounded, y: Bounded | int) -> Bounded:
-        return self.sqrt(x * x + y * y)
-
     @lazy
     def pi(self) -> Bounded:
         return self.number(Fraction(EIGHTY_DIGITS.pi.lo))
-
-    def exp(self, x: Bounded) -> Bounded:
-        return self.expm1(x) + 1
 
     def expm1(self, x: Bounded) -> Bounded:
         """Return e^x - 1 for x >= 0."""

@@ -161,26 +161,21 @@ class Mechanics(Generic[N]):
         return self._arcs[kind]
 
     def _arrange(self, kind: arc.Profile) -> list[arc.Arc[N]]:
-        ar, mu, light = self.ar, self.arc_mu(kind), self.light_tension
-        if ar.is_zero(mu):  # the tension is the same everywhere: no angle is needed, so no π either
-            nowhere = ar.number(0)
-            return arc.arcs(ar, kind, mu, [nowhere], light, self._end(nowhere))
-        phi = self.phi
-        end = self._end(phi)
+        ar, mu, light, zero = self.ar, self.arc_mu(kind), self.light_tension, self.ar.number(0)
+        # Without friction the tension is the same everywhere: no angle is needed, so no π either.
+        phi = zero if ar.is_zero(mu) else self.phi
+        end = arc.Knot(phi, *self._direction, self.heavy_tension)
         if kind == "exponential":
-            return arc.arcs(ar, kind, mu, [phi], light, end)
+            return arc.arcs(ar, [(mu, phi)], light, end)
         stuck = phi - self.alpha
         if kind == "creep":
-            return arc.arcs(ar, kind, mu, [stuck, self.alpha], light, end)
+            return arc.arcs(ar, [(zero, stuck), (mu, self.alpha)], light, end)
         lead = arc.least_lead(ar, mu, self.alpha, stuck, light, end)
-        return arc.arcs(ar, kind, mu, [lead, stuck, self.alpha - lead], light, end)
+        return arc.arcs(ar, [(mu, lead), (zero, stuck), (mu, self.alpha - lead)], light, end)
 
     def arc_mu(self, kind: arc.Profile) -> N:
         """Return the coefficient of a profile's friction at its limit."""
         return self.friction_mu if kind == "exponential" else self.mu
-
-    def _end(self, angle: N) -> arc.Knot[N]:
-        return arc.Knot(angle, *self._direction, self.heavy_tension)
 
     @lazy
     def resultant_vector(self) -> tuple[N, N]:
@@ -307,12 +302,12 @@ class Mechanics(Generic[N]):
             force = self.light_tension + self.heavy_tension  # (20)
         else:
             force = self._resultant(self.half_sine)
-        return physics.friction_magnitude(mu, force, self.ar.hypot)
+        return physics.friction_magnitude(mu, force, self.ar.sqrt)
 
     def _resultant(self, sin_half: N) -> N:
         """Return the force (N) of both tensions on an arc, by the sine of its half."""
         light, heavy, ar = self.light_tension, self.heavy_tension, self.ar
-        return physics.resultant(light, heavy, self.difference, sin_half, ar.sqrt, ar.hypot)
+        return physics.resultant(light, heavy, self.difference, sin_half, ar.sqrt)
 
     @lazy
     def friction_force_x(self) -> N:
@@ -359,4 +354,4 @@ class Mechanics(Generic[N]):
         if not self._bounded():
             return self.ar.number(0)
         _, sin_half = self.ar.cos_sin(self.alpha / 2)
-        return physics.friction_magnitude(self.arc_mu("creep"), self._resultant(sin_half), self.ar.hypot)
+        return physics.friction_magnitude(self.arc_mu("creep"), self._resultant(sin_half), self.ar.sqrt)

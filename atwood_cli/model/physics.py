@@ -26,7 +26,6 @@ from collections.abc import Callable
 from ..arithmetic.rational import N
 
 Function = Callable[[N], N]
-Hypot = Callable[[N, N | int], N]
 
 
 def friction_at_limit(light: N, k_minus_1: N) -> N:
@@ -318,27 +317,27 @@ def least_pulley_mass(friction_mass: N, beta: N, b: N) -> N:
     return (2 * friction_mass - b) / beta
 
 
-def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N], hypot: Hypot[N]) -> N:
+def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N]) -> N:
     """Return the magnitude (N) of the force of T1 and T2 on any arc of contact.
 
     ``difference`` = T2 - T1 and ``sin_half``, the sine of half the arc, keep what is nearly equal
     from cancelling in T1² + T2² - 2 T1 T2 cos φ.
 
-    >>> from math import hypot, sqrt
-    >>> resultant(9, 16, 7, 1, sqrt, hypot)
+    >>> from math import sqrt
+    >>> resultant(9, 16, 7, 1, sqrt)
     25.0
     """
-    return hypot(difference, 2 * sin_half * sqrt(t1) * sqrt(t2))
+    return sqrt(difference * difference + 4 * sin_half * sin_half * t1 * t2)
 
 
-def friction_magnitude(mu: N, resultant: N, hypot: Hypot[N]) -> N:
+def friction_magnitude(mu: N, resultant: N, sqrt: Function[N]) -> N:
     """Return the net friction force (N) if T grows as e^{μθ} all along the arc (32).
 
-    >>> from math import hypot
-    >>> friction_magnitude(0.75, 35, hypot)
+    >>> from math import sqrt
+    >>> friction_magnitude(0.75, 35, sqrt)
     21.0
     """
-    return mu / hypot(mu, 1) * resultant
+    return mu / sqrt(mu * mu + 1) * resultant
 
 
 def friction_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:

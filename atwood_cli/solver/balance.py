@@ -80,11 +80,11 @@ def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
     scene, sign = answers.case.scene, answers.case.sign
     from_light = q if sign >= 0 else 1 - q
     piece = _piece(answers, kind, from_light)
-    stuck = arc.STUCK[kind][piece] or answers.case.frictionless
+    stuck = (kind == "creep" and piece == 0) or answers.case.frictionless
 
     def tension(machine: Machine[Any]) -> Any:
         # Tensions at both ends are exact, and so is that of a piece stuck from the light end on.
-        if from_light == 0 or (piece == 0 and stuck):
+        if from_light == 0 or stuck:
             return machine.light_tension
         if from_light == 1:
             return machine.heavy_tension
