@@ -96,23 +96,17 @@ class Mechanics(Generic[N]):
         """T_h/T_l - 1 on the verge and in slip, as friction is at its limit."""
         if self.case.slide_measured:
             return self.case.slide_ratio_minus_1(self.ar)
-        if self.case.limit_is_static:
-            return self.k_minus_1
-        kinetic = self.case.limiting_mu
-        return self._capstan_ratio_minus_1(kinetic, self.ar.number(kinetic))
+        mu = self.case.limiting_mu
+        return self._capstan_ratio_minus_1(mu, self.ar.number(mu))
 
     @lazy
     def limiting_friction_mass(self) -> N:
         """z on the verge and in slip (kg)."""
-        if self.case.limit_is_static:
-            return self.friction_mass
         return physics.friction_at_limit(self.l, self.limiting_k_minus_1)
 
     @lazy
     def limiting_drive(self) -> N:
         """Drive on the verge and in slip (kg)."""
-        if self.case.limit_is_static:
-            return self.drive
         return self.ar.not_negative(physics.drive(self.l, self.h, self.limiting_friction_mass))
 
     @lazy

@@ -147,7 +147,6 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {**vars(physics), "product": mul, 
 def _fields(derivation: Derivation) -> dict[str, str]:
     """Return what stands between braces in `derivation.md`."""
     case = derivation.case
-    limiting = "limiting_" if case.slides_by_mu_k else ""
     return {
         "l": derivation.light,
         "h": derivation.heavy,
@@ -156,10 +155,8 @@ def _fields(derivation: Derivation) -> dict[str, str]:
         "phi": derivation.symbol("phi"),
         "kinetic": "kinetic " if case.slides_by_mu_k else "",
         "kin": "_kin" if case.slides_by_mu_k else "",
-        "limiting_": limiting,
-        "limiting_symbol": derivation.symbol(
-            "limiting_k_minus_1" if case.slide_measured else f"{limiting}k_minus_1"
-        ),
+        "limiting_": "limiting_" if case.slides_by_mu_k else "",
+        "limiting_symbol": derivation.symbol("limiting_k_minus_1"),
         "verdict": verdict(derivation.answers),
     }
 
