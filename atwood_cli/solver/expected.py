@@ -17,7 +17,7 @@ from ..model.quantities import (
     Undetermined,
     read_name,
 )
-from ..model.scene import SceneError, with_unit
+from ..model.scene import INPUTS, MEASURED, SceneError, with_unit
 from ..model.units import STANDARD_GRAVITY, Angle, Malformed, TypedNumber, in_quotes, read_number
 from .answers import TOO_SMALL, Answers
 from .messages import unmarked
@@ -31,17 +31,9 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     "==": operator.eq,
 }
 CONDITIONS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
-MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
-"""What a string may do, by its regime."""
-MAY_FAIL = "within the uncertainties it may fail"
 DIMENSIONS = {
-    "kg": "mass",
-    "m/s²": "acceleration",
-    "N": "force",
-    "N m": "torque",
-    "kg m²": "moment of inertia",
-    "°": "angle",
-    "s": "time",
+    **{one.unit: one.dimension for one in (*INPUTS.values(), *MEASURED.values())},
+    **{"N": "force", "N m": "torque"},
 }
 """The dimension of a quantity, by its unit."""
 
@@ -75,30 +67,43 @@ def read_condition(typed: str) -> Condition:
 
 def failure(answers: Answers, expected: Condition) -> str:
     """Say what holds instead of what is expected, "" if that holds."""
-    case = answers.case
-    if expected.name in REGIMES:
-        if expected.name != case.regime:
-            return f"expected {expected.typed}; it is {case.regime}"
-        if answers.uncertainties and (other := answers.uncertainties.other_regime()):
-            return f"expected {expected.typed}; within the uncertainties it may {MAY[other]}"
-        if case.mu_assumed:
-            return f"expected {expected.typed}; that is only assumed: give mu"
+    ends = answers.uncertainties.far_answers() if answers.uncertainties else []
+    if not _holds(answers, expected):
+        instead = unmarked(_instead(answers, expected))
+    elif not all(_holds(end, expected) for end in ends):
+        instead = "within the uncertainties it may fail"
+    elif expected.name in REGIMES and answers.case.mu_assumed:
+        instead = "that is only assumed: give mu"
+    else:
         return ""
+    return f"expected {expected.typed}; {instead}"
+
+
+def _holds(answers: Answers, expected: Condition) -> bool:
+    """Decide whether a condition is true; a comparison is not if the quantity has no finite value."""
+    if expected.name in REGIMES:
+        return answers.case.regime == expected.name
+    try:
+        return bool(OPERATORS[expected.sign](_above(answers, expected), 0))
+    except (Undetermined, ArithmeticError):
+        return False
+
+
+def _instead(answers: Answers, expected: Condition) -> str:
+    """Say the regime, or the value of the quantity, or why it has none."""
+    if expected.name in REGIMES:
+        return f"it is {answers.case.regime}"
     value, reason, *_ = answers.answer(expected.name)
     if value is None or reason == TOO_SMALL:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
-        return unmarked(f"expected {expected.typed}; {expected.name} has {why}")
-    side = _above(answers, expected)
-    if OPERATORS[expected.sign](side, 0):
-        ends = answers.uncertainties.far_answers() if answers.uncertainties else []
-        return "" if all(_holds(end, expected) for end in ends) else f"expected {expected.typed}; {MAY_FAIL}"
+        return f"{expected.name} has {why}"
     given = None if expected.number.unit == "rad" else _in_scene(answers.case.scene, expected.number)
-    if given is not None and not side:  # digits would not show that the two are equal
+    if given is not None and not _above(answers, expected):  # digits would not show that the two are equal
         shown = as_typed(given)
     else:
         value = answers.rounded(expected.name, rounding_apart_from(given, answers.digits or SHOWN_DIGITS))
         shown = "too large to be written out" if is_infinite(value) else format_number(value)
-    return f"expected {expected.typed}; it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
+    return f"it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
 
 
 def _above(answers: Answers, expected: Condition) -> float | Decimal:
@@ -108,14 +113,6 @@ def _above(answers: Answers, expected: Condition) -> float | Decimal:
         return getattr(machine, expected.name) - _bound(machine, expected.number)
 
     return answers.settle(difference, to_digits(1))
-
-
-def _holds(answers: Answers, expected: Condition) -> bool:
-    """Decide if a comparison is true; a quantity without a finite value fails it."""
-    try:
-        return bool(OPERATORS[expected.sign](_above(answers, expected), 0))
-    except (Undetermined, ArithmeticError):
-        return False
 
 
 def _in_scene(scene: Any, number: TypedNumber) -> Fraction:

@@ -182,11 +182,6 @@ class Uncertainties:
         """Return the answers two standard uncertainties of an input away, for each input and side."""
         return [end.answers for _, end, _ in self._far_ends if end.answers]
 
-    def other_regime(self) -> str:
-        """Return another regime within two standard uncertainties of an input, "" if there is none."""
-        regimes = (case.regime for _, _, case in self._far_ends)
-        return next((regime for regime in regimes if regime != self.case.regime), "")
-
     def open_ended(self, names: Iterable[str]) -> list[str]:
         """Say which quantities have no value at an end of an input, and their bound from the other end."""
         found: dict[str, list[str]] = {}
