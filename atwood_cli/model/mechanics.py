@@ -146,7 +146,7 @@ class Mechanics(Generic[N]):
     def alpha(self) -> N:
         """The arc (rad) over which friction at its limit makes up the ratio of the tensions."""
         mu = self.mu
-        return physics.limiting_arc(self.log_ratio, mu)
+        return physics.verge_coefficient(self.log_ratio, mu)
 
     def arcs(self, kind: arc.Profile) -> list[arc.Arc[N]]:
         """Return the arc of contact from the light end, in limiting and stuck pieces (see `arc`)."""

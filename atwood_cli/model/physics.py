@@ -227,6 +227,8 @@ def heaviest_ratio_minus_1(l: N, c: N, b: N) -> N:
 def verge_coefficient(log_ratio: N, phi: N) -> N:
     """Return the friction coefficient at which the string is on the verge (27); log_ratio = ln(T_h/T_l).
 
+    With μ in place of φ, it is the arc (rad) over which friction at its limit makes up that ratio.
+
     >>> verge_coefficient(0.75, 3)
     0.25
     """
@@ -380,15 +382,6 @@ def mirrored(x: N, y: N, cos_phi: N, sin_phi: N) -> tuple[N, N]:
     (-2, 5)
     """
     return x * cos_phi + y * sin_phi, x * sin_phi - y * cos_phi
-
-
-def limiting_arc(log_ratio: N, mu: N) -> N:
-    """Return the arc (rad) over which friction at its limit makes up ln(T_h/T_l), from (26).
-
-    >>> limiting_arc(0.5, 0.25)
-    2.0
-    """
-    return log_ratio / mu
 
 
 def least_friction_slope(mu: N, chord: N, growth: N, cos: N, sin: N, dx: N, dy: N) -> N:
