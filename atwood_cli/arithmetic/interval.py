@@ -30,11 +30,7 @@ LOG10_E = Decimal("0.434294481903")  # rounded down, so that the rest of an argu
 
 
 class NeedsMoreDigits(ArithmeticError):
-    """The enclosure is too wide to go on: compute with more digits (``digits``, if the number is known)."""
-
-    def __init__(self, digits: int = 0) -> None:
-        super().__init__(digits)
-        self.digits = digits
+    """The enclosure is too wide to go on: compute with more digits, with so many if the number is known."""
 
 
 def decimal_context(digits: int, rounding: str) -> Context:

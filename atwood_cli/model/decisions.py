@@ -96,7 +96,9 @@ class Decisions:
         scene, mass = self.scene, self.pulley_mass
         if scene.I is not None and scene.R is not None:
             return physics.inertia_at_rim(scene.I, scene.R)
-        return mass if mass is None or scene.inertia is None else scene.inertia * mass
+        if mass is None or scene.inertia is None:
+            return mass
+        return Fraction(0) if is_zero(mass) else scene.inertia * mass
 
     @lazy
     def beta(self) -> Fraction | None:

@@ -19,7 +19,7 @@ from ..model.digits import (
     strip_zeros,
 )
 from ..model.quantities import QUANTITIES
-from ..model.scene import Scene, with_unit
+from ..model.scene import with_unit
 from ..model.units import MAX_MAGNITUDE
 from .answers import Answers
 
@@ -97,10 +97,6 @@ def verdict(answers: Answers) -> str:
     )
 
 
-def _given_mu(scene: Scene) -> str:
-    return "" if scene.mu is None else f"`mu` = {as_typed(scene.mu)}"
-
-
 def _enough(answers: Answers, name: str = "mu_verge") -> str:
     """Say the least coefficient that holds the string."""
     return format_number(answers.rounded(name, _beside(answers, answers.case.scene.mu)))
@@ -116,7 +112,7 @@ def _grips(answers: Answers) -> str:
             f"`mu` is not given, so the string is assumed not to slip: true{where} if `mu` is at least"
             f" {_enough(answers)}."
         )
-    return f"No slip: {_given_mu(scene)}, and at least {_enough(answers)} is needed."
+    return f"No slip: `mu` = {as_typed(scene.mu)}, and at least {_enough(answers)} is needed."
 
 
 def _on_the_verge(answers: Answers) -> str:
@@ -132,9 +128,9 @@ def _on_the_verge(answers: Answers) -> str:
 
 def _slips(answers: Answers) -> str:
     case, scene = answers.case, answers.case.scene
-    mu = _given_mu(scene)
-    if not mu:
+    if scene.mu is None:
         return "Slides over the locked pulley."
+    mu = f"`mu` = {as_typed(scene.mu)}"
     kinetic = "" if scene.mu_k is None else f"; it slides with `mu_k` = {as_typed(scene.mu_k)}"
     if not case.pulley_known:
         return (

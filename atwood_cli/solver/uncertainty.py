@@ -170,12 +170,14 @@ class Uncertainties:
         """Say which of the `DOUBTFUL` decisions differ within two standard uncertainties of an input."""
         said: dict[str, str] = {}
         for x, end, case in self._far_ends:
-            if what := _otherwise(self.case, case):
-                said.setdefault(
-                    what,
-                    f"{what} is in doubt: the answer differs at {self._at(x, end)},"
-                    f" {COVERAGE} standard uncertainties away. Results use the inputs as given.",
-                )
+            for what, name in DOUBTFUL.items():
+                if getattr(case, name) != getattr(self.case, name):
+                    said.setdefault(
+                        what,
+                        f"{what} is in doubt: the answer differs at {self._at(x, end)},"
+                        f" {COVERAGE} standard uncertainties away. Results use the inputs as given.",
+                    )
+                    break  # others follow from it
         return [*said.values()]
 
     def far_answers(self) -> list[Answers]:
@@ -196,7 +198,12 @@ class Uncertainties:
                     reason = f"{place} {why}" if why == NO_SCENE else f"at {place}, {why}"
                     other = values[1 - missing[0]].number
                     found.setdefault(reason, []).append(_one_sided(name, spread.here, other))
-        return [f"No uncertainty of {_first_of(group)}: {reason}." for reason, group in found.items()]
+        said = []
+        for reason, group in found.items():
+            others = len(group) - MOST_NAMED
+            more = f" and {others} more" if others > 0 else ""
+            said.append(f"No uncertainty of {', '.join(group[:MOST_NAMED])}{more}: {reason}.")
+        return said
 
     def _at(self, x: str, end: End) -> str:
         """Say an input at an end, with its unit: "mu = 0.35"."""
@@ -205,20 +212,9 @@ class Uncertainties:
         return f"{x} = {with_unit(as_typed(end.input), unit)}"
 
 
-def _otherwise(case: Decisions, other: Decisions) -> str:
-    """Name the first of the `DOUBTFUL` decisions that differs between two scenes, "" if none does."""
-    return next((what for what, x in DOUBTFUL.items() if getattr(case, x) != getattr(other, x)), "")
-
-
 def _one_sided(name: str, here: Decimal, other: Decimal | None) -> str:
     """Name a quantity without an uncertainty, with the value at the only end that has one."""
     if other is None or other == here:
         return name
     bound = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(other)))
     return f"{name} (at {'least' if other < here else 'most'} {with_unit(bound, QUANTITIES[name].unit)})"
-
-
-def _first_of(names: Sequence[str]) -> str:
-    """Join the first names, and count the others."""
-    joined, others = ", ".join(names[:MOST_NAMED]), len(names) - MOST_NAMED
-    return f"{joined} and {others} more" if others > 0 else joined
