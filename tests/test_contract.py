@@ -166,7 +166,7 @@ JSON = {
 PYTHON: dict[str, tuple[Iterable[str], str]] = {
     "atwood_cli": (
         atwood_cli.__all__,
-        "REGIMES STATUSES Fit Scene SceneError Solution fit solve solve_arrays solve_table",
+        "Solution solve STATUSES solve_arrays solve_table REGIMES Fit fit Scene SceneError",
     ),
     "solve": (signature(solve).parameters, f"{SCENE} a drop time digits"),
     "solve_arrays": (signature(solve_arrays).parameters, f"{SCENE} accuracy quantities"),
