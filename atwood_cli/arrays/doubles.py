@@ -67,28 +67,20 @@ class NoProgram(ArithmeticError):
 # Operations that formulas of columns have beside + - * /
 
 
-def _operation(op: str) -> Callable[[Term, Term], Formula]:
-    return lambda x, y: Formula(op, formula(x), formula(y))
+def _operation(op: str) -> Callable[..., Formula]:
+    return lambda *operands: Formula(op, *map(formula, operands))
 
 
 maximum, minimum, equal, both, either = map(_operation, ("maximum", "minimum", "==", "and", "or"))
 less, at_most = map(_operation, ("<", "<="))
 """x < y and x <= y, which are false if either is NaN."""
+where = _operation("where")
+"""Take x if a condition holds, else y: where(condition, x, y)."""
 
 
 def absolute(x: Term) -> Any:
     """Return the size of x."""
     return Formula("abs", x) if isinstance(x, Formula) else abs(x)
-
-
-def where(condition: Formula, x: Term, y: Term) -> Formula:
-    """Take x if the condition holds, else y."""
-    return Formula("where", condition, formula(x), formula(y))
-
-
-def looked_up(table: Any, index: Formula) -> Formula:
-    """Return entries of a table at a column of indices; an index beyond an end gives the entry there."""
-    return Formula("take", index, table)
 
 
 def larger(x: Term, y: Term) -> Term:
@@ -295,7 +287,7 @@ class Doubles:
         cos, sin = (Formula(name, angle.parts[0]) for name in ("cos", "sin"))
         folded = where(odd, sin, cos), where(odd, cos, sin)
         signed = (
-            value * looked_up(signs, Formula("bits", number, 3))
+            value * Formula("take", Formula("bits", number, 3), signs)
             for value, signs in zip(folded, SIGNS, strict=True)
         )
         x, y = (Bounded(self, (value,), LIBRARY + angle.fixed_error, positive=False) for value in signed)

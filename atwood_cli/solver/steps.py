@@ -202,7 +202,6 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
         "held by the axle": case.axle_holds and not case.locked,
         "turning": not (case.pulley_at_rest or case.tensions_equal),
         "masses at rest": grips and at_rest and not case.motion.finds,
-        "a is known": moves,
         "a is computed": moves and grips and not at_rest and not case.motion.finds,
         "a from friction": not grips and not case.slide_measured,
         "rim at rest": case.regime == "slip" and (case.rim_at_rest or case.frictionless),
