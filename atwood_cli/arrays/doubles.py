@@ -318,18 +318,16 @@ def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def certified(value: Bounded, accuracy: Accuracy) -> tuple[Term, Formula | None]:
-    """Return a value as a double, and the condition that it is right in a row; None if it always is."""
+    """Return a value as a double, and the condition that it is right in a row; None if it always is.
+
+    A double is the nearest one if both ends of the bound round to it.
+    """
     double: Any = value.parts[0] if value.positive else value.parts[0] + 0.0  # 0.0 makes 0 of -0
     if accuracy == "exact":
-        return double, is_nearest(value)
+        first, second = (*value.parts, 0.0)[:2]
+        error = absolute(first) * (value.bound + END_ERROR)
+        ends = [equal(first + (second - error), first), equal(first + (second + error), first)]
+        return double, either(both(*ends), equal(value.bound, 0.0))
     if not isinstance(value.row_error, Formula) and value.fixed_error <= LIMIT:
         return double, None
     return double, at_most(value.bound, LIMIT)
-
-
-def is_nearest(value: Bounded) -> Formula:
-    """Tell if the first part is the double nearest to the exact value: both ends of the bound round to it."""
-    first, second = (*value.parts, 0.0)[:2]
-    error = absolute(first) * (value.bound + END_ERROR)
-    ends_round_to_it = both(equal(first + (second - error), first), equal(first + (second + error), first))
-    return either(ends_round_to_it, equal(value.bound, 0.0))

@@ -39,17 +39,10 @@ def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return sentences on why quantities or their uncertainties are missing or doubtful."""
     found = {name: answers.answer(name) for name in names if name != "regime"}
     said = reasons_at({(name, one.reason): 1 for name, one in found.items() if one.reason}, 1)
-    uncertainties = answers.uncertainties
-    if uncertainties is None:
-        return said
-    beyond = {name: one.uncertainty_reason for name, one in found.items() if one.uncertainty_reason}
-    without = [name for name, one in found.items() if one.uncertainty is None and one.value is not None]
-    return [
-        *said,
-        *uncertainties.doubts(),
-        *map(unmarked, uncertainties.open_ended(without)),
-        *reasons_at({(f"u_{name}", reason): 1 for name, reason in beyond.items()}, 1),
-    ]
+    if answers.uncertainties is not None:
+        without = [name for name, one in found.items() if one.uncertainty is None and one.value is not None]
+        said += [*answers.uncertainties.doubts(), *map(unmarked, answers.uncertainties.open_ended(without))]
+    return said
 
 
 def reasons_at(

@@ -95,7 +95,7 @@ class Uncertainties:
         self.case, self.given, self._solve = case, given, solve
         self._here = End(Fraction(0), solve(case.scene, DIGITS, case.motion))
         self._ends = {x: (self._end(x, -u), self._end(x, u)) for x, u in given.items()}
-        self._spreads: dict[str, Spread | None] = {}
+        self._spreads: dict[str, Spread] = {}
 
     def _end(self, x: str, step: Fraction) -> End:
         """Solve the scene with an input so much more, as far as it may be; what is found may go below 0."""
@@ -121,12 +121,11 @@ class Uncertainties:
 
     def _spread(self, name: str) -> Spread | None:
         """Compute a quantity at all ends, once; None if it has no finite value in the scene."""
-        if name not in self._spreads:
-            here = self._here.value(name).number
-            self._spreads[name] = None if here is None or is_infinite(here) else self._measure(name, here)
-        return self._spreads[name]
-
-    def _measure(self, name: str, here: Decimal) -> Spread:
+        if name in self._spreads:
+            return self._spreads[name]
+        here = self._here.value(name).number
+        if here is None or is_infinite(here):
+            return None
         ends = {x: [end.value(name) for end in pair] for x, pair in self._ends.items()}
         steps = {}
         with localcontext(CONTEXT):
@@ -136,7 +135,8 @@ class Uncertainties:
                 if size > NEGLIGIBLE * max(map(abs, numbers)) or is_infinite(size):
                     steps[x] = size / 2
             variance = sum((step * step for step in steps.values()), ZERO)
-        return Spread(here, ends, steps, variance)
+        self._spreads[name] = Spread(here, ends, steps, variance)
+        return self._spreads[name]
 
     def of(self, name: str, digits: int | None = None) -> Decimal | None:
         """Return the standard uncertainty of a quantity, to `RIGHT_DIGITS` digits or to fewer.
