@@ -93,14 +93,12 @@ def _impossible(scene: Scene, motion: Motion) -> str:
             return f"is too large for any friction: without it the acceleration is {format_number(most)} m/s²"
         if scene.mu is not None and case.exceeds(case.slide_ratio_minus_1, scene.mu):
             return "needs more kinetic friction than mu; check both"
-        return ""
-    if scene.m1 == scene.m2 == 0:
+    elif scene.m1 == scene.m2 == 0:
         return "implies that both masses are 0"
-    value, domain = getattr(scene, finds), INPUTS[finds]
-    if value >= 0:  # 0 is a mass
-        return ""
-    shown = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(value)))
-    return f"implies {finds} = {shown} {domain.unit}, which {domain.domain}"
+    elif getattr(scene, finds) < 0:  # 0 is a mass
+        shown = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(getattr(scene, finds))))
+        return f"implies {finds} = {shown} {INPUTS[finds].unit}, which {INPUTS[finds].domain}"
+    return ""
 
 
 def number_of(scene: Scene, motion: Motion, x: str) -> Any:
