@@ -3,35 +3,28 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .api import Solution, solve
-    from .arrays import STATUSES, solve_arrays
-    from .batch.frames import solve_table
-    from .laboratory import Fit, fit
-    from .model.quantities import REGIMES
-    from .model.scene import Scene, SceneError
+    from .api import Solution as Solution
+    from .api import solve as solve
+    from .arrays import STATUSES as STATUSES
+    from .arrays import solve_arrays as solve_arrays
+    from .batch.frames import solve_table as solve_table
+    from .laboratory import Fit as Fit
+    from .laboratory import fit as fit
+    from .model.quantities import REGIMES as REGIMES
+    from .model.scene import Scene as Scene
+    from .model.scene import SceneError as SceneError
 
-__all__ = [
-    "REGIMES",
-    "STATUSES",
-    "Fit",
-    "Scene",
-    "SceneError",
-    "Solution",
-    "fit",
-    "solve",
-    "solve_arrays",
-    "solve_table",
-]
 __version__ = "1.0.0rc1"
 
 _HOMES = {
-    "api": ("Solution", "solve"),
-    "arrays": ("STATUSES", "solve_arrays"),
-    "batch.frames": ("solve_table",),
-    "laboratory": ("Fit", "fit"),
-    "model.quantities": ("REGIMES",),
-    "model.scene": ("Scene", "SceneError"),
+    **dict.fromkeys(("Solution", "solve"), "api"),
+    **dict.fromkeys(("STATUSES", "solve_arrays"), "arrays"),
+    **{"solve_table": "batch.frames", "REGIMES": "model.quantities"},
+    **dict.fromkeys(("Fit", "fit"), "laboratory"),
+    **dict.fromkeys(("Scene", "SceneError"), "model.scene"),
 }
+"""The names that the package exports, and the modules that have them."""
+__all__ = [*_HOMES]
 
 
 def __getattr__(name: str) -> Any:
@@ -39,13 +32,12 @@ def __getattr__(name: str) -> Any:
 
     So the command line starts before they are there, and can catch Ctrl-C while they load.
     """
-    for home, names in _HOMES.items():
-        if name in names:
-            from importlib import import_module
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
 
-            value = globals()[name] = getattr(import_module(f".{home}", __name__), name)
-            return value
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(f".{_HOMES[name]}", __name__), name)
+    return value
 
 
 def __dir__() -> set[str]:

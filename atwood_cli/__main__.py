@@ -29,7 +29,14 @@ def _status() -> int:
         if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
             signal.signal(number, end)
     try:
-        return _run()
+        # The environment may allow fewer digits than we do.
+        sys.set_int_max_str_digits(sys.int_info.default_max_str_digits)
+        gc.disable()  # imported code stays: searching it for garbage takes a seventh of a short run
+        from .cli import run  # here, so that Ctrl-C during the import shows no traceback
+
+        gc.freeze()
+        gc.enable()
+        return run()
     except KeyboardInterrupt:
         return status or INTERRUPTED
     except Exception:  # an import that is interrupted may raise another error
@@ -40,18 +47,6 @@ def _status() -> int:
         for number in ENDING_SIGNALS:  # Python would show a traceback of an interrupt at its end
             signal.signal(number, signal.SIG_IGN)
         gc.freeze()  # the end would take longer with a search for garbage
-
-
-def _run() -> int:
-    """Run the command line. It is imported here, so that Ctrl-C during the import shows no traceback."""
-    # The environment may allow fewer digits than we do.
-    sys.set_int_max_str_digits(sys.int_info.default_max_str_digits)
-    gc.disable()  # imported code stays: searching it for garbage takes a seventh of a short run
-    from .cli import run
-
-    gc.freeze()
-    gc.enable()
-    return run()
 
 
 if __name__ == "__main__":

@@ -45,15 +45,8 @@ def _described() -> str:
     return "\n".join(lines)
 
 
-class Answered:
-    """The answers from which a solution reads its fields. They are no field of it."""
-
-    __slots__ = ("_answers",)
-    _answers: Answers
-
-
-@dataclass(frozen=True, slots=True, init=False, eq=False)
-class Solution(Answered, Generic[T]):
+@dataclass(frozen=True, init=False, eq=False)
+class Solution(Generic[T]):
     __doc__ = f"""The state of a scene: floats, or Decimals if digits were asked for; None if undetermined.
 
     ``scene`` has the inputs. ``regime`` is "no-slip", "verge" or "slip". ``notes`` give the reasons for the
@@ -107,13 +100,24 @@ class Solution(Answered, Generic[T]):
         """Make the solution for what `Answers` takes. A copied or pickled one is computed anew when read."""
         object.__setattr__(self, "_answers", Answers(*given))
 
-    if not TYPE_CHECKING:  # which would take any name for a field
+    if TYPE_CHECKING:
+        _answers: Answers  # no field
+    else:  # a type checker would take any name for a field
 
         def __getattr__(self, name: str) -> Any:
             """Compute a field that was not read yet, and keep it."""
             if name not in self.__dataclass_fields__:
                 return object.__getattribute__(self, name)  # raises the usual error
-            value = _computed(name, self._answers)
+            answers = self._answers
+            match name:
+                case "scene":
+                    value = answers.case.scene
+                case "uncertainty":
+                    value = answers.standard_uncertainties(answers.names)
+                case "notes":
+                    value = tuple(notes(answers, answers.names))
+                case _:
+                    value = answers[name] if name in answers.names else None
             object.__setattr__(self, name, value)
             return value
 
@@ -145,18 +149,6 @@ class Solution(Answered, Generic[T]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Solution, self._answers.given
-
-
-def _computed(name: str, answers: Answers) -> Any:
-    """Return the value of a field, by its name."""
-    match name:
-        case "scene":
-            return answers.case.scene
-        case "uncertainty":
-            return answers.standard_uncertainties(answers.names)
-        case "notes":
-            return tuple(notes(answers, answers.names))
-    return answers[name] if name in answers.names else None
 
 
 Mass = Given | None

@@ -92,11 +92,8 @@ def test_forces_on_the_pulley_are_the_integrals_along_the_arc() -> None:
 
 
 def test_the_magnitude_is_that_of_the_vector() -> None:
-    def hypot(x: sp.Expr, y: sp.Expr | int) -> sp.Expr:
-        return sp.sqrt(x**2 + y**2)
-
-    both = physics.resultant(t1, t2, t2 - t1, sp.sin(phi / 2), sp.sqrt, hypot)
-    square = physics.friction_magnitude(mu, both, hypot) ** 2
+    both = physics.resultant(t1, t2, t2 - t1, sp.sin(phi / 2), sp.sqrt)
+    square = physics.friction_magnitude(mu, both, sp.sqrt) ** 2
     x, y = physics.friction_vector(mu, t2 * sp.cos(phi) - t1, t2 * sp.sin(phi))
     paper = -mu * (t1 + t2) / (1 + mu**2)
     forms = {

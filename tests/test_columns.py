@@ -80,13 +80,8 @@ def off(number: Bounded, exact: Callable[..., flint.arb], *columns: Any, sure: f
 class Balls:
     """The operations of an arithmetic on FLINT's numbers."""
 
-    number, sqrt, log1p, expm1, exp = map(
-        staticmethod, (arb, flint.arb.sqrt, flint.arb.log1p, flint.arb.expm1, flint.arb.exp)
-    )
+    number, sqrt, log1p, expm1 = map(staticmethod, (arb, flint.arb.sqrt, flint.arb.log1p, flint.arb.expm1))
     pi = property(lambda _: flint.arb.pi())
-
-    def hypot(self, x: Any, y: Any) -> Any:
-        return (x * x + y * y).sqrt()
 
 
 def bound_holds(ar: Any, operation: Callable[..., Any], *columns: Any, sure: float = 1.0) -> None:
@@ -115,7 +110,7 @@ OPERATIONS_: dict[str, Callable[[Any, Any, Any], Any]] = {
     "quotients": lambda ar, x, y: x / (x + y) / (x * y),
     "scaled": lambda ar, x, y: -1 * (2 * x / 8) - y / 4,
     "root of a quotient": lambda ar, x, y: ar.sqrt(x / y),
-    "hypotenuse": lambda ar, x, y: ar.hypot(x, y),
+    "hypotenuse": lambda ar, x, y: ar.sqrt(x * x + y * y),
     "log1p": lambda ar, x, y: ar.log1p(x / y),
     "many": lambda ar, x, y: _many(x, y),
     "pi": lambda ar, x, y: ar.pi * x + y,
@@ -134,7 +129,7 @@ def test_bounds_of_exponentials_hold(level: str) -> None:
     ar, most = LEVELS[level], 57  # π times which is below 180
     for column in (SMALL, USUAL, rng.uniform(0, 1e-3, 400), rng.uniform(0, most, 400)):
         bound_holds(ar, lambda ar, x: ar.expm1(x * ar.pi), column)
-        bound_holds(ar, lambda ar, x: ar.exp(x), column, sure=0.9)
+        bound_holds(ar, lambda ar, x: ar.expm1(x) + 1, column, sure=0.9)
     bound_holds(ar, lambda ar, x: ar.expm1(x), rng.uniform(50, 180, 400))
     bound_holds(ar, lambda ar, x: ar.log1p(x), SMALL)
 

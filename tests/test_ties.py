@@ -31,12 +31,12 @@ def degrees(ar: Any, x: int) -> tuple[Any, Any]:
 
 def root(ar: Any, q: Fraction, share: Fraction) -> Any:
     """q^share, as tensions along the arc are computed."""
-    return ar.exp(ar.log1p(ar.number(q - 1)) / ar.pi * ar.number(share) * ar.pi)
+    return ar.expm1(ar.log1p(ar.number(q - 1)) / ar.pi * ar.number(share) * ar.pi) + 1
 
 
 def turned(ar: Any, mu: Fraction) -> Any:
     """The capstan ratio over half a turn."""
-    return ar.exp(ar.number(mu) * ar.pi)
+    return ar.expm1(ar.number(mu) * ar.pi) + 1
 
 
 Quantity = Callable[[Any], Any]
@@ -57,13 +57,13 @@ RATIONAL: dict[str, tuple[Quantity, Fraction]] = {
         lambda ar: turned(ar, F(3, 10)) / turned(ar, F(1, 10)) / turned(ar, F(1, 5)),
         F(1),
     ),
-    "(2 k + 6)/(k + 3)": (lambda ar: (2 * ar.exp(ar.pi) + 6) / (ar.exp(ar.pi) + 3), F(2)),
+    "(2 k + 6)/(k + 3)": (lambda ar: (2 * ar.expm1(ar.pi) + 8) / (ar.expm1(ar.pi) + 4), F(2)),
 }
 IRRATIONAL: dict[str, tuple[Quantity, Fraction]] = {
     "cos 45°": (lambda ar: degrees(ar, 45)[0], F(707106781186547524400844362105, 10**30)),
     "2^(1/2)": (lambda ar: root(ar, F(2), F(1, 2)), F(1414213562373095048801688724210, 10**30)),
     "√2": (lambda ar: ar.sqrt(ar.number(2)), F(1414213562373095048801688724210, 10**30)),
-    "e^π": (lambda ar: ar.exp(ar.pi), F(23140692632779269005729086367949, 10**30)),
+    "e^π": (lambda ar: ar.expm1(ar.pi) + 1, F(23140692632779269005729086367949, 10**30)),
     "ln 2 / π": (lambda ar: ar.log1p(ar.number(1)) / ar.pi, F(220635600152651662, 10**18)),
     "π": (lambda ar: ar.pi, F(3141592653589793238462643383280, 10**30)),
     "sin of 10^-300 degrees": (lambda ar: ar.cos_sin_of_degrees(F(1, 10**300))[1], F(0)),

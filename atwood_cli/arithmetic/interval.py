@@ -30,11 +30,7 @@ LOG10_E = Decimal("0.434294481903")  # rounded down, so that the rest of an argu
 
 
 class NeedsMoreDigits(ArithmeticError):
-    """The enclosure is too wide to go on: compute with more digits (``digits``, if the number is known)."""
-
-    def __init__(self, digits: int = 0) -> None:
-        super().__init__(digits)
-        self.digits = digits
+    """The enclosure is too wide to go on: compute with more digits, with so many if the number is known."""
 
 
 def decimal_context(digits: int, rounding: str) -> Context:
@@ -146,10 +142,6 @@ class Enclosures:
         lo = lo if self.up.multiply(lo, lo) <= x.lo else self.down.next_minus(lo)
         return Enclosure(self, lo, hi if self.down.multiply(hi, hi) >= x.hi else self.up.next_plus(hi))
 
-    def hypot(self, x: Enclosure, y: Enclosure | int) -> Enclosure:
-        """Return √(x² + y²)."""
-        return self.sqrt(x * x + y * y)
-
     def cos_sin(self, x: Enclosure) -> tuple[Enclosure, Enclosure]:
         """Return cosine and sine of x >= 0."""
         x = self._from_zero(x)
@@ -206,10 +198,6 @@ class Enclosures:
                 return Enclosure(self, lo, hi)
             error = near.scaleb(error, self.digits // 8)
         raise NeedsMoreDigits(wanted)
-
-    def exp(self, x: Enclosure) -> Enclosure:
-        """Return e^x for x >= 0."""
-        return self.expm1(x) + 1
 
     def expm1(self, x: Enclosure) -> Enclosure:
         """Return e^x - 1 for x >= 0; beyond 10^LARGEST_EXPONENT it is infinite."""

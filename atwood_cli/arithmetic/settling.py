@@ -82,11 +82,11 @@ def is_positive(quantity: Quantity) -> bool:
 def _refine(quantity: Quantity, answer: Callable[[Enclosure], A | None], digits: int) -> A:
     """Refine the enclosure of a quantity until ``answer`` is not None, and return that."""
     while digits < LARGEST_PRECISION:
-        needed = 0
+        needed: tuple[int, ...] = ()
         try:
             if (settled := answer(quantity(enclosures(digits)))) is not None:
                 return settled
         except NeedsMoreDigits as unsettled:
-            needed = unsettled.digits
-        digits = max(2 * digits, needed)
+            needed = unsettled.args
+        digits = max([2 * digits, *needed])
     raise ArithmeticError(f"not settled within {LARGEST_PRECISION} digits")

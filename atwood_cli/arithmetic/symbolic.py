@@ -100,7 +100,7 @@ class Symbols:
     """The part of `Arithmetic` that derivations need, with symbols for inputs. Functions are recorded."""
 
     pi = Formula("symbol", Symbol("π", "ar.pi"))
-    exp, expm1, log1p, sqrt = map(_recorded, ("exp", "expm1", "log1p", "sqrt"))
+    expm1, log1p, sqrt = map(_recorded, ("expm1", "log1p", "sqrt"))
 
     def __init__(self, inputs: Sequence[Symbol]) -> None:
         self.symbols = {id(symbol.of): symbol for symbol in reversed(inputs)}  # two may be equal
@@ -117,9 +117,6 @@ class Symbols:
 
     def not_negative(self, x: Formula) -> Formula:
         return x
-
-    def hypot(self, x: Formula, y: Formula | int) -> Formula:
-        return Formula("hypot", x, formula(y))
 
     def cos_sin(self, x: Formula) -> tuple[Formula, Formula]:
         return Formula("cos", x), Formula("sin", x)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.quantities import Accuracy, read_accuracy, read_quantities
+from ..model.quantities import ACCURACIES, Accuracy, read_name, read_quantities
 from ..model.scene import INPUTS, MASSES, MISSING_MASS, SceneError
 from .inputs import STATUSES as STATUSES
 from .inputs import GivenColumn, Numbers, groups, read_column
@@ -85,7 +85,7 @@ def solve_and_count(
 ) -> tuple[dict[str, NDArray[Any]], Counter[tuple[str, str]]]:
     """Solve as `solve_arrays`, and count the valid rows without a value, by quantity and reason."""
     names = tuple(read_quantities(quantities))
-    accuracy = read_accuracy(accuracy)
+    read_name("accuracy", str(accuracy), ACCURACIES, "accuracy", {})  # raises if it is none
     inputs, shape = _read(given)
     results = {name: np.empty(shape, CODE_TYPES.get(name, np.float64)) for name in (*names, "status")}
     flat = {name: column.reshape(-1) for name, column in results.items()}

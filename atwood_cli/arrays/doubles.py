@@ -67,28 +67,20 @@ class NoProgram(ArithmeticError):
 # Operations that formulas of columns have beside + - * /
 
 
-def _operation(op: str) -> Callable[[Term, Term], Formula]:
-    return lambda x, y: Formula(op, formula(x), formula(y))
+def _operation(op: str) -> Callable[..., Formula]:
+    return lambda *operands: Formula(op, *map(formula, operands))
 
 
 maximum, minimum, equal, both, either = map(_operation, ("maximum", "minimum", "==", "and", "or"))
 less, at_most = map(_operation, ("<", "<="))
 """x < y and x <= y, which are false if either is NaN."""
+where = _operation("where")
+"""Take x if a condition holds, else y: where(condition, x, y)."""
 
 
 def absolute(x: Term) -> Any:
     """Return the size of x."""
     return Formula("abs", x) if isinstance(x, Formula) else abs(x)
-
-
-def where(condition: Formula, x: Term, y: Term) -> Formula:
-    """Take x if the condition holds, else y."""
-    return Formula("where", condition, formula(x), formula(y))
-
-
-def looked_up(table: Any, index: Formula) -> Formula:
-    """Return entries of a table at a column of indices; an index beyond an end gives the entry there."""
-    return Formula("take", index, table)
 
 
 def larger(x: Term, y: Term) -> Term:
@@ -261,15 +253,9 @@ class Doubles:
         error = x.fixed_error / 2 + self.error_of_root
         return Bounded(self, self.root_of(x.parts), error, 0.5 * x.row_error)
 
-    def hypot(self, x: Bounded, y: Bounded | int) -> Bounded:
-        return self.sqrt(x * x + y * y)
-
     @lazy
     def pi(self) -> Bounded:
         return self.number(Fraction(EIGHTY_DIGITS.pi.lo))
-
-    def exp(self, x: Bounded) -> Bounded:
-        return self.expm1(x) + 1
 
     def expm1(self, x: Bounded) -> Bounded:
         """Return e^x - 1 for x >= 0."""
@@ -301,7 +287,7 @@ class Doubles:
         cos, sin = (Formula(name, angle.parts[0]) for name in ("cos", "sin"))
         folded = where(odd, sin, cos), where(odd, cos, sin)
         signed = (
-            value * looked_up(signs, Formula("bits", number, 3))
+            value * Formula("take", Formula("bits", number, 3), signs)
             for value, signs in zip(folded, SIGNS, strict=True)
         )
         x, y = (Bounded(self, (value,), LIBRARY + angle.fixed_error, positive=False) for value in signed)
@@ -332,18 +318,16 @@ def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
 
 
 def certified(value: Bounded, accuracy: Accuracy) -> tuple[Term, Formula | None]:
-    """Return a value as a double, and the condition that it is right in a row; None if it always is."""
+    """Return a value as a double, and the condition that it is right in a row; None if it always is.
+
+    A double is the nearest one if both ends of the bound round to it.
+    """
     double: Any = value.parts[0] if value.positive else value.parts[0] + 0.0  # 0.0 makes 0 of -0
     if accuracy == "exact":
-        return double, is_nearest(value)
+        first, second = (*value.parts, 0.0)[:2]
+        error = absolute(first) * (value.bound + END_ERROR)
+        ends = [equal(first + (second - error), first), equal(first + (second + error), first)]
+        return double, either(both(*ends), equal(value.bound, 0.0))
     if not isinstance(value.row_error, Formula) and value.fixed_error <= LIMIT:
         return double, None
     return double, at_most(value.bound, LIMIT)
-
-
-def is_nearest(value: Bounded) -> Formula:
-    """Tell if the first part is the double nearest to the exact value: both ends of the bound round to it."""
-    first, second = (*value.parts, 0.0)[:2]
-    error = absolute(first) * (value.bound + END_ERROR)
-    ends_round_to_it = both(equal(first + (second - error), first), equal(first + (second + error), first))
-    return either(ends_round_to_it, equal(value.bound, 0.0))

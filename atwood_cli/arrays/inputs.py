@@ -99,15 +99,14 @@ def read_column(name: str, value: Numbers | None) -> GivenColumn:
 
 def _absent(value: Any, array: NDArray[Any]) -> NDArray[np.bool_] | None:
     """Tell which items are not given: masked ones, None and nulls of polars. Return None if all are given."""
-    absent: Any = None
+    absent: Any = np.array(False)
     if isinstance(value, np.ma.MaskedArray):
         absent = np.ma.getmaskarray(value)
     elif hasattr(value, "is_null"):  # polars
         absent = np.asarray(value.is_null(), np.bool_)
     if array.dtype == object:
-        nothing = np.asarray(np.frompyfunc(lambda item: item is None, 1, 1)(array), np.bool_)
-        absent = nothing if absent is None else absent | nothing
-    return None if absent is None or not absent.any() else absent
+        absent = absent | np.asarray(np.frompyfunc(lambda item: item is None, 1, 1)(array), np.bool_)
+    return absent if absent.any() else None
 
 
 # The pattern of each row's inputs

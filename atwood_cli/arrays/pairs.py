@@ -38,7 +38,6 @@ from .doubles import (
     Doubles,
     Parts,
     less,
-    looked_up,
     maximum,
     minimum,
     precise_cos_sin,
@@ -188,7 +187,7 @@ class Pairs(Doubles):
         number = Formula("int", count)
         s = self._small_expm1(_rest(high, others, count))
         step = Formula("bits", number, TABLE_STEPS - 1)
-        a = Bounded(self, [looked_up(column, step) for column in powers()], self.error_of_constant)
+        a = Bounded(self, [Formula("take", step, column) for column in powers()], self.error_of_constant)
         k = a + s + a * s
         power = Formula("power", Formula(">>", number, TABLE_STEPS.bit_length() - 1))
         k = Bounded(self, [part * power for part in k.parts], k.fixed_error)

@@ -38,7 +38,7 @@ from typing import Any, Literal, NamedTuple, cast
 from ..arithmetic.lazy import lazy
 from ..arithmetic.settling import settle
 from ..arithmetic.symbolic import Formula, Term, formula
-from ..model.decisions import Decisions, LimitingCase, is_zero
+from ..model.decisions import Decisions, LimitingCase
 from ..model.digits import to_double
 from ..model.machine import Machine
 from ..model.quantities import REGIMES, Accuracy, Undetermined
@@ -106,11 +106,6 @@ class _GroupDecisions(Decisions):
     def __init__(self, task: Task, number: Callable[[str], Any]) -> None:
         super().__init__(task.pattern.scene(number))
         self.sign, self._branches = task.pattern.sign, dict(task.branches)
-
-    @lazy
-    def rim_mass(self) -> Any:
-        """A pulley without mass has none at its rim, even if its inertia factor is a column."""
-        return self.pulley_mass if is_zero(self.pulley_mass) else super().rim_mass
 
     def _decided(self, question: str) -> bool:
         if question not in self._branches:

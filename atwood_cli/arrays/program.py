@@ -31,6 +31,7 @@ def _head(x: Column, out: Column) -> None:
 
 
 def _take(index: NDArray[np.intp], table: Column, out: Column) -> None:
+    """Take entries of a table; an index beyond an end gives the entry there."""
     table.take(index, out=out, mode="clip")
 
 

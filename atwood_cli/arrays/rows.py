@@ -6,8 +6,9 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from fractions import Fraction
+from functools import partial
 from math import nan
 from typing import Any
 
@@ -118,7 +119,7 @@ class Rows:
         # Exact arithmetic decides the rest.
         for place in np.flatnonzero(~sure).tolist():
             method, point = question.split()
-            case = Decisions(task.pattern.scene(self._number(rows[place])))
+            case = Decisions(task.pattern.scene(partial(self._number, rows[place])))
             answers[place] = getattr(case, method)(point)
         return answers
 
@@ -131,7 +132,7 @@ class Rows:
             row = select(rows, place)
             alike.setdefault(tuple(column[row] for column in columns), []).append(row)
         for same in alike.values():
-            number = self._number(same[0])
+            number = partial(self._number, same[0])
             # What the group has decided spares a single quantity all questions, if it suffices.
             if task.branches and len(task.names) == 1:
                 double = nearest_double(task, task.names[0], number)
@@ -148,14 +149,10 @@ class Rows:
                 if value is None:
                     self.reasons[name, answers.answer(name).reason] += len(same)
 
-    def _number(self, row: int) -> Callable[[str], Fraction]:
-        """Return the inputs of a row, exactly, by their names."""
-
-        def number(name: str) -> Fraction:
-            column = self.inputs[name]
-            return Fraction(float(column[row] if column.ndim else column))
-
-        return number
+    def _number(self, row: int, name: str) -> Fraction:
+        """Return an input of a row, exactly."""
+        column = self.inputs[name]
+        return Fraction(float(column[row] if column.ndim else column))
 
 
 def _rows_of(column: Column, rows: Index, free: Iterator[Column]) -> Column:

@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from ..arithmetic.rational import Arithmetic
 
 Profile = Literal["exponential", "creep", "least"]
-STUCK = {"exponential": (False,), "creep": (True, False), "least": (False, True, False)}
-"""The pieces of each profile from the light end: whether the string is stuck over them."""
 
 
 class Knot(NamedTuple, Generic[N]):
@@ -42,27 +40,20 @@ class Arc(NamedTuple, Generic[N]):
     """A piece of the arc over which T grows as e^{μθ}; ``mu`` is 0 if the string is stuck over it."""
 
     mu: N
-    stuck: bool
     start: Knot[N]
     end: Knot[N]
 
 
-def arcs(
-    ar: Arithmetic[N], kind: Profile, mu: N, lengths: Sequence[N], light: N, end: Knot[N]
-) -> list[Arc[N]]:
-    """Return pieces of these lengths (rad) as arcs, from the light end with its tension (N) to ``end``."""
-    zero, one = ar.number(0), ar.number(1)
-    knots = [Knot(zero, one, zero, light)]
-    for length, stuck in list(zip(lengths, STUCK[kind], strict=True))[:-1]:
-        last = knots[-1]
-        angle = last.angle + length
-        tension = last.tension if stuck else last.tension * ar.exp(mu * length)
-        knots.append(Knot(angle, *ar.cos_sin(angle), tension))
-    knots.append(end)
-    return [
-        Arc(zero if stuck else mu, stuck, *ends)
-        for stuck, ends in zip(STUCK[kind], pairwise(knots), strict=True)
-    ]
+def arcs(ar: Arithmetic[N], pieces: Sequence[tuple[N, N]], light: N, end: Knot[N]) -> list[Arc[N]]:
+    """Return pieces, each of a μ and a length (rad), from the light end with its tension (N) to ``end``."""
+    zero = ar.number(0)
+    knots = [Knot(zero, ar.number(1), zero, light)]
+    for mu, length in pieces[:-1]:
+        angle = knots[-1].angle + length
+        growth = ar.expm1(mu * length) + 1
+        knots.append(Knot(angle, *ar.cos_sin(angle), knots[-1].tension * growth))
+    ends = pairwise([*knots, end])
+    return [Arc(mu, *both) for (mu, _), both in zip(pieces, ends, strict=True)]
 
 
 def least_lead(ar: Arithmetic[N], mu: N, alpha: N, stuck: N, light: N, end: Knot[N]) -> N:
@@ -73,7 +64,7 @@ def least_lead(ar: Arithmetic[N], mu: N, alpha: N, stuck: N, light: N, end: Knot
 
     def slope(s: N) -> N:
         cos, sin = ar.cos_sin(s + stuck / 2)
-        return physics.least_friction_slope(mu, chord, ar.exp(mu * s), cos, sin, dx, dy)
+        return physics.least_friction_slope(mu, chord, ar.expm1(mu * s) + 1, cos, sin, dx, dy)
 
     return ar.root(slope, alpha)
 
@@ -96,13 +87,10 @@ def torque_per_radius(ar: Arithmetic[N], pieces: Sequence[Arc[N]]) -> N:
     """Return ∫ dT/dθ dθ (N), the torque of friction on the pulley over its radius, arc by arc; (23)."""
     total = ar.number(0)
     for arc in pieces:
-        if not arc.stuck:
-            total += arc.start.tension * ar.expm1(arc.mu * (arc.end.angle - arc.start.angle))
+        total += arc.start.tension * ar.expm1(arc.mu * (arc.end.angle - arc.start.angle))
     return total
 
 
 def tension(ar: Arithmetic[N], arc: Arc[N], angle: N) -> N:
     """Return T (N) at an angle within the arc; also nR, the normal force per radian (13)."""
-    if arc.stuck:
-        return arc.start.tension
-    return arc.start.tension * ar.exp(arc.mu * (angle - arc.start.angle))
+    return arc.start.tension * (ar.expm1(arc.mu * (angle - arc.start.angle)) + 1)

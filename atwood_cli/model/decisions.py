@@ -27,7 +27,7 @@ mu cannot be given, and the second line answers.
 from __future__ import annotations
 
 from fractions import Fraction
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from ..arithmetic.lazy import lazy
 from ..arithmetic.rational import EXACT
@@ -56,7 +56,6 @@ class Decisions:
     def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
         self.scene, self.motion = scene, motion
         self._known_to_slip = False
-        self._ratios_minus_1: dict[tuple[LimitingCase, Arithmetic[Any]], Any] = {}
 
     @lazy
     def sign(self) -> int:
@@ -97,7 +96,9 @@ class Decisions:
         scene, mass = self.scene, self.pulley_mass
         if scene.I is not None and scene.R is not None:
             return physics.inertia_at_rim(scene.I, scene.R)
-        return mass if mass is None or scene.inertia is None else scene.inertia * mass
+        if mass is None or scene.inertia is None:
+            return mass
+        return Fraction(0) if is_zero(mass) else scene.inertia * mass
 
     @lazy
     def beta(self) -> Fraction | None:
@@ -278,13 +279,7 @@ class Decisions:
     # The tension ratio of a string that grips, against e^{μφ}
 
     def ratio_minus_1(self, which: LimitingCase, ar: Arithmetic[N]) -> N:
-        """Return T_h/T_l - 1 of a string that grips, in a case of the table at the head; it is kept."""
-        if (which, ar) not in self._ratios_minus_1:
-            self._ratios_minus_1[which, ar] = self._new_ratio_minus_1(which, ar)
-        ratio_minus_1: N = self._ratios_minus_1[which, ar]
-        return ratio_minus_1
-
-    def _new_ratio_minus_1(self, which: LimitingCase, ar: Arithmetic[N]) -> N:
+        """Return T_h/T_l - 1 of a string that grips, in a case of the table at the head."""
         l, h, b = self.light, self.heavy, self.axle_mass
         # A limit does not read the pulley's mass: so a sweep of it computes the limit once.
         c = self.rim_mass if which in ("scene", "heaviest") else ZERO

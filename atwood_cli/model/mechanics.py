@@ -99,23 +99,17 @@ class Mechanics(Generic[N]):
         """T_h/T_l - 1 on the verge and in slip, as friction is at its limit."""
         if self.case.slide_measured:
             return self.case.slide_ratio_minus_1(self.ar)
-        if self.case.limit_is_static:
-            return self.k_minus_1
-        kinetic = self.case.limiting_mu
-        return self._capstan_ratio_minus_1(kinetic, self.ar.number(kinetic))
+        mu = self.case.limiting_mu
+        return self._capstan_ratio_minus_1(mu, self.ar.number(mu))
 
     @lazy
     def limiting_friction_mass(self) -> N:
         """z on the verge and in slip (kg)."""
-        if self.case.limit_is_static:
-            return self.friction_mass
         return physics.friction_at_limit(self.l, self.limiting_k_minus_1)
 
     @lazy
     def limiting_drive(self) -> N:
         """Drive on the verge and in slip (kg)."""
-        if self.case.limit_is_static:
-            return self.drive
         return self.ar.not_negative(physics.drive(self.l, self.h, self.limiting_friction_mass))
 
     @lazy
@@ -155,7 +149,7 @@ class Mechanics(Generic[N]):
     def alpha(self) -> N:
         """The arc (rad) over which friction at its limit makes up the ratio of the tensions."""
         mu = self.mu
-        return physics.limiting_arc(self.log_ratio, mu)
+        return physics.verge_coefficient(self.log_ratio, mu)
 
     def arcs(self, kind: arc.Profile) -> list[arc.Arc[N]]:
         """Return the arc of contact from the light end, in limiting and stuck pieces (see `arc`)."""
@@ -164,26 +158,21 @@ class Mechanics(Generic[N]):
         return self._arcs[kind]
 
     def _arrange(self, kind: arc.Profile) -> list[arc.Arc[N]]:
-        ar, mu, light = self.ar, self.arc_mu(kind), self.light_tension
-        if ar.is_zero(mu):  # the tension is the same everywhere: no angle is needed, so no π either
-            nowhere = ar.number(0)
-            return arc.arcs(ar, kind, mu, [nowhere], light, self._end(nowhere))
-        phi = self.phi
-        end = self._end(phi)
+        ar, mu, light, zero = self.ar, self.arc_mu(kind), self.light_tension, self.ar.number(0)
+        # Without friction the tension is the same everywhere: no angle is needed, so no π either.
+        phi = zero if ar.is_zero(mu) else self.phi
+        end = arc.Knot(phi, *self._direction, self.heavy_tension)
         if kind == "exponential":
-            return arc.arcs(ar, kind, mu, [phi], light, end)
+            return arc.arcs(ar, [(mu, phi)], light, end)
         stuck = phi - self.alpha
         if kind == "creep":
-            return arc.arcs(ar, kind, mu, [stuck, self.alpha], light, end)
+            return arc.arcs(ar, [(zero, stuck), (mu, self.alpha)], light, end)
         lead = arc.least_lead(ar, mu, self.alpha, stuck, light, end)
-        return arc.arcs(ar, kind, mu, [lead, stuck, self.alpha - lead], light, end)
+        return arc.arcs(ar, [(mu, lead), (zero, stuck), (mu, self.alpha - lead)], light, end)
 
     def arc_mu(self, kind: arc.Profile) -> N:
         """Return the coefficient of a profile's friction at its limit."""
         return self.friction_mu if kind == "exponential" else self.mu
-
-    def _end(self, angle: N) -> arc.Knot[N]:
-        return arc.Knot(angle, *self._direction, self.heavy_tension)
 
     @lazy
     def resultant_vector(self) -> tuple[N, N]:
@@ -310,12 +299,12 @@ class Mechanics(Generic[N]):
             force = self.light_tension + self.heavy_tension  # (20)
         else:
             force = self._resultant(self.half_sine)
-        return physics.friction_magnitude(mu, force, self.ar.hypot)
+        return physics.friction_magnitude(mu, force, self.ar.sqrt)
 
     def _resultant(self, sin_half: N) -> N:
         """Return the force (N) of both tensions on an arc, by the sine of its half."""
         light, heavy, ar = self.light_tension, self.heavy_tension, self.ar
-        return physics.resultant(light, heavy, self.difference, sin_half, ar.sqrt, ar.hypot)
+        return physics.resultant(light, heavy, self.difference, sin_half, ar.sqrt)
 
     @lazy
     def friction_force_x(self) -> N:
@@ -362,4 +351,4 @@ class Mechanics(Generic[N]):
         if not self._bounded():
             return self.ar.number(0)
         _, sin_half = self.ar.cos_sin(self.alpha / 2)
-        return physics.friction_magnitude(self.arc_mu("creep"), self._resultant(sin_half), self.ar.hypot)
+        return physics.friction_magnitude(self.arc_mu("creep"), self._resultant(sin_half), self.ar.sqrt)

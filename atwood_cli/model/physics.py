@@ -26,7 +26,6 @@ from collections.abc import Callable
 from ..arithmetic.rational import N
 
 Function = Callable[[N], N]
-Hypot = Callable[[N, N | int], N]
 
 
 def friction_at_limit(light: N, k_minus_1: N) -> N:
@@ -228,6 +227,8 @@ def heaviest_ratio_minus_1(l: N, c: N, b: N) -> N:
 def verge_coefficient(log_ratio: N, phi: N) -> N:
     """Return the friction coefficient at which the string is on the verge (27); log_ratio = ln(T_h/T_l).
 
+    With μ in place of φ, it is the arc (rad) over which friction at its limit makes up that ratio.
+
     >>> verge_coefficient(0.75, 3)
     0.25
     """
@@ -327,27 +328,27 @@ def least_pulley_mass(friction_mass: N, beta: N, b: N) -> N:
     return (2 * friction_mass - b) / beta
 
 
-def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N], hypot: Hypot[N]) -> N:
+def resultant(t1: N, t2: N, difference: N, sin_half: N, sqrt: Function[N]) -> N:
     """Return the magnitude (N) of the force of T1 and T2 on any arc of contact.
 
     ``difference`` = T2 - T1 and ``sin_half``, the sine of half the arc, keep what is nearly equal
     from cancelling in T1² + T2² - 2 T1 T2 cos φ.
 
-    >>> from math import hypot, sqrt
-    >>> resultant(9, 16, 7, 1, sqrt, hypot)
+    >>> from math import sqrt
+    >>> resultant(9, 16, 7, 1, sqrt)
     25.0
     """
-    return hypot(difference, 2 * sin_half * sqrt(t1) * sqrt(t2))
+    return sqrt(difference * difference + 4 * sin_half * sin_half * t1 * t2)
 
 
-def friction_magnitude(mu: N, resultant: N, hypot: Hypot[N]) -> N:
+def friction_magnitude(mu: N, resultant: N, sqrt: Function[N]) -> N:
     """Return the net friction force (N) if T grows as e^{μθ} all along the arc (32).
 
-    >>> from math import hypot
-    >>> friction_magnitude(0.75, 35, hypot)
+    >>> from math import sqrt
+    >>> friction_magnitude(0.75, 35, sqrt)
     21.0
     """
-    return mu / hypot(mu, 1) * resultant
+    return mu / sqrt(mu * mu + 1) * resultant
 
 
 def friction_vector(mu: N, dx: N, dy: N) -> tuple[N, N]:
@@ -390,15 +391,6 @@ def mirrored(x: N, y: N, cos_phi: N, sin_phi: N) -> tuple[N, N]:
     (-2, 5)
     """
     return x * cos_phi + y * sin_phi, x * sin_phi - y * cos_phi
-
-
-def limiting_arc(log_ratio: N, mu: N) -> N:
-    """Return the arc (rad) over which friction at its limit makes up ln(T_h/T_l), from (26).
-
-    >>> limiting_arc(0.5, 0.25)
-    2.0
-    """
-    return log_ratio / mu
 
 
 def least_friction_slope(mu: N, chord: N, growth: N, cos: N, sin: N, dx: N, dy: N) -> N:

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import chain
-from typing import Literal, NamedTuple, cast, get_args
+from typing import Literal, NamedTuple, get_args
 
 from .scene import INPUTS, SceneError
 from .units import nearest
@@ -189,11 +189,6 @@ def read_name(
     alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
     hint = f"did you mean {alike[0]}?" if len(alike) == 1 else there_are
     raise SceneError(parameter, word, f"is not {a_kind}{nearest(word, known) or f'; {hint}'}")
-
-
-def read_accuracy(word: object) -> Accuracy:
-    """Read the name of an accuracy. Raises SceneError."""
-    return cast(Accuracy, read_name("accuracy", str(word), ACCURACIES, "accuracy", {}))
 
 
 def divided(typed: Iterable[str]) -> list[str]:

@@ -368,18 +368,12 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
         return "is empty; give a value, or leave it out"
     if word.lower() in ("nan", "inf", "+inf", "-inf", "infinity"):
         return parameter.domain
-    number, pointed = word.replace(",", ""), word.replace(",", ".")
-    if THOUSANDS.fullmatch(word) and NUMBER.fullmatch(number):
-        either = f" or {shortened(pointed)}, whichever is meant"
-        hint = either if NUMBER.fullmatch(pointed) else ", without commas"
-        return f"is not a number; write {shortened(number)}{hint}"
-    if pointed != word and NUMBER.fullmatch(pointed):
-        return f"is not a number; write it with a decimal point, {shortened(pointed)}"
-    if re.fullmatch(r"[\d.]+-[\d.]+", word):
-        return "is not a number; atwood sweep takes a range as start:stop:count"
-    if re.match(r"[-+.]?\d.*[:,]", word):
-        kind = "range" if ":" in word else "list"
-        return f"is a {kind}, not a number; atwood sweep takes {kind}s"
+    meant = [word.replace(",", sign) for sign in ("", ".") if sign or THOUSANDS.fullmatch(word)]
+    numbers = [shortened(number) for number in meant if NUMBER.fullmatch(number)]
+    if "," in word and numbers:
+        return f"is not a number; write {' or '.join(numbers)}, without a comma"
+    if re.match(r"[-+.]?\d.*[:,]|[\d.]+-[\d.]+$", word):
+        return "is not a number; atwood sweep takes a range as start:stop:count, and a list as 1,2,5"
     names = f", or one of {', '.join(parameter.names)}" if parameter.names else ""
     locked = "; inf is a locked pulley" if parameter.inf else ""
     return f"{NOT_A_NUMBER}{names}{locked}{nearest(word, parameter.names)}"

@@ -59,13 +59,11 @@ def _write(node: Formula, numbers: Mapping[Symbol, Decimal] | None, latex: bool)
         case "expm1":
             power = write(node.parts[0])[0]
             return f"{f'e^{{{power}}}' if latex else f'e^({power})'} - 1", SUM
-        case "hypot":
-            inside = " + ".join(tight(part) + ("" if part.op == "number" else "^2") for part in node.parts)
         case "log1p":
             inside = f"1 + {tight(node.parts[0], PRODUCT)}"
         case _:
             inside = write(node.parts[0])[0]
-    function = {"log1p": "ln", "hypot": "√", "sqrt": "√"}.get(node.op, node.op)
+    function = {"log1p": "ln", "sqrt": "√"}.get(node.op, node.op)
     if not latex:
         return f"{function}({inside})", ATOM
     return (rf"\sqrt{{{inside}}}" if function == "√" else rf"\{function}({inside})"), ATOM

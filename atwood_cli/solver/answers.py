@@ -34,16 +34,14 @@ BELOW_DOUBLES = "not 0 but below the range of doubles; ask for digits (--digits 
 
 
 class Answer(NamedTuple):
-    """A quantity: its value and its standard uncertainty.
+    """A quantity: its value, why that is None or cannot be shown as it is, and its standard uncertainty.
 
-    Each number has a reason if it is None, or cannot be shown as it is. The uncertainty is None without a
-    reason if all inputs are exact, or if an end of an input gives no value.
+    The uncertainty is None if all inputs are exact, or if an end of an input gives no value.
     """
 
     value: Any
     reason: str = ""
     uncertainty: Any = None
-    uncertainty_reason: str = ""
 
 
 class Answers:
@@ -73,7 +71,6 @@ class Answers:
         self.digits = digits
         self._computed = max(digits or 0, DOUBLE_DIGITS)  # so that fewer need no second computation
         self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
-        self._too_large = ABOVE_DOUBLES if digits is None else TOO_LARGE
         self._answers: dict[str, Answer] = {}
 
     def to(self, digits: int | None) -> Answers:
@@ -136,7 +133,7 @@ class Answers:
             return Answer(self.case.regime)
         if name not in self._answers:
             value, reason = self._settled(attrgetter(name))
-            self._answers[name] = Answer(value, reason, *self._uncertainty(name, value, reason))
+            self._answers[name] = Answer(value, reason, self._uncertainty(name, value, reason))
         return self._answers[name]
 
     def _settled(self, quantity: OnMachine) -> tuple[Any, str]:
@@ -149,21 +146,16 @@ class Answers:
         except OverflowError:  # of a denominator
             return 0.0 if self.digits is None else None, TOO_SMALL
         if is_infinite(value):
-            return value, self._too_large
+            return value, ABOVE_DOUBLES if self.digits is None else TOO_LARGE
         below = value == 0 and self.digits is None and settle(on_machines, to_digits(1), DOUBLE_DIGITS)
         return value, BELOW_DOUBLES if below else ""
 
-    def _uncertainty(self, name: str, value: Any, reason: str) -> tuple[Any, str]:
-        """Return the rounded uncertainty of a quantity, or None, and why it cannot be shown as it is."""
+    def _uncertainty(self, name: str, value: Any, reason: str) -> Any:
+        """Return the rounded uncertainty of a quantity, None if it has none."""
         if self.uncertainties is None or value is None or reason == TOO_SMALL:
-            return None, ""
+            return None
         u = self.uncertainties.of(name, self.digits)
-        if u is None:
-            return None, ""
-        shown = to_double(u) if self.digits is None else u
-        if u and not shown:
-            return shown, BELOW_DOUBLES
-        return shown, self._too_large if is_infinite(shown) else ""
+        return to_double(u) if u is not None and self.digits is None else u
 
     def standard_uncertainties(self, names: Iterable[str]) -> dict[str, Any]:
         """Return the standard uncertainties of the quantities named, {} if all inputs are exact."""

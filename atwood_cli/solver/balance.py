@@ -72,19 +72,25 @@ def contact(answers: Answers, points: int | str = USUAL_POINTS) -> Contact:
     kind = kind_of(answers.case)
     last = read_whole("points", points, 2, MAX_POINTS) - 1
     rows = [point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
-    return Contact(kind, rows, _balance(answers, kind), _notes(answers, kind))
+    said = ((name, answers.answer(name).reason) for name in ("tension_1", "tension_2"))
+    notes = [about(answers.case, kind), *(f"{name}: {reason}." for name, reason in said if reason)]
+    return Contact(kind, rows, _balance(answers, kind), notes)
 
 
 def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
     """Return the columns at the fraction q of the arc, counted from m1's end."""
     scene, sign = answers.case.scene, answers.case.sign
     from_light = q if sign >= 0 else 1 - q
-    piece = _piece(answers, kind, from_light)
-    stuck = arc.STUCK[kind][piece] or answers.case.frictionless
+
+    def beyond_the_stuck_piece(machine: Machine[Any]) -> Any:
+        return machine.ar.number(from_light) * machine.phi - machine.arcs(kind)[0].end.angle
+
+    piece = int(kind == "creep" and is_positive(answers.on_machines(beyond_the_stuck_piece)))
+    stuck = (kind == "creep" and piece == 0) or answers.case.frictionless
 
     def tension(machine: Machine[Any]) -> Any:
         # Tensions at both ends are exact, and so is that of a piece stuck from the light end on.
-        if from_light == 0 or (piece == 0 and stuck):
+        if from_light == 0 or stuck:
             return machine.light_tension
         if from_light == 1:
             return machine.heavy_tension
@@ -105,15 +111,6 @@ def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
         row["normal_per_metre"] = answers.settle(lambda m: tension(m) / _radius(m))
         row["friction_per_metre"] = answers.settle(lambda m: friction(m) / _radius(m))
     return row
-
-
-def _piece(answers: Answers, kind: Profile, from_light: Fraction) -> int:
-    """Return the piece of the profile that has the point at a fraction of the arc from the light end."""
-
-    def beyond_the_stuck_piece(machine: Machine[Any]) -> Any:
-        return machine.ar.number(from_light) * machine.phi - machine.arcs(kind)[0].end.angle
-
-    return int(kind == "creep" and is_positive(answers.on_machines(beyond_the_stuck_piece)))
 
 
 def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
@@ -162,8 +159,3 @@ def about(case: Decisions, kind: Profile) -> str:
     if case.mu_assumed:
         return WITHOUT_MU
     return ABOUT_KIND[kind]
-
-
-def _notes(answers: Answers, kind: Profile) -> list[str]:
-    said = ((name, answers.answer(name).reason) for name in ("tension_1", "tension_2"))
-    return [about(answers.case, kind), *(f"{name}: {reason}." for name, reason in said if reason)]

@@ -117,7 +117,11 @@ class Derivation:
     def _symbols(self) -> dict[str, str]:
         """Return the symbols that are not in the table of quantities, or differ from it in this scene."""
         case, scene = self.case, self.scene
+        kin = "_kin" if case.slides_by_mu_k else ""
         symbols = INTERMEDIATE_SYMBOLS | {
+            "limiting_k_minus_1": f"k{kin} - 1",
+            "limiting_friction_mass": f"z{kin}",
+            "limiting_drive": f"d{kin}",
             "phi": "π" if scene.wrap.is_half_turn else "φ",
             "magnitude": "a" if case.sign >= 0 else "|a|",
             "light_tension": f"T{self.light}",
@@ -128,12 +132,6 @@ class Derivation:
         }
         if case.slide_measured:
             symbols |= {"limiting_k_minus_1": "x_kin", "mu_k": "μ_k"}
-        elif case.slides_by_mu_k:
-            symbols |= {
-                "limiting_k_minus_1": "k_kin - 1",
-                "limiting_friction_mass": "z_kin",
-                "limiting_drive": "d_kin",
-            }
         return symbols
 
     def symbol(self, name: str) -> str:

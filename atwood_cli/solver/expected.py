@@ -17,7 +17,7 @@ from ..model.quantities import (
     Undetermined,
     read_name,
 )
-from ..model.scene import SceneError, with_unit
+from ..model.scene import INPUTS, MEASURED, SceneError, with_unit
 from ..model.units import Angle, Malformed, TypedNumber, in_quotes, read_number
 from .answers import TOO_SMALL, Answers
 from .messages import unmarked
@@ -31,17 +31,11 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     "==": operator.eq,
 }
 CONDITIONS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
-WITHIN = "within the uncertainties it may"
 MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
 DIMENSIONS = {
-    "kg": "mass",
-    "m/s²": "acceleration",
-    "N": "force",
-    "N m": "torque",
-    "kg m²": "moment of inertia",
-    "°": "angle",
-    "s": "time",
+    **{one.unit: one.dimension for one in (*INPUTS.values(), *MEASURED.values())},
+    **{"N": "force", "N m": "torque"},
 }
 """The dimension of a quantity, by its unit."""
 
@@ -75,33 +69,45 @@ def read_condition(typed: str) -> Condition:
 
 def failure(answers: Answers, expected: Condition) -> str:
     """Say what holds instead of what is expected, "" if that holds."""
-    case, uncertainties = answers.case, answers.uncertainties
-    ends = uncertainties.answers_in_doubt() if uncertainties else []
-    if expected.name in REGIMES:
-        if expected.name != case.regime:
-            return f"expected {expected.typed}; it is {case.regime}"
-        regimes = [end.case.regime if end else "" for end in ends]
-        if other := [regime for regime in regimes if regime != case.regime]:
-            return f"expected {expected.typed}; {WITHIN} {MAY.get(other[0], 'fail')}"
-        if case.mu_assumed:
-            return f"expected {expected.typed}; that is only assumed: give mu"
+    ends = answers.uncertainties.answers_in_doubt() if answers.uncertainties else []
+    if not _holds(answers, expected):
+        instead = unmarked(_instead(answers, expected))
+    elif failing := [end for end in ends if not (end and _holds(end, expected))]:
+        regime = failing[0].case.regime if failing[0] and expected.name in REGIMES else ""
+        instead = f"within the uncertainties it may {MAY.get(regime, 'fail')}"
+    elif expected.name in REGIMES and answers.case.mu_assumed:
+        instead = "that is only assumed: give mu"
+    else:
         return ""
+    return f"expected {expected.typed}; {instead}"
+
+
+def _holds(answers: Answers, expected: Condition) -> bool:
+    """Decide whether a condition is true; a comparison is not if the quantity has no finite value."""
+    if expected.name in REGIMES:
+        return answers.case.regime == expected.name
+    try:
+        return bool(OPERATORS[expected.sign](_above(answers, expected), 0))
+    except (Undetermined, ArithmeticError):
+        return False
+
+
+def _instead(answers: Answers, expected: Condition) -> str:
+    """Say the regime, or the value of the quantity, or why it has none."""
+    if expected.name in REGIMES:
+        return f"it is {answers.case.regime}"
     value, reason, *_ = answers.answer(expected.name)
     if value is None or reason == TOO_SMALL:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
-        return unmarked(f"expected {expected.typed}; {expected.name} has {why}")
-    side = _above(answers, expected)
-    if OPERATORS[expected.sign](side, 0):
-        holds = all(end and _holds(end, expected) for end in ends)
-        return "" if holds else f"expected {expected.typed}; {WITHIN} fail"
-    number = expected.number.with_gravity(case.scene.g)
+        return f"{expected.name} has {why}"
+    number = expected.number.with_gravity(answers.case.scene.g)
     given = None if number.unit == "rad" else Fraction(number.value)
-    if given is not None and not side:  # digits would not show that the two are equal
+    if given is not None and not _above(answers, expected):  # digits would not show that the two are equal
         shown = as_typed(given)
     else:
         value = answers.rounded(expected.name, rounding_apart_from(given, answers.digits or SHOWN_DIGITS))
         shown = "too large to be written out" if is_infinite(value) else format_number(value)
-    return f"expected {expected.typed}; it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
+    return f"it is {with_unit(shown, QUANTITIES[expected.name].unit)}"
 
 
 def _above(answers: Answers, expected: Condition) -> float | Decimal:
@@ -111,14 +117,6 @@ def _above(answers: Answers, expected: Condition) -> float | Decimal:
         return getattr(machine, expected.name) - _bound(machine, expected.number)
 
     return answers.settle(difference, to_digits(1))
-
-
-def _holds(answers: Answers, expected: Condition) -> bool:
-    """Decide if a comparison is true; a quantity without a finite value fails it."""
-    try:
-        return bool(OPERATORS[expected.sign](_above(answers, expected), 0))
-    except (Undetermined, ArithmeticError):
-        return False
 
 
 def _bound(machine: Any, number: TypedNumber) -> Any:

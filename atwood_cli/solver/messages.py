@@ -20,7 +20,7 @@ from ..model.digits import (
     strip_zeros,
 )
 from ..model.quantities import QUANTITIES
-from ..model.scene import Scene, with_unit
+from ..model.scene import with_unit
 from ..model.units import MAX_MAGNITUDE
 from .answers import Answers
 
@@ -40,17 +40,10 @@ def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return sentences on why quantities or their uncertainties are missing or doubtful."""
     found = {name: answers.answer(name) for name in names if name != "regime"}
     said = reasons_at({(name, one.reason): 1 for name, one in found.items() if one.reason}, 1)
-    uncertainties = answers.uncertainties
-    if uncertainties is None:
-        return said
-    beyond = {name: one.uncertainty_reason for name, one in found.items() if one.uncertainty_reason}
-    without = [name for name, one in found.items() if one.uncertainty is None and one.value is not None]
-    return [
-        *said,
-        *uncertainties.doubts(),
-        *map(unmarked, uncertainties.open_ended(without)),
-        *reasons_at({(f"u_{name}", reason): 1 for name, reason in beyond.items()}, 1),
-    ]
+    if answers.uncertainties is not None:
+        without = [name for name, one in found.items() if one.uncertainty is None and one.value is not None]
+        said += [*answers.uncertainties.doubts(), *map(unmarked, answers.uncertainties.open_ended(without))]
+    return said
 
 
 def reasons_at(
@@ -98,10 +91,6 @@ def verdict(answers: Answers) -> str:
     )
 
 
-def _given_mu(scene: Scene) -> str:
-    return "" if scene.mu is None else f"`mu` = {as_typed(scene.mu)}"
-
-
 def _enough(answers: Answers, name: str = "mu_verge") -> str:
     """Say the least coefficient that holds the string."""
     return format_number(answers.rounded(name, _beside(answers, answers.case.scene.mu)))
@@ -117,8 +106,7 @@ def _grips(answers: Answers) -> str:
             f"`mu` is not given, so the string is assumed not to slip: true{where} if `mu` is at least"
             f" {_enough(answers)}."
         )
-    start = "No slip from rest" if _sliding(answers) else "No slip"
-    return f"{start}: {_given_mu(scene)}, and at least {_enough(answers)} is needed."
+    return f"No slip: `mu` = {as_typed(scene.mu)}, and at least {_enough(answers)} is needed."
 
 
 def _on_the_verge(answers: Answers) -> str:
@@ -134,9 +122,9 @@ def _on_the_verge(answers: Answers) -> str:
 
 def _slips(answers: Answers) -> str:
     case, scene = answers.case, answers.case.scene
-    mu = _given_mu(scene)
-    if not mu:
+    if scene.mu is None:
         return "Slides over the locked pulley."
+    mu = f"`mu` = {as_typed(scene.mu)}"
     kinetic = "" if scene.mu_k is None else f"; it slides with `mu_k` = {as_typed(scene.mu_k)}"
     if not case.pulley_known:
         return (
@@ -164,7 +152,11 @@ def remarks(answers: Answers) -> list[str]:
             f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
-    said += _kinetic(answers)
+    if case.scene.mu_k is not None and case.regime != "slip" and not case.tensions_equal:
+        said.append(
+            "`mu_k` has no effect on a start from rest. A string that already slides keeps sliding if"
+            " `mu_k` is below `mu_verge`."
+        )
     slips_above_a_mass = case.scene.mu is not None and case.slips_once_it_moves
     if slips_above_a_mass and case.rim_mass is not None and not case.slips_at("heaviest"):
         c, round_ = case.rim_mass, _beside(answers, case.heavy)
@@ -190,32 +182,6 @@ def remarks(answers: Answers) -> list[str]:
 def _on_pulley(answers: Answers, mass: Fraction | float) -> Answers:
     """Return the answers to the scene on a pulley of that mass (inf: locked), without slip."""
     return Answers(answers.case.scene._replace(M=mass, mu=None, mu_k=None), answers.digits)
-
-
-def _kinetic(answers: Answers) -> list[str]:
-    """Say whether a string that slides already goes on sliding, though it does not slip from rest."""
-    case, mu_k = answers.case, answers.case.scene.mu_k
-    if mu_k is None or case.regime == "slip" or case.tensions_equal:
-        return []
-    if not case.pulley_known:
-        return ["`mu_k` has no effect on a start from rest; how a sliding string moves depends on `M`."]
-    sliding = _sliding(answers)
-    if sliding is None:
-        return [f"A string that already slides stops sliding, as `mu_k` = {as_typed(mu_k)} is enough, too."]
-    verge = format_number(answers.rounded("mu_verge", _beside(answers, mu_k)))
-    return [
-        f"A string that already slides keeps sliding, as `mu_k` = {as_typed(mu_k)} is below {verge}:"
-        f" the masses then accelerate at {_say(sliding, 'acceleration')} m/s²."
-    ]
-
-
-def _sliding(answers: Answers) -> Answers | None:
-    """Return the answers if the string slid already, though it holds from rest; None if it would stop."""
-    scene = answers.case.scene
-    if scene.mu_k is None or not answers.case.pulley_known:
-        return None
-    sliding = Answers(scene._replace(mu=scene.mu_k), answers.digits)
-    return sliding if sliding.case.regime == "slip" else None
 
 
 def _beside(answers: Answers, given: Fraction | None) -> Rounding[Decimal]:

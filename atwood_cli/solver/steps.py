@@ -147,7 +147,6 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {**vars(physics), "product": mul, 
 def _fields(derivation: Derivation) -> dict[str, str]:
     """Return what stands between braces in `derivation.md`."""
     case = derivation.case
-    limiting = "limiting_" if case.slides_by_mu_k else ""
     return {
         "l": derivation.light,
         "h": derivation.heavy,
@@ -156,10 +155,8 @@ def _fields(derivation: Derivation) -> dict[str, str]:
         "phi": derivation.symbol("phi"),
         "kinetic": "kinetic " if case.slides_by_mu_k else "",
         "kin": "_kin" if case.slides_by_mu_k else "",
-        "limiting_": limiting,
-        "limiting_symbol": derivation.symbol(
-            "limiting_k_minus_1" if case.slide_measured else f"{limiting}k_minus_1"
-        ),
+        "limiting_": "limiting_" if case.slides_by_mu_k else "",
+        "limiting_symbol": derivation.symbol("limiting_k_minus_1"),
         "verdict": verdict(derivation.answers),
     }
 
@@ -205,7 +202,6 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
         "held by the axle": case.axle_holds and not case.locked,
         "turning": not (case.pulley_at_rest or case.tensions_equal),
         "masses at rest": grips and at_rest and not case.motion.finds,
-        "a is known": moves,
         "a is computed": moves and grips and not at_rest and not case.motion.finds,
         "a from friction": not grips and not case.slide_measured,
         "rim at rest": case.regime == "slip" and (case.rim_at_rest or case.frictionless),

@@ -95,7 +95,7 @@ class Uncertainties:
         self.case, self.given, self._solve = case, given, solve
         self._here = End(Fraction(0), solve(case.scene, DIGITS, case.motion))
         self._ends = {x: (self._end(x, -u), self._end(x, u)) for x, u in given.items()}
-        self._spreads: dict[str, Spread | None] = {}
+        self._spreads: dict[str, Spread] = {}
 
     def _end(self, x: str, step: Fraction) -> End:
         """Solve the scene with an input so much more, as far as it may be; what is found may go below 0."""
@@ -121,12 +121,11 @@ class Uncertainties:
 
     def _spread(self, name: str) -> Spread | None:
         """Compute a quantity at all ends, once; None if it has no finite value in the scene."""
-        if name not in self._spreads:
-            here = self._here.value(name).number
-            self._spreads[name] = None if here is None or is_infinite(here) else self._measure(name, here)
-        return self._spreads[name]
-
-    def _measure(self, name: str, here: Decimal) -> Spread:
+        if name in self._spreads:
+            return self._spreads[name]
+        here = self._here.value(name).number
+        if here is None or is_infinite(here):
+            return None
         ends = {x: [end.value(name) for end in pair] for x, pair in self._ends.items()}
         steps = {}
         with localcontext(CONTEXT):
@@ -136,7 +135,8 @@ class Uncertainties:
                 if size > NEGLIGIBLE * max(map(abs, numbers)) or is_infinite(size):
                     steps[x] = size / 2
             variance = sum((step * step for step in steps.values()), ZERO)
-        return Spread(here, ends, steps, variance)
+        self._spreads[name] = Spread(here, ends, steps, variance)
+        return self._spreads[name]
 
     def of(self, name: str, digits: int | None = None) -> Decimal | None:
         """Return the standard uncertainty of a quantity, to `RIGHT_DIGITS` digits or to fewer.
@@ -169,12 +169,14 @@ class Uncertainties:
         """Say which of the `DOUBTFUL` decisions differ near the scene, and at which nearest end."""
         said: dict[str, str] = {}
         for within, x, end in self._ends_in_doubt:
-            if end.answers and (what := _otherwise(self.case, end.answers.case)):
-                said.setdefault(
-                    what,
-                    f"{what} is in doubt: the answer differs within {within}, at {self._at(x, end)}."
-                    " Results use the inputs as given.",
-                )
+            for what, name in DOUBTFUL.items():
+                if end.answers and getattr(end.answers.case, name) != getattr(self.case, name):
+                    said.setdefault(
+                        what,
+                        f"{what} is in doubt: the answer differs within {within}, at {self._at(x, end)}."
+                        " Results use the inputs as given.",
+                    )
+                    break  # others follow from it
         return [*said.values()]
 
     def answers_in_doubt(self) -> list[Answers | None]:
@@ -195,7 +197,12 @@ class Uncertainties:
                     reason = f"{place} {why}" if why == NO_SCENE else f"at {place}, {why}"
                     other = values[1 - missing[0]].number
                     found.setdefault(reason, []).append(_one_sided(name, spread.here, other))
-        return [f"No uncertainty of {_first_of(group)}: {reason}." for reason, group in found.items()]
+        said = []
+        for reason, group in found.items():
+            others = len(group) - MOST_NAMED
+            more = f" and {others} more" if others > 0 else ""
+            said.append(f"No uncertainty of {', '.join(group[:MOST_NAMED])}{more}: {reason}.")
+        return said
 
     def _at(self, x: str, end: End) -> str:
         """Say an input at an end, with its unit: "mu = 0.35"."""
@@ -204,20 +211,9 @@ class Uncertainties:
         return f"{x} = {with_unit(as_typed(end.input), unit)}"
 
 
-def _otherwise(case: Decisions, other: Decisions) -> str:
-    """Name the first of the `DOUBTFUL` decisions that differs between two scenes, "" if none does."""
-    return next((what for what, x in DOUBTFUL.items() if getattr(case, x) != getattr(other, x)), "")
-
-
 def _one_sided(name: str, here: Decimal, other: Decimal | None) -> str:
     """Name a quantity without an uncertainty, with the value at the only end that has one."""
     if other is None or other == here:
         return name
     bound = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(other)))
     return f"{name} (at {'least' if other < here else 'most'} {with_unit(bound, QUANTITIES[name].unit)})"
-
-
-def _first_of(names: Sequence[str]) -> str:
-    """Join the first names, and count the others."""
-    joined, others = ", ".join(names[:MOST_NAMED]), len(names) - MOST_NAMED
-    return f"{joined} and {others} more" if others > 0 else joined
