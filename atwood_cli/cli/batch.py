@@ -11,48 +11,6 @@ from ..output.text import say
 from ..tables.sources import FORMATS, check_format, read_format
 from .options import COULD_NOT, DONE, Columns, Force, Labels, option
 
-Table = Annotated[
-    str,
-    typer.Argument(
-        metavar="IN",
-        rich_help_panel="Files",
-        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, as .csv.gz; - for stdin;"
-        " a pipe is read as CSV.",
-        show_default=False,
-    ),
-]
-OutTable = Annotated[
-    str,
-    option(
-        "Files",
-        "--output",
-        "-o",
-        metavar="OUT",
-        help="Write to this file, in the format of IN; - for stdout, if not given.",
-    ),
-]
-FromFormat = Annotated[
-    str | None,
-    option(
-        "Files",
-        "--from",
-        metavar="|".join(FORMATS),
-        words=lambda: dict.fromkeys(FORMATS, ""),
-        help="Format of IN, if not that of its suffix.",
-    ),
-]
-Headings = Annotated[
-    list[str] | None,
-    option(
-        "Files",
-        "--column",
-        metavar="NAME=HEADING",
-        help="What a column holds, if its heading does not say, as R='radius in m'; repeatable.",
-    ),
-]
-AllowErrors = Annotated[bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")]
-
-
 HELP = f"""Solve a table of scenes and append the results.
 
 \b
@@ -76,14 +34,51 @@ The exit status is 1 if a row has an error, or if no row has a quantity that --o
 
 
 def batch(
-    table: Table,
+    table: Annotated[
+        str,
+        typer.Argument(
+            metavar="IN",
+            rich_help_panel="Files",
+            help="Table of scenes: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, as .csv.gz;"
+            " - for stdin; a pipe is read as CSV.",
+            show_default=False,
+        ),
+    ],
     *,
-    output: OutTable = "-",
-    from_: FromFormat = None,
-    column: Headings = None,
+    output: Annotated[
+        str,
+        option(
+            "Files",
+            "--output",
+            "-o",
+            metavar="OUT",
+            help="Write to this file, in the format of IN; - for stdout, if not given.",
+        ),
+    ] = "-",
+    from_: Annotated[
+        str | None,
+        option(
+            "Files",
+            "--from",
+            metavar="|".join(FORMATS),
+            words=lambda: dict.fromkeys(FORMATS, ""),
+            help="Format of IN, if not that of its suffix.",
+        ),
+    ] = None,
+    column: Annotated[
+        list[str] | None,
+        option(
+            "Files",
+            "--column",
+            metavar="NAME=HEADING",
+            help="What a column holds, if its heading does not say, as R='radius in m'; repeatable.",
+        ),
+    ] = None,
     label: Labels = None,
     only: Columns = None,
-    allow_errors: AllowErrors = False,
+    allow_errors: Annotated[
+        bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")
+    ] = False,
     force: Force = False,
 ) -> int:
     from ..batch.run import Job, run_batch

@@ -173,7 +173,7 @@ Columns = Annotated[
     ),
 ]
 FigureFile = Annotated[
-    str | None, option("Files", metavar="FILE", help="Draw it to FILE.svg, .png or .pdf (extra: figure).")
+    str | None, option("Files", metavar="FILE", help="Draw a picture: .svg, .png or .pdf (extra: figure).")
 ]
 Bare = Annotated[bool, option("Files", "--bare", help="With --figure: no title, as for a report.")]
 Labels = Annotated[
@@ -227,21 +227,17 @@ def _read_target(options: Mapping[str, Any]) -> Destination:
 
 def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
     """Return the form of a file, as asked for or by its suffix. Raises SceneError if the two disagree."""
-    name, suffix = os.path.splitext(file)
     if asked:
         forms = {FORMS[asked].suffix: asked}
     elif options.get("explain"):
         forms = {".md" if options["markdown"] else ".txt": ""}
     else:
         forms = {".txt": "", **{FORMS[form].suffix: form for form in FORMS if form in options}}
-    if not suffix or suffix.lower() in forms:
-        return forms.get(suffix.lower(), asked)
-    if len(forms) > 1:
-        raise SceneError("output", file, f"must end in one of {', '.join(forms)}")
-    (right,) = forms
-    kind = asked.upper() or {".md": "Markdown", ".txt": "text"}[right]
-    instead = f", or add --markdown and name it {name}.md" if right == ".txt" else ""
-    raise SceneError("output", file, f"would hold {kind}; name it {name}{right}{instead}")
+    suffix = os.path.splitext(file)[1].lower()
+    if suffix and suffix not in forms:
+        markdown = "; add --markdown for .md" if options.get("explain") and ".txt" in forms else ""
+        raise SceneError("output", file, f"must end in {' or '.join(forms)}{markdown}")
+    return forms.get(suffix, asked)
 
 
 OUTPUT = results(*FORMS)

@@ -17,42 +17,12 @@ from .options import (
     SCENE,
     Bare,
     Digits,
+    FigureFile,
     option,
     quantity_meanings,
     scene_option,
     with_options,
 )
-
-Acceleration = Annotated[str | None, scene_option("a", "Measured")]
-Drop = Annotated[str | None, scene_option("drop", "Measured")]
-Time = Annotated[str | None, scene_option("time", "Measured")]
-Only = Annotated[
-    list[str] | None,
-    option(
-        "Output",
-        metavar="NAME",
-        words=lambda: {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from measurements")},
-        help="Print only this, or several: a,T1; see atwood quantities.",
-    ),
-]
-Expect = Annotated[
-    list[str] | None,
-    option("Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."),
-]
-Markdown = Annotated[
-    bool, option("Output", "--markdown", help="With --explain: Markdown with LaTeX (-o FILE.md).")
-]
-All = Annotated[bool, option("Output", "--all", help="Show all quantities, and why any are missing.")]
-Budget = Annotated[
-    bool, option("Output", "--budget", help="Also print each uncertain input's share of the variance.")
-]
-Explain = Annotated[
-    bool, option("Output", "--explain", help="Show the derivation instead, with numbers put in.")
-]
-Figure = Annotated[
-    str | None,
-    option("Files", metavar="FILE", help="Also draw the machine: .svg, .png, .pdf (extra: figure)."),
-]
 
 HELP = """Solve one scene: acceleration, tensions, friction.
 
@@ -72,17 +42,38 @@ def solve(
     given: Mapping[str, str | None],
     target: Destination,
     *,
-    a: Acceleration = None,
-    drop: Drop = None,
-    time: Time = None,
-    only: Only = None,
-    expect: Expect = None,
-    all_: All = False,
+    a: Annotated[str | None, scene_option("a", "Measured")] = None,
+    drop: Annotated[str | None, scene_option("drop", "Measured")] = None,
+    time: Annotated[str | None, scene_option("time", "Measured")] = None,
+    only: Annotated[
+        list[str] | None,
+        option(
+            "Output",
+            metavar="NAME",
+            words=lambda: {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from measurements")},
+            help="Print only this, or several: a,T1; see atwood quantities.",
+        ),
+    ] = None,
+    expect: Annotated[
+        list[str] | None,
+        option(
+            "Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."
+        ),
+    ] = None,
+    all_: Annotated[
+        bool, option("Output", "--all", help="Show all quantities, and why any are missing.")
+    ] = False,
     digits: Digits = None,
-    budget: Budget = False,
-    explain: Explain = False,
-    markdown: Markdown = False,
-    figure: Figure = None,
+    budget: Annotated[
+        bool, option("Output", "--budget", help="Also print each uncertain input's share of the variance.")
+    ] = False,
+    explain: Annotated[
+        bool, option("Output", "--explain", help="Show the derivation instead, with numbers put in.")
+    ] = False,
+    markdown: Annotated[
+        bool, option("Output", "--markdown", help="With --explain: Markdown with LaTeX (-o FILE.md).")
+    ] = False,
+    figure: FigureFile = None,
     bare: Bare = False,
 ) -> int:
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))

@@ -16,33 +16,7 @@ def _families() -> Mapping[str, str]:
     return {name: family.meaning for name, family in FAMILIES.items()}
 
 
-Families = Annotated[
-    list[str] | None,
-    option(
-        "Measurement",
-        "--family",
-        metavar="NAME",
-        words=_families,
-        help="Measure this family of scenes only; repeatable.",
-    ),
-]
 DEFAULT_SCENES, DEFAULT_SEED, MOST_SEED = 500, 1, 10**9
-Scenes = Annotated[
-    str | None,
-    option(
-        "Measurement",
-        metavar="N",
-        help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given.",
-    ),
-]
-Seed = Annotated[
-    str | None,
-    option(
-        "Measurement", metavar="N", help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given."
-    ),
-]
-
-
 HELP = """Measure what accuracy costs in time on this machine.
 
 \b
@@ -57,9 +31,32 @@ Examples:
 def tradeoff(
     target: Destination,
     *,
-    family: Families = None,
-    scenes: Scenes = None,
-    seed: Seed = None,
+    family: Annotated[
+        list[str] | None,
+        option(
+            "Measurement",
+            "--family",
+            metavar="NAME",
+            words=_families,
+            help="Measure this family of scenes only; repeatable.",
+        ),
+    ] = None,
+    scenes: Annotated[
+        str | None,
+        option(
+            "Measurement",
+            metavar="N",
+            help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given.",
+        ),
+    ] = None,
+    seed: Annotated[
+        str | None,
+        option(
+            "Measurement",
+            metavar="N",
+            help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given.",
+        ),
+    ] = None,
     figure: FigureFile = None,
     bare: Bare = False,
 ) -> int:
