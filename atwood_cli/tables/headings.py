@@ -124,13 +124,12 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
 
 def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Heading | None:
     """Return what a column holds, without its place and factor; None if the heading is not known."""
-    name = without_blanks(named.get(column, column))
-    meanings = (_named(word, unit, vocabulary) for word, unit in divisions(name))
-    meaning = next(filter(None, meanings), None)
-    if meaning and column in named and not meaning.unit:  # the heading itself may have a unit
-        *_, (_, unit) = divisions(without_blanks(column))
-        meaning = meaning._replace(unit=unit)
-    return meaning and meaning._replace(column=column)
+    for word, unit in divisions(without_blanks(named.get(column, column))):
+        if meaning := _named(word, vocabulary):
+            if column in named and not unit:  # the heading itself may have a unit
+                *_, (_, unit) = divisions(without_blanks(column))
+            return meaning._replace(column=column, unit=unit)
+    return None
 
 
 def divisions(text: str) -> Iterator[tuple[str, str]]:
@@ -142,17 +141,17 @@ def divisions(text: str) -> Iterator[tuple[str, str]]:
         yield match[1].strip(), "" if unit in NO_UNIT else unit
 
 
-def _named(word: str, unit: str, vocabulary: Vocabulary) -> Heading | None:
+def _named(word: str, vocabulary: Vocabulary) -> Heading | None:
     """Return the meaning of a name without its unit; None if it is not known."""
     if vocabulary.uncertain and word in OF_COLUMN_BEFORE:
-        return Heading(0, "", "", unit=unit, uncertain=True)
+        return Heading(0, "", "", uncertain=True)
     found = UNCERTAINTY.fullmatch(word) if vocabulary.uncertain else None
     key = re.sub(r"[\s_]", "", normalize("NFKC", (found[1] or found[2]) if found else word))
     letters = key if key in vocabulary.names else key.rstrip("0123456789")
     name = vocabulary.names.get(letters, "")
     if letters != key and name not in vocabulary.repeated:
         return None
-    return Heading(0, "", name, key[len(letters) :], unit, uncertain=bool(found)) if name else None
+    return Heading(0, "", name, key[len(letters) :], uncertain=bool(found)) if name else None
 
 
 def _add_uncertainty(headings: dict[tuple[str, str], Heading], found: Heading) -> None:

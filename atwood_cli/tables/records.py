@@ -24,10 +24,16 @@ MOST_LINES = 50
 UNREADABLE = "unreadable"
 """The member that has the text of a line of NDJSON that cannot be read."""
 BYTE_ORDER_MARK = "\ufeff"
-STRAY_MARK = 'has a quotation mark out of place; write it "like ""this"""'
-STRAY_RETURN = (
-    "has a carriage return without a line feed; save it with line feeds, or put its cell in quotation marks"
-)
+STRAY_RETURN = "new-line"
+"""The word by which `csv` means a carriage return without a line feed."""
+ERRORS_OF_CSV = {
+    "end of data": "has a quotation mark that is left open, or the file is truncated",
+    "limit": f"{TOO_LONG}; is a quotation mark left open?",
+    STRAY_RETURN: "has a carriage return without a line feed; save it with line feeds, or put its cell in"
+    " quotation marks",
+    "": 'has a quotation mark out of place; write it "like ""this"""',
+}
+"""What is wrong with a row, by a word in the error of `csv`."""
 
 
 class Piece(NamedTuple):
@@ -57,8 +63,6 @@ class Csv:
         text = next(self._texts, "")
         mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
         text = text.removeprefix(BYTE_ORDER_MARK)
-        while text.count('"') % 2 and len(text) < LONGEST_RECORD and (more := next(self._texts, "")):
-            text += more  # the header may have line ends
 
         def score(separator: str) -> tuple[int, int]:
             cells: list[str] = []
@@ -144,23 +148,14 @@ class Csv:
             for cells in csv.reader(lines(), delimiter=self.separator, strict=True):
                 line, record = self._line, "".join(taken)
                 if "\r\r" in record[-3:]:  # csv would take both for line ends
-                    raise csv.Error("new-line")
+                    raise csv.Error(STRAY_RETURN)
                 self._line += len(taken)
                 taken.clear()
                 if record.strip() or len(cells) > 1:
                     yield line, record, cells
         except csv.Error as error:
-            raise self._refused(str(error)) from None
-
-    def _refused(self, error: str) -> Unreadable:
-        """Return the error for a row whose quotation marks are wrong, by the error of `csv`."""
-        row = f"the row that begins in line {self._line}"
-        if "end of data" in error:
-            return Unreadable(f"a quotation mark is left open in {row}, or the file is truncated")
-        if "limit" in error:
-            return Unreadable(f"{row} {TOO_LONG}; is a quotation mark left open?")
-        why = STRAY_RETURN if "new-line" in error else STRAY_MARK
-        return Unreadable(f"{row} {why}")
+            why = next(why for word, why in ERRORS_OF_CSV.items() if word in str(error))
+            raise Unreadable(f"the row that begins in line {self._line} {why}") from None
 
     def _error_of(self, line: int, cells: Sequence[str]) -> str | None:
         """Say what is wrong with the row that begins in that line; None if nothing is."""
@@ -254,14 +249,12 @@ def _object(raw: bytes, line: str) -> dict[str, object]:
     """Return the object in a line, with its numbers as texts. Raises Unreadable."""
     why = "it is not an object"
     try:
-        raw.decode()
+        _decoded(raw)
         row = _DECODER.decode(line)
         if isinstance(row, dict):
             return row
     except RecursionError:
         why = "it is nested too deeply"
-    except UnicodeDecodeError as error:
-        why = f"it is not UTF-8: byte 0x{raw[error.start]:02x}"
     except json.JSONDecodeError as error:
         why = f"{error.msg.removesuffix(' at')} at character {error.colno}"
     except ValueError as error:

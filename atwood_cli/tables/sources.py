@@ -63,11 +63,9 @@ def read_format(given: str | None, path: str) -> str:
 
 def check_format(path: str, kind: str) -> None:
     """Refuse a file whose suffix does not fit the format of the table. Raises SceneError."""
-    file = Path(path)
-    if file.suffix and SUFFIXES.get(file.suffix.lower()) != kind and not is_stream(path):
-        bare = file.with_suffix("") if is_packed(path) else file
-        fitting = in_quotes(str(bare.with_suffix(f".{kind}")))
-        raise SceneError("output", path, f"does not match the table, which is {kind}; name it {fitting}")
+    suffix = Path(path).suffix.lower()
+    if suffix and SUFFIXES.get(suffix) != kind and not is_stream(path):
+        raise SceneError("output", path, f"must end in .{kind}, as the table is {kind}")
 
 
 def is_stream(path: str) -> bool:
