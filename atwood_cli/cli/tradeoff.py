@@ -13,7 +13,7 @@ from .options import DONE, Bare, FigureFile, check_figure, option, results, with
 def _families() -> Mapping[str, str]:
     from ..tradeoff.measure import FAMILIES
 
-    return {name: family.meaning for name, family in FAMILIES.items()}
+    return {name: meaning for name, (_, meaning) in FAMILIES.items()}
 
 
 DEFAULT_SCENES, DEFAULT_SEED, MOST_SEED = 500, 1, 10**9

@@ -13,7 +13,7 @@ from ..model.units import counted
 from ..solver.answers import Answers
 from ..solver.messages import unmarked, verdict
 from .files import printable
-from .text import describe, wrapped
+from .text import relevant_inputs, wrapped
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -57,7 +57,8 @@ class Page:
 
     def head(self, answers: Answers, found: str = "") -> None:
         """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
-        self.say(describe(answers.case.scene, answers.case.motion, answers.uncertain))
+        given = relevant_inputs(answers.case.scene, answers.case.motion, answers.uncertain)
+        self.say(", ".join(given.values()))
         if found:
             self.say(found, style="bold")
         self.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.case.regime]}")

@@ -62,8 +62,6 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
 
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
-AT_LIMIT = ("friction_force", "friction_force_x", "friction_force_y")
-"""The quantities that have a single value only if friction is at its limit."""
 
 
 def print_table(
@@ -106,13 +104,12 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     from .page import aligned
 
     values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
-    if values.get("least_heavier_mass") == values.get("critical_heavier_mass"):
-        values.pop("least_heavier_mass", None)  # on a locked pulley the two are the same
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
         about, case = QUANTITIES[name], answers.case
         equation = cited(name, case.regime == "slip", case.has_axle_friction)
-        shown = f"{name} at mu_verge" if name in AT_LIMIT and case.mu_assumed else name
+        at_limit = name.startswith("friction_force") and case.mu_assumed  # and has a single value then
+        shown = f"{name} at mu_verge" if at_limit else name
         row = [shown, value, about.unit, about.symbol, equation]
         groups.setdefault(about.group, []).append(row)
     return list(groups.values())

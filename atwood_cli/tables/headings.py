@@ -6,9 +6,13 @@ Blanks and underscores in names do not count. The user names any other heading, 
 t='Fallzeit (s)'.
 """
 
+import csv
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from fractions import Fraction
+from io import StringIO
+from itertools import islice
 from typing import NamedTuple
 from unicodedata import normalize
 
@@ -106,6 +110,21 @@ def read_headings(
 def recognised(columns: Sequence[str], vocabulary: Vocabulary, named: Mapping[str, str] = {}) -> list[str]:
     """Return the columns that the vocabulary knows, or that the user has named."""
     return [column for column in columns if _meaning(column, vocabulary, named)]
+
+
+def best_header(
+    text: str, separator: str, known: Callable[[Sequence[str]], Collection[str]], most_above: int = 0
+) -> tuple[int, int, int]:
+    """Count the known headings and the cells of a table's header by this separator, and the rows above it.
+
+    It is the first row with two ``known`` headings, or else the first row.
+    """
+    counts = [(0, 0, 0)]
+    with suppress(csv.Error):
+        rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
+        for above, row in enumerate(islice(rows, most_above + 1)):
+            counts.append((len(known(row)), len(row), above))
+    return next((count for count in counts if count[0] > 1), counts[:2][-1])
 
 
 def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:

@@ -6,13 +6,12 @@ A record of CSV is a row, which may have several lines. A record of NDJSON is a 
 import csv
 import json
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Sized
-from contextlib import suppress
 from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..model.units import counted, in_quotes
 from . import sources
-from .headings import SEPARATORS, Heading
+from .headings import SEPARATORS, Heading, best_header
 from .sources import LONGEST_RECORD, TOO_LONG, Unreadable, whole_lines
 
 if TYPE_CHECKING:
@@ -63,16 +62,8 @@ class Csv:
         text = next(self._texts, "")
         mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
         text = text.removeprefix(BYTE_ORDER_MARK)
-
-        def score(separator: str) -> tuple[int, int]:
-            cells: list[str] = []
-            with suppress(csv.Error):
-                rows = csv.reader(_lines(text), delimiter=separator)
-                cells = next((row for row in rows if len(row) > 1 or "".join(row).strip()), [])
-            return len(known(cells)), len(cells)
-
         self._text, self._line = _lines(text), 1
-        self.separator = max(SEPARATORS, key=score)
+        self.separator = max(SEPARATORS, key=lambda mark: best_header(text, mark, known))
         _, header, self.columns = next(self._records(), (1, "", []))
         if not header:
             raise Unreadable("it is empty")
