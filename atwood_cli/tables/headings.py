@@ -2,8 +2,7 @@
 
 A heading is `name [number] [(unit) | [unit] | /unit | in unit]`: m1, "m1 (g)", "time 2 [s]", a/(m/s²).
 A column of uncertainties is u(name) or name_err, or ± behind the column of the quantity; a unit may follow.
-Blanks and underscores in names do not count. The user names any other heading, as by --column
-t='Fallzeit (s)'.
+Blanks and underscores in names do not count. The user names others, as by --column t='Fallzeit (s)'.
 """
 
 import csv
