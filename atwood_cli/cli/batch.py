@@ -11,6 +11,26 @@ from ..output.text import say
 from ..tables.sources import FORMATS, check_format, read_format
 from .options import COULD_NOT, DONE, Columns, Force, Labels, option
 
+Table = Annotated[
+    str,
+    typer.Argument(
+        metavar="IN",
+        rich_help_panel="Files",
+        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, as .csv.gz;"
+        " - for stdin; a pipe is read as CSV.",
+        show_default=False,
+    ),
+]
+OutTable = Annotated[
+    str,
+    option(
+        "Files",
+        "--output",
+        "-o",
+        metavar="OUT",
+        help="Write to this file, in the format of IN; - for stdout, if not given.",
+    ),
+]
 HELP = f"""Solve a table of scenes and append the results.
 
 \b
@@ -34,27 +54,9 @@ The exit status is 1 if a row has an error, or if no row has a quantity that --o
 
 
 def batch(
-    table: Annotated[
-        str,
-        typer.Argument(
-            metavar="IN",
-            rich_help_panel="Files",
-            help="Table of scenes: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, as .csv.gz;"
-            " - for stdin; a pipe is read as CSV.",
-            show_default=False,
-        ),
-    ],
+    table: Table,
     *,
-    output: Annotated[
-        str,
-        option(
-            "Files",
-            "--output",
-            "-o",
-            metavar="OUT",
-            help="Write to this file, in the format of IN; - for stdout, if not given.",
-        ),
-    ] = "-",
+    output: OutTable = "-",
     from_: Annotated[
         str | None,
         option(

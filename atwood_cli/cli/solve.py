@@ -24,6 +24,19 @@ from .options import (
     with_options,
 )
 
+Only = Annotated[
+    list[str] | None,
+    option(
+        "Output",
+        metavar="NAME",
+        words=lambda: {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from measurements")},
+        help="Print only this, or several: a,T1; see atwood quantities.",
+    ),
+]
+Expect = Annotated[
+    list[str] | None,
+    option("Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."),
+]
 HELP = """Solve one scene: acceleration, tensions, friction.
 
 \b
@@ -45,21 +58,8 @@ def solve(
     a: Annotated[str | None, scene_option("a", "Measured")] = None,
     drop: Annotated[str | None, scene_option("drop", "Measured")] = None,
     time: Annotated[str | None, scene_option("time", "Measured")] = None,
-    only: Annotated[
-        list[str] | None,
-        option(
-            "Output",
-            metavar="NAME",
-            words=lambda: {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from measurements")},
-            help="Print only this, or several: a,T1; see atwood quantities.",
-        ),
-    ] = None,
-    expect: Annotated[
-        list[str] | None,
-        option(
-            "Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."
-        ),
-    ] = None,
+    only: Only = None,
+    expect: Expect = None,
     all_: Annotated[
         bool, option("Output", "--all", help="Show all quantities, and why any are missing.")
     ] = False,

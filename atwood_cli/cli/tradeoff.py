@@ -17,6 +17,16 @@ def _families() -> Mapping[str, str]:
 
 
 DEFAULT_SCENES, DEFAULT_SEED, MOST_SEED = 500, 1, 10**9
+Families = Annotated[
+    list[str] | None,
+    option(
+        "Measurement",
+        "--family",
+        metavar="NAME",
+        words=_families,
+        help="Measure this family of scenes only; repeatable.",
+    ),
+]
 HELP = """Measure what accuracy costs in time on this machine.
 
 \b
@@ -31,16 +41,7 @@ Examples:
 def tradeoff(
     target: Destination,
     *,
-    family: Annotated[
-        list[str] | None,
-        option(
-            "Measurement",
-            "--family",
-            metavar="NAME",
-            words=_families,
-            help="Measure this family of scenes only; repeatable.",
-        ),
-    ] = None,
+    family: Families = None,
     scenes: Annotated[
         str | None,
         option(
