@@ -31,10 +31,7 @@ LONG_CELL = 100
 
 
 class Question(NamedTuple):
-    """A question about a table: the quantities wanted, and remarks of the user on columns.
-
-    ``labels`` are columns that hold no input, whatever they look like. ``named`` maps headings to inputs.
-    """
+    """The quantities wanted of a table, its columns that hold no input, and the inputs by other headings."""
 
     names: Sequence[str]
     labels: Collection[str] = ()
@@ -55,8 +52,7 @@ class Layout(NamedTuple):
 def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> Layout:
     """Find the inputs among the columns. If the table is not ``whole``, a mass without a column has no cells.
 
-    Raises Unreadable if a column has the name of a result, or may mean an input and is neither an input nor a
-    label.
+    Raises Unreadable if a column has the name of a result, or may mean an input and is no label.
     """
     if clash := [column for column in columns if column in (*asked.names, ERROR)]:
         raise Unreadable(

@@ -66,10 +66,10 @@ class Command(TyperCommand):
         return ["[OPTIONS]", *(str(param.metavar) for param in arguments)]
 
 
-Version = Annotated[bool, typer.Option("--version", "-V", help="Print the version.")]
-
-
-def root(context: typer.Context, version: Version = False) -> None:
+def root(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", "-V", help="Print the version.")] = False,
+) -> None:
     """Print the version, or the help if no command is named."""
     if version:
         print(f"atwood {__version__}")

@@ -42,12 +42,11 @@ def flag(name: str) -> str:
     return f"--{name.rstrip('_').replace('_', '-')}"
 
 
-Words = Callable[[], Mapping[str, str]]
-"""A function that returns the words that a shell may complete, with their meanings."""
+def option(group: str, *flags: str, words: Callable[[], Mapping[str, str]] | None = None, **more: Any) -> Any:
+    """Return an option, with the ``group`` in which help shows it.
 
-
-def option(group: str, *flags: str, words: Words | None = None, **more: Any) -> Any:
-    """Return an option, with the ``group`` in which help shows it, and the words that complete it."""
+    ``words`` returns the words that a shell may complete, with their meanings.
+    """
 
     def complete(incomplete: str) -> list[tuple[str, str]]:
         return list(words().items()) if words else []

@@ -1,7 +1,6 @@
 """Pictures in files, as wide as the text of a printed page: their size, their style and their sentences.
 
-matplotlib draws them (extra ``figure``), without pyplot or a display. The same scene gives the same SVG, to
-the byte.
+matplotlib draws them (extra ``figure``), without a display. The same scene gives the same SVG, to the byte.
 """
 
 import os
@@ -96,10 +95,7 @@ def axis_words(name: str) -> tuple[str, str]:
 
 
 def check_file(path: str, force: bool) -> None:
-    """Check that a picture can be written, before anything is computed, and import matplotlib.
-
-    Raises SceneError if the suffix is no format, ImportError, and OSError if the file exists.
-    """
+    """Import matplotlib, and check that it can write the picture. Raises SceneError, ImportError, OSError."""
     if Path(path).suffix[1:].lower() not in FORMATS:
         raise SceneError("figure", path, f"must end in one of {', '.join(f'.{kind}' for kind in FORMATS)}")
     os.environ["MPLBACKEND"] = "agg"

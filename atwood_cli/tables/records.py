@@ -5,6 +5,7 @@ A record of CSV is a row, which may have several lines. A record of NDJSON is a 
 
 import csv
 import json
+from collections import Counter
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Sized
 from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
@@ -200,7 +201,6 @@ def read_ndjson(
     """Read the lines that are not blank. Raises Unreadable.
 
     A line that cannot be read is an error of its record, which has the line's text as its only member.
-
     ``headings`` finds the quantities among the keys, and is called again when there are more keys.
     """
     import polars as pl
@@ -256,9 +256,8 @@ def _object(raw: bytes, line: str) -> dict[str, object]:
 def _members(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
     row = dict(pairs)
     if len(row) < len(pairs):
-        names = [name for name, _ in pairs]
-        twice = next(name for name in names if names.count(name) > 1)
-        raise ValueError(f"column {in_quotes(twice)} is there {names.count(twice)} times")
+        name, times = Counter(name for name, _ in pairs).most_common()[0]
+        raise ValueError(f"column {in_quotes(name)} is there {times} times")
     return row
 
 

@@ -22,7 +22,6 @@ FORMATS = ("csv", "tsv", "ndjson", "parquet")
 STDIN = "-"
 """The name of a file that is standard input."""
 SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
-PACKED = ".gz"
 BLOCK_BYTES = 2 << 20
 """The bytes that are read at a time. A piece of a table takes several times as much memory."""
 MOMENT = 0.05  # seconds
@@ -75,7 +74,7 @@ def is_stream(path: str) -> bool:
 
 def is_packed(path: str) -> bool:
     """Return whether a file is compressed, by its suffix."""
-    return Path(path).suffix.lower() == PACKED
+    return Path(path).suffix.lower() == ".gz"
 
 
 def opened(source: str, stack: ExitStack) -> IO[bytes]:
@@ -124,10 +123,7 @@ def _what_comes(pipe: Any, most: int) -> bytes:
 
 
 def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[bytes]:
-    """Yield blocks of whole lines.
-
-    Raises Unreadable for a file of another kind: no text of ``cells``, or else of objects.
-    """
+    """Yield blocks of whole lines. Raises Unreadable for a file of no ``cells``, or else of no objects."""
     rest, line = b"", 1
     for block in chain(blocks, [b""]):
         if line == 1 and not rest:

@@ -1,8 +1,7 @@
 """Each way to solve many scenes is timed, and its errors are found, on families that are hard on doubles.
 
 Scenes are drawn from a seed, so that anybody finds the same errors; times are this machine's. Errors are in
-units in the last place (ulp) of the exact value's double, and count where the regime is right. The error of a
-scene is the worst of its quantities'.
+units in the last place (ulp) of the exact value's double, the worst of a scene, if its regime is right.
 """
 
 from collections.abc import Callable, Mapping, Sequence
