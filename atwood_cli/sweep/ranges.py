@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
 from itertools import product
-from math import inf
+from math import inf, prod
 from typing import Any, NamedTuple
 
 from ..arithmetic.interval import decimal_context
@@ -145,7 +145,7 @@ class Sweep(NamedTuple):
 
     @property
     def total(self) -> int:
-        return len(self.ranges[0].points) * (len(self.ranges[1].points) if self.ranges[1:] else 1)
+        return prod(len(range_.points) for range_ in self.ranges)
 
     @property
     def inputs(self) -> dict[str, str]:

@@ -6,7 +6,7 @@ A record of CSV is a row, which may have several lines. A record of NDJSON is a 
 import csv
 import json
 from collections import Counter
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Sized
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -18,7 +18,6 @@ from .sources import LONGEST_RECORD, TOO_LONG, Unreadable, whole_lines
 if TYPE_CHECKING:
     import polars as pl
 
-MOST_COLUMNS = 1024
 MOST_LINES = 50
 """The most lines of a cell: a note has fewer, and a quotation mark that is left open makes more."""
 UNREADABLE = "unreadable"
@@ -68,7 +67,6 @@ class Csv:
         _, header, self.columns = next(self._records(), (1, "", []))
         if not header:
             raise Unreadable("it is empty")
-        _check_width(self.columns)
         self.header = mark + header.rstrip("\r\n")
         self.line_end = "\r\n" if header.endswith("\r\n") else "\n"
 
@@ -186,12 +184,6 @@ def _lines(text: str) -> StringIO:
     return StringIO(text, newline="\n")
 
 
-def _check_width(columns: Sized) -> None:
-    """Raise Unreadable for too many columns."""
-    if len(columns) > MOST_COLUMNS:
-        raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
-
-
 # NDJSON
 
 
@@ -225,7 +217,6 @@ def read_ndjson(
             keys.update(row)
         if not lines:
             continue
-        _check_width(keys)
         if len(keys) > known:
             known = len(keys)
             wanted = headings(list(keys))
