@@ -214,11 +214,9 @@ def results(*forms: str) -> dict[str, Any]:
 def _read_target(options: Mapping[str, Any]) -> Destination:
     """Read the form and the file of a result. Raises SceneError, FileExistsError."""
     asked = next((form for form in FORMS if options.get(form)), "")
-    file, force, figure = options["output"], options["force"], options.get("figure")
+    file, force = options["output"], options["force"]
     if file in (None, STDOUT):
         return Destination(asked, None, force)
-    if figure and os.path.realpath(figure) == os.path.realpath(file):
-        raise SceneError("figure", figure, "is the file of --output; name another")
     form = _form_of_file(file, asked, options)
     check_free(Path(file), force)
     return Destination(form, file, force)

@@ -62,7 +62,7 @@ class Point(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The point as `solve` takes it."""
+        """Return the point as `solve` takes it."""
         return self.printed if isinstance(self.printed, str) else format_number(self.printed)
 
 
@@ -99,7 +99,7 @@ class Range(NamedTuple):
 
     @property
     def words(self) -> str:
-        """The range in a sentence: M from 0 to 50 kg, or M = 0 kg, 10 kg or inf."""
+        """Return the range in a sentence: M from 0 to 50 kg, or M = 0 kg, 10 kg or inf."""
         if not self.is_list:
             start, stop = self.points[0], self.points[-1]
             return f"{self.name} from {self.cell(start)} to {self.in_units(stop)}"
@@ -114,12 +114,12 @@ class Range(NamedTuple):
 
     @property
     def finite(self) -> list[Point]:
-        """The finite points, in ascending order."""
+        """Return the finite points, in ascending order."""
         return sorted(point for point in self.points if point != LOCKED)
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
-        """The least and the greatest finite value, in the unit of the range."""
+        """Return the least and the greatest finite value, in the unit of the range."""
         points = self.finite
         return Fraction(points[0].exact), Fraction(points[-1].exact)
 
@@ -149,19 +149,19 @@ class Sweep(NamedTuple):
 
     @property
     def inputs(self) -> dict[str, str]:
-        """The inputs, and the ranges, in words."""
+        """Return the inputs, and the ranges, in words."""
         ranges = {range_.name: range_.words for range_ in self.ranges}
         return relevant_inputs(self.scene, varied=ranges) | ranges
 
     @property
     def along(self) -> Range:
-        """The range along which curves and sentences run: no list, or one of numbers, and the longest."""
+        """Return the range along which curves run: if possible no list, or one of numbers, and the longest."""
         named = {range_.name: any(point.name for point in range_.points) for range_ in self.ranges}
         return max(self.ranges[::-1], key=lambda x: (not x.is_list, not named[x.name], len(x.finite)))
 
     @property
     def others(self) -> list[Range]:
-        """The other range, if there is one."""
+        """Return the other range, if there is one."""
         return [range_ for range_ in self.ranges if range_ is not self.along]
 
     def scenes(self, ranges: Sequence[Range]) -> Iterator[tuple[Scene, dict[str, Point]]]:
