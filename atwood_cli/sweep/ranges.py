@@ -155,7 +155,7 @@ class Sweep(NamedTuple):
 
     @property
     def along(self) -> Range:
-        """Return the range along which curves run: no list if possible, or one of numbers, and the longest."""
+        """Return the range along which curves run: if possible of numbers and no list, and the longest."""
         named = {range_.name: any(point.name for point in range_.points) for range_ in self.ranges}
         return max(self.ranges[::-1], key=lambda x: (not x.is_list, not named[x.name], len(x.finite)))
 
