@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from itertools import chain, islice
 from shutil import get_terminal_size
 from time import monotonic
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ..model.units import counted
 from ..solver.answers import Answers
@@ -16,8 +16,6 @@ from .files import printable
 from .text import relevant_inputs, wrapped
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from ..solver.steps import Explanation
 
 Part = TypeVar("Part")
@@ -32,14 +30,18 @@ REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 class Page:
     """A printer of tables and sentences, to a terminal or to a pipe, which takes any width."""
 
-    def __init__(self, console: "Console | None" = None) -> None:
+    def __init__(self, is_plain: bool = False) -> None:
+        """Make a page for standard output, without colours if it ``is_plain``."""
         from rich.console import Console
 
         # rich itself would take COLUMNS=0 at its word, and any dumb terminal to be 80 columns wide.
         width, height = get_terminal_size()
         # FORCE_COLOR concerns the terminal, not the file of --output.
-        force = None if sys.stdout is sys.__stdout__ else False
-        self.console = console or Console(highlight=False, force_terminal=force, width=width, height=height)
+        force = None if is_plain or sys.stdout is sys.__stdout__ else False
+        colours: Any = None if is_plain else "auto"
+        self.console = Console(
+            highlight=False, color_system=colours, force_terminal=force, width=width, height=height
+        )
         self.room = self.console.width if self.console.is_terminal else None
         self.width = self.room or PIPE_WIDTH
 

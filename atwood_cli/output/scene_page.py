@@ -15,8 +15,6 @@ from ..solver.messages import notes, reasons, remarks, unmarked, verdict
 from .text import VERSION, cell, scene_record
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from .page import Page
 
 
@@ -65,12 +63,12 @@ COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
 
 def print_table(
-    answers: Answers, whole: bool = False, budget: bool = False, console: "Console | None" = None
+    answers: Answers, whole: bool = False, budget: bool = False, page: "Page | None" = None
 ) -> None:
     """Print the scene, the verdict, the main quantities or the ``whole`` table, notes, and the budget."""
     from .page import Page
 
-    answers, page = answers.shown, Page(console)
+    answers, page = answers.shown, page or Page()
     names = answers.names[1:] if whole else answers.main
     groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *answers.found)])
     found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
@@ -87,14 +85,11 @@ def print_table(
 
 def as_text(answers: Answers) -> str:
     """Return the page as text without colours, in the width and the characters of standard output."""
-    from shutil import get_terminal_size
+    from .page import Page
 
-    from rich.console import Console
-
-    width, height = get_terminal_size()
-    console = Console(highlight=False, color_system=None, width=width, height=height)
-    with console.capture() as captured:
-        print_table(answers, console=console)
+    page = Page(is_plain=True)
+    with page.console.capture() as captured:
+        print_table(answers, page=page)
     encoding = sys.stdout.encoding or "ascii"
     return captured.get().rstrip("\n").encode(encoding, "replace").decode(encoding)
 
