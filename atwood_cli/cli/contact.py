@@ -48,7 +48,7 @@ def contact(
     if figure is not None:
         from ..output.scene_figure import save
 
-        save(answers, arc.kind, figure, target.force, bare, curves=True)
+        save(answers, figure, target.force, bare, curves=True)
     report = Report(
         json=lambda: contact_record(answers, arc),
         records=lambda: arc.points,

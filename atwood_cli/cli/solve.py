@@ -1,15 +1,15 @@
 """`atwood solve`: one scene, as a table, JSON, CSV, bare values, or with its derivation."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Annotated
 
 from ..model.quantities import MEASURED_NAMES, NAMES, read_names
 from ..model.scene import SceneError, read_digits
-from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_table, record
-from ..output.text import Destination, Report, cell, relevant_inputs, say, show
-from ..solver.answers import Answers, read_answers
+from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_steps, print_table, record
+from ..output.text import Destination, Report, cell, say, show
+from ..solver.answers import read_answers
 from ..solver.expected import failure, read_condition
-from ..solver.messages import reasons, unmarked
+from ..solver.messages import reasons
 from .options import (
     COULD_NOT,
     DONE,
@@ -84,12 +84,14 @@ def solve(
     if explain and answers.uncertainties:
         raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
     if figure is not None:
-        _draw(answers, figure, bare, target.force)
+        from ..output.scene_figure import save
+
+        save(answers, figure, target.force, bare)
     values = [cell(answers[name]) for name in names]
     report = Report(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
-        page=lambda: _explain(answers, names, markdown) if explain else print_table(answers, all_, budget),
+        page=lambda: print_steps(answers, names, markdown) if explain else print_table(answers, all_, budget),
         notes=lambda: notes_on_stderr(answers, names, values=not target.form),
         bare=[] if explain else values,
         below=lambda: print_budget(answers, names) if budget else None,
@@ -98,23 +100,3 @@ def solve(
     failures = [why for condition in conditions if (why := failure(answers, condition))]
     say(*aside, *failures)
     return COULD_NOT if "" in values or failures else DONE
-
-
-def _explain(answers: Answers, names: Sequence[str], markdown: bool) -> None:
-    """Print the derivation."""
-    from ..output.page import print_explanation
-    from ..solver.steps import explain
-
-    given = relevant_inputs(answers.case.scene, answers.case.motion)
-    print_explanation([*given.values()], explain(answers, names), markdown)
-
-
-def _draw(answers: Answers, path: str, bare: bool, force: bool) -> None:
-    """Draw the machine. Raises SceneError if the scene does not determine its tensions, OSError."""
-    from ..output.scene_figure import save
-    from ..solver.balance import kind_of
-
-    if answers["tension_1"] is None:
-        why = unmarked(answers.answer("tension_1").reason)
-        raise SceneError("figure", path, f"draws the tensions, which are not known: {why}")
-    save(answers, kind_of(answers.case) if answers.case.light else None, path, force, bare)

@@ -7,7 +7,7 @@ from contextlib import ExitStack
 from itertools import chain, islice
 from shutil import get_terminal_size
 from time import monotonic
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from ..model.units import counted
 from ..solver.answers import Answers
@@ -15,15 +15,11 @@ from ..solver.messages import unmarked, verdict
 from .files import printable
 from .text import relevant_inputs, wrapped
 
-if TYPE_CHECKING:
-    from ..solver.steps import Explanation
-
 Part = TypeVar("Part")
 Groups = Sequence[Sequence[Sequence[str]]]
 """Groups of rows of cells."""
 
-PIPE_WIDTH, WIDEST_DERIVATION, NARROWEST_DERIVATION = 100, 80, 40
-"""Widths, in characters."""
+PIPE_WIDTH = 100
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 
 
@@ -103,20 +99,6 @@ class Page:
                 joined = (Text("\n".join(column)) for column in zip(*part, strict=True))
                 table.add_row(*joined, end_section=number == len(parts))
         self.console.print(table, crop=False)
-
-
-def print_explanation(given: Sequence[str], explanation: "Explanation", markdown: bool) -> None:
-    """Print a derivation, step by step: in the columns of a terminal, or as Markdown."""
-    from .typeset import as_markdown, as_text
-
-    if markdown:
-        for line in as_markdown(given, explanation):
-            print(printable(line))
-        return
-    page = Page()
-    width = max(NARROWEST_DERIVATION, min(WIDEST_DERIVATION, page.room or WIDEST_DERIVATION))
-    for line, style in as_text(given, explanation, width):
-        page.line(line, style)
 
 
 def _width(columns: Iterable[int]) -> int:

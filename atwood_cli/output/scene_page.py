@@ -12,7 +12,8 @@ from ..model.scene import with_unit
 from ..solver.answers import Answers
 from ..solver.balance import Contact
 from ..solver.messages import notes, reasons, remarks, unmarked, verdict
-from .text import VERSION, cell, scene_record
+from .files import printable
+from .text import VERSION, cell, relevant_inputs, scene_record
 
 if TYPE_CHECKING:
     from .page import Page
@@ -137,6 +138,28 @@ def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = N
     rows = ([name, *cells] for name, *cells in zip(budgets, *columns, strict=True))
     by_group = groupby(rows, lambda row: QUANTITIES[row[0]].group)
     page.table(["Quantity", *answers.uncertain], [list(group) for _, group in by_group])
+
+
+LEAST_WIDTH, MOST_WIDTH = 40, 80
+"""The width of a derivation, in characters."""
+
+
+def print_steps(answers: Answers, names: Sequence[str], markdown: bool) -> None:
+    """Print the derivation of these quantities, or of all: in the columns of a terminal, or as Markdown."""
+    from ..solver.steps import explain
+    from .page import Page
+    from .typeset import as_markdown, as_text
+
+    given = relevant_inputs(answers.case.scene, answers.case.motion).values()
+    explanation = explain(answers, names)
+    if markdown:
+        for line in as_markdown(given, explanation):
+            print(printable(line))
+        return
+    page = Page()
+    width = max(LEAST_WIDTH, min(MOST_WIDTH, page.room or MOST_WIDTH))
+    for line, style in as_text(given, explanation, width):
+        page.line(line, style)
 
 
 # The arc of contact

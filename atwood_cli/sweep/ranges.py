@@ -246,8 +246,6 @@ def read_list(name: str, typed: str) -> Range:
     words = [word.strip() for word in typed.split(",")]
     if ":" in typed:
         raise SceneError(name, typed, "mixes a list with a range; give one of them")
-    if not all(words):
-        raise SceneError(name, typed, "has an empty place; write a list as 0,1,10")
     if name not in ("M", "wrap") and re.fullmatch(r"0,\d+", typed.strip()):
         decimal, other = typed.strip().replace(",", "."), ",".join(reversed(words))
         raise SceneError(name, typed, f"may be a decimal; write {decimal}, or {other} for the list")
