@@ -157,8 +157,6 @@ LEFT_OPEN = "is longer than 1 MB, the most taken; is a quotation mark left open?
 @pytest.mark.parametrize(
     ("name", "content", "why"),
     [
-        ("in.csv", f"{MANY},x", "it has more than 1024 columns, the most taken"),
-        ("in.ndjson", "".join(f'{{"k{i}":1}}\n' for i in range(1025)), "it has more than 1024 columns, the most taken"),
         ("in.csv", 'm1,m2\n"1,2\n' + "1,2\n" * 700_000, f"the row that begins in line 2 {LEFT_OPEN}"),
         ("in.csv", "m1,m2\n" + "1" * (4 << 20), "the row that begins in line 2 is longer than 1 MB, the most taken"),
         ("in.csv", "m1," + "1" * (4 << 20), "the row that begins in line 1 is longer than 1 MB, the most taken"),

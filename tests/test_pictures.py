@@ -418,18 +418,11 @@ def test_a_picture_that_cannot_be_written_is_a_sentence_and_no_file(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_picture_is_not_drawn_where_standard_output_goes(tmp_path: Path) -> None:
-    there = shlex.quote(str(tmp_path))
-    ran = process(shell=f"cd {there}; atwood contact --m1 1 --m2 3 --M 10 --figure a.svg --force > a.svg")
-    why = "atwood: --figure 'a.svg' is where standard output goes; name another\n"
-    assert (ran.status, ran.err, (tmp_path / "a.svg").read_text()) == (2, why, "")
-
-
 # The picture of tradeoff
 
 
 def test_the_picture_of_tradeoff_has_a_panel_for_each_family(tmp_path: Path) -> None:
-    names = [setting.name for setting in SETTINGS]
+    names = [*SETTINGS]
     off = dict(zip(names, (None, 39.2, 0.499, 4.2e-34), strict=True))
     measured = [Measured(family, name, 1e-7, off[name], 0.0) for family in FAMILIES for name in names]
     for bare in (False, True):

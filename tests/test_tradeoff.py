@@ -14,13 +14,13 @@ from atwood_cli import solve_arrays
 from atwood_cli.model.quantities import REGIMES, STANDARD
 from atwood_cli.model.scene import Scene
 from atwood_cli.tradeoff import measure as tradeoff
-from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Setting, draw_scenes, measure, timed
+from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, draw_scenes, measure, timed
 from atwood_cli.tradeoff.tradeoff_page import LEGEND, in_seconds, short
 
 from . import oracle
 from .running import Atwood, called
 
-NAMES = [setting.name for setting in SETTINGS]
+NAMES = [*SETTINGS]
 
 
 @pytest.fixture
@@ -78,8 +78,8 @@ def test_errors_are_those_against_the_oracle_and_promises_hold(family: str) -> N
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
     rights = [oracle.expected(Scene.read(row)) for row in rows]
     by_setting = {one.setting: one for one in measured}
-    for one, setting in zip(measured, SETTINGS[:-1], strict=False):  # the oracle's balls end before 50 digits
-        solved = setting.run(**columns)
+    for one in measured[:-1]:  # the oracle's balls end before 50 digits
+        solved = SETTINGS[one.setting](**columns)
         got = zip(*(solved[name] for name in STANDARD), strict=True)
         off = [*map(oracle_error, rights, got)]
         assert one.seconds > 0
@@ -146,7 +146,7 @@ def test_rows_that_take_long_are_few(
         clock.now += sizes[-1] * seconds
         return dict.fromkeys(STANDARD, [0] * sizes[-1])
 
-    monkeypatch.setattr(tradeoff, "SETTINGS", [Setting("slow", run)])
+    monkeypatch.setattr(tradeoff, "SETTINGS", {"slow": run})
     (found,) = measure("any", [{"m1": 1.0, "m2": 3.0, "M": 10.0, "mu": 0.3}])
     assert found.seconds == pytest.approx(seconds)
     assert max(sizes) == tradeoff.MOST_ROWS or max(sizes) * seconds >= tradeoff.LONG_SECONDS

@@ -13,18 +13,7 @@ from unicodedata import normalize
 
 from ..model.digits import to_double
 from ..model.quantities import NAMES, REGIMES
-from ..model.scene import (
-    INPUTS,
-    MASSES,
-    MEASURED,
-    OTHER_NAMES,
-    Given,
-    Scene,
-    SceneError,
-    parameter_of,
-    read_plain,
-    read_value,
-)
+from ..model.scene import INPUTS, MASSES, OTHER_NAMES, Scene, SceneError, parameter_of, read_plain, read_value
 from ..model.units import Malformed, counted, in_quotes, read_unit, shortened
 from ..solver.messages import reasons_at
 from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
@@ -42,10 +31,7 @@ LONG_CELL = 100
 
 
 class Question(NamedTuple):
-    """A question about a table: the quantities wanted, and remarks of the user on columns.
-
-    ``labels`` are columns that hold no input, whatever they look like. ``named`` maps headings to inputs.
-    """
+    """The quantities wanted of a table, its columns that hold no input, and the inputs by other headings."""
 
     names: Sequence[str]
     labels: Collection[str] = ()
@@ -66,8 +52,7 @@ class Layout(NamedTuple):
 def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> Layout:
     """Find the inputs among the columns. If the table is not ``whole``, a mass without a column has no cells.
 
-    Raises Unreadable if a column has the name of a result, or may mean an input and is neither an input nor a
-    label.
+    Raises Unreadable if a column has the name of a result, or may mean an input and is no label.
     """
     if clash := [column for column in columns if column in (*asked.names, ERROR)]:
         raise Unreadable(
@@ -87,7 +72,7 @@ def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> 
         way = " ".join(f"--column {mass}=HEADING" for mass in missing)
         raise Unreadable(f"{lacking} missing; there are {listed(columns)}; or give {way}")
     for column, name in doubtful.items():
-        if name in MEASURED:
+        if name not in INPUTS:
             raise refused(column, "has measurements, which only solve takes")
     not_read = [column for column in columns if column not in passed]
     return Layout([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read)
@@ -249,16 +234,14 @@ def _double(heading: Heading, cell: str | float, comma: bool) -> float:
 
 def _why(layout: Layout, row: Sequence[Any]) -> str:
     """Return the error of a row, in the words of `solve`. It quotes numbers as they were typed."""
-    cells: dict[str, Given | None] = {}
+    cells: dict[str, Any] = {}
     for heading, cell in zip(layout.headings, row, strict=True):
         text = pointed(heading.name, cell, layout.comma) if isinstance(cell, str) else cell
         if text is None or text in EMPTY:
             continue
-        if str(text).lower() == "inf":  # which has no unit
-            cells[heading.name] = inf
-        else:
-            typed = f"{text}{heading.unit}" if heading.unit or isinstance(text, str) else float(text)
-            cells[heading.name] = typed
+        if heading.unit and str(text).lower() != "inf":
+            text = f"{text}{heading.unit}"
+        cells[heading.name] = text if isinstance(text, str) else float(text)
     try:
         Scene.read(cells)
     except SceneError as error:

@@ -66,10 +66,10 @@ class Command(TyperCommand):
         return ["[OPTIONS]", *(str(param.metavar) for param in arguments)]
 
 
-Version = Annotated[bool, typer.Option("--version", "-V", help="Print the version.")]
-
-
-def root(context: typer.Context, version: Version = False) -> None:
+def root(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", "-V", help="Print the version.")] = False,
+) -> None:
     """Print the version, or the help if no command is named."""
     if version:
         print(f"atwood {__version__}")
@@ -95,12 +95,6 @@ def program(names: Sequence[str] = COMMANDS) -> Any:
     return typer.main.get_command(app)
 
 
-def _needed(arguments: list[str]) -> tuple[str, ...]:
-    """Return the command named, or all commands if help, completion or a hint must know them."""
-    first = next(iter(arguments), "")
-    return (first,) if first in COMMANDS and COMPLETING not in os.environ else COMMANDS
-
-
 def run(arguments: list[str] | None = None) -> int:
     """Run the command line. Every error ends in a sentence on stderr and an exit status."""
     # A stream that the caller has closed is None. Lost results are an error, lost messages are not.
@@ -112,7 +106,9 @@ def run(arguments: list[str] | None = None) -> int:
         arguments = sys.argv[1:] if arguments is None else arguments
         if arguments[:1] == ["help"]:
             arguments = [*arguments[1:], "-h"]
-        command = program(_needed(arguments))
+        # Help, completion and hints must know all commands.
+        is_one = arguments and arguments[0] in COMMANDS and COMPLETING not in os.environ
+        command = program(arguments[:1] if is_one else COMMANDS)
         status = command.main(arguments, prog_name="atwood", standalone_mode=False) or DONE
         if status == ON_CTRL_C:
             raise KeyboardInterrupt
@@ -130,6 +126,8 @@ def run(arguments: list[str] | None = None) -> int:
         hint = f"{error.ctx.command_path} -h shows how" if error.ctx else ""
         words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
         said = shortened(words, LONGEST_NAME)
+        if "extra argument" in said:
+            said += ": a value with a blank needs quotation marks, as '200 g'"
         say(f"{said}{' ' if said.endswith('?') else '; '}{hint}" if hint else said)
         return WRONG_USAGE
     except (KeyboardInterrupt, typer.Abort):

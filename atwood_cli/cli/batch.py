@@ -16,8 +16,8 @@ Table = Annotated[
     typer.Argument(
         metavar="IN",
         rich_help_panel="Files",
-        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, as .csv.gz; - for stdin;"
-        " a pipe is read as CSV.",
+        help="Table of scenes: .csv, .tsv, .ndjson, .jsonl, .parquet, or compressed, as .csv.gz;"
+        " - for stdin; a pipe is read as CSV.",
         show_default=False,
     ),
 ]
@@ -31,28 +31,6 @@ OutTable = Annotated[
         help="Write to this file, in the format of IN; - for stdout, if not given.",
     ),
 ]
-FromFormat = Annotated[
-    str | None,
-    option(
-        "Files",
-        "--from",
-        metavar="|".join(FORMATS),
-        words=lambda: dict.fromkeys(FORMATS, ""),
-        help="Format of IN, if not that of its suffix.",
-    ),
-]
-Headings = Annotated[
-    list[str] | None,
-    option(
-        "Files",
-        "--column",
-        metavar="NAME=HEADING",
-        help="What a column holds, if its heading does not say, as R='radius in m'; repeatable.",
-    ),
-]
-AllowErrors = Annotated[bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")]
-
-
 HELP = f"""Solve a table of scenes and append the results.
 
 \b
@@ -79,11 +57,30 @@ def batch(
     table: Table,
     *,
     output: OutTable = "-",
-    from_: FromFormat = None,
-    column: Headings = None,
+    from_: Annotated[
+        str | None,
+        option(
+            "Files",
+            "--from",
+            metavar="|".join(FORMATS),
+            words=lambda: dict.fromkeys(FORMATS, ""),
+            help="Format of IN, if not that of its suffix.",
+        ),
+    ] = None,
+    column: Annotated[
+        list[str] | None,
+        option(
+            "Files",
+            "--column",
+            metavar="NAME=HEADING",
+            help="What a column holds, if its heading does not say, as R='radius in m'; repeatable.",
+        ),
+    ] = None,
     label: Labels = None,
     only: Columns = None,
-    allow_errors: AllowErrors = False,
+    allow_errors: Annotated[
+        bool, option("Output", "--allow-errors", help="Exit 0 though rows have errors.")
+    ] = False,
     force: Force = False,
 ) -> int:
     from ..batch.run import Job, run_batch

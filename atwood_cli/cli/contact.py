@@ -10,15 +10,6 @@ from ..solver import balance
 from ..solver.answers import Answers
 from .options import DONE, OUTPUT, SCENE, Bare, Digits, FigureFile, option, with_options
 
-Points = Annotated[
-    str | None,
-    option(
-        "Arc",
-        metavar="N",
-        help=f"Angles along the arc to show, with both ends; {balance.USUAL_POINTS} if not given.",
-    ),
-]
-
 HELP = """Show the forces along the arc of contact and their sum.
 
 \b
@@ -38,7 +29,14 @@ def contact(
     given: Mapping[str, str | None],
     target: Destination,
     *,
-    points: Points = None,
+    points: Annotated[
+        str | None,
+        option(
+            "Arc",
+            metavar="N",
+            help=f"Angles along the arc to show, with both ends; {balance.USUAL_POINTS} if not given.",
+        ),
+    ] = None,
     digits: Digits = None,
     figure: FigureFile = None,
     bare: Bare = False,
@@ -50,7 +48,7 @@ def contact(
     if figure is not None:
         from ..output.scene_figure import save
 
-        save(answers, arc.kind, figure, target.force, bare, curves=True)
+        save(answers, figure, target.force, bare, curves=True)
     report = Report(
         json=lambda: contact_record(answers, arc),
         records=lambda: arc.points,

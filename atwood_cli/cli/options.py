@@ -42,12 +42,11 @@ def flag(name: str) -> str:
     return f"--{name.rstrip('_').replace('_', '-')}"
 
 
-Words = Callable[[], Mapping[str, str]]
-"""A function that returns the words that a shell may complete, with their meanings."""
+def option(group: str, *flags: str, words: Callable[[], Mapping[str, str]] | None = None, **more: Any) -> Any:
+    """Return an option, with the ``group`` in which help shows it.
 
-
-def option(group: str, *flags: str, words: Words | None = None, **more: Any) -> Any:
-    """Return an option, with the ``group`` in which help shows it, and the words that complete it."""
+    ``words`` returns the words that a shell may complete, with their meanings.
+    """
 
     def complete(incomplete: str) -> list[tuple[str, str]]:
         return list(words().items()) if words else []
@@ -173,7 +172,7 @@ Columns = Annotated[
     ),
 ]
 FigureFile = Annotated[
-    str | None, option("Files", metavar="FILE", help="Draw it to FILE.svg, .png or .pdf (extra: figure).")
+    str | None, option("Files", metavar="FILE", help="Draw a picture: .svg, .png or .pdf (extra: figure).")
 ]
 Bare = Annotated[bool, option("Files", "--bare", help="With --figure: no title, as for a report.")]
 Labels = Annotated[
@@ -215,11 +214,9 @@ def results(*forms: str) -> dict[str, Any]:
 def _read_target(options: Mapping[str, Any]) -> Destination:
     """Read the form and the file of a result. Raises SceneError, FileExistsError."""
     asked = next((form for form in FORMS if options.get(form)), "")
-    file, force, figure = options["output"], options["force"], options.get("figure")
+    file, force = options["output"], options["force"]
     if file in (None, STDOUT):
         return Destination(asked, None, force)
-    if figure and os.path.realpath(figure) == os.path.realpath(file):
-        raise SceneError("figure", figure, "is the file of --output; name another")
     form = _form_of_file(file, asked, options)
     check_free(Path(file), force)
     return Destination(form, file, force)
@@ -227,21 +224,17 @@ def _read_target(options: Mapping[str, Any]) -> Destination:
 
 def _form_of_file(file: str, asked: str, options: Mapping[str, Any]) -> str:
     """Return the form of a file, as asked for or by its suffix. Raises SceneError if the two disagree."""
-    name, suffix = os.path.splitext(file)
     if asked:
         forms = {FORMS[asked].suffix: asked}
     elif options.get("explain"):
         forms = {".md" if options["markdown"] else ".txt": ""}
     else:
         forms = {".txt": "", **{FORMS[form].suffix: form for form in FORMS if form in options}}
-    if not suffix or suffix.lower() in forms:
-        return forms.get(suffix.lower(), asked)
-    if len(forms) > 1:
-        raise SceneError("output", file, f"must end in one of {', '.join(forms)}")
-    (right,) = forms
-    kind = asked.upper() or {".md": "Markdown", ".txt": "text"}[right]
-    instead = f", or add --markdown and name it {name}.md" if right == ".txt" else ""
-    raise SceneError("output", file, f"would hold {kind}; name it {name}{right}{instead}")
+    suffix = os.path.splitext(file)[1].lower()
+    if suffix and suffix not in forms:
+        markdown = "; add --markdown for .md" if options.get("explain") and ".txt" in forms else ""
+        raise SceneError("output", file, f"must end in {' or '.join(forms)}{markdown}")
+    return forms.get(suffix, asked)
 
 
 OUTPUT = results(*FORMS)

@@ -1,15 +1,15 @@
 """`atwood solve`: one scene, as a table, JSON, CSV, bare values, or with its derivation."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Annotated
 
 from ..model.quantities import MEASURED_NAMES, NAMES, read_names
 from ..model.scene import SceneError, read_digits
-from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_table, record
-from ..output.text import Destination, Report, cell, relevant_inputs, say, show
-from ..solver.answers import Answers, read_answers
+from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_steps, print_table, record
+from ..output.text import Destination, Report, cell, say, show
+from ..solver.answers import read_answers
 from ..solver.expected import failure, read_condition
-from ..solver.messages import reasons, unmarked
+from ..solver.messages import reasons
 from .options import (
     COULD_NOT,
     DONE,
@@ -17,15 +17,13 @@ from .options import (
     SCENE,
     Bare,
     Digits,
+    FigureFile,
     option,
     quantity_meanings,
     scene_option,
     with_options,
 )
 
-Acceleration = Annotated[str | None, scene_option("a", "Measured")]
-Drop = Annotated[str | None, scene_option("drop", "Measured")]
-Time = Annotated[str | None, scene_option("time", "Measured")]
 Only = Annotated[
     list[str] | None,
     option(
@@ -39,21 +37,6 @@ Expect = Annotated[
     list[str] | None,
     option("Output", metavar="CONDITION", help="Exit 1 unless it holds: no-slip, 'a < 0.3g'; repeatable."),
 ]
-Markdown = Annotated[
-    bool, option("Output", "--markdown", help="With --explain: Markdown with LaTeX (-o FILE.md).")
-]
-All = Annotated[bool, option("Output", "--all", help="Show all quantities, and why any are missing.")]
-Budget = Annotated[
-    bool, option("Output", "--budget", help="Also print each uncertain input's share of the variance.")
-]
-Explain = Annotated[
-    bool, option("Output", "--explain", help="Show the derivation instead, with numbers put in.")
-]
-Figure = Annotated[
-    str | None,
-    option("Files", metavar="FILE", help="Also draw the machine: .svg, .png, .pdf (extra: figure)."),
-]
-
 HELP = """Solve one scene: acceleration, tensions, friction.
 
 \b
@@ -72,17 +55,25 @@ def solve(
     given: Mapping[str, str | None],
     target: Destination,
     *,
-    a: Acceleration = None,
-    drop: Drop = None,
-    time: Time = None,
+    a: Annotated[str | None, scene_option("a", "Measured")] = None,
+    drop: Annotated[str | None, scene_option("drop", "Measured")] = None,
+    time: Annotated[str | None, scene_option("time", "Measured")] = None,
     only: Only = None,
     expect: Expect = None,
-    all_: All = False,
+    all_: Annotated[
+        bool, option("Output", "--all", help="Show all quantities, and why any are missing.")
+    ] = False,
     digits: Digits = None,
-    budget: Budget = False,
-    explain: Explain = False,
-    markdown: Markdown = False,
-    figure: Figure = None,
+    budget: Annotated[
+        bool, option("Output", "--budget", help="Also print each uncertain input's share of the variance.")
+    ] = False,
+    explain: Annotated[
+        bool, option("Output", "--explain", help="Show the derivation instead, with numbers put in.")
+    ] = False,
+    markdown: Annotated[
+        bool, option("Output", "--markdown", help="With --explain: Markdown with LaTeX (-o FILE.md).")
+    ] = False,
+    figure: FigureFile = None,
     bare: Bare = False,
 ) -> int:
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
@@ -93,12 +84,14 @@ def solve(
     if explain and answers.uncertainties:
         raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
     if figure is not None:
-        _draw(answers, figure, bare, target.force)
+        from ..output.scene_figure import save
+
+        save(answers, figure, target.force, bare)
     values = [cell(answers[name]) for name in names]
     report = Report(
         json=lambda: record(answers, names, budget),
         records=lambda: [csv_record(answers, names or answers.names, budget)],
-        page=lambda: _explain(answers, names, markdown) if explain else print_table(answers, all_, budget),
+        page=lambda: print_steps(answers, names, markdown) if explain else print_table(answers, all_, budget),
         notes=lambda: notes_on_stderr(answers, names, values=not target.form),
         bare=[] if explain else values,
         below=lambda: print_budget(answers, names) if budget else None,
@@ -107,23 +100,3 @@ def solve(
     failures = [why for condition in conditions if (why := failure(answers, condition))]
     say(*aside, *failures)
     return COULD_NOT if "" in values or failures else DONE
-
-
-def _explain(answers: Answers, names: Sequence[str], markdown: bool) -> None:
-    """Print the derivation."""
-    from ..output.page import print_explanation
-    from ..solver.steps import explain
-
-    given = relevant_inputs(answers.case.scene, answers.case.motion)
-    print_explanation([*given.values()], explain(answers, names), markdown)
-
-
-def _draw(answers: Answers, path: str, bare: bool, force: bool) -> None:
-    """Draw the machine. Raises SceneError if the scene does not determine its tensions, OSError."""
-    from ..output.scene_figure import save
-    from ..solver.balance import kind_of
-
-    if answers["tension_1"] is None:
-        why = unmarked(answers.answer("tension_1").reason)
-        raise SceneError("figure", path, f"draws the tensions, which are not known: {why}")
-    save(answers, kind_of(answers.case) if answers.case.light else None, path, force, bare)

@@ -13,9 +13,10 @@ from .options import DONE, Bare, FigureFile, check_figure, option, results, with
 def _families() -> Mapping[str, str]:
     from ..tradeoff.measure import FAMILIES
 
-    return {name: family.meaning for name, family in FAMILIES.items()}
+    return {name: meaning for name, (_, meaning) in FAMILIES.items()}
 
 
+DEFAULT_SCENES, DEFAULT_SEED, MOST_SEED = 500, 1, 10**9
 Families = Annotated[
     list[str] | None,
     option(
@@ -26,23 +27,6 @@ Families = Annotated[
         help="Measure this family of scenes only; repeatable.",
     ),
 ]
-DEFAULT_SCENES, DEFAULT_SEED, MOST_SEED = 500, 1, 10**9
-Scenes = Annotated[
-    str | None,
-    option(
-        "Measurement",
-        metavar="N",
-        help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given.",
-    ),
-]
-Seed = Annotated[
-    str | None,
-    option(
-        "Measurement", metavar="N", help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given."
-    ),
-]
-
-
 HELP = """Measure what accuracy costs in time on this machine.
 
 \b
@@ -58,8 +42,22 @@ def tradeoff(
     target: Destination,
     *,
     family: Families = None,
-    scenes: Scenes = None,
-    seed: Seed = None,
+    scenes: Annotated[
+        str | None,
+        option(
+            "Measurement",
+            metavar="N",
+            help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given.",
+        ),
+    ] = None,
+    seed: Annotated[
+        str | None,
+        option(
+            "Measurement",
+            metavar="N",
+            help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given.",
+        ),
+    ] = None,
     figure: FigureFile = None,
     bare: Bare = False,
 ) -> int:

@@ -1,7 +1,6 @@
 """Pictures in files, as wide as the text of a printed page: their size, their style and their sentences.
 
-matplotlib draws them (extra ``figure``), without pyplot or a display. The same scene gives the same SVG, to
-the byte.
+matplotlib draws them (extra ``figure``), without a display. The same scene gives the same SVG, to the byte.
 """
 
 import os
@@ -20,7 +19,7 @@ from xml.sax.saxutils import escape
 from ..model.quantities import QUANTITIES
 from ..model.scene import SceneError
 from ..model.units import LONGEST_NAME, shortened
-from .files import check_free, is_stdout, written_beside
+from .files import check_free, written_beside
 from .text import say, wrapped
 
 if TYPE_CHECKING:
@@ -96,14 +95,9 @@ def axis_words(name: str) -> tuple[str, str]:
 
 
 def check_file(path: str, force: bool) -> None:
-    """Check that a picture can be written, before anything is computed, and import matplotlib.
-
-    Raises SceneError if the suffix is no format, ImportError, and OSError if the file exists.
-    """
+    """Import matplotlib, and check that it can write the picture. Raises SceneError, ImportError, OSError."""
     if Path(path).suffix[1:].lower() not in FORMATS:
         raise SceneError("figure", path, f"must end in one of {', '.join(f'.{kind}' for kind in FORMATS)}")
-    if is_stdout(path):
-        raise SceneError("figure", path, "is where standard output goes; name another")
     os.environ["MPLBACKEND"] = "agg"
     getLogger("matplotlib").setLevel(ERROR)  # silent about settings of the user, which are not used
     import_module("matplotlib")
@@ -156,11 +150,7 @@ def typeset(words: str) -> str:
 
 
 def _in_lines(words: str) -> str:
-    """Return words in lines that fit, and that are about equally long."""
-    words = typeset(words)
-    count = len(wrapped(words, LINE_CHARACTERS))
-    lines = (wrapped(words, width) for width in range(1, LINE_CHARACTERS + 1))
-    return "\n".join(next(split for split in lines if len(split) <= count))
+    return "\n".join(wrapped(typeset(words), LINE_CHARACTERS))
 
 
 def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) -> None:

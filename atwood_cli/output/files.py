@@ -46,14 +46,6 @@ def check_free(path: Path, force: bool) -> None:
         raise FileExistsError(errno.EEXIST, "it exists already; --force replaces it", str(path))
 
 
-def is_stdout(path: str) -> bool:
-    """Decide whether standard output goes to that file, by any name."""
-    try:
-        return os.path.isfile(path) and os.path.samestat(os.stat(path), os.fstat(sys.stdout.fileno()))
-    except (OSError, ValueError, AttributeError):  # stdout is closed, or the file not there yet
-        return False
-
-
 @contextmanager
 def written_beside(path: Path, force: bool = False) -> Iterator[Path]:
     """Yield a file to write beside ``path``, and rename it to that when all went well. Raises OSError.

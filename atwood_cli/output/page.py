@@ -7,39 +7,37 @@ from contextlib import ExitStack
 from itertools import chain, islice
 from shutil import get_terminal_size
 from time import monotonic
-from typing import TYPE_CHECKING, TypeVar
+from typing import Any, TypeVar
 
 from ..model.units import counted
 from ..solver.answers import Answers
 from ..solver.messages import unmarked, verdict
 from .files import printable
-from .text import describe, wrapped
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-    from ..solver.steps import Explanation
+from .text import relevant_inputs, wrapped
 
 Part = TypeVar("Part")
 Groups = Sequence[Sequence[Sequence[str]]]
 """Groups of rows of cells."""
 
-PIPE_WIDTH, WIDEST_DERIVATION, NARROWEST_DERIVATION = 100, 80, 40
-"""Widths, in characters."""
+PIPE_WIDTH = 100
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 
 
 class Page:
     """A printer of tables and sentences, to a terminal or to a pipe, which takes any width."""
 
-    def __init__(self, console: "Console | None" = None) -> None:
+    def __init__(self, is_plain: bool = False) -> None:
+        """Make a page for standard output, without colours if it ``is_plain``."""
         from rich.console import Console
 
         # rich itself would take COLUMNS=0 at its word, and any dumb terminal to be 80 columns wide.
         width, height = get_terminal_size()
         # FORCE_COLOR concerns the terminal, not the file of --output.
-        force = None if sys.stdout is sys.__stdout__ else False
-        self.console = console or Console(highlight=False, force_terminal=force, width=width, height=height)
+        force = None if is_plain or sys.stdout is sys.__stdout__ else False
+        colours: Any = None if is_plain else "auto"
+        self.console = Console(
+            highlight=False, color_system=colours, force_terminal=force, width=width, height=height
+        )
         self.room = self.console.width if self.console.is_terminal else None
         self.width = self.room or PIPE_WIDTH
 
@@ -57,7 +55,8 @@ class Page:
 
     def head(self, answers: Answers, found: str = "") -> None:
         """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
-        self.say(describe(answers.case.scene, answers.case.motion, answers.uncertain))
+        given = relevant_inputs(answers.case.scene, answers.case.motion, answers.uncertain)
+        self.say(", ".join(given.values()))
         if found:
             self.say(found, style="bold")
         self.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.case.regime]}")
@@ -100,20 +99,6 @@ class Page:
                 joined = (Text("\n".join(column)) for column in zip(*part, strict=True))
                 table.add_row(*joined, end_section=number == len(parts))
         self.console.print(table, crop=False)
-
-
-def print_explanation(given: Sequence[str], explanation: "Explanation", markdown: bool) -> None:
-    """Print a derivation, step by step: in the columns of a terminal, or as Markdown."""
-    from .typeset import as_markdown, as_text
-
-    if markdown:
-        for line in as_markdown(given, explanation):
-            print(printable(line))
-        return
-    page = Page()
-    width = max(NARROWEST_DERIVATION, min(WIDEST_DERIVATION, page.room or WIDEST_DERIVATION))
-    for line, style in as_text(given, explanation, width):
-        page.line(line, style)
 
 
 def _width(columns: Iterable[int]) -> int:

@@ -15,10 +15,10 @@ from ..model import arc
 from ..model.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..model.scene import SceneError
 from ..solver.answers import Answers
-from ..solver.balance import about, point
+from ..solver.balance import about, kind_of, point
 from ..solver.messages import unmarked, verdict
 from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_file, page, typeset, write_beside
-from .text import describe
+from .text import relevant_inputs
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -38,15 +38,13 @@ BETWEEN_WEIGHTS = 18  # characters for which there is room
 ROTATION_AT, AXLE_AT, ACCELERATION = 0.56, 0.24, 0.4  # two distances from the axle, and a length
 
 
-def save(
-    answers: Answers, kind: arc.Profile | None, path: str, force: bool, bare: bool, curves: bool = False
-) -> None:
+def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = False) -> None:
     """Draw the machine to a file, whose suffix is its format, and with ``curves`` the forces along the arc.
 
-    ``kind`` is how the tension runs along the arc, None if an end of the string is fixed to the pulley.
     ``bare`` leaves out all sentences except on how it is drawn. Raises SceneError, OSError.
     """
     check_file(path, force)
+    kind = kind_of(answers.case) if answers.case.light else None  # else an end is fixed to the pulley
     case, few = answers.case, answers.to(min(answers.digits or SHOWN_DIGITS, SHOWN_DIGITS))
     doubles, forces = answers.to(None), dict[str, float]()
     for end, mass in (("1", case.scene.m1), ("2", case.scene.m2)):
@@ -65,7 +63,8 @@ def save(
     below = [*_caption(few, kind, wrap, bare)]
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
-    above = [describe(case.scene, case.motion, answers.uncertain), unmarked(verdict(few))]
+    given = relevant_inputs(case.scene, case.motion, answers.uncertain)
+    above = [", ".join(given.values()), unmarked(verdict(few))]
     with page(path, force, above, " ".join(below), bare, panels=1 + curves) as figure:
         machine, *more = figure.subplots(1 + curves, height_ratios=[1.6, 1][: 1 + curves], squeeze=False).flat
         machine.axis("off")

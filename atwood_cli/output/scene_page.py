@@ -12,11 +12,10 @@ from ..model.scene import with_unit
 from ..solver.answers import Answers
 from ..solver.balance import Contact
 from ..solver.messages import notes, reasons, remarks, unmarked, verdict
-from .text import VERSION, cell, scene_record
+from .files import printable
+from .text import VERSION, cell, relevant_inputs, scene_record
 
 if TYPE_CHECKING:
-    from rich.console import Console
-
     from .page import Page
 
 
@@ -62,17 +61,15 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
 
 
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
-AT_LIMIT = ("friction_force", "friction_force_x", "friction_force_y")
-"""The quantities that have a single value only if friction is at its limit."""
 
 
 def print_table(
-    answers: Answers, whole: bool = False, budget: bool = False, console: "Console | None" = None
+    answers: Answers, whole: bool = False, budget: bool = False, page: "Page | None" = None
 ) -> None:
     """Print the scene, the verdict, the main quantities or the ``whole`` table, notes, and the budget."""
     from .page import Page
 
-    answers, page = answers.shown, Page(console)
+    answers, page = answers.shown, page or Page()
     names = answers.names[1:] if whole else answers.main
     groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *answers.found)])
     found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
@@ -89,14 +86,11 @@ def print_table(
 
 def as_text(answers: Answers) -> str:
     """Return the page as text without colours, in the width and the characters of standard output."""
-    from shutil import get_terminal_size
+    from .page import Page
 
-    from rich.console import Console
-
-    width, height = get_terminal_size()
-    console = Console(highlight=False, color_system=None, width=width, height=height)
-    with console.capture() as captured:
-        print_table(answers, console=console)
+    page = Page(is_plain=True)
+    with page.console.capture() as captured:
+        print_table(answers, page=page)
     encoding = sys.stdout.encoding or "ascii"
     return captured.get().rstrip("\n").encode(encoding, "replace").decode(encoding)
 
@@ -106,13 +100,12 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     from .page import aligned
 
     values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
-    if values.get("least_heavier_mass") == values.get("critical_heavier_mass"):
-        values.pop("least_heavier_mass", None)  # on a locked pulley the two are the same
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
         about, case = QUANTITIES[name], answers.case
         equation = cited(name, case.regime == "slip", case.has_axle_friction)
-        shown = f"{name} at mu_verge" if name in AT_LIMIT and case.mu_assumed else name
+        at_limit = name.startswith("friction_force") and case.mu_assumed  # and has a single value then
+        shown = f"{name} at mu_verge" if at_limit else name
         row = [shown, value, about.unit, about.symbol, equation]
         groups.setdefault(about.group, []).append(row)
     return list(groups.values())
@@ -145,6 +138,28 @@ def print_budget(answers: Answers, names: Sequence[str], page: "Page | None" = N
     rows = ([name, *cells] for name, *cells in zip(budgets, *columns, strict=True))
     by_group = groupby(rows, lambda row: QUANTITIES[row[0]].group)
     page.table(["Quantity", *answers.uncertain], [list(group) for _, group in by_group])
+
+
+LEAST_WIDTH, MOST_WIDTH = 40, 80
+"""The width of a derivation, in characters."""
+
+
+def print_steps(answers: Answers, names: Sequence[str], markdown: bool) -> None:
+    """Print the derivation of these quantities, or of all: in the columns of a terminal, or as Markdown."""
+    from ..solver.steps import explain
+    from .page import Page
+    from .typeset import as_markdown, as_text
+
+    given = relevant_inputs(answers.case.scene, answers.case.motion).values()
+    explanation = explain(answers, names)
+    if markdown:
+        for line in as_markdown(given, explanation):
+            print(printable(line))
+        return
+    page = Page()
+    width = max(LEAST_WIDTH, min(MOST_WIDTH, page.room or MOST_WIDTH))
+    for line, style in as_text(given, explanation, width):
+        page.line(line, style)
 
 
 # The arc of contact

@@ -3,7 +3,7 @@
 import json
 import os
 import sys
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
@@ -11,7 +11,7 @@ from math import inf
 from typing import Any, NamedTuple, TextIO
 
 from ..model.digits import Rounding, as_typed, exact_or_rounded, format_number, is_infinite, to_double
-from ..model.scene import INERTIA_FACTORS, MEASURED, UNMEASURED, Axle, Motion, Scene, parameter_of, with_unit
+from ..model.scene import MEASURED, UNMEASURED, Axle, Motion, Scene, parameter_of, with_unit
 from ..model.units import Angle
 from .files import Stdout, printable, stdout_into
 
@@ -214,35 +214,21 @@ def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
     }
 
 
-def describe(scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}) -> str:
-    """Say the scene in one line, as understood, with uncertainties."""
-    return ", ".join(relevant_inputs(scene, motion, uncertain).values())
+DEFAULTS = ("inertia = 0.5", "wrap = 180°")
+"""The default inputs on which nothing depends if the pulley has neither mass nor friction."""
 
 
 def relevant_inputs(
     scene: Scene,
     motion: Motion = UNMEASURED,
     uncertain: Mapping[str, Fraction] = {},
-    varied: Container[str] = (),
+    varied: Iterable[str] = (),
 ) -> dict[str, str]:
-    """Say each input. Hide the default inertia and wrap if no result depends on them.
-
-    The inertia has no effect on a pulley without mass or at rest, the wrap none if
-    there is neither friction nor a pulley with mass.
-    """
-    has_friction = scene.mu is not None or "mu" in varied or motion.finds is not None
-    heavy = scene.M not in (None, 0) or scene.I is not None or "M" in varied or "I" in varied
-    idle = set()
-    if (
-        scene.inertia == Fraction(INERTIA_FACTORS["disk"])
-        and not has_friction
-        and (not heavy or scene.M == inf)
-    ):
-        idle.add("inertia")
-    if scene.wrap.is_half_turn and not (has_friction or heavy or scene.axle is not None or "axle" in varied):
-        idle.add("wrap")
+    """Say each input, as understood, but no defaults on which nothing depends."""
+    given = {name for name, value in scene._asdict().items() if value} | {*varied, motion.finds}
+    idle = () if given & {"M", "mu", "I", "axle"} else DEFAULTS
     in_words = inputs_in_words(scene, motion, uncertain)
-    return {name: words for name, words in in_words.items() if name not in idle or name in uncertain}
+    return {name: words for name, words in in_words.items() if words not in idle}
 
 
 def inputs_in_words(

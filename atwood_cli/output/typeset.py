@@ -1,8 +1,4 @@
-"""Set a derivation in type: plain text for a terminal, Markdown with LaTeX for a handout.
-
-The first half writes formulas, with symbols or with numbers. The second half makes a page of sentences and
-equations.
-"""
+"""Set a derivation in type: plain text for a terminal, Markdown with LaTeX for a handout."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping

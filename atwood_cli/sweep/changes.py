@@ -1,8 +1,7 @@
 """Find the values along a range at which the regime changes, exactly.
 
 The regime is decided at a few values, between which each condition that it depends on changes at most once.
-If it differs at two of them, it changes at one of these, or is decided between them, exactly by `Decisions`,
-until both sides of the change round to the same decimal.
+If it differs at two of them, it is decided between them until both sides of the change round alike.
 
 **Why no change is missed.** With friction given, the string slips where ln r > μφ. By (1), and (3) with the
 friction of the axle, the tension ratio of a string that grips is
@@ -21,9 +20,8 @@ c = 0 and for c = ∞. Along one parameter ln r - μφ is monotone, but for a sw
 - It rises with h up to l + b, as h/l does. Beyond, r goes with h/(2h + c - b): it rises for c >= b and falls
   for c < b.
 
-So it turns only where a swept mass equals the other mass m, as it becomes the heavier one there, and where
-it equals m + b. These are asked. Between them the sign of m2 - m1, and whether h - l <= b, change at most
-once, too. A condition that changes at most once, and is the same at both ends, is the same between them.
+So it turns only where a swept mass equals the other mass m, and so becomes the heavier, and where it equals
+m + b. These are asked. Between them the sign of m2 - m1, and whether h - l <= b, change at most once, too.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -95,7 +93,8 @@ def regimes(along: Range, found: Sequence[Change], scene: Scene) -> str:
         parts.append(f"{change.before} {where} {place if before else f'{along.name} = {place}'}")
     last = found[-1].after if found else Decisions(with_value(scene, along.name, along.ends[0])).regime
     parts.append(f"{last} beyond" if found else last)
-    if along.locks and (locked := Decisions(scene._replace(M=inf)).regime) != last:
+    locks = along.is_list and LOCKED in along.points
+    if locks and (locked := Decisions(scene._replace(M=inf)).regime) != last:
         parts.append(f"{locked} at {along.in_words(LOCKED)}")
     return ", ".join(parts)
 

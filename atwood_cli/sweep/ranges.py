@@ -1,10 +1,8 @@
 """Ranges and lists in place of values: the points of a sweep, and the answers there.
 
-A point is exactly the number that is printed, so that `solve` given that number prints the same row.
-Linear ranges step in exact fractions from one end to the other: steps of 0.1 are 0.1. Points that are no
-decimals (steps of a third), or at equal ratios, are rounded to the digits of results, or to more if
-neighbours would look alike. Ends that are decimals are points exactly. The values of a list are all exact: a
-name such as disk is a point 0.5, a third is the text 1/3.
+A point is exactly the number that is printed, so that `solve` given that number prints the same row. Steps of
+0.1 are 0.1. Points that are no decimals, or at equal ratios, are rounded to the digits of results, or to more
+if neighbours would look alike; ends and the values of a list are not rounded.
 """
 
 import re
@@ -12,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
 from itertools import product
-from math import inf
+from math import inf, prod
 from typing import Any, NamedTuple
 
 from ..arithmetic.interval import decimal_context
@@ -33,7 +31,6 @@ from ..model.scene import (
     Input,
     Scene,
     SceneError,
-    parameter_of,
     read_exactly,
     read_value,
     read_whole,
@@ -65,7 +62,7 @@ class Point(NamedTuple):
 
     @property
     def text(self) -> str:
-        """The point as `solve` takes it."""
+        """Return the point as `solve` takes it."""
         return self.printed if isinstance(self.printed, str) else format_number(self.printed)
 
 
@@ -102,15 +99,12 @@ class Range(NamedTuple):
 
     @property
     def words(self) -> str:
-        """The range in a sentence: M from 0 to 50 kg, or M = 0 kg, 10 kg or inf."""
+        """Return the range in a sentence: M from 0 to 50 kg, or M = 0 kg, 10 kg or inf."""
         if not self.is_list:
             start, stop = self.points[0], self.points[-1]
             return f"{self.name} from {self.cell(start)} to {self.in_units(stop)}"
-        values = [self.in_units(point) for point in self.points]
-        said = [
-            f"{point.name} ({value})" if point.name else value
-            for point, value in zip(self.points, values, strict=True)
-        ]
+        values = zip(self.points, map(self.in_units, self.points), strict=True)
+        said = [f"{point.name} ({value})" if point.name else value for point, value in values]
         first = said[:-1] if len(said) <= MOST_VALUES_SAID else [*said[:2], "..."]
         return f"{self.name} = {', '.join(first)} or {said[-1]}"
 
@@ -119,18 +113,13 @@ class Range(NamedTuple):
         return self.suffix or INPUTS[self.name].unit
 
     @property
-    def locks(self) -> bool:
-        """Whether a point is a locked pulley."""
-        return self.is_list and LOCKED in self.points
-
-    @property
     def finite(self) -> list[Point]:
-        """The finite points, in ascending order."""
+        """Return the finite points, in ascending order."""
         return sorted(point for point in self.points if point != LOCKED)
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
-        """The least and the greatest finite value, in the unit of the range."""
+        """Return the least and the greatest finite value, in the unit of the range."""
         points = self.finite
         return Fraction(points[0].exact), Fraction(points[-1].exact)
 
@@ -141,7 +130,7 @@ class Range(NamedTuple):
     def in_units(self, point: Point) -> str:
         """Return a point with its unit."""
         bare = self.suffix or point == LOCKED
-        return point.text if bare else with_unit(point.text, parameter_of(self.name).unit)
+        return point.text if bare else with_unit(point.text, INPUTS[self.name].unit)
 
     def in_words(self, point: Point) -> str:
         """Return a point in a sentence: M = 10 kg, or disk."""
@@ -156,23 +145,23 @@ class Sweep(NamedTuple):
 
     @property
     def total(self) -> int:
-        return len(self.ranges[0].points) * (len(self.ranges[1].points) if self.ranges[1:] else 1)
+        return prod(len(range_.points) for range_ in self.ranges)
 
     @property
     def inputs(self) -> dict[str, str]:
-        """The inputs, and the ranges, in words."""
+        """Return the inputs, and the ranges, in words."""
         ranges = {range_.name: range_.words for range_ in self.ranges}
         return relevant_inputs(self.scene, varied=ranges) | ranges
 
     @property
     def along(self) -> Range:
-        """The range along which curves and sentences run: no list, or one of numbers, and the longest."""
+        """Return the range along which curves run: if possible of numbers and no list, and the longest."""
         named = {range_.name: any(point.name for point in range_.points) for range_ in self.ranges}
         return max(self.ranges[::-1], key=lambda x: (not x.is_list, not named[x.name], len(x.finite)))
 
     @property
     def others(self) -> list[Range]:
-        """The other range, if there is one."""
+        """Return the other range, if there is one."""
         return [range_ for range_ in self.ranges if range_ is not self.along]
 
     def scenes(self, ranges: Sequence[Range]) -> Iterator[tuple[Scene, dict[str, Point]]]:
@@ -216,7 +205,7 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
         for name, words in typed.items()
     ]
     # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
-    corners = ([x.finite[0], x.finite[-1], *([LOCKED] if x.locks else [])] for x in ranges)
+    corners = ([x.finite[0], x.finite[-1], max(x.points)] for x in ranges)
     scene, *_ = (scene_at(fixed, ranges, corner) for corner in product(*corners))
     sweep = Sweep(ranges, scene)
     if sweep.total > MAX_POINTS:
@@ -230,12 +219,10 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     words = typed.split(":")
     if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
         raise SceneError(name, typed, f"is not a range; write {FORM}")
-    for word in words[:2]:
-        if word.strip().lower() in (LOCKED.text, *INPUTS[name].names):
-            rule = f"has the end {in_quotes(word)}; a range runs between finite numbers"
-            raise SceneError(name, typed, rule)
     (start, stop), suffix = _read_numbers(name, typed, words[:2])
     log = len(words) == 4
+    if inf in (start, stop):
+        raise SceneError(name, typed, "has the end inf; a range runs between finite numbers")
     if start == stop:
         raise SceneError(name, typed, "has equal ends; a range runs from one value to another")
     if log and not (start > 0 and stop > 0):
@@ -261,8 +248,6 @@ def read_list(name: str, typed: str) -> Range:
     words = [word.strip() for word in typed.split(",")]
     if ":" in typed:
         raise SceneError(name, typed, "mixes a list with a range; give one of them")
-    if not all(words):
-        raise SceneError(name, typed, "has an empty place; write a list as 0,1,10")
     if name not in ("M", "wrap") and re.fullmatch(r"0,\d+", typed.strip()):
         decimal, spaced = typed.strip().replace(",", "."), ", ".join(words)
         raise SceneError(name, typed, f"can mean {decimal} or a list; write {decimal}, or '{spaced}'")

@@ -53,7 +53,7 @@ class Curve(NamedTuple):
 
     @property
     def numbers(self) -> list[float]:
-        """All numbers that are drawn, the one at the right end last."""
+        """Return all numbers that are drawn, the one at the right end last."""
         return [y for y in (*self.locked, *self.least, *self.most) if not isnan(y)]
 
 

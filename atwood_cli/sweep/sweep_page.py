@@ -87,9 +87,8 @@ class SweepPage:
         above = [", ".join(sweep.inputs.values()), *self._assumption(), *_regimes(sweep, rows, self.digits)]
         if PULLEY not in same and any(row.regime == "verge" for row in rows):
             above.append(PULLEYS)
-        units = {name: QUANTITIES[name].unit for name in same if name != "regime"}
-        if units:
-            shared = (f"{name} = {with_unit(same[name], unit)}" for name, unit in units.items())
+        numbers = [name for name in same if name != "regime"]
+        if shared := [f"{name} = {with_unit(same[name], QUANTITIES[name].unit)}" for name in numbers]:
             above.append(f"In all rows: {', '.join(shared)}.")
         notes = self.notes()
         page.say(*above)

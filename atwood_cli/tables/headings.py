@@ -2,13 +2,16 @@
 
 A heading is `name [number] [(unit) | [unit] | /unit | in unit]`: m1, "m1 (g)", "time 2 [s]", a/(m/s²).
 A column of uncertainties is u(name) or name_err, or ± behind the column of the quantity; a unit may follow.
-Blanks and underscores in names do not count. The user names any other heading, as by --column
-t='Fallzeit (s)'.
+Blanks and underscores in names do not count. The user names others, as by --column t='Fallzeit (s)'.
 """
 
+import csv
 import re
-from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from fractions import Fraction
+from io import StringIO
+from itertools import islice
 from typing import NamedTuple
 from unicodedata import normalize
 
@@ -108,6 +111,21 @@ def recognised(columns: Sequence[str], vocabulary: Vocabulary, named: Mapping[st
     return [column for column in columns if _meaning(column, vocabulary, named)]
 
 
+def best_header(
+    text: str, separator: str, known: Callable[[Sequence[str]], Collection[str]], most_above: int = 0
+) -> tuple[int, int, int]:
+    """Count the known headings and the cells of a table's header by this separator, and the rows above it.
+
+    It is the first row with two ``known`` headings, or else the first row.
+    """
+    counts = [(0, 0, 0)]
+    with suppress(csv.Error):
+        rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
+        for above, row in enumerate(islice(rows, most_above + 1)):
+            counts.append((len(known(row)), len(row), above))
+    return next((count for count in counts if count[0] > 1), counts[:2][-1])
+
+
 def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
     """Return the names by their headings, from options --column NAME=HEADING. Raises SceneError."""
     named: dict[str, str] = {}
@@ -124,13 +142,12 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
 
 def _meaning(column: str, vocabulary: Vocabulary, named: Mapping[str, str]) -> Heading | None:
     """Return what a column holds, without its place and factor; None if the heading is not known."""
-    name = without_blanks(named.get(column, column))
-    meanings = (_named(word, unit, vocabulary) for word, unit in divisions(name))
-    meaning = next(filter(None, meanings), None)
-    if meaning and column in named and not meaning.unit:  # the heading itself may have a unit
-        *_, (_, unit) = divisions(without_blanks(column))
-        meaning = meaning._replace(unit=unit)
-    return meaning and meaning._replace(column=column)
+    for word, unit in divisions(without_blanks(named.get(column, column))):
+        if meaning := _named(word, vocabulary):
+            if column in named and not unit:  # the heading itself may have a unit
+                *_, (_, unit) = divisions(without_blanks(column))
+            return meaning._replace(column=column, unit=unit)
+    return None
 
 
 def divisions(text: str) -> Iterator[tuple[str, str]]:
@@ -142,17 +159,17 @@ def divisions(text: str) -> Iterator[tuple[str, str]]:
         yield match[1].strip(), "" if unit in NO_UNIT else unit
 
 
-def _named(word: str, unit: str, vocabulary: Vocabulary) -> Heading | None:
+def _named(word: str, vocabulary: Vocabulary) -> Heading | None:
     """Return the meaning of a name without its unit; None if it is not known."""
     if vocabulary.uncertain and word in OF_COLUMN_BEFORE:
-        return Heading(0, "", "", unit=unit, uncertain=True)
+        return Heading(0, "", "", uncertain=True)
     found = UNCERTAINTY.fullmatch(word) if vocabulary.uncertain else None
     key = re.sub(r"[\s_]", "", normalize("NFKC", (found[1] or found[2]) if found else word))
     letters = key if key in vocabulary.names else key.rstrip("0123456789")
     name = vocabulary.names.get(letters, "")
     if letters != key and name not in vocabulary.repeated:
         return None
-    return Heading(0, "", name, key[len(letters) :], unit, uncertain=bool(found)) if name else None
+    return Heading(0, "", name, key[len(letters) :], uncertain=bool(found)) if name else None
 
 
 def _add_uncertainty(headings: dict[tuple[str, str], Heading], found: Heading) -> None:

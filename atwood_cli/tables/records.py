@@ -5,29 +5,34 @@ A record of CSV is a row, which may have several lines. A record of NDJSON is a 
 
 import csv
 import json
-from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Sized
-from contextlib import suppress
+from collections import Counter
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
 
 from ..model.units import counted, in_quotes
 from . import sources
-from .headings import SEPARATORS, Heading
+from .headings import SEPARATORS, Heading, best_header
 from .sources import LONGEST_RECORD, TOO_LONG, Unreadable, whole_lines
 
 if TYPE_CHECKING:
     import polars as pl
 
-MOST_COLUMNS = 1024
 MOST_LINES = 50
 """The most lines of a cell: a note has fewer, and a quotation mark that is left open makes more."""
 UNREADABLE = "unreadable"
 """The member that has the text of a line of NDJSON that cannot be read."""
 BYTE_ORDER_MARK = "\ufeff"
-STRAY_MARK = 'has a quotation mark out of place; write it "like ""this"""'
-STRAY_RETURN = (
-    "has a carriage return without a line feed; save it with line feeds, or put its cell in quotation marks"
-)
+STRAY_RETURN = "new-line"
+"""The word by which `csv` means a carriage return without a line feed."""
+ERRORS_OF_CSV = {
+    "end of data": "has a quotation mark that is left open, or the file is truncated",
+    "limit": f"{TOO_LONG}; is a quotation mark left open?",
+    STRAY_RETURN: "has a carriage return without a line feed; save it with line feeds, or put its cell in"
+    " quotation marks",
+    "": 'has a quotation mark out of place; write it "like ""this"""',
+}
+"""What is wrong with a row, by a word in the error of `csv`."""
 
 
 class Piece(NamedTuple):
@@ -57,22 +62,11 @@ class Csv:
         text = next(self._texts, "")
         mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
         text = text.removeprefix(BYTE_ORDER_MARK)
-        while text.count('"') % 2 and len(text) < LONGEST_RECORD and (more := next(self._texts, "")):
-            text += more  # the header may have line ends
-
-        def score(separator: str) -> tuple[int, int]:
-            cells: list[str] = []
-            with suppress(csv.Error):
-                rows = csv.reader(_lines(text), delimiter=separator)
-                cells = next((row for row in rows if len(row) > 1 or "".join(row).strip()), [])
-            return len(known(cells)), len(cells)
-
         self._text, self._line = _lines(text), 1
-        self.separator = max(SEPARATORS, key=score)
+        self.separator = max(SEPARATORS, key=lambda mark: best_header(text, mark, known))
         _, header, self.columns = next(self._records(), (1, "", []))
         if not header:
             raise Unreadable("it is empty")
-        _check_width(self.columns)
         self.header = mark + header.rstrip("\r\n")
         self.line_end = "\r\n" if header.endswith("\r\n") else "\n"
 
@@ -144,23 +138,14 @@ class Csv:
             for cells in csv.reader(lines(), delimiter=self.separator, strict=True):
                 line, record = self._line, "".join(taken)
                 if "\r\r" in record[-3:]:  # csv would take both for line ends
-                    raise csv.Error("new-line")
+                    raise csv.Error(STRAY_RETURN)
                 self._line += len(taken)
                 taken.clear()
                 if record.strip() or len(cells) > 1:
                     yield line, record, cells
         except csv.Error as error:
-            raise self._refused(str(error)) from None
-
-    def _refused(self, error: str) -> Unreadable:
-        """Return the error for a row whose quotation marks are wrong, by the error of `csv`."""
-        row = f"the row that begins in line {self._line}"
-        if "end of data" in error:
-            return Unreadable(f"a quotation mark is left open in {row}, or the file is truncated")
-        if "limit" in error:
-            return Unreadable(f"{row} {TOO_LONG}; is a quotation mark left open?")
-        why = STRAY_RETURN if "new-line" in error else STRAY_MARK
-        return Unreadable(f"{row} {why}")
+            why = next(why for word, why in ERRORS_OF_CSV.items() if word in str(error))
+            raise Unreadable(f"the row that begins in line {self._line} {why}") from None
 
     def _error_of(self, line: int, cells: Sequence[str]) -> str | None:
         """Say what is wrong with the row that begins in that line; None if nothing is."""
@@ -199,12 +184,6 @@ def _lines(text: str) -> StringIO:
     return StringIO(text, newline="\n")
 
 
-def _check_width(columns: Sized) -> None:
-    """Raise Unreadable for too many columns."""
-    if len(columns) > MOST_COLUMNS:
-        raise Unreadable(f"it has more than {MOST_COLUMNS} columns, the most taken")
-
-
 # NDJSON
 
 
@@ -214,7 +193,6 @@ def read_ndjson(
     """Read the lines that are not blank. Raises Unreadable.
 
     A line that cannot be read is an error of its record, which has the line's text as its only member.
-
     ``headings`` finds the quantities among the keys, and is called again when there are more keys.
     """
     import polars as pl
@@ -239,7 +217,6 @@ def read_ndjson(
             keys.update(row)
         if not lines:
             continue
-        _check_width(keys)
         if len(keys) > known:
             known = len(keys)
             wanted = headings(list(keys))
@@ -254,14 +231,12 @@ def _object(raw: bytes, line: str) -> dict[str, object]:
     """Return the object in a line, with its numbers as texts. Raises Unreadable."""
     why = "it is not an object"
     try:
-        raw.decode()
+        _decoded(raw)
         row = _DECODER.decode(line)
         if isinstance(row, dict):
             return row
     except RecursionError:
         why = "it is nested too deeply"
-    except UnicodeDecodeError as error:
-        why = f"it is not UTF-8: byte 0x{raw[error.start]:02x}"
     except json.JSONDecodeError as error:
         why = f"{error.msg.removesuffix(' at')} at character {error.colno}"
     except ValueError as error:
@@ -272,9 +247,8 @@ def _object(raw: bytes, line: str) -> dict[str, object]:
 def _members(pairs: Sequence[tuple[str, object]]) -> dict[str, object]:
     row = dict(pairs)
     if len(row) < len(pairs):
-        names = [name for name, _ in pairs]
-        twice = next(name for name in names if names.count(name) > 1)
-        raise ValueError(f"column {in_quotes(twice)} is there {names.count(twice)} times")
+        name, times = Counter(name for name, _ in pairs).most_common()[0]
+        raise ValueError(f"column {in_quotes(name)} is there {times} times")
     return row
 
 

@@ -4,17 +4,17 @@ import csv
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import ExitStack, suppress
+from functools import partial
 from io import StringIO
-from itertools import islice
 from os import PathLike, fspath
 from typing import Any, NamedTuple
 
 from ..model.units import in_quotes
-from .headings import SEPARATORS, Vocabulary, recognised
+from .headings import SEPARATORS, Vocabulary, best_header, recognised
 from .sources import Unreadable, blocks_of, opened, whole_lines
 
 MOST_ABOVE = 40
-"""Rows in which headings are looked for, as titles may stand above them."""
+"""The most rows of titles above the headings."""
 MOST_BYTES = 64 << 20
 """The most bytes of a table of runs, unpacked: a laboratory has thousands of rows."""
 UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
@@ -79,24 +79,16 @@ def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str])
         text = content.decode("cp1252", "replace")
         remarks.append("text in Windows-1252")
 
-    def header(text: str, separator: str) -> tuple[int, int, int]:
-        """Count the headings and cells of the best header by that separator, and say in which row it is."""
-        counts = [(0, 0, 0)]
-        with suppress(csv.Error):
-            rows = filter(any, csv.reader(StringIO(text, newline=""), delimiter=separator))
-            for i, row in enumerate(islice(rows, MOST_ABOVE)):
-                counts.append((len(recognised(row, vocabulary, named)), len(row), i))
-        return next((count for count in counts if count[0] > 1), counts[:2][-1])
-
+    known = partial(recognised, vocabulary=vocabulary, named=named)
     lines = re.sub(r'\A"?sep=[,;\t]"?\r?\n', "", text, flags=re.IGNORECASE).split("\n")
     for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
         bare = lines[i].lstrip("# \t")  # NumPy writes headings so
-        is_header = max(header(bare, mark)[0] for mark in SEPARATORS) > 1
+        is_header = max(best_header(bare, mark, known)[0] for mark in SEPARATORS) > 1
         lines[i] = bare if is_header else ""
         if not is_header and COMMENTS not in remarks:
             remarks.append(COMMENTS)
     text = "\n".join(lines)
-    found = {mark: header(text, mark) for mark in SEPARATORS}
+    found = {mark: best_header(text, mark, known, MOST_ABOVE) for mark in SEPARATORS}
     separator = max(found, key=lambda mark: found[mark][:2])
     if start := found[separator][2]:
         remarks.append("lines above the headings left out")

@@ -22,7 +22,6 @@ FORMATS = ("csv", "tsv", "ndjson", "parquet")
 STDIN = "-"
 """The name of a file that is standard input."""
 SUFFIXES = {f".{kind}": kind for kind in FORMATS} | {".jsonl": "ndjson"}
-PACKED = ".gz"
 BLOCK_BYTES = 2 << 20
 """The bytes that are read at a time. A piece of a table takes several times as much memory."""
 MOMENT = 0.05  # seconds
@@ -63,11 +62,9 @@ def read_format(given: str | None, path: str) -> str:
 
 def check_format(path: str, kind: str) -> None:
     """Refuse a file whose suffix does not fit the format of the table. Raises SceneError."""
-    file = Path(path)
-    if file.suffix and SUFFIXES.get(file.suffix.lower()) != kind and not is_stream(path):
-        bare = file.with_suffix("") if is_packed(path) else file
-        fitting = in_quotes(str(bare.with_suffix(f".{kind}")))
-        raise SceneError("output", path, f"does not match the table, which is {kind}; name it {fitting}")
+    suffix = Path(path).suffix.lower()
+    if suffix and SUFFIXES.get(suffix) != kind and not is_stream(path):
+        raise SceneError("output", path, f"must end in .{kind}, as the table is {kind}")
 
 
 def is_stream(path: str) -> bool:
@@ -77,7 +74,7 @@ def is_stream(path: str) -> bool:
 
 def is_packed(path: str) -> bool:
     """Return whether a file is compressed, by its suffix."""
-    return Path(path).suffix.lower() == PACKED
+    return Path(path).suffix.lower() == ".gz"
 
 
 def opened(source: str, stack: ExitStack) -> IO[bytes]:
@@ -126,10 +123,7 @@ def _what_comes(pipe: Any, most: int) -> bytes:
 
 
 def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[bytes]:
-    """Yield blocks of whole lines.
-
-    Raises Unreadable for a file of another kind: no text of ``cells``, or else of objects.
-    """
+    """Yield blocks of whole lines. Raises Unreadable for a file of no ``cells``, or else of no objects."""
     rest, line = b"", 1
     for block in chain(blocks, [b""]):
         if line == 1 and not rest:

@@ -1,8 +1,7 @@
 """Each way to solve many scenes is timed, and its errors are found, on families that are hard on doubles.
 
 Scenes are drawn from a seed, so that anybody finds the same errors; times are this machine's. Errors are in
-units in the last place (ulp) of the exact value's double, and count where the regime is right. The error of a
-scene is the worst of its quantities'.
+units in the last place (ulp) of the exact value's double, the worst of a scene, if its regime is right.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -76,35 +75,20 @@ def _whole_range(rng: Random) -> Inputs:
     return {"m1": min(m1, m2), "m2": max(m1, m2), "M": M, "mu": _between(rng, -1074, 10)}
 
 
-class Family(NamedTuple):
-    """A kind of scenes: the function that draws a scene, and a description."""
-
-    draw: Callable[[Random], Inputs]
-    meaning: str
-
-
-FAMILIES = {
-    "ordinary": Family(
-        _ordinary, "masses 0.01 to 100 kg, 1 % to a hundredfold apart; pulleys 0.01 to 1000 kg"
-    ),
-    "nearly-equal": Family(_nearly_equal, "masses apart by 1e-15 to 1e-2 of themselves, little friction"),
-    "light-pulley": Family(_light_pulley, "pulleys of 1e-30 to 1e-3 kg"),
-    "near-critical": Family(_near_critical, "M, or m2, within 1e-15 to 1e-3 of where the string slips"),
-    "whole-range": Family(_whole_range, "masses from 5e-324 to 1e308 kg"),
+FAMILIES: dict[str, tuple[Callable[[Random], Inputs], str]] = {
+    "ordinary": (_ordinary, "masses 0.01 to 100 kg, 1 % to a hundredfold apart; pulleys 0.01 to 1000 kg"),
+    "nearly-equal": (_nearly_equal, "masses apart by 1e-15 to 1e-2 of themselves, little friction"),
+    "light-pulley": (_light_pulley, "pulleys of 1e-30 to 1e-3 kg"),
+    "near-critical": (_near_critical, "M, or m2, within 1e-15 to 1e-3 of where the string slips"),
+    "whole-range": (_whole_range, "masses from 5e-324 to 1e308 kg"),
 }
+"""Kinds of scenes by name: the function that draws a scene, and a description."""
 
 
 def draw_scenes(family: str, count: int, seed: int) -> list[Inputs]:
     """Return ``count`` scenes of a family. The same seed draws the same scenes, whatever their number."""
-    rng = Random(f"{family} {seed}")
-    return [FAMILIES[family].draw(rng) for _ in range(count)]
-
-
-class Setting(NamedTuple):
-    """A way to solve scenes: a function from columns of inputs to columns of quantities."""
-
-    name: str
-    run: Callable[..., Columns]
+    rng, (draw, _) = Random(f"{family} {seed}"), FAMILIES[family]
+    return [draw(rng) for _ in range(count)]
 
 
 def in_numpy(m1: Any, m2: Any, M: Any, mu: Any) -> Columns:
@@ -132,11 +116,13 @@ def in_digits(digits: int, **given: Any) -> Columns:
     return columns | {"regime": [REGIMES.index(regime) for regime in columns["regime"]]}
 
 
-SETTINGS = (
-    Setting("paper", in_numpy),
-    *(Setting(accuracy, partial(solve_arrays, accuracy=accuracy)) for accuracy in ACCURACIES),
-    Setting("50 digits", partial(in_digits, 50)),
-)
+Setting = Callable[..., Columns]
+"""A way to solve scenes: a function from columns of inputs to columns of quantities."""
+SETTINGS: dict[str, Setting] = {
+    "paper": in_numpy,
+    **{accuracy: partial(solve_arrays, accuracy=accuracy) for accuracy in ACCURACIES},
+    "50 digits": partial(in_digits, 50),
+}
 
 
 def errors(solved: Columns, exact: Columns) -> list[float]:
@@ -172,13 +158,12 @@ def measure(family: str, scenes: Sequence[Inputs]) -> list[Measured]:
     """Measure every setting on these scenes, which have the same inputs; ``family`` names them."""
     columns = _columns(scenes, len(scenes))
     exact = in_digits(EXACT_DIGITS, **columns)
-    tables = [_timed_table(setting, scenes) for setting in SETTINGS]
-    times = timed([partial(setting.run, **table) for setting, table in zip(SETTINGS, tables, strict=True)])
+    runs = [_short_run(run, scenes) for run in SETTINGS.values()]
     measured = []
-    for setting, table, seconds in zip(SETTINGS, tables, times, strict=True):
-        found = errors(setting.run(**columns), exact)
+    for (name, run), short, seconds in zip(SETTINGS.items(), runs, timed(runs), strict=True):
+        found = errors(run(**columns), exact)
         worst, wrong = max(found, default=None), 1 - len(found) / len(scenes)
-        measured.append(Measured(family, setting.name, seconds / len(table["m1"]), worst, wrong))
+        measured.append(Measured(family, name, seconds / len(short.keywords["m1"]), worst, wrong))
     return measured
 
 
@@ -187,12 +172,12 @@ def _columns(scenes: Sequence[Inputs], rows: int) -> Columns:
     return {name: np.resize([scene[name] for scene in scenes], rows) for name in scenes[0]}
 
 
-def _timed_table(setting: Setting, scenes: Sequence[Inputs]) -> Columns:
-    """Return the scenes in a table that is not too long to be timed."""
+def _short_run(run: Setting, scenes: Sequence[Inputs]) -> partial[Columns]:
+    """Return a call that solves the scenes in a table which is not too long to be timed."""
     rows = FEWEST_ROWS
-    while rows < MOST_ROWS and _quickest(partial(setting.run, **_columns(scenes, rows))) < LONG_SECONDS:
+    while _quickest(call := partial(run, **_columns(scenes, rows))) < LONG_SECONDS and rows < MOST_ROWS:
         rows = min(4 * rows, MOST_ROWS)
-    return _columns(scenes, rows)
+    return call
 
 
 def _quickest(run: Callable[[], object]) -> float:

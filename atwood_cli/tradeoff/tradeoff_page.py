@@ -44,7 +44,7 @@ def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
         row[1:] = map(str.rjust, row[1:], widths[1:])
     table = Page()
     table.say(f"{scenes} scenes of each family, seed {seed}")
-    table.table(["Family", *(setting.name for setting in SETTINGS)], groups)
+    table.table(["Family", *SETTINGS], groups)
     table.say(*LEGEND)
 
 
