@@ -57,6 +57,13 @@ SOLVING = """
 import atwood_cli.solver.answers, atwood_cli.sweep.ranges, atwood_cli.batch.run
 atwood_cli.solver.answers.Answers = atwood_cli.sweep.ranges.Answers = atwood_cli.batch.run.run_batch = blow
 """
+# A second signal comes while the bar of progress is closed.
+CLOSING = """
+import atwood_cli.batch.run, contextlib
+from atwood_cli.output import page
+page.ExitStack = type("Closing", (contextlib.ExitStack,), {"__exit__": blow})
+atwood_cli.batch.run.solve_cells = blow
+"""
 # Modules in C may turn the interrupt into another error while they are imported.
 TURNED = """
 class Part:
@@ -76,13 +83,14 @@ cli.run = run
         (SOLVING, "SIGHUP", f"solve {SCENE} --mu 0.3 --json"),
         (SOLVING, "SIGINT", f"sweep {SCENE} --M 0:100:9"),
         (SOLVING, "SIGINT", "batch -"),
+        (CLOSING, "SIGINT", "batch -"),
         (TURNED, "SIGTERM", ""),
     ],
     ids=count(),
 )
 def test_a_signal_ends_it_quietly(code: str, blow: str, typed: str) -> None:
     command = [sys.executable, "-c", RUN.format(code), blow, *typed.split()]
-    ended = subprocess.run(command, capture_output=True, check=False, timeout=HANGS)
+    ended = subprocess.run(command, input=b"m1,m2\n1,3\n", capture_output=True, check=False, timeout=HANGS)
     assert (ended.returncode, ended.stdout, ended.stderr) == (STATUS[blow], b"", b"")
 
 
