@@ -26,7 +26,7 @@ from ..model.scene import (
     read_value,
 )
 from ..model.units import Malformed, counted, in_quotes, read_unit, shortened
-from ..solver.messages import unmarked
+from ..solver.messages import reasons_at
 from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
 from ..tables.sources import Unreadable
 
@@ -134,20 +134,15 @@ class Tally:
         self.rows += results.height
 
     def lines(self) -> list[str]:
-        """Return the messages: the summary, why most valid rows lack results, and the first error."""
+        """Return the messages: the summary, why results are missing, the most first, and the first error."""
         parts = [f"{self.regimes[regime]} {regime}" for regime in REGIMES if self.regimes[regime]]
         counts = [", ".join(parts)] if parts else []
         counts.append(counted(self.errors, "error") if self.errors else "no errors")
         if self.beyond:
             counts.append(f"{counted(self.beyond, 'value')} beyond the range of doubles left empty")
         said = [f"{counted(self.rows, 'row')}: {'; '.join(counts)}."]
-        if self.reasons:
-            ranks = [(-count, NAMES.index(name), why) for (name, why), count in self.reasons.items()]
-            most, why = -min(ranks)[0], min(ranks)[2]
-            names = [name for name in NAMES if self.reasons[name, why] == most]
-            more = f" and {len(names) - 1} more" if names[1:] else ""
-            lack = "lacks" if most == 1 else "lack"
-            said.append(unmarked(f"{counted(most, 'row')} {lack} {names[0]}{more}: {why}."))
+        ranked = sorted(self.reasons.items(), key=lambda item: (-item[1], NAMES.index(item[0][0])))
+        said += reasons_at(dict(ranked), self.rows, "in {} of {} rows")
         return [*said, *([f"first error, in {self.first_error}"] if self.errors else [])]
 
 

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 STANDARD_GRAVITY = "9.80665"
 """m/s², exact by definition: 3rd General Conference on Weights and Measures, 1901."""
+GRAVITY = "gravity"
+"""The unit of a multiple of g, as the symbol g is a gram's."""
 FOOT, INCH, POUND = Fraction("0.3048"), Fraction("0.0254"), Fraction("0.45359237")
 POUND_FORCE = POUND * Fraction(STANDARD_GRAVITY)
 
@@ -62,7 +64,7 @@ NUMBER = re.compile(rf"({_QUOTIENT})(?: ?({_UNIT}))?", re.ASCII)
 _MULTIPLE = rf"({_QUOTIENT}|[+-]?) ?\*? ?(?:%s)(?: ?/ ?({_DECIMAL}))?"
 MULTIPLES = {
     "angle": (_MULTIPLE % "(?i:pi)|π" + "(?: ?rad)?", "pi", Fraction(180)),
-    "acceleration": (_MULTIPLE % "g", "g", Fraction(STANDARD_GRAVITY)),
+    "acceleration": (_MULTIPLE % "g", GRAVITY, Fraction(STANDARD_GRAVITY)),
 }
 """The pattern of multiples of a constant, as 3pi/2, its name and its value, by dimension."""
 _PLAIN = str.maketrans("µμ⁻²", "uu-2", "*·^ ")
@@ -99,6 +101,11 @@ class TypedNumber(NamedTuple):
     value: Fraction | float
     unit: str = ""
     uncertainty: Fraction = Fraction(0)
+
+    def with_gravity(self, g: Fraction) -> TypedNumber:
+        """Return the number; if it is a multiple of g, with this value of g (m/s²)."""
+        factor = g / Fraction(STANDARD_GRAVITY) if self.unit == GRAVITY else 1
+        return self._replace(value=self.value * factor, uncertainty=self.uncertainty * factor)
 
 
 class Angle(NamedTuple):

@@ -16,7 +16,7 @@ from ..model.digits import DOUBLE_DIGITS, SHOWN_DIGITS, Rounding, is_infinite, t
 from ..model.machine import Machine
 from ..model.quantities import FROM_MOTION, MAIN, NAMES, Undetermined
 from ..model.scene import INPUTS, MEASURED, UNMEASURED, Given, Input, Motion, Scene, SceneError, read_input
-from ..model.units import STANDARD_GRAVITY, read_number
+from ..model.units import GRAVITY, read_number
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -215,9 +215,10 @@ def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answe
 
 def _of_gravity(a: Input, g: Input) -> Input:
     """Return an acceleration; one typed as a multiple of g is of the scene's. Raises SceneError."""
-    if not isinstance(a.given, str) or read_number(a.given, "acceleration").unit != "g":
+    if not isinstance(a.given, str):
         return a
-    if g.uncertainty:
+    number = read_number(a.given, "acceleration")
+    if g.uncertainty and number.unit == GRAVITY:
         raise SceneError("a", a.given, "is a multiple of g, which is uncertain; give it in m/s2")
-    factor = g.value / Fraction(STANDARD_GRAVITY)
-    return a._replace(value=a.value * factor, uncertainty=a.uncertainty * factor)
+    value, _, uncertainty = number.with_gravity(g.value)
+    return a._replace(value=value, uncertainty=uncertainty)

@@ -18,7 +18,7 @@ from ..model.quantities import (
     read_name,
 )
 from ..model.scene import SceneError, with_unit
-from ..model.units import STANDARD_GRAVITY, Angle, Malformed, TypedNumber, in_quotes, read_number
+from ..model.units import Angle, Malformed, TypedNumber, in_quotes, read_number
 from .answers import TOO_SMALL, Answers
 from .messages import unmarked
 
@@ -31,9 +31,9 @@ OPERATORS: dict[str, Callable[[Any, Any], bool]] = {
     "==": operator.eq,
 }
 CONDITIONS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safety_factor >= 1.5'"
+WITHIN = "within the uncertainties it may"
 MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
-MAY_FAIL = "within the uncertainties it may fail"
 DIMENSIONS = {
     "kg": "mass",
     "m/s²": "acceleration",
@@ -75,12 +75,14 @@ def read_condition(typed: str) -> Condition:
 
 def failure(answers: Answers, expected: Condition) -> str:
     """Say what holds instead of what is expected, "" if that holds."""
-    case = answers.case
+    case, uncertainties = answers.case, answers.uncertainties
+    ends = uncertainties.answers_in_doubt() if uncertainties else []
     if expected.name in REGIMES:
         if expected.name != case.regime:
             return f"expected {expected.typed}; it is {case.regime}"
-        if answers.uncertainties and (other := answers.uncertainties.other_regime()):
-            return f"expected {expected.typed}; within the uncertainties it may {MAY[other]}"
+        regimes = [end.case.regime if end else "" for end in ends]
+        if other := [regime for regime in regimes if regime != case.regime]:
+            return f"expected {expected.typed}; {WITHIN} {MAY.get(other[0], 'fail')}"
         if case.mu_assumed:
             return f"expected {expected.typed}; that is only assumed: give mu"
         return ""
@@ -90,9 +92,10 @@ def failure(answers: Answers, expected: Condition) -> str:
         return unmarked(f"expected {expected.typed}; {expected.name} has {why}")
     side = _above(answers, expected)
     if OPERATORS[expected.sign](side, 0):
-        ends = answers.uncertainties.far_answers() if answers.uncertainties else []
-        return "" if all(_holds(end, expected) for end in ends) else f"expected {expected.typed}; {MAY_FAIL}"
-    given = None if expected.number.unit == "rad" else _in_scene(answers.case.scene, expected.number)
+        holds = all(end and _holds(end, expected) for end in ends)
+        return "" if holds else f"expected {expected.typed}; {WITHIN} fail"
+    number = expected.number.with_gravity(case.scene.g)
+    given = None if number.unit == "rad" else Fraction(number.value)
     if given is not None and not side:  # digits would not show that the two are equal
         shown = as_typed(given)
     else:
@@ -118,13 +121,8 @@ def _holds(answers: Answers, expected: Condition) -> bool:
         return False
 
 
-def _in_scene(scene: Any, number: TypedNumber) -> Fraction:
-    """Return the number in SI units; a multiple of g is one of the scene's g."""
-    return Fraction(number.value) * (scene.g / Fraction(STANDARD_GRAVITY) if number.unit == "g" else 1)
-
-
 def _bound(machine: Any, number: TypedNumber) -> Any:
     """Return the number in the arithmetic of a machine; an angle in degrees."""
     if number.unit == "rad":
         return Angle(number.value, "rad").degrees(machine.ar)
-    return machine.ar.number(_in_scene(machine.scene, number))
+    return machine.ar.number(Fraction(number.with_gravity(machine.scene.g).value))

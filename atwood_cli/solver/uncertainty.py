@@ -35,7 +35,7 @@ CONTEXT = decimal_context(2 * DIGITS, ROUND_HALF_EVEN)
 
 MOST_NAMED = 3
 """The most quantities that a sentence names."""
-COVERAGE = 2
+WITHIN = {1: "one standard uncertainty", 2: "two standard uncertainties"}
 """A decision is in doubt if it differs within so many standard uncertainties of an input."""
 NO_SCENE, NO_FIT = "makes no valid scene", "nothing fits what was measured"
 DOUBTFUL = {
@@ -160,32 +160,26 @@ class Uncertainties:
     # In sentences
 
     @lazy
-    def _far_ends(self) -> list[tuple[str, End, Decisions]]:
-        """Each input, at both ends of the range in which decisions are in doubt, and those made there."""
-        sides = ((x, side * u) for x, u in self.given.items() for side in (-COVERAGE, COVERAGE))
-        ends = ((x, self._end(x, step)) for x, step in sides)
-        return [(x, end, end.answers.case) for x, end in ends if end.answers]
+    def _ends_in_doubt(self) -> list[tuple[str, str, End]]:
+        """Each input at the ends at which decisions may differ, the nearest first, and how far these are."""
+        steps = [(within, x, n * u) for n, within in WITHIN.items() for x, u in self.given.items()]
+        return [(within, x, self._end(x, side * step)) for within, x, step in steps for side in (-1, 1)]
 
     def doubts(self) -> list[str]:
-        """Say which of the `DOUBTFUL` decisions differ within two standard uncertainties of an input."""
+        """Say which of the `DOUBTFUL` decisions differ near the scene, and at which nearest end."""
         said: dict[str, str] = {}
-        for x, end, case in self._far_ends:
-            if what := _otherwise(self.case, case):
+        for within, x, end in self._ends_in_doubt:
+            if end.answers and (what := _otherwise(self.case, end.answers.case)):
                 said.setdefault(
                     what,
-                    f"{what} is in doubt: the answer differs at {self._at(x, end)},"
-                    f" {COVERAGE} standard uncertainties away. Results use the inputs as given.",
+                    f"{what} is in doubt: the answer differs within {within}, at {self._at(x, end)}."
+                    " Results use the inputs as given.",
                 )
         return [*said.values()]
 
-    def far_answers(self) -> list[Answers]:
-        """Return the answers two standard uncertainties of an input away, for each input and side."""
-        return [end.answers for _, end, _ in self._far_ends if end.answers]
-
-    def other_regime(self) -> str:
-        """Return another regime within two standard uncertainties of an input, "" if there is none."""
-        regimes = (case.regime for _, _, case in self._far_ends)
-        return next((regime for regime in regimes if regime != self.case.regime), "")
+    def answers_in_doubt(self) -> list[Answers | None]:
+        """Return the answers at all ends at which decisions may differ, None if an end makes no scene."""
+        return [end.answers for _, _, end in self._ends_in_doubt]
 
     def open_ended(self, names: Iterable[str]) -> list[str]:
         """Say which quantities have no value at an end of an input, and their bound from the other end."""
