@@ -40,7 +40,7 @@ class Rows:
         self.inputs, self.results, self.accuracy = inputs, results, accuracy
         self.levels = LEVELS[accuracy]
         self.reasons: Counter[tuple[str, str]] = Counter()
-        """The number of rows in which a quantity has no value, by its name and the reason."""
+        """The number of rows in which a value is missing, or the regime assumed, by quantity and reason."""
 
     def solve(self, rows: Index, task: Task) -> None:
         """Write the results of a task for rows of its pattern and decisions."""
@@ -118,7 +118,7 @@ class Rows:
         # Exact arithmetic decides the rest.
         for place in np.flatnonzero(~sure).tolist():
             method, point = question.split()
-            case = Decisions(task.pattern.scene(self._number(rows[place])))
+            case = Decisions(task.pattern.scene(self.number(rows[place])))
             answers[place] = getattr(case, method)(point)
         return answers
 
@@ -131,7 +131,7 @@ class Rows:
             row = select(rows, place)
             alike.setdefault(tuple(column[row] for column in columns), []).append(row)
         for same in alike.values():
-            number = self._number(same[0])
+            number = self.number(same[0])
             # What the group has decided spares a single quantity all questions, if it suffices.
             if task.branches and len(task.names) == 1:
                 double = nearest_double(task, task.names[0], number)
@@ -148,7 +148,7 @@ class Rows:
                 if value is None:
                     self.reasons[name, answers.answer(name).reason] += len(same)
 
-    def _number(self, row: int) -> Callable[[str], Fraction]:
+    def number(self, row: int) -> Callable[[str], Fraction]:
         """Return the inputs of a row, exactly, by their names."""
 
         def number(name: str) -> Fraction:
