@@ -28,7 +28,6 @@ from atwood_cli.tables import sources
 from .running import FROM, HANGS, TOP, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
 
 TEXT = "m1,m2\n1,3\n"
-ONE = "atwood: 1 row: 1 no-slip; no errors.\n"
 
 
 def errors_of(ran: Ran) -> list[str]:
@@ -84,7 +83,7 @@ def test_streams(tmp_path: Path, line: str) -> None:
     """A pipe by any name is CSV, if nothing else is said."""
     write, read = KINDS["parquet" if "parquet" in line else "csv"]
     write(pl.DataFrame({"m1": [1.0], "m2": [3.0]}), tmp_path / "in")
-    assert process(shell=f"cd {tmp_path}; {line}") == (0, "", ONE)
+    assert process(shell=f"cd {tmp_path}; {line}") == (0, "", "atwood: 1 row: 1 no-slip; no errors.\n")
     assert read(tmp_path / "out").rows() == [(1.0, 3.0, "no-slip", None)]
 
 
