@@ -1,6 +1,7 @@
 """The entry of the program: `python -m atwood_cli` and the command `atwood`."""
 
 import gc
+import os
 import signal
 import sys
 from typing import NoReturn
@@ -25,6 +26,13 @@ def _status() -> int:
         status = 128 + number
         raise KeyboardInterrupt
 
+    def lost(error: "sys.UnraisableHookArgs") -> None:
+        """End at once if Python cannot raise the interrupt, as while it drops an object."""
+        if error.exc_type is KeyboardInterrupt:
+            os._exit(status)
+        sys.__unraisablehook__(error)
+
+    sys.unraisablehook = lost
     for number in ENDING_SIGNALS:
         if signal.getsignal(number) != signal.SIG_IGN:  # as under nohup
             signal.signal(number, end)

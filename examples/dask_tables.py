@@ -1,6 +1,7 @@
 """A folder of Parquet files, solved by dask on a cluster: each task is one solve_table, on one file.
 
-Here the cluster is two processes on this machine; on many machines, another of dask's takes its place.
+Here the cluster is two processes on this machine; on many machines, another of dask's takes its place. It
+needs `pip install distributed`, beside the extra `batch`.
 """
 
 from collections.abc import Iterable
@@ -14,17 +15,17 @@ from atwood_cli import solve_table
 
 
 def solved(file: Path) -> pl.DataFrame:
-    """The scenes of a file with their results."""
+    """Return the scenes of a file with their results."""
     return solve_table(pl.read_parquet(file), ["regime", "acceleration"])
 
 
 def tasks(client: Client, files: Iterable[Path]) -> list[Future]:
-    """A task for each file. Should a worker be lost, dask has another one do its tasks again."""
+    """Start a task for each file. If a worker is lost, dask has another one do its tasks again."""
     return client.map(solved, sorted(files))
 
 
 def write_scenes(folder: str, files: int, rows: int) -> None:
-    """Pulleys from 0 to 100 kg with friction; every tenth scene has none."""
+    """Write scenes with pulleys from 0 to 100 kg; mu is 0.3, or not given in every tenth scene."""
     for i in range(files):
         M = [100 * (i * rows + row) / (files * rows) for row in range(rows)]
         mu = [None if row % 10 == 0 else 0.3 for row in range(rows)]

@@ -25,7 +25,7 @@ from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
 from atwood_cli.arithmetic.lazy import lazy
 from atwood_cli.arrays import STATUSES
 from atwood_cli.arrays.plan import plan
-from atwood_cli.model.decisions import Decisions
+from atwood_cli.model.decisions import REGIME_ASSUMED, Decisions
 from atwood_cli.model.quantities import ACCURACIES, NAMES, Accuracy
 from atwood_cli.model.scene import INPUTS, MASSES, Scene
 from atwood_cli.solver.answers import Answers
@@ -187,9 +187,10 @@ def test_inputs_are_broadcast(
 
 
 def reasons_of(rows: list[Row]) -> Counter[tuple[str, str]]:
-    """Why quantities have no value, as each row's own scene says it, counted."""
+    """Why quantities have no value, and that a regime is assumed, as each row's own scene says it, counted."""
     solved = [Answers(Scene.read(row)) for row in rows]
-    return Counter((name, one.answer(name).reason) for name in NAMES for one in solved if one[name] is None)
+    found = Counter((name, one.answer(name).reason) for name in NAMES for one in solved if one[name] is None)
+    return found + Counter({("regime", REGIME_ASSUMED): sum(one.case.mu_assumed for one in solved)})
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)

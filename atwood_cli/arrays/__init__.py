@@ -10,18 +10,20 @@ import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from math import nan, prod
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..model.decisions import REGIME_ASSUMED, Decisions
 from ..model.quantities import ACCURACIES, Accuracy, read_name, read_quantities
 from ..model.scene import INPUTS, MASSES, MISSING_MASS, SceneError
 from .inputs import STATUSES as STATUSES
 from .inputs import GivenColumn, Numbers, groups, read_column
 from .plan import LEVELS, Task
-from .rows import Rows
+from .rows import Rows, select, size_of
 
 CHUNK_ROWS = 1 << 20
 """The most rows that one thread solves by itself; fewer rows share their programs with fewer others."""
@@ -83,7 +85,7 @@ def solve_arrays(
 def solve_and_count(
     given: Mapping[str, Numbers | None], accuracy: Accuracy, quantities: Sequence[str] | None
 ) -> tuple[dict[str, NDArray[Any]], Counter[tuple[str, str]]]:
-    """Solve as `solve_arrays`, and count the valid rows without a value, by quantity and reason."""
+    """Solve as `solve_arrays`, and count the rows by what is missing, or only assumed, and why."""
     names = tuple(read_quantities(quantities))
     read_name("accuracy", str(accuracy), ACCURACIES, "accuracy", {})  # raises if it is none
     inputs, shape = _read(given)
@@ -134,6 +136,8 @@ def _solve(rows: Rows, given: Mapping[str, GivenColumn], names: tuple[str, ...])
         rows.results["status"][group.rows] = group.status
         if group.pattern:
             level = len(LEVELS[rows.accuracy]) if group.beyond_window else 0
+            if Decisions(group.pattern.scene(partial(rows.number, select(group.rows, 0)))).mu_assumed:
+                rows.reasons["regime", REGIME_ASSUMED] += size_of(group.rows)
             rows.solve(group.rows, Task(group.pattern, frozenset(), names, level))
             continue
         for name in names:

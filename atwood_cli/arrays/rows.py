@@ -41,7 +41,7 @@ class Rows:
         self.inputs, self.results, self.accuracy = inputs, results, accuracy
         self.levels = LEVELS[accuracy]
         self.reasons: Counter[tuple[str, str]] = Counter()
-        """The number of rows in which a quantity has no value, by its name and the reason."""
+        """The number of rows in which a value is missing, or the regime assumed, by quantity and reason."""
 
     def solve(self, rows: Index, task: Task) -> None:
         """Write the results of a task for rows of its pattern and decisions."""
@@ -119,7 +119,7 @@ class Rows:
         # Exact arithmetic decides the rest.
         for place in np.flatnonzero(~sure).tolist():
             method, point = question.split()
-            case = Decisions(task.pattern.scene(partial(self._number, rows[place])))
+            case = Decisions(task.pattern.scene(partial(self.number, rows[place])))
             answers[place] = getattr(case, method)(point)
         return answers
 
@@ -132,7 +132,7 @@ class Rows:
             row = select(rows, place)
             alike.setdefault(tuple(column[row] for column in columns), []).append(row)
         for same in alike.values():
-            number = partial(self._number, same[0])
+            number = partial(self.number, same[0])
             # What the group has decided spares a single quantity all questions, if it suffices.
             if task.branches and len(task.names) == 1:
                 double = nearest_double(task, task.names[0], number)
@@ -149,7 +149,7 @@ class Rows:
                 if value is None:
                     self.reasons[name, answers.answer(name).reason] += len(same)
 
-    def _number(self, row: int, name: str) -> Fraction:
+    def number(self, row: int, name: str) -> Fraction:
         """Return an input of a row, exactly."""
         column = self.inputs[name]
         return Fraction(float(column[row] if column.ndim else column))

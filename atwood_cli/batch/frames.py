@@ -12,7 +12,7 @@ from queue import SimpleQueue
 from typing import IO, TYPE_CHECKING, TypeVar
 
 from ..model.quantities import read_quantities
-from ..output.page import with_progress
+from ..output.page import progress
 from ..tables.sources import Unreadable
 from .solving import Layout, Question, Tally, read_layout, solve_cells
 
@@ -129,7 +129,8 @@ def _write(frames: "Iterator[pl.DataFrame]", schema: "pl.Schema", target: IO[byt
         writing = writer.submit(sink, target, compression="snappy")
         writing.add_done_callback(lambda _: done.put(None))
         try:
-            written = sum(with_progress(iter(done.get, None), total, int, int))
+            with progress(iter(done.get, None), total, int, int) as heights:
+                written = sum(heights)
         except BaseException as error:
             failed.append(error)
             raise

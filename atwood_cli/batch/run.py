@@ -5,7 +5,7 @@ import signal
 import stat
 import sys
 from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import AbstractContextManager, ExitStack, nullcontext
 from io import BytesIO
 from itertools import chain, islice
 from pathlib import Path
@@ -13,7 +13,7 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 
 from ..model.scene import SceneError
 from ..output.files import STDOUT, Stdout, written_beside
-from ..output.page import with_progress
+from ..output.page import progress
 from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream, opened
@@ -37,8 +37,8 @@ class Job(NamedTuple):
 def run_batch(job: Job, tally: Tally) -> list[str]:
     """Solve a table of scenes. Returns sentences on how it was read. Raises OSError."""
     check_polars()
-    if hasattr(signal, "siginterrupt"):  # as polars is imported, it has Ctrl-C wait for a pipe
-        signal.siginterrupt(signal.SIGINT, True)
+    # As polars is imported, it takes Ctrl-C: a pipe would be waited for, and an interrupt raised twice.
+    signal.signal(signal.SIGINT, signal.getsignal(signal.SIGINT))
     _check_apart(job)
     with ExitStack() as stack:
         try:
@@ -66,13 +66,13 @@ def _check_apart(job: Job) -> None:
         raise SceneError("output", job.target, "is the input, which is never overwritten; name another")
 
 
-def _watched(pieces: Iterator[Piece], job: Job, source: IO[bytes]) -> Iterator[Piece]:
+def _watched(pieces: Iterator[Piece], job: Job, source: IO[bytes]) -> AbstractContextManager[Iterator[Piece]]:
     """Show how far it is while pieces pass, unless results go to a terminal."""
     if job.target == STDOUT and sys.stdout.isatty():
-        return pieces
+        return nullcontext(pieces)
     is_known = not (is_stream(job.source) or is_packed(job.source))
     size = os.fstat(source.fileno()).st_size if is_known else None
-    return with_progress(pieces, size, lambda piece: piece.size, lambda piece: len(piece.texts))
+    return progress(pieces, size, lambda piece: piece.size, lambda piece: len(piece.texts))
 
 
 def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
@@ -87,10 +87,11 @@ def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: T
         comma = decimal_commas_in(cells.iter_rows(), range(cells.width), table.separator)
         layout = layout._replace(comma=comma)
     target.write((table.separator.join([table.header, *asked.names, ERROR]) + table.line_end).encode())
-    for piece in _watched(chain(first, pieces), job, source):
-        results = solve_cells(piece.cells, layout, asked, tally, piece.errors)
-        target.write(_csv(piece, results, table, layout.comma))
-        target.flush()
+    with _watched(chain(first, pieces), job, source) as watched:
+        for piece in watched:
+            results = solve_cells(piece.cells, layout, asked, tally, piece.errors)
+            target.write(_csv(piece, results, table, layout.comma))
+            target.flush()
     return _remarks(layout, table.separator)
 
 
@@ -123,9 +124,10 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
         layout = read_layout(keys, job.asked, whole=False)
         return layout.headings
 
-    for piece in _watched(read_ndjson(blocks_of(source), headings), job, source):
-        target.write(_ndjson(piece, solve_cells(piece.cells, layout, job.asked, tally, piece.errors)))
-        target.flush()
+    with _watched(read_ndjson(blocks_of(source), headings), job, source) as watched:
+        for piece in watched:
+            target.write(_ndjson(piece, solve_cells(piece.cells, layout, job.asked, tally, piece.errors)))
+            target.flush()
     return _remarks(layout)
 
 

@@ -159,7 +159,7 @@ def solve_cells(
     columns = columns.select(pl.when(values.is_finite()).then(values).name.keep(), "regime")
     results = columns.select(*asked.names, error.alias(ERROR))
     tally.beyond += beyond
-    tally.reasons += reasons
+    tally.reasons.update({key: count for key, count in reasons.items() if key[0] in asked.names})
     tally.add(results, regimes)
     return results
 

@@ -61,7 +61,7 @@ def tradeoff(
     figure: FigureFile = None,
     bare: Bare = False,
 ) -> int:
-    from ..output.page import with_progress
+    from ..output.page import progress
     from ..tradeoff import tradeoff_page
     from ..tradeoff.measure import FAMILIES, MOST_SCENES, draw_scenes, measure
 
@@ -70,7 +70,8 @@ def tradeoff(
     count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
     start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
     parts = (measure(name, draw_scenes(name, count, start)) for name in families)
-    measured = list(chain.from_iterable(with_progress(parts, len(families))))
+    with progress(parts, len(families)) as measuring:
+        measured = list(chain.from_iterable(measuring))
     if figure is not None:
         tradeoff_page.save(measured, figure, target.force, bare)
     report = Report(

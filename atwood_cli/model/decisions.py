@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from ..arithmetic.rational import Arithmetic, N, Quantity
 
 ZERO, ONE = Fraction(0), Fraction(1)
+REGIME_ASSUMED = "assumed, as mu is not given"
 LimitingCase = Literal["scene", "locked", "massless", "heaviest", "heaviest_at_rest", "lightest_at_rest"]
 
 
@@ -191,8 +192,9 @@ class Decisions:
     @property
     def mu_assumed(self) -> bool:
         """Whether friction is that with the least coefficient that holds the string, as mu is not given."""
-        free = self.one_mass_is_0 or self.tensions_equal
-        return self.regime == "no-slip" and self.scene.mu is None and not free
+        if self.scene.mu is not None or self.one_mass_is_0 or self.tensions_equal:
+            return False
+        return self.regime == "no-slip"
 
     @lazy
     def limit_is_static(self) -> bool:

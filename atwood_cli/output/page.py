@@ -3,7 +3,7 @@
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import ExitStack
+from contextlib import ExitStack, contextmanager
 from itertools import chain, islice
 from shutil import get_terminal_size
 from time import monotonic
@@ -145,18 +145,21 @@ def _integer_part(value: str) -> int:
     return len(value.partition(" ")[0].partition(".")[0].partition("e")[0]) if _is_number(value) else 0
 
 
-def with_progress(
+@contextmanager
+def progress(
     parts: Iterator[Part],
     total: int | None,
     size: Callable[[Part], int] = lambda part: 1,
     rows: Callable[[Part], int] | None = None,
-) -> Iterator[Part]:
+) -> Iterator[Iterator[Part]]:
     """Pass the parts on, with a bar on a terminal's stderr once they take longer than a second.
 
     The bar shows the share of ``total`` by the ``size`` of parts, and counts their ``rows`` if they have any.
     """
-    start, done, count, bar = monotonic(), 0, 0, None
-    with ExitStack() as stack:
+    start = monotonic()
+
+    def passed_on(stack: ExitStack) -> Iterator[Part]:
+        done, count, bar = 0, 0, None
         for part in parts:
             yield part
             done += size(part)
@@ -171,3 +174,7 @@ def with_progress(
                 console = Console(stderr=True)
                 bar = stack.enter_context(Progress(console=console, transient=True, redirect_stdout=False))
                 bar.add_task(so_far, total=total, completed=done)
+
+    # Closed here, as Python shows a traceback of a signal that comes while it drops a generator with a bar.
+    with ExitStack() as stack:
+        yield passed_on(stack)

@@ -6,6 +6,7 @@ from decimal import Decimal
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from ..model.decisions import REGIME_ASSUMED
 from ..model.digits import rounding_to_place, strip_zeros, with_uncertainty
 from ..model.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..model.scene import with_unit
@@ -56,7 +57,7 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
     """
     said = [_stated(answers, name) for name in names if values and answers.answer(name).uncertainty]
     if "regime" in names and answers.case.mu_assumed:
-        said.insert(0, "regime: assumed, as mu is not given.")
+        said.insert(0, f"regime: {REGIME_ASSUMED}.")
     return [*said, *reasons(answers, names or answers.names)]
 
 

@@ -3,13 +3,14 @@
 import sys
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import nullcontext
 from fractions import Fraction
 from itertools import groupby
 
 from ..model.digits import SHOWN_DIGITS, to_digits, to_double
 from ..model.quantities import QUANTITIES, STANDARD
 from ..model.scene import with_unit
-from ..output.page import Page, aligned, with_progress
+from ..output.page import Page, aligned, progress
 from ..output.text import VERSION, cell, scene_record
 from ..solver.messages import reasons_at
 from .changes import changes, regimes
@@ -35,11 +36,12 @@ class SweepPage:
     def _rows(self, names: Sequence[str], digits: int | None, watch: bool = True) -> Iterator[Row]:
         """Yield the rows, and count the reasons for missing values."""
         rows = solve_rows(self.sweep, names, digits)
-        for row in with_progress(rows, self.sweep.total, rows=lambda row: 1) if watch else rows:
-            self.reasons.update(row.reasons.items())
-            self.missing = {name for name in self.missing if not cell(row.values[name])}
-            yield row
-            self.done += 1
+        with progress(rows, self.sweep.total, rows=lambda row: 1) if watch else nullcontext(rows) as rows:
+            for row in rows:
+                self.reasons.update(row.reasons.items())
+                self.missing = {name for name in self.missing if not cell(row.values[name])}
+                yield row
+                self.done += 1
 
     def notes(self) -> list[str]:
         """Say why values that were asked for are missing, with the number of points, after all rows."""

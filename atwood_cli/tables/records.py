@@ -159,7 +159,7 @@ class Csv:
             return None
         error = f"the row has {counted(len(cells), 'cell')}; the header has {width}"
         if len(cells) > width and self.separator == ",":
-            error += ": write decimal points, and no comma at its end"
+            error += "; is there a decimal comma (write a point), or a comma at the end of the row?"
         return error
 
     def _written(self, cells: Sequence[str]) -> str:
