@@ -5,7 +5,6 @@ import json
 import re
 import shlex
 import warnings
-from functools import cache
 from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any, cast
@@ -56,9 +55,8 @@ LINES = [("", line) for line in MORE.strip().replace("|", "\n").split("\n")]
 LINES += [(table, words + rest) for table, words, rest in KEPT]
 
 
-@cache
 def drawn(line: str, table: str = "") -> Any:
-    """The picture that a command line has, drawn once, with fewer steps of curves than usual."""
+    """The picture that a command line has, with fewer steps of curves than usual."""
     with patch("atwood_cli.sweep.sweep_figure.CURVE_STEPS", 20):
         return running.drawn(line, table.encode().decode("unicode_escape").encode())
 
