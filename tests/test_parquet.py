@@ -193,5 +193,5 @@ def test_rows_that_are_not_there(batch: Batch, solved: Any) -> None:
 def test_what_cannot_be_written_ends(tmp_path: Path) -> None:
     """The thread that writes had failed, and the other waited for it."""
     pl.DataFrame({"m1": [1.0] * 300_000, "m2": [3.0] * 300_000}).write_parquet(tmp_path / "in.parquet")
-    ran = process("batch", str(tmp_path / "in.parquet"), "-o", "/dev/full")
+    ran = process(shell=f"atwood batch {tmp_path}/in.parquet -o /dev/full")
     assert (ran.status, ran.err) == (1, "atwood: cannot write the output: No space left on device\n")
