@@ -63,7 +63,7 @@ def pytest_collection_finish() -> None:
     """Imported modules are not searched for garbage, and formulas, which have no circles, seldom."""
     gc.freeze()
     gc.enable()
-    gc.set_threshold(20_000, 20, 20)
+    gc.set_threshold(20_000, 5, 2)
 
 
 @pytest.fixture

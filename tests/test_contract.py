@@ -4,13 +4,13 @@ import json
 import pickle
 import pydoc
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from copy import copy, deepcopy
 from dataclasses import fields
 from decimal import Context, Decimal, localcontext
 from fractions import Fraction
-from inspect import signature
+from inspect import Signature, signature
 from pathlib import Path
 from runpy import run_path
 from typing import Any
@@ -163,15 +163,29 @@ JSON = {
     f"fit {RIT} --drop 98cm": f"version {FITTED}",
 }
 """The keys of JSON at its top; `test_json` has the keys below."""
+
+
+def parameters(function: Callable[..., Any]) -> list[str]:
+    """Return its parameters as they are written, without types, and `?` for those that are None if not given."""
+    bare = [one.replace(annotation=one.empty) for one in signature(function).parameters.values()]
+    return str(Signature(bare))[1:-1].replace("=None", "?").split(", ")
+
+
 PYTHON: dict[str, tuple[Iterable[str], str]] = {
     "atwood_cli": (
         atwood_cli.__all__,
         "Solution solve STATUSES solve_arrays solve_table REGIMES Fit fit Scene SceneError",
     ),
-    "solve": (signature(solve).parameters, f"{SCENE} a drop time digits"),
-    "solve_arrays": (signature(solve_arrays).parameters, f"{SCENE} accuracy quantities"),
-    "solve_table": (signature(solve_table).parameters, "table quantities"),
-    "fit": (signature(fit).parameters, "runs drop g M inertia I R axle find without"),
+    "solve": (
+        parameters(solve),
+        "m1? m2? * M? mu? mu_k? g? inertia? I? R? wrap? axle? a? drop? time? digits?",
+    ),
+    "solve_arrays": (
+        parameters(solve_arrays),
+        "m1 m2 M? mu? mu_k? * g? inertia? I? R? wrap=180.0 axle? accuracy='certified' quantities?",
+    ),
+    "solve_table": (parameters(solve_table), "table quantities?"),
+    "fit": (parameters(fit), "runs * drop? g? M? inertia? I? R? axle? find? without=()"),
     "Solution": ([one.name for one in fields(Solution)], f"scene notes regime {VALUES} uncertainty"),
     "Scene": (Scene._fields, SCENE),
     "Fit": (Fit._fields, FITTED),

@@ -187,7 +187,7 @@ ODD: dict[str, dict[str, str]] = {
         "open": '{"m1":1,"m2":' + "[" * SIZE,
         "objects": '{"m1":1,"m2":' + '{"a":' * (SIZE // 5),
         "digits": f'{{"m1":1,"m2":{"9" * SIZE}}}',
-        "list": f'{{"m1":1,"m2":[{"1," * (SIZE // 2)}1]}}',
+        "list": f'{{"m1":1,"m2":[{"1," * (SIZE // 9)}1]}}',
         "key": f'{{"m1":1,"m2":"x","{"k" * SIZE}":1}}',
     },
 }

@@ -5,8 +5,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from shutil import copytree
 
-import pytest
-
 from atwood_cli import Solution
 from atwood_cli.model import quantities
 from atwood_cli.model.machine import Machine
@@ -46,7 +44,6 @@ for words in ("solve --only Q", "sweep --M 1:2:2 --only trial --csv", "solve --o
 
 
 def test_what_the_map_names_is_enough(tmp_path: Path) -> None:
-    pytest.importorskip("numpy")
     package = copytree(TOP / "atwood_cli", tmp_path / "atwood_cli")
     for change, name, before, line in CHANGES:
         (row,) = re.findall(rf"^\| {change}.*", MAP, re.MULTILINE)

@@ -5,7 +5,6 @@ import json
 import re
 import shlex
 import warnings
-from functools import cache
 from itertools import chain, pairwise
 from pathlib import Path
 from typing import Any, cast
@@ -16,6 +15,7 @@ import pytest
 
 from atwood_cli import solve
 from atwood_cli.model.quantities import NAMES
+from atwood_cli.output import figure
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Measured
 from atwood_cli.tradeoff.tradeoff_page import GREATEST, LEAST
 from atwood_cli.tradeoff.tradeoff_page import save as save_tradeoff
@@ -24,9 +24,6 @@ from . import doors, running
 from .regenerate import CASES
 from .running import TOP, called, labels, misplaced, pages_seen, process, words_on
 from .scenes import inputs
-
-figure = pytest.importorskip("atwood_cli.output.figure")
-pytest.importorskip("matplotlib")
 
 (PICTURES,) = (page.read_text(encoding="utf-8") for page in CASES if page.stem == "pictures")
 KEPT = re.findall(r"^\$ (?:printf '(.*)' \| )?atwood (.*) --figure \S+(.*)", PICTURES, re.MULTILINE)
@@ -56,9 +53,8 @@ LINES = [("", line) for line in MORE.strip().replace("|", "\n").split("\n")]
 LINES += [(table, words + rest) for table, words, rest in KEPT]
 
 
-@cache
 def drawn(line: str, table: str = "") -> Any:
-    """The picture that a command line has, drawn once, with fewer steps of curves than usual."""
+    """The picture that a command line has, with fewer steps of curves than usual."""
     with patch("atwood_cli.sweep.sweep_figure.CURVE_STEPS", 20):
         return running.drawn(line, table.encode().decode("unicode_escape").encode())
 
@@ -318,7 +314,6 @@ SCATTERED = (
 )
 def test_what_is_fitted_is_the_slope_or_the_intercept(find: str, slope: str, intercept: str) -> None:
     """A fit of gravity did not show it."""
-    pytest.importorskip("scipy")
     fit = json.loads(called(f"fit - --find {find} --json".split(), MADE.encode()).out)
     line, rest = drawn(f"fit - --find {find}", MADE).axes
     (x0, y0), (x1, y1) = line.lines[0].get_xydata()
@@ -333,7 +328,6 @@ def test_what_is_fitted_is_the_slope_or_the_intercept(find: str, slope: str, int
 
 
 def test_a_bad_fit_says_so() -> None:
-    pytest.importorskip("scipy")
     good, bad = (drawn("fit - --drop 98cm --without 3", table) for table in (SOUND, SCATTERED))
     assert "Scatter is larger than the uncertainties, p = " in bad.get_suptitle()
     assert "Scatter" not in good.get_suptitle()

@@ -182,7 +182,6 @@ def test_a_file_gets_what_a_pipe_would(tmp_path: Path, typed: str) -> None:
     ],
 )
 def test_a_file_is_replaced_only_by_force(atwood: Atwood, tmp_path: Path, typed: str) -> None:
-    pytest.importorskip("matplotlib")
     words = typed.replace("FILE", f"{tmp_path}/a").replace("RIT", str(RIT)).split()
     file = Path(words[-1])
     file.write_text("kept")
