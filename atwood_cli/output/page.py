@@ -10,17 +10,14 @@ from time import monotonic
 from typing import Any, TypeVar
 
 from ..model.units import counted
-from ..solver.answers import Answers
-from ..solver.messages import unmarked, verdict
 from .files import printable
-from .text import relevant_inputs, wrapped
+from .text import wrapped
 
 Part = TypeVar("Part")
 Groups = Sequence[Sequence[Sequence[str]]]
 """Groups of rows of cells."""
 
 PIPE_WIDTH = 100
-REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 
 
 class Page:
@@ -52,14 +49,6 @@ class Page:
         from rich.text import Text
 
         self.console.print(Text(printable(words), style), soft_wrap=True)
-
-    def head(self, answers: Answers, found: str = "") -> None:
-        """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
-        given = relevant_inputs(answers.case.scene, answers.case.motion, answers.uncertain)
-        self.say(", ".join(given.values()))
-        if found:
-            self.say(found, style="bold")
-        self.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.case.regime]}")
 
     def table(self, columns: Sequence[str], groups: Groups, keys: int = 1) -> None:
         """Print a table, with a line between groups of rows.

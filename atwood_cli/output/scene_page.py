@@ -61,6 +61,7 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
     return [*said, *reasons(answers, names or answers.names)]
 
 
+REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
 
@@ -74,7 +75,7 @@ def print_table(
     names = answers.names[1:] if whole else answers.main
     groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *answers.found)])
     found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
-    page.head(answers, f"Found: {', '.join(found)}." if found else "")
+    _print_head(page, answers, f"Found: {', '.join(found)}." if found else "")
     if groups:
         page.table(COLUMNS, groups)
     lacking = dict.fromkeys([*names, *answers.found])
@@ -83,6 +84,15 @@ def print_table(
     page.say(*map(unmarked, remarks(answers)), *reasons(answers, list(lacking)))
     if budget:
         print_budget(answers, names, page)
+
+
+def _print_head(page: "Page", answers: Answers, found: str = "") -> None:
+    """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
+    given = relevant_inputs(answers.case.scene, answers.case.motion, answers.uncertain)
+    page.say(", ".join(given.values()))
+    if found:
+        page.say(found, style="bold")
+    page.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.case.regime]}")
 
 
 def as_text(answers: Answers) -> str:
@@ -197,7 +207,7 @@ def print_contact(answers: Answers, arc: Contact, tables: bool) -> None:
     from .page import Page, aligned
 
     page = Page()
-    page.head(answers)
+    _print_head(page, answers)
     if not tables:
         page.say(*arc.notes)
         return

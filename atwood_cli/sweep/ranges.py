@@ -219,10 +219,10 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     words = typed.split(":")
     if len(words) not in (3, 4) or words[3:] not in ([], ["log"]) or not all(words):
         raise SceneError(name, typed, f"is not a range; write {FORM}")
+    if any(word.strip().lower() in (LOCKED.text, *INPUTS[name].names) for word in words[:2]):
+        raise SceneError(name, typed, "must run between finite numbers, not to or from inf or a name")
     (start, stop), suffix = _read_numbers(name, typed, words[:2])
     log = len(words) == 4
-    if inf in (start, stop):
-        raise SceneError(name, typed, "has the end inf; a range runs between finite numbers")
     if start == stop:
         raise SceneError(name, typed, "has equal ends; a range runs from one value to another")
     if log and not (start > 0 and stop > 0):

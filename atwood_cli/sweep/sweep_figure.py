@@ -1,13 +1,12 @@
 """The curves of a sweep, and their picture."""
 
 from collections.abc import Iterable, Sequence
-from fractions import Fraction
 from itertools import chain
 from math import inf, isnan, log, nan
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..model.digits import SHOWN_DIGITS, is_infinite, strip_zeros, to_digits
+from ..model.digits import is_infinite
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, SceneError
 from ..output.figure import COLOURS, FAINT, INK, axis_words, check_file, page, typeset, write_beside
@@ -15,7 +14,7 @@ from ..output.text import wrapped
 from ..solver.answers import Answers
 from ..solver.messages import unmarked
 from .changes import Change, changes
-from .ranges import Range, Sweep, decimal_point, steps, with_value
+from .ranges import Range, Sweep, steps, with_value
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -26,8 +25,7 @@ MAX_CURVES = len(COLOURS)
 LARGEST_DRAWN = 1e100
 """The largest number that is drawn, in any unit."""
 UNDRAWABLE = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only, not such {{}}"
-CURVE_STEPS, DRAWN_DIGITS = 200, 12
-"""The steps of a curve, and the digits of a place at which the regime changes, as it is drawn."""
+CURVE_STEPS = 200
 BEGINS = {"slip": "slips", "no-slip": "holds", "verge": "on the verge"}
 LINE_STYLES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
 MARKERS = "osD^vP"
@@ -79,7 +77,7 @@ def _solve(along: Range, scene: Scene) -> tuple[list[Change], dict[float, Answer
     found, values = list[Change](), [point.exact for point in along.points]
     if not along.is_list:
         corners = attrgetter("regime", "sign", "axle_holds")  # where one of these changes
-        found = list(changes(scene, along, DRAWN_DIGITS, what=corners))
+        found = list(changes(scene, along, what=corners))
         values = [*steps(*along.ends, CURVE_STEPS, along.log)]
         values += [x for change in found for x in (change.last, change.first)]
     return found, {float(x): Answers(with_value(scene, along.name, x)) for x in sorted(values)}
@@ -117,10 +115,9 @@ def _curve(along: Range, name: str, point: str, found: list[Change], solved: dic
     for change in found:
         if change.before[0] != change.after[0]:
             beside = (_height(solved[float(x)], name, "max") for x in (change.first, change.last))
-            place = to_digits(SHOWN_DIGITS)(exact := Fraction(change.at.exact))  # as the table has it
-            at = along.in_units(decimal_point(strip_zeros(place) if place == exact else place, along.suffix))
             height = next((y for y in beside if not isnan(y)), nan)
-            marks.append((float(change.first), height, f"{BEGINS[change.after[0]]} from {at}"))
+            words = f"{BEGINS[change.after[0]]} from {along.in_units(change.at)}"
+            marks.append((float(change.at.exact), height, words))
     return Curve(name, point, xs, least, most, marks, sorted(y for y in locked if not isnan(y)))
 
 
