@@ -22,7 +22,7 @@ __all__ = [
     "solve_arrays",
     "solve_table",
 ]
-__version__ = "1.0.0rc1"
+__version__ = "1.0.0"
 
 _HOMES = {
     "api": ("Solution", "solve"),
