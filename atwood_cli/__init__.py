@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from .model.scene import Scene as Scene
     from .model.scene import SceneError as SceneError
 
-__version__ = "1.0.0rc1"
+__version__ = "1.0.0"
 
 _HOMES = {
     **dict.fromkeys(("Solution", "solve"), "api"),
