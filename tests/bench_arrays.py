@@ -82,7 +82,7 @@ def compared(draw: Callable[[int], Columns], accuracy: Any, most: int) -> tuple[
     """The rows that are enough, and the least that they take by the paper and with an accuracy."""
     given = draw(rows := 100)
     works: dict[str, Callable[[], Taken]] = {
-        "paper": lambda: taken_by(lambda: in_numpy(**given)),
+        "paper": lambda: taken_by(lambda: in_numpy(*(given[x] for x in ("m1", "m2", "M", "mu")))),
         accuracy: lambda: taken_by(lambda: solve_arrays(**given, accuracy=accuracy)),
     }
     while rows < most and works[accuracy]().clock < LONG:
