@@ -62,6 +62,8 @@ class Csv:
         text = next(self._texts, "")
         mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
         text = text.removeprefix(BYTE_ORDER_MARK)
+        while text.count('"') % 2 and len(text) < LONGEST_RECORD and (more := next(self._texts, "")):
+            text += more  # the header may have line ends
         self._text, self._line = _lines(text), 1
         self.separator = max(SEPARATORS, key=lambda mark: best_header(text, mark, known))
         _, header, self.columns = next(self._records(), (1, "", []))
