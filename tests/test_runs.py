@@ -268,3 +268,9 @@ def test_lines_are_counted_through_all_pieces(batch: Batch, monkeypatch: pytest.
     said = batch(f'{before}"p"q,3\n').err, batch(f'{before}1,"{lines}"\n').err
     assert "the row that begins in line 22 has a quotation mark" in said[0]
     assert "the cell that begins in line 22 has 51 lines, and the most is 50" in said[1]
+
+
+def test_a_header_may_come_in_two_pieces(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A heading with a line end, from a pipe, was "a quotation mark out of place"."""
+    monkeypatch.setattr(sources, "BLOCK_BYTES", 1)
+    assert batch('"time\nof day",m1,m2\n9,1,3\n').out.startswith('"time\nof day",m1,m2,regime,')
