@@ -273,4 +273,4 @@ def test_lines_are_counted_through_all_pieces(batch: Batch, monkeypatch: pytest.
 def test_a_header_may_come_in_two_pieces(batch: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
     """A heading with a line end, from a pipe, was "a quotation mark out of place"."""
     monkeypatch.setattr(sources, "BLOCK_BYTES", 1)
-    assert batch('"time\nof day",m1,m2\n9,1,3\n').out.startswith('"time\nof day",m1,m2,regime,')
+    assert batch('"time\nof day";m1;m2\n9;1;3\n').out.startswith('"time\nof day";m1;m2;regime;')
