@@ -10,12 +10,15 @@ from scipy.optimize import least_squares
 from ..model import physics
 from .results import FITTED
 from .runs import Column, Places, Runs, Selection
-from .statistics import ROUNDING, Line, fit_line, sum_of_squares
+from .statistics import ROUNDING, CannotSeparate, Line, fit_line, sum_of_squares
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
-NEAR, CLOSE, MOST_STEPS = 1e-2, 1e-13, 30
-"""Shares of what is expected: steps that change less are those of the line; with still less, all is done."""
+NEAR, ENOUGH, CLOSE, MOST_STEPS = 1e-2, 1e-6, 1e-13, 30
+"""Shares of what is expected. A step below ``NEAR`` is the line's, and one below ``CLOSE`` the last.
+
+If the last step is not below ``ENOUGH``, no values are found.
+"""
 TINY = 1e-100
 
 
@@ -191,6 +194,8 @@ def estimate(
             values |= {x: max(values[x] + step, least[x]) for x, step in steps}
         else:
             values |= _least_squares(data, values, least, np.sqrt(line.variance))
+    if not size < ENOUGH:
+        raise CannotSeparate
     sigma = np.sqrt(line.scale * line.variance)
     return Estimate(data, values, names, line, sigma, len(data.l) - len(names))
 

@@ -56,7 +56,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     seen, shifted = (view(data, there, best.values, best.names) for there in (a, a + u_a))
     u_x, u_y = abs(shifted.x - seen.x), abs(shifted.y - seen.y)
     above = [conditions(fit), verdict(fit)]
-    if (p := fit.whole.p_value) is not None and p < RARE:
+    if (p := fit.whole.p_value) is not None and p < RARE and not fit.outliers:
         above.append(f"Scatter is larger than the uncertainties, p = {rounded(p)}.")
     bars_are = "widened to the scatter between runs" if fit.whole.between_runs else "not widened"
     if fit.whole.chi2 is None:

@@ -91,9 +91,11 @@ def _delay(fit: Fitted) -> list[str]:
     half = result.interval[1] - result.value if result else np.inf
     if fit.runs.kind != "time" or "delay" in names or half <= WIDE_DELAY:
         return []
-    seen = f" (a fitted delay is {with_u(result.value, result.uncertainty)} s)" if result else ""
     how = "vary the height of fall, or both m2 - m1 and m1 + m2, more"
-    return [f"These runs cannot show if all times are too long{seen}: {how}."]
+    if not result:
+        return [f"These runs cannot show a delay of all times: {how}."]
+    fitted = f"fitted, it is {with_u(result.value, result.uncertainty)} s"
+    return [f"These runs neither show nor exclude a delay of all times ({fitted}): {how}."]
 
 
 def _capital(words: str) -> str:

@@ -2,7 +2,7 @@
 
 import sys
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from fractions import Fraction
 from itertools import groupby
@@ -43,10 +43,10 @@ class SweepPage:
                 yield row
                 self.done += 1
 
-    def notes(self) -> list[str]:
-        """Say why values that were asked for are missing, with the number of points, after all rows."""
-        asked = {key: points for key, points in self.reasons.items() if key[0] in self.asked}
-        return reasons_at(asked, self.sweep.total)
+    def notes(self, shown: Collection[str] = ()) -> list[str]:
+        """Say why values that were asked for, or are ``shown`` in other rows, are missing, after all rows."""
+        said = {key: points for key, points in self.reasons.items() if key[0] in {*self.asked, *shown}}
+        return reasons_at(said, self.sweep.total)
 
     def _all_notes(self) -> Iterator[str]:
         """Say why any values are missing: an iterator that begins after all rows."""
@@ -55,7 +55,7 @@ class SweepPage:
     def _assumption(self) -> list[str]:
         """Say that the string is assumed not to slip, if no slip needs friction and mu is not given."""
         scene = self.sweep.scene
-        needs_friction = scene.M or scene.I is not None
+        needs_friction = scene.M or scene.I is not None or any(one.name == "M" for one in self.sweep.ranges)
         return [ASSUMED] if scene.mu is None and needs_friction else []
 
     def json(self) -> Mapping[str, object]:
@@ -92,7 +92,7 @@ class SweepPage:
         numbers = [name for name in same if name != "regime"]
         if shared := [f"{name} = {with_unit(same[name], QUANTITIES[name].unit)}" for name in numbers]:
             above.append(f"In all rows: {', '.join(shared)}.")
-        notes = self.notes()
+        notes = self.notes(shown)
         page.say(*above)
         if table and (len(same) < len(shown) or not shown):
             columns = {}
