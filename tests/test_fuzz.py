@@ -99,7 +99,7 @@ def rows_of(text: str, separator: str) -> list[tuple[str, list[str]]] | None:
         place = found.end()
         cells = re.findall(rf"(?:\A|{separator})({cell})", found[1])
         if found[1].strip() or len(cells) > 1:
-            cells = [re.sub('"(.?)', r"\1", word) if word[:1] == '"' else word for word in cells]
+            cells = [word[1:-1].replace('""', '"') if word[:1] == '"' else word for word in cells]
             rows.append((found[1], cells))
     return rows
 
