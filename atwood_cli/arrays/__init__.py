@@ -136,7 +136,9 @@ def _solve(rows: Rows, given: Mapping[str, GivenColumn], names: tuple[str, ...])
         rows.results["status"][group.rows] = group.status
         if group.pattern:
             level = len(LEVELS[rows.accuracy]) if group.beyond_window else 0
-            if Decisions(group.pattern.scene(partial(rows.number, select(group.rows, 0)))).mu_assumed:
+            row = partial(rows.number, select(group.rows, 0))
+            inputs = dict(zip(INPUTS, group.pattern.inputs, strict=True))
+            if inputs["mu"] is None and Decisions(group.pattern.scene(row)).mu_assumed:
                 rows.reasons["regime", REGIME_ASSUMED] += size_of(group.rows)
             rows.solve(group.rows, Task(group.pattern, frozenset(), names, level))
             continue
