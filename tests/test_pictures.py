@@ -193,7 +193,7 @@ def test_on_other_wraps_the_tensions_pull_along_the_tangents(wrap: int, masses: 
     assert figure.GREEN not in arrows_of(axes)
     assert len(axes.patches) == 1
     assert not [text for text in axes.texts if text.get_text().startswith(("m", "W", "a"))]
-    assert "The masses hang over guides that are not drawn." in " ".join(page.get_supxlabel().split())
+    assert "m₂ hangs over a guide that is not drawn." in " ".join(page.get_supxlabel().split())
 
 
 def test_blocks_are_in_proportion_to_the_masses() -> None:

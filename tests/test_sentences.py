@@ -186,7 +186,7 @@ RANGES = "|".join(
 KINETIC = "(; it slides with mu_k = .*)?"
 SENTENCES: dict[str, Callable[..., None]] = {
     r"At rest: the masses are equal, so no friction is needed\.": claimed(lambda c: c.scene.m1 == c.scene.m2),
-    rf"At rest: axle friction can balance up to {NUMBER} (k?g)\.(.*)": rest,
+    rf"At rest: axle friction can hold a difference of masses of up to {NUMBER} (k?g)\.(.*)": rest,
     r"Slips on any pulley with mass, as mu = 0; the values are for a massless pulley\.": claimed(
         lambda c: c.any_pulley() == {"slip"} and c.regime(pulley=Fraction(0)) == "no-slip"
     ),

@@ -62,7 +62,7 @@ def solve_arrays(
         I, R: The moment of inertia, in kg m², and the radius, in m.
         wrap: The angle that the string wraps, in degrees.
         axle: The friction of the axle as a force at the rim, in N.
-        accuracy: "certified" (every regime right, every value proven within 2e-14 of itself), whose last
+        accuracy: "certified" (every regime right, every relative error proven below 2e-14), whose last
             places may depend on NumPy's build and on the other rows; or "exact" (the nearest double), which
             is the same everywhere.
         quantities: The names or symbols of quantities, as "acceleration" or "a"; if None, the names in

@@ -16,7 +16,7 @@ Take the row m1 = 1, m2 = 3, M = 100, mu = 0.3, and its acceleration, certified.
 
 What each accuracy promises, and why it holds:
 
-- ``certified``: every regime is right, and every value within 2e-14 of itself. The levels are doubles, pairs,
+- ``certified``: every regime is right, and every relative error below 2e-14. The levels are doubles, pairs,
   and in the end the exact arithmetic of a single scene. A value is certified where its bound is within the
   limit. A question is answered by the sign of a difference, if its bound is below 1/4.
 - ``exact``: the double nearest to the exact value, by pairs and then by a single scene. A value is certified

@@ -20,6 +20,8 @@ from .units import Angle
 Values = Any
 """The exact values of inputs as attributes; one is None if it is not given, or is to be found."""
 
+MOTOR = "for a motor or a brake see examples/hoist.md"
+
 
 def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
     """Return the scene, with the input that follows from what was measured, and that. Raises SceneError."""
@@ -78,8 +80,7 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
     if values.mu_k is not None:
         return "and mu_k both say how the string slides; leave one of them out"
     if mu is not None and not case.slips:
-        slips = f"would find mu_k, but with mu = {as_typed(mu)} the string does not slip"
-        return f"{slips}; leave mu out, or for a motor give masses T/g and no a (examples/hoist.md)"
+        return f"gives mu_k, but with mu = {as_typed(mu)} the string does not slip; leave mu out, or {MOTOR}"
     return ""
 
 
@@ -90,7 +91,7 @@ def _impossible(scene: Scene, motion: Motion) -> str:
         if case.slide_ratio_minus_1(EXACT) < 0:
             drive, load = (of(case.light, case.heavy, ZERO) for of in (physics.drive, physics.load))
             most = to_digits(SHOWN_DIGITS)(case.sign * physics.acceleration(drive, load, scene.g))
-            return f"is too large: even without friction the acceleration is {format_number(most)} m/s²"
+            return f"is too large: without friction the acceleration is {format_number(most)} m/s²; {MOTOR}"
         if scene.mu is not None and case.exceeds(case.slide_ratio_minus_1, scene.mu):
             return "needs more kinetic friction than mu; check both"
     elif scene.m1 == scene.m2 == 0:

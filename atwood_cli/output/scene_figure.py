@@ -100,7 +100,7 @@ def _caption(few: Answers, kind: arc.Profile | None, wrap: float, bare: bool) ->
         one = ", and the forces on the one at the heavier mass are drawn" if kind else ""
         yield f"There are {turns} turns{one}."
     if not few.case.ends_hang_down:
-        yield "The masses hang over guides that are not drawn." if kind else "The mass is not drawn."
+        yield "m2 hangs over a guide that is not drawn." if kind else "The mass is not drawn."
 
 
 def _forces(few: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:

@@ -114,7 +114,7 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
         about, case = QUANTITIES[name], answers.case
-        equation = cited(name, case.regime == "slip", case.has_axle_friction)
+        equation = cited(name, case.regime == "slip", case.has_axle_friction and not case.locked)
         at_limit = name.startswith("friction_force") and case.mu_assumed  # and has a single value then
         shown = f"{name} at mu_verge" if at_limit else name
         row = [shown, value, about.unit, about.symbol, equation]

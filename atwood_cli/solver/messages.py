@@ -74,7 +74,7 @@ def verdict(answers: Answers) -> str:
     if case.regime == "slip":
         return _slips(answers)
     if case.axle_holds:
-        held = f"At rest: axle friction can balance up to {_held(answers)}."
+        held = f"At rest: axle friction can hold a difference of masses of up to {_held(answers)}."
         return f"{held} {_grips(answers)}" if case.light else held
     if case.tensions_equal:
         return "No slip: a massless pulley needs no friction to turn, so both tensions are equal."

@@ -215,5 +215,5 @@ def _one_sided(name: str, here: Decimal, other: Decimal | None) -> str:
     """Name a quantity without an uncertainty, with the value at the only end that has one."""
     if other is None or other == here:
         return name
-    bound = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(other)))
-    return f"{name} (at {'least' if other < here else 'most'} {with_unit(bound, QUANTITIES[name].unit)})"
+    value = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(other)))
+    return f"{name} ({with_unit(value, QUANTITIES[name].unit)} at the other end)"
