@@ -89,7 +89,7 @@ def _caption(few: Answers, kind: arc.Profile | None, wrap: float, bare: bool) ->
         why = "as on a slightly elastic string"
         if few["friction_force_max"] is not None:
             greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
-            why = f"which makes the net force greatest ({greatest} N; least {least} N)"
+            why = f"which makes the net friction force greatest ({greatest} N; least {least} N)"
         yield f"Drawn: friction at its limit on the {end} {angle}°, {why}."
     elif kind and not bare:
         yield about(few.case, kind)
