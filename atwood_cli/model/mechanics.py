@@ -62,7 +62,7 @@ class Mechanics(Generic[N]):
     @property
     def mu(self) -> N:
         """Coefficient of static friction; not given if one mass is 0."""
-        reason = quantities.FREE_END if self.case.one_mass_is_0 else quantities.NEEDS_MU
+        reason = quantities.FIXED_END if self.case.one_mass_is_0 else quantities.NEEDS_MU
         return self._given(self.scene.mu, reason)
 
     def _capstan_ratio_minus_1(self, given: Fraction | None, mu: N) -> N:
@@ -216,7 +216,7 @@ class Mechanics(Generic[N]):
         If they differ and the pulley is not known, they are those on the verge.
         """
         if self.case.one_mass_is_0:
-            raise Undetermined(quantities.FREE_END)
+            raise Undetermined(quantities.FIXED_END)
         if self.case.tensions_equal:
             return False
         if not self.case.pulley_known and self.case.regime != "verge":
