@@ -29,7 +29,7 @@ def _status() -> int:
     def lost(error: "sys.UnraisableHookArgs") -> None:
         """End at once if Python cannot raise the interrupt, as while it drops an object."""
         if error.exc_type is KeyboardInterrupt:
-            os._exit(status)
+            os._exit(status or INTERRUPTED)
         sys.__unraisablehook__(error)
 
     sys.unraisablehook = lost
