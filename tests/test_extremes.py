@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from mpmath import MPContext
 
 from atwood_cli import solve
-from atwood_cli.model.quantities import NAMES
-from atwood_cli.model.scene import Scene
+from atwood_cli.model.quantities import NAMES, QUANTITIES
+from atwood_cli.model.scene import INPUTS, Scene
 from atwood_cli.solver.answers import Answers
 
 from .conftest import examples, many
@@ -113,13 +113,12 @@ def test_the_motion_is_continuous_where_the_string_begins_to_slip(
 
 # The same machine in other units
 
-DIMENSIONS = {  # of kg, m and s
-    **dict.fromkeys(["m1", "m2", "M", *(name for name in NAMES if name.endswith("_mass"))], (1, 0, 0)),
-    **dict.fromkeys(["g", "acceleration", "rim_acceleration"], (0, 1, -2)),
-    **dict.fromkeys([name for name in NAMES if "force" in name or "tension" in name], (1, 1, -2)),
-    **{"R": (0, 1, 0), "I": (1, 2, 0), "N": (1, 1, -2), "N m": (1, 2, -2), "torque": (1, 2, -2)},
-    **{"angular_acceleration": (0, 0, -2), "tension_ratio": (0, 0, 0)},
+DIMENSIONS: dict[str, tuple[int, int, int]] = {  # of kg, m and s
+    **{"kg": (1, 0, 0), "m": (0, 1, 0), "m/s²": (0, 1, -2), "rad/s²": (0, 0, -2)},
+    **{"N": (1, 1, -2), "N m": (1, 2, -2), "kg m²": (1, 2, 0)},
 }
+UNITS = {x: one.unit for x, one in INPUTS.items()} | {x: one.unit for x, one in QUANTITIES.items()}
+DIMENSIONS |= {x: DIMENSIONS.get(unit, (0, 0, 0)) for x, unit in UNITS.items()}
 
 
 @pytest.mark.parametrize("family", [f"{family}{axle}" for axle in ("", ON_AN_AXLE) for family in FAMILIES])

@@ -1,9 +1,14 @@
 """The map's table of what a change touches: in a copy, what it names is enough for the change to be seen."""
 
+import os
 import re
+import sys
 from collections.abc import Iterator
 from pathlib import Path
-from shutil import copytree
+from shutil import copytree, ignore_patterns
+from subprocess import run
+
+import pytest
 
 from atwood_cli import Solution
 from atwood_cli.model import quantities
@@ -23,6 +28,11 @@ from .test_sentences import REASONS
 MAP = (TOP / "atwood_cli" / "README.md").read_text(encoding="utf-8")
 # fmt: off
 CHANGES = [
+    ("add a quantity", "oracle.py", '    out["regime"] = regime\n', '    out["trial"] = l + h\n'),
+    ("add a quantity", "oracle.py", '\n""".split()', " trial"),
+    ("add a quantity", "test_contract", "pulley_mass moment_of_inertia gravity m1", "trial "),
+    ("take a unit", "test_scene", "kg 1 g 0.001 mg", "stater 7 "),
+    ("take a unit", "examples/hoist.md", "kg, g, mg, ug", "stater, "),
     ("add a quantity", "model/quantities.py", "    # Of a scene whose motion was",
      '    "trial": About("limits", "Q", "kg", "", "both masses"),\n'),
     ("add a quantity", "model/machine.py", "    @property\n    def gravity(",
@@ -43,14 +53,38 @@ for words in ("solve --only Q", "sweep --M 1:2:2 --only trial --csv", "solve --o
 """
 
 
-def test_what_the_map_names_is_enough(tmp_path: Path) -> None:
-    package = copytree(TOP / "atwood_cli", tmp_path / "atwood_cli")
+@pytest.fixture
+def changed(tmp_path: Path) -> Path:
+    """A copy of the project with all these changes."""
+    copied = copytree(
+        TOP, tmp_path / "copy", ignore=ignore_patterns(".git", "*venv*", ".*cache", "__pycache__")
+    )
     for change, name, before, line in CHANGES:
         (row,) = re.findall(rf"^\| {change}.*", MAP, re.MULTILINE)
-        text = (package / name).read_text(encoding="utf-8")
+        file = name if "." in name else f"{name}.py"
+        (path,) = (path for path in copied.rglob(Path(file).name) if path.as_posix().endswith(f"/{file}"))
+        text = path.read_text(encoding="utf-8")
         assert (f"`{name}`" in row, text.count(before)) == (True, 1), (name, before)
-        (package / name).write_text(text.replace(before, line + before), encoding="utf-8")
-    ran = process(code=SEEN, PYTHONPATH=str(tmp_path), PYTHONSAFEPATH="1")
+        path.write_text(text.replace(before, line + before), encoding="utf-8")
+    return copied
+
+
+def test_the_suite_passes_with_what_the_map_names(changed: Path, pytestconfig: pytest.Config) -> None:
+    if not pytestconfig.getoption("every_digit"):
+        pytest.skip("a suite in the suite: --every-digit")
+    for words in (["tests.regenerate", "--accept"], ["pytest", "--quick", "--ignore", "tests/test_map.py"]):
+        ran = run(
+            [sys.executable, "-m", *words],
+            cwd=changed,
+            env={**os.environ, "PYTHONPATH": str(changed)},
+            capture_output=True,
+            text=True,
+        )
+        assert ran.returncode == 0, ran.stdout[-2000:]
+
+
+def test_what_the_map_names_is_enough(changed: Path) -> None:
+    ran = process(code=SEEN, PYTHONPATH=str(changed), PYTHONSAFEPATH="1")
     assert (ran.out, ran.err) == ("True\n10.0 3.0 4.0\n10\nM,trial\n1,10\n2,10\n1\n", "")
 
 
