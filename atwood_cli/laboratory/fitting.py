@@ -195,7 +195,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
 
 
 def outcome(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Outcome:
-    """Return the fit of the runs that are used, with its uncertainties. Raises Unreadable, CannotSeparate."""
+    """Return the fit of the runs that are used, with its uncertainties. Raises CannotSeparate."""
     count = int(used.sum())
     dof = count - len(names)
     data = as_data(runs, used) if dof >= 0 else None

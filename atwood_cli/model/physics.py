@@ -248,21 +248,14 @@ def critical_pulley_mass(l: N, h: N, friction_mass: N, drive: N, beta: N, b: N) 
 
 
 def critical_heavier_mass(l: N, c: N, friction_mass: N, b: N) -> N:
-    """Return the heavier mass (kg) above which the string slips (35); needs c > b and c + b > 2 l (k - 1).
+    """Return the heavier mass (kg) above which the string slips (35), for c > b and c + b > 2 l (k - 1).
 
-    >>> critical_heavier_mass(1, 4, 1, 0), critical_heavier_mass(1, 6, 2, 1)
-    (4.0, 5.0)
+    For c < b and c + b < 2 l (k - 1) it is the mass above which it holds again.
+
+    >>> critical_heavier_mass(1, 4, 1, 0), critical_heavier_mass(1, 1, 2, 2)
+    (4.0, 3.0)
     """
     return (c - b) / (c + b - 2 * friction_mass) * least_heavier_mass(l, friction_mass)
-
-
-def heavier_mass_that_holds(l: N, c: N, friction_mass: N, b: N) -> N:
-    """Return the heavier mass (kg) above which it holds again, (35) for c < b and c + b < 2 l (k - 1).
-
-    >>> heavier_mass_that_holds(1, 1, 2, 2)
-    3.0
-    """
-    return (b - c) / (2 * friction_mass - c - b) * least_heavier_mass(l, friction_mass)
 
 
 def critical_lighter_mass(h: N, c: N, k_minus_1: N, b: N) -> N:

@@ -161,7 +161,7 @@ def remarks(answers: Answers) -> list[str]:
     if slips_above_a_mass and case.rim_mass is not None and not case.slips_at("heaviest"):
         c, round_ = case.rim_mass, _beside(answers, case.heavy)
         again = answers.settle(
-            lambda m: physics.heavier_mass_that_holds(m.l, m.ar.number(c), m.friction_mass, m.b), round_
+            lambda m: physics.critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b), round_
         )
         said.append(
             f"Under a heavier mass above {format_number(again)} kg the string holds again, as axle friction"
