@@ -6,29 +6,29 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
+from scipy.special import chdtrc, fdtrc
 
 from ..model import physics
-from .results import FITTED
+from .results import FITTED, Result
 from .runs import Column, Places, Runs, Selection
-from .statistics import ROUNDING, CannotSeparate, Line, fit_line, sum_of_squares
+from .statistics import CannotSeparate, Line, Linear, fit_line, sum_of_squares
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
-NEAR, ENOUGH, CLOSE, MOST_STEPS = 1e-2, 1e-6, 1e-13, 30
-"""Shares of what is expected. A step below ``NEAR`` is the line's, and one below ``CLOSE`` the last.
-
-If the last step is not below ``ENOUGH``, no values are found.
-"""
+NEAR, CLOSE, MOST_PASSES = 1e-2, 1e-11, 100
+"""Shares of what is expected. A step below ``NEAR`` is linear, and one below ``CLOSE`` is the last."""
+ROUNDING = 1e-12
+"""The least standard uncertainty of a measured number, as a share of it."""
 TINY = 1e-100
 
 
 class Data(NamedTuple):
     """Runs as a fit sees them (n): light and heavy masses apart, and what was measured, positive.
 
-    ``drop`` is None for accelerations. ``measured`` are means of so many ``values`` as ``counts`` says, each
-    with an uncertainty ``u`` if they are ``stated``, and the number of its ``run``. ``scatter`` is the
-    standard uncertainty of a mean, stated or by its repeats, 0 without either. ``repeats`` are χ² and the
-    degrees of freedom of the repeats about their means. ``uncertain`` has uncertainties of other columns.
+    ``drop`` is None for accelerations. ``measured`` are means of so many values as ``counts`` says.
+    ``scatter`` is the standard uncertainty of a mean, ``stated`` or by its repeats, 0 without either.
+    ``repeats`` are χ² and the degrees of freedom of the repeats about their means. ``uncertain`` has the
+    uncertainties of other columns.
     """
 
     l: Column
@@ -40,16 +40,13 @@ class Data(NamedTuple):
     stated: bool
     repeats: tuple[float, int]
     uncertain: Mapping[str, Column]
-    values: Column
-    u: Column
-    run: Places
 
 
 class Estimate(NamedTuple):
     """The fitted values, of these ``names``, and the given ones, with the linear fit at these values.
 
-    ``sigma`` is the standard uncertainty of each run's measurement, scatter between runs included, and
-    ``dof`` the number of runs less that of fitted quantities.
+    ``sigma`` is the standard uncertainty of each run's measurement, scatter between runs included. ``reason``
+    says why there are no ``results``, if there are none.
     """
 
     data: Data
@@ -57,10 +54,37 @@ class Estimate(NamedTuple):
     names: Sequence[str]
     line: Line
     sigma: Column
-    dof: int
+    results: Mapping[str, Result] = {}
+    reason: str = ""
 
+    @property
+    def dof(self) -> int:
+        """The number of runs less that of fitted quantities."""
+        return len(self.data.l) - len(self.names)
 
-# Runs as columns
+    @property
+    def chi2(self) -> float | None:
+        """χ² of the runs by the uncertainties stated, or by the scatter of repeats; None without either."""
+        return self.line.chi2 if self.data.scatter.any() else None
+
+    @property
+    def p_value(self) -> float | None:
+        """The probability that chance gives a larger χ²; None if nothing is left to test the fit."""
+        if self.chi2 is None or not self.dof:
+            return None
+        if self.is_f_test:
+            return float(fdtrc(self.dof, self.data.repeats[1], self.chi2 / self.dof))
+        return float(chdtrc(self.dof, self.chi2))
+
+    @property
+    def is_f_test(self) -> bool:
+        """Whether the scatter is known by repeats alone."""
+        return bool(self.data.repeats[1]) and not self.data.stated
+
+    @property
+    def between_runs(self) -> float | None:
+        """The standard deviation between runs beyond that, as a mass (kg)."""
+        return None if self.p_value is None else sqrt(self.line.between) / abs(self.values["gravity"])
 
 
 def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
@@ -82,13 +106,11 @@ def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
         variance = variance + runs.step**2 / 12
     repeats = (chi2 / factor, dof) if factor else (0.0, 0)
     columns = {x: np.stack([runs.given[x][used], runs.u[x][used]]) for x in runs.given}
-    is_swapped = columns["m1"][0] > columns["m2"][0]
-    (l, u_l), (h, u_h) = (
-        np.where(is_swapped, columns[x], columns[y]) for x, y in (("m2", "m1"), ("m1", "m2"))
-    )
-    drop, u_drop = columns.get("drop", (None, l * 0))
+    m1, m2 = columns["m1"], columns["m2"]
+    (l, u_l), (h, u_h) = np.where(m1[0] > m2[0], (m2, m1), (m1, m2))
+    drop, u_drop = columns.get("drop", (None, 0 * l))
     uncertain = {x: u for x, u in (("l", u_l), ("h", u_h), ("drop", u_drop)) if u.any()}
-    return Data(l, h, drop, measured, counts, np.sqrt(variance), stated, repeats, uncertain, values, u, run)
+    return Data(l, h, drop, measured, counts, np.sqrt(variance), stated, repeats, uncertain)
 
 
 # What is expected of runs
@@ -100,7 +122,7 @@ def expected(data: Data, values: Mapping[str, Any]) -> Any:
     ``values`` are rim_mass, axle, gravity and delay, and may replace columns. If next to nothing would
     move, the time goes on along its tangent, so that a fit finds its way back.
     """
-    x: dict[str, Any] = {**data._asdict(), "delay": 0.0, **values}
+    x: dict[str, Any] = {**data._asdict(), **values}
     drive = physics.drive(x["l"], x["h"], physics.axle_mass(x["axle"], x["gravity"]))
     a = physics.acceleration(drive, physics.load(x["l"], x["h"], x["rim_mass"]), x["gravity"])
     if data.drop is None:
@@ -127,7 +149,7 @@ def of_measured(data: Data, values: Mapping[str, Any]) -> Any:
 
 def of_forces(data: Data, values: Mapping[str, Any]) -> Any:
     """Return T_h - T_l less c a + f by the accelerations measured: c, f and gravity are linear in it."""
-    x: dict[str, Any] = {**data._asdict(), "delay": 0.0, **values}
+    x: dict[str, Any] = {**data._asdict(), **values}
     a = accelerations(data._replace(drop=x["drop"]), x["measured"], x["delay"])
     tensions = physics.difference_of_moving_masses(x["l"], x["h"], a, x["gravity"])
     return tensions - x["rim_mass"] * a - x["axle"]
@@ -135,28 +157,27 @@ def of_forces(data: Data, values: Mapping[str, Any]) -> Any:
 
 def slope(residual: Residual, data: Data, values: Mapping[str, Any], name: str) -> Any:
     """Return the derivative by a value or a column, to the last digit: the imaginary part by a small one."""
-    x = {**data._asdict(), "delay": 0.0, **values}[name]
+    x = {**data._asdict(), **values}[name]
     return residual(data, {**values, name: x + 1j * TINY}).imag / TINY
 
 
-def linear(
-    residual: Residual, data: Data, values: Mapping[str, float], names: Sequence[str]
-) -> tuple[Any, Column, Column, Column, Column]:
-    """Return the arguments of `fit_line` for changes of the ``names``, at these values.
+def linear(residual: Residual, data: Data, values: Mapping[str, float], names: Sequence[str]) -> Linear:
+    """Return the linear fit of changes of the ``names``, at these values.
 
     The unknown variance has the shape of a force that differs between runs, or of the scatter of single
     values if nothing shows that.
     """
-    J = np.zeros((len(data.l), len(names)))
-    for i, name in enumerate(names):
-        J[:, i] = -slope(residual, data, values, name)
+    slopes = [-slope(residual, data, values, name) for name in names]
     by_measured = slope(residual, data, values, "measured")
-    known = (by_measured * data.scatter) ** 2
+    least = np.square(ROUNDING * by_measured * data.measured)
+    known = (by_measured * data.scatter) ** 2 + least.max()  # no weight is without bound
     for name, u in data.uncertain.items():
         known = known + (slope(residual, data, values, name) * u) ** 2
-    is_force = data.scatter.any()
-    shape = slope(residual, data, values, "axle") ** 2 if is_force else by_measured**2 / data.counts
-    return J, residual(data, values), known, shape, np.square(ROUNDING * by_measured * data.measured)
+    shape = by_measured**2 / data.counts
+    if data.scatter.any():
+        shape = slope(residual, data, values, "axle") ** 2
+    J = np.stack(slopes, 1) if names else np.zeros((len(known), 0))
+    return Linear(J, residual(data, values), known, shape, least)
 
 
 # Least squares
@@ -165,8 +186,8 @@ def linear(
 def by_forces(data: Data, given: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
     """Return the values with the least squares of forces, by which others start, and the given ones."""
     values = {**dict.fromkeys(FITTED, 0.0), **given}
-    J, y, *_ = linear(of_forces, data, values, names)
-    changes = np.linalg.lstsq(J, y, rcond=None)[0] if names else []
+    problem = linear(of_forces, data, values, names)
+    changes = np.linalg.lstsq(problem.J, problem.y, rcond=None)[0]
     return values | {x: values[x] + float(change) for x, change in zip(names, changes, strict=True)}
 
 
@@ -177,43 +198,38 @@ def estimate(
 
     Variances follow the values (effective variance), and least squares the variances.
     """
-    values = {**dict.fromkeys(FITTED, 0.0), **given}
-    near = near or by_forces(data, given, names)
-    lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
-    least = {x: lightest if x == "rim_mass" else -inf for x in names}
-    values |= {x: max(near[x], least[x] / 2) for x in names}
-    for _ in range(MOST_STEPS):
+    values = {**(near or by_forces(data, given, names)), **given}
+    for _ in range(MOST_PASSES):
         problem = linear(of_measured, data, values, names)
-        line = fit_line(*problem, data.repeats)
-        share = problem[0] @ line.coefficients / data.measured
+        line = fit_line(problem, data.repeats)
+        share = problem.J @ line.coefficients / data.measured
         size = sqrt(sum_of_squares(share) / len(share))
-        if size < CLOSE:
-            break
         if size < NEAR:
             steps = zip(names, line.coefficients.tolist(), strict=True)
-            values |= {x: max(values[x] + step, least[x]) for x, step in steps}
+            values |= {x: values[x] + step for x, step in steps}
         else:
-            values |= _least_squares(data, values, least, np.sqrt(line.variance))
-    if not size < ENOUGH:
-        raise CannotSeparate
-    sigma = np.sqrt(line.scale * line.variance)
-    return Estimate(data, values, names, line, sigma, len(data.l) - len(names))
+            values |= _least_squares(data, values, names, np.sqrt(line.variance))
+        if size < CLOSE:
+            return Estimate(data, values, names, line, np.sqrt(line.scale * line.variance))
+    raise CannotSeparate
 
 
 def _least_squares(
-    data: Data, values: Mapping[str, float], least: Mapping[str, float], sigma: Column
+    data: Data, values: Mapping[str, float], names: Sequence[str], sigma: Column
 ) -> dict[str, float]:
-    """Return the values with the least sum of squares, none below the ``least``, by uncertainties of runs."""
+    """Return the values of these names with the least sum of squares, by the uncertainties of runs."""
 
     def at(x: Column) -> dict[str, float]:
-        return {**values, **dict(zip(least, x.tolist(), strict=True))}
+        return {**values, **dict(zip(names, x.tolist(), strict=True))}
 
+    lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
+    least = [lightest if name == "rim_mass" else -inf for name in names]
     found = least_squares(
         lambda x: of_measured(data, at(x)) / sigma,
-        [values[x] for x in least],
-        lambda x: np.stack([slope(of_measured, data, at(x), name) / sigma for name in least], 1),
-        bounds=([*least.values()], inf),
+        np.maximum([values[name] for name in names], np.divide(least, 2)),
+        lambda x: np.stack([slope(of_measured, data, at(x), name) / sigma for name in names], 1),
+        bounds=(least, inf),
         x_scale="jac",
         **{"ftol": 1e-15, "xtol": 1e-12, "gtol": None},
     )
-    return dict(zip(least, found.x.tolist(), strict=True))
+    return at(found.x)

@@ -50,7 +50,7 @@ def view(data: Data, a: Column, values: Mapping[str, float], names: Sequence[str
 
 def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     """Draw runs and their line to a file, below sentences unless it is bare. Raises OSError."""
-    best, data, delay = fit.whole.best, fit.whole.best.data, fit.whole.best.values["delay"]
+    best, data, delay = fit.whole, fit.whole.data, fit.whole.values["delay"]
     a = accelerations(data, data.measured, delay)
     u_a = best.sigma if data.drop is None else 2 * best.sigma * a / (data.measured - delay)
     seen, shifted = (view(data, there, best.values, best.names) for there in (a, a + u_a))
@@ -90,7 +90,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
 
 def _name_points(line: "Axes", fit: Fitted) -> None:
     """Write the numbers of rows at the points, and mark runs that are left out, at the edge if outside."""
-    data, best = as_data(fit.runs, fit.shown), fit.whole.best
+    data, best = as_data(fit.runs, fit.shown), fit.whole
     there = view(data, accelerations(data, data.measured, best.values["delay"]), best.values, best.names)
     x, y = np.clip(there.x, *line.get_xlim()), np.clip(there.y, *line.get_ylim())
     out = ~fit.used[fit.shown]
@@ -110,7 +110,7 @@ def coefficients(fit: Fitted, meaning: Mapping[str, str]) -> str:
     if fit.whole.reason:
         return ""
     for name, words in meaning.items():
-        value, unit = fit.whole.best.values[name], QUANTITIES[name].unit
+        value, unit = fit.whole.values[name], QUANTITIES[name].unit
         if result := fit.whole.results.get(name):
             lines.append(f"{words} = {with_u(value, result.uncertainty)} {unit}")
         else:

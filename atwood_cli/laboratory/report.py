@@ -11,7 +11,7 @@ from ..model.scene import UNMEASURED, parameter_of
 from ..model.units import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
-from .estimate import Estimate, as_data, expected
+from .estimate import as_data, expected
 from .fitting import SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
 from .runs import MEASURED, WORDS
@@ -31,15 +31,15 @@ NEEDS = {
 
 
 def verdict(fit: Fitted) -> str:
-    """Return how many runs there are, and which quantities differ from 0, unless there are outliers."""
-    measurements = counted(len(fit.whole.best.data.values), MEASURED[fit.runs.kind])
-    said = [f"{counted(len(fit.whole.best.data.l), 'run')}, {measurements}."]
+    """Return how many runs there are, and which quantities differ from 0."""
+    measurements = counted(int(fit.whole.data.counts.sum()), MEASURED[fit.runs.kind])
+    said = [f"{counted(len(fit.whole.data.l), 'run')}, {measurements}."]
     if fit.whole.reason:
         said.append(f"No result: {fit.whole.reason}.")
-    elif not fit.whole.best.names:
+    elif not fit.whole.names:
         said.append("Nothing is left to fit: the pulley and its axle are given.")
     for name in USUAL:
-        if name in fit.whole.results and not fit.outliers:
+        if name in fit.whole.results:
             (low, high), unit = fit.whole.results[name].interval, QUANTITIES[name].unit
             may_be = f"is not distinguishable from 0; it may be up to {in_small_unit(high, unit)}."
             said.append(_capital(f"{QUANTITIES[name].words} {'is clearly above 0.' if low > 0 else may_be}"))
@@ -50,40 +50,38 @@ def head(fit: Fitted) -> list[str]:
     """Return the verdict, and a sentence for each outlier."""
     said = [verdict(fit), *(f"{_capital(one.in_words(fit.runs))}." for one in fit.outliers)]
     if fit.outliers:
-        said.append(f"The fit includes {'them' if fit.outliers[1:] else 'it'}.")
+        said.append(f"All results and notes include {'them' if fit.outliers[1:] else 'it'}.")
     return said
 
 
 def notes(fit: Fitted) -> list[str]:
     """Return what else there is to say, first how the table was read."""
     said = [_capital(words) for words in fit.runs.remarks]
-    return said if fit.whole.reason or fit.outliers else [*said, _scatter(fit), *_delay(fit)]
+    return said if fit.whole.reason else [*said, _scatter(fit), *_delay(fit)]
 
 
 def _scatter(fit: Fitted) -> str:
     """Return how the scatter of the runs is known, and its p value."""
-    chi2, p, stated = fit.whole.chi2, fit.whole.p_value, fit.whole.best.data.stated
-    if chi2 is None:
+    whole = fit.whole
+    if whole.chi2 is None:
         return f"No {MEASURED[fit.runs.kind]} was repeated, so only the residuals show the scatter."
-    if p is None:
+    if whole.p_value is None:
         return "There are as many runs as results, so nothing is left to test the fit."
-    source = "uncertainties" if stated else "repeats"
-    probability = f"p = {rounded(p)}" if p >= 0.001 else "p < 0.001"
-    if fit.whole.best.data.repeats[1] and not stated:
-        probability += " by an F test"
-    by = f"(χ² = {rounded(chi2, 3)}, {counted(fit.whole.best.dof, 'degree')} of freedom, {probability})"
-    if p < SELDOM:
-        more = f"The runs scatter more than their {source} {by}"
-        return f"{more}: masses, friction or timing vary between them."
-    if p > 1 - RARE:
-        return f"The runs scatter less than their {source} {by}."
-    return f"Scatter as expected from the {source} {by}."
+    probability = f"p = {rounded(whole.p_value)}" if whole.p_value >= 0.001 else "p < 0.001"
+    test = " by an F test" if whole.is_f_test else ""
+    source = "uncertainties" if whole.data.stated else "repeats"
+    chi2 = f"χ² = {rounded(whole.chi2, 3)}, {counted(whole.dof, 'degree')} of freedom"
+    by = f"{source} ({chi2}, {probability}{test})"
+    if whole.p_value < SELDOM:
+        return f"The runs scatter more than their {by}: masses, friction or timing vary between them."
+    if whole.p_value > 1 - RARE:
+        return f"The runs scatter less than their {by}."
+    return f"Scatter as expected from the {by}."
 
 
 def _delay(fit: Fitted) -> list[str]:
     """Return a sentence if all times seem too long, or if the runs cannot show that."""
-    names = fit.whole.best.names
-    result, p = fit.delay or (None, 1.0)
+    names, (result, p) = fit.whole.names, fit.delay or (None, 1.0)
     if result and p < RARE:
         size = with_u(abs(result.value), result.uncertainty)
         long, find = "long" if result.value > 0 else "short", ",".join([*names, "delay"])
@@ -91,11 +89,8 @@ def _delay(fit: Fitted) -> list[str]:
     half = result.interval[1] - result.value if result else np.inf
     if fit.runs.kind != "time" or "delay" in names or half <= WIDE_DELAY:
         return []
-    how = "vary the height of fall, or both m2 - m1 and m1 + m2, more"
-    if not result:
-        return [f"These runs cannot show a delay of all times: {how}."]
-    fitted = f"fitted, it is {with_u(result.value, result.uncertainty)} s"
-    return [f"These runs neither show nor exclude a delay of all times ({fitted}): {how}."]
+    said = "These runs neither show nor exclude a delay of all times, and the results hold only without one."
+    return [f"{said} To see one, vary the height of fall, or both m2 - m1 and m1 + m2, more."]
 
 
 def _capital(words: str) -> str:
@@ -108,7 +103,7 @@ def conditions(fit: Fitted) -> str:
     motion = UNMEASURED._replace(drop=inputs["drop"].value) if "drop" in inputs else UNMEASURED
     uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
     words = inputs_in_words(fit.given.scene, motion, uncertain)
-    g = "" if "gravity" in fit.whole.best.names else "g"
+    g = "" if "gravity" in fit.whole.names else "g"
     return ", ".join(words[x] for x, one in inputs.items() if one.given is not None or x in (g, "drop"))
 
 
@@ -122,9 +117,9 @@ def results_of(fit: Fitted) -> Fit:
         **{name: whole.results[name].value if name in whole.results else None for name in QUANTITIES},
         uncertainty={name: one.uncertainty for name, one in whole.results.items()},
         interval={name: list(one.interval) for name, one in whole.results.items()},
-        correlation=_correlation(whole.best),
+        correlation=_correlation(whole.line.covariance),
         chi2=whole.chi2,
-        dof=whole.best.dof,
+        dof=whole.dof,
         between_runs=whole.between_runs,
         runs=_records(fit),
         notes=[*head(fit), *notes(fit)],
@@ -141,7 +136,7 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     rows: Sequence[Mapping[str, Any]] = [asked]
     said = [equation(x, *fit.whole.results[x][:2]) for x in only if x in fit.whole.results]
     said += [f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None]
-    said += head(fit)[1:]
+    said += head(fit) if fit.whole.reason else head(fit)[1:]
     if not only or only == ["runs"]:
         rows, said = lines, record["notes"]
     if not only:
@@ -154,16 +149,16 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     return Report(lambda: asked, lambda: rows, lambda: _print_page(fit, lines), lambda: said, bare)
 
 
-def _correlation(best: Estimate) -> float | None:
+def _correlation(covariance: Any) -> float | None:
     """Return the correlation of the two fitted quantities that have most of it."""
-    u = np.sqrt(best.line.covariance.diagonal())
-    pairs = (best.line.covariance / np.outer(u, u))[np.triu_indices(len(u), 1)]
+    u = np.sqrt(covariance.diagonal())
+    pairs = (covariance / np.outer(u, u))[np.triu_indices(len(u), 1)]
     return float(max(pairs, key=abs)) if len(pairs) else None
 
 
 def _records(fit: Fitted) -> list[dict[str, Any]]:
     """Return the runs, as JSON and CSV have them; the residual is in standard uncertainties."""
-    runs, best, shown = fit.runs, fit.whole.best, as_data(fit.runs, fit.shown)
+    runs, best, shown = fit.runs, fit.whole, as_data(fit.runs, fit.shown)
     moves = expected(shown._replace(drop=None), best.values) > 0
     measured, (u, ideal) = runs.mean.copy(), np.full((2, len(runs.rows)), np.nan)
     if best.data.stated:
@@ -205,7 +200,7 @@ def _print_table(page: Page, columns: Mapping[str, Sequence[str]]) -> None:
 
 def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
     """Return for each run the measurement, what is expected, and the residual."""
-    kind, best, unit = fit.runs.kind, fit.whole.best, parameter_of(fit.runs.kind).unit
+    kind, best, unit = fit.runs.kind, fit.whole, parameter_of(fit.runs.kind).unit
     # The mean has the digits of its own scatter.
     finest = float(min(best.data.scatter.min() or np.inf, best.sigma.min()))
 

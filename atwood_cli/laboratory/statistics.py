@@ -22,8 +22,6 @@ NORMAL_DOF = 1e8
 """Degrees of freedom with which Student's t is the normal distribution."""
 SINGULAR_RATIO = 1e-7
 """Below this ratio of singular values a linear fit has no unique solution."""
-ROUNDING = 1e-12
-"""The least standard uncertainty of a measured number, as a share of it."""
 MOST_OUTLIERS = 20
 """Outliers that are looked for; there is at most one for three degrees of freedom."""
 
@@ -32,12 +30,24 @@ class CannotSeparate(ArithmeticError):
     """The runs do not determine the quantities to be fitted."""
 
 
+class Linear(NamedTuple):
+    """A linear fit of n values: the coefficients b (p) for which J b is nearest to y, with J (n, p).
+
+    The variance of y is ``known`` + v ``shape`` with an unknown v, and at least ``least``.
+    """
+
+    J: Any
+    y: Column
+    known: Column
+    shape: Column
+    least: Column
+
+
 class Line(NamedTuple):
-    """A linear fit of n values: p coefficients, their covariance, and the variance of each value.
+    """The result of a linear fit: p coefficients, their covariance, and the variance of each value.
 
     Covariance and variances are still to be multiplied by ``scale``, which is known with ``dof`` degrees of
-    freedom. ``between`` is the factor of the estimated part of the variance, and ``chi2`` is by the known
-    part alone.
+    freedom. ``between`` is the factor v of the shape, and ``chi2`` is by the known variance alone.
     """
 
     coefficients: Column
@@ -49,17 +59,14 @@ class Line(NamedTuple):
     between: float
 
 
-def fit_line(
-    J: Any, y: Column, known: Column, shape: Column, least: Column, repeats: tuple[float, int]
-) -> Line:
-    """Return the coefficients b (p) for which J b is nearest to y (n), with J (n, p). Raises CannotSeparate.
+def fit_line(linear: Linear, repeats: tuple[float, int]) -> Line:
+    """Return the weighted least squares. Raises CannotSeparate.
 
-    The variance of y is ``known`` + v ``shape``. Paule and Mandel's v makes χ² equal to n - p; it is 0 if χ²
-    is no more than that without it. Knapp and Hartung's scale is χ²/(n - p). If v is 0, χ² and degrees of
-    freedom of the ``repeats`` about their means are pooled with those of the line. No variance comes out
-    below the ``least``; with nothing else known, this is ordinary least squares, weighted by the shape.
+    Paule and Mandel's v makes χ² equal to n - p; it is 0 if χ² is no more than that without it. Knapp and
+    Hartung's scale is χ²/(n - p). If v is 0, χ² and degrees of freedom of the ``repeats`` about their means
+    are pooled with those of the line.
     """
-    known = np.maximum(known, max(least.max(), ROUNDING * known.max()))  # no weight is without bound
+    J, y, known, shape, least = linear
     dof, between, (pooled_chi2, pooled_dof) = len(y) - int(J.shape[1]), 0.0, repeats
     chi2 = _solved(J, y, known)[2]
     if dof and chi2 > dof:
@@ -70,8 +77,15 @@ def fit_line(
     coefficients, covariance, rest = _solved(J, y, variance)
     dof += pooled_dof
     scale = (rest + pooled_chi2) / dof if dof else 1.0
-    scale = max(scale, float((least / variance).max()))
-    return Line(coefficients, covariance, variance, scale, dof or inf, chi2, between)
+    return Line(
+        coefficients,
+        covariance,
+        variance,
+        max(scale, float((least / variance).max())),
+        dof or inf,
+        chi2,
+        between,
+    )
 
 
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
@@ -119,22 +133,20 @@ def outliers(judge: Judge, count: int, free: int, level: float) -> Mapping[int, 
     return dict(list(found.items())[:significant])
 
 
-def judge_of_line(
-    J: Any, y: Column, known: Column, shape: Column, least: Column, repeats: tuple[float, int]
-) -> Judge:
-    """Judge values by the line of those kept; the arguments are those of `fit_line`.
+def judge_of_line(linear: Linear, repeats: tuple[float, int]) -> Judge:
+    """Judge values by the line of those kept.
 
     The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite.
     """
 
     def judge(kept: Selection) -> tuple[Column, Column]:
-        line = fit_line(J[kept], y[kept], known[kept], shape[kept], least[kept], repeats)
-        variance = np.maximum(known + line.between * shape, least)
-        of_line = np.einsum("ij,jk,ik->i", J, line.covariance, J)
-        spread = variance + np.where(kept, -1, 1) * of_line
-        distance: Column = (y - J @ line.coefficients) / np.sqrt(np.maximum(line.scale * spread, least))
-        share = line.between * shape / variance
-        dof = np.full(len(y), line.dof)
+        line = fit_line(Linear(*(column[kept] for column in linear)), repeats)
+        variance = np.maximum(linear.known + line.between * linear.shape, linear.least)
+        of_line = np.einsum("ij,jk,ik->i", linear.J, line.covariance, linear.J)
+        spread = line.scale * (variance + np.where(kept, -1, 1) * of_line)
+        distance = (linear.y - linear.J @ line.coefficients) / np.sqrt(np.maximum(spread, linear.least))
+        share = line.between * linear.shape / variance
+        dof = np.full(len(share), line.dof)
         if line.between:
             dof = 1 / (share**2 / line.dof + (1 - share) ** 2 / (repeats[1] or inf))
         return distance, dof
@@ -151,13 +163,14 @@ def judge_of_repeats(values: Column, u: Column, run: Places, step: float) -> Jud
 
     def judge(kept: Selection) -> tuple[Column, Column]:
         sums = np.bincount(run, weight * kept)
-        total, dof = sums[run], int(kept.sum()) - int(np.count_nonzero(sums))
+        dof, total = int(kept.sum()) - int(np.count_nonzero(sums)), sums[run]
         others = total - weight * kept  # of the same run
         with np.errstate(divide="ignore", invalid="ignore"):
             rest = values - (np.bincount(run, weight * kept * values) / sums)[run]
             variance = sum_of_squares((rest / u)[kept]) / max(dof, 1) * u**2 + step**2 / 12
             spread = variance * np.where(kept, others / total, 1 + weight / others)
-            distance: Column = np.where((others > 0) & (spread > 0), rest / np.sqrt(spread), 0)
-        return distance, np.full(len(values), float(dof))
+            return np.where((others > 0) & (spread > 0), rest / np.sqrt(spread), 0), np.full(
+                len(values), float(dof)
+            )
 
     return judge
