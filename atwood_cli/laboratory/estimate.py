@@ -6,12 +6,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
-from scipy.special import chdtrc, fdtrc
+from scipy.special import fdtrc
 
 from ..model import physics
 from .results import FITTED, Result
 from .runs import Column, Places, Runs, Selection
-from .statistics import CannotSeparate, Line, Linear, fit_line, sum_of_squares
+from .statistics import NORMAL_DOF, CannotSeparate, Line, Linear, fit_line, sum_of_squares
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
@@ -72,14 +72,8 @@ class Estimate(NamedTuple):
         """The probability that chance gives a larger χ²; None if nothing is left to test the fit."""
         if self.chi2 is None or not self.dof:
             return None
-        if self.is_f_test:
-            return float(fdtrc(self.dof, self.data.repeats[1], self.chi2 / self.dof))
-        return float(chdtrc(self.dof, self.chi2))
-
-    @property
-    def is_f_test(self) -> bool:
-        """Whether the scatter is known by repeats alone."""
-        return bool(self.data.repeats[1]) and not self.data.stated
+        known_by = NORMAL_DOF if self.data.stated else self.data.repeats[1] or NORMAL_DOF
+        return float(fdtrc(self.dof, known_by, self.chi2 / self.dof))  # χ² if the variance is known
 
     @property
     def between_runs(self) -> float | None:

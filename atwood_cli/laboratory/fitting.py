@@ -56,27 +56,8 @@ class Conditions(NamedTuple):
     values: Mapping[str, float]
 
 
-class Outlier(NamedTuple):
-    """A run, or a measurement by its cell, and how many standard deviations it is away from the others."""
-
-    run: int
-    place: int | None
-    distance: float
-
-    def in_words(self, runs: Runs) -> str:
-        """Return the sentence that names it and the option that leaves it out."""
-        where, others = ",".join(map(str, runs.rows[self.run])), "a fit of the other runs"
-        what = f"{runs.rows_in_words(self.run)} {'are' if runs.rows[self.run][1:] else 'is'}"
-        if self.place is not None:
-            where, others = runs.cells[self.place], "its repeats"
-            value = format_number(float(runs.sign[self.run] * runs.values[self.place]))
-            what = f"{in_words(where)} = {value} {parameter_of(runs.kind).unit} is"
-        far = f"{rounded(abs(self.distance))} standard deviations"
-        return f"{what} {far} from {others}; if it is a mistake, leave it out: --without {where}"
-
-
 class Fitted(NamedTuple):
-    """The fit of the runs that are ``used``, and their outliers.
+    """The fit of the runs that are ``used``, and their outliers: the run of each, and words that name it.
 
     Something can be expected of all runs that are ``shown``; the others of these are left out. ``delay`` is
     that of a fit with a delay, and its p value; None if it was not tried or is not possible.
@@ -87,13 +68,13 @@ class Fitted(NamedTuple):
     shown: Selection
     given: Conditions
     whole: Estimate
-    outliers: Sequence[Outlier]
+    outliers: Sequence[tuple[int, str]]
     delay: tuple[Result, float] | None
 
     @property
     def suspects(self) -> list[int]:
         """The runs that are outliers or have one among their repeats."""
-        return sorted({one.run for one in self.outliers})
+        return sorted({run for run, _ in self.outliers})
 
 
 # What is given, and what is to be fitted
@@ -154,8 +135,16 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit of these quantities, and outliers. Raises SceneError, CannotSeparate."""
     if "delay" in names and runs.kind != "time":
         raise SceneError("find", "delay", "needs times; the table has accelerations")
-    shown, remarks, late = np.ones(len(runs.rows), dtype=bool), [*runs.remarks], None
-    for reason, holds in _unusable(runs, given, names).items():
+    difference = runs.given["m2"] - runs.given["m1"]
+    held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
+    unusable = {
+        "the masses are equal": difference == 0,
+        "nothing moved": runs.mean == 0,
+        "the lighter side falls": runs.mean < 0,
+        "an axle with the friction given holds the masses": abs(difference) <= held,
+    }
+    shown, remarks, delay = np.ones(len(runs.rows), dtype=bool), [*runs.remarks], None
+    for reason, holds in unusable.items():
         if (shown & holds).any():
             remarks.append(f"{runs.rows_in_words(*np.flatnonzero(shown & holds))}: not used, as {reason}.")
         shown = shown & ~holds
@@ -166,22 +155,9 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         raise CannotSeparate(f"{error}{behind_an_error(remarks)}") from None
     if runs.kind == "time" and "delay" not in names and not whole.reason and whole.dof > 1:
         with suppress(CannotSeparate):
-            late = _fit(runs, used, given, [*names, "delay"])
-    delay = late and _delay(whole, late)
+            delay = _delay(whole, _fit(runs, used, given, [*names, "delay"]))
     odd = _outliers(runs, used, whole.data, whole.values, names)
     return Fitted(runs, used, shown, given, whole, odd, delay)
-
-
-def _unusable(runs: Runs, given: Conditions, names: Sequence[str]) -> dict[str, Selection]:
-    """Return the reasons why nothing can be expected of a run, with the runs for which they hold."""
-    difference = runs.given["m2"] - runs.given["m1"]
-    held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
-    return {
-        "the masses are equal": difference == 0,
-        "nothing moved": runs.mean == 0,
-        "the lighter side falls": runs.mean < 0,
-        "an axle with the friction given holds the masses": abs(difference) <= held,
-    }
 
 
 def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Estimate:
@@ -212,7 +188,7 @@ def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -
         ends = [[*map(found, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
         near = by_forces(data, given.values, names)
-        odd = "; ".join(one.in_words(runs) for one in _outliers(runs, used, data, near, names))
+        odd = "; ".join(words for _, words in _outliers(runs, used, data, near, names))
         raise CannotSeparate(mistake or f"{NO_FIT}: {odd or CHECK}") from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
@@ -257,7 +233,7 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
 
 def _outliers(
     runs: Runs, used: Selection, data: Data, values: Mapping[str, float], names: Sequence[str]
-) -> list[Outlier]:
+) -> list[tuple[int, str]]:
     """Return outliers among the repeats of each run, and among the runs without these repeats.
 
     Runs are judged by the line of forces, which outliers bend least.
@@ -277,9 +253,24 @@ def _outliers(
     judge = judge_of_line(linear(of_forces, sound, near, names), sound.repeats)
     of_runs = outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL)
     return [
-        *(Outlier(int(runs.run[place]), place, far) for place, far in odd.items()),
-        *(Outlier(int(here[i]), None, far) for i, far in of_runs.items()),
+        *(
+            (int(runs.run[place]), _in_words(runs, int(runs.run[place]), far, place))
+            for place, far in odd.items()
+        ),
+        *((int(here[i]), _in_words(runs, int(here[i]), far)) for i, far in of_runs.items()),
     ]
+
+
+def _in_words(runs: Runs, run: int, distance: float, place: int | None = None) -> str:
+    """Say how many standard deviations a run or a measurement is away, and how to leave it out."""
+    where, others = ",".join(map(str, runs.rows[run])), "a fit of the other runs"
+    what = f"{runs.rows_in_words(run)} {'are' if runs.rows[run][1:] else 'is'}"
+    if place is not None:
+        where, others = runs.cells[place], "its repeats"
+        value = format_number(float(runs.sign[run] * runs.values[place]))
+        what = f"{in_words(where)} = {value} {parameter_of(runs.kind).unit} is"
+    far = f"{rounded(abs(distance))} standard deviations from {others}"
+    return f"{what} {far}; if it is a mistake, leave it out: --without {where}"
 
 
 # Why there is no result

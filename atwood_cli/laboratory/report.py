@@ -48,7 +48,7 @@ def verdict(fit: Fitted) -> str:
 
 def head(fit: Fitted) -> list[str]:
     """Return the verdict, and a sentence for each outlier."""
-    said = [verdict(fit), *(f"{_capital(one.in_words(fit.runs))}." for one in fit.outliers)]
+    said = [verdict(fit), *(f"{_capital(words)}." for _, words in fit.outliers)]
     if fit.outliers:
         said.append(f"All results and notes include {'them' if fit.outliers[1:] else 'it'}.")
     return said
@@ -68,8 +68,7 @@ def _scatter(fit: Fitted) -> str:
     if whole.p_value is None:
         return "There are as many runs as results, so nothing is left to test the fit."
     probability = f"p = {rounded(whole.p_value)}" if whole.p_value >= 0.001 else "p < 0.001"
-    test = " by an F test" if whole.is_f_test else ""
-    source = "uncertainties" if whole.data.stated else "repeats"
+    source, test = ("uncertainties", "") if whole.data.stated else ("repeats", " by an F test")
     chi2 = f"χ² = {rounded(whole.chi2, 3)}, {counted(whole.dof, 'degree')} of freedom"
     by = f"{source} ({chi2}, {probability}{test})"
     if whole.p_value < SELDOM:

@@ -76,16 +76,8 @@ def fit_line(linear: Linear, repeats: tuple[float, int]) -> Line:
     variance = known + between * shape
     coefficients, covariance, rest = _solved(J, y, variance)
     dof += pooled_dof
-    scale = (rest + pooled_chi2) / dof if dof else 1.0
-    return Line(
-        coefficients,
-        covariance,
-        variance,
-        max(scale, float((least / variance).max())),
-        dof or inf,
-        chi2,
-        between,
-    )
+    scale = max((rest + pooled_chi2) / dof if dof else 1.0, float((least / variance).max()))
+    return Line(coefficients, covariance, variance, scale, dof or inf, chi2, between)
 
 
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
