@@ -161,17 +161,11 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
     moves = expected(shown._replace(drop=None), best.values) > 0
     measured, (u, ideal) = runs.mean.copy(), np.full((2, len(runs.rows)), np.nan)
     if best.data.stated:
-        measured[fit.used] = best.data.measured  # weighted means
+        measured[fit.shown] = shown.measured  # weighted means
     u[fit.used] = best.sigma
     ideal[fit.shown] = np.where(moves, expected(shown, best.values), np.nan)
-    residual = runs.sign * (measured - ideal) / u
-    columns = {
-        **runs.given,
-        runs.kind: runs.sign * measured,
-        "u": u,
-        "expected": runs.sign * ideal,
-        "residual": residual,
-    }
+    signed = {runs.kind: measured, "u": runs.sign * u, "expected": ideal, "residual": (measured - ideal) / u}
+    columns = {**runs.given, **{name: runs.sign * column for name, column in signed.items()}}
     return [
         {"rows": " ".join(map(str, rows))}
         | {x: None if np.isnan(column[i]) else float(column[i]) for x, column in columns.items()}

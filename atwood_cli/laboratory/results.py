@@ -71,15 +71,12 @@ def equation(name: str, value: float, uncertainty: float) -> str:
     return f"{name} = {with_u(value, uncertainty)} {QUANTITIES[name].unit}"
 
 
-def cut(value: float, uncertainty: float | None) -> str:
-    """Return a value cut at the second digit of an uncertainty; to six digits if there is none."""
-    if not uncertainty:
-        return format_number(to_digits(6)(Fraction(value)))
+def cut(value: float, uncertainty: float) -> str:
+    """Return a value cut at the second digit of an uncertainty."""
     return f"{_cutting(uncertainty)(Fraction(value)):f}"
 
 
 def _cutting(uncertainty: float) -> Rounding[Decimal]:
-    """Return a function that cuts numbers there."""
     return rounding_to_place(to_digits(2)(Fraction(uncertainty)).adjusted() - 1)
 
 
