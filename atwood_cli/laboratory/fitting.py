@@ -89,7 +89,7 @@ class Outlier(NamedTuple):
             what = f"{runs.rows_in_words(self.run)} {'are' if runs.rows[self.run][1:] else 'is'}"
         else:
             where, others = runs.cells[self.place], "its repeats"
-            value = format_number(float(runs.sign[self.run] * runs.values[self.place]))
+            value = format_number(float(runs.values[self.place]))
             what = f"{in_words(where)} = {value} {parameter_of(runs.kind).unit} is"
         far = f"{rounded(abs(self.distance))} standard deviations"
         return f"{what} {far} from {others}; to leave that out: --without {where}"
@@ -314,7 +314,7 @@ def _unusable(runs: Runs, given: Conditions, names: Sequence[str]) -> dict[str, 
     return {
         "the masses are equal": difference == 0,
         "nothing moved": runs.mean == 0,
-        "the lighter side falls": runs.mean < 0,
+        "the lighter side falls": runs.sign * runs.mean < 0,
         "an axle with the friction given holds the masses": abs(difference) <= held,
     }
 
