@@ -103,7 +103,7 @@ def runs_of(
     run, rows = np.repeat(np.arange(n), repeats), [[i + 1] for i in range(n)]
     all_, cells = values.round(13).ravel(), [f"{i + 1}:t{k}" for i in range(n) for k in range(repeats)]
     mean = values.mean(1)
-    return Runs(kind, given, u_given, rows, none > 0, none + 1, mean, all_, 0 * all_ + u, run, cells, step)
+    return Runs(kind, given, u_given, rows, none > 0, mean, all_, 0 * all_ + u, run, cells, step)
 
 
 class Set(NamedTuple):

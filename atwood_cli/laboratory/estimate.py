@@ -85,7 +85,7 @@ def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
     """Return the runs that are ``used``, by their measurements that are ``kept``."""
     here = used[runs.run] if kept is None else used[runs.run] & kept
     run = (np.cumsum(used) - 1)[runs.run[here]]
-    values, u = runs.values[here], runs.u_values[here]
+    values, u = (runs.sign[runs.run] * runs.values)[here], runs.u_values[here]
     stated = bool(u.any())
     weight = u**-2 if stated else np.ones_like(values)
     total, counts = np.bincount(run, weight), np.bincount(run)

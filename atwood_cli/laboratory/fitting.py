@@ -140,7 +140,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     unusable = {
         "the masses are equal": difference == 0,
         "nothing moved": runs.mean == 0,
-        "the lighter side falls": runs.mean < 0,
+        "the lighter side falls": runs.sign * runs.mean < 0,
         "an axle with the friction given holds the masses": abs(difference) <= held,
     }
     shown, remarks, delay = np.ones(len(runs.rows), dtype=bool), [*runs.remarks], None
@@ -240,7 +240,7 @@ def _outliers(
     """
     here, places = np.flatnonzero(used), np.flatnonzero(used[runs.run])
     # Of two repeats, which are equally far from each other, that far from the line comes first.
-    away = runs.values[places] - expected(data, values)[np.searchsorted(here, runs.run[places])]
+    away = abs(runs.values[places]) - expected(data, values)[np.searchsorted(here, runs.run[places])]
     places = places[np.argsort(-np.abs(away), kind="stable")]
     u = runs.u_values[places] if data.stated else np.ones(len(places))
     judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
@@ -267,7 +267,7 @@ def _in_words(runs: Runs, run: int, distance: float, place: int | None = None) -
     what = f"{runs.rows_in_words(run)} {'are' if runs.rows[run][1:] else 'is'}"
     if place is not None:
         where, others = runs.cells[place], "its repeats"
-        value = format_number(float(runs.sign[run] * runs.values[place]))
+        value = format_number(float(runs.values[place]))
         what = f"{in_words(where)} = {value} {parameter_of(runs.kind).unit} is"
     far = f"{rounded(abs(distance))} standard deviations from {others}"
     return f"{what} {far}; if it is a mistake, leave it out: --without {where}"

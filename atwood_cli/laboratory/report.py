@@ -161,11 +161,11 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
     moves = expected(shown._replace(drop=None), best.values) > 0
     measured, (u, ideal) = runs.mean.copy(), np.full((2, len(runs.rows)), np.nan)
     if best.data.stated:
-        measured[fit.shown] = shown.measured  # weighted means
+        measured[fit.used] = runs.sign[fit.used] * best.data.measured  # weighted means
     u[fit.used] = best.sigma
-    ideal[fit.shown] = np.where(moves, expected(shown, best.values), np.nan)
-    signed = {runs.kind: measured, "u": runs.sign * u, "expected": ideal, "residual": (measured - ideal) / u}
-    columns = {**runs.given, **{name: runs.sign * column for name, column in signed.items()}}
+    ideal[fit.shown] = runs.sign[fit.shown] * np.where(moves, expected(shown, best.values), np.nan)
+    residual = (measured - ideal) / u
+    columns = {**runs.given, runs.kind: measured, "u": u, "expected": ideal, "residual": residual}
     return [
         {"rows": " ".join(map(str, rows))}
         | {x: None if np.isnan(column[i]) else float(column[i]) for x, column in columns.items()}
