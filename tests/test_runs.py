@@ -206,7 +206,7 @@ def test_columns_of_other_names(read: Any) -> None:
     named = {"mass one (kg)": "m1", "mass two (kg)": "m2", "Trial 1 (s)": "t"}
     for runs in (read(zeit, Zeit="t"), read(words, **named)):
         assert numbers(runs) == exactly("0.2 0.207 3.99 0 0 0", "0.201 0.206 5.02 0 0 0")
-    assert read("m1,m2,A,B\n1,2,3,4\n", A="t", B="t").cells == ["1:t", "1:t2"]
+    assert read("m1,m2,A,B\n1,2,3,4\n", A="t", B="t").cells == ["1:t1", "1:t2"]
 
 
 NO_RUN = "if it is no run, begin it with # (units stand in headings, as m1 (g))"

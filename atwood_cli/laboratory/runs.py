@@ -107,7 +107,7 @@ def read_runs(
     headings = [heading for heading in headings if kind == "time" or heading.name != "drop"]
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     others = _others(sheet, places, labels)
-    _check(sheet, headings, others, drop, named)
+    _check(sheet, headings, others, drop)
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     labelled = [f"{in_quotes(column)} as a label" for column in others]
     remarks = read_as(headings, sheet.separator, comma, [*labelled, *sheet.remarks])
@@ -190,17 +190,10 @@ def _others(sheet: Sheet, places: Collection[int], labels: Collection[str]) -> l
     return others
 
 
-def _check(
-    sheet: Sheet,
-    headings: Sequence[Heading],
-    others: Sequence[str],
-    drop: Input | None,
-    named: Collection[str],
-) -> None:
+def _check(sheet: Sheet, headings: Sequence[Heading], others: Sequence[str], drop: Input | None) -> None:
     """Check that runs have all columns, and times or accelerations. Raises Unreadable, SceneError."""
     names = {heading.name for heading in headings}
-    is_repeat = {one: bool(one.number) or one.column in named for one in headings if one.name in MEASURED}
-    kinds = {(repeat, one.name): one.column for one, repeat in is_repeat.items()}
+    kinds = {(bool(one.number), one.name): one.column for one in headings if one.name in MEASURED}
     if len(kinds) > 1:
         column, beside, *_ = (kinds[kind] for kind in sorted(kinds))
         why = "may be computed, as a mean is; number repeats, as t1, t2"
