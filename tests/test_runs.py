@@ -209,7 +209,7 @@ def test_columns_of_other_names(read: Any) -> None:
     assert read("m1,m2,A,B\n1,2,3,4\n", A="t", B="t").cells == ["1:t1", "1:t2"]
 
 
-NO_RUN = "if it is no run, begin it with # (units stand in headings, as m1 (g))"
+NO_RUN = "if the row is no run, begin it with # (units stand in headings, as m1 (g))"
 ONE_RUN_A_ROW = "make each run a row, below headings, as m1 (g),m2 (g),t (s)"
 UNCERTAIN = "error|u|± a|σ|Uncertainty (s)".split("|")
 

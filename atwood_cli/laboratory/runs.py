@@ -40,7 +40,7 @@ SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
 VOCABULARY = Vocabulary(SPELLINGS, repeated=MEASURED, uncertain=True)
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
-NO_RUN = "if it is no run, begin it with # (units stand in headings, as m1 (g))"
+NO_RUN = "if the row is no run, begin it with # (units stand in headings, as m1 (g))"
 HEAVY = 10
 """The mass (kg) above which a laboratory may have left out a unit."""
 MEASURABLE = 1e-30, 1e30
@@ -71,7 +71,7 @@ class Runs(NamedTuple):
 
     @property
     def sign(self) -> Column:
-        """The sign of each run's acceleration if m2 descends or m1: all 1 if no acceleration is negative."""
+        """Return 1 for each run, but -1 if m1 is the heavier mass and some acceleration is negative."""
         return np.where((self.values < 0).any() & (self.given["m2"] < self.given["m1"]), -1.0, 1.0)
 
     def rows_in_words(self, *runs: int) -> str:
