@@ -206,19 +206,16 @@ def test_columns_of_other_names(read: Any) -> None:
     named = {"mass one (kg)": "m1", "mass two (kg)": "m2", "Trial 1 (s)": "t"}
     for runs in (read(zeit, Zeit="t"), read(words, **named)):
         assert numbers(runs) == exactly("0.2 0.207 3.99 0 0 0", "0.201 0.206 5.02 0 0 0")
-    assert read("m1,m2,A,B\n1,2,3,4\n", A="t", B="t").cells == ["1:t", "1:t2"]
+    assert read("m1,m2,A,B\n1,2,3,4\n", A="t", B="t").cells == ["1:t1", "1:t2"]
 
 
-NO_RUN = "if it is no run, begin it with # (units stand in headings, as m1 (g))"
-ONE_RUN_A_ROW = "make each run a row, below headings, as m1 (g),m2 (g),t (s)"
 UNCERTAIN = "error|u|± a|σ|Uncertainty (s)".split("|")
 
 
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        ("m1,m2,t\n0.2,0.207,3.99\nmeasured on Monday,,\n", NO_RUN),
-        ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", ONE_RUN_A_ROW),
+        ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", "; make each run a row, below headings, as m1 (g),m2 (g),t (s)"),
         ("mass one (g),Zeit (s),mass two (g),n\n1,2,3,4\n", "; name others, as --column m1='mass one (g)' --column m2='mass two (g)' --column t='Zeit (s)'"),
         *((f"m1,m2,a,{column}\n1,2,3,4\n", f"column '{column}' could be an uncertainty") for column in UNCERTAIN),
     ],

@@ -40,7 +40,7 @@ SPELLINGS |= {word.capitalize(): name for word, name in SPELLINGS.items()}
 VOCABULARY = Vocabulary(SPELLINGS, repeated=MEASURED, uncertain=True)
 LIKE_UNCERTAINTY = re.compile(r"±|\+/-|[Δδσ]|\bu(?:[ _(]|$)|(?:\b|_)(?:err|unc)", re.IGNORECASE)
 LIKE_NUMBER = re.compile(r"\s*[-+±]?[.,]?\d")
-NO_RUN = "if it is no run, begin it with # (units stand in headings, as m1 (g))"
+NO_RUN = "if the row is no run, begin it with # (units stand in headings, as m1 (g))"
 HEAVY = 10
 """The mass (kg) above which a laboratory may have left out a unit."""
 MEASURABLE = 1e-30, 1e30
@@ -71,7 +71,7 @@ class Runs(NamedTuple):
 
     @property
     def sign(self) -> Column:
-        """The sign of each run's acceleration if m2 descends or m1: all 1 if no acceleration is negative."""
+        """Return 1 for each run, but -1 if m1 is the heavier mass and some acceleration is negative."""
         return np.where((self.values < 0).any() & (self.given["m2"] < self.given["m1"]), -1.0, 1.0)
 
     def rows_in_words(self, *runs: int) -> str:
@@ -107,7 +107,7 @@ def read_runs(
     headings = [heading for heading in headings if kind == "time" or heading.name != "drop"]
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     others = _others(sheet, places, labels)
-    _check(sheet, headings, others, drop, named)
+    _check(sheet, headings, others, drop)
     comma = decimal_commas_in(sheet.rows, places, sheet.separator)
     labelled = [f"{in_quotes(column)} as a label" for column in others]
     remarks = read_as(headings, sheet.separator, comma, [*labelled, *sheet.remarks])
@@ -190,17 +190,10 @@ def _others(sheet: Sheet, places: Collection[int], labels: Collection[str]) -> l
     return others
 
 
-def _check(
-    sheet: Sheet,
-    headings: Sequence[Heading],
-    others: Sequence[str],
-    drop: Input | None,
-    named: Collection[str],
-) -> None:
+def _check(sheet: Sheet, headings: Sequence[Heading], others: Sequence[str], drop: Input | None) -> None:
     """Check that runs have all columns, and times or accelerations. Raises Unreadable, SceneError."""
     names = {heading.name for heading in headings}
-    is_repeat = {one: bool(one.number) or one.column in named for one in headings if one.name in MEASURED}
-    kinds = {(repeat, one.name): one.column for one, repeat in is_repeat.items()}
+    kinds = {(bool(one.number), one.name): one.column for one in headings if one.name in MEASURED}
     if len(kinds) > 1:
         column, beside, *_ = (kinds[kind] for kind in sorted(kinds))
         why = "may be computed, as a mean is; number repeats, as t1, t2"
@@ -225,11 +218,12 @@ def _missing(missing: Sequence[str], sheet: Sheet, others: Sequence[str]) -> str
                 with suppress(Unreadable):  # it has the unit of something else
                     read_headings([column], VOCABULARY, named={column: name})
                     options[column] = f"--column {name}={quote(column)}"
-                    break
+                    if name != "t":  # which may be repeated
+                        break
     said = f"runs need columns m1, m2, and t or a; there are {listed(sheet.columns)}"
     if not options or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
         return f"{said}; make each run a row, below headings, as m1 (g),m2 (g),t (s)"
-    return f"{said}; name others, as {' '.join(options.values())}"
+    return f"{said}; name them, as {' '.join(options.values())}"
 
 
 # Rows

@@ -95,8 +95,8 @@ def read_headings(
             continue
         is_repeat = found.name in vocabulary.repeated
         key = found.name, found.number
-        while is_repeat and column in named and key in headings:
-            key = found.name, str(int(key[1] or 1) + 1)  # its user may name repeats alike
+        if is_repeat and column in named and not found.number:  # its user may name repeats alike
+            key = found.name, str(1 + sum(own.name == found.name for own in headings.values()))
         if same := headings.get(key):
             way = f"number what is repeated, as '{found.name} 1'" if is_repeat else "rename one"
             raise refused(column, f"holds {found.name}, as {in_quotes(same.column)} does; {way}")
