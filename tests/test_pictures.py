@@ -98,13 +98,13 @@ VALUES = {
     rf"T₁ = {NUMBER} N": ["tension_1"],
     rf"T₂ = {NUMBER} N": ["tension_2"],
     rf"\ba = {NUMBER} m/s²": ["acceleration"],
-    rf"net friction force is {NUMBER} N": ["friction_force"],
+    rf"vector sum of friction is {NUMBER} N": ["friction_force"],
     rf"greatest \({NUMBER} N; least {NUMBER} N\)": ["friction_force_max", "friction_force_min"],
 }
 
 
 def check_values(line: str, said: str) -> None:
-    """Hold each value in a picture to the table: it had a net friction force where the page has bounds."""
+    """Hold each value in a picture to the table: it had one friction force where the page has bounds."""
     words = shlex.split(re.sub(r" --(bare|csv|only \S+|points \d+|digits \d+)", "", line))
     digits = min([*re.findall(r"--digits (\d+)", line), "6"], key=int)
     ran = called(["solve", *words[1:], "--digits", digits, "--only", ",".join(NAMES), "--csv"])

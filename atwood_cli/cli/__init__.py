@@ -127,7 +127,7 @@ def run(arguments: list[str] | None = None) -> int:
         words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
         said = shortened(words, LONGEST_NAME)
         if "extra argument" in said:
-            said += ": a value with a blank needs quotation marks, as '200 g'"
+            said += ": names take commas, as a,T1; a value with a blank takes quotation marks, as '200 g'"
         say(f"{said}{' ' if said.endswith('?') else '; '}{hint}" if hint else said)
         return WRONG_USAGE
     except (KeyboardInterrupt, typer.Abort):

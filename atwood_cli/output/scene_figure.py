@@ -89,12 +89,12 @@ def _caption(few: Answers, kind: arc.Profile | None, wrap: float, bare: bool) ->
         why = "as on a slightly elastic string"
         if few["friction_force_max"] is not None:
             greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
-            why = f"which makes the net friction force greatest ({greatest} N; least {least} N)"
+            why = f"which makes its vector sum greatest ({greatest} N; least {least} N)"
         yield f"Drawn: friction at its limit on the {end} {angle}°, {why}."
     elif kind and not bare:
         yield about(few.case, kind)
         if force := few["friction_force"]:
-            yield f"The net friction force is {format_number(force)} N."
+            yield f"The vector sum of friction is {format_number(force)} N."
     if wrap > 360:
         turns = _number(few.settle(lambda m: few.case.scene.wrap.degrees(m.ar) / 360), few)
         one = ", and the forces on the one at the heavier mass are drawn" if kind else ""

@@ -134,7 +134,7 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
         meaning = _meaning(name, vocabulary, {})
         if not heading or heading in named or not meaning or not meaning.name:
             there = ", ".join(dict.fromkeys(vocabulary.names.values()))
-            rule = f"must be NAME=HEADING, as t='Fallzeit (s)', each heading once; names are {there}"
+            rule = f"must be NAME=HEADING, as m1='Masse 1 (g)', each heading once; names are {there}"
             raise SceneError("column", word, rule)
         named[heading] = name
     return named
