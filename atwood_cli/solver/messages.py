@@ -143,6 +143,10 @@ def _held(answers: Answers) -> str:
     return f"{format_number(round_(times * case.axle_mass))} {unit}"
 
 
+LIKE_RADIANS = (0.3, 12.6)
+"""The range of degrees that are probably radians, or turns: a short arc, but up to two turns in radians."""
+
+
 def remarks(answers: Answers) -> list[str]:
     """Return further sentences on the scene, as far as they apply."""
     case, said = answers.case, []
@@ -152,6 +156,10 @@ def remarks(answers: Answers) -> list[str]:
             f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
+    wrap = case.scene.wrap
+    if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
+        typed = as_typed(wrap.number)
+        said.append(f"The wrap is {typed} degrees; for radians write {typed}rad, for turns {typed}turn.")
     if case.scene.mu_k is not None and case.regime != "slip" and not case.tensions_equal:
         said.append(
             "`mu_k` has no effect on a start from rest. A string that already slides keeps sliding if"
