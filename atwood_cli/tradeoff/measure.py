@@ -25,7 +25,7 @@ Inputs = dict[str, Any]
 """The inputs of a scene by parameter, as doubles."""
 Columns = Mapping[str, Any]
 """A column for each input, or for each quantity."""
-MOST_SCENES = 100_000
+MOST_SCENES, SEED = 100_000, 1
 EXACT_DIGITS = 240
 PRECISE = Context(prec=EXACT_DIGITS + 20)
 REPEATS, CALLS = 5, 3
@@ -85,7 +85,7 @@ FAMILIES: dict[str, tuple[Callable[[Random], Inputs], str]] = {
 """Kinds of scenes by name: the function that draws a scene, and a description."""
 
 
-def draw_scenes(family: str, count: int, seed: int) -> list[Inputs]:
+def draw_scenes(family: str, count: int, seed: int = SEED) -> list[Inputs]:
     """Return ``count`` scenes of a family. The same seed draws the same scenes, whatever their number."""
     rng, (draw, _) = Random(f"{family} {seed}"), FAMILIES[family]
     return [draw(rng) for _ in range(count)]
