@@ -254,9 +254,6 @@ def read_list(name: str, typed: str) -> Range:
     if any(re.match(r"0\d", word) for word in words[1:]):
         read_value(name, typed)  # refuses 1,05 and 1,000: numbers rather than lists
     values, suffix = _read_numbers(name, typed, words)
-    if len(set(values)) < len(values):
-        again = next(word for i, word in enumerate(words) if values[i] in values[:i])
-        raise SceneError(name, typed, f"has the value {in_quotes(again)} twice; give it once")
     named = [word.lower() if word.lower() in INPUTS[name].names else "" for word in words]
     points = [exact_point(value, suffix, word) for value, word in zip(values, named, strict=True)]
     return Range(name, typed, points, False, suffix)

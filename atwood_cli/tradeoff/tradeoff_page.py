@@ -10,7 +10,7 @@ from ..model.digits import format_number
 from ..output.figure import BLUE, GREEN, PURPLE, RED, page
 from ..output.page import Page
 from ..output.text import VERSION
-from .measure import SETTINGS, Measured
+from .measure import SEED, SETTINGS, Measured
 
 LEGEND = (
     "Each family has the time per scene, the worst error in units in the last place of a double (ulp, about"
@@ -23,13 +23,13 @@ LEAST, GREATEST = 1e-3, 1e16
 TICKS = {LEAST: "≤ 0.001", 1.0: "1", 1e4: "10⁴", 1e8: "10⁸", 1e12: "10¹²", GREATEST: "no digit\nright"}
 
 
-def record(measured: Sequence[Measured], scenes: int, seed: int) -> dict[str, object]:
+def record(measured: Sequence[Measured], scenes: int) -> dict[str, object]:
     """Return the record for JSON: the seed, the number of scenes, and every setting on every family."""
     settings = [point._asdict() for point in measured]
-    return {"version": VERSION, "seed": seed, "scenes": scenes, "settings": settings}
+    return {"version": VERSION, "seed": SEED, "scenes": scenes, "settings": settings}
 
 
-def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
+def print_table(measured: Sequence[Measured], scenes: int) -> None:
     """Print a column for each setting, with its time, error and share of wrong regimes on each family."""
     groups = []
     for family, group in groupby(measured, attrgetter("family")):
@@ -43,7 +43,7 @@ def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
     for row in chain(*groups):
         row[1:] = map(str.rjust, row[1:], widths[1:])
     table = Page()
-    table.say(f"{scenes} scenes of each family, seed {seed}")
+    table.say(f"{scenes} scenes of each family, seed {SEED}")
     table.table(["Family", *SETTINGS], groups)
     table.say(*LEGEND)
 
