@@ -12,7 +12,7 @@ from ..model.quantities import QUANTITIES, STANDARD
 from ..model.scene import with_unit
 from ..output.page import Page, aligned, progress
 from ..output.text import VERSION, cell, scene_record
-from ..solver.messages import reasons_at
+from ..solver.messages import reasons_in
 from .changes import changes, regimes
 from .ranges import LOCKED, Row, Sweep, solve_rows
 from .sweep_figure import MAX_CURVES
@@ -46,11 +46,11 @@ class SweepPage:
     def notes(self, shown: Collection[str] = ()) -> list[str]:
         """Say why values that were asked for, or are ``shown`` in other rows, are missing, after all rows."""
         said = {key: points for key, points in self.reasons.items() if key[0] in {*self.asked, *shown}}
-        return reasons_at(said, self.sweep.total)
+        return reasons_in(said, self.sweep.total)
 
     def _all_notes(self) -> Iterator[str]:
         """Say why any values are missing: an iterator that begins after all rows."""
-        yield from [*self._assumption(), *reasons_at(self.reasons, self.sweep.total)]
+        yield from [*self._assumption(), *reasons_in(self.reasons, self.sweep.total)]
 
     def _assumption(self) -> list[str]:
         """Say that the string is assumed not to slip, if no slip needs friction and mu is not given."""
