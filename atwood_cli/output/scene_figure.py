@@ -18,7 +18,7 @@ from ..solver.answers import Answers
 from ..solver.balance import about, kind_of, point
 from ..solver.messages import unmarked, verdict
 from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_file, page, typeset, write_beside
-from .text import relevant_inputs
+from .text import inputs_in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -61,7 +61,7 @@ def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = Fa
     below = [*_caption(few, kind, wrap, bare)]
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
-    given = relevant_inputs(case.scene, case.motion, answers.uncertain)
+    given = inputs_in_words(case.scene, case.motion, answers.uncertain)
     above = [", ".join(given.values()), unmarked(verdict(few))]
     with page(path, force, above, " ".join(below), bare, panels=1 + curves) as figure:
         machine, *more = figure.subplots(1 + curves, height_ratios=[1.6, 1][: 1 + curves], squeeze=False).flat
