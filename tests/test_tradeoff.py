@@ -1,7 +1,6 @@
 """`atwood tradeoff`: what it measures is held against an oracle."""
 
 import json
-import re
 from fractions import Fraction
 from math import inf, isfinite, ulp
 from types import SimpleNamespace
@@ -15,7 +14,7 @@ from atwood_cli.model.quantities import REGIMES, STANDARD
 from atwood_cli.model.scene import Scene
 from atwood_cli.tradeoff import measure as tradeoff
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, draw_scenes, measure
-from atwood_cli.tradeoff.tradeoff_page import LEGEND, in_seconds, short
+from atwood_cli.tradeoff.tradeoff_page import LEGEND, short
 
 from . import oracle
 from .running import Atwood, called
@@ -139,8 +138,7 @@ def test_rows_that_take_long_are_few_and_an_interruption_does_not_count(
 
 
 def test_numbers_are_short() -> None:
-    times = (4.1e-8, 2.5e-6, 0.000999999, 999.4e-6, 1e-6, 1.0, 1.5, 2e4)
-    assert [in_seconds(x) for x in times] == "41 ns|2.5 µs|1 ms|999 µs|1 µs|1 s|1.5 s|2e4 s".split("|")
+    assert [short(x, 3) for x in (0.0138, 0.9999, 374.9, 1162.0)] == "0.0138 1 375 1.16e3".split()
     shown = (None, inf, 0.0, 0.4999, 39.17, 5.2e14, 3.5e-184)
     assert [short(x) for x in shown] == "- inf 0 0.5 39 5.2e14 3.5e-184".split()
 
@@ -157,7 +155,7 @@ def test_one_table_family_by_setting() -> None:
     rows = [[cell.strip() for cell in line.strip("│").split("│")] for line in lines if line.startswith("│")]
     firsts = ["Family", *(word for name in FAMILIES for word in (name, "error (ulp)", "wrong"))]
     assert (rows[0][1:], [row[0] for row in rows]) == (NAMES, firsts)
-    assert all(re.fullmatch(r"\d+(\.\d+)? (ns|µs|ms|s)", cell) for row in rows[1::3] for cell in row[1:])
+    assert all(0.001 < float(cell) < 1e5 for row in rows[1::3] for cell in row[1:])
     assert all(float(row[NAMES.index("exact") + 1]) <= 0.5 for row in rows[2::3])
     assert all(row[NAMES.index("certified") + 1] == "0 %" for row in rows[3::3])
     assert max(map(len, lines[:-3])) <= 80

@@ -38,26 +38,24 @@ def notes(answers: Answers, names: Sequence[str]) -> list[str]:
 def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return sentences on why quantities or their uncertainties are missing or doubtful."""
     found = {name: answers.answer(name) for name in names if name != "regime"}
-    said = reasons_at({(name, one.reason): 1 for name, one in found.items() if one.reason}, 1)
+    said = reasons_in({(name, one.reason): 1 for name, one in found.items() if one.reason}, 1)
     if answers.uncertainties is not None:
         without = [name for name, one in found.items() if one.uncertainty is None and one.value is not None]
         said += [*answers.uncertainties.doubts(), *map(unmarked, answers.uncertainties.open_ended(without))]
     return said
 
 
-def reasons_at(
-    counted: Mapping[tuple[str, str], int], points: int, where: str = "at {} of {} points"
-) -> list[str]:
+def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:
     """Return a sentence for each reason that values are missing, without backticks.
 
-    ``counted`` says at how many of the ``points`` a quantity is missing for a reason.
+    ``counted`` says in how many of the ``rows`` a quantity is missing for a reason.
     """
     names: dict[tuple[str, int], list[str]] = {}
     for (name, reason), times in counted.items():
         names.setdefault((reason, times), []).append(name)
     said = []
     for (reason, times), group in names.items():
-        place = "" if times == points else f" ({where.format(times, points)})"
+        place = "" if times == rows else f" (in {times} of {rows} rows)"
         said.append(f"{', '.join(group)}: {unmarked(reason)}{place}.")
     return said
 

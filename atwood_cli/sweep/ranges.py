@@ -37,7 +37,7 @@ from ..model.scene import (
     with_unit,
 )
 from ..model.units import MAX_DIGITS, in_quotes, read_number
-from ..output.text import relevant_inputs
+from ..output.text import inputs_in_words
 from ..solver.answers import Answers
 
 UNIT_SUFFIXES = {"rad": "rad", "N m": "Nm"}
@@ -151,7 +151,7 @@ class Sweep(NamedTuple):
     def inputs(self) -> dict[str, str]:
         """Return the inputs, and the ranges, in words."""
         ranges = {range_.name: range_.words for range_ in self.ranges}
-        return relevant_inputs(self.scene, varied=ranges) | ranges
+        return inputs_in_words(self.scene) | ranges
 
     @property
     def along(self) -> Range:

@@ -12,7 +12,7 @@ from ..model.quantities import QUANTITIES, STANDARD
 from ..model.scene import with_unit
 from ..output.page import Page, aligned, progress
 from ..output.text import VERSION, cell, scene_record
-from ..solver.messages import reasons_at
+from ..solver.messages import reasons_in
 from .changes import changes, regimes
 from .ranges import LOCKED, Row, Sweep, solve_rows
 from .sweep_figure import MAX_CURVES
@@ -45,7 +45,7 @@ class SweepPage:
 
     def notes(self) -> list[str]:
         """Say why values are missing, after all rows."""
-        return reasons_at(self.reasons, self.sweep.total)
+        return reasons_in(self.reasons, self.sweep.total)
 
     def _all_notes(self) -> Iterator[str]:
         """Say what is assumed and why values are missing: an iterator that begins after all rows."""
@@ -109,7 +109,7 @@ class SweepPage:
             groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
             parts = [[next(lines) for _ in group] for _, group in groups]
             page.table(list(columns), parts, keys=len(sweep.ranges))
-        page.say(*reasons_at(missing, sweep.total))
+        page.say(*reasons_in(missing, sweep.total))
 
 
 PULLEY = "critical_pulley_mass"
