@@ -168,9 +168,7 @@ def test_a_repeat_is_an_outlier_if_chance_makes_one_as_far_on_either_side_too_se
 def test_a_run_is_judged_by_the_line_of_the_others() -> None:
     """Its distance is over the uncertainty of its own prediction: a t statistic of n - p - 1 = 3."""
     x, y, none = np.arange(6.0), np.array([0.1, 0.9, 2.1, 2.9, 9.0, 5.1]), np.zeros(6)
-    judge = judge_of_line(
-        Linear(np.stack([np.ones(6), x], 1), y, none + 1e-20, none + 1, none + 1e-20), (0.0, 0)
-    )
+    judge = judge_of_line(Linear(np.stack([np.ones(6), x], 1), y, none + 1e-20, none + 1, 1e-20))
     ((outlier, distance),) = outliers(judge, 6, 4, 0.01).items()
     others = x != 4
     line, covariance = np.polyfit(x[others], y[others], 1, cov=True)

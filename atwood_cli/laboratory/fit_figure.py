@@ -105,10 +105,8 @@ def _name_points(line: "Axes", fit: Fitted) -> None:
 
 
 def coefficients(fit: Fitted, meaning: Mapping[str, str]) -> str:
-    """Return the slope and the intercept of the line, if they are a result."""
+    """Return the slope and the intercept of the line."""
     lines = []
-    if fit.whole.reason:
-        return ""
     for name, words in meaning.items():
         value, unit = fit.whole.values[name], QUANTITIES[name].unit
         if result := fit.whole.results.get(name):

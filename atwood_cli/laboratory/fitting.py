@@ -30,7 +30,7 @@ from .estimate import (
 )
 from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
 from .runs import OUT_OF_RANGE, Runs, Selection, behind_an_error, in_range, in_words
-from .statistics import NORMAL_DOF, CannotSeparate, judge_of_line, judge_of_repeats, outliers
+from .statistics import CannotSeparate, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
@@ -44,7 +44,7 @@ LEAST_SHARE, MOST_SHARE = 1e-4, 1.02
 """The least and the most share that an acceleration may have of that without a pulley and friction."""
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
-CHECK = "check masses, heights, measurements and their units"
+CHECK = "check masses, heights, measurements, their units and signs"
 NO_FIT = "no pulley explains these runs, whatever its inertia and its axle's friction"
 
 
@@ -83,18 +83,15 @@ class Fitted(NamedTuple):
 def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
     """Return the conditions that inputs give. Raises SceneError."""
     for x, one in inputs.items():
-        if one.given is not None and one.value != inf and not in_range(one):
+        if one.given is not None and not in_range(one):
             raise SceneError(x, one.given, OUT_OF_RANGE)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
     scene = Scene.of({**inputs, **masses})
     case, values = Decisions(scene), {"gravity": float(scene.g)}
     if scene.axle is not None:
-        values["axle"] = float(case.axle_friction or 0)
+        values["axle"] = float(case.axle_friction)
     if scene.M is not None or scene.I is not None:
-        if case.rim_mass is None:
-            why = "lets nothing move; give the mass of a pulley that turns"
-            raise SceneError("M", inputs["M"].given, why)
-        values["rim_mass"] = float(case.rim_mass)
+        values["rim_mass"] = float(case.rim_mass or 0)
     return Conditions(inputs, scene, values)
 
 
@@ -104,8 +101,8 @@ def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
         u, size = one.uncertainty, getattr(one.value, "number", one.value)
         if u and not parameter_of(x).zero and u >= size:
             raise SceneError(x, one.given, "has an uncertainty that reaches 0")
-        ends = [one.value._replace(number=size + by) if x == "axle" else size + by for by in (-u, u) if u]
-        if ends:
+        if u:
+            ends = (one.value._replace(number=end) if x == "axle" else end for end in (size - u, size + u))
             yield [conditions_of({**given.inputs, x: Input(end, Fraction(0), one.given)}) for end in ends]
 
 
@@ -153,7 +150,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         whole = _fit(runs, used, given, names)
     except CannotSeparate as error:
         raise CannotSeparate(f"{error}{behind_an_error(remarks)}") from None
-    if runs.kind == "time" and "delay" not in names and not whole.reason and whole.dof > 1:
+    if runs.kind == "time" and "delay" not in names and whole.dof > 1:
         with suppress(CannotSeparate):
             delay = _delay(whole, _fit(runs, used, given, [*names, "delay"]))
     odd = _outliers(runs, used, whole.data, whole.values, names)
@@ -165,18 +162,19 @@ def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -
     if not used.any():
         raise CannotSeparate("no run can be used")
     data, count = as_data(runs, used), int(used.sum())
+    what = [QUANTITIES[x].words for x in names]
     needed = len(names) + (not data.scatter.any() and not data.uncertain)
     if count < needed:
         runs_are = f"{counted(count, 'run')} {'is' if count == 1 else 'are'}"
-        what = " and ".join(QUANTITIES[x].words for x in names)
-        raise CannotSeparate(f"{runs_are} too few to fit {what}: give {needed} or more, or M or axle")
-    g = None if "gravity" in names else given.values["gravity"]
-    mistake, is_of_most = _mistake(runs, used, data, g)
+        both = " and ".join(what)
+        raise CannotSeparate(f"{runs_are} too few to fit {both}: give {needed} or more, or M or axle")
+    mistake = _mistake(runs, used, data, None if "gravity" in names else given.values["gravity"])
     if not _separates(data, given.values, names):
-        verb = "separate" if names[1:] else "determine"
-        what = " from ".join(QUANTITIES[x].words for x in names)
-        vary = "vary both m2 - m1 and m1 + m2 more"
-        raise CannotSeparate(mistake or f"the runs do not {verb} {what}: {vary}")
+        verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
+        raise CannotSeparate(mistake or f"the runs do not {verb} {' from '.join(what)}: {vary}")
+
+    def odd(values: Mapping[str, float]) -> str:
+        return "; ".join(words for _, words in _outliers(runs, used, data, values, names)) or CHECK
 
     def found(there: Conditions) -> dict[str, float]:
         drop = there.inputs.get("drop")
@@ -187,32 +185,24 @@ def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -
         best = estimate(data, given.values, names)
         ends = [[*map(found, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        near = by_forces(data, given.values, names)
-        odd = "; ".join(words for _, words in _outliers(runs, used, data, near, names))
-        raise CannotSeparate(mistake or f"{NO_FIT}: {odd or CHECK}") from None
+        raise CannotSeparate(mistake or f"{NO_FIT}: {odd(by_forces(data, given.values, names))}") from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
-    times = float(stdtrit(min(best.line.dof, NORMAL_DOF), 0.975))  # Student's t
+    times = float(stdtrit(best.line.dof, 0.975))  # Student's t
     results = dict[str, Result]()
     for x, value in _with_derived(best.values, names, given).items():
         u = hypot(spread[x], *(float(np.ptp([value, *(end[x] for end in pair)])) / 2 for pair in ends))
         results[x] = Result(value, u, (value - times * u, value + times * u))
-    negative = next((x for x in names if x != "delay" and results[x].interval[1] < 0), "")
-    if negative and not mistake:
-        words = equation(negative, *results[negative][:2])
-        mistake = f"{words} is negative: {CHECK}, and the signs of accelerations"
-    if is_of_most or negative:
-        return best._replace(reason=mistake)
+        if x in USUAL and results[x].interval[1] < 0:
+            raise CannotSeparate(mistake or f"{equation(x, value, u)} is negative: {odd(best.values)}")
     return best._replace(results=results)
 
 
-def _delay(whole: Estimate, late: Estimate) -> tuple[Result, float] | None:
+def _delay(whole: Estimate, late: Estimate) -> tuple[Result, float]:
     """Return the delay of the fit with one, and the p value of an F test of what it takes off χ².
 
     The repeats count in that test, unless runs scatter more than they do with the delay, too.
     """
-    if "delay" not in late.results:
-        return None
     rest, dof, taken_off = late.line.chi2, late.dof, max(whole.line.chi2 - late.line.chi2, 0)
     if late.p_value is not None and late.p_value >= SELDOM:
         rest, dof = rest + late.data.repeats[0], dof + late.data.repeats[1]
@@ -234,7 +224,7 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
 def _outliers(
     runs: Runs, used: Selection, data: Data, values: Mapping[str, float], names: Sequence[str]
 ) -> list[tuple[int, str]]:
-    """Return outliers among the repeats of each run, and among the runs without these repeats.
+    """Return outliers among the repeats of each run, and among the runs without these repeats, in words.
 
     Runs are judged by the line of forces, which outliers bend least.
     """
@@ -245,30 +235,25 @@ def _outliers(
     u = runs.u_values[places] if data.stated else np.ones(len(places))
     judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
     of_repeats = outliers(judge, len(places), len(places) - len(here), OUTLIER_LEVEL)
-    odd = {int(places[i]): far for i, far in of_repeats.items()}
     kept = np.ones(len(runs.values), dtype=bool)
-    kept[[*odd]] = False
-    sound = as_data(runs, used, kept)
+    kept[places[[*of_repeats]]] = False
     near = {**values, "rim_mass": max(values["rim_mass"], 0.0), "delay": 0.0}
-    judge = judge_of_line(linear(of_forces, sound, near, names), sound.repeats)
+    judge = judge_of_line(linear(of_forces, as_data(runs, used, kept), near, names))
     of_runs = outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL)
-    return [
-        *(
-            (int(runs.run[place]), _in_words(runs, int(runs.run[place]), far, place))
-            for place, far in odd.items()
-        ),
-        *((int(here[i]), _in_words(runs, int(here[i]), far)) for i, far in of_runs.items()),
-    ]
+    said = []
+    for i, far in of_repeats.items():
+        run, cell = int(runs.run[places[i]]), runs.cells[places[i]]
+        measured = f"{format_number(float(runs.values[places[i]]))} {parameter_of(runs.kind).unit}"
+        said.append((run, _far(f"{in_words(cell)} = {measured} is", far, "its repeats", cell)))
+    for i, far in of_runs.items():
+        rows = runs.rows[here[i]]
+        what = f"{runs.rows_in_words(here[i])} {'are' if rows[1:] else 'is'}"
+        said.append((int(here[i]), _far(what, far, "a fit of the other runs", ",".join(map(str, rows)))))
+    return said
 
 
-def _in_words(runs: Runs, run: int, distance: float, place: int | None = None) -> str:
-    """Say how many standard deviations a run or a measurement is away, and how to leave it out."""
-    where, others = ",".join(map(str, runs.rows[run])), "a fit of the other runs"
-    what = f"{runs.rows_in_words(run)} {'are' if runs.rows[run][1:] else 'is'}"
-    if place is not None:
-        where, others = runs.cells[place], "its repeats"
-        value = format_number(float(runs.values[place]))
-        what = f"{in_words(where)} = {value} {parameter_of(runs.kind).unit} is"
+def _far(what: str, distance: float, others: str, where: str) -> str:
+    """Say how many standard deviations something is from others, and how to leave it out."""
     far = f"{rounded(abs(distance))} standard deviations from {others}"
     return f"{what} {far}; if it is a mistake, leave it out: --without {where}"
 
@@ -290,26 +275,29 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
     return not names or bool(singular.min() > LEAST_SINGULAR)
 
 
-def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> tuple[str, bool]:
-    """Return what must be a mistake in the table, "" if nothing must, and if most runs have one.
+def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> str:
+    """Return what must be a mistake in the table, "" if nothing must. Raises CannotSeparate if most have one.
 
     Each value is compared with the median of its kind, and each acceleration with that of free masses,
     unless gravity is fitted.
     """
-    masses = {x: runs.given[x][used] for x in ("m1", "m2")}
-    checks: list[tuple[str, str, Any, Any, float, Any]] = []
-    for x, values in {**masses, "drop": data.drop, runs.kind: data.measured}.items():
-        if values is not None:
-            of, what = ([*masses.values()], "mass") if x in masses else (values, x)
-            checks.append((x, f"the median {what}", values, np.median(of), 1 / MOST_RATIO, MOST_RATIO))
+    m1, m2 = (runs.given[x][used] for x in ("m1", "m2"))
+    kinds: dict[str, tuple[Any, Any, str]] = {x: (m, [m1, m2], "mass") for x, m in (("m1", m1), ("m2", m2))}
+    kinds[runs.kind] = data.measured, data.measured, runs.kind
+    if data.drop is not None:
+        kinds["drop"] = data.drop, data.drop, "drop"
+    checks: list[tuple[str, Any, Any, str, float, Any]] = [
+        (x, values, np.median(of), f"the median {what}", 1 / MOST_RATIO, MOST_RATIO)
+        for x, (values, of, what) in kinds.items()
+    ]
     if g is not None:
         name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
         free = physics.acceleration(data.h - data.l, data.h + data.l, g)
         most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
         what = "the acceleration without friction and pulley"
-        checks.append((name, what, accelerations(data, data.measured), free, LEAST_SHARE, most))
+        checks.append((name, accelerations(data, data.measured), free, what, LEAST_SHARE, most))
     said, is_mistaken = "", np.zeros(len(data.l), dtype=bool)
-    for name, what, values, typical, least, most in checks:
+    for name, values, typical, what, least, most in checks:
         with np.errstate(divide="ignore"):
             ratio = values / typical
         is_unusual = (values > 0) & ((ratio < least) | (ratio > most))
@@ -319,4 +307,6 @@ def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> tuple[
             far = f"{name} = {value} {unit} is {times} times {there} {unit}"
             said = f"{runs.rows_in_words(np.flatnonzero(used)[i])}: {far}, {what}; {CHECK}"
         is_mistaken |= is_unusual
-    return said, bool(is_mistaken.mean() > 0.5)
+    if is_mistaken.mean() > 0.5:
+        raise CannotSeparate(said)
+    return said

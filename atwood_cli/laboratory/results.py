@@ -71,9 +71,9 @@ def equation(name: str, value: float, uncertainty: float) -> str:
     return f"{name} = {with_u(value, uncertainty)} {QUANTITIES[name].unit}"
 
 
-def cut(value: float, uncertainty: float) -> str:
-    """Return a value cut at the second digit of an uncertainty."""
-    return f"{_cutting(uncertainty)(Fraction(value)):f}"
+def cut(value: float | None, uncertainty: float | None) -> str:
+    """Return a value cut at the second digit of an uncertainty, "" without either."""
+    return f"{_cutting(uncertainty)(Fraction(value)):f}" if value is not None and uncertainty else ""
 
 
 def _cutting(uncertainty: float) -> Rounding[Decimal]:
