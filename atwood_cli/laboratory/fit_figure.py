@@ -8,9 +8,9 @@ import numpy as np
 from ..model import physics
 from ..output.figure import BLUE, FAINT, INK, RED, page, typeset, write_beside
 from .estimate import Data, accelerations, as_data, expected
-from .fitting import Fitted
-from .report import RARE, conditions, verdict
-from .results import QUANTITIES, rounded, with_u
+from .fitting import RARE, Fitted
+from .report import conditions, verdict
+from .results import QUANTITIES, published, rounded
 from .runs import Column
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def coefficients(fit: Fitted, meaning: Mapping[str, str]) -> str:
     for name, words in meaning.items():
         value, unit = fit.whole.values[name], QUANTITIES[name].unit
         if result := fit.whole.results.get(name):
-            lines.append(f"{words} = {with_u(value, result.uncertainty)} {unit}")
+            lines.append(f"{words} = {published(value, result.uncertainty)[0]} {unit}")
         else:
             why = "given" if name in fit.given.values else "not fitted"
             lines.append(f"{words} = {rounded(value, 6)} {unit}, {why}")

@@ -28,7 +28,7 @@ from .estimate import (
     of_forces,
     of_measured,
 )
-from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
+from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, published, rounded
 from .runs import OUT_OF_RANGE, Runs, Selection, behind_an_error, in_range, in_words
 from .statistics import CannotSeparate, judge_of_line, judge_of_repeats, outliers
 
@@ -36,6 +36,10 @@ OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
 SELDOM = 0.05
 """The p value below which runs are said to scatter more than their repeats."""
+RARE = 0.01
+"""The p value below which a delay is reported, and above 1 less which runs scatter less than repeats."""
+WIDE_DELAY = 0.1
+"""The half width of a delay's interval (s) from which the runs cannot show it."""
 LEAST_SINGULAR = 4e-4
 """Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
 MOST_RATIO = 100
@@ -59,8 +63,8 @@ class Conditions(NamedTuple):
 class Fitted(NamedTuple):
     """The fit of the runs that are ``used``, and their outliers: the run of each, and words that name it.
 
-    Something can be expected of all runs that are ``shown``; the others of these are left out. ``delay`` is
-    that of a fit with a delay, and its p value; None if it was not tried or is not possible.
+    Something can be expected of all runs that are ``shown``; the others of these are left out. ``delay`` has
+    what there is to say of a delay that is not fitted.
     """
 
     runs: Runs
@@ -69,7 +73,7 @@ class Fitted(NamedTuple):
     given: Conditions
     whole: Estimate
     outliers: Sequence[tuple[int, str]]
-    delay: tuple[Result, float] | None
+    delay: Sequence[str]
 
     @property
     def suspects(self) -> list[int]:
@@ -140,7 +144,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         "the lighter side falls": runs.sign * runs.mean < 0,
         "an axle with the friction given holds the masses": abs(difference) <= held,
     }
-    shown, remarks, delay = np.ones(len(runs.rows), dtype=bool), [*runs.remarks], None
+    shown, remarks = np.ones(len(runs.rows), dtype=bool), [*runs.remarks]
     for reason, holds in unusable.items():
         if (shown & holds).any():
             remarks.append(f"{runs.rows_in_words(*np.flatnonzero(shown & holds))}: not used, as {reason}.")
@@ -150,11 +154,8 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         whole = _fit(runs, used, given, names)
     except CannotSeparate as error:
         raise CannotSeparate(f"{error}{behind_an_error(remarks)}") from None
-    if runs.kind == "time" and "delay" not in names and whole.dof > 1:
-        with suppress(CannotSeparate):
-            delay = _delay(whole, _fit(runs, used, given, [*names, "delay"]))
     odd = _outliers(runs, used, whole.data, whole.values, names)
-    return Fitted(runs, used, shown, given, whole, odd, delay)
+    return Fitted(runs, used, shown, given, whole, odd, _delay(runs, used, given, whole))
 
 
 def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Estimate:
@@ -193,20 +194,35 @@ def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -
     for x, value in _with_derived(best.values, names, given).items():
         u = hypot(spread[x], *(float(np.ptp([value, *(end[x] for end in pair)])) / 2 for pair in ends))
         results[x] = Result(value, u, (value - times * u, value + times * u))
-        if x in USUAL and results[x].interval[1] < 0:
+        if x in names and x != "delay" and results[x].interval[1] < 0:
             raise CannotSeparate(mistake or f"{equation(x, value, u)} is negative: {odd(best.values)}")
     return best._replace(results=results)
 
 
-def _delay(whole: Estimate, late: Estimate) -> tuple[Result, float]:
-    """Return the delay of the fit with one, and the p value of an F test of what it takes off χ².
+def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate) -> list[str]:
+    """Return a sentence if all times seem too long, or if the runs cannot show that.
 
-    The repeats count in that test, unless runs scatter more than they do with the delay, too.
+    An F test judges what a delay takes off χ². The repeats count in it, unless runs scatter more than they do
+    with the delay, too.
     """
-    rest, dof, taken_off = late.line.chi2, late.dof, max(whole.line.chi2 - late.line.chi2, 0)
-    if late.p_value is not None and late.p_value >= SELDOM:
-        rest, dof = rest + late.data.repeats[0], dof + late.data.repeats[1]
-    return late.results["delay"], float(fdtrc(1, dof, taken_off / max(rest, TINY) * dof))
+    if runs.kind != "time" or "delay" in whole.names:
+        return []
+    names, half = [*whole.names, "delay"], inf
+    if whole.dof > 1:
+        with suppress(CannotSeparate):
+            late = _fit(runs, used, given, names)
+            value, u, (_, high) = late.results["delay"]
+            rest, dof, taken_off = late.line.chi2, late.dof, max(whole.line.chi2 - late.line.chi2, 0)
+            if late.p_value is not None and late.p_value >= SELDOM:
+                rest, dof = rest + late.data.repeats[0], dof + late.data.repeats[1]
+            if fdtrc(1, dof, taken_off / max(rest, TINY) * dof) < RARE:
+                size, long = published(abs(value), u)[0], "long" if value > 0 else "short"
+                return [f"All times seem {size} s too {long}: --find {','.join(names)} fits that, too."]
+            half = high - value
+    if half <= WIDE_DELAY:
+        return []
+    said = "These runs neither show nor exclude a delay of all times, and the results hold only without one."
+    return [f"{said} To see one, vary the height of fall, or both m2 - m1 and m1 + m2, more."]
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
@@ -281,32 +297,29 @@ def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> str:
     Each value is compared with the median of its kind, and each acceleration with that of free masses,
     unless gravity is fitted.
     """
-    m1, m2 = (runs.given[x][used] for x in ("m1", "m2"))
-    kinds: dict[str, tuple[Any, Any, str]] = {x: (m, [m1, m2], "mass") for x, m in (("m1", m1), ("m2", m2))}
-    kinds[runs.kind] = data.measured, data.measured, runs.kind
-    if data.drop is not None:
-        kinds["drop"] = data.drop, data.drop, "drop"
-    checks: list[tuple[str, Any, Any, str, float, Any]] = [
-        (x, values, np.median(of), f"the median {what}", 1 / MOST_RATIO, MOST_RATIO)
-        for x, (values, of, what) in kinds.items()
+    columns = {x: runs.given[x][used] for x in runs.given} | {runs.kind: data.measured}
+    mass, ratios = np.median([data.l, data.h]), (1 / MOST_RATIO, MOST_RATIO)
+    checks: list[tuple[str, str, Any, Any, tuple[float, Any]]] = [
+        (x, "the median", values, mass if x[0] == "m" else np.median(values), ratios)
+        for x, values in columns.items()
     ]
     if g is not None:
         name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
         free = physics.acceleration(data.h - data.l, data.h + data.l, g)
         most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
         what = "the acceleration without friction and pulley"
-        checks.append((name, accelerations(data, data.measured), free, what, LEAST_SHARE, most))
+        checks.append((name, what, accelerations(data, data.measured), free, (LEAST_SHARE, most)))
     said, is_mistaken = "", np.zeros(len(data.l), dtype=bool)
-    for name, values, typical, what, least, most in checks:
+    for name, what, values, typical, (least, most) in checks:
         with np.errstate(divide="ignore"):
             ratio = values / typical
         is_unusual = (values > 0) & ((ratio < least) | (ratio > most))
-        if is_unusual.any() and not said:
-            i, unit = int(np.argmax(is_unusual)), parameter_of("a" if name[0] == "a" else name).unit
-            value, times, there = (rounded(float(x), 3) for x in (values[i], ratio[i], values[i] / ratio[i]))
-            far = f"{name} = {value} {unit} is {times} times {there} {unit}"
-            said = f"{runs.rows_in_words(np.flatnonzero(used)[i])}: {far}, {what}; {CHECK}"
         is_mistaken |= is_unusual
+        if is_unusual.any() and not said:
+            i, unit = int(np.argmax(is_unusual)), parameter_of(name.split()[0]).unit
+            value, times, there = (rounded(float(x[i]), 3) for x in (values, ratio, values / ratio))
+            far = f"{name} = {value} {unit} is {times} times {what}, {there} {unit}"
+            said = f"{runs.rows_in_words(np.flatnonzero(used)[i])}: {far}; {CHECK}"
     if is_mistaken.mean() > 0.5:
         raise CannotSeparate(said)
     return said

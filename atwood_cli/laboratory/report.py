@@ -11,14 +11,10 @@ from ..model.units import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
 from .estimate import as_data, expected
-from .fitting import SELDOM, Fitted
-from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
+from .fitting import RARE, SELDOM, Fitted
+from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded
 from .runs import MEASURED, WORDS
 
-RARE = 0.01
-"""The p value below which a delay is reported, and above 1 less which runs scatter less than repeats."""
-WIDE_DELAY = 0.1
-"""The half width of a delay's interval (s) from which the runs cannot show it."""
 NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
 NEEDS = {
     "moment_of_inertia": "needs the rim mass to be fitted, and R",
@@ -50,7 +46,7 @@ def head(fit: Fitted) -> list[str]:
 
 def notes(fit: Fitted) -> list[str]:
     """Return what else there is to say, first how the table was read."""
-    return [*map(_capital, fit.runs.remarks), _scatter(fit), *_delay(fit)]
+    return [*map(_capital, fit.runs.remarks), _scatter(fit), *fit.delay]
 
 
 def _scatter(fit: Fitted) -> str:
@@ -69,20 +65,6 @@ def _scatter(fit: Fitted) -> str:
     if whole.p_value > 1 - RARE:
         return f"The runs scatter less than their {by}."
     return f"Scatter as expected from the {by}."
-
-
-def _delay(fit: Fitted) -> list[str]:
-    """Return a sentence if all times seem too long, or if the runs cannot show that."""
-    names, (result, p) = fit.whole.names, fit.delay or (None, 1.0)
-    if result and p < RARE:
-        size = with_u(abs(result.value), result.uncertainty)
-        long, find = "long" if result.value > 0 else "short", ",".join([*names, "delay"])
-        return [f"All times seem {size} s too {long}: --find {find} fits that, too."]
-    half = result.interval[1] - result.value if result else np.inf
-    if fit.runs.kind != "time" or "delay" in names or half <= WIDE_DELAY:
-        return []
-    said = "These runs neither show nor exclude a delay of all times, and the results hold only without one."
-    return [f"{said} To see one, vary the height of fall, or both m2 - m1 and m1 + m2, more."]
 
 
 def _capital(words: str) -> str:
