@@ -470,7 +470,7 @@ def test_in_python_it_is_what_json_has() -> None:
         ({"m1": 1, "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type int; give a sequence of cells"),
         (Path("none.csv"), {}, OSError, "cannot read none.csv: No such file or directory"),
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' is known by g; leave one of them out"),
-        (EQUAL, {}, ArithmeticError, "2 runs are too few to fit the pulley's inertia and axle friction: give 3 or more, or M or axle"),
+        (EQUAL, {}, ArithmeticError, "2 runs cannot determine the pulley's inertia and axle friction: give 3 or more, or M or axle"),
     ],
 )  # fmt: skip
 def test_in_python_errors_say_what_is_wrong(table: Any, more: Any, kind: type[Exception], words: str) -> None:

@@ -190,15 +190,12 @@ def estimate(
     else:
         raise CannotSeparate
     sigma, dof = np.sqrt(line.scale * line.variance), len(data.l) - len(names)
-    best = Estimate(data, values, names, line, sigma, dof)
-    if not data.scatter.any():
-        return best
-    if not dof:
-        return best._replace(chi2=line.chi2)
-    known_by = NORMAL_DOF if data.stated else data.repeats[1] or NORMAL_DOF
-    p_value = float(fdtrc(dof, known_by, line.chi2 / dof))  # χ² if the variance is known
-    between_runs = sqrt(line.between) / abs(values["gravity"])
-    return best._replace(chi2=line.chi2, p_value=p_value, between_runs=between_runs)
+    chi2, p_value, between_runs = line.chi2 if data.scatter.any() else None, None, None
+    if chi2 is not None and dof:
+        known_by = NORMAL_DOF if data.stated else data.repeats[1] or NORMAL_DOF
+        p_value = float(fdtrc(dof, known_by, chi2 / dof))  # χ² if the variance is known
+        between_runs = sqrt(line.between) / abs(values["gravity"])
+    return Estimate(data, values, names, line, sigma, dof, chi2, p_value, between_runs)
 
 
 def _least_squares(

@@ -28,7 +28,7 @@ from .estimate import (
     of_forces,
     of_measured,
 )
-from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, published, rounded
+from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, published, rounded
 from .runs import OUT_OF_RANGE, Runs, Selection, behind_an_error, in_range, in_words
 from .statistics import CannotSeparate, judge_of_line, judge_of_repeats, outliers
 
@@ -122,10 +122,9 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
                 raise SceneError("find", name, f"is known by {known}; leave one of them out")
     left = [x for x in USUAL if x not in names and x not in given.values]
     if names and left:
-        what, give, find = map(
-            " and ".join, zip(*((QUANTITIES[x].words, GIVE[x], x) for x in left), strict=True)
-        )
-        raise SceneError("find", ",".join(names), f"leaves {what} open: give {give}, or find {find}, too")
+        what, give = (" and ".join(words[x] for x in left) for words in (RESULTS, GIVE))
+        rule = f"leaves {what} open: give {give}, or find {' and '.join(left)}, too"
+        raise SceneError("find", ",".join(names), rule)
     return names or left
 
 
@@ -166,9 +165,8 @@ def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -
     what = [QUANTITIES[x].words for x in names]
     needed = len(names) + (not data.scatter.any() and not data.uncertain)
     if count < needed:
-        runs_are = f"{counted(count, 'run')} {'is' if count == 1 else 'are'}"
-        both = " and ".join(what)
-        raise CannotSeparate(f"{runs_are} too few to fit {both}: give {needed} or more, or M or axle")
+        why = f"{counted(count, 'run')} cannot determine {' and '.join(what)}"
+        raise CannotSeparate(f"{why}: give {needed} or more, or M or axle")
     mistake = _mistake(runs, used, data, None if "gravity" in names else given.values["gravity"])
     if not _separates(data, given.values, names):
         verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
@@ -288,7 +286,7 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
     values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
     J: Any = linear(of_measured, design, values, names).J / expected(design, values)[:, None]
     singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
-    return not names or bool(singular.min() > LEAST_SINGULAR)
+    return bool(singular.min(initial=1.0) > LEAST_SINGULAR)
 
 
 def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> str:

@@ -39,16 +39,6 @@ def verdict(fit: Fitted) -> str:
     return " ".join(said)
 
 
-def head(fit: Fitted) -> list[str]:
-    """Return the verdict, and a sentence for each outlier."""
-    return [verdict(fit), *(f"{_capital(words)}." for _, words in fit.outliers)]
-
-
-def notes(fit: Fitted) -> list[str]:
-    """Return what else there is to say, first how the table was read."""
-    return [*map(_capital, fit.runs.remarks), _scatter(fit), *fit.delay]
-
-
 def _scatter(fit: Fitted) -> str:
     """Return how the scatter of the runs is known, and its p value."""
     whole = fit.whole
@@ -85,8 +75,8 @@ def conditions(fit: Fitted) -> str:
 
 
 def results_of(fit: Fitted) -> Fit:
-    """Return all of a fit by name, with its sentences."""
-    whole = fit.whole
+    """Return all of a fit by name, with its sentences: first the verdict and the outliers."""
+    whole, outliers = fit.whole, [f"{_capital(words)}." for _, words in fit.outliers]
     return Fit(
         **{name: whole.results[name].value if name in whole.results else None for name in QUANTITIES},
         uncertainty={name: one.uncertainty for name, one in whole.results.items()},
@@ -96,7 +86,7 @@ def results_of(fit: Fitted) -> Fit:
         dof=whole.dof,
         between_runs=whole.between_runs,
         runs=_records(fit),
-        notes=[*head(fit), *notes(fit)],
+        notes=[verdict(fit), *outliers, *map(_capital, fit.runs.remarks), _scatter(fit), *fit.delay],
     )
 
 
@@ -114,7 +104,7 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     elif only:
         said = [equation(x, *results[x][:2]) for x in only if x in results]
         said += [f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None]
-        said += head(fit)[1:]
+        said += found.notes[1 : 1 + len(fit.outliers)]
     else:
         names = "quantity", "value", "uncertainty", "low", "high", "unit"
         each = ((x, *one[:2], *one.interval, QUANTITIES[x].unit) for x, one in results.items())
@@ -150,13 +140,13 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
 
 def _print_page(fit: Fitted, found: Fit) -> None:
     """Print the conditions, the runs, what there is to say, and the results."""
-    page, kind, results = Page(), fit.runs.kind, fit.whole.results
+    page, kind, results, first = Page(), fit.runs.kind, fit.whole.results, 1 + len(fit.outliers)
     page.say(conditions(fit))
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
-    page.say("u is the standard uncertainty of a run, scatter between runs included.", *notes(fit))
-    page.say(*head(fit), style="bold")
+    page.say("u is the standard uncertainty of a run, scatter between runs included.", *found.notes[first:])
+    page.say(*found.notes[:first], style="bold")
     if results:
         numbers = ((x, published(*one), QUANTITIES[x]) for x, one in results.items())
         rows = [(x, both, words.unit, words.symbol, ends) for x, (both, ends), words in numbers]
