@@ -153,7 +153,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         whole = _fit(runs, used, given, names)
     except CannotSeparate as error:
         raise CannotSeparate(f"{error}{behind_an_error(remarks)}") from None
-    odd = _outliers(runs, used, whole.data, whole.values, names)
+    odd = [*_outliers(runs, used, whole.data, whole.values, names)]
     return Fitted(runs, used, shown, given, whole, odd, _delay(runs, used, given, whole))
 
 
@@ -237,8 +237,8 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
 
 def _outliers(
     runs: Runs, used: Selection, data: Data, values: Mapping[str, float], names: Sequence[str]
-) -> list[tuple[int, str]]:
-    """Return outliers among the repeats of each run, and among the runs without these repeats, in words.
+) -> Iterator[tuple[int, str]]:
+    """Yield outliers among the repeats of each run, and among the runs without these repeats, in words.
 
     Runs are judged by the line of forces, which outliers bend least.
     """
@@ -248,22 +248,17 @@ def _outliers(
     places = places[np.argsort(-np.abs(away), kind="stable")]
     u = runs.u_values[places] if data.stated else np.ones(len(places))
     judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
-    of_repeats = outliers(judge, len(places), len(places) - len(here), OUTLIER_LEVEL)
     kept = np.ones(len(runs.values), dtype=bool)
-    kept[places[[*of_repeats]]] = False
+    for i, far in outliers(judge, len(places), len(places) - len(here), OUTLIER_LEVEL).items():
+        kept[places[i]], cell = False, runs.cells[places[i]]
+        measured = f"{format_number(float(runs.values[places[i]]))} {parameter_of(runs.kind).unit}"
+        yield int(runs.run[places[i]]), _far(f"{in_words(cell)} = {measured} is", far, "its repeats", cell)
     near = {**values, "rim_mass": max(values["rim_mass"], 0.0), "delay": 0.0}
     judge = judge_of_line(linear(of_forces, as_data(runs, used, kept), near, names))
-    of_runs = outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL)
-    said = []
-    for i, far in of_repeats.items():
-        run, cell = int(runs.run[places[i]]), runs.cells[places[i]]
-        measured = f"{format_number(float(runs.values[places[i]]))} {parameter_of(runs.kind).unit}"
-        said.append((run, _far(f"{in_words(cell)} = {measured} is", far, "its repeats", cell)))
-    for i, far in of_runs.items():
+    for i, far in outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL).items():
         rows = runs.rows[here[i]]
         what = f"{runs.rows_in_words(here[i])} {'are' if rows[1:] else 'is'}"
-        said.append((int(here[i]), _far(what, far, "a fit of the other runs", ",".join(map(str, rows)))))
-    return said
+        yield int(here[i]), _far(what, far, "a fit of the other runs", ",".join(map(str, rows)))
 
 
 def _far(what: str, distance: float, others: str, where: str) -> str:
