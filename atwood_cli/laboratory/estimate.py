@@ -15,8 +15,11 @@ from .statistics import NORMAL_DOF, CannotSeparate, Line, Linear, fit_line, sum_
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
-NEAR, CLOSE, MOST_PASSES = 1e-2, 1e-11, 100
-"""Shares of what is expected. A step below ``NEAR`` is linear, and one below ``CLOSE`` is the last."""
+NEAR, ENOUGH, CLOSE, MOST_PASSES = 1e-2, 1e-6, 1e-11, 100
+"""Shares of what is expected. A step below ``NEAR`` is linear, and one below ``CLOSE`` is the last.
+
+Linear steps lead away from some least squares of rough runs; then a step below ``ENOUGH`` is the last, too.
+"""
 ROUNDING = 1e-12
 """The least standard uncertainty of a measured number, as a share of it."""
 TINY = 1e-100
@@ -176,16 +179,17 @@ def estimate(
     Variances follow the values (effective variance), and least squares the variances.
     """
     values = {**(near or by_forces(data, given, names)), **given}
+    size = inf
     for _ in range(MOST_PASSES):
         problem = linear(of_measured, data, values, names)
         line = fit_line(problem)
         share = problem.J @ line.coefficients / data.measured
-        size = sqrt(sum_of_squares(share) / len(share))
+        before, size = size, sqrt(sum_of_squares(share) / len(share))
         if size < NEAR:
             values |= {x: values[x] + float(b) for x, b in zip(names, line.coefficients, strict=True)}
         else:
             values |= _least_squares(data, values, names, np.sqrt(line.variance))
-        if size < CLOSE:
+        if size < CLOSE or before < size < ENOUGH:
             break
     else:
         raise CannotSeparate
