@@ -114,6 +114,9 @@ def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
 def test_what_simulation_decided_is_so() -> None:
     """Before, a third run had the width 4.3; 29 % of readings to 1 ms were accused; nothing said that a watch is late."""
     assert max(counts(CELLS[0], 30).width) < 1.6
+    assert (
+        counts(Design(4, 1, 0.15, "vary"), 30, "delay").refused < 15
+    )  # was 40: steps led away from the best
     read = counts(Design(8, 5, 1e-4, step=1e-3), 20)
     assert (read.accused, read.scatters, max(read.width) < 2.4) == (0, 0, True)
     late = DELAYS[0]._replace(delay=0.15)
@@ -168,9 +171,7 @@ def test_a_repeat_is_an_outlier_if_chance_makes_one_as_far_on_either_side_too_se
 def test_a_run_is_judged_by_the_line_of_the_others() -> None:
     """Its distance is over the uncertainty of its own prediction: a t statistic of n - p - 1 = 3."""
     x, y, none = np.arange(6.0), np.array([0.1, 0.9, 2.1, 2.9, 9.0, 5.1]), np.zeros(6)
-    judge = judge_of_line(
-        Linear(np.stack([np.ones(6), x], 1), y, none + 1e-20, none + 1, none + 1e-20), (0.0, 0)
-    )
+    judge = judge_of_line(Linear(np.stack([np.ones(6), x], 1), y, none + 1e-20, none + 1, 1e-20))
     ((outlier, distance),) = outliers(judge, 6, 4, 0.01).items()
     others = x != 4
     line, covariance = np.polyfit(x[others], y[others], 1, cov=True)
@@ -457,11 +458,8 @@ def test_in_python_it_is_what_json_has() -> None:
     assert lines[2] == "moment_of_inertia = (1.3 ± 2.1)e-5 kg m², 95 %: (-7.9 to 10.5)e-5"
     assert lines[3:] == list(result.notes)
     odd = [*zip(*csv.reader(ODD.splitlines()), strict=True)]
-    said = laboratory_fit({name: cells for name, *cells in odd}).notes
-    assert any(
-        note.endswith("fit of the other runs; if it is a mistake, leave it out: without='5'.")
-        for note in said
-    )
+    said = laboratory_fit({name: cells for name, *cells in odd}).notes[1]
+    assert said.endswith("fit of the other runs; if it is a mistake, leave it out: without='5'.")
 
 
 @pytest.mark.parametrize(
@@ -472,7 +470,7 @@ def test_in_python_it_is_what_json_has() -> None:
         ({"m1": 1, "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type int; give a sequence of cells"),
         (Path("none.csv"), {}, OSError, "cannot read none.csv: No such file or directory"),
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' is known by g; leave one of them out"),
-        (EQUAL, {}, ArithmeticError, "2 runs are too few to fit the pulley's inertia and axle friction: give 3 or more, or M or axle"),
+        (EQUAL, {}, ArithmeticError, "2 runs cannot determine the pulley's inertia and axle friction: give 3 or more, or M or axle"),
     ],
 )  # fmt: skip
 def test_in_python_errors_say_what_is_wrong(table: Any, more: Any, kind: type[Exception], words: str) -> None:

@@ -15,8 +15,11 @@ from .statistics import NORMAL_DOF, CannotSeparate, Line, Linear, fit_line, sum_
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
-NEAR, CLOSE, MOST_PASSES = 1e-2, 1e-11, 100
-"""Shares of what is expected. A step below ``NEAR`` is linear, and one below ``CLOSE`` is the last."""
+NEAR, ENOUGH, CLOSE, MOST_PASSES = 1e-2, 1e-6, 1e-11, 100
+"""Shares of what is expected. A step below ``NEAR`` is linear, and one below ``CLOSE`` is the last.
+
+Linear steps lead away from some least squares of rough runs; then a step below ``ENOUGH`` is the last, too.
+"""
 ROUNDING = 1e-12
 """The least standard uncertainty of a measured number, as a share of it."""
 TINY = 1e-100
@@ -45,8 +48,11 @@ class Data(NamedTuple):
 class Estimate(NamedTuple):
     """The fitted values, of these ``names``, and the given ones, with the linear fit at these values.
 
-    ``sigma`` is the standard uncertainty of each run's measurement, scatter between runs included. ``reason``
-    says why there are no ``results``, if there are none.
+    ``sigma`` is the standard uncertainty of each run's measurement, scatter between runs included, and
+    ``dof`` the number of runs less that of fitted quantities. ``chi2`` is that of the runs by the
+    uncertainties stated, or by the scatter of repeats; None without either. ``p_value`` is the probability
+    that chance gives a larger one, and ``between_runs`` the standard deviation between runs beyond that, as
+    a mass (kg); None if nothing is left to test the fit.
     """
 
     data: Data
@@ -54,31 +60,11 @@ class Estimate(NamedTuple):
     names: Sequence[str]
     line: Line
     sigma: Column
+    dof: int
+    chi2: float | None = None
+    p_value: float | None = None
+    between_runs: float | None = None
     results: Mapping[str, Result] = {}
-    reason: str = ""
-
-    @property
-    def dof(self) -> int:
-        """The number of runs less that of fitted quantities."""
-        return len(self.data.l) - len(self.names)
-
-    @property
-    def chi2(self) -> float | None:
-        """χ² of the runs by the uncertainties stated, or by the scatter of repeats; None without either."""
-        return self.line.chi2 if self.data.scatter.any() else None
-
-    @property
-    def p_value(self) -> float | None:
-        """The probability that chance gives a larger χ²; None if nothing is left to test the fit."""
-        if self.chi2 is None or not self.dof:
-            return None
-        known_by = NORMAL_DOF if self.data.stated else self.data.repeats[1] or NORMAL_DOF
-        return float(fdtrc(self.dof, known_by, self.chi2 / self.dof))  # χ² if the variance is known
-
-    @property
-    def between_runs(self) -> float | None:
-        """The standard deviation between runs beyond that, as a mass (kg)."""
-        return None if self.p_value is None else sqrt(self.line.between) / abs(self.values["gravity"])
 
 
 def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
@@ -163,15 +149,15 @@ def linear(residual: Residual, data: Data, values: Mapping[str, float], names: S
     """
     slopes = [-slope(residual, data, values, name) for name in names]
     by_measured = slope(residual, data, values, "measured")
-    least = np.square(ROUNDING * by_measured * data.measured)
-    known = (by_measured * data.scatter) ** 2 + least.max()  # no weight is without bound
+    least = float(np.square(ROUNDING * by_measured * data.measured).max())
+    known = (by_measured * data.scatter) ** 2 + least  # no weight is without bound
     for name, u in data.uncertain.items():
         known = known + (slope(residual, data, values, name) * u) ** 2
     shape = by_measured**2 / data.counts
     if data.scatter.any():
         shape = slope(residual, data, values, "axle") ** 2
     J = np.stack(slopes, 1) if names else np.zeros((len(known), 0))
-    return Linear(J, residual(data, values), known, shape, least)
+    return Linear(J, residual(data, values), known, shape, least, data.repeats)
 
 
 # Least squares
@@ -193,37 +179,40 @@ def estimate(
     Variances follow the values (effective variance), and least squares the variances.
     """
     values = {**(near or by_forces(data, given, names)), **given}
+    size = inf
     for _ in range(MOST_PASSES):
         problem = linear(of_measured, data, values, names)
-        line = fit_line(problem, data.repeats)
+        line = fit_line(problem)
         share = problem.J @ line.coefficients / data.measured
-        size = sqrt(sum_of_squares(share) / len(share))
+        before, size = size, sqrt(sum_of_squares(share) / len(share))
         if size < NEAR:
-            steps = zip(names, line.coefficients.tolist(), strict=True)
-            values |= {x: values[x] + step for x, step in steps}
+            values |= {x: values[x] + float(b) for x, b in zip(names, line.coefficients, strict=True)}
         else:
             values |= _least_squares(data, values, names, np.sqrt(line.variance))
-        if size < CLOSE:
-            return Estimate(data, values, names, line, np.sqrt(line.scale * line.variance))
-    raise CannotSeparate
+        if size < CLOSE or before < size < ENOUGH:
+            break
+    else:
+        raise CannotSeparate
+    sigma, dof = np.sqrt(line.scale * line.variance), len(data.l) - len(names)
+    chi2, p_value, between_runs = line.chi2 if data.scatter.any() else None, None, None
+    if chi2 is not None and dof:
+        known_by = NORMAL_DOF if data.stated else data.repeats[1] or NORMAL_DOF
+        p_value = float(fdtrc(dof, known_by, chi2 / dof))  # χ² if the variance is known
+        between_runs = sqrt(line.between) / abs(values["gravity"])
+    return Estimate(data, values, names, line, sigma, dof, chi2, p_value, between_runs)
 
 
 def _least_squares(
     data: Data, values: Mapping[str, float], names: Sequence[str], sigma: Column
 ) -> dict[str, float]:
     """Return the values of these names with the least sum of squares, by the uncertainties of runs."""
-
-    def at(x: Column) -> dict[str, float]:
-        return {**values, **dict(zip(names, x.tolist(), strict=True))}
-
     lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
     least = [lightest if name == "rim_mass" else -inf for name in names]
-    found = least_squares(
-        lambda x: of_measured(data, at(x)) / sigma,
-        np.maximum([values[name] for name in names], np.divide(least, 2)),
-        lambda x: np.stack([slope(of_measured, data, at(x), name) / sigma for name in names], 1),
-        bounds=(least, inf),
-        x_scale="jac",
-        **{"ftol": 1e-15, "xtol": 1e-12, "gtol": None},
-    )
-    return at(found.x)
+
+    def rest(x: Any) -> Any:
+        return of_measured(data, {**values, **dict(zip(names, x, strict=True))}) / sigma
+
+    start = np.maximum([values[name] for name in names], np.divide(least, 2))
+    exactly: Any = {"ftol": 1e-15, "xtol": 1e-12, "gtol": None, "jac": "cs", "x_scale": "jac"}
+    found = least_squares(rest, start, bounds=(least, inf), **exactly)
+    return dict(zip(names, found.x.tolist(), strict=True))

@@ -9,7 +9,7 @@ from ..output.figure import BLUE, FAINT, INK, RED, page, typeset, write_beside
 from .estimate import accelerations, as_data, expected
 from .fitting import Fitted
 from .report import conditions, verdict
-from .results import QUANTITIES, with_u
+from .results import QUANTITIES, published
 
 MOST_NAMED = 40  # runs; of more, only outliers and those left out
 MEANING = {"rim_mass": "slope c", "axle": "intercept f_axle", "gravity": "g", "delay": "Δt"}
@@ -34,7 +34,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     }
     below = " ".join(words for words, holds in captions.items() if holds)
     results = [
-        f"{words} = {with_u(*fit.whole.results[name][:2])} {QUANTITIES[name].unit}"
+        f"{words} = {published(*fit.whole.results[name][:2])[0]} {QUANTITIES[name].unit}"
         for name, words in MEANING.items()
         if name in fit.whole.results
     ]

@@ -28,14 +28,18 @@ from .estimate import (
     of_forces,
     of_measured,
 )
-from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
+from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, published, rounded
 from .runs import OUT_OF_RANGE, Runs, Selection, behind_an_error, in_range, in_words
-from .statistics import NORMAL_DOF, CannotSeparate, judge_of_line, judge_of_repeats, outliers
+from .statistics import CannotSeparate, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
 SELDOM = 0.05
 """The p value below which runs are said to scatter more than their repeats."""
+RARE = 0.01
+"""The p value below which a delay is reported, and above 1 less which runs scatter less than repeats."""
+WIDE_DELAY = 0.1
+"""The half width of a delay's interval (s) from which the runs cannot show it."""
 LEAST_SINGULAR = 4e-4
 """Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
 MOST_RATIO = 100
@@ -44,7 +48,7 @@ LEAST_SHARE, MOST_SHARE = 1e-4, 1.02
 """The least and the most share that an acceleration may have of that without a pulley and friction."""
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
-CHECK = "check masses, heights, measurements and their units"
+CHECK = "check masses, heights, measurements, their units and signs"
 NO_FIT = "no pulley explains these runs, whatever its inertia and its axle's friction"
 
 
@@ -59,8 +63,8 @@ class Conditions(NamedTuple):
 class Fitted(NamedTuple):
     """The fit of the runs that are ``used``, and their outliers: the run of each, and words that name it.
 
-    Something can be expected of all runs that are ``shown``; the others of these are left out. ``delay`` is
-    that of a fit with a delay, and its p value; None if it was not tried or is not possible.
+    Something can be expected of all runs that are ``shown``; the others of these are left out. ``delay`` has
+    what there is to say of a delay that is not fitted.
     """
 
     runs: Runs
@@ -69,7 +73,7 @@ class Fitted(NamedTuple):
     given: Conditions
     whole: Estimate
     outliers: Sequence[tuple[int, str]]
-    delay: tuple[Result, float] | None
+    delay: Sequence[str]
 
     @property
     def suspects(self) -> list[int]:
@@ -83,18 +87,15 @@ class Fitted(NamedTuple):
 def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
     """Return the conditions that inputs give. Raises SceneError."""
     for x, one in inputs.items():
-        if one.given is not None and one.value != inf and not in_range(one):
+        if one.given is not None and not in_range(one):
             raise SceneError(x, one.given, OUT_OF_RANGE)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
     scene = Scene.of({**inputs, **masses})
     case, values = Decisions(scene), {"gravity": float(scene.g)}
     if scene.axle is not None:
-        values["axle"] = float(case.axle_friction or 0)
+        values["axle"] = float(case.axle_friction)
     if scene.M is not None or scene.I is not None:
-        if case.rim_mass is None:
-            why = "lets nothing move; give the mass of a pulley that turns"
-            raise SceneError("M", inputs["M"].given, why)
-        values["rim_mass"] = float(case.rim_mass)
+        values["rim_mass"] = float(case.rim_mass or 0)
     return Conditions(inputs, scene, values)
 
 
@@ -104,8 +105,8 @@ def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
         u, size = one.uncertainty, getattr(one.value, "number", one.value)
         if u and not parameter_of(x).zero and u >= size:
             raise SceneError(x, one.given, "has an uncertainty that reaches 0")
-        ends = [one.value._replace(number=size + by) if x == "axle" else size + by for by in (-u, u) if u]
-        if ends:
+        if u:
+            ends = (one.value._replace(number=end) if x == "axle" else end for end in (size - u, size + u))
             yield [conditions_of({**given.inputs, x: Input(end, Fraction(0), one.given)}) for end in ends]
 
 
@@ -121,10 +122,9 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
                 raise SceneError("find", name, f"is known by {known}; leave one of them out")
     left = [x for x in USUAL if x not in names and x not in given.values]
     if names and left:
-        what, give, find = map(
-            " and ".join, zip(*((QUANTITIES[x].words, GIVE[x], x) for x in left), strict=True)
-        )
-        raise SceneError("find", ",".join(names), f"leaves {what} open: give {give}, or find {find}, too")
+        what, give = (" and ".join(words[x] for x in left) for words in (RESULTS, GIVE))
+        rule = f"leaves {what} open: give {give}, or find {' and '.join(left)}, too"
+        raise SceneError("find", ",".join(names), rule)
     return names or left
 
 
@@ -143,7 +143,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         "the lighter side falls": runs.sign * runs.mean < 0,
         "an axle with the friction given holds the masses": abs(difference) <= held,
     }
-    shown, remarks, delay = np.ones(len(runs.rows), dtype=bool), [*runs.remarks], None
+    shown, remarks = np.ones(len(runs.rows), dtype=bool), [*runs.remarks]
     for reason, holds in unusable.items():
         if (shown & holds).any():
             remarks.append(f"{runs.rows_in_words(*np.flatnonzero(shown & holds))}: not used, as {reason}.")
@@ -153,11 +153,8 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
         whole = _fit(runs, used, given, names)
     except CannotSeparate as error:
         raise CannotSeparate(f"{error}{behind_an_error(remarks)}") from None
-    if runs.kind == "time" and "delay" not in names and not whole.reason and whole.dof > 1:
-        with suppress(CannotSeparate):
-            delay = _delay(whole, _fit(runs, used, given, [*names, "delay"]))
-    odd = _outliers(runs, used, whole.data, whole.values, names)
-    return Fitted(runs, used, shown, given, whole, odd, delay)
+    odd = [*_outliers(runs, used, whole.data, whole.values, names)]
+    return Fitted(runs, used, shown, given, whole, odd, _delay(runs, used, given, whole))
 
 
 def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Estimate:
@@ -165,18 +162,18 @@ def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -
     if not used.any():
         raise CannotSeparate("no run can be used")
     data, count = as_data(runs, used), int(used.sum())
+    what = [QUANTITIES[x].words for x in names]
     needed = len(names) + (not data.scatter.any() and not data.uncertain)
     if count < needed:
-        runs_are = f"{counted(count, 'run')} {'is' if count == 1 else 'are'}"
-        what = " and ".join(QUANTITIES[x].words for x in names)
-        raise CannotSeparate(f"{runs_are} too few to fit {what}: give {needed} or more, or M or axle")
-    g = None if "gravity" in names else given.values["gravity"]
-    mistake, is_of_most = _mistake(runs, used, data, g)
+        why = f"{counted(count, 'run')} cannot determine {' and '.join(what)}"
+        raise CannotSeparate(f"{why}: give {needed} or more, or M or axle")
+    mistake = _mistake(runs, used, data, None if "gravity" in names else given.values["gravity"])
     if not _separates(data, given.values, names):
-        verb = "separate" if names[1:] else "determine"
-        what = " from ".join(QUANTITIES[x].words for x in names)
-        vary = "vary both m2 - m1 and m1 + m2 more"
-        raise CannotSeparate(mistake or f"the runs do not {verb} {what}: {vary}")
+        verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
+        raise CannotSeparate(mistake or f"the runs do not {verb} {' from '.join(what)}: {vary}")
+
+    def odd(values: Mapping[str, float]) -> str:
+        return "; ".join(words for _, words in _outliers(runs, used, data, values, names)) or CHECK
 
     def found(there: Conditions) -> dict[str, float]:
         drop = there.inputs.get("drop")
@@ -187,36 +184,43 @@ def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -
         best = estimate(data, given.values, names)
         ends = [[*map(found, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        near = by_forces(data, given.values, names)
-        odd = "; ".join(words for _, words in _outliers(runs, used, data, near, names))
-        raise CannotSeparate(mistake or f"{NO_FIT}: {odd or CHECK}") from None
+        raise CannotSeparate(mistake or f"{NO_FIT}: {odd(by_forces(data, given.values, names))}") from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
-    times = float(stdtrit(min(best.line.dof, NORMAL_DOF), 0.975))  # Student's t
+    times = float(stdtrit(best.line.dof, 0.975))  # Student's t
     results = dict[str, Result]()
     for x, value in _with_derived(best.values, names, given).items():
         u = hypot(spread[x], *(float(np.ptp([value, *(end[x] for end in pair)])) / 2 for pair in ends))
         results[x] = Result(value, u, (value - times * u, value + times * u))
-    negative = next((x for x in names if x != "delay" and results[x].interval[1] < 0), "")
-    if negative and not mistake:
-        words = equation(negative, *results[negative][:2])
-        mistake = f"{words} is negative: {CHECK}, and the signs of accelerations"
-    if is_of_most or negative:
-        return best._replace(reason=mistake)
+        if x in names and x != "delay" and results[x].interval[1] < 0:
+            raise CannotSeparate(mistake or f"{equation(x, value, u)} is negative: {odd(best.values)}")
     return best._replace(results=results)
 
 
-def _delay(whole: Estimate, late: Estimate) -> tuple[Result, float] | None:
-    """Return the delay of the fit with one, and the p value of an F test of what it takes off χ².
+def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate) -> list[str]:
+    """Return a sentence if all times seem too long, or if the runs cannot show that.
 
-    The repeats count in that test, unless runs scatter more than they do with the delay, too.
+    An F test judges what a delay takes off χ². The repeats count in it, unless runs scatter more than they do
+    with the delay, too.
     """
-    if "delay" not in late.results:
-        return None
-    rest, dof, taken_off = late.line.chi2, late.dof, max(whole.line.chi2 - late.line.chi2, 0)
-    if late.p_value is not None and late.p_value >= SELDOM:
-        rest, dof = rest + late.data.repeats[0], dof + late.data.repeats[1]
-    return late.results["delay"], float(fdtrc(1, dof, taken_off / max(rest, TINY) * dof))
+    if runs.kind != "time" or "delay" in whole.names:
+        return []
+    names, half = [*whole.names, "delay"], inf
+    if whole.dof > 1:
+        with suppress(CannotSeparate):
+            late = _fit(runs, used, given, names)
+            value, u, (_, high) = late.results["delay"]
+            rest, dof, taken_off = late.line.chi2, late.dof, max(whole.line.chi2 - late.line.chi2, 0)
+            if late.p_value is not None and late.p_value >= SELDOM:
+                rest, dof = rest + late.data.repeats[0], dof + late.data.repeats[1]
+            if fdtrc(1, dof, taken_off / max(rest, TINY) * dof) < RARE:
+                size, long = published(abs(value), u)[0], "long" if value > 0 else "short"
+                return [f"All times seem {size} s too {long}: --find {','.join(names)} fits that, too."]
+            half = high - value
+    if half <= WIDE_DELAY:
+        return []
+    said = "These runs neither show nor exclude a delay of all times, and the results hold only without one."
+    return [f"{said} To see one, vary the height of fall, or both m2 - m1 and m1 + m2, more."]
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
@@ -233,8 +237,8 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
 
 def _outliers(
     runs: Runs, used: Selection, data: Data, values: Mapping[str, float], names: Sequence[str]
-) -> list[tuple[int, str]]:
-    """Return outliers among the repeats of each run, and among the runs without these repeats.
+) -> Iterator[tuple[int, str]]:
+    """Yield outliers among the repeats of each run, and among the runs without these repeats, in words.
 
     Runs are judged by the line of forces, which outliers bend least.
     """
@@ -244,31 +248,21 @@ def _outliers(
     places = places[np.argsort(-np.abs(away), kind="stable")]
     u = runs.u_values[places] if data.stated else np.ones(len(places))
     judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
-    of_repeats = outliers(judge, len(places), len(places) - len(here), OUTLIER_LEVEL)
-    odd = {int(places[i]): far for i, far in of_repeats.items()}
     kept = np.ones(len(runs.values), dtype=bool)
-    kept[[*odd]] = False
-    sound = as_data(runs, used, kept)
+    for i, far in outliers(judge, len(places), len(places) - len(here), OUTLIER_LEVEL).items():
+        kept[places[i]], cell = False, runs.cells[places[i]]
+        measured = f"{format_number(float(runs.values[places[i]]))} {parameter_of(runs.kind).unit}"
+        yield int(runs.run[places[i]]), _far(f"{in_words(cell)} = {measured} is", far, "its repeats", cell)
     near = {**values, "rim_mass": max(values["rim_mass"], 0.0), "delay": 0.0}
-    judge = judge_of_line(linear(of_forces, sound, near, names), sound.repeats)
-    of_runs = outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL)
-    return [
-        *(
-            (int(runs.run[place]), _in_words(runs, int(runs.run[place]), far, place))
-            for place, far in odd.items()
-        ),
-        *((int(here[i]), _in_words(runs, int(here[i]), far)) for i, far in of_runs.items()),
-    ]
+    judge = judge_of_line(linear(of_forces, as_data(runs, used, kept), near, names))
+    for i, far in outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL).items():
+        rows = runs.rows[here[i]]
+        what = f"{runs.rows_in_words(here[i])} {'are' if rows[1:] else 'is'}"
+        yield int(here[i]), _far(what, far, "a fit of the other runs", ",".join(map(str, rows)))
 
 
-def _in_words(runs: Runs, run: int, distance: float, place: int | None = None) -> str:
-    """Say how many standard deviations a run or a measurement is away, and how to leave it out."""
-    where, others = ",".join(map(str, runs.rows[run])), "a fit of the other runs"
-    what = f"{runs.rows_in_words(run)} {'are' if runs.rows[run][1:] else 'is'}"
-    if place is not None:
-        where, others = runs.cells[place], "its repeats"
-        value = format_number(float(runs.values[place]))
-        what = f"{in_words(where)} = {value} {parameter_of(runs.kind).unit} is"
+def _far(what: str, distance: float, others: str, where: str) -> str:
+    """Say how many standard deviations something is from others, and how to leave it out."""
     far = f"{rounded(abs(distance))} standard deviations from {others}"
     return f"{what} {far}; if it is a mistake, leave it out: --without {where}"
 
@@ -287,36 +281,38 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
     values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
     J: Any = linear(of_measured, design, values, names).J / expected(design, values)[:, None]
     singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
-    return not names or bool(singular.min() > LEAST_SINGULAR)
+    return bool(singular.min(initial=1.0) > LEAST_SINGULAR)
 
 
-def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> tuple[str, bool]:
-    """Return what must be a mistake in the table, "" if nothing must, and if most runs have one.
+def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> str:
+    """Return what must be a mistake in the table, "" if nothing must. Raises CannotSeparate if most have one.
 
     Each value is compared with the median of its kind, and each acceleration with that of free masses,
     unless gravity is fitted.
     """
-    masses = {x: runs.given[x][used] for x in ("m1", "m2")}
-    checks: list[tuple[str, str, Any, Any, float, Any]] = []
-    for x, values in {**masses, "drop": data.drop, runs.kind: data.measured}.items():
-        if values is not None:
-            of, what = ([*masses.values()], "mass") if x in masses else (values, x)
-            checks.append((x, f"the median {what}", values, np.median(of), 1 / MOST_RATIO, MOST_RATIO))
+    columns = {x: runs.given[x][used] for x in runs.given} | {runs.kind: data.measured}
+    mass, ratios = np.median([data.l, data.h]), (1 / MOST_RATIO, MOST_RATIO)
+    checks: list[tuple[str, str, Any, Any, tuple[float, Any]]] = [
+        (x, "the median", values, mass if x[0] == "m" else np.median(values), ratios)
+        for x, values in columns.items()
+    ]
     if g is not None:
         name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
         free = physics.acceleration(data.h - data.l, data.h + data.l, g)
         most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
         what = "the acceleration without friction and pulley"
-        checks.append((name, what, accelerations(data, data.measured), free, LEAST_SHARE, most))
+        checks.append((name, what, accelerations(data, data.measured), free, (LEAST_SHARE, most)))
     said, is_mistaken = "", np.zeros(len(data.l), dtype=bool)
-    for name, what, values, typical, least, most in checks:
+    for name, what, values, typical, (least, most) in checks:
         with np.errstate(divide="ignore"):
             ratio = values / typical
         is_unusual = (values > 0) & ((ratio < least) | (ratio > most))
-        if is_unusual.any() and not said:
-            i, unit = int(np.argmax(is_unusual)), parameter_of("a" if name[0] == "a" else name).unit
-            value, times, there = (rounded(float(x), 3) for x in (values[i], ratio[i], values[i] / ratio[i]))
-            far = f"{name} = {value} {unit} is {times} times {there} {unit}"
-            said = f"{runs.rows_in_words(np.flatnonzero(used)[i])}: {far}, {what}; {CHECK}"
         is_mistaken |= is_unusual
-    return said, bool(is_mistaken.mean() > 0.5)
+        if is_unusual.any() and not said:
+            i, unit = int(np.argmax(is_unusual)), parameter_of(name.split()[0]).unit
+            value, times, there = (rounded(float(x[i]), 3) for x in (values, ratio, values / ratio))
+            far = f"{name} = {value} {unit} is {times} times {what}, {there} {unit}"
+            said = f"{runs.rows_in_words(np.flatnonzero(used)[i])}: {far}; {CHECK}"
+    if is_mistaken.mean() > 0.5:
+        raise CannotSeparate(said)
+    return said
