@@ -14,6 +14,5 @@ done
 echo "the car that would slip over 160 degrees at 0.15:"
 atwood solve --m1 $counterweight --m2 $car --M inf --wrap 160 --mu 0.15 --only critical_heavier_mass --digits 5
 
-echo "friction force on the sheave, least and greatest, in N:"
-atwood solve --m1 $counterweight --m2 $car --M inf --wrap 160 --mu 0.15 --digits 5 \
-    --only friction_force_min --only friction_force_max
+echo "its safety factor, mu over the least mu that holds:"
+atwood solve --m1 $counterweight --m2 $car --M inf --wrap 160 --mu 0.15 --only safety_factor --digits 4

@@ -50,7 +50,7 @@ def test_field_operations_enclose(digits: int, p: Fraction, q: Fraction, n: int)
     at = enclosures(digits)
     a, b = at.number(p), at.number(q)
     results = [(a + b, p + q), (a - b, p - q), (a * b, p * q), (n * a, n * p), (n + a, n + p), (a - n, p - n)]
-    if q:
+    if q > 0:
         results.append((a / b, p / q))
     for enclosure, exact in results:
         assert Fraction(enclosure.lo) <= exact <= Fraction(enclosure.hi)

@@ -111,7 +111,7 @@ GRAMS = headings.Heading(0, "m1 (g)", "m1", unit="g", factor=Fraction(1, 1000))
 )
 def test_cells_are_read_exactly(cell: str, comma: bool, value: str, uncertainty: str) -> None:
     want = (Fraction(value), Fraction(uncertainty), cell) if value else None
-    assert headings.read_cell(GRAMS, cell, comma) == want
+    assert headings.read_cell(GRAMS, [cell], comma) == want
 
 
 def test_commas_that_are_decimal() -> None:
@@ -206,25 +206,23 @@ def test_columns_of_other_names(read: Any) -> None:
     named = {"mass one (kg)": "m1", "mass two (kg)": "m2", "Trial 1 (s)": "t"}
     for runs in (read(zeit, Zeit="t"), read(words, **named)):
         assert numbers(runs) == exactly("0.2 0.207 3.99 0 0 0", "0.201 0.206 5.02 0 0 0")
+    assert read("m1,m2,A,B\n1,2,3,4\n", A="t", B="t").cells == ["1:t1", "1:t2"]
 
 
-NO_RUN = "a line of words, means or units is no run: begin it with # (units go into headings, as m1 (g))"
+UNCERTAIN = "error|u|± a|σ|Uncertainty (s)".split("|")
 
 
 @pytest.mark.parametrize(
     ("content", "words"),
     [
-        (b"m1,m2,t\n0.2,0.207,3.99\n,,4.01\n", "row 2 has no m1; write it in each row"),
-        (b"m1,m2,t\n0.2,0.207,3.99\nmeasured on Monday,,\n", NO_RUN),
-        (b"m1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", "quantities stand in the first column; make each run a row, with headings above"),
-        (b"mass one (g),mass two (g),Zeit,n\n1,2,3,4\n", "--column m1='mass one (g)' --column m2='mass two (g)' --column t=Zeit"),
-        (b"m1,m2 (g),time\n1,x,3\n", f"{NO_RUN}; read as: 'm2 (g)' as m2 in g"),
+        ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", "; make each run a row, below headings, as m1 (g),m2 (g),t (s)"),
+        ("mass one (g),Zeit (s),mass two (g),n\n1,2,3,4\n", "; name them, as --column m1='mass one (g)' --column m2='mass two (g)' --column t='Zeit (s)'"),
+        *((f"m1,m2,a,{column}\n1,2,3,4\n", f"column '{column}' could be an uncertainty") for column in UNCERTAIN),
     ],
 )  # fmt: skip
-def test_files_that_are_refused_with_a_sentence(content: bytes, words: str, tmp_path: Path) -> None:
-    (tmp_path / "runs.csv").write_bytes(content)
+def test_files_that_are_refused_with_a_sentence(read: Any, content: str, words: str) -> None:
     with pytest.raises(Unreadable, match=re.escape(words)):
-        read_runs(tmp_path / "runs.csv", drop=DROP)
+        read(content)
 
 
 def test_a_small_file_does_not_fill_the_memory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

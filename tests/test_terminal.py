@@ -178,7 +178,7 @@ def test_nothing_of_a_file_does(tmp_path: Path, typed: str, content: str) -> Non
     assert "Traceback" not in seen
 
 
-TYPED = ["a" * 10**5, "1 kg" + "*st^9" * 20_000, "1" * 10**5, "1," * 20_000 + "1", "x " * 50_000, "-" * 10**5]
+TYPED = ["a" * 10**5, "1 kg" + "*st^9" * 20_000, "1" * 10**5, "1," * 20_000 + "x", "x " * 50_000, "-" * 10**5]
 TYPED += ["\x1b[31m\x1b]0;a\x07\x9b2J\u202e\nx"]
 LINES = """
 solve --m1 1 --m2 3 --M {}|solve --m1 1 --m2 3 --wrap {}|solve --m1 1 --m2 3 --I {}|contact --m1 1 --m2 3 --M {}

@@ -1,7 +1,6 @@
 """`atwood tradeoff`: what it measures is held against an oracle."""
 
 import json
-import re
 from fractions import Fraction
 from math import inf, isfinite, ulp
 from types import SimpleNamespace
@@ -14,8 +13,8 @@ from atwood_cli import solve_arrays
 from atwood_cli.model.quantities import REGIMES, STANDARD
 from atwood_cli.model.scene import Scene
 from atwood_cli.tradeoff import measure as tradeoff
-from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, draw_scenes, measure, timed
-from atwood_cli.tradeoff.tradeoff_page import LEGEND, in_seconds, short
+from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, draw_scenes, measure
+from atwood_cli.tradeoff.tradeoff_page import LEGEND, short
 
 from . import oracle
 from .running import Atwood, called
@@ -26,7 +25,7 @@ NAMES = [*SETTINGS]
 @pytest.fixture
 def briefly(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few repeats of short runs: these tests are about the errors."""
-    for name, few in {"REPEATS": 2, "RUN_SECONDS": 1e-4, "MOST_ROWS": 0}.items():
+    for name, few in {"REPEATS": 2, "FEWEST_ROWS": 1, "MOST_ROWS": 1}.items():
         monkeypatch.setattr(tradeoff, name, few)
 
 
@@ -119,23 +118,8 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
     return clock
 
 
-@pytest.mark.parametrize("interrupted", [None, 0, 1, 2, 5000, 20_000])
-def test_an_interruption_does_not_count(interrupted: int | None, clock: SimpleNamespace) -> None:
-    """One made so few calls be timed that it was the first call that counted."""
-    calls = 0
-
-    def run() -> None:
-        nonlocal calls
-        clock.now += 1e-6 + (calls == interrupted)
-        calls += 1
-
-    (seconds,) = timed([run])
-    assert seconds == pytest.approx(1e-6)
-    assert calls > 5 * 0.9 * tradeoff.RUN_SECONDS / 1e-6
-
-
 @pytest.mark.parametrize("seconds", [1e-7, 1e-5, 1e-3, 0.02, 1.0])
-def test_rows_that_take_long_are_few(
+def test_rows_that_take_long_are_few_and_an_interruption_does_not_count(
     seconds: float, clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A table of 10,000 rows of 20 ms each was run eight times: half an hour."""
@@ -143,19 +127,18 @@ def test_rows_that_take_long_are_few(
 
     def run(m1: Any, **_: Any) -> Any:
         sizes.append(len(m1))
-        clock.now += sizes[-1] * seconds
+        clock.now += sizes[-1] * seconds + (len(sizes) == 3)
         return dict.fromkeys(STANDARD, [0] * sizes[-1])
 
     monkeypatch.setattr(tradeoff, "SETTINGS", {"slow": run})
     (found,) = measure("any", [{"m1": 1.0, "m2": 3.0, "M": 10.0, "mu": 0.3}])
     assert found.seconds == pytest.approx(seconds)
-    assert max(sizes) == tradeoff.MOST_ROWS or max(sizes) * seconds >= tradeoff.LONG_SECONDS
+    assert max(sizes) == tradeoff.MOST_ROWS or max(sizes) * seconds >= tradeoff.RUN_SECONDS - seconds
     assert sum(sizes) * seconds < 200 or max(sizes) == tradeoff.FEWEST_ROWS
 
 
 def test_numbers_are_short() -> None:
-    times = (4.1e-8, 2.5e-6, 0.000999999, 999.4e-6, 1e-6, 1.0, 1.5, 2e4)
-    assert [in_seconds(x) for x in times] == "41 ns|2.5 µs|1 ms|999 µs|1 µs|1 s|1.5 s|2e4 s".split("|")
+    assert [short(x, 3) for x in (0.0138, 0.9999, 374.9, 1162.0)] == "0.0138 1 375 1.16e3".split()
     shown = (None, inf, 0.0, 0.4999, 39.17, 5.2e14, 3.5e-184)
     assert [short(x) for x in shown] == "- inf 0 0.5 39 5.2e14 3.5e-184".split()
 
@@ -165,14 +148,14 @@ def test_numbers_are_short() -> None:
 
 @pytest.mark.usefixtures("briefly")
 def test_one_table_family_by_setting() -> None:
-    ran = called(["tradeoff", "--scenes", "6", "--seed", "4"], COLUMNS="80")
+    ran = called(["tradeoff", "--scenes", "6"], COLUMNS="80")
     assert (ran.status, ran.err) == (0, "")
     lines = ran.out.splitlines()
-    assert lines[0] == "6 scenes of each family, seed 4"
+    assert lines[0] == "6 scenes of each family, seed 1"
     rows = [[cell.strip() for cell in line.strip("│").split("│")] for line in lines if line.startswith("│")]
     firsts = ["Family", *(word for name in FAMILIES for word in (name, "error (ulp)", "wrong"))]
     assert (rows[0][1:], [row[0] for row in rows]) == (NAMES, firsts)
-    assert all(re.fullmatch(r"\d+(\.\d+)? (ns|µs|ms|s)", cell) for row in rows[1::3] for cell in row[1:])
+    assert all(0.001 < float(cell) < 1e5 for row in rows[1::3] for cell in row[1:])
     assert all(float(row[NAMES.index("exact") + 1]) <= 0.5 for row in rows[2::3])
     assert all(row[NAMES.index("certified") + 1] == "0 %" for row in rows[3::3])
     assert max(map(len, lines[:-3])) <= 80
@@ -182,10 +165,10 @@ def test_one_table_family_by_setting() -> None:
 @pytest.mark.usefixtures("briefly")
 def test_json(atwood: Atwood) -> None:
     printed, again = (
-        json.loads(atwood(*f"tradeoff --scenes 6 --json --seed 8 {more} --family ordinary".split()).out)
+        json.loads(atwood(*f"tradeoff --scenes 40 --json {more} --family ordinary".split()).out)
         for more in ("--family whole-range", "")
     )
-    assert (printed["seed"], printed["scenes"]) == (8, 6)
+    assert (printed["seed"], printed["scenes"]) == (1, 40)
     found = [one | {"seconds": 0} for one in printed["settings"]]
     assert [one["family"] for one in found] == ["whole-range"] * len(NAMES) + ["ordinary"] * len(NAMES)
     assert found[0]["worst_ulp"] is None  # infinite

@@ -79,7 +79,7 @@ class Enclosure:
     __rmul__ = __mul__
 
     def __truediv__(self, other: Enclosure | int) -> Enclosure:
-        """Return the quotient.
+        """Return the quotient by a positive number, as every denominator of the equations is.
 
         Raises NeedsMoreDigits for a denominator that may be zero, ZeroDivisionError for one that is.
         Raises OverflowError for one beyond 10^LARGEST_EXPONENT, which is infinity: a quotient would be 0.
@@ -88,8 +88,6 @@ class Enclosure:
         if other.lo == INFINITY:
             raise OverflowError(f"a denominator is beyond 10^{LARGEST_EXPONENT}")
         if other.lo <= ZERO:
-            if other.hi < ZERO:
-                return (self._lift(0) - self) / (self._lift(0) - other)
             raise ZeroDivisionError if other.hi == 0 == other.lo else NeedsMoreDigits
         lo = ar.down.divide(self.lo, other.hi if self.lo >= ZERO else other.lo)
         return Enclosure(ar, lo, ar.up.divide(self.hi, other.lo if self.hi >= ZERO else other.hi))

@@ -15,7 +15,7 @@ from ..model.digits import to_double
 from ..model.quantities import NAMES, REGIMES
 from ..model.scene import INPUTS, MASSES, OTHER_NAMES, Scene, SceneError, parameter_of, read_plain, read_value
 from ..model.units import Malformed, counted, in_quotes, read_unit, shortened
-from ..solver.messages import reasons_at
+from ..solver.messages import reasons_in
 from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
 from ..tables.sources import Unreadable
 
@@ -127,7 +127,7 @@ class Tally:
             counts.append(f"{counted(self.beyond, 'value')} beyond the range of doubles left empty")
         said = [f"{counted(self.rows, 'row')}: {'; '.join(counts)}."]
         ranked = sorted(self.reasons.items(), key=lambda item: (-item[1], NAMES.index(item[0][0])))
-        said += reasons_at(dict(ranked), self.rows, "in {} of {} rows")
+        said += reasons_in(dict(ranked), self.rows)
         return [*said, *([f"first error, in {self.first_error}"] if self.errors else [])]
 
 

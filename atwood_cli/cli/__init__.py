@@ -4,7 +4,6 @@ import io
 import os
 import sys
 from collections.abc import Sequence
-from contextlib import suppress
 from errno import EINVAL
 from importlib import import_module
 from typing import Annotated, Any
@@ -127,7 +126,7 @@ def run(arguments: list[str] | None = None) -> int:
         words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
         said = shortened(words, LONGEST_NAME)
         if "extra argument" in said:
-            said += ": a value with a blank needs quotation marks, as '200 g'"
+            said += ": names take commas, as a,T1; a value with a blank takes quotation marks, as '200 g'"
         say(f"{said}{' ' if said.endswith('?') else '; '}{hint}" if hint else said)
         return WRONG_USAGE
     except (KeyboardInterrupt, typer.Abort):
@@ -143,28 +142,13 @@ def run(arguments: list[str] | None = None) -> int:
         finish()
 
 
-def _installed_from() -> str:
-    """Return what to type for pip to install the program again: the folder of a clone, or its name."""
-    from importlib.metadata import PackageNotFoundError, distribution
-    from json import loads
-    from urllib.parse import urlparse
-    from urllib.request import url2pathname
-
-    with suppress(PackageNotFoundError, ValueError):
-        url = urlparse(loads(distribution("atwood-cli").read_text("direct_url.json") or "{}").get("url", ""))
-        folder = url2pathname(url.path)
-        if url.scheme == "file" and os.path.isdir(folder):
-            return "." if os.path.samefile(folder, os.curdir) else folder
-    return "atwood-cli"
-
-
 def _why(error: Exception) -> str:
     """Return the reason of an error, as a sentence."""
     if isinstance(error, ModuleNotFoundError):
         package = str(error.name).partition(".")[0]
         if package not in EXTRAS:
             raise error
-        return f"this needs {package}; install it with: pip install '{_installed_from()}[{EXTRAS[package]}]'"
+        return f"this needs {package}; install it with: pip install 'atwood-cli[{EXTRAS[package]}]'"
     if isinstance(error, io.UnsupportedOperation):
         return "cannot write the output: stdout is closed"
     if isinstance(error, OSError) and error.errno is not None:  # without a number, it is a sentence of ours

@@ -19,8 +19,9 @@ Examples:
   atwood contact --m1 1 --m2 200 --M inf --mu 0.2 --wrap 2.5turn --csv
 
 Angles count from m1's end of the arc. x points from the axle to where m1's string meets the pulley, y
-upwards. m1's string hangs straight down; m2's does at half a turn, or goes to a guide. --figure replaces
-the table.
+upwards. m1's string hangs straight down; m2's does at half a turn, or goes to a guide. Normal force n and
+friction f are per metre of string; nR = T and fR = dT/dθ, with the radius R, are per radian. --figure
+replaces the table.
 """
 
 

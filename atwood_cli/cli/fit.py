@@ -104,7 +104,7 @@ def fit(
         raise SceneError("only", "runs", "takes --json, or --csv and no other name")
     check_figure(figure, target.force)
     from ..laboratory import fit_of
-    from ..laboratory.report import report_of, verdict
+    from ..laboratory.report import report_of
 
     best = fit_of(table, given, find or [], label or [], divided(without or []), column or [])
     if figure is not None:
@@ -112,8 +112,5 @@ def fit(
 
         save(best, bare, figure, target.force)
     report = report_of(best, names)
-    said = show(report, target)
-    if best.whole.reason and target.file is not None:
-        said = said or [verdict(best)]
-    say(*said)
-    return COULD_NOT if best.whole.reason or "" in report.bare else DONE
+    say(*show(report, target))
+    return COULD_NOT if "" in report.bare else DONE

@@ -12,9 +12,8 @@ import typer
 
 from ..model.quantities import NAMES, QUANTITIES
 from ..model.scene import INPUTS, SceneError, parameter_of
-from ..model.units import read_number, shortened
 from ..output.files import STDOUT, check_free
-from ..output.text import FORMS, Destination, say
+from ..output.text import FORMS, Destination
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """The environment variable by which a shell asks for completions of a word."""
@@ -100,9 +99,7 @@ def with_options(*groups: Mapping[str, Any]) -> Callable[[Command], Command]:
             _check(options)
             read = {"given": {name: options[name] for name in INPUTS}} if SCENE in groups else {}
             arguments = {parameter.name: options[parameter.name] for parameter in own}
-            status = command(target=_read_target(options), **arguments, **read)
-            _ask_about_radians(options.get("wrap"))
-            return status
+            return command(target=_read_target(options), **arguments, **read)
 
         first, *others = ([_parameter(*named) for named in group.items()] for group in groups)
         seen = sorted([*first, *own, *chain(*others)], key=attrgetter("kind"))
@@ -133,22 +130,6 @@ def _check(options: Mapping[str, Any]) -> None:
         needed = [other for other in NEEDS.get(name, "").split() if other in options]
         if needed and not given.keys() & needed:
             raise SceneError(name, shown, f"needs {' or '.join(map(flag, needed))}")
-
-
-LIKE_RADIANS = (0.3, 12.6)
-"""The range of numbers that are probably radians: few degrees, but up to two turns in radians."""
-
-
-def _ask_about_radians(wrap: str | None) -> None:
-    """Say how an angle, a range or a list was read if it has no unit, and the size of radians."""
-    if not wrap:
-        return
-    words = wrap.split(":")[:2] if ":" in wrap else wrap.split(",")
-    angles = [read_number(word, "angle") for word in words]
-    least, most = LIKE_RADIANS
-    if least < max(angle.value for angle in angles) < most and not any(angle.unit for angle in angles):
-        word = shortened(words[0])
-        say(f"--wrap {shortened(wrap)} was read as degrees; else write {word}turn or {word}rad")
 
 
 def quantity_meanings() -> Mapping[str, str]:

@@ -16,7 +16,7 @@ def _families() -> Mapping[str, str]:
     return {name: meaning for name, (_, meaning) in FAMILIES.items()}
 
 
-DEFAULT_SCENES, DEFAULT_SEED, MOST_SEED = 500, 1, 10**9
+DEFAULT_SCENES = 500
 Families = Annotated[
     list[str] | None,
     option(
@@ -50,14 +50,6 @@ def tradeoff(
             help=f"Scenes of each family whose errors count; {DEFAULT_SCENES} if not given.",
         ),
     ] = None,
-    seed: Annotated[
-        str | None,
-        option(
-            "Measurement",
-            metavar="N",
-            help=f"Seed from which the scenes are drawn; {DEFAULT_SEED} if not given.",
-        ),
-    ] = None,
     figure: FigureFile = None,
     bare: Bare = False,
 ) -> int:
@@ -68,16 +60,15 @@ def tradeoff(
     families = list(dict.fromkeys(read_names("family", family or FAMILIES, FAMILIES, "family of scenes")))
     check_figure(figure, target.force)
     count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
-    start = read_whole("seed", seed or DEFAULT_SEED, 0, MOST_SEED)
-    parts = (measure(name, draw_scenes(name, count, start)) for name in families)
+    parts = (measure(name, draw_scenes(name, count)) for name in families)
     with progress(parts, len(families)) as measuring:
         measured = list(chain.from_iterable(measuring))
     if figure is not None:
         tradeoff_page.save(measured, figure, target.force, bare)
     report = Report(
-        json=lambda: tradeoff_page.record(measured, count, start),
+        json=lambda: tradeoff_page.record(measured, count),
         records=list,
-        page=lambda: tradeoff_page.print_table(measured, count, start),
+        page=lambda: tradeoff_page.print_table(measured, count),
     )
     show(report, target)
     return DONE

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
+from ..model.quantities import divided
 from ..model.scene import INPUTS, Given, read_input
 from ..tables.sources import Unreadable
 from .results import Fit as Fit
@@ -30,7 +31,7 @@ def fit(
     R: Given | None = None,
     axle: Given | None = None,
     find: str | Sequence[str] | None = None,
-    without: Collection[int | str] = (),
+    without: str | Collection[int | str] = (),
 ) -> Fit:
     """Fit the pulley's inertia and its axle's friction to runs of a laboratory, by T_h - T_l = c a + f.
 
@@ -45,7 +46,7 @@ def fit(
             of inertia, ``inertia`` the pulley's mass.
         find: The quantities to fit, of "rim_mass", "axle", "gravity" and "delay"; if None, the first two
             unless given. Of these two, each must be given or fitted.
-        without: Rows to leave out, by their numbers from 1, and cells, as "8:t2".
+        without: Rows to leave out, by their numbers from 1, and cells, as "8:t2"; or a text, as "5,8:t2".
 
     Returns:
         `Fit`: values by name in SI units, their standard uncertainties and intervals of 95 %, the runs,
@@ -61,7 +62,8 @@ def fit(
 
     given = {"g": g, "M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "drop": drop}
     names = [find] if isinstance(find, str) else find or ()
-    found = results_of(fit_of(runs, given, names, without=without))
+    left_out = divided([without]) if isinstance(without, str) else without
+    found = results_of(fit_of(runs, given, names, without=left_out))
     options = re.compile(r"--(find|without) (\S*[^\s.,;:])")
     return found._replace(notes=[options.sub(r"\1='\2'", note) for note in found.notes])
 

@@ -6,29 +6,32 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.optimize import least_squares
+from scipy.special import fdtrc
 
 from ..model import physics
-from .results import FITTED
+from .results import FITTED, Result
 from .runs import Column, Places, Runs, Selection
-from .statistics import ROUNDING, CannotSeparate, Line, fit_line, sum_of_squares
+from .statistics import NORMAL_DOF, CannotSeparate, Line, Linear, fit_line, sum_of_squares
 
 SLOWEST = 0.01
 """Below this share of the measured acceleration an expected time goes on along its tangent."""
-NEAR, ENOUGH, CLOSE, MOST_STEPS = 1e-2, 1e-6, 1e-13, 30
-"""Shares of what is expected. A step below ``NEAR`` is the line's, and one below ``CLOSE`` the last.
+NEAR, ENOUGH, CLOSE, MOST_PASSES = 1e-2, 1e-6, 1e-11, 100
+"""Shares of what is expected. A step below ``NEAR`` is linear, and one below ``CLOSE`` is the last.
 
-If the last step is not below ``ENOUGH``, no values are found.
+Linear steps lead away from some least squares of rough runs; then a step below ``ENOUGH`` is the last, too.
 """
+ROUNDING = 1e-12
+"""The least standard uncertainty of a measured number, as a share of it."""
 TINY = 1e-100
 
 
 class Data(NamedTuple):
     """Runs as a fit sees them (n): light and heavy masses apart, and what was measured, positive.
 
-    ``drop`` is None for accelerations. ``measured`` are means of so many ``values`` as ``counts`` says, each
-    with an uncertainty ``u`` if they are ``stated``, and the number of its ``run``. ``scatter`` is the
-    standard uncertainty of a mean, stated or by its repeats, 0 without either. ``repeats`` are χ² and the
-    degrees of freedom of the repeats about their means. ``uncertain`` has uncertainties of other columns.
+    ``drop`` is None for accelerations. ``measured`` are means of so many values as ``counts`` says.
+    ``scatter`` is the standard uncertainty of a mean, ``stated`` or by its repeats, 0 without either.
+    ``repeats`` are χ² and the degrees of freedom of the repeats about their means. ``uncertain`` has the
+    uncertainties of other columns.
     """
 
     l: Column
@@ -40,16 +43,16 @@ class Data(NamedTuple):
     stated: bool
     repeats: tuple[float, int]
     uncertain: Mapping[str, Column]
-    values: Column
-    u: Column
-    run: Places
 
 
 class Estimate(NamedTuple):
     """The fitted values, of these ``names``, and the given ones, with the linear fit at these values.
 
     ``sigma`` is the standard uncertainty of each run's measurement, scatter between runs included, and
-    ``dof`` the number of runs less that of fitted quantities.
+    ``dof`` the number of runs less that of fitted quantities. ``chi2`` is that of the runs by the
+    uncertainties stated, or by the scatter of repeats; None without either. ``p_value`` is the probability
+    that chance gives a larger one, and ``between_runs`` the standard deviation between runs beyond that, as
+    a mass (kg); None if nothing is left to test the fit.
     """
 
     data: Data
@@ -58,16 +61,17 @@ class Estimate(NamedTuple):
     line: Line
     sigma: Column
     dof: int
-
-
-# Runs as columns
+    chi2: float | None = None
+    p_value: float | None = None
+    between_runs: float | None = None
+    results: Mapping[str, Result] = {}
 
 
 def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
     """Return the runs that are ``used``, by their measurements that are ``kept``."""
     here = used[runs.run] if kept is None else used[runs.run] & kept
     run = (np.cumsum(used) - 1)[runs.run[here]]
-    values, u = runs.values[here], runs.u_values[here]
+    values, u = (runs.sign[runs.run] * runs.values)[here], runs.u_values[here]
     stated = bool(u.any())
     weight = u**-2 if stated else np.ones_like(values)
     total, counts = np.bincount(run, weight), np.bincount(run)
@@ -82,13 +86,11 @@ def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
         variance = variance + runs.step**2 / 12
     repeats = (chi2 / factor, dof) if factor else (0.0, 0)
     columns = {x: np.stack([runs.given[x][used], runs.u[x][used]]) for x in runs.given}
-    is_swapped = columns["m1"][0] > columns["m2"][0]
-    (l, u_l), (h, u_h) = (
-        np.where(is_swapped, columns[x], columns[y]) for x, y in (("m2", "m1"), ("m1", "m2"))
-    )
-    drop, u_drop = columns.get("drop", (None, l * 0))
+    m1, m2 = columns["m1"], columns["m2"]
+    (l, u_l), (h, u_h) = np.where(m1[0] > m2[0], (m2, m1), (m1, m2))
+    drop, u_drop = columns.get("drop", (None, 0 * l))
     uncertain = {x: u for x, u in (("l", u_l), ("h", u_h), ("drop", u_drop)) if u.any()}
-    return Data(l, h, drop, measured, counts, np.sqrt(variance), stated, repeats, uncertain, values, u, run)
+    return Data(l, h, drop, measured, counts, np.sqrt(variance), stated, repeats, uncertain)
 
 
 # What is expected of runs
@@ -100,7 +102,7 @@ def expected(data: Data, values: Mapping[str, Any]) -> Any:
     ``values`` are rim_mass, axle, gravity and delay, and may replace columns. If next to nothing would
     move, the time goes on along its tangent, so that a fit finds its way back.
     """
-    x: dict[str, Any] = {**data._asdict(), "delay": 0.0, **values}
+    x: dict[str, Any] = {**data._asdict(), **values}
     drive = physics.drive(x["l"], x["h"], physics.axle_mass(x["axle"], x["gravity"]))
     a = physics.acceleration(drive, physics.load(x["l"], x["h"], x["rim_mass"]), x["gravity"])
     if data.drop is None:
@@ -127,7 +129,7 @@ def of_measured(data: Data, values: Mapping[str, Any]) -> Any:
 
 def of_forces(data: Data, values: Mapping[str, Any]) -> Any:
     """Return T_h - T_l less c a + f by the accelerations measured: c, f and gravity are linear in it."""
-    x: dict[str, Any] = {**data._asdict(), "delay": 0.0, **values}
+    x: dict[str, Any] = {**data._asdict(), **values}
     a = accelerations(data._replace(drop=x["drop"]), x["measured"], x["delay"])
     tensions = physics.difference_of_moving_masses(x["l"], x["h"], a, x["gravity"])
     return tensions - x["rim_mass"] * a - x["axle"]
@@ -135,28 +137,27 @@ def of_forces(data: Data, values: Mapping[str, Any]) -> Any:
 
 def slope(residual: Residual, data: Data, values: Mapping[str, Any], name: str) -> Any:
     """Return the derivative by a value or a column, to the last digit: the imaginary part by a small one."""
-    x = {**data._asdict(), "delay": 0.0, **values}[name]
+    x = {**data._asdict(), **values}[name]
     return residual(data, {**values, name: x + 1j * TINY}).imag / TINY
 
 
-def linear(
-    residual: Residual, data: Data, values: Mapping[str, float], names: Sequence[str]
-) -> tuple[Any, Column, Column, Column, Column]:
-    """Return the arguments of `fit_line` for changes of the ``names``, at these values.
+def linear(residual: Residual, data: Data, values: Mapping[str, float], names: Sequence[str]) -> Linear:
+    """Return the linear fit of changes of the ``names``, at these values.
 
     The unknown variance has the shape of a force that differs between runs, or of the scatter of single
     values if nothing shows that.
     """
-    J = np.zeros((len(data.l), len(names)))
-    for i, name in enumerate(names):
-        J[:, i] = -slope(residual, data, values, name)
+    slopes = [-slope(residual, data, values, name) for name in names]
     by_measured = slope(residual, data, values, "measured")
-    known = (by_measured * data.scatter) ** 2
+    least = float(np.square(ROUNDING * by_measured * data.measured).max())
+    known = (by_measured * data.scatter) ** 2 + least  # no weight is without bound
     for name, u in data.uncertain.items():
         known = known + (slope(residual, data, values, name) * u) ** 2
-    is_force = data.scatter.any()
-    shape = slope(residual, data, values, "axle") ** 2 if is_force else by_measured**2 / data.counts
-    return J, residual(data, values), known, shape, np.square(ROUNDING * by_measured * data.measured)
+    shape = by_measured**2 / data.counts
+    if data.scatter.any():
+        shape = slope(residual, data, values, "axle") ** 2
+    J = np.stack(slopes, 1) if names else np.zeros((len(known), 0))
+    return Linear(J, residual(data, values), known, shape, least, data.repeats)
 
 
 # Least squares
@@ -165,8 +166,8 @@ def linear(
 def by_forces(data: Data, given: Mapping[str, float], names: Sequence[str]) -> dict[str, float]:
     """Return the values with the least squares of forces, by which others start, and the given ones."""
     values = {**dict.fromkeys(FITTED, 0.0), **given}
-    J, y, *_ = linear(of_forces, data, values, names)
-    changes = np.linalg.lstsq(J, y, rcond=None)[0] if names else []
+    problem = linear(of_forces, data, values, names)
+    changes = np.linalg.lstsq(problem.J, problem.y, rcond=None)[0]
     return values | {x: values[x] + float(change) for x, change in zip(names, changes, strict=True)}
 
 
@@ -177,43 +178,41 @@ def estimate(
 
     Variances follow the values (effective variance), and least squares the variances.
     """
-    values = {**dict.fromkeys(FITTED, 0.0), **given}
-    near = near or by_forces(data, given, names)
-    lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
-    least = {x: lightest if x == "rim_mass" else -inf for x in names}
-    values |= {x: max(near[x], least[x] / 2) for x in names}
-    for _ in range(MOST_STEPS):
+    values = {**(near or by_forces(data, given, names)), **given}
+    size = inf
+    for _ in range(MOST_PASSES):
         problem = linear(of_measured, data, values, names)
-        line = fit_line(*problem, data.repeats)
-        share = problem[0] @ line.coefficients / data.measured
-        size = sqrt(sum_of_squares(share) / len(share))
-        if size < CLOSE:
-            break
+        line = fit_line(problem)
+        share = problem.J @ line.coefficients / data.measured
+        before, size = size, sqrt(sum_of_squares(share) / len(share))
         if size < NEAR:
-            steps = zip(names, line.coefficients.tolist(), strict=True)
-            values |= {x: max(values[x] + step, least[x]) for x, step in steps}
+            values |= {x: values[x] + float(b) for x, b in zip(names, line.coefficients, strict=True)}
         else:
-            values |= _least_squares(data, values, least, np.sqrt(line.variance))
-    if not size < ENOUGH:
+            values |= _least_squares(data, values, names, np.sqrt(line.variance))
+        if size < CLOSE or before < size < ENOUGH:
+            break
+    else:
         raise CannotSeparate
-    sigma = np.sqrt(line.scale * line.variance)
-    return Estimate(data, values, names, line, sigma, len(data.l) - len(names))
+    sigma, dof = np.sqrt(line.scale * line.variance), len(data.l) - len(names)
+    chi2, p_value, between_runs = line.chi2 if data.scatter.any() else None, None, None
+    if chi2 is not None and dof:
+        known_by = NORMAL_DOF if data.stated else data.repeats[1] or NORMAL_DOF
+        p_value = float(fdtrc(dof, known_by, chi2 / dof))  # χ² if the variance is known
+        between_runs = sqrt(line.between) / abs(values["gravity"])
+    return Estimate(data, values, names, line, sigma, dof, chi2, p_value, between_runs)
 
 
 def _least_squares(
-    data: Data, values: Mapping[str, float], least: Mapping[str, float], sigma: Column
+    data: Data, values: Mapping[str, float], names: Sequence[str], sigma: Column
 ) -> dict[str, float]:
-    """Return the values with the least sum of squares, none below the ``least``, by uncertainties of runs."""
+    """Return the values of these names with the least sum of squares, by the uncertainties of runs."""
+    lightest = -(1 - 1e-9) * float((data.l + data.h).min())  # with less, nothing is left to move
+    least = [lightest if name == "rim_mass" else -inf for name in names]
 
-    def at(x: Column) -> dict[str, float]:
-        return {**values, **dict(zip(least, x.tolist(), strict=True))}
+    def rest(x: Any) -> Any:
+        return of_measured(data, {**values, **dict(zip(names, x, strict=True))}) / sigma
 
-    found = least_squares(
-        lambda x: of_measured(data, at(x)) / sigma,
-        [values[x] for x in least],
-        lambda x: np.stack([slope(of_measured, data, at(x), name) / sigma for name in least], 1),
-        bounds=([*least.values()], inf),
-        x_scale="jac",
-        **{"ftol": 1e-15, "xtol": 1e-12, "gtol": None},
-    )
-    return dict(zip(least, found.x.tolist(), strict=True))
+    start = np.maximum([values[name] for name in names], np.divide(least, 2))
+    exactly: Any = {"ftol": 1e-15, "xtol": 1e-12, "gtol": None, "jac": "cs", "x_scale": "jac"}
+    found = least_squares(rest, start, bounds=(least, inf), **exactly)
+    return dict(zip(names, found.x.tolist(), strict=True))

@@ -1,119 +1,68 @@
-"""Runs and the line that fits them, as a picture, with residuals below."""
+"""Runs and the line that fits them, T_h - T_l = c a + f, as a picture, with residuals below."""
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from ..model import physics
 from ..output.figure import BLUE, FAINT, INK, RED, page, typeset, write_beside
-from .estimate import Data, accelerations, as_data, expected
+from .estimate import accelerations, as_data, expected
 from .fitting import Fitted
-from .report import RARE, conditions, verdict
-from .results import QUANTITIES, rounded, with_u
-from .runs import Column
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from .report import conditions, verdict
+from .results import QUANTITIES, published
 
 MOST_NAMED = 40  # runs; of more, only outliers and those left out
-
-
-class View(NamedTuple):
-    """Runs as points of a straight line, of which fitted quantities are the slope and the intercept."""
-
-    x: Column
-    y: Column
-    slope: float
-    intercept: float
-    labels: tuple[str, str]
-    meaning: Mapping[str, str]
-
-
-def view(data: Data, a: Column, values: Mapping[str, float], names: Sequence[str]) -> View:
-    """Return runs with accelerations in the axes that suit the fitted quantities: T_h - T_l = c a + f."""
-    sum_, difference = data.l + data.h, data.h - data.l
-    g, c, f = (values[name] for name in ("gravity", "rim_mass", "axle"))
-    if "gravity" not in names:
-        y: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(g))
-        labels = "acceleration a (m/s²)", "difference of tensions Tₕ − Tₗ (N)"
-        return View(a, y, c, f, labels, {"rim_mass": "slope c", "axle": "intercept f_axle"})
-    if {*names} == {"rim_mass", "gravity"}:
-        labels = "(mₕ − mₗ)/a (kg s²/m)", "mₕ + mₗ + f_axle/a (kg)"
-        meaning = {"gravity": "slope g", "rim_mass": "intercept −c, with c", "axle": "with f_axle"}
-        return View(difference / a, sum_ + f / a, g, -c, labels, meaning)
-    added, plus, intercept = (0.0, "", "intercept −f_axle, ") if "axle" in names else (f, " + f_axle", "")
-    labels = "difference of masses mₕ − mₗ (kg)", f"(mₕ + mₗ + c) a{plus} (N)"
-    meaning = {"gravity": "slope g", "rim_mass": "with c", "axle": f"{intercept}with f_axle"}
-    return View(difference, (sum_ + c) * a + added, g, added - f, labels, meaning)
+MEANING = {"rim_mass": "slope c", "axle": "intercept f_axle", "gravity": "g", "delay": "Δt"}
+"""The fitted quantities, as the picture shows them."""
 
 
 def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     """Draw runs and their line to a file, below sentences unless it is bare. Raises OSError."""
-    best, data, delay = fit.whole.best, fit.whole.best.data, fit.whole.best.values["delay"]
+    best, used, data = fit.whole, fit.used[fit.shown], as_data(fit.runs, fit.shown)
+    g, c, f, delay = (best.values[name] for name in ("gravity", "rim_mass", "axle", "delay"))
     a = accelerations(data, data.measured, delay)
-    u_a = best.sigma if data.drop is None else 2 * best.sigma * a / (data.measured - delay)
-    seen, shifted = (view(data, there, best.values, best.names) for there in (a, a + u_a))
-    u_x, u_y = abs(shifted.x - seen.x), abs(shifted.y - seen.y)
-    above = [conditions(fit), verdict(fit)]
-    if (p := fit.whole.p_value) is not None and p < RARE and not fit.outliers:
-        above.append(f"Scatter is larger than the uncertainties, p = {rounded(p)}.")
-    bars_are = "widened to the scatter between runs" if fit.whole.between_runs else "not widened"
-    if fit.whole.chi2 is None:
-        bars_are = "by the scatter of the runs"
-    delayed = " The fitted delay is subtracted from the times." if "delay" in best.names else ""
-    below = f"Error bars are standard uncertainties, {bars_are}. Points are numbered as rows.{delayed}"
-    with page(path, force, above, below, bare, panels=2) as figure:
+    difference: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(g))
+    x, y = a[used], difference[used]
+    u_x = best.sigma if data.drop is None else 2 * best.sigma * x / (best.data.measured - delay)
+    residual = (best.data.measured - expected(best.data, best.values)) / best.sigma
+    captions = {
+        "Error bars are standard uncertainties, scatter between runs included.": True,
+        "Points are numbered as rows.": True,
+        "Outliers are ringed.": bool(fit.outliers),
+        "Hollow points are left out.": not used.all(),
+        "The fitted delay is subtracted from the times.": "delay" in best.names,
+    }
+    below = " ".join(words for words, holds in captions.items() if holds)
+    results = [
+        f"{words} = {published(*fit.whole.results[name][:2])[0]} {QUANTITIES[name].unit}"
+        for name, words in MEANING.items()
+        if name in fit.whole.results
+    ]
+    with page(path, force, [conditions(fit), verdict(fit)], below, bare, panels=2) as figure:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
-        end = 1.06 * max(seen.x + u_x)
-        line.plot([0, end], [seen.intercept, seen.intercept + seen.slope * end], color=BLUE)
+        for axes in line, rest:
+            axes.margins(0, 0.15)
+        end = 1.06 * max(x + u_x)
+        line.plot([0, end], [f, f + c * end], color=BLUE)
         bars: Any = {"fmt": "o", "ms": 4, "capsize": 2, "lw": 1, "color": INK}
-        line.errorbar(seen.x, seen.y, yerr=u_y, xerr=u_x if u_x.any() else None, **bars)
-        residual = (data.measured - expected(data, best.values)) / best.sigma
+        line.errorbar(x, y, (best.data.l + best.data.h) * u_x, u_x, **bars)
         rest.axhline(0, color=BLUE)
         for level in (-2, 2):
             rest.axhline(level, color=FAINT, lw=0.8, ls="--")
-        rest.plot(seen.x, residual, "o", ms=4, color=INK)
+        rest.plot(x, residual, "o", ms=4, color=INK)
         odd = np.isin(np.flatnonzero(fit.used), fit.suspects)
-        for axes, heights in ((line, seen.y), (rest, residual)):
-            axes.plot(seen.x[odd], heights[odd], "o", ms=9, mfc="none", color=RED)
-        line.set_xlim(1.06 * min(0.0, min(seen.x - u_x)), end)
-        low, high = min(*(seen.y - u_y), seen.intercept, 0.0), max(*(seen.y + u_y), seen.intercept, 0.0)
-        line.set_ylim(low - 0.05 * (high - low) if low < 0 else 0, high + 0.3 * (high - low))
-        rest.set_ylim(-max(3, 1.15 * -min(residual)), max(3, 1.15 * max(residual)))
-        line.text(0.03, 0.97, coefficients(fit, seen.meaning), transform=line.transAxes, va="top", color=BLUE)
-        line.set_ylabel(seen.labels[1])
+        for axes, heights in ((line, y), (rest, residual)):
+            axes.plot(x[odd], heights[odd], "o", ms=9, mfc="none", color=RED)
+        line.text(0.03, 0.97, typeset("\n".join(results)), transform=line.transAxes, va="top", color=BLUE)
+        line.set_ylabel("difference of tensions Tₕ − Tₗ (N)")
         rest.set_ylabel("residual/u")
-        rest.set_xlabel(seen.labels[0])
-        _name_points(line, fit)
-
-
-def _name_points(line: "Axes", fit: Fitted) -> None:
-    """Write the numbers of rows at the points, and mark runs that are left out, at the edge if outside."""
-    data, best = as_data(fit.runs, fit.shown), fit.whole.best
-    there = view(data, accelerations(data, data.measured, best.values["delay"]), best.values, best.names)
-    x, y = np.clip(there.x, *line.get_xlim()), np.clip(there.y, *line.get_ylim())
-    out = ~fit.used[fit.shown]
-    if out.any():
-        line.plot(x[out], y[out], "o", ms=4, mfc="none", color=INK, clip_on=False)
-    labels = []
-    for i, run in enumerate(np.flatnonzero(fit.shown).tolist()):
-        if out[i] or len(out) <= MOST_NAMED or run in fit.suspects:
-            rows = ",".join(map(str, fit.runs.rows[run]))
-            labels.append((x[i], y[i], f"{rows}, left out" if out[i] else rows, INK))
-    write_beside(line, labels)
-
-
-def coefficients(fit: Fitted, meaning: Mapping[str, str]) -> str:
-    """Return the slope and the intercept of the line, if they are a result."""
-    lines = []
-    if fit.whole.reason:
-        return ""
-    for name, words in meaning.items():
-        value, unit = fit.whole.best.values[name], QUANTITIES[name].unit
-        if result := fit.whole.results.get(name):
-            lines.append(f"{words} = {with_u(value, result.uncertainty)} {unit}")
-        else:
-            why = "given" if name in fit.given.values else "not fitted"
-            lines.append(f"{words} = {rounded(value, 6)} {unit}, {why}")
-    return typeset("\n".join(lines))
+        rest.set_xlabel("acceleration a (m/s²)")
+        low, high = line.get_ylim()
+        line.set(xlim=line.get_xlim(), ylim=(low, high + 0.2 * (high - low)))
+        a, difference = np.clip(a, *line.get_xlim()), np.clip(difference, *line.get_ylim())
+        line.plot(
+            a[~used], difference[~used], "o", ms=4, mfc="none", color=INK, clip_on=False, in_layout=False
+        )
+        is_named = ~used | np.isin(np.flatnonzero(fit.shown), fit.suspects) | (len(used) <= MOST_NAMED)
+        rows = [",".join(map(str, fit.runs.rows[run])) for run in np.flatnonzero(fit.shown).tolist()]
+        write_beside(line, [(a[i], difference[i], rows[i], INK) for i in np.flatnonzero(is_named)])

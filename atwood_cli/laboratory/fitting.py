@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from fractions import Fraction
-from math import hypot, inf, sqrt
+from math import hypot, inf
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.special import chdtrc, fdtrc, stdtrit
+from scipy.special import fdtrc, stdtrit
 
 from ..model import physics
 from ..model.decisions import Decisions
@@ -15,7 +15,6 @@ from ..model.digits import format_number
 from ..model.quantities import read_names
 from ..model.scene import Input, Scene, SceneError, parameter_of
 from ..model.units import counted
-from ..tables.sources import Unreadable
 from .estimate import (
     TINY,
     Data,
@@ -29,25 +28,27 @@ from .estimate import (
     of_forces,
     of_measured,
 )
-from .results import FITTED, QUANTITIES, SYMBOLS, USUAL, Result, equation, rounded
+from .results import FITTED, QUANTITIES, RESULTS, SYMBOLS, USUAL, Result, equation, published, rounded
 from .runs import OUT_OF_RANGE, Runs, Selection, behind_an_error, in_range, in_words
-from .statistics import NORMAL_DOF, CannotSeparate, judge_of_line, judge_of_repeats, outliers
+from .statistics import CannotSeparate, judge_of_line, judge_of_repeats, outliers
 
 OUTLIER_LEVEL = 0.012
 """The probability that a sound set has an outlier among its repeats, and that it has one among its runs."""
 SELDOM = 0.05
 """The p value below which runs are said to scatter more than their repeats."""
+RARE = 0.01
+"""The p value below which a delay is reported, and above 1 less which runs scatter less than repeats."""
+WIDE_DELAY = 0.1
+"""The half width of a delay's interval (s) from which the runs cannot show it."""
 LEAST_SINGULAR = 4e-4
 """Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
 MOST_RATIO = 100
 """A value that many times above or below the median of its kind must be a mistake."""
 LEAST_SHARE, MOST_SHARE = 1e-4, 1.02
 """The least and the most share that an acceleration may have of that without a pulley and friction."""
-TOO_FEW = "too few for this fit: give more runs, repeats or uncertainties (as 2.05+/-0.02), or give M or axle"
-VARY = "vary both m2 - m1 and m1 + m2 more"
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
-CHECK = "check masses, heights, measurements and their units"
+CHECK = "check masses, heights, measurements, their units and signs"
 NO_FIT = "no pulley explains these runs, whatever its inertia and its axle's friction"
 
 
@@ -59,61 +60,25 @@ class Conditions(NamedTuple):
     values: Mapping[str, float]
 
 
-class Outcome(NamedTuple):
-    """A fit of some runs: ``reason`` says why there are no ``results``, if there are none.
-
-    ``chi2`` is χ² of the runs by the uncertainties stated, or by the scatter of repeats; None without either.
-    If something is left to test the fit, ``p_value`` is the probability that chance gives a larger χ², and
-    ``between_runs`` the standard deviation between runs beyond that, as a mass (kg).
-    """
-
-    best: Estimate
-    results: Mapping[str, Result]
-    reason: str
-    chi2: float | None
-    p_value: float | None
-    between_runs: float | None
-
-
-class Outlier(NamedTuple):
-    """A run, or a measurement by its cell, and how many standard deviations it is away from the others."""
-
-    run: int
-    place: int | None
-    distance: float
-
-    def in_words(self, runs: Runs) -> str:
-        """Return the sentence that names it and the option that leaves it out."""
-        if self.place is None:
-            where, others = ",".join(map(str, runs.rows[self.run])), "a fit of the other runs"
-            what = f"{runs.rows_in_words(self.run)} {'are' if runs.rows[self.run][1:] else 'is'}"
-        else:
-            where, others = runs.cells[self.place], "its repeats"
-            value = format_number(float(runs.sign[self.run] * runs.values[self.place]))
-            what = f"{in_words(where)} = {value} {parameter_of(runs.kind).unit} is"
-        far = f"{rounded(abs(self.distance))} standard deviations"
-        return f"{what} {far} from {others}; to leave that out: --without {where}"
-
-
 class Fitted(NamedTuple):
-    """The fit of the runs that are ``used``, and their outliers.
+    """The fit of the runs that are ``used``, and their outliers: the run of each, and words that name it.
 
-    Something can be expected of all runs that are ``shown``; the others of these are left out. ``delay`` is
-    that of a fit with a delay, and its p value; None if it was not tried or is not possible.
+    Something can be expected of all runs that are ``shown``; the others of these are left out. ``delay`` has
+    what there is to say of a delay that is not fitted.
     """
 
     runs: Runs
     used: Selection
     shown: Selection
     given: Conditions
-    whole: Outcome
-    outliers: Sequence[Outlier]
-    delay: tuple[Result, float] | None
+    whole: Estimate
+    outliers: Sequence[tuple[int, str]]
+    delay: Sequence[str]
 
     @property
     def suspects(self) -> list[int]:
         """The runs that are outliers or have one among their repeats."""
-        return sorted({one.run for one in self.outliers})
+        return sorted({run for run, _ in self.outliers})
 
 
 # What is given, and what is to be fitted
@@ -122,18 +87,15 @@ class Fitted(NamedTuple):
 def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
     """Return the conditions that inputs give. Raises SceneError."""
     for x, one in inputs.items():
-        if one.given is not None and one.value != inf and not in_range(one):
+        if one.given is not None and not in_range(one):
             raise SceneError(x, one.given, OUT_OF_RANGE)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
     scene = Scene.of({**inputs, **masses})
     case, values = Decisions(scene), {"gravity": float(scene.g)}
     if scene.axle is not None:
-        values["axle"] = float(case.axle_friction or 0)
+        values["axle"] = float(case.axle_friction)
     if scene.M is not None or scene.I is not None:
-        if case.rim_mass is None:
-            why = "lets nothing move; give the mass of a pulley that turns"
-            raise SceneError("M", inputs["M"].given, why)
-        values["rim_mass"] = float(case.rim_mass)
+        values["rim_mass"] = float(case.rim_mass or 0)
     return Conditions(inputs, scene, values)
 
 
@@ -143,8 +105,8 @@ def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
         u, size = one.uncertainty, getattr(one.value, "number", one.value)
         if u and not parameter_of(x).zero and u >= size:
             raise SceneError(x, one.given, "has an uncertainty that reaches 0")
-        ends = [one.value._replace(number=size + by) if x == "axle" else size + by for by in (-u, u) if u]
-        if ends:
+        if u:
+            ends = (one.value._replace(number=end) if x == "axle" else end for end in (size - u, size + u))
             yield [conditions_of({**given.inputs, x: Input(end, Fraction(0), one.given)}) for end in ends]
 
 
@@ -158,55 +120,60 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
         for known in QUANTITIES[name].given_by:
             if given.inputs[known].given is not None:
                 raise SceneError("find", name, f"is known by {known}; leave one of them out")
-    if not names:
-        return [x for x in USUAL if x not in given.values]
-    if left := [x for x in USUAL if x not in names and x not in given.values]:
-        what, give, find = map(
-            " and ".join, zip(*((QUANTITIES[x].words, GIVE[x], x) for x in left), strict=True)
-        )
-        raise SceneError("find", ",".join(names), f"leaves {what} open: give {give}, or find {find}, too")
-    return names
+    left = [x for x in USUAL if x not in names and x not in given.values]
+    if names and left:
+        what, give = (" and ".join(words[x] for x in left) for words in (RESULTS, GIVE))
+        rule = f"leaves {what} open: give {give}, or find {' and '.join(left)}, too"
+        raise SceneError("find", ",".join(names), rule)
+    return names or left
 
 
 # From runs to a result
 
 
 def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
-    """Return the fit of these quantities, and outliers. Raises Unreadable, SceneError, CannotSeparate."""
+    """Return the fit of these quantities, and outliers. Raises SceneError, CannotSeparate."""
     if "delay" in names and runs.kind != "time":
         raise SceneError("find", "delay", "needs times; the table has accelerations")
+    difference = runs.given["m2"] - runs.given["m1"]
+    held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
+    unusable = {
+        "the masses are equal": difference == 0,
+        "nothing moved": runs.mean == 0,
+        "the lighter side falls": runs.sign * runs.mean < 0,
+        "an axle with the friction given holds the masses": abs(difference) <= held,
+    }
     shown, remarks = np.ones(len(runs.rows), dtype=bool), [*runs.remarks]
-    for reason, holds in _unusable(runs, given, names).items():
+    for reason, holds in unusable.items():
         if (shown & holds).any():
             remarks.append(f"{runs.rows_in_words(*np.flatnonzero(shown & holds))}: not used, as {reason}.")
         shown = shown & ~holds
     runs, used = runs._replace(remarks=remarks), shown & ~runs.left_out
-    if not used.any():
-        raise Unreadable(f"no run can be used{behind_an_error(remarks)}")
     try:
-        whole, delay = outcome(runs, used, given, names), None
+        whole = _fit(runs, used, given, names)
     except CannotSeparate as error:
         raise CannotSeparate(f"{error}{behind_an_error(remarks)}") from None
-    if runs.kind == "time" and "delay" not in names and not whole.reason and whole.best.dof > 1:
-        with suppress(CannotSeparate):
-            delay = _delay(whole, outcome(runs, used, given, [*names, "delay"]))
-    odd = _outliers(runs, used, whole.best.data, whole.best.values, names)
-    return Fitted(runs, used, shown, given, whole, odd, delay)
+    odd = [*_outliers(runs, used, whole.data, whole.values, names)]
+    return Fitted(runs, used, shown, given, whole, odd, _delay(runs, used, given, whole))
 
 
-def outcome(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Outcome:
-    """Return the fit of the runs that are used, with its uncertainties. Raises CannotSeparate."""
-    count = int(used.sum())
-    dof = count - len(names)
-    data = as_data(runs, used) if dof >= 0 else None
-    if not data or not (dof or data.scatter.any() or data.uncertain):
-        more = f"too few to fit {len(names)} quantities: give more runs, or M or axle" if dof < 0 else TOO_FEW
-        raise CannotSeparate(f"{counted(count, 'run')} {'is' if count == 1 else 'are'} {more}")
-    mistake, is_of_most = _mistake(runs, used, data, given.values["gravity"], "gravity" in names)
+def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Estimate:
+    """Return the fit of the runs that are used, with its results. Raises CannotSeparate."""
+    if not used.any():
+        raise CannotSeparate("no run can be used")
+    data, count = as_data(runs, used), int(used.sum())
+    what = [QUANTITIES[x].words for x in names]
+    needed = len(names) + (not data.scatter.any() and not data.uncertain)
+    if count < needed:
+        why = f"{counted(count, 'run')} cannot determine {' and '.join(what)}"
+        raise CannotSeparate(f"{why}: give {needed} or more, or M or axle")
+    mistake = _mistake(runs, used, data, None if "gravity" in names else given.values["gravity"])
     if not _separates(data, given.values, names):
-        verb = "separate" if names[1:] else "determine"
-        what = " from ".join(QUANTITIES[x].words for x in names)
-        raise CannotSeparate(mistake or f"the runs do not {verb} {what}: {VARY}")
+        verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
+        raise CannotSeparate(mistake or f"the runs do not {verb} {' from '.join(what)}: {vary}")
+
+    def odd(values: Mapping[str, float]) -> str:
+        return "; ".join(words for _, words in _outliers(runs, used, data, values, names)) or CHECK
 
     def found(there: Conditions) -> dict[str, float]:
         drop = there.inputs.get("drop")
@@ -217,35 +184,43 @@ def outcome(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]
         best = estimate(data, given.values, names)
         ends = [[*map(found, pair)] for pair in _neighbours(given)]
     except (CannotSeparate, ZeroDivisionError):  # a gravity of 0 holds no axle
-        near = by_forces(data, given.values, names)
-        odd = "; ".join(one.in_words(runs) for one in _outliers(runs, used, data, near, names))
-        raise CannotSeparate(mistake or f"{NO_FIT}: {odd or CHECK}") from None
+        raise CannotSeparate(mistake or f"{NO_FIT}: {odd(by_forces(data, given.values, names))}") from None
     by_runs = np.sqrt(best.line.scale * best.line.covariance.diagonal())
     spread = _with_derived(dict(zip(names, by_runs.tolist(), strict=True)), names, given)
-    times = float(stdtrit(min(best.line.dof, NORMAL_DOF), 0.975))  # Student's t
+    times = float(stdtrit(best.line.dof, 0.975))  # Student's t
     results = dict[str, Result]()
     for x, value in _with_derived(best.values, names, given).items():
         u = hypot(spread[x], *(float(np.ptp([value, *(end[x] for end in pair)])) / 2 for pair in ends))
         results[x] = Result(value, u, (value - times * u, value + times * u))
-    if not np.isfinite([one[:2] for one in results.values()]).all():
-        raise CannotSeparate(mistake or f"{NO_FIT}: {CHECK}")
-    negative = next((x for x in names if x != "delay" and results[x].interval[1] < 0), "")
-    if negative and not mistake:
-        words = equation(negative, *results[negative][:2])
-        mistake = f"{words} is negative: {CHECK}, and the signs of accelerations"
-    if is_of_most or negative:
-        return Outcome(best, {}, mistake, *_scatter(best))
-    return Outcome(best, results, "", *_scatter(best))
+        if x in names and x != "delay" and results[x].interval[1] < 0:
+            raise CannotSeparate(mistake or f"{equation(x, value, u)} is negative: {odd(best.values)}")
+    return best._replace(results=results)
 
 
-def _scatter(best: Estimate) -> tuple[float | None, float | None, float | None]:
-    """Return χ², its p value and the standard deviation between runs, as `Outcome` has them."""
-    data, dof, chi2 = best.data, best.dof, best.line.chi2
-    if not data.scatter.any() or not dof:
-        return chi2 if data.scatter.any() else None, None, None
-    is_f = data.repeats[1] and not data.stated
-    p_value = fdtrc(dof, data.repeats[1], chi2 / dof) if is_f else chdtrc(dof, chi2)
-    return chi2, float(p_value), sqrt(best.line.between) / abs(best.values["gravity"])
+def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate) -> list[str]:
+    """Return a sentence if all times seem too long, or if the runs cannot show that.
+
+    An F test judges what a delay takes off χ². The repeats count in it, unless runs scatter more than they do
+    with the delay, too.
+    """
+    if runs.kind != "time" or "delay" in whole.names:
+        return []
+    names, half = [*whole.names, "delay"], inf
+    if whole.dof > 1:
+        with suppress(CannotSeparate):
+            late = _fit(runs, used, given, names)
+            value, u, (_, high) = late.results["delay"]
+            rest, dof, taken_off = late.line.chi2, late.dof, max(whole.line.chi2 - late.line.chi2, 0)
+            if late.p_value is not None and late.p_value >= SELDOM:
+                rest, dof = rest + late.data.repeats[0], dof + late.data.repeats[1]
+            if fdtrc(1, dof, taken_off / max(rest, TINY) * dof) < RARE:
+                size, long = published(abs(value), u)[0], "long" if value > 0 else "short"
+                return [f"All times seem {size} s too {long}: --find {','.join(names)} fits that, too."]
+            half = high - value
+    if half <= WIDE_DELAY:
+        return []
+    said = "These runs neither show nor exclude a delay of all times, and the results hold only without one."
+    return [f"{said} To see one, vary the height of fall, or both m2 - m1 and m1 + m2, more."]
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
@@ -260,63 +235,39 @@ def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Cond
     return found
 
 
-def _delay(whole: Outcome, late: Outcome) -> tuple[Result, float] | None:
-    """Return the delay of the fit with one, and its p value.
-
-    This is the F test of what it takes off χ², by the scatter of runs and repeats together. If runs scatter
-    more than repeats with the delay, too, it is the t test of the delay by the scatter of runs.
-    """
-    if "delay" not in late.results:
-        return None
-    delay, line, data = late.results["delay"], late.best.line, late.best.data
-    if whole.chi2 is None or late.chi2 is None or (late.p_value or 0) < SELDOM:
-        return delay, float(fdtrc(1, min(line.dof, NORMAL_DOF), (delay.value / delay.uncertainty) ** 2))  # t²
-    dof = late.best.dof + data.repeats[1]
-    taken_off = max(whole.chi2 - late.chi2, 0) / max(late.chi2 + data.repeats[0], TINY)
-    return delay, float(fdtrc(1, dof, taken_off * dof))
-
-
 def _outliers(
     runs: Runs, used: Selection, data: Data, values: Mapping[str, float], names: Sequence[str]
-) -> list[Outlier]:
-    """Return outliers among the repeats of each run, and among the runs without these repeats.
+) -> Iterator[tuple[int, str]]:
+    """Yield outliers among the repeats of each run, and among the runs without these repeats, in words.
 
     Runs are judged by the line of forces, which outliers bend least.
     """
     here, places = np.flatnonzero(used), np.flatnonzero(used[runs.run])
     # Of two repeats, which are equally far from each other, that far from the line comes first.
-    order = np.argsort(-np.abs(data.values - expected(data, values)[data.run]), kind="stable")
-    u = data.u if data.stated else np.ones(len(order))
-    judge = judge_of_repeats(data.values[order], u[order], data.run[order], runs.step)
-    odd = {
-        int(places[order[i]]): far
-        for i, far in outliers(judge, len(order), len(order) - len(here), OUTLIER_LEVEL).items()
-    }
+    away = abs(runs.values[places]) - expected(data, values)[np.searchsorted(here, runs.run[places])]
+    places = places[np.argsort(-np.abs(away), kind="stable")]
+    u = runs.u_values[places] if data.stated else np.ones(len(places))
+    judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
     kept = np.ones(len(runs.values), dtype=bool)
-    kept[[*odd]] = False
-    sound = as_data(runs, used, kept)
+    for i, far in outliers(judge, len(places), len(places) - len(here), OUTLIER_LEVEL).items():
+        kept[places[i]], cell = False, runs.cells[places[i]]
+        measured = f"{format_number(float(runs.values[places[i]]))} {parameter_of(runs.kind).unit}"
+        yield int(runs.run[places[i]]), _far(f"{in_words(cell)} = {measured} is", far, "its repeats", cell)
     near = {**values, "rim_mass": max(values["rim_mass"], 0.0), "delay": 0.0}
-    judge = judge_of_line(*linear(of_forces, sound, near, names), sound.repeats)
-    found = outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL)
-    return [
-        *(Outlier(int(runs.run[place]), place, far) for place, far in odd.items()),
-        *(Outlier(int(here[i]), None, far) for i, far in found.items()),
-    ]
+    judge = judge_of_line(linear(of_forces, as_data(runs, used, kept), near, names))
+    for i, far in outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL).items():
+        rows = runs.rows[here[i]]
+        what = f"{runs.rows_in_words(here[i])} {'are' if rows[1:] else 'is'}"
+        yield int(here[i]), _far(what, far, "a fit of the other runs", ",".join(map(str, rows)))
+
+
+def _far(what: str, distance: float, others: str, where: str) -> str:
+    """Say how many standard deviations something is from others, and how to leave it out."""
+    far = f"{rounded(abs(distance))} standard deviations from {others}"
+    return f"{what} {far}; if it is a mistake, leave it out: --without {where}"
 
 
 # Why there is no result
-
-
-def _unusable(runs: Runs, given: Conditions, names: Sequence[str]) -> dict[str, Selection]:
-    """Return the reasons why nothing can be expected of a run, with the runs for which they hold."""
-    difference = runs.given["m2"] - runs.given["m1"]
-    held = 0.0 if "gravity" in names else given.values.get("axle", 0.0) / given.values["gravity"]
-    return {
-        "the masses are equal": difference == 0,
-        "nothing moved": runs.mean == 0,
-        "the lighter side falls": runs.mean < 0,
-        "an axle with the friction given holds the masses": abs(difference) <= held,
-    }
 
 
 def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> bool:
@@ -326,40 +277,42 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
     """
     design = data._replace(measured=np.full_like(data.l, inf))
     least = float((data.h - data.l).min()) * given["gravity"]
-    values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), **given}
+    values = {"rim_mass": 0.1 * float(np.median(data.l + data.h)), "delay": 0.0, **given}
     values["axle"] = min(given.get("axle", least), 0.1 * least)  # with which each run moves
-    J: Any = linear(of_measured, design, values, names)[0] / expected(design, values)[:, None]
+    J: Any = linear(of_measured, design, values, names).J / expected(design, values)[:, None]
     singular = np.linalg.svd(J / np.linalg.norm(J, axis=0), compute_uv=False)
-    return not names or bool(singular.min() > LEAST_SINGULAR)
+    return bool(singular.min(initial=1.0) > LEAST_SINGULAR)
 
 
-def _mistake(runs: Runs, used: Selection, data: Data, g: float, is_fitted: bool) -> tuple[str, bool]:
-    """Return what must be a mistake in the table, "" if nothing must, and if most runs have one.
+def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> str:
+    """Return what must be a mistake in the table, "" if nothing must. Raises CannotSeparate if most have one.
 
     Each value is compared with the median of its kind, and each acceleration with that of free masses,
     unless gravity is fitted.
     """
-    masses = {x: runs.given[x][used] for x in ("m1", "m2")}
-    lengths = {} if data.drop is None else {"drop": data.drop}
-    checks: list[tuple[str, str, Any, Any, float, Any]] = []
-    for x, values in {**masses, **lengths, runs.kind: data.measured}.items():
-        of, what = ([*masses.values()], "mass") if x in masses else (values, x)
-        checks.append((x, f"the median {what}", values, np.median(of), 1 / MOST_RATIO, MOST_RATIO))
-    if not is_fitted:
+    columns = {x: runs.given[x][used] for x in runs.given} | {runs.kind: data.measured}
+    mass, ratios = np.median([data.l, data.h]), (1 / MOST_RATIO, MOST_RATIO)
+    checks: list[tuple[str, str, Any, Any, tuple[float, Any]]] = [
+        (x, "the median", values, mass if x[0] == "m" else np.median(values), ratios)
+        for x, values in columns.items()
+    ]
+    if g is not None:
         name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
         free = physics.acceleration(data.h - data.l, data.h + data.l, g)
         most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
         what = "the acceleration without friction and pulley"
-        checks.append((name, what, accelerations(data, data.measured), free, LEAST_SHARE, most))
+        checks.append((name, what, accelerations(data, data.measured), free, (LEAST_SHARE, most)))
     said, is_mistaken = "", np.zeros(len(data.l), dtype=bool)
-    for name, what, values, typical, least, most in checks:
+    for name, what, values, typical, (least, most) in checks:
         with np.errstate(divide="ignore"):
             ratio = values / typical
         is_unusual = (values > 0) & ((ratio < least) | (ratio > most))
-        if is_unusual.any() and not said:
-            i, unit = int(np.argmax(is_unusual)), parameter_of("a" if name[0] == "a" else name).unit
-            value, times, there = (rounded(float(x), 3) for x in (values[i], ratio[i], values[i] / ratio[i]))
-            far = f"{name} = {value} {unit} is {times} times {there} {unit}"
-            said = f"{runs.rows_in_words(np.flatnonzero(used)[i])}: {far}, {what}; {CHECK}"
         is_mistaken |= is_unusual
-    return said, bool(is_mistaken.mean() > 0.5)
+        if is_unusual.any() and not said:
+            i, unit = int(np.argmax(is_unusual)), parameter_of(name.split()[0]).unit
+            value, times, there = (rounded(float(x[i]), 3) for x in (values, ratio, values / ratio))
+            far = f"{name} = {value} {unit} is {times} times {what}, {there} {unit}"
+            said = f"{runs.rows_in_words(np.flatnonzero(used)[i])}: {far}; {CHECK}"
+    if is_mistaken.mean() > 0.5:
+        raise CannotSeparate(said)
+    return said

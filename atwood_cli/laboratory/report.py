@@ -1,25 +1,20 @@
 """A fit as sentences, tables, JSON and CSV: what the runs determine, their outliers, what to vary."""
 
 from collections.abc import Mapping, Sequence
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
-from ..model.digits import format_number, rounding_to_place
+from ..model.digits import format_number
 from ..model.scene import UNMEASURED, parameter_of
 from ..model.units import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
-from .estimate import Estimate, as_data, expected
-from .fitting import SELDOM, Fitted
-from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded, with_u
+from .estimate import as_data, expected
+from .fitting import RARE, SELDOM, Fitted
+from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded
 from .runs import MEASURED, WORDS
 
-RARE = 0.01
-"""The p value below which a delay is reported, and above 1 less which runs scatter less than repeats."""
-WIDE_DELAY = 0.1
-"""The half width of a delay's interval (s) from which the runs cannot show it."""
 NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
 NEEDS = {
     "moment_of_inertia": "needs the rim mass to be fitted, and R",
@@ -31,71 +26,35 @@ NEEDS = {
 
 
 def verdict(fit: Fitted) -> str:
-    """Return how many runs there are, and which quantities differ from 0, unless there are outliers."""
-    measurements = counted(len(fit.whole.best.data.values), MEASURED[fit.runs.kind])
-    said = [f"{counted(len(fit.whole.best.data.l), 'run')}, {measurements}."]
-    if fit.whole.reason:
-        said.append(f"No result: {fit.whole.reason}.")
-    elif not fit.whole.best.names:
+    """Return how many runs there are, and which quantities differ from 0."""
+    measurements = counted(int(fit.whole.data.counts.sum()), MEASURED[fit.runs.kind])
+    said = [f"{counted(len(fit.whole.data.l), 'run')}, {measurements}."]
+    if not fit.whole.names:
         said.append("Nothing is left to fit: the pulley and its axle are given.")
     for name in USUAL:
-        if name in fit.whole.results and not fit.outliers:
+        if name in fit.whole.results:
             (low, high), unit = fit.whole.results[name].interval, QUANTITIES[name].unit
             may_be = f"is not distinguishable from 0; it may be up to {in_small_unit(high, unit)}."
             said.append(_capital(f"{QUANTITIES[name].words} {'is clearly above 0.' if low > 0 else may_be}"))
     return " ".join(said)
 
 
-def head(fit: Fitted) -> list[str]:
-    """Return the verdict, and a sentence for each outlier."""
-    said = [verdict(fit), *(f"{_capital(one.in_words(fit.runs))}." for one in fit.outliers)]
-    if fit.outliers:
-        said.append(f"The fit includes {'them' if fit.outliers[1:] else 'it'}.")
-    return said
-
-
-def notes(fit: Fitted) -> list[str]:
-    """Return what else there is to say, first how the table was read."""
-    said = [_capital(words) for words in fit.runs.remarks]
-    return said if fit.whole.reason or fit.outliers else [*said, _scatter(fit), *_delay(fit)]
-
-
 def _scatter(fit: Fitted) -> str:
     """Return how the scatter of the runs is known, and its p value."""
-    chi2, p, stated = fit.whole.chi2, fit.whole.p_value, fit.whole.best.data.stated
-    if chi2 is None:
+    whole = fit.whole
+    if whole.chi2 is None:
         return f"No {MEASURED[fit.runs.kind]} was repeated, so only the residuals show the scatter."
-    if p is None:
+    if whole.p_value is None:
         return "There are as many runs as results, so nothing is left to test the fit."
-    source = "uncertainties" if stated else "repeats"
-    probability = f"p = {rounded(p)}" if p >= 0.001 else "p < 0.001"
-    if fit.whole.best.data.repeats[1] and not stated:
-        probability += " by an F test"
-    by = f"(χ² = {rounded(chi2, 3)}, {counted(fit.whole.best.dof, 'degree')} of freedom, {probability})"
-    if p < SELDOM:
-        more = f"The runs scatter more than their {source} {by}"
-        return f"{more}: masses, friction or timing vary between them."
-    if p > 1 - RARE:
-        return f"The runs scatter less than their {source} {by}."
-    return f"Scatter as expected from the {source} {by}."
-
-
-def _delay(fit: Fitted) -> list[str]:
-    """Return a sentence if all times seem too long, or if the runs cannot show that."""
-    names = fit.whole.best.names
-    result, p = fit.delay or (None, 1.0)
-    if result and p < RARE:
-        size = with_u(abs(result.value), result.uncertainty)
-        long, find = "long" if result.value > 0 else "short", ",".join([*names, "delay"])
-        return [f"All times seem {size} s too {long}: --find {find} fits that, too."]
-    half = result.interval[1] - result.value if result else np.inf
-    if fit.runs.kind != "time" or "delay" in names or half <= WIDE_DELAY:
-        return []
-    how = "vary the height of fall, or both m2 - m1 and m1 + m2, more"
-    if not result:
-        return [f"These runs cannot show a delay of all times: {how}."]
-    fitted = f"fitted, it is {with_u(result.value, result.uncertainty)} s"
-    return [f"These runs neither show nor exclude a delay of all times ({fitted}): {how}."]
+    probability = f"p = {rounded(whole.p_value)}" if whole.p_value >= 0.001 else "p < 0.001"
+    source, test = ("uncertainties", "") if whole.data.stated else ("repeats", " by an F test")
+    chi2 = f"χ² = {rounded(whole.chi2, 3)}, {counted(whole.dof, 'degree')} of freedom"
+    by = f"{source} ({chi2}, {probability}{test})"
+    if whole.p_value < SELDOM:
+        return f"The runs scatter more than their {by}: masses, friction or timing vary between them."
+    if whole.p_value > 1 - RARE:
+        return f"The runs scatter less than their {by}."
+    return f"Scatter as expected from the {by}."
 
 
 def _capital(words: str) -> str:
@@ -108,7 +67,7 @@ def conditions(fit: Fitted) -> str:
     motion = UNMEASURED._replace(drop=inputs["drop"].value) if "drop" in inputs else UNMEASURED
     uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
     words = inputs_in_words(fit.given.scene, motion, uncertain)
-    g = "" if "gravity" in fit.whole.best.names else "g"
+    g = "" if "gravity" in fit.whole.names else "g"
     return ", ".join(words[x] for x, one in inputs.items() if one.given is not None or x in (g, "drop"))
 
 
@@ -116,68 +75,62 @@ def conditions(fit: Fitted) -> str:
 
 
 def results_of(fit: Fitted) -> Fit:
-    """Return all of a fit by name, with its sentences."""
-    whole = fit.whole
+    """Return all of a fit by name, with its sentences: first the verdict and the outliers."""
+    whole, outliers = fit.whole, [f"{_capital(words)}." for _, words in fit.outliers]
     return Fit(
         **{name: whole.results[name].value if name in whole.results else None for name in QUANTITIES},
         uncertainty={name: one.uncertainty for name, one in whole.results.items()},
         interval={name: list(one.interval) for name, one in whole.results.items()},
-        correlation=_correlation(whole.best),
+        correlation=_correlation(whole.line.covariance),
         chi2=whole.chi2,
-        dof=whole.best.dof,
+        dof=whole.dof,
         between_runs=whole.between_runs,
         runs=_records(fit),
-        notes=[*head(fit), *notes(fit)],
+        notes=[verdict(fit), *outliers, *map(_capital, fit.runs.remarks), _scatter(fit), *fit.delay],
     )
 
 
 def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     """Return a fit in the forms in which it may be asked for; ``only`` names results."""
-    record: dict[str, Any] = results_of(fit)._asdict()
-    lines: Sequence[Mapping[str, Any]] = record["runs"]
-    full = {"version": VERSION, **record, "runs": [{**dict.fromkeys(WORDS), **line} for line in lines]}
-    full |= {name: dict.fromkeys(QUANTITIES) | record[name] for name in ("uncertainty", "interval")}
-    asked = {name: full[name] for name in only or full}
+    found, results = results_of(fit), fit.whole.results
+    record: dict[str, Any] = {"version": VERSION, **found._asdict()}
+    record |= {name: dict.fromkeys(QUANTITIES) | record[name] for name in ("uncertainty", "interval")}
+    record["runs"] = [{**dict.fromkeys(WORDS), **run} for run in found.runs]
+    asked = {name: record[name] for name in only or record}
     rows: Sequence[Mapping[str, Any]] = [asked]
-    said = [equation(x, *fit.whole.results[x][:2]) for x in only if x in fit.whole.results]
-    said += [f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None]
-    said += head(fit)[1:]
-    if not only or only == ["runs"]:
-        rows, said = lines, record["notes"]
-    if not only:
-        rows = [
-            {"quantity": x, "value": one.value, "uncertainty": one.uncertainty}
-            | {"low": one.interval[0], "high": one.interval[1], "unit": QUANTITIES[x].unit}
-            for x, one in fit.whole.results.items()
-        ]
+    said = [*found.notes]
+    if only == ["runs"]:
+        rows = found.runs
+    elif only:
+        said = [equation(x, *results[x][:2]) for x in only if x in results]
+        said += [f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None]
+        said += found.notes[1 : 1 + len(fit.outliers)]
+    else:
+        names = "quantity", "value", "uncertainty", "low", "high", "unit"
+        each = ((x, *one[:2], *one.interval, QUANTITIES[x].unit) for x, one in results.items())
+        rows = [dict(zip(names, one, strict=True)) for one in each]
     bare = [cell(record[name]) for name in only]
-    return Report(lambda: asked, lambda: rows, lambda: _print_page(fit, lines), lambda: said, bare)
+    return Report(lambda: asked, lambda: rows, lambda: _print_page(fit, found), lambda: said, bare)
 
 
-def _correlation(best: Estimate) -> float | None:
+def _correlation(covariance: Any) -> float | None:
     """Return the correlation of the two fitted quantities that have most of it."""
-    u = np.sqrt(best.line.covariance.diagonal())
-    pairs = (best.line.covariance / np.outer(u, u))[np.triu_indices(len(u), 1)]
+    u = np.sqrt(covariance.diagonal())
+    pairs = (covariance / np.outer(u, u))[np.triu_indices(len(u), 1)]
     return float(max(pairs, key=abs)) if len(pairs) else None
 
 
 def _records(fit: Fitted) -> list[dict[str, Any]]:
     """Return the runs, as JSON and CSV have them; the residual is in standard uncertainties."""
-    runs, best, shown = fit.runs, fit.whole.best, as_data(fit.runs, fit.shown)
+    runs, best, shown = fit.runs, fit.whole, as_data(fit.runs, fit.shown)
     moves = expected(shown._replace(drop=None), best.values) > 0
     measured, (u, ideal) = runs.mean.copy(), np.full((2, len(runs.rows)), np.nan)
     if best.data.stated:
-        measured[fit.used] = best.data.measured  # weighted means
+        measured[fit.used] = runs.sign[fit.used] * best.data.measured  # weighted means
     u[fit.used] = best.sigma
-    ideal[fit.shown] = np.where(moves, expected(shown, best.values), np.nan)
-    residual = runs.sign * (measured - ideal) / u
-    columns = {
-        **runs.given,
-        runs.kind: runs.sign * measured,
-        "u": u,
-        "expected": runs.sign * ideal,
-        "residual": residual,
-    }
+    ideal[fit.shown] = runs.sign[fit.shown] * np.where(moves, expected(shown, best.values), np.nan)
+    residual = (measured - ideal) / u
+    columns = {**runs.given, runs.kind: measured, "u": u, "expected": ideal, "residual": residual}
     return [
         {"rows": " ".join(map(str, rows))}
         | {x: None if np.isnan(column[i]) else float(column[i]) for x, column in columns.items()}
@@ -185,39 +138,34 @@ def _records(fit: Fitted) -> list[dict[str, Any]]:
     ]
 
 
-def _print_page(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> None:
+def _print_page(fit: Fitted, found: Fit) -> None:
     """Print the conditions, the runs, what there is to say, and the results."""
-    page = Page()
+    page, kind, results, first = Page(), fit.runs.kind, fit.whole.results, 1 + len(fit.outliers)
     page.say(conditions(fit))
-    _print_table(page, _columns(fit, lines))
-    page.say("u is the standard uncertainty of a run, scatter between runs included.", *notes(fit))
-    page.say(*head(fit), style="bold")
-    if fit.whole.results:
-        heads = "Quantity", "Value", "Unit", "Symbol", "95 % interval"
-        results = ((x, QUANTITIES[x], published(*one)) for x, one in fit.whole.results.items())
-        rows = [(x, value, words.unit, words.symbol, ends) for x, words, (value, ends) in results]
-        _print_table(page, dict(zip(heads, zip(*rows, strict=True), strict=True)))
+    unit = parameter_of(kind).unit
+    heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
+    _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
+    page.say("u is the standard uncertainty of a run, scatter between runs included.", *found.notes[first:])
+    page.say(*found.notes[:first], style="bold")
+    if results:
+        numbers = ((x, published(*one), QUANTITIES[x]) for x, one in results.items())
+        rows = [(x, both, words.unit, words.symbol, ends) for x, (both, ends), words in numbers]
+        _print_table(page, ("Quantity", "Value", "Unit", "Symbol", "95 % interval"), rows)
 
 
-def _print_table(page: Page, columns: Mapping[str, Sequence[str]]) -> None:
-    page.table(list(columns), [list(zip(*map(aligned, columns.values()), strict=True))])
+def _print_table(page: Page, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    page.table(heads, [list(zip(*map(aligned, zip(*rows, strict=True)), strict=True))])
 
 
-def _columns(fit: Fitted, lines: Sequence[Mapping[str, Any]]) -> dict[str, list[str]]:
-    """Return for each run the measurement, what is expected, and the residual."""
-    kind, best, unit = fit.runs.kind, fit.whole.best, parameter_of(fit.runs.kind).unit
+def _rows(fit: Fitted, found: Fit) -> list[list[str]]:
+    """Return the cells of each run: the measurement, what is expected, and the residual."""
     # The mean has the digits of its own scatter.
-    finest = float(min(best.data.scatter.min() or np.inf, best.sigma.min()))
-
-    def column(name: str, write: Any) -> list[str]:
-        return ["" if line[name] is None else write(line[name]) for line in lines]
-
-    marks = [" !" if i in fit.suspects else "" for i in range(len(lines))]
-    return {
-        "row": [line["rows"].replace(" ", ",") + mark for line, mark in zip(lines, marks, strict=True)],
-        **{f"{name} (kg)": column(name, format_number) for name in ("m1", "m2")},
-        f"{kind} ({unit})": column(kind, lambda value: cut(value, finest)),
-        f"expected ({unit})": column("expected", lambda value: cut(value, finest)),
-        f"u ({unit})": column("u", lambda u: cut(u, u)),
-        "residual/u": column("residual", lambda ratio: f"{rounding_to_place(-2)(Fraction(ratio)):f}"),
-    }
+    finest = float(min(fit.whole.data.scatter.min() or np.inf, fit.whole.sigma.min()))
+    rows = []
+    for i, run in enumerate(found.runs):
+        where, kind, u, residual = run["rows"].replace(" ", ","), fit.runs.kind, run["u"], run["residual"]
+        numbers = format_number(run["m1"]), format_number(run["m2"]), cut(run[kind], finest)
+        expected_and_u = cut(run["expected"], finest), cut(u, u)
+        mark = " !" if i in fit.suspects else ""
+        rows.append([where + mark, *numbers, *expected_and_u, "" if residual is None else f"{residual:z.2f}"])
+    return rows

@@ -61,25 +61,17 @@ def published(value: float, uncertainty: float, interval: Sequence[float] = ()) 
     return both, share_exponent("{:f} to {:f}", numbers[2:], power) if interval else ""
 
 
-def with_u(value: float, uncertainty: float) -> str:
-    """Return a value ± its uncertainty."""
-    return published(value, uncertainty)[0]
-
-
 def equation(name: str, value: float, uncertainty: float) -> str:
     """Return a result in a line."""
-    return f"{name} = {with_u(value, uncertainty)} {QUANTITIES[name].unit}"
+    return f"{name} = {published(value, uncertainty)[0]} {QUANTITIES[name].unit}"
 
 
-def cut(value: float, uncertainty: float | None) -> str:
-    """Return a value cut at the second digit of an uncertainty; to six digits if there is none."""
-    if not uncertainty:
-        return format_number(to_digits(6)(Fraction(value)))
-    return f"{_cutting(uncertainty)(Fraction(value)):f}"
+def cut(value: float | None, uncertainty: float | None) -> str:
+    """Return a value cut at the second digit of an uncertainty, "" without either."""
+    return f"{_cutting(uncertainty)(Fraction(value)):f}" if value is not None and uncertainty else ""
 
 
 def _cutting(uncertainty: float) -> Rounding[Decimal]:
-    """Return a function that cuts numbers there."""
     return rounding_to_place(to_digits(2)(Fraction(uncertainty)).adjusted() - 1)
 
 

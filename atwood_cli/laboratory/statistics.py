@@ -9,7 +9,6 @@ freedom; B. Rosner, "Percentage points for a generalized ESD many-outlier proced
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from math import inf
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,11 +18,9 @@ from scipy.special import stdtr
 from .runs import Column, Places, Selection
 
 NORMAL_DOF = 1e8
-"""Degrees of freedom with which Student's t is the normal distribution."""
+"""Degrees of freedom of a variance that is known: Student's t is the normal distribution."""
 SINGULAR_RATIO = 1e-7
 """Below this ratio of singular values a linear fit has no unique solution."""
-ROUNDING = 1e-12
-"""The least standard uncertainty of a measured number, as a share of it."""
 MOST_OUTLIERS = 20
 """Outliers that are looked for; there is at most one for three degrees of freedom."""
 
@@ -32,12 +29,26 @@ class CannotSeparate(ArithmeticError):
     """The runs do not determine the quantities to be fitted."""
 
 
+class Linear(NamedTuple):
+    """A linear fit of n values: the coefficients b (p) for which J b is nearest to y, with J (n, p).
+
+    The variance of y is ``known`` + v ``shape`` with an unknown v, and at least ``least``. ``repeats`` are
+    χ² and the degrees of freedom of repeats about their means, by which a variance is known.
+    """
+
+    J: Any
+    y: Column
+    known: Column
+    shape: Column
+    least: float
+    repeats: tuple[float, int] = (0.0, 0)
+
+
 class Line(NamedTuple):
-    """A linear fit of n values: p coefficients, their covariance, and the variance of each value.
+    """The result of a linear fit: p coefficients, their covariance, and the variance of each value.
 
     Covariance and variances are still to be multiplied by ``scale``, which is known with ``dof`` degrees of
-    freedom. ``between`` is the factor of the estimated part of the variance, and ``chi2`` is by the known
-    part alone.
+    freedom. ``between`` is the factor v of the shape, and ``chi2`` is by the known variance alone.
     """
 
     coefficients: Column
@@ -49,18 +60,15 @@ class Line(NamedTuple):
     between: float
 
 
-def fit_line(
-    J: Any, y: Column, known: Column, shape: Column, least: Column, repeats: tuple[float, int]
-) -> Line:
-    """Return the coefficients b (p) for which J b is nearest to y (n), with J (n, p). Raises CannotSeparate.
+def fit_line(linear: Linear) -> Line:
+    """Return the weighted least squares. Raises CannotSeparate.
 
-    The variance of y is ``known`` + v ``shape``. Paule and Mandel's v makes χ² equal to n - p; it is 0 if χ²
-    is no more than that without it. Knapp and Hartung's scale is χ²/(n - p). If v is 0, χ² and degrees of
-    freedom of the ``repeats`` about their means are pooled with those of the line. No variance comes out
-    below the ``least``; with nothing else known, this is ordinary least squares, weighted by the shape.
+    Paule and Mandel's v makes χ² equal to n - p; it is 0 if χ² is no more than that without it. Knapp and
+    Hartung's scale is χ²/(n - p). If v is 0, χ² and degrees of freedom of the repeats are pooled with those
+    of the line.
     """
-    known = np.maximum(known, max(least.max(), ROUNDING * known.max()))  # no weight is without bound
-    dof, between, (pooled_chi2, pooled_dof) = len(y) - int(J.shape[1]), 0.0, repeats
+    J, y, known, shape, least, (pooled_chi2, pooled_dof) = linear
+    dof, between = len(y) - int(J.shape[1]), 0.0
     chi2 = _solved(J, y, known)[2]
     if dof and chi2 > dof:
         most = 1.001 * _solved(J, y, shape)[2] / dof  # χ² is less than n - p there
@@ -69,9 +77,8 @@ def fit_line(
     variance = known + between * shape
     coefficients, covariance, rest = _solved(J, y, variance)
     dof += pooled_dof
-    scale = (rest + pooled_chi2) / dof if dof else 1.0
-    scale = max(scale, float((least / variance).max()))
-    return Line(coefficients, covariance, variance, scale, dof or inf, chi2, between)
+    scale = max((rest + pooled_chi2) / dof if dof else 1.0, least / float(variance.min()))
+    return Line(coefficients, covariance, variance, scale, dof or NORMAL_DOF, chi2, between)
 
 
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
@@ -93,7 +100,7 @@ def sum_of_squares(column: Any) -> float:
     return float(np.square(column).sum())
 
 
-Judge = Callable[[Selection], tuple[Column, Column]]
+Judge = Callable[[Selection], tuple[Column, Any]]
 """Return how many standard deviations each value is from a fit of those kept, and degrees of freedom."""
 
 
@@ -114,30 +121,27 @@ def outliers(judge: Judge, count: int, free: int, level: float) -> Mapping[int, 
             kept[i] = False
             distance, dof = judge(kept)
             found[i] = float(distance[i])
-            if stdtr(min(dof[i], NORMAL_DOF), -abs(found[i])) < level:
+            if stdtr(dof, -np.abs(distance))[i] < level:
                 significant = number
     return dict(list(found.items())[:significant])
 
 
-def judge_of_line(
-    J: Any, y: Column, known: Column, shape: Column, least: Column, repeats: tuple[float, int]
-) -> Judge:
-    """Judge values by the line of those kept; the arguments are those of `fit_line`.
+def judge_of_line(linear: Linear) -> Judge:
+    """Judge values by the line of those kept.
 
     The sum of a known and an estimated variance has the degrees of freedom of Welch and Satterthwaite.
     """
 
-    def judge(kept: Selection) -> tuple[Column, Column]:
-        line = fit_line(J[kept], y[kept], known[kept], shape[kept], least[kept], repeats)
-        variance = np.maximum(known + line.between * shape, least)
-        of_line = np.einsum("ij,jk,ik->i", J, line.covariance, J)
-        spread = variance + np.where(kept, -1, 1) * of_line
-        distance: Column = (y - J @ line.coefficients) / np.sqrt(np.maximum(line.scale * spread, least))
-        share = line.between * shape / variance
-        dof = np.full(len(y), line.dof)
-        if line.between:
-            dof = 1 / (share**2 / line.dof + (1 - share) ** 2 / (repeats[1] or inf))
-        return distance, dof
+    def judge(kept: Selection) -> tuple[Column, Any]:
+        J, y, known, shape = (column[kept] for column in linear[:4])
+        line = fit_line(Linear(J, y, known, shape, linear.least, linear.repeats))
+        between = line.between * linear.shape
+        of_line = np.einsum("ij,jk,ik->i", linear.J, line.covariance, linear.J)
+        spread = line.scale * (linear.known + between + np.where(kept, -1, 1) * of_line)
+        distance = (linear.y - linear.J @ line.coefficients) / np.sqrt(np.maximum(spread, linear.least))
+        share = between / (linear.known + between)
+        dof = 1 / (share**2 / line.dof + (1 - share) ** 2 / (linear.repeats[1] or NORMAL_DOF))
+        return distance, dof if line.between else line.dof
 
     return judge
 
@@ -147,17 +151,17 @@ def judge_of_repeats(values: Column, u: Column, run: Places, step: float) -> Jud
 
     The scatter is the same in all runs, times ``u``, and at least that of readings rounded to the ``step``.
     """
-    weight = u**-2
 
-    def judge(kept: Selection) -> tuple[Column, Column]:
-        sums = np.bincount(run, weight * kept)
-        total, dof = sums[run], int(kept.sum()) - int(np.count_nonzero(sums))
-        others = total - weight * kept  # of the same run
+    def judge(kept: Selection) -> tuple[Column, Any]:
+        weight = u**-2 * kept
+        total = np.bincount(run, weight)
+        others = total[run] - weight
+        dof = int(kept.sum()) - int(np.count_nonzero(total))
         with np.errstate(divide="ignore", invalid="ignore"):
-            rest = values - (np.bincount(run, weight * kept * values) / sums)[run]
-            variance = sum_of_squares((rest / u)[kept]) / max(dof, 1) * u**2 + step**2 / 12
-            spread = variance * np.where(kept, others / total, 1 + weight / others)
-            distance: Column = np.where((others > 0) & (spread > 0), rest / np.sqrt(spread), 0)
-        return distance, np.full(len(values), float(dof))
+            mean = np.bincount(run, weight * values) / total
+            chi2 = sum_of_squares(((values - mean[run]) / u)[kept])
+            spread = (chi2 / max(dof, 1) * u**2 + step**2 / 12) * (1 + u**-2 / others)
+            away = (values - mean[run]) * (weight + others) / others
+            return np.where((others > 0) & (spread > 0), away / np.sqrt(spread), 0), dof
 
     return judge

@@ -248,12 +248,10 @@ def critical_pulley_mass(l: N, h: N, friction_mass: N, drive: N, beta: N, b: N) 
 
 
 def critical_heavier_mass(l: N, c: N, friction_mass: N, b: N) -> N:
-    """Return the heavier mass (kg) above which the string slips (35), for c > b and c + b > 2 l (k - 1).
+    """Return the heavier mass (kg) above which the string slips (35); needs c > b and c + b > 2 l (k - 1).
 
-    For c < b and c + b < 2 l (k - 1) it is the mass above which it holds again.
-
-    >>> critical_heavier_mass(1, 4, 1, 0), critical_heavier_mass(1, 1, 2, 2)
-    (4.0, 3.0)
+    >>> critical_heavier_mass(1, 4, 1, 0), critical_heavier_mass(1, 6, 2, 1)
+    (4.0, 5.0)
     """
     return (c - b) / (c + b - 2 * friction_mass) * least_heavier_mass(l, friction_mass)
 

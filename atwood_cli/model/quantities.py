@@ -43,11 +43,11 @@ QUANTITIES = {
     "safety_factor": About("friction", "μ/μ*", "", "", "mu divided by mu_verge (not a load factor); below 1 it slips"),
     "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser", "(26)"),
     "capstan_ratio": About("friction", "k", "", "(26)", "greatest ratio of tensions that friction holds"),
-    "friction_force": About("friction", "F", "N", "(32)", "net friction force on the pulley"),
-    "friction_force_min": About("friction", "F min", "N", "", "least net friction force of a string that grips"),
-    "friction_force_max": About("friction", "F max", "N", "", "greatest net friction force of a string that grips"),
-    "friction_force_x": About("friction", "Fx", "N", "(31)", "net friction force, towards m1's side"),
-    "friction_force_y": About("friction", "Fy", "N", "(31)", "net friction force, upwards"),
+    "friction_force": About("friction", "F", "N", "(32)", "friction on the pulley, its vector sum along the arc"),
+    "friction_force_min": About("friction", "F min", "N", "", "least friction_force of a string that grips"),
+    "friction_force_max": About("friction", "F max", "N", "", "greatest friction_force of a string that grips"),
+    "friction_force_x": About("friction", "Fx", "N", "(31)", "component of friction_force towards m1's side"),
+    "friction_force_y": About("friction", "Fy", "N", "(31)", "component of friction_force upwards"),
     "axle_force": About("pulley", "A", "N", "(20)", "force on the axle, with the pulley's weight"),
     "torque": About("pulley", "τ", "N m", "(23)", "torque of the string on the pulley"),
     "rim_acceleration": About("pulley", "a rim", "m/s²", "(3)", "acceleration of the pulley's rim"),
@@ -123,11 +123,8 @@ AXLE_ENOUGH = "no value, as axle friction alone makes the string slip on any pul
 NO_NEED = "no value, as no friction is needed"
 NO_WRAP = "no value, as without friction no wrap holds"
 NOT_APPLICABLE = "no value, as conditions (36) do not apply without friction"
-LOCKED_AXLE = "not defined, as a locked pulley has no weight here; atwood contact has the force of the string"
-ONE_SIDED = (
-    "not computed unless both ends pull downwards (half a turn of wrap, plus whole turns); atwood contact has the"
-    " force of the string"
-)
+LOCKED_AXLE = "no value, as the weight of a pulley with `M` = `inf` is not known; atwood contact has the force of the string"
+ONE_SIDED = "not computed unless both ends pull downwards (half a turn of wrap, plus whole turns); atwood contact has the force of the string"
 NEEDS_A = "`give` `a`, a measured acceleration, without `M`; see also `critical_pulley_mass`"
 NEEDS_A_BESIDE_M = "`give` `a`, a measured acceleration, with `M` and instead of `g`"
 NEEDS_A_AND_M = "`give` `a`, a measured acceleration, and `M` instead of `{}`"

@@ -80,7 +80,7 @@ PERCENT = "%"
 NOT_A_NUMBER = "is not a number; write it like 2, 1/3 or 1.5e-3"
 NOT_UNCERTAIN = (
     "is not a number with its uncertainty; write it like 1.000±0.002, 1.000+-0.002 or 1.000(2),"
-    " and a unit after that"
+    " without a point in the brackets, and a unit after that"
 )
 
 

@@ -62,8 +62,6 @@ SIDES_IN_WORDS = re.compile(r"\b[mTW][12]\b")
 LONG_DIGITS = re.compile(r"(\d{12})\d{12,}")
 EXPONENT, MINUS = re.compile(r"(?<=\d)e\+?(-?\d+)"), re.compile(r"(?<![\w.)])-(?=\d)")
 SUPERSCRIPTS, SUBSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"), str.maketrans("12", "₁₂")
-PATH_IN_SVG, FINE_DECIMALS = re.compile(rb"^.*[MLCQ] [-\d. ]+$", re.MULTILINE), re.compile(rb"(\.\d\d)\d+")
-BLANKS_AROUND_LINES = re.compile(rb" *\n *")
 STYLE: Any = {
     "font.family": "sans-serif",
     "font.sans-serif": ["DejaVu Sans", "Verdana"],  # which is as wide, for SVG without the first
@@ -132,9 +130,7 @@ def page(
             yield figure
             figure.savefig(image, format=kind, metadata=metadata)
         content = image.getvalue()
-        if kind == "svg":  # with 0.01 of a point, no printer's dot; and with what matplotlib leaves out
-            content = PATH_IN_SVG.sub(lambda path: FINE_DECIMALS.sub(rb"\1", path[0]), content)
-            content = BLANKS_AROUND_LINES.sub(b"\n", content)  # a twelfth of six curves
+        if kind == "svg":  # matplotlib leaves this out
             described = f"</title>\n<desc>{escape(description)}</desc>"
             content = content.replace(b"</title>", described.encode(), 1)
         beside.write_bytes(content)

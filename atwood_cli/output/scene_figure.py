@@ -18,16 +18,15 @@ from ..solver.answers import Answers
 from ..solver.balance import about, kind_of, point
 from ..solver.messages import unmarked, verdict
 from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_file, page, typeset, write_beside
-from .text import relevant_inputs
+from .text import inputs_in_words
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-FORCES, WRAPS = (1e-100, 1e100), (1e-100, 1e9)
+LEAST, MOST_FORCE, MOST_WRAP = 1e-100, 1e100, 10**9
 """What is drawn, in N and in degrees: doubles do not determine where a greater wrap ends."""
 TURN = 2 * pi
 RIM_POINTS, CURVE_POINTS = 181, 200
-ANGLE_TICKS = (30, 45, 90, 180, 360)
 # Lengths and places are in radii of the pulley.
 LONGEST, SHORTEST = 0.84, 0.07  # of forces: in proportion within 1:12
 STRING, LARGER_SIDE, LEAST_SIDE = 0.95, 0.5, 1 / 3  # of a mass; of its block; the smaller's, beside that
@@ -51,11 +50,10 @@ def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = Fa
         if mass:
             forces |= {f"T{end}": float(doubles[f"tension_{end}"]), f"W{end}": to_double(mass * case.scene.g)}
     least = min(force for name, force in forces.items() if kind or name[0] == "W")
-    if not FORCES[0] <= least <= max(forces.values()) <= FORCES[1]:
-        raise SceneError("figure", path, f"draws forces between {FORCES[0]} and {FORCES[1]} N only")
     wrap = float(doubles.settle(lambda m: case.scene.wrap.degrees(m.ar)))
-    if not WRAPS[0] <= wrap <= WRAPS[1]:
-        raise SceneError("figure", path, f"draws wraps between {WRAPS[0]} and {WRAPS[1]:.0e} degrees only")
+    if not (LEAST <= least <= max(forces.values()) <= MOST_FORCE and LEAST <= wrap <= MOST_WRAP):
+        rule = f"draws forces from {LEAST} to {MOST_FORCE} N and wraps from {LEAST} to {MOST_WRAP}° only"
+        raise SceneError("figure", path, rule)
     if not case.ends_hang_down:
         forces = {name: force for name, force in forces.items() if name[0] == "T"}
     scale = LONGEST / (max(forces.values()) or 1)
@@ -63,7 +61,7 @@ def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = Fa
     below = [*_caption(few, kind, wrap, bare)]
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
-    given = relevant_inputs(case.scene, case.motion, answers.uncertain)
+    given = inputs_in_words(case.scene, case.motion, answers.uncertain)
     above = [", ".join(given.values()), unmarked(verdict(few))]
     with page(path, force, above, " ".join(below), bare, panels=1 + curves) as figure:
         machine, *more = figure.subplots(1 + curves, height_ratios=[1.6, 1][: 1 + curves], squeeze=False).flat
@@ -89,12 +87,12 @@ def _caption(few: Answers, kind: arc.Profile | None, wrap: float, bare: bool) ->
         why = "as on a slightly elastic string"
         if few["friction_force_max"] is not None:
             greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
-            why = f"which makes the net friction force greatest ({greatest} N; least {least} N)"
+            why = f"which makes its vector sum greatest ({greatest} N; least {least} N)"
         yield f"Drawn: friction at its limit on the {end} {angle}°, {why}."
     elif kind and not bare:
         yield about(few.case, kind)
         if force := few["friction_force"]:
-            yield f"The net friction force is {format_number(force)} N."
+            yield f"The vector sum of friction is {format_number(force)} N."
     if wrap > 360:
         turns = _number(few.settle(lambda m: few.case.scene.wrap.degrees(m.ar) / 360), few)
         one = ", and the forces on the one at the heavier mass are drawn" if kind else ""
@@ -254,14 +252,11 @@ def _draw_curves(axes: "Axes", few: Answers, kind: arc.Profile, wrap: float) -> 
     axes.margins(y=0.2)
     if friction.min() >= 0:
         axes.set_ylim(bottom=0)
-    if step := next((step for step in ANGLE_TICKS if 2 * step <= wrap <= 8 * step), None):
-        axes.set_xticks(np.arange(0, wrap + 1e-6, step))
+    axes.locator_params(axis="x", nbins=8, steps=[1, 3, 4.5, 9, 10])
     axes.set_xlabel("angle θ along the arc, from m₁'s end on the left (°)")
     axes.set_ylabel("tension T = nR and\nfriction fR (N per radian)")
-    t1, t2 = (typeset(f"T{end} = {_number(few[f'tension_{end}'])} N") for end in (1, 2))
-    labels = [(0.0, tension[0], t1, BLUE), (wrap, tension[-1], t2, BLUE)]
     if stuck:
         axes.axvspan(wrap * edge, wrap * start, color=FAINT, alpha=0.2, lw=0)
     if stuck > 0.1:  # else the word is wider
-        labels.append((wrap * (edge + start) / 2, tension.min() / 2, "stuck", INK))
-    write_beside(axes, labels)
+        middle, top = wrap * (edge + start) / 2, axes.get_ylim()[1]
+        axes.text(middle, top, "stuck", ha="center", va="top")

@@ -14,7 +14,7 @@ from ..solver.answers import Answers
 from ..solver.balance import Contact
 from ..solver.messages import notes, reasons, remarks, unmarked, verdict
 from .files import printable
-from .text import VERSION, cell, relevant_inputs, scene_record
+from .text import VERSION, cell, inputs_in_words, scene_record
 
 if TYPE_CHECKING:
     from .page import Page
@@ -88,7 +88,7 @@ def print_table(
 
 def _print_head(page: "Page", answers: Answers, found: str = "") -> None:
     """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
-    given = relevant_inputs(answers.case.scene, answers.case.motion, answers.uncertain)
+    given = inputs_in_words(answers.case.scene, answers.case.motion, answers.uncertain)
     page.say(", ".join(given.values()))
     if found:
         page.say(found, style="bold")
@@ -161,7 +161,7 @@ def print_steps(answers: Answers, names: Sequence[str], markdown: bool) -> None:
     from .page import Page
     from .typeset import as_markdown, as_text
 
-    given = relevant_inputs(answers.case.scene, answers.case.motion).values()
+    given = inputs_in_words(answers.case.scene, answers.case.motion).values()
     explanation = explain(answers, names)
     if markdown:
         for line in as_markdown(given, explanation):

@@ -214,23 +214,6 @@ def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
     }
 
 
-DEFAULTS = ("inertia = 0.5", "wrap = 180°")
-"""The default inputs on which nothing depends if the pulley has neither mass nor friction."""
-
-
-def relevant_inputs(
-    scene: Scene,
-    motion: Motion = UNMEASURED,
-    uncertain: Mapping[str, Fraction] = {},
-    varied: Iterable[str] = (),
-) -> dict[str, str]:
-    """Say each input, as understood, but no defaults on which nothing depends."""
-    given = {name for name, value in scene._asdict().items() if value} | {*varied, motion.finds}
-    idle = () if given & {"M", "mu", "I", "axle"} else DEFAULTS
-    in_words = inputs_in_words(scene, motion, uncertain)
-    return {name: words for name, words in in_words.items() if words not in idle}
-
-
 def inputs_in_words(
     scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}
 ) -> dict[str, str]:

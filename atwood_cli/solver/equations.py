@@ -215,7 +215,9 @@ class Derivation:
 
     def say(self, name: str) -> str:
         """Return a quantity's symbol with its value, for a sentence."""
-        return f"`{self.symbol(name)}` = {format_number(self.answers[name])} {unit_of(name)}".rstrip()
+        value, exact = self.number(Symbol("", name), self.digits)
+        sign = "=" if exact or not value else "≈"
+        return f"`{self.symbol(name)}` {sign} {format_number(value)} {unit_of(name)}".rstrip()
 
 
 def unit_of(name: str) -> str:

@@ -9,7 +9,6 @@ from decimal import Decimal
 from fractions import Fraction
 from math import inf
 
-from ..model import physics
 from ..model.digits import (
     SHOWN_DIGITS,
     Rounding,
@@ -39,26 +38,24 @@ def notes(answers: Answers, names: Sequence[str]) -> list[str]:
 def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return sentences on why quantities or their uncertainties are missing or doubtful."""
     found = {name: answers.answer(name) for name in names if name != "regime"}
-    said = reasons_at({(name, one.reason): 1 for name, one in found.items() if one.reason}, 1)
+    said = reasons_in({(name, one.reason): 1 for name, one in found.items() if one.reason}, 1)
     if answers.uncertainties is not None:
         without = [name for name, one in found.items() if one.uncertainty is None and one.value is not None]
         said += [*answers.uncertainties.doubts(), *map(unmarked, answers.uncertainties.open_ended(without))]
     return said
 
 
-def reasons_at(
-    counted: Mapping[tuple[str, str], int], points: int, where: str = "at {} of {} points"
-) -> list[str]:
+def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:
     """Return a sentence for each reason that values are missing, without backticks.
 
-    ``counted`` says at how many of the ``points`` a quantity is missing for a reason.
+    ``counted`` says in how many of the ``rows`` a quantity is missing for a reason.
     """
     names: dict[tuple[str, int], list[str]] = {}
     for (name, reason), times in counted.items():
         names.setdefault((reason, times), []).append(name)
     said = []
     for (reason, times), group in names.items():
-        place = "" if times == points else f" ({where.format(times, points)})"
+        place = "" if times == rows else f" (in {times} of {rows} rows)"
         said.append(f"{', '.join(group)}: {unmarked(reason)}{place}.")
     return said
 
@@ -74,7 +71,8 @@ def verdict(answers: Answers) -> str:
     if case.regime == "slip":
         return _slips(answers)
     if case.axle_holds:
-        held = f"At rest: axle friction can hold a difference of masses of up to {_held(answers)}."
+        most = format_number(_beside(answers, case.difference)(case.axle_mass))
+        held = f"At rest: axle friction can hold a difference of masses of up to {most} kg."
         return f"{held} {_grips(answers)}" if case.light else held
     if case.tensions_equal:
         return "No slip: a massless pulley needs no friction to turn, so both tensions are equal."
@@ -135,12 +133,8 @@ def _slips(answers: Answers) -> str:
     return f"{slips}: {mu} is below the {_enough(answers)} needed to hold the string{kinetic}."
 
 
-def _held(answers: Answers) -> str:
-    """Say the difference of the masses that the axle just holds."""
-    case = answers.case
-    times, unit = (1000, "g") if case.axle_mass < 1 else (1, "kg")
-    round_ = _beside(answers, times * case.difference)
-    return f"{format_number(round_(times * case.axle_mass))} {unit}"
+LIKE_RADIANS = (0.3, 12.6)
+"""The range of degrees that are probably radians, or turns: a short arc, but up to two turns in radians."""
 
 
 def remarks(answers: Answers) -> list[str]:
@@ -152,6 +146,10 @@ def remarks(answers: Answers) -> list[str]:
             f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
+    wrap = case.scene.wrap
+    if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
+        typed = as_typed(wrap.number)
+        said.append(f"The wrap is {typed} degrees; for radians write {typed}rad, for turns {typed}turn.")
     if case.scene.mu_k is not None and case.regime != "slip" and not case.tensions_equal:
         said.append(
             "`mu_k` has no effect on a start from rest. A string that already slides keeps sliding if"
@@ -159,13 +157,9 @@ def remarks(answers: Answers) -> list[str]:
         )
     slips_above_a_mass = case.scene.mu is not None and case.slips_once_it_moves
     if slips_above_a_mass and case.rim_mass is not None and not case.slips_at("heaviest"):
-        c, round_ = case.rim_mass, _beside(answers, case.heavy)
-        again = answers.settle(
-            lambda m: physics.critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b), round_
-        )
         said.append(
-            f"Under a heavier mass above {format_number(again)} kg the string holds again, as axle friction"
-            " then matters less."
+            "Far above `critical_heavier_mass` the string holds again, as axle friction matters less under"
+            " heavier masses."
         )
     if case.locked and case.has_axle_friction:
         said.append("A locked pulley does not turn, so `axle` has no effect.")

@@ -5,7 +5,7 @@ paragraph that applies is filled in. `typeset` puts it on a page.
 
 A paragraph of `derivation.md` is sentences, each in a line, and indented equations. Words in brackets are
 conditions, which must all hold; before a title they are those of the step. A paragraph with equations goes if
-none is left. Whatever an equation rests on stands above it. An equation is one of
+none is left. Whatever an equation rests on stands above it; (1) is in every derivation. An equation is one of
 - `(27) mu_verge`: a value of the model, with its formula and numbers, if it exists and was not shown;
 - `half_sine from φ`: a value without its formula, and the symbols that it rests on;
 - `(4) c = rim_mass(m1 m2 a g b)`: an input that follows by a function of `physics`, with numbers put in;
@@ -53,20 +53,16 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
     names = dict.fromkeys(only or [*answers.found, *MOTION])
     known = [name for name in names if name != "regime" and derivation.exists(name)]
     if only:
-        wanted = {*map(derivation.symbol, known)}
-        if "regime" in only:
-            needed = (
-                ["mu_verge"] if derivation.case.pulley_known else ["least_heavier_mass", "massless_verge"]
-            )
-            wanted |= {*map(derivation.symbol, needed)}
-        paragraphs = _needed(paragraphs, wanted)
+        decides = ["mu_verge"] if derivation.case.pulley_known else ["least_heavier_mass", "massless_verge"]
+        wanted = [*known, *(decides if "regime" in only else ())]
+        paragraphs = _needed(paragraphs, {*map(derivation.symbol, wanted)})
     answer = [verdict(answers)]
     if known:
         answer.append(f"{', '.join(map(derivation.say, known))}.")
     if not only:
         answer += remarks(answers)
     reading = (
-        f"In equations, = is exact. After ≈, results have {digits} significant digits, and computed values"
+        f"Numbers after = are exact. After ≈, results have {digits} significant digits, and computed values"
         f" put into a formula have {digits + GUARD_DIGITS}. Equation numbers are those of de Oliveira and"
         " Lemos, Force and torque of a string on a pulley, arXiv:1706.10139."
     )
@@ -74,32 +70,35 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
 
 
 CITATION = re.compile(r"\(\d+\)")
+SYMBOL = re.compile(r"[^\W\d]\w*\*?")
 LINE = re.compile(r"^(#* *)(?:\[(.*?)\] )?(.+)$", re.MULTILINE)
 EQUATION = re.compile(r"((?:\(\d+\),? )*)(.*?)(?: = (.*?))?(?: from (.*))?")
 LAW = re.compile(r"([a-z_][a-z_0-9]{2,})\((.*)\)")
 
 
 def _needed(paragraphs: Sequence[Paragraph], wanted: set[str]) -> list[Paragraph]:
-    """Keep the equations that give the symbols wanted, and all that these rest on, which stands above them.
+    """Keep (1), the equations that give the symbols wanted, and what these rest on, which stands above them.
 
-    An equation rests on its symbols, and on the equations whose numbers its label or the sentences before
-    it cite: a number refers to the first paragraph that has it.
+    An equation rests on its symbols, and on the symbols and equations that its label and the sentences before
+    it mention. A number refers to the first paragraph that has it. Sentences alone lead to what is below.
     """
-    first: dict[str, Paragraph] = {}
-    for paragraph in paragraphs:
-        for equation in paragraph.equations:
-            first.setdefault(equation.label, paragraph)
+    first = {one.label: paragraph for paragraph in reversed(paragraphs) for one in paragraph.equations}
     kept = list[Paragraph]()
+
+    def is_wanted(equation: Equation, place: Paragraph) -> bool:
+        return equation.left in wanted or (equation.label in wanted and first[equation.label] is place)
+
     for paragraph in reversed(paragraphs):
-        chosen = list[Equation]()
+        leads = not paragraph.equations and kept and kept[0].title == paragraph.title
+        if not leads and not any(is_wanted(equation, paragraph) for equation in paragraph.equations):
+            continue
+        words, chosen = " ".join(paragraph.sentences), list[Equation]()
+        wanted |= {"(1)", *CITATION.findall(words), *SYMBOL.findall(" ".join(words.split("`")[1::2]))}
         for equation in reversed(paragraph.equations):
-            is_cited = equation.label in wanted and first[equation.label] is paragraph
-            if is_cited or equation.left in wanted:
+            if is_wanted(equation, paragraph):
                 chosen.insert(0, equation)
-                cited = CITATION.findall(" ".join([equation.label, *paragraph.sentences]))
-                wanted = wanted - {equation.left} | equation.needs.union(cited)
-        if chosen:
-            kept.insert(0, paragraph._replace(equations=chosen))
+                wanted = wanted - {equation.left} | equation.needs.union(CITATION.findall(equation.label))
+        kept.insert(0, paragraph._replace(equations=chosen))
     return kept
 
 

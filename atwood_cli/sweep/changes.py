@@ -35,7 +35,7 @@ from ..model.decisions import Decisions
 from ..model.digits import SHOWN_DIGITS, to_digits
 from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
-from .ranges import LOCKED, Point, Range, decimal_point, exact_point, power, with_value
+from .ranges import LOCKED, Point, Range, decimal_point, exact_point, with_value
 
 NEIGHBOUR_SHARE = Fraction(1, 10**60)
 """A value's neighbour, at which it is decided whether the regime changes there, is off by this part of it."""
@@ -128,14 +128,7 @@ def _between(
         if is_settled and not start < place < stop:  # at the ends it is known that the state holds on
             digits += 1
             continue
-        value = Fraction(place) if is_settled else _middle(last, first)
+        value = Fraction(place) if is_settled else (last + first) / 2
         last, first = (value, first) if state(value) == before else (last, value)
         if is_settled:
             return decimal_point(place, suffix), last, first
-
-
-def _middle(last: Fraction, first: Fraction) -> Fraction:
-    """Return a value between two: their mean, or if their sizes differ much, about their geometric mean."""
-    if last and first < 16 * last:
-        return (last + first) / 2
-    return first * power(last / first if last else Fraction(1, 2**128), Fraction(1, 2))

@@ -37,7 +37,7 @@ from ..model.scene import (
     with_unit,
 )
 from ..model.units import MAX_DIGITS, in_quotes, read_number
-from ..output.text import relevant_inputs
+from ..output.text import inputs_in_words
 from ..solver.answers import Answers
 
 UNIT_SUFFIXES = {"rad": "rad", "N m": "Nm"}
@@ -151,7 +151,7 @@ class Sweep(NamedTuple):
     def inputs(self) -> dict[str, str]:
         """Return the inputs, and the ranges, in words."""
         ranges = {range_.name: range_.words for range_ in self.ranges}
-        return relevant_inputs(self.scene, varied=ranges) | ranges
+        return inputs_in_words(self.scene) | ranges
 
     @property
     def along(self) -> Range:
@@ -254,9 +254,6 @@ def read_list(name: str, typed: str) -> Range:
     if any(re.match(r"0\d", word) for word in words[1:]):
         read_value(name, typed)  # refuses 1,05 and 1,000: numbers rather than lists
     values, suffix = _read_numbers(name, typed, words)
-    if len(set(values)) < len(values):
-        again = next(word for i, word in enumerate(words) if values[i] in values[:i])
-        raise SceneError(name, typed, f"has the value {in_quotes(again)} twice; give it once")
     named = [word.lower() if word.lower() in INPUTS[name].names else "" for word in words]
     points = [exact_point(value, suffix, word) for value, word in zip(values, named, strict=True)]
     return Range(name, typed, points, False, suffix)

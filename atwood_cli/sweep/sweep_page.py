@@ -2,7 +2,7 @@
 
 import sys
 from collections import Counter
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from fractions import Fraction
 from itertools import groupby
@@ -12,7 +12,7 @@ from ..model.quantities import QUANTITIES, STANDARD
 from ..model.scene import with_unit
 from ..output.page import Page, aligned, progress
 from ..output.text import VERSION, cell, scene_record
-from ..solver.messages import reasons_at
+from ..solver.messages import reasons_in
 from .changes import changes, regimes
 from .ranges import LOCKED, Row, Sweep, solve_rows
 from .sweep_figure import MAX_CURVES
@@ -43,14 +43,13 @@ class SweepPage:
                 yield row
                 self.done += 1
 
-    def notes(self, shown: Collection[str] = ()) -> list[str]:
-        """Say why values that were asked for, or are ``shown`` in other rows, are missing, after all rows."""
-        said = {key: points for key, points in self.reasons.items() if key[0] in {*self.asked, *shown}}
-        return reasons_at(said, self.sweep.total)
+    def notes(self) -> list[str]:
+        """Say why values are missing, after all rows."""
+        return reasons_in(self.reasons, self.sweep.total)
 
     def _all_notes(self) -> Iterator[str]:
-        """Say why any values are missing: an iterator that begins after all rows."""
-        yield from [*self._assumption(), *reasons_at(self.reasons, self.sweep.total)]
+        """Say what is assumed and why values are missing: an iterator that begins after all rows."""
+        yield from [*self._assumption(), *self.notes()]
 
     def _assumption(self) -> list[str]:
         """Say that the string is assumed not to slip, if no slip needs friction and mu is not given."""
@@ -92,7 +91,7 @@ class SweepPage:
         numbers = [name for name in same if name != "regime"]
         if shared := [f"{name} = {with_unit(same[name], QUANTITIES[name].unit)}" for name in numbers]:
             above.append(f"In all rows: {', '.join(shared)}.")
-        notes = self.notes(shown)
+        missing = {key: rows for key, rows in self.reasons.items() if key[0] in {*self.asked, *shown}}
         page.say(*above)
         if table and (len(same) < len(shown) or not shown):
             columns = {}
@@ -110,7 +109,7 @@ class SweepPage:
             groups = groupby(rows, lambda row: row.at[slow] if sweep.ranges[1:] else row.regime)
             parts = [[next(lines) for _ in group] for _, group in groups]
             page.table(list(columns), parts, keys=len(sweep.ranges))
-        page.say(*notes)
+        page.say(*reasons_in(missing, sweep.total))
 
 
 PULLEY = "critical_pulley_mass"

@@ -95,8 +95,8 @@ def read_headings(
             continue
         is_repeat = found.name in vocabulary.repeated
         key = found.name, found.number
-        if is_repeat and column in named and key in headings:
-            key = found.name, column  # a repeat that its user did not number
+        if is_repeat and column in named and not found.number:  # its user may name repeats alike
+            key = found.name, str(1 + sum(own.name == found.name for own in headings.values()))
         if same := headings.get(key):
             way = f"number what is repeated, as '{found.name} 1'" if is_repeat else "rename one"
             raise refused(column, f"holds {found.name}, as {in_quotes(same.column)} does; {way}")
@@ -134,7 +134,7 @@ def read_named(words: Iterable[str], vocabulary: Vocabulary) -> dict[str, str]:
         meaning = _meaning(name, vocabulary, {})
         if not heading or heading in named or not meaning or not meaning.name:
             there = ", ".join(dict.fromkeys(vocabulary.names.values()))
-            rule = f"must be NAME=HEADING, as t='Fallzeit (s)', each heading once; names are {there}"
+            rule = f"must be NAME=HEADING, as m1='Masse 1 (g)', each heading once; names are {there}"
             raise SceneError("column", word, rule)
         named[heading] = name
     return named
@@ -253,11 +253,12 @@ def pointed(name: str, cell: str, comma: bool) -> str:
     return (cell.replace(",", ".") if comma else cell).strip()
 
 
-def read_cell(heading: Heading, cell: str, comma: bool) -> Input | None:
-    """Return the number in a cell, exact and in SI units, with its uncertainty; None if it is empty.
+def read_cell(heading: Heading, row: Sequence[str], comma: bool) -> Input | None:
+    """Return the number in a column, exact and in SI units, with its uncertainty; None if the cell is empty.
 
     A unit in the cell goes before the unit of the heading. Raises SceneError.
     """
+    cell = row[heading.place]
     text = pointed(heading.name, cell, comma)
     if text in EMPTY:
         return None
@@ -266,10 +267,15 @@ def read_cell(heading: Heading, cell: str, comma: bool) -> Input | None:
     except SceneError as error:
         raise SceneError(heading.name, cell, error.rule) from None
     factor = ONE if OWN_UNIT.search(text) else heading.factor
-    return Input(value * factor, uncertainty * factor, cell)
+    value, uncertainty = value * factor, uncertainty * factor
+    if heading.u and (u := row[heading.u.place].strip()) not in EMPTY:
+        if uncertainty:
+            raise SceneError(heading.u.column, u, f"is a second uncertainty, beside {in_quotes(cell)}")
+        uncertainty = _read_uncertainty(heading.u, u, value, comma)
+    return Input(value, uncertainty, cell)
 
 
-def read_uncertainty(heading: Heading, cell: str, value: Fraction, comma: bool) -> Fraction:
+def _read_uncertainty(heading: Heading, cell: str, value: Fraction, comma: bool) -> Fraction:
     """Return the uncertainty of a value, from the cell in its column of uncertainties. Raises SceneError."""
     number = pointed(heading.column, cell, comma).lstrip("± ")
     relative = number.endswith(PERCENT) or heading.unit == PERCENT

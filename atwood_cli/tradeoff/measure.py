@@ -7,7 +7,7 @@ units in the last place (ulp) of the exact value's double, the worst of a scene,
 from collections.abc import Callable, Mapping, Sequence
 from decimal import Context, Decimal
 from functools import partial
-from math import ceil, inf, isfinite, ldexp, pi, ulp
+from math import inf, isfinite, ldexp, pi, ulp
 from random import Random
 from statistics import median
 from time import perf_counter
@@ -25,12 +25,12 @@ Inputs = dict[str, Any]
 """The inputs of a scene by parameter, as doubles."""
 Columns = Mapping[str, Any]
 """A column for each input, or for each quantity."""
-MOST_SCENES = 100_000
+MOST_SCENES, SEED = 100_000, 1
 EXACT_DIGITS = 240
 PRECISE = Context(prec=EXACT_DIGITS + 20)
-REPEATS, RUN_SECONDS = 5, 0.01
-FEWEST_ROWS, MOST_ROWS, LONG_SECONDS = 40, 10_000, 0.25
-"""The rows of a table that is timed, and the time of a run from which on no more rows are added to it."""
+REPEATS, CALLS = 5, 3
+FEWEST_ROWS, MOST_ROWS, RUN_SECONDS = 40, 10_000, 0.1
+"""The rows of a table that is timed; between these, as many as are solved in such a time."""
 
 
 # Every platform draws the same scenes: mantissas and exponents are drawn one by one, so that no library's
@@ -85,7 +85,7 @@ FAMILIES: dict[str, tuple[Callable[[Random], Inputs], str]] = {
 """Kinds of scenes by name: the function that draws a scene, and a description."""
 
 
-def draw_scenes(family: str, count: int, seed: int) -> list[Inputs]:
+def draw_scenes(family: str, count: int, seed: int = SEED) -> list[Inputs]:
     """Return ``count`` scenes of a family. The same seed draws the same scenes, whatever their number."""
     rng, (draw, _) = Random(f"{family} {seed}"), FAMILIES[family]
     return [draw(rng) for _ in range(count)]
@@ -158,39 +158,24 @@ def measure(family: str, scenes: Sequence[Inputs]) -> list[Measured]:
     """Measure every setting on these scenes, which have the same inputs; ``family`` names them."""
     columns = _columns(scenes, len(scenes))
     exact = in_digits(EXACT_DIGITS, **columns)
-    runs = [_short_run(run, scenes) for run in SETTINGS.values()]
-    measured = []
-    for (name, run), short, seconds in zip(SETTINGS.items(), runs, timed(runs), strict=True):
-        found = errors(run(**columns), exact)
-        worst, wrong = max(found, default=None), 1 - len(found) / len(scenes)
-        measured.append(Measured(family, name, seconds / len(short.keywords["m1"]), worst, wrong))
-    return measured
+    found, rows, timers = [], [], []
+    for run in SETTINGS.values():
+        run(**columns)  # compiles what is kept
+        start = perf_counter()
+        solved = run(**columns)
+        rows_in_time = RUN_SECONDS * len(scenes) / max(perf_counter() - start, 1e-9)
+        found.append(errors(solved, exact))
+        rows.append(int(min(max(rows_in_time, FEWEST_ROWS), MOST_ROWS)))
+        timers.append(Timer(partial(run, **_columns(scenes, rows[-1])), timer=perf_counter))
+    # The runs take turns, so that whatever slows the machine for a while slows all of them. The first of the
+    # calls fills the processor's cache.
+    turns = [[min(timer.repeat(CALLS, 1)) for timer in timers] for _ in range(REPEATS)]
+    return [
+        Measured(family, name, median(times) / size, max(ulps, default=None), 1 - len(ulps) / len(scenes))
+        for name, times, size, ulps in zip(SETTINGS, zip(*turns, strict=True), rows, found, strict=True)
+    ]
 
 
 def _columns(scenes: Sequence[Inputs], rows: int) -> Columns:
     """Return the scenes as columns of ``rows`` rows, in which they are repeated."""
     return {name: np.resize([scene[name] for scene in scenes], rows) for name in scenes[0]}
-
-
-def _short_run(run: Setting, scenes: Sequence[Inputs]) -> partial[Columns]:
-    """Return a call that solves the scenes in a table which is not too long to be timed."""
-    rows = FEWEST_ROWS
-    while _quickest(call := partial(run, **_columns(scenes, rows))) < LONG_SECONDS and rows < MOST_ROWS:
-        rows = min(4 * rows, MOST_ROWS)
-    return call
-
-
-def _quickest(run: Callable[[], object]) -> float:
-    """Return the lesser time of two calls, in s: a single call may have been interrupted."""
-    return min(Timer(run, timer=perf_counter).repeat(2, 1))
-
-
-def timed(runs: Sequence[Callable[[], object]]) -> list[float]:
-    """Return the median time of a call of each run, in s.
-
-    The runs take turns, so that whatever slows the machine for a while slows all of them.
-    """
-    timers = [Timer(run, timer=perf_counter) for run in runs]
-    calls = [ceil(RUN_SECONDS / max(_quickest(run), 1e-7)) for run in runs]
-    repeats = [[timer.timeit(n) / n for timer, n in zip(timers, calls, strict=True)] for _ in range(REPEATS)]
-    return [median(times) for times in zip(*repeats, strict=True)]

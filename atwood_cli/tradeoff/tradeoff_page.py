@@ -10,32 +10,31 @@ from ..model.digits import format_number
 from ..output.figure import BLUE, GREEN, PURPLE, RED, page
 from ..output.page import Page
 from ..output.text import VERSION
-from .measure import SETTINGS, Measured
+from .measure import SEED, SETTINGS, Measured
 
 LEGEND = (
-    "Each family has the time per scene, the worst error in units in the last place of a double (ulp, about"
-    " 1e-16 of it), and the share of scenes with a wrong regime.",
+    "Each family has the time per scene in µs, the worst error in units in the last place of a double (ulp,"
+    " about 1e-16 of it), and the share of scenes with a wrong regime.",
     "Settings: the paper's formulas in NumPy, accuracies of solve_arrays, and solve to 50 digits.",
 )
-SECONDS = {"ns": 1e-9, "µs": 1e-6, "ms": 1e-3, "s": 1.0}
 LEAST, GREATEST = 1e-3, 1e16
 """The least and the greatest error that is drawn, in ulp; others are drawn as these."""
 TICKS = {LEAST: "≤ 0.001", 1.0: "1", 1e4: "10⁴", 1e8: "10⁸", 1e12: "10¹²", GREATEST: "no digit\nright"}
 
 
-def record(measured: Sequence[Measured], scenes: int, seed: int) -> dict[str, object]:
+def record(measured: Sequence[Measured], scenes: int) -> dict[str, object]:
     """Return the record for JSON: the seed, the number of scenes, and every setting on every family."""
     settings = [point._asdict() for point in measured]
-    return {"version": VERSION, "seed": seed, "scenes": scenes, "settings": settings}
+    return {"version": VERSION, "seed": SEED, "scenes": scenes, "settings": settings}
 
 
-def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
+def print_table(measured: Sequence[Measured], scenes: int) -> None:
     """Print a column for each setting, with its time, error and share of wrong regimes on each family."""
     groups = []
     for family, group in groupby(measured, attrgetter("family")):
         heads = [family, "  error (ulp)", "  wrong"]
         cells = (
-            [in_seconds(one.seconds), short(one.worst_ulp), f"{short(100 * one.share_wrong_regime, 3)} %"]
+            [short(1e6 * one.seconds, 3), short(one.worst_ulp), f"{short(100 * one.share_wrong_regime, 3)} %"]
             for one in group
         )
         groups.append([list(row) for row in zip(heads, *cells, strict=True)])
@@ -43,7 +42,7 @@ def print_table(measured: Sequence[Measured], scenes: int, seed: int) -> None:
     for row in chain(*groups):
         row[1:] = map(str.rjust, row[1:], widths[1:])
     table = Page()
-    table.say(f"{scenes} scenes of each family, seed {seed}")
+    table.say(f"{scenes} scenes of each family, seed {SEED}")
     table.table(["Family", *SETTINGS], groups)
     table.say(*LEGEND)
 
@@ -65,13 +64,6 @@ def save(measured: Sequence[Measured], path: str, force: bool, bare: bool = Fals
         panels[0].set_ylabel("worst error ε (ulp)")
         panels[len(panels) // 2].set_xlabel("time per scene t (s)")
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
-
-
-def in_seconds(seconds: float) -> str:
-    """Return a time to three digits, in the unit that fits."""
-    shown = {unit: float(f"{seconds / factor:.3g}") for unit, factor in SECONDS.items()}
-    unit = next((unit for unit, number in shown.items() if number < 1000), "s")
-    return f"{short(shown[unit], 3)} {unit}"
 
 
 def short(value: float | None, digits: int = 2) -> str:
