@@ -386,6 +386,27 @@ def test_what_is_left_out_has_no_part() -> None:
     assert whole["interval"] == row["interval"]
 
 
+def test_of_two_repeats_the_one_far_from_the_line_is_named_whatever_its_sign() -> None:
+    rows = [
+        (1, 2, 3.2, 3.21),
+        (2, 1, -3.2, -3.21),
+        (1, 1.5, 2.2, -1.9),
+        (2, 3, 1.95, 1.94),
+        (3, 1, -4.8, -4.81),
+    ]
+    notes = found(table_of(rows, "m1,m2,a1,a2"), "--axle 0")["notes"]
+    assert [note[:14] for note in notes if "standard dev" in note][:1] == ["Row 3: a2 = -1"]
+
+
+def test_repeats_without_scatter_are_judged_by_the_step_of_their_digits() -> None:
+    """The scatter is known then, and the test is that of χ²: it was called an F test."""
+    rows = [(0.2, 0.22, 2.1, 2.1), (0.2, 0.23, 1.7, 1.7), (0.2, 0.24, 1.5, 1.5), (0.2, 0.25, 1.3, 1.3)]
+    result = found(table_of(rows, "m1,m2,t1,t2"), "--drop 1")
+    (note,) = (note for note in result["notes"] if "χ²" in note)
+    assert "F test" not in note
+    assert f"p = {stats.chi2.sf(result['chi2'], 2):.2g}" in note
+
+
 def test_outliers_in_the_only_run_are_a_sentence() -> None:
     """One pair of masses, ten times, with an odd one: ValueError, not enough values to unpack."""
     times = "1.01,1.02,1.01,1.02,1.01,1.02,1.01,1.02,1.01,5.02"

@@ -209,6 +209,11 @@ def test_columns_of_other_names(read: Any) -> None:
     assert read("m1,m2,A,B\n1,2,3,4\n", A="t", B="t").cells == ["1:t1", "1:t2"]
 
 
+def test_the_step_of_readings_is_that_of_the_last_digit(read: Any) -> None:
+    """Times of 10 and 20 s had a step of 10 s."""
+    assert [read(f"m1,m2,t\n1,2,{t}\n2,3,20\n").step for t in ("10", "9.5", "8.25")] == [1, 0.1, 0.01]
+
+
 UNCERTAIN = "error|u|± a|σ|Uncertainty (s)".split("|")
 
 
@@ -216,7 +221,7 @@ UNCERTAIN = "error|u|± a|σ|Uncertainty (s)".split("|")
     ("content", "words"),
     [
         ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", "; make each run a row, below headings, as m1 (g),m2 (g),t (s)"),
-        ("mass one (g),Zeit (s),mass two (g),n\n1,2,3,4\n", "; name them, as --column m1='mass one (g)' --column m2='mass two (g)' --column t='Zeit (s)'"),
+        ("mass one (g),Zeit (s),mass two (g),n\n1,2,3,4\n", "; name them, as --column m1='mass one (g)' --column m2='mass two (g)' --column t='Zeit (s)', and likewise each repeat"),
         *((f"m1,m2,a,{column}\n1,2,3,4\n", f"column '{column}' could be an uncertainty") for column in UNCERTAIN),
     ],
 )  # fmt: skip

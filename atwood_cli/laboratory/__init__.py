@@ -56,7 +56,7 @@ def fit(
         SceneError: A parameter is not valid (a ValueError).
         ValueError: The columns are no table of runs.
         OSError: The file cannot be read, or is no table of runs.
-        ArithmeticError: The runs are too few, or too alike, to determine the quantities.
+        ArithmeticError: The runs do not determine the quantities, or no pulley explains them.
     """
     from .report import results_of
 

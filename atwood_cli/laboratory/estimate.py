@@ -51,8 +51,8 @@ class Estimate(NamedTuple):
     ``sigma`` is the standard uncertainty of each run's measurement, scatter between runs included, and
     ``dof`` the number of runs less that of fitted quantities. ``chi2`` is that of the runs by the
     uncertainties stated, or by the scatter of repeats; None without either. ``p_value`` is the probability
-    that chance gives a larger one, and ``between_runs`` the standard deviation between runs beyond that, as
-    a mass (kg); None if nothing is left to test the fit.
+    that chance gives a larger one, by an F test if repeats alone show the scatter. ``between_runs`` is the
+    standard deviation between runs beyond that, as a mass (kg). Both are None if nothing is left to test.
     """
 
     data: Data
@@ -63,6 +63,7 @@ class Estimate(NamedTuple):
     dof: int
     chi2: float | None = None
     p_value: float | None = None
+    is_f_test: bool = False
     between_runs: float | None = None
     results: Mapping[str, Result] = {}
 
@@ -194,12 +195,13 @@ def estimate(
     else:
         raise CannotSeparate
     sigma, dof = np.sqrt(line.scale * line.variance), len(data.l) - len(names)
+    is_f_test = bool(data.repeats[1]) and not data.stated
     chi2, p_value, between_runs = line.chi2 if data.scatter.any() else None, None, None
     if chi2 is not None and dof:
-        known_by = NORMAL_DOF if data.stated else data.repeats[1] or NORMAL_DOF
-        p_value = float(fdtrc(dof, known_by, chi2 / dof))  # χ² if the variance is known
+        known_by = data.repeats[1] if is_f_test else NORMAL_DOF  # χ² if the variance is known
+        p_value = float(fdtrc(dof, known_by, chi2 / dof))
         between_runs = sqrt(line.between) / abs(values["gravity"])
-    return Estimate(data, values, names, line, sigma, dof, chi2, p_value, between_runs)
+    return Estimate(data, values, names, line, sigma, dof, chi2, p_value, is_f_test, between_runs)
 
 
 def _least_squares(

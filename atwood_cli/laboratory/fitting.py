@@ -244,15 +244,16 @@ def _outliers(
     """
     here, places = np.flatnonzero(used), np.flatnonzero(used[runs.run])
     # Of two repeats, which are equally far from each other, that far from the line comes first.
-    away = abs(runs.values[places]) - expected(data, values)[np.searchsorted(here, runs.run[places])]
+    measured = (runs.sign[runs.run] * runs.values)[places]
+    away = measured - expected(data, values)[np.searchsorted(here, runs.run[places])]
     places = places[np.argsort(-np.abs(away), kind="stable")]
     u = runs.u_values[places] if data.stated else np.ones(len(places))
     judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
     kept = np.ones(len(runs.values), dtype=bool)
     for i, far in outliers(judge, len(places), len(places) - len(here), OUTLIER_LEVEL).items():
         kept[places[i]], cell = False, runs.cells[places[i]]
-        measured = f"{format_number(float(runs.values[places[i]]))} {parameter_of(runs.kind).unit}"
-        yield int(runs.run[places[i]]), _far(f"{in_words(cell)} = {measured} is", far, "its repeats", cell)
+        value = f"{format_number(float(runs.values[places[i]]))} {parameter_of(runs.kind).unit}"
+        yield int(runs.run[places[i]]), _far(f"{in_words(cell)} = {value} is", far, "its repeats", cell)
     near = {**values, "rim_mass": max(values["rim_mass"], 0.0), "delay": 0.0}
     judge = judge_of_line(linear(of_forces, as_data(runs, used, kept), near, names))
     for i, far in outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL).items():

@@ -47,7 +47,8 @@ def _scatter(fit: Fitted) -> str:
     if whole.p_value is None:
         return "There are as many runs as results, so nothing is left to test the fit."
     probability = f"p = {rounded(whole.p_value)}" if whole.p_value >= 0.001 else "p < 0.001"
-    source, test = ("uncertainties", "") if whole.data.stated else ("repeats", " by an F test")
+    source = "uncertainties" if whole.data.stated else "repeats"
+    test = " by an F test" if whole.is_f_test else ""
     chi2 = f"χ² = {rounded(whole.chi2, 3)}, {counted(whole.dof, 'degree')} of freedom"
     by = f"{source} ({chi2}, {probability}{test})"
     if whole.p_value < SELDOM:

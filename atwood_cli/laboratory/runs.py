@@ -158,7 +158,7 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, count: int, words: Sequence[str]) 
         u_values,
         np.repeat(np.arange(len(used)), [*map(len, used)]),
         cells,
-        min(10.0 ** int(Decimal(str(value)).normalize().as_tuple().exponent) for value in values),
+        10.0 ** min(0, *(int(Decimal(str(x)).normalize().as_tuple().exponent) for x in values)),
     )
 
 
@@ -218,12 +218,12 @@ def _missing(missing: Sequence[str], sheet: Sheet, others: Sequence[str]) -> str
                 with suppress(Unreadable):  # it has the unit of something else
                     read_headings([column], VOCABULARY, named={column: name})
                     options[column] = f"--column {name}={quote(column)}"
-                    if name != "t":  # which may be repeated
-                        break
+                    break
     said = f"runs need columns m1, m2, and t or a; there are {listed(sheet.columns)}"
     if not options or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
         return f"{said}; make each run a row, below headings, as m1 (g),m2 (g),t (s)"
-    return f"{said}; name them, as {' '.join(options.values())}"
+    repeats = ", and likewise each repeat" if "t" in missing else ""
+    return f"{said}; name them, as {' '.join(options.values())}{repeats}"
 
 
 # Rows
