@@ -156,6 +156,11 @@ def inertia(c: Claims, shown: str, digits: int) -> None:
     assert abs(Fraction(shown) / beta - 1) < Fraction(1, 10 ** (digits - 1))
 
 
+def short_wrap(c: Claims, *numbers: Any) -> None:
+    assert {*map(Fraction, numbers[:-1])} == {c.scene.wrap.number}
+    assert c.scene.wrap.unit == "°"
+
+
 def out_of_range(c: Claims, names: str, why: str, digits: int) -> None:
     answers = c.expected()
     for name in names.split(", "):
@@ -216,6 +221,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
     + r"\.": open_range,
     rf"(.*?): ({RANGES})\.": out_of_range,
     rf"The inertia factor I/\(M R\^2\) is {NUMBER}, above 1: .*": inertia,
+    rf"The wrap is {NUMBER} degrees; for radians write {NUMBER}rad, for turns {NUMBER}turn\.": short_wrap,
 }
 """What is said of a scene, and the claim in it."""
 
@@ -247,6 +253,8 @@ SENTENCES |= {f".*: {re.escape(unmarked(why))}\\.": claimed(truth) for why, trut
 def drawn(rng: Random) -> dict[str, str]:
     """A scene of any kind, some of them near a threshold, some with a free end."""
     words = with_friction(rng, size=rng.choice([1, 1, 1, 1e-200, 1e150]))
+    if rng.random() < 0.1:
+        words["wrap"] = rng.choice(["0.5", "3.14", "12.5"])
     if "mu" not in words:
         return words | {"m1": "0"} if rng.random() < 0.1 else words
     verge = Answers(Scene.read({**words, "mu": None}), 20)["mu_verge"]
