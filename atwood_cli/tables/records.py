@@ -167,8 +167,8 @@ class Csv:
     def _written(self, cells: Sequence[str]) -> str:
         """Return cells as a row of the table, in quotation marks if they need them."""
         buffer = StringIO()
-        csv.writer(buffer, delimiter=self.separator, lineterminator="").writerow(cells)
-        return buffer.getvalue()
+        csv.writer(buffer, delimiter=self.separator).writerow(cells)  # it quotes the characters of its line end
+        return buffer.getvalue().removesuffix("\r\n")
 
 
 def _decoded(text: bytes) -> str:
