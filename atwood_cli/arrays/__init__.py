@@ -65,8 +65,8 @@ def solve_arrays(
         accuracy: "certified" (every regime right, every relative error proven below 2e-14), whose last
             places may depend on NumPy's build and on the other rows; or "exact" (the nearest double), which
             is the same everywhere.
-        quantities: The names or symbols of quantities, as "acceleration" or "a"; if None, the names in
-            `quantities.STANDARD`.
+        quantities: The names or symbols of quantities, as "acceleration" or "a"; if None, regime,
+            acceleration, tension_1, tension_2, mu_verge, friction_force and critical_pulley_mass.
 
     Returns:
         Arrays by the names of the quantities, in SI units, of the common shape of the inputs: NaN where a

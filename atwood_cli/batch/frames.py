@@ -41,8 +41,8 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
             so on are inputs, in SI units and degrees, or in the unit of the heading, as "m1 (g)". Other
             columns stay as they are. An input is not given where a value is missing. A NaN is an error of
             its row, and a text that is no number is, too.
-        quantities: The names or symbols of quantities, as "acceleration" or "a"; if None, the names in
-            `quantities.STANDARD`.
+        quantities: The names or symbols of quantities, as "acceleration" or "a"; if None, regime,
+            acceleration, tension_1, tension_2, mu_verge, friction_force and critical_pulley_mass.
 
     Returns:
         A table with the same rows, eager or lazy as the other was. Behind the columns of that table it has
