@@ -74,7 +74,7 @@ def failure(answers: Answers, expected: Condition) -> str:
         instead = unmarked(_instead(answers, expected))
     elif failing := [end for end in ends if not (end and _holds(end, expected))]:
         regime = failing[0].case.regime if failing[0] and expected.name in REGIMES else ""
-        instead = f"within the uncertainties it may {MAY.get(regime, 'fail')}"
+        instead = f"within two standard uncertainties it may {MAY.get(regime, 'fail')}"
     elif expected.name in REGIMES and answers.case.mu_assumed:
         instead = "that is only assumed: give mu"
     else:

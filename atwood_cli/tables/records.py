@@ -167,7 +167,7 @@ class Csv:
     def _written(self, cells: Sequence[str]) -> str:
         """Return cells as a row of the table, in quotation marks if they need them."""
         buffer = StringIO()
-        csv.writer(buffer, delimiter=self.separator).writerow(cells)  # it quotes the characters of its line end
+        csv.writer(buffer, delimiter=self.separator).writerow(cells)  # quotes its line ends, too
         return buffer.getvalue().removesuffix("\r\n")
 
 
