@@ -23,7 +23,7 @@ from atwood_cli.__main__ import INTERRUPTED
 from atwood_cli.cli import COMMANDS
 from atwood_cli.cli.options import COULD_NOT, DONE, WRONG_USAGE
 from atwood_cli.model.machine import Machine
-from atwood_cli.model.quantities import NAMES, QUANTITIES
+from atwood_cli.model.quantities import NAMES, QUANTITIES, STANDARD
 
 from . import oracle
 from .running import Atwood, process
@@ -143,6 +143,11 @@ def test_a_users_script_runs() -> None:
 def test_help_begins_with_what_a_function_does(function: Any) -> None:
     described = " ".join(pydoc.plain(pydoc.render_doc(function)).split())
     assert described.index((function.__doc__ or "").split("\n")[0]) < 500
+
+
+@pytest.mark.parametrize("function", [solve_arrays, solve_table])
+def test_a_docstring_names_the_usual_quantities(function: Any) -> None:
+    assert f"if None, {', '.join(STANDARD[:-1])} and {STANDARD[-1]}." in " ".join(function.__doc__.split())
 
 
 # What a version promises: an entry may be added, but none goes or changes its meaning

@@ -167,7 +167,8 @@ class Csv:
     def _written(self, cells: Sequence[str]) -> str:
         """Return cells as a row of the table, in quotation marks if they need them."""
         buffer = StringIO()
-        csv.writer(buffer, delimiter=self.separator).writerow(cells)  # quotes its line ends, too
+        # Without a line end of its own, the writer would not quote the line breaks of cells.
+        csv.writer(buffer, delimiter=self.separator).writerow(cells)
         return buffer.getvalue().removesuffix("\r\n")
 
 
