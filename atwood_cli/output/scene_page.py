@@ -218,7 +218,10 @@ def print_contact(answers: Answers, arc: Contact, tables: bool) -> None:
     forces = {words: arc.balance[name] for name, words in FORCES.items()}
     xs, ys = (aligned(cell(force[axis]) for force in forces.values()) for axis in "xy")
     force_rows = list(zip(forces, xs, ys, strict=True))
-    page.table(["Force on the pulley", "x (N)", "y (N)"], [force_rows[:2], force_rows[2:3], force_rows[3:]])
+    page.table(
+        ["Force on the pulley", "x towards m1 (N)", "y upwards (N)"],
+        [force_rows[:2], force_rows[2:3], force_rows[3:]],
+    )
     unit = "N m" if answers.case.scene.R is not None else "N, per unit radius"
     torques = aligned(map(cell, arc.balance["torque"].values()))
     kinds = ("friction along the arc", "T2 - T1" if answers.case.scene.R is None else "R (T2 - T1)")
