@@ -40,20 +40,27 @@ ON_CTRL_C = 130
 
 
 class Command(TyperCommand):
-    """A command with help by group, and with hints at two slips that typer would misunderstand."""
+    """A command with help by group, and with hints at three slips that typer would misunderstand."""
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
-        options = {flag: param for param in self.get_params(ctx) for flag in param.opts}
+        if ctx.resilient_parsing:  # to complete a line that is not finished
+            return super().parse_args(ctx, args)
+        options: dict[str, Any] = {flag: param for param in self.get_params(ctx) for flag in param.opts}
+        given = list[Any]()
         for word, value in zip(args, [*args[1:], ""], strict=False):
             name = word.partition("=")[0]
             meant = f"--{name.lstrip(DASHES)}"  # word processors make such dashes of two
             alike = [flag for flag in options if flag.lower() == meant.lower()]
             if alike and name not in options and name[0] in DASHES:
                 raise UsageError(f"No such option: {name}. Did you mean {alike[0]}?", ctx)
-            takes_value = word in options and not getattr(options[word], "is_flag", True)
-            if takes_value and value.partition("=")[0] in options:
-                rule = f"needs a value before the option {shortened(value)}"
-                raise SceneError(str(options[word].name), None, rule)
+            if name not in options or options[name].is_flag:
+                continue
+            option = options[name]
+            if word == name and value.partition("=")[0] in options:
+                raise SceneError(option.name, None, f"needs a value before the option {shortened(value)}")
+            if option in given and not option.multiple:
+                raise SceneError(option.name, None, "is given twice; leave one out")
+            given.append(option)
         return super().parse_args(ctx, args)
 
     def format_options(self, ctx: Any, formatter: Any) -> None:
