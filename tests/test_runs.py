@@ -221,7 +221,7 @@ UNCERTAIN = "error|u|± a|σ|Uncertainty (s)".split("|")
     ("content", "words"),
     [
         ("quantity,run 1,run 2\nm1,0.2,0.201\nm2,0.207,0.206\nt,3.99,5.02\n", "; make each run a row, below headings, as m1 (g),m2 (g),t (s)"),
-        ("mass one (g),Zeit (s),mass two (g),n\n1,2,3,4\n", "; name them, as --column m1='mass one (g)' --column m2='mass two (g)' --column t='Zeit (s)', and likewise each repeat"),
+        ("n,mass one (g),Zeit (s),mass two (g)\n1,2,3,4\n", "; name them, as --column m1='mass one (g)' --column m2='mass two (g)' --column t='Zeit (s)', and likewise each repeat"),
         *((f"m1,m2,a,{column}\n1,2,3,4\n", f"column '{column}' could be an uncertainty") for column in UNCERTAIN),
     ],
 )  # fmt: skip

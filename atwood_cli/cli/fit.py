@@ -70,8 +70,8 @@ Examples:
 Each row is a run, with columns m1, m2, and a, or t and drop, the height of fall (or --drop for all). Units
 stand in headings, as m1 (g) or t/s, or in cells, as solve takes them. Repeats are further rows, or columns
 t1, t2 and so on. Uncertainties are in cells, 2.05(2), or in columns u(t), t_err, or a column ± behind it.
-Columns by other names are labels, unless --column says what they are. A note says how it was read. Either
-mass may be the heavier. Values of --M, --I, --axle and --g are not fitted.
+Columns by other names are labels, unless --column says what they are. A note says how columns of numbers were
+read. Either mass may be the heavier. Values of --M, --I, --axle and --g are not fitted.
 Results: rim_mass is the pulley's inertia as a mass at its rim, c = I/R², for a disk M/2; axle is
 the friction of its axle as a force there. Both are fitted, unless --find names others. A note names rows in
 which nothing moves or the lighter side falls; they are not used. Others are left out only by --without.

@@ -219,8 +219,10 @@ def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate) -> l
             half = high - value
     if half <= WIDE_DELAY:
         return []
-    said = "These runs neither show nor exclude a delay of all times, and the results hold only without one."
-    return [f"{said} To see one, vary the height of fall, or both m2 - m1 and m1 + m2, more."]
+    said = (
+        "These runs cannot show if all times are too long or too short by a delay; the results assume none."
+    )
+    return [f"{said} To see one, use other heights of fall, or a wider range of both m2 - m1 and m1 + m2."]
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
@@ -253,7 +255,8 @@ def _outliers(
     for i, far in outliers(judge, len(places), len(places) - len(here), OUTLIER_LEVEL).items():
         kept[places[i]], cell = False, runs.cells[places[i]]
         value = f"{format_number(float(runs.values[places[i]]))} {parameter_of(runs.kind).unit}"
-        yield int(runs.run[places[i]]), _far(f"{in_words(cell)} = {value} is", far, "its repeats", cell)
+        others = "its repeats, by the scatter of the others"
+        yield int(runs.run[places[i]]), _far(f"{in_words(cell)} = {value} is", far, others, cell)
     near = {**values, "rim_mass": max(values["rim_mass"], 0.0), "delay": 0.0}
     judge = judge_of_line(linear(of_forces, as_data(runs, used, kept), near, names))
     for i, far in outliers(judge, len(here), len(here) - len(names), OUTLIER_LEVEL).items():

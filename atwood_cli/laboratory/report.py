@@ -50,7 +50,8 @@ def _scatter(fit: Fitted) -> str:
     source = "uncertainties" if whole.data.stated else "repeats"
     test = " by an F test" if whole.is_f_test else ""
     chi2 = f"χ² = {rounded(whole.chi2, 3)}, {counted(whole.dof, 'degree')} of freedom"
-    by = f"{source} ({chi2}, {probability}{test})"
+    outliers = ", outliers included" if fit.outliers else ""
+    by = f"{source}{outliers} ({chi2}, {probability}{test})"
     if whole.p_value < SELDOM:
         return f"The runs scatter more than their {by}: masses, friction or timing vary between them."
     if whole.p_value > 1 - RARE:
@@ -105,7 +106,7 @@ def report_of(fit: Fitted, only: Sequence[str]) -> Report:
     elif only:
         said = [equation(x, *results[x][:2]) for x in only if x in results]
         said += [f"{x}: {NEEDS.get(x, NOT_FITTED)}." for x in only if record[x] is None]
-        said += found.notes[1 : 1 + len(fit.outliers)]
+        said += [*found.notes[1 : 1 + len(fit.outliers)], *fit.delay]
     else:
         names = "quantity", "value", "uncertainty", "low", "high", "unit"
         each = ((x, *one[:2], *one.interval, QUANTITIES[x].unit) for x, one in results.items())
@@ -146,7 +147,9 @@ def _print_page(fit: Fitted, found: Fit) -> None:
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
-    page.say("u is the standard uncertainty of a run, scatter between runs included.", *found.notes[first:])
+    marked = " A row with ! has an outlier." if fit.outliers else ""
+    page.say(f"u is the standard uncertainty of a run, scatter between runs included.{marked}")
+    page.say(*found.notes[first:])
     page.say(*found.notes[:first], style="bold")
     if results:
         numbers = ((x, published(*one), QUANTITIES[x]) for x, one in results.items())

@@ -17,6 +17,7 @@ from ..tables.headings import (
     Heading,
     Vocabulary,
     decimal_commas_in,
+    divisions,
     listed,
     read_as,
     read_cell,
@@ -212,8 +213,9 @@ def _check(sheet: Sheet, headings: Sequence[Heading], others: Sequence[str], dro
 def _missing(missing: Sequence[str], sheet: Sheet, others: Sequence[str]) -> str:
     """Return which columns runs need, those of the table, and options that name what is missing."""
     options = dict[str, str]()
+    with_unit_first = sorted(others, key=lambda column: len([*divisions(column)]), reverse=True)
     for name in missing:
-        for column in others:
+        for column in with_unit_first:
             if column not in options and not LIKE_NUMBER.match(column):
                 with suppress(Unreadable):  # it has the unit of something else
                     read_headings([column], VOCABULARY, named={column: name})
