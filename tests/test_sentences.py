@@ -203,17 +203,17 @@ SENTENCES: dict[str, Callable[..., None]] = {
     r"mu is not given, so the string is assumed not to slip: true( on a massless pulley)? if mu is at least"
     rf" {NUMBER}\.": assumed,
     rf"No slip: mu = {NUMBER}, and at least {NUMBER} is needed\.": holds,
-    rf"No slip on any pulley: it could slip only if the heavier mass, {NUMBER} kg, were above {NUMBER} kg\.": holds_on_any,
+    rf"No slip on any pulley: the heavier mass is {NUMBER} kg, and only above {NUMBER} kg does a heavy enough pulley .*": holds_on_any,
     r"No slip on any pulley, for any heavier mass that can be typed\.": claimed(
         lambda c: c.regime(pulley=inf, h=Fraction(10**500)) == "no-slip"
     ),
-    r"Far above critical_heavier_mass the string holds again, .*": claimed(
+    r"The string slips from critical_heavier_mass up to .*": claimed(
         lambda c: c.regime(h=c.h * 10**300) == "no-slip" and may_slip_somewhere(c)
     ),
     "A locked pulley does not turn, so axle has no effect\\.": claimed(
         lambda c: c.b > 0 and c.scene.M == inf
     ),
-    r"mu_k has no effect on a start from rest\. A string that already slides keeps .*": claimed(
+    r"mu_k has no effect here, as the string does not slip\. A string that already slides keeps .*": claimed(
         lambda c: c.regime(mu_k=None) == c.regime() != "slip"
     ),
     "As M goes from 0 to inf: "
@@ -237,7 +237,7 @@ REASONS: dict[str, Callable[[Claims], bool]] = {
     reasons.FIXED_END: lambda c: c.l == 0,
     reasons.DEFINITE: lambda c: c.regime() != "no-slip",
     reasons.NOT_DEFINITE: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
-    reasons.NOT_BOUNDED: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,
+    reasons.NOT_BOUNDED: lambda c: c.regime() == "no-slip" and c.scene.wrap.number > 180,
     reasons.LONG_WRAP: lambda c: c.scene.wrap.number > 180,
     reasons.NEEDS_MU: lambda c: c.scene.mu is None,
     reasons.NEEDS_M: lambda c: c.scene.M is None,

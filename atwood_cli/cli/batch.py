@@ -43,10 +43,10 @@ Examples:
 Columns {", ".join(INPUTS)} are the options of solve, in SI units,
 wrap in degrees, or in the unit of the heading, as m1 (g), M [kg] or R/cm; axle is a force, not a torque. An
 empty cell, NA, NULL or null is not given. Other columns stay as they are and are named as not read, but one
-that may mean an input is refused, like radius without R. Each row stays as it came, and its results follow,
-with the table's separators and decimal commas. Piped rows are solved as they come. Cells are read as doubles,
-and results are the nearest doubles for these: the last digit can differ from that of solve, which reads 0.1
-as exactly 1/10.
+that may mean an input is refused, like radius without R. Results follow each row, with the table's separators
+and decimal commas; a row with too few cells gets empty ones. Piped rows are solved as they come. Cells are
+read as doubles, and results are the nearest doubles for these: the last digit can differ from that of solve,
+which reads 0.1 as exactly 1/10.
 
 The usual seven results are {", ".join(STANDARD)}.
 The exit status is 1 if a row has an error, or if a quantity that --only names has no value in any row.

@@ -13,8 +13,8 @@ Examples:
 """
 ON_FRICTION = (
     "While a string grips with friction to spare, the tension along its arc is not unique. friction_force is"
-    " then between friction_force_min and friction_force_max, if all friction acts one way; tension locked in"
-    " when the string is laid on widens that range. Without mu, friction_force is the one at mu_verge."
+    " then between friction_force_min and friction_force_max, if all friction acts one way along the arc."
+    " Without mu, friction_force is the one at mu_verge."
 )
 
 

@@ -55,8 +55,8 @@ QUANTITIES = {
     "critical_pulley_mass": About("limits", "M*", "kg", "(34)", "pulley mass above which the string slips"),
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
     "critical_lighter_mass": About("limits", "l*", "kg", "", "lighter mass below which the string slips"),
-    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "heavier mass above which some pulley makes it slip"),
-    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "pulley mass above which some heavier mass makes it slip"),
+    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "heavier mass up to which no pulley makes it slip"),
+    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "pulley mass up to which no heavier mass makes it slip"),
     "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
     # Of a scene whose motion was measured:
     "pulley_mass": About("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration"),
@@ -111,12 +111,12 @@ NEEDS_M = "`give` `M`, the pulley's mass"
 NEEDS_R = "`give` `R`, the pulley's radius"
 UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, with `I`"
 FIXED_END = "not defined, as the string's end is fixed to the pulley and no friction holds it"
-NOT_BOUNDED = "indeterminate while the string grips with friction to spare"
+NOT_BOUNDED = "not unique while the string grips; bounds are known only up to half a turn of wrap"
 NOT_DEFINITE = "not unique while the string grips; `friction_force_min` and `friction_force_max` bound the magnitude of friction"
 DEFINITE = "no value, as `friction_force` is unique"
 LONG_WRAP = "known only up to half a turn of wrap (180 degrees)"
 NO_CRITICAL_MASS = "no value, as the string holds on any pulley, however heavy"
-NO_CRITICAL_HEAVIER_MASS = "no value, as the string holds under any heavier mass"
+NO_CRITICAL_HEAVIER_MASS = "no value, as the string holds on this pulley, however heavy the heavier mass"
 AXLE_HOLDS = "no value, as the axle holds the difference on any pulley"
 ALWAYS_SLIPS = "no value, as axle friction makes the string slip on any pulley, however light"
 AXLE_ENOUGH = "no value, as axle friction alone makes the string slip on any pulley"

@@ -83,14 +83,13 @@ def _caption(few: Answers, kind: arc.Profile | None, wrap: float, bare: bool) ->
     """Yield sentences on the friction along the arc, unless it is ``bare``, and on what is not drawn."""
     if kind == "creep" and not bare:
         end = "last" if few.case.sign > 0 else "first"
-        angle = format_number(few.settle(lambda m: m.alpha * 180 / m.ar.pi))
-        why = "as on a slightly elastic string"
+        why = ", as on a slightly elastic string"
         if few["friction_force_max"] is not None:
             greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
-            why = f"which makes its vector sum greatest ({greatest} N; least {least} N)"
-        yield f"Drawn: friction at its limit on the {end} {angle}°, {why}."
+            why = f". Its vector sum is friction_force_max, {greatest} N; friction_force_min is {least} N"
+        yield f"Drawn: friction at its limit on the {end} {format_number(few['least_wrap'])}°{why}."
     elif kind and not bare:
-        yield about(few.case, kind)
+        yield about(few, kind)
         if force := few["friction_force"]:
             yield f"The vector sum of friction is {format_number(force)} N."
     if wrap > 360:

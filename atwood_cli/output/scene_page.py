@@ -222,8 +222,9 @@ def print_contact(answers: Answers, arc: Contact, tables: bool) -> None:
         ["Force on the pulley", "x towards m1 (N)", "y upwards (N)"],
         [force_rows[:2], force_rows[2:3], force_rows[3:]],
     )
-    unit = "N m" if answers.case.scene.R is not None else "N, per unit radius"
     torques = aligned(map(cell, arc.balance["torque"].values()))
-    kinds = ("friction along the arc", "T2 - T1" if answers.case.scene.R is None else "R (T2 - T1)")
-    page.table([f"Torque on the pulley ({unit})", ""], [list(zip(kinds, torques, strict=True))])
+    head, ends = ("Torque on the pulley / R (N)", "T2 - T1")
+    if answers.case.scene.R is not None:
+        head, ends = ("Torque on the pulley (N m)", "R (T2 - T1)")
+    page.table([head, ""], [[("friction along the arc", torques[0]), (ends, torques[1])]])
     page.say(*arc.notes)

@@ -15,7 +15,7 @@ from ..arithmetic.settling import is_positive
 from ..model import arc, physics
 from ..model.arc import Profile
 from ..model.decisions import Decisions
-from ..model.digits import rounding_to_place
+from ..model.digits import format_number, rounding_to_place
 from ..model.machine import Machine
 from ..model.scene import SceneError, read_whole
 from .answers import Answers
@@ -29,7 +29,7 @@ ZERO_DIGITS = 50
 ABOUT_KIND = {
     "creep": (
         "The tension is not unique while the string grips with friction to spare. Shown is that of a slightly"
-        " elastic string: friction is at its limit over the last part of the arc, at the heavier mass, and 0"
+        " elastic string: friction is at its limit on the {angle}° of the arc next to the heavier mass, and 0"
         " elsewhere."
     ),
     "exponential": "Friction is at its limit all along the arc.",
@@ -73,7 +73,7 @@ def contact(answers: Answers, points: int | str = USUAL_POINTS) -> Contact:
     last = read_whole("points", points, 2, MAX_POINTS) - 1
     rows = [point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
     said = ((name, answers.answer(name).reason) for name in ("tension_1", "tension_2"))
-    notes = [about(answers.case, kind), *(f"{name}: {reason}." for name, reason in said if reason)]
+    notes = [about(answers, kind), *(f"{name}: {reason}." for name, reason in said if reason)]
     return Contact(kind, rows, _balance(answers, kind), notes)
 
 
@@ -152,10 +152,10 @@ def _radius(machine: Machine[Any]) -> Any:
     return machine.ar.number(machine.scene.R or Fraction(1))
 
 
-def about(case: Decisions, kind: Profile) -> str:
+def about(answers: Answers, kind: Profile) -> str:
     """Return the sentence on a profile of the tension."""
-    if case.frictionless:
+    if answers.case.frictionless:
         return WITHOUT_FRICTION
-    if case.mu_assumed:
+    if answers.case.mu_assumed:
         return WITHOUT_MU
-    return ABOUT_KIND[kind]
+    return ABOUT_KIND[kind].format(angle=format_number(answers.shown["least_wrap"]))

@@ -85,7 +85,8 @@ def verdict(answers: Answers) -> str:
         return "No slip on any pulley, for any heavier mass that can be typed."
     heavy, above = as_typed(case.heavy), format_number(least)
     return (
-        f"No slip on any pulley: it could slip only if the heavier mass, {heavy} kg, were above {above} kg."
+        f"No slip on any pulley: the heavier mass is {heavy} kg, and only above {above} kg does a heavy"
+        " enough pulley make the string slip."
     )
 
 
@@ -152,14 +153,14 @@ def remarks(answers: Answers) -> list[str]:
         said.append(f"The wrap is {typed} degrees; for radians write {typed}rad, for turns {typed}turn.")
     if case.scene.mu_k is not None and case.regime != "slip" and not case.tensions_equal:
         said.append(
-            "`mu_k` has no effect on a start from rest. A string that already slides keeps sliding if"
-            " `mu_k` is below `mu_verge`."
+            "`mu_k` has no effect here, as the string does not slip. A string that already slides keeps"
+            " sliding if `mu_k` is below `mu_verge`."
         )
     slips_above_a_mass = case.scene.mu is not None and case.slips_once_it_moves
     if slips_above_a_mass and case.rim_mass is not None and not case.slips_at("heaviest"):
         said.append(
-            "Far above `critical_heavier_mass` the string holds again, as axle friction matters less under"
-            " heavier masses."
+            "The string slips from `critical_heavier_mass` up to some greater heavier mass. Above that it"
+            " holds again, as axle friction matters less."
         )
     if case.locked and case.has_axle_friction:
         said.append("A locked pulley does not turn, so `axle` has no effect.")

@@ -230,8 +230,7 @@ def read_range(name: str, typed: str, digits: int | None = None) -> Range:
     try:
         last = read_whole(name, words[2], 2, MAX_POINTS) - 1
     except SceneError as error:
-        hint = "; write a unit at both ends" if re.match(r"\d.*[a-z]", words[2]) else ""
-        rule = f"has the count {in_quotes(words[2])}, which {error.rule}{hint}"
+        rule = f"has the count {in_quotes(words[2])}, which {error.rule}, as in 0:60:4 or 10g:1kg:5:log"
         raise SceneError(name, typed, rule) from None
     kept = _digits_kept(start, stop, last, log, digits)
     if kept > MAX_DIGITS:
