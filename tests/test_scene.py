@@ -98,7 +98,7 @@ def test_the_grammar_of_numbers(text: str) -> None:
 BY_DEFINITION = {
     "mass": "kg 1 g 0.001 mg 0.000001 ug 0.000000001 t 1000 lb 0.45359237 lbs 0.45359237 oz 0.028349523125 st 6.35029318 slug 44482216152605/3048000000000",
     "length": "m 1 km 1000 dm 0.1 cm 0.01 mm 0.001 um 0.000001 in 0.0254 ft 0.3048 yd 0.9144",
-    "angle": "deg 1 ° 1 turn 360 rad 1",
+    "angle": "deg 1 ° 1 turn 360 turns 360 rad 1",
     "time": "s 1 ms 0.001 min 60 h 3600",
     "force": "N 1 mN 0.001 kN 1000 lbf 4.4482216152605 kgf 9.80665",
     "torque": "N_m 1 mN_m 0.001 N_cm 0.01 lbf_ft 1.3558179483314004 lbf_in 0.1129848290276167",

@@ -69,7 +69,7 @@ def solve_table(table: Table, quantities: Sequence[str] | None = None) -> Table:
             return solve(table)
         return table.map_batches(solve, schema=solve(pl.DataFrame(schema=schema)).schema, streamable=True)
     except Unreadable as error:
-        why = re.sub("[;,] or [a-z ]+ --.*", "", str(error))  # without the options of the command
+        why = re.sub("[;,] or ([a-z ]+ )?--.*", "", str(error))  # without the options of the command
         raise ValueError(f"cannot read the table: {why}") from None
 
 

@@ -18,10 +18,10 @@ Examples:
   atwood contact --m1 1 --m2 3 --M 10 --mu 0.3 --figure arc.svg
   atwood contact --m1 1 --m2 200 --M inf --mu 0.2 --wrap 2.5turn --csv
 
-Angles count from m1's end of the arc. x points from the axle to where m1's string meets the pulley, y
-upwards. m1's string hangs straight down; m2's does at half a turn, or goes to a guide. Normal force n and
-friction f are per metre of string; nR = T and fR = dT/dθ, with the radius R, are per radian. --figure
-replaces the table.
+Angles count from m1's end of the arc. x points from the axle to where m1's string meets the pulley. m1's
+string hangs straight down; m2's string does so, too, if the wrap is half a turn, and else goes to a guide.
+Normal force n and friction f are per metre of string; nR = T and fR = dT/dθ, with the radius R, are per
+radian. --figure replaces the table.
 """
 
 

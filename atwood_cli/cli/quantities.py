@@ -12,8 +12,9 @@ Examples:
   atwood quantities --json
 """
 ON_FRICTION = (
-    "While a string grips with friction to spare, the tension along its arc is not unique. friction_force is"
-    " then between friction_force_min and friction_force_max, if all friction acts one way along the arc."
+    "Friction changes its direction along the arc, so its vector sum, friction_force, is not T2 - T1. While a"
+    " string grips with friction to spare, the tension along its arc is not unique. friction_force is then"
+    " between friction_force_min and friction_force_max, if all friction acts one way along the arc."
     " Without mu, friction_force is the one at mu_verge."
 )
 

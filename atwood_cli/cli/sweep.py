@@ -25,7 +25,7 @@ Examples:
   atwood sweep --m1 1 --m2 3 --M 0:60:61 --only T1,T2 --figure t.svg
 
 --figure draws, in place of the table, what --only names, or the acceleration, with one pair of axes for each
-unit. A curve runs along a range, one for each value of a second range or a list; a list alone is points.
+unit. A curve runs along a whole range, one for each value of a second range or list; a list alone is points.
 """
 
 
@@ -43,7 +43,7 @@ def sweep(
     precision = read_digits(digits)
     swept = read_sweep(given, precision)
     if figure is not None:
-        save(swept, names, figure, target.force, bare)
+        save(swept, names, precision, figure, target.force, bare)
     swept_page = SweepPage(swept, names, precision)
     try:
         # What is drawn is not printed, too, but to a file that is asked for.

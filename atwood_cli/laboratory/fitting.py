@@ -219,10 +219,8 @@ def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate) -> l
             half = high - value
     if half <= WIDE_DELAY:
         return []
-    said = (
-        "These runs cannot show if all times are too long or too short by a delay; the results assume none."
-    )
-    return [f"{said} To see one, use other heights of fall, or a wider range of both m2 - m1 and m1 + m2."]
+    said = "All times may be too long or too short by a delay: these runs do not show it, and the results"
+    return [f"{said} assume none. More heights of fall, or wider ranges of m2 - m1 and m1 + m2, may show it."]
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
@@ -244,7 +242,8 @@ def _outliers(
 
     Runs are judged by the line of forces, which outliers bend least.
     """
-    here, places = np.flatnonzero(used), np.flatnonzero(used[runs.run])
+    here, counts = np.flatnonzero(used), np.bincount(runs.run)
+    places = np.flatnonzero((used & (counts > 1))[runs.run])
     # Of two repeats, which are equally far from each other, that far from the line comes first.
     measured = (runs.sign[runs.run] * runs.values)[places]
     away = measured - expected(data, values)[np.searchsorted(here, runs.run[places])]
@@ -252,7 +251,7 @@ def _outliers(
     u = runs.u_values[places] if data.stated else np.ones(len(places))
     judge = judge_of_repeats(runs.values[places], u, runs.run[places], runs.step)
     kept = np.ones(len(runs.values), dtype=bool)
-    for i, far in outliers(judge, len(places), len(places) - len(here), OUTLIER_LEVEL).items():
+    for i, far in outliers(judge, len(places), len(places) - len({*runs.run[places]}), OUTLIER_LEVEL).items():
         kept[places[i]], cell = False, runs.cells[places[i]]
         value = f"{format_number(float(runs.values[places[i]]))} {parameter_of(runs.kind).unit}"
         others = "its repeats, by the scatter of the others"

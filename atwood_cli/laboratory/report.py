@@ -50,10 +50,11 @@ def _scatter(fit: Fitted) -> str:
     source = "uncertainties" if whole.data.stated else "repeats"
     test = " by an F test" if whole.is_f_test else ""
     chi2 = f"χ² = {rounded(whole.chi2, 3)}, {counted(whole.dof, 'degree')} of freedom"
-    outliers = ", outliers included" if fit.outliers else ""
-    by = f"{source}{outliers} ({chi2}, {probability}{test})"
+    by = f"{source} ({chi2}, {probability}{test})"
     if whole.p_value < SELDOM:
         return f"The runs scatter more than their {by}: masses, friction or timing vary between them."
+    if fit.outliers:
+        return f"Outliers may hide that the runs scatter more than their {by}."
     if whole.p_value > 1 - RARE:
         return f"The runs scatter less than their {by}."
     return f"Scatter as expected from the {by}."
@@ -147,9 +148,8 @@ def _print_page(fit: Fitted, found: Fit) -> None:
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
-    marked = " A row with ! has an outlier." if fit.outliers else ""
-    page.say(f"u is the standard uncertainty of a run, scatter between runs included.{marked}")
-    page.say(*found.notes[first:])
+    u_is = "u is the standard uncertainty of a run, by the scatter of repeats and between runs."
+    page.say(u_is, *found.notes[first:])
     page.say(*found.notes[:first], style="bold")
     if results:
         numbers = ((x, published(*one), QUANTITIES[x]) for x, one in results.items())
@@ -166,10 +166,9 @@ def _rows(fit: Fitted, found: Fit) -> list[list[str]]:
     # The mean has the digits of its own scatter.
     finest = float(min(fit.whole.data.scatter.min() or np.inf, fit.whole.sigma.min()))
     rows = []
-    for i, run in enumerate(found.runs):
+    for run in found.runs:
         where, kind, u, residual = run["rows"].replace(" ", ","), fit.runs.kind, run["u"], run["residual"]
         numbers = format_number(run["m1"]), format_number(run["m2"]), cut(run[kind], finest)
         expected_and_u = cut(run["expected"], finest), cut(u, u)
-        mark = " !" if i in fit.suspects else ""
-        rows.append([where + mark, *numbers, *expected_and_u, "" if residual is None else f"{residual:z.2f}"])
+        rows.append([where, *numbers, *expected_and_u, "" if residual is None else f"{residual:z.2f}"])
     return rows

@@ -105,25 +105,24 @@ Judge = Callable[[Selection], tuple[Column, Any]]
 
 
 def outliers(judge: Judge, count: int, free: int, level: float) -> Mapping[int, float]:
-    """Return the outliers among ``count`` values, each with its distance in standard deviations (Rosner).
+    """Return outliers among ``count`` values, by distances (in standard deviations) from the others (Rosner).
 
     The value that is farthest from the fit of those kept is left out, and judged by the fit of the others;
     this goes on, and all values are outliers up to the last that chance does not explain. ``free`` are the
     degrees of freedom with all values, and ``level`` the probability that a sound set has an outlier.
     """
-    kept, found, significant = np.ones(count, dtype=bool), dict[int, float](), 0
+    kept, left_out, found = np.ones(count, dtype=bool), list[int](), dict[int, float]()
     with suppress(CannotSeparate):
         distance, _ = judge(kept)
-        level /= 2 * (int(np.count_nonzero(distance)) or 1)  # of one value that is judged, on one side
-        for number in range(1, min(MOST_OUTLIERS, max(1, free // 3), free - 1) + 1):
+        for _ in range(min(MOST_OUTLIERS, max(1, free // 3), free - 1)):
             # Two repeats are equally far from each other: float32 keeps their order.
             i = int(np.argmax((np.abs(distance) * kept).astype(np.float32)))
             kept[i] = False
+            left_out.append(i)
             distance, dof = judge(kept)
-            found[i] = float(distance[i])
-            if stdtr(dof, -np.abs(distance))[i] < level:
-                significant = number
-    return dict(list(found.items())[:significant])
+            if stdtr(dof, -np.abs(distance))[i] < level / (2 * count):  # of one value, on one side
+                found = {j: float(distance[j]) for j in left_out}
+    return found
 
 
 def judge_of_line(linear: Linear) -> Judge:
@@ -147,7 +146,7 @@ def judge_of_line(linear: Linear) -> Judge:
 
 
 def judge_of_repeats(values: Column, u: Column, run: Places, step: float) -> Judge:
-    """Judge values by the mean of those kept of the same ``run``; a value without others is not judged.
+    """Judge values by the mean of those kept of the same ``run``; the last that is kept is not judged.
 
     The scatter is the same in all runs, times ``u``, and at least that of readings rounded to the ``step``.
     """

@@ -80,7 +80,7 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
     if values.mu_k is not None:
         return "and mu_k both say how the string slides; leave one of them out"
     if mu is not None and not case.slips:
-        return f"gives mu_k, but with mu = {as_typed(mu)} the string does not slip; leave mu out, or {MOTOR}"
+        return f"needs a string that slips; with mu = {as_typed(mu)} it does not: leave mu out, or {MOTOR}"
     return ""
 
 
@@ -98,7 +98,7 @@ def _impossible(scene: Scene, motion: Motion) -> str:
         return "implies that both masses are 0"
     elif getattr(scene, finds) < 0:  # 0 is a mass
         shown = format_number(strip_zeros(to_digits(SHOWN_DIGITS)(getattr(scene, finds))))
-        return f"implies {finds} = {shown} {INPUTS[finds].unit}, which {INPUTS[finds].domain}"
+        return f"implies {finds} = {shown} {INPUTS[finds].unit}, which cannot be negative; check all inputs"
     return ""
 
 

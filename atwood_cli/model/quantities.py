@@ -43,9 +43,9 @@ QUANTITIES = {
     "safety_factor": About("friction", "μ/μ*", "", "", "mu divided by mu_verge (not a load factor); below 1 it slips"),
     "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser", "(26)"),
     "capstan_ratio": About("friction", "k", "", "(26)", "greatest ratio of tensions that friction holds"),
-    "friction_force": About("friction", "F", "N", "(32)", "friction on the pulley, its vector sum along the arc"),
-    "friction_force_min": About("friction", "F min", "N", "", "least friction_force of a string that grips"),
-    "friction_force_max": About("friction", "F max", "N", "", "greatest friction_force of a string that grips"),
+    "friction_force": About("friction", "F", "N", "(32)", "magnitude of the vector sum of friction along the arc"),
+    "friction_force_min": About("friction", "F min", "N", "", "least friction_force while the string grips"),
+    "friction_force_max": About("friction", "F max", "N", "", "greatest friction_force while the string grips"),
     "friction_force_x": About("friction", "Fx", "N", "(31)", "component of friction_force towards m1's side"),
     "friction_force_y": About("friction", "Fy", "N", "(31)", "component of friction_force upwards"),
     "axle_force": About("pulley", "A", "N", "(20)", "force on the axle, with the pulley's weight"),
@@ -112,11 +112,11 @@ NEEDS_R = "`give` `R`, the pulley's radius"
 UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, with `I`"
 FIXED_END = "not defined, as the string's end is fixed to the pulley and no friction holds it"
 NOT_BOUNDED = "not unique while the string grips; bounds are known only up to half a turn of wrap"
-NOT_DEFINITE = "not unique while the string grips; `friction_force_min` and `friction_force_max` bound the magnitude of friction"
+NOT_DEFINITE = "not unique while the string grips; `friction_force_min` and `friction_force_max` bound its magnitude if all friction acts one way"
 DEFINITE = "no value, as `friction_force` is unique"
 LONG_WRAP = "known only up to half a turn of wrap (180 degrees)"
 NO_CRITICAL_MASS = "no value, as the string holds on any pulley, however heavy"
-NO_CRITICAL_HEAVIER_MASS = "no value, as the string holds on this pulley, however heavy the heavier mass"
+NO_CRITICAL_HEAVIER_MASS = "no value, as no heavier mass, however great, makes the string slip on this pulley"
 AXLE_HOLDS = "no value, as the axle holds the difference on any pulley"
 ALWAYS_SLIPS = "no value, as axle friction makes the string slip on any pulley, however light"
 AXLE_ENOUGH = "no value, as axle friction alone makes the string slip on any pulley"

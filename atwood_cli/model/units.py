@@ -31,7 +31,7 @@ UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
         "m": "1", "km": "1e3", "dm": "1e-1", "cm": "1e-2", "mm": "1e-3", "um": "1e-6",
         "in": INCH, "ft": FOOT, "yd": FOOT * 3,
     },
-    "angle": {"deg": "1", "°": "1", "turn": "360", "rad": "1"},
+    "angle": {"deg": "1", "°": "1", "turn": "360", "turns": "360", "rad": "1"},
     "time": {"s": "1", "ms": "1e-3", "min": "60", "h": "3600"},
     "force": {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY},
     "torque": {

@@ -58,7 +58,7 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
     said = [_stated(answers, name) for name in names if values and answers.answer(name).uncertainty]
     if "regime" in names and answers.case.mu_assumed:
         said.insert(0, f"regime: {REGIME_ASSUMED}.")
-    return [*said, *reasons(answers, names or answers.names)]
+    return [*said, *map(unmarked, remarks(answers.shown)), *reasons(answers, names or answers.names)]
 
 
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
@@ -185,7 +185,7 @@ HEADS = {
     "friction_per_metre": "friction f (N/m)",
 }
 """The headings of a point's columns; the normal force by angle is the tension, (13)."""
-FORCES = {"friction": "friction", "normal": "normal force", "sum": "their sum", "resultant": "T1 and T2"}
+FORCES = {"friction": "friction", "normal": "normal force", "sum": "sum", "resultant": "compare: T1 + T2"}
 """The forces in the balance, in words."""
 
 
@@ -218,13 +218,11 @@ def print_contact(answers: Answers, arc: Contact, tables: bool) -> None:
     forces = {words: arc.balance[name] for name, words in FORCES.items()}
     xs, ys = (aligned(cell(force[axis]) for force in forces.values()) for axis in "xy")
     force_rows = list(zip(forces, xs, ys, strict=True))
-    page.table(
-        ["Force on the pulley", "x towards m1 (N)", "y upwards (N)"],
-        [force_rows[:2], force_rows[2:3], force_rows[3:]],
-    )
+    heads = ["Force on the pulley", "x towards m1 (N)", "y upwards (N)"]
+    page.table(heads, [force_rows[:2], force_rows[2:3], force_rows[3:]])
     torques = aligned(map(cell, arc.balance["torque"].values()))
     head, ends = ("Torque on the pulley / R (N)", "T2 - T1")
     if answers.case.scene.R is not None:
         head, ends = ("Torque on the pulley (N m)", "R (T2 - T1)")
-    page.table([head, ""], [[("friction along the arc", torques[0]), (ends, torques[1])]])
+    page.table([head, ""], [[("friction along the arc", torques[0])], [(f"compare: {ends}", torques[1])]])
     page.say(*arc.notes)

@@ -111,7 +111,7 @@ def _write_csv(report: Report) -> None:
 
 
 FORMS = {
-    "json": Form(".json", "Print JSON, with notes.", _write_json, True),
+    "json": Form(".json", "Print JSON.", _write_json, True),
     "csv": Form(".csv", "Print CSV, with a line of names first.", _write_csv, False),
 }
 """The forms, by the name of their option. Without such an option a page is printed, or bare values."""

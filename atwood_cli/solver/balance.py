@@ -19,6 +19,7 @@ from ..model.digits import format_number, rounding_to_place
 from ..model.machine import Machine
 from ..model.scene import SceneError, read_whole
 from .answers import Answers
+from .messages import reasons, remarks, unmarked
 
 Rounded = float | Decimal
 
@@ -72,8 +73,8 @@ def contact(answers: Answers, points: int | str = USUAL_POINTS) -> Contact:
     kind = kind_of(answers.case)
     last = read_whole("points", points, 2, MAX_POINTS) - 1
     rows = [point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
-    said = ((name, answers.answer(name).reason) for name in ("tension_1", "tension_2"))
-    notes = [about(answers, kind), *(f"{name}: {reason}." for name, reason in said if reason)]
+    notes = [about(answers, kind), *map(unmarked, remarks(answers.shown))]
+    notes += reasons(answers, ("tension_1", "tension_2"))
     return Contact(kind, rows, _balance(answers, kind), notes)
 
 

@@ -18,6 +18,7 @@ from ..model.digits import (
     rounding_apart_from,
     strip_zeros,
 )
+from ..model.physics import critical_heavier_mass
 from ..model.quantities import QUANTITIES
 from ..model.scene import with_unit
 from ..model.units import MAX_MAGNITUDE
@@ -156,11 +157,12 @@ def remarks(answers: Answers) -> list[str]:
             "`mu_k` has no effect here, as the string does not slip. A string that already slides keeps"
             " sliding if `mu_k` is below `mu_verge`."
         )
-    slips_above_a_mass = case.scene.mu is not None and case.slips_once_it_moves
-    if slips_above_a_mass and case.rim_mass is not None and not case.slips_at("heaviest"):
+    c, slips_above_a_mass = case.rim_mass, case.scene.mu is not None and case.slips_once_it_moves
+    if slips_above_a_mass and c is not None and not case.slips_at("heaviest"):
+        most = answers.settle(lambda m: critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b, -1))
         said.append(
-            "The string slips from `critical_heavier_mass` up to some greater heavier mass. Above that it"
-            " holds again, as axle friction matters less."
+            f"The string slips under a heavier mass from `critical_heavier_mass` to {format_number(most)} kg."
+            " Under a greater one it holds again, as axle friction matters less."
         )
     if case.locked and case.has_axle_friction:
         said.append("A locked pulley does not turn, so `axle` has no effect.")

@@ -61,27 +61,25 @@ def _drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
     return drawn
 
 
-def _solve(along: Range, scene: Scene) -> tuple[list[Change], dict[float, Answers]]:
+def _solve(along: Range, scene: Scene, digits: int | None) -> tuple[list[Change], dict[float, Answers]]:
     """Return the changes along a range, and the answers at its values; those of a list are by place."""
     if along.is_list:
         scenes = (with_value(scene, along.name, point.exact) for point in along.points)
         return [], {float(place): Answers(there) for place, there in enumerate(scenes)}
     corners = attrgetter("regime", "sign", "axle_holds")  # where one of these changes
-    found = list(changes(scene, along, what=corners))
+    found = list(changes(scene, along, digits, what=corners))
     values = [*steps(*along.ends, CURVE_STEPS, along.log)]
     values += [x for change in found for x in (change.last, change.first)]
     return found, {float(x): Answers(with_value(scene, along.name, x)) for x in sorted(values)}
 
 
-def panels_of(sweep: Sweep, names: Sequence[str]) -> list[list[Curve]]:
+def panels_of(sweep: Sweep, names: Sequence[str], digits: int | None = None) -> list[list[Curve]]:
     """Return curves, those of one unit together: each along one range, for a point of the other range.
 
     Raises SceneError if numbers are too large to draw, ArithmeticError if there are none.
     """
-    along = sweep.along
-    scenes = [
-        (typeset(sweep.in_words(place)), *_solve(along, scene)) for scene, place in sweep.scenes(sweep.others)
-    ]
+    along, others = sweep.along, sweep.scenes(sweep.others)
+    scenes = [(typeset(sweep.in_words(place)), *_solve(along, scene, digits)) for scene, place in others]
     panels: dict[str, list[Curve]] = {}
     for name in names:
         curves = [_curve(along, name, *scene) for scene in scenes]
@@ -128,14 +126,14 @@ def axis_title(names: Iterable[str], unit: str = "") -> str:
     return f"{title} ({unit})" if unit else title
 
 
-def save(sweep: Sweep, names: Sequence[str], path: str, force: bool, bare: bool) -> None:
+def save(sweep: Sweep, names: Sequence[str], digits: int | None, path: str, force: bool, bare: bool) -> None:
     """Draw the curves of quantities, or of the acceleration, to a file; if bare, without a caption.
 
     Raises SceneError, OSError, and ArithmeticError if there is nothing to draw.
     """
     names = _drawable(sweep, names)
     check_file(path, force)
-    along, panels = sweep.along, panels_of(sweep, names)
+    along, panels = sweep.along, panels_of(sweep, names, digits)
     inputs = [words for name, words in sweep.inputs.items() if name != along.name]
     quantities = [dict.fromkeys(curve.quantity for curve in curves) for curves in panels]
     title = f"{axis_title(chain(*quantities))} against {axis_title([along.name])}"
