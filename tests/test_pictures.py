@@ -177,7 +177,7 @@ def test_arrows_out_of_scale_are_named_and_others_are_in_proportion() -> None:
     (t1, t2), (w1, w2) = ([abs(way) for _, way in arrows[colour]] for colour in (figure.INK, figure.GREEN))
     assert [t2 / w2, t1 / w2] == pytest.approx([s.tension_2 / (15 * 9.80665), s.tension_1 / (15 * 9.80665)])
     assert w2 / w1 == pytest.approx(12)
-    assert "Drawn longer than to scale: W₁." in page.get_supxlabel()
+    assert "Drawn longer than to scale: W₁." in page.get_supxlabel().replace("\n", " ")
 
 
 @pytest.mark.parametrize("wrap", [1, 90, 200, 270, 345, 1441])

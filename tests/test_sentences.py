@@ -149,7 +149,8 @@ def may_slip_somewhere(c: Claims) -> bool:
     return "slip" in {c.regime(h=c.l + c.b), c.regime(h=c.h * 10**300)}
 
 
-def slips_up_to(c: Claims, most: str, digits: int) -> None:
+def slips_between(c: Claims, least: str, most: str, digits: int) -> None:
+    c.least_mass(least)
     assert [c.regime(h=h) for h in (max(c.l + c.b, below(most)), above(most))] == ["slip", "no-slip"]
 
 
@@ -211,7 +212,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
     r"No slip on any pulley, for any heavier mass that can be typed\.": claimed(
         lambda c: c.regime(pulley=inf, h=Fraction(10**500)) == "no-slip"
     ),
-    rf"The string slips under a heavier mass from critical_heavier_mass to {NUMBER} kg\. .*": slips_up_to,
+    rf"The string slips if the heavier mass is between {NUMBER} and {NUMBER} kg\. .*": slips_between,
     "A locked pulley does not turn, so axle has no effect\\.": claimed(
         lambda c: c.b > 0 and c.scene.M == inf
     ),

@@ -209,7 +209,7 @@ def test_curves_turn_exactly_where_the_regime_changes() -> None:
         ((*place, words),) = curve.marks
         assert place == pytest.approx([exact.critical_pulley_mass, exact.acceleration], rel=1e-6)
         assert (
-            f"no-slip up to M = {words.removeprefix('slips from ')}"
+            f"no-slip up to M = {words.removeprefix('slips beyond ')}"
             in called([*SWEEP[:-1], mu, "--M", "0:50:6"]).out
         )
         assert len(curve.xs) >= 200

@@ -219,8 +219,8 @@ def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate) -> l
             half = high - value
     if half <= WIDE_DELAY:
         return []
-    said = "All times may be too long or too short by a delay: these runs do not show it, and the results"
-    return [f"{said} assume none. More heights of fall, or wider ranges of m2 - m1 and m1 + m2, may show it."]
+    said = "All times may be too long or too short by a delay. These runs cannot tell, and the results assume"
+    return [f"{said} none. More heights of fall, or wider ranges of m2 - m1 and m1 + m2, may tell."]
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:

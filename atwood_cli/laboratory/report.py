@@ -54,7 +54,7 @@ def _scatter(fit: Fitted) -> str:
     if whole.p_value < SELDOM:
         return f"The runs scatter more than their {by}: masses, friction or timing vary between them."
     if fit.outliers:
-        return f"Outliers may hide that the runs scatter more than their {by}."
+        return f"Because of outliers, it is open whether the runs scatter more than their {by}."
     if whole.p_value > 1 - RARE:
         return f"The runs scatter less than their {by}."
     return f"Scatter as expected from the {by}."
@@ -148,7 +148,7 @@ def _print_page(fit: Fitted, found: Fit) -> None:
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
-    u_is = "u is the standard uncertainty of a run, by the scatter of repeats and between runs."
+    u_is = "u is the standard uncertainty of a run's mean, estimated from all runs together."
     page.say(u_is, *found.notes[first:])
     page.say(*found.notes[:first], style="bold")
     if results:

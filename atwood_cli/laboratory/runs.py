@@ -129,7 +129,9 @@ def read_runs(
         remarks.append(f"left out, as asked: {', '.join(map(in_words, words))}.")
     found = _as_columns(kind, runs, len(sheet.rows), words)
     if max(found.given["m1"].max(), found.given["m2"].max()) > HEAVY:
-        remarks.append(f"some masses are above {HEAVY} kg; if they are in g, write m1 (g).")
+        remarks.append(
+            f"some masses are above {HEAVY} kg; if they are in g, add that to both headings, as in m1 (g)."
+        )
     return found._replace(remarks=remarks)
 
 

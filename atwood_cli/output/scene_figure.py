@@ -82,12 +82,12 @@ def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = Fa
 def _caption(few: Answers, kind: arc.Profile | None, wrap: float, bare: bool) -> Iterator[str]:
     """Yield sentences on the friction along the arc, unless it is ``bare``, and on what is not drawn."""
     if kind == "creep" and not bare:
-        end = "last" if few.case.sign > 0 else "first"
         why = ", as on a slightly elastic string"
         if few["friction_force_max"] is not None:
             greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
             why = f". Its vector sum is friction_force_max, {greatest} N; friction_force_min is {least} N"
-        yield f"Drawn: friction at its limit on the {end} {format_number(few['least_wrap'])}°{why}."
+        angle = format_number(few["least_wrap"])
+        yield f"Drawn: friction at its limit on the {angle}° of the arc next to the heavier mass{why}."
     elif kind and not bare:
         yield about(few, kind)
         if force := few["friction_force"]:

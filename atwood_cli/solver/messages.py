@@ -161,8 +161,8 @@ def remarks(answers: Answers) -> list[str]:
     if slips_above_a_mass and c is not None and not case.slips_at("heaviest"):
         most = answers.settle(lambda m: critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b, -1))
         said.append(
-            f"The string slips under a heavier mass from `critical_heavier_mass` to {format_number(most)} kg."
-            " Under a greater one it holds again, as axle friction matters less."
+            f"The string slips if the heavier mass is between {_say(answers, 'critical_heavier_mass')} and"
+            f" {format_number(most)} kg. Above that it holds again, as axle friction matters less."
         )
     if case.locked and case.has_axle_friction:
         said.append("A locked pulley does not turn, so `axle` has no effect.")

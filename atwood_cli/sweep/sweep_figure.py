@@ -25,7 +25,7 @@ LARGEST_DRAWN = 1e100
 """The largest number that is drawn, in any unit."""
 UNDRAWABLE = f"draws numbers between {1 / LARGEST_DRAWN} and {LARGEST_DRAWN} in magnitude only, not such {{}}"
 CURVE_STEPS = 200
-BEGINS = {"slip": "slips", "no-slip": "holds", "verge": "on the verge"}
+BEGINS = {"slip": "slips beyond", "no-slip": "holds from", "verge": "on the verge from"}
 LINE_STYLES = ("-", "--", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)), (0, (8, 2)))
 MARKERS = "osD^vP"
 TITLE_CHARACTERS, TICK_CHARACTERS = 24, 60
@@ -105,9 +105,10 @@ def _curve(along: Range, name: str, point: str, found: list[Change], solved: dic
     marks = []
     for change in found:
         if change.before[0] != change.after[0]:
-            beside = (heights[float(x)] for x in (change.first, change.last))
-            height = next((y for y in beside if not isnan(y)), nan)
-            words = f"{BEGINS[change.after[0]]} from {along.in_units(change.at)}"
+            # At a limit the string holds.
+            places = (change.last, change.first) if change.after[0] == "slip" else (change.first, change.last)
+            height = next((y for x in places if not isnan(y := heights[float(x)])), nan)
+            words = f"{BEGINS[change.after[0]]} {along.in_units(change.at)}"
             marks.append((float(change.at.exact), height, words))
     return Curve(name, point, [*heights], [*heights.values()], marks)
 
