@@ -254,7 +254,7 @@ def blunders_named(design: Design, kind: str, number: int, sets: int) -> float:
             k = random.integers(design.repeats, size=number)
             made.values[off, k] = [*map(exchanged, made.values[off, k])]
         try:
-            named += {*off.tolist()} <= {*made.fit().suspects}
+            named += {*off.tolist()} <= {run for run, _ in made.fit().outliers}
         except CannotSeparate:
             continue
     return named / sets

@@ -216,8 +216,11 @@ SENTENCES: dict[str, Callable[..., None]] = {
     "A locked pulley does not turn, so axle has no effect\\.": claimed(
         lambda c: c.b > 0 and c.scene.M == inf
     ),
-    r"mu_k has no effect here, as the string does not slip\. A string that already slides keeps .*": claimed(
+    r"mu_k has no effect here, as the string does not slip\.": claimed(
         lambda c: c.regime(mu_k=None) == c.regime() != "slip"
+    ),
+    r"A string that already slides keeps sliding, as mu_k is below mu_verge\.": claimed(
+        lambda c: c.scene.mu_k < c.scene.mu and c.regime(mu=c.scene.mu_k, mu_k=None) in ("slip", "verge")
     ),
     "As M goes from 0 to inf: "
     + ", ".join(f"{name} from {NUMBER} to {NUMBER}(?: [^,]*)?" for name in OPEN)

@@ -14,7 +14,7 @@ from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Columns, Digits, Figu
 
 HELP = """Solve a range or a list of scenes.
 
-One or two options carry start:stop:count[:log], or a list, as 0,1,10.
+One or two options carry start:stop:count[:log], or a list, as 0,1,10; two make all combinations.
 
 \b
 Examples:

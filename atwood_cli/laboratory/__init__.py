@@ -64,7 +64,7 @@ def fit(
     names = [find] if isinstance(find, str) else find or ()
     left_out = divided([without]) if isinstance(without, str) else without
     found = results_of(fit_of(runs, given, names, without=left_out))
-    options = re.compile(r"--(find|without) (\S*[^\s.,;:])")
+    options = re.compile(r"--(find|without) (\S*[^\s.,;:)])")
     return found._replace(notes=[options.sub(r"\1='\2'", note) for note in found.notes])
 
 

@@ -50,7 +50,8 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         for level in (-2, 2):
             rest.axhline(level, color=FAINT, lw=0.8, ls="--")
         rest.plot(x, residual, "o", ms=4, color=INK)
-        odd = np.isin(np.flatnonzero(fit.used), fit.suspects)
+        suspects = [run for run, _ in fit.outliers]
+        odd = np.isin(np.flatnonzero(fit.used), suspects)
         for axes, heights in ((line, y), (rest, residual)):
             axes.plot(x[odd], heights[odd], "o", ms=9, mfc="none", color=RED)
         line.text(0.03, 0.97, typeset("\n".join(results)), transform=line.transAxes, va="top", color=BLUE)
@@ -63,6 +64,6 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         line.plot(
             a[~used], difference[~used], "o", ms=4, mfc="none", color=INK, clip_on=False, in_layout=False
         )
-        is_named = ~used | np.isin(np.flatnonzero(fit.shown), fit.suspects) | (len(used) <= MOST_NAMED)
+        is_named = ~used | np.isin(np.flatnonzero(fit.shown), suspects) | (len(used) <= MOST_NAMED)
         rows = [",".join(map(str, fit.runs.rows[run])) for run in np.flatnonzero(fit.shown).tolist()]
         write_beside(line, [(a[i], difference[i], rows[i], INK) for i in np.flatnonzero(is_named)])

@@ -75,11 +75,6 @@ class Fitted(NamedTuple):
     outliers: Sequence[tuple[int, str]]
     delay: Sequence[str]
 
-    @property
-    def suspects(self) -> list[int]:
-        """The runs that are outliers or have one among their repeats."""
-        return sorted({run for run, _ in self.outliers})
-
 
 # What is given, and what is to be fitted
 
@@ -205,7 +200,7 @@ def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate) -> l
     """
     if runs.kind != "time" or "delay" in whole.names:
         return []
-    names, half = [*whole.names, "delay"], inf
+    names, half, size = [*whole.names, "delay"], inf, ""
     if whole.dof > 1:
         with suppress(CannotSeparate):
             late = _fit(runs, used, given, names)
@@ -216,11 +211,11 @@ def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate) -> l
             if fdtrc(1, dof, taken_off / max(rest, TINY) * dof) < RARE:
                 size, long = published(abs(value), u)[0], "long" if value > 0 else "short"
                 return [f"All times seem {size} s too {long}: --find {','.join(names)} fits that, too."]
-            half = high - value
+            half, size = high - value, f" ({published(value, u)[0]} s by --find {','.join(names)})"
     if half <= WIDE_DELAY:
         return []
-    said = "All times may be too long or too short by a delay. These runs cannot tell, and the results assume"
-    return [f"{said} none. More heights of fall, or wider ranges of m2 - m1 and m1 + m2, may tell."]
+    said = f"All times may be too long or too short by a delay{size}; the results assume none. More heights"
+    return [f"{said} of fall, or wider ranges of m2 - m1 and m1 + m2, would show it."]
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:

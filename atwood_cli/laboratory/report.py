@@ -48,7 +48,7 @@ def _scatter(fit: Fitted) -> str:
         return "There are as many runs as results, so nothing is left to test the fit."
     probability = f"p = {rounded(whole.p_value)}" if whole.p_value >= 0.001 else "p < 0.001"
     source = "uncertainties" if whole.data.stated else "repeats"
-    test = " by an F test" if whole.is_f_test else ""
+    test = f" by an F({whole.dof}, {whole.data.repeats[1]}) test" if whole.is_f_test else ""
     chi2 = f"χ² = {rounded(whole.chi2, 3)}, {counted(whole.dof, 'degree')} of freedom"
     by = f"{source} ({chi2}, {probability}{test})"
     if whole.p_value < SELDOM:
@@ -57,7 +57,7 @@ def _scatter(fit: Fitted) -> str:
         return f"Because of outliers, it is open whether the runs scatter more than their {by}."
     if whole.p_value > 1 - RARE:
         return f"The runs scatter less than their {by}."
-    return f"Scatter as expected from the {by}."
+    return f"The runs do not clearly scatter more than their {by}."
 
 
 def _capital(words: str) -> str:
@@ -71,7 +71,9 @@ def conditions(fit: Fitted) -> str:
     uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
     words = inputs_in_words(fit.given.scene, motion, uncertain)
     g = "" if "gravity" in fit.whole.names else "g"
-    return ", ".join(words[x] for x, one in inputs.items() if one.given is not None or x in (g, "drop"))
+    inertia = "" if inputs["M"].given is None else "inertia"
+    shown = (x for x, one in inputs.items() if one.given is not None or x in (g, inertia, "drop"))
+    return ", ".join(words[x] for x in shown)
 
 
 # Records and pages
@@ -148,7 +150,7 @@ def _print_page(fit: Fitted, found: Fit) -> None:
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
-    u_is = "u is the standard uncertainty of a run's mean, estimated from all runs together."
+    u_is = "u is the standard uncertainty of a run's mean, with any scatter between runs that all runs show."
     page.say(u_is, *found.notes[first:])
     page.say(*found.notes[:first], style="bold")
     if results:

@@ -55,8 +55,8 @@ QUANTITIES = {
     "critical_pulley_mass": About("limits", "M*", "kg", "(34)", "pulley mass above which the string slips"),
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
     "critical_lighter_mass": About("limits", "l*", "kg", "", "lighter mass below which the string slips"),
-    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "heavier mass up to which the string holds on every pulley"),
-    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "pulley mass up to which the string holds with every heavier mass"),
+    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "lower limit of critical_heavier_mass, over all pulleys"),
+    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "lower limit of critical_pulley_mass, over all heavier masses"),
     "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
     # Of a scene whose motion was measured:
     "pulley_mass": About("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration"),
@@ -112,14 +112,14 @@ NEEDS_R = "`give` `R`, the pulley's radius"
 UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, with `I`"
 FIXED_END = "not defined, as the string's end is fixed to the pulley and no friction holds it"
 NOT_BOUNDED = "not unique while the string grips; as the wrap exceeds half a turn, no bounds are known"
-NOT_DEFINITE = "not unique while the string grips; `friction_force_min` and `friction_force_max` bound its magnitude if all friction acts one way"
+NOT_DEFINITE = "not unique while the string grips; `friction_force_min` and `friction_force_max` bound its magnitude if friction acts towards the same end of the string everywhere"
 DEFINITE = "no value, as `friction_force` is unique"
 LONG_WRAP = "known only up to half a turn of wrap (180 degrees)"
 NO_CRITICAL_MASS = "no value, as the string holds on any pulley, however heavy"
 NO_CRITICAL_HEAVIER_MASS = "no value, as on this pulley the string holds with every heavier mass"
 AXLE_HOLDS = "no value, as the axle holds the difference on any pulley"
 ALWAYS_SLIPS = "no value, as axle friction makes the string slip on any pulley, however light"
-AXLE_ENOUGH = "no value, as axle friction alone makes the string slip on any pulley"
+AXLE_ENOUGH = "no value, as with axle friction the string slips on every pulley, under some heavier mass"
 NO_NEED = "no value, as no friction is needed"
 NO_WRAP = "no value, as without friction no wrap holds"
 NOT_APPLICABLE = "no value, as conditions (36) do not apply without friction"

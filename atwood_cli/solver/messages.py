@@ -152,17 +152,17 @@ def remarks(answers: Answers) -> list[str]:
     if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
         typed = as_typed(wrap.number)
         said.append(f"The wrap is {typed} degrees; for radians write {typed}rad, for turns {typed}turn.")
-    if case.scene.mu_k is not None and case.regime != "slip" and not case.tensions_equal:
-        said.append(
-            "`mu_k` has no effect here, as the string does not slip. A string that already slides keeps"
-            " sliding if `mu_k` is below `mu_verge`."
-        )
+    mu_k = case.scene.mu_k
+    if mu_k is not None and case.regime != "slip" and not case.tensions_equal:
+        said.append("`mu_k` has no effect here, as the string does not slip.")
+        if answers["mu_verge"] is not None and answers.settle(lambda m: m.mu_verge - m.ar.number(mu_k)) > 0:
+            said.append("A string that already slides keeps sliding, as `mu_k` is below `mu_verge`.")
     c, slips_above_a_mass = case.rim_mass, case.scene.mu is not None and case.slips_once_it_moves
     if slips_above_a_mass and c is not None and not case.slips_at("heaviest"):
         most = answers.settle(lambda m: critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b, -1))
         said.append(
             f"The string slips if the heavier mass is between {_say(answers, 'critical_heavier_mass')} and"
-            f" {format_number(most)} kg. Above that it holds again, as axle friction matters less."
+            f" {format_number(most)} kg. Above that it holds again and turns the pulley."
         )
     if case.locked and case.has_axle_friction:
         said.append("A locked pulley does not turn, so `axle` has no effect.")

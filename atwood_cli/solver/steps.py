@@ -69,10 +69,10 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
     return Explanation(answer, reading, paragraphs)
 
 
-CITATION = re.compile(r"\(\d+\)")
+CITATION = re.compile(r"\(\d+'?\)")
 SYMBOL = re.compile(r"[^\W\d]\w*\*?")
 LINE = re.compile(r"^(#* *)(?:\[(.*?)\] )?(.+)$", re.MULTILINE)
-EQUATION = re.compile(r"((?:\(\d+\),? )*)(.*?)(?: = (.*?))?(?: from (.*))?")
+EQUATION = re.compile(r"((?:\(\d+'?\),? )*)(.*?)(?: = (.*?))?(?: from (.*))?")
 LAW = re.compile(r"([a-z_][a-z_0-9]{2,})\((.*)\)")
 
 
