@@ -135,7 +135,7 @@ KEPT = [
     ),
     whole(
         EXAMPLES / "handout.md",
-        partial(shown, "atwood solve --m1 1 --m2 3 --M 10 --explain --only a,T1 --markdown"),
+        partial(shown, "atwood solve --m1 1 --m2 3 --M 10 --explain --only a --markdown"),
     ),
     *(whole(EXAMPLES / name, partial(picture, words), "matplotlib") for name, words in PICTURES.items()),
 ]

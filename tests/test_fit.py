@@ -23,7 +23,7 @@ from atwood_cli import fit as laboratory_fit
 from atwood_cli.laboratory.estimate import Data, as_data, estimate, expected, of_measured, slope
 from atwood_cli.laboratory.fitting import conditions_of, fitted
 from atwood_cli.laboratory.report import _correlation
-from atwood_cli.laboratory.results import USUAL, in_small_unit, published
+from atwood_cli.laboratory.results import USUAL, published
 from atwood_cli.laboratory.runs import Kind, Runs
 from atwood_cli.laboratory.statistics import (
     CannotSeparate,
@@ -438,11 +438,6 @@ def test_a_row_is_published_by_one_rule(value: float, u: float, both: str, ends:
     assert published(value, u, (value - 2 * u, value + 2 * u)) == (both, ends)
 
 
-def test_small_values_have_small_units() -> None:
-    shown = {(0.049, "kg"): "49 g", (0.0052, "N"): "5.2 mN", (3e-8, "kg"): "0.03 mg", (0.9996, "kg"): "1 kg"}
-    assert [in_small_unit(*one) for one in shown] == [*shown.values()]
-
-
 def test_csv_has_a_row_a_run_or_a_result_and_bare_values_a_line_each() -> None:
     runs, results = (called([*RIT, "--csv", *more]).out.splitlines() for more in (["--only", "runs"], []))
     assert [runs[0], len(runs)] == ["rows,m1,m2,drop,time,u,expected,residual", 6]
@@ -485,7 +480,7 @@ def test_in_python_it_is_what_json_has() -> None:
         ({"m1": [1], "m2": [2, 3]}, {}, ValueError, "cannot read the runs: its columns differ in length: 'm1' has 1 cells, 'm2' has 2 cells"),
         ({"m1": 1, "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type int; give a sequence of cells"),
         (Path("none.csv"), {}, OSError, "cannot read none.csv: No such file or directory"),
-        (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' is known by g; leave one of them out"),
+        (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' conflicts with g, which gives it; leave one of them out"),
         (EQUAL, {}, ArithmeticError, "2 runs cannot determine the pulley's inertia and axle friction: give 3 or more, or M or axle"),
     ],
 )  # fmt: skip

@@ -126,7 +126,7 @@ def test_solve_table_appends_what_batch_does(solved: Any, quantities: list[str] 
         *((table, f"the table is of type {type(table).__name__}; give a polars frame, as by pl.from_pandas(frame)") for table in ([1], pl.Series([1]), TABLE.to_dict())),
         (TABLE.with_columns(m2=True), "cannot read the table: column m2 holds Boolean, not numbers"),
         (TABLE.drop("m2"), "cannot read the table: column m2 is missing; there are 'id', 'm1 (g)', 'M', 'x'"),
-        (TABLE.rename({"M": "M (u)"}), "cannot read the table: column 'M (u)' has the unit 'u'; it takes kg, g, mg, ug, t, lb, lbs, oz, st, slug"),
+        (TABLE.rename({"M": "M (u)"}), "cannot read the table: column 'M (u)' has the unit 'u'; it takes kg, g, mg, ug, t, lb, lbs, oz, st, slug; rename it"),
         (TABLE.rename({"id": "radius"}), "cannot read the table: column 'radius' may mean R; rename it"),
         (TABLE.rename({"id": "error"}), "cannot read the table: column 'error' would be there twice, as a result is named so; rename it"),
     ],

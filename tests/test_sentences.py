@@ -220,7 +220,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
         lambda c: c.regime(mu_k=None) == c.regime() != "slip"
     ),
     r"A string that already slides keeps sliding, as mu_k is below mu_verge\.": claimed(
-        lambda c: c.scene.mu_k < c.scene.mu and c.regime(mu=c.scene.mu_k, mu_k=None) in ("slip", "verge")
+        lambda c: c.scene.mu_k != c.scene.mu and c.regime(mu=c.scene.mu_k, mu_k=None) in ("slip", "verge")
     ),
     "As M goes from 0 to inf: "
     + ", ".join(f"{name} from {NUMBER} to {NUMBER}(?: [^,]*)?" for name in OPEN)

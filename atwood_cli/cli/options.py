@@ -149,7 +149,7 @@ Columns = Annotated[
         "--only",
         metavar="NAME",
         words=quantity_meanings,
-        help="A column for this quantity, not for the usual seven; repeatable, or a,b.",
+        help="A column for this quantity, in place of the usual seven; repeatable, or a,b.",
     ),
 ]
 FigureFile = Annotated[

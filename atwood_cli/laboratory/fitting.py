@@ -114,7 +114,9 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
     for name in names:
         for known in QUANTITIES[name].given_by:
             if given.inputs[known].given is not None:
-                raise SceneError("find", name, f"is known by {known}; leave one of them out")
+                raise SceneError(
+                    "find", name, f"conflicts with {known}, which gives it; leave one of them out"
+                )
     left = [x for x in USUAL if x not in names and x not in given.values]
     if names and left:
         what, give = (" and ".join(words[x] for x in left) for words in (RESULTS, GIVE))

@@ -12,7 +12,7 @@ from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
 from .estimate import as_data, expected
 from .fitting import RARE, SELDOM, Fitted
-from .results import QUANTITIES, USUAL, Fit, cut, equation, in_small_unit, published, rounded
+from .results import QUANTITIES, USUAL, Fit, cut, equation, published, rounded
 from .runs import MEASURED, WORDS
 
 NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
@@ -33,9 +33,10 @@ def verdict(fit: Fitted) -> str:
         said.append("Nothing is left to fit: the pulley and its axle are given.")
     for name in USUAL:
         if name in fit.whole.results:
-            (low, high), unit = fit.whole.results[name].interval, QUANTITIES[name].unit
-            may_be = f"is not distinguishable from 0; it may be up to {in_small_unit(high, unit)}."
-            said.append(_capital(f"{QUANTITIES[name].words} {'is clearly above 0.' if low > 0 else may_be}"))
+            _, u, (low, high) = fit.whole.results[name]
+            may_be = f"is not distinguishable from 0; it may be up to {cut(high, u)} {QUANTITIES[name].unit}."
+            is_above = low > u / 20  # as shown, too
+            said.append(_capital(f"{QUANTITIES[name].words} {'is clearly above 0.' if is_above else may_be}"))
     return " ".join(said)
 
 
@@ -150,7 +151,7 @@ def _print_page(fit: Fitted, found: Fit) -> None:
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
-    u_is = "u is the standard uncertainty of a run's mean, with any scatter between runs that all runs show."
+    u_is = "u is the standard uncertainty of a run's mean, with scatter between runs, if the fit finds any."
     page.say(u_is, *found.notes[first:])
     page.say(*found.notes[:first], style="bold")
     if results:

@@ -38,8 +38,6 @@ RESULTS = {
     "between_runs": "the standard deviation between runs beyond that, as a mass",
     "runs": "each run, with what is expected of it",
 }
-SMALLER_UNITS = {"kg": ("kg", "g", "mg"), "N": ("N", "mN", "µN")}
-"""Units that are each a thousandth of the one before."""
 
 
 class Result(NamedTuple):
@@ -78,13 +76,6 @@ def _cutting(uncertainty: float) -> Rounding[Decimal]:
 def rounded(value: float, digits: int = 2) -> str:
     """Return a value with a few digits, as people write it."""
     return format_number(strip_zeros(to_digits(digits)(Fraction(value))))
-
-
-def in_small_unit(value: float, unit: str) -> str:
-    """Return a value with two digits, in a unit in which it is at least 1: 49 g for 0.049 kg."""
-    units = SMALLER_UNITS.get(unit, (unit,))
-    i = next((i for i in range(len(units)) if abs(value) * 1000**i >= 0.9995), len(units) - 1)
-    return f"{rounded(value * 1000**i)} {units[i]}"
 
 
 class Fit(NamedTuple):

@@ -215,16 +215,17 @@ def _check(sheet: Sheet, headings: Sequence[Heading], others: Sequence[str], dro
 def _missing(missing: Sequence[str], sheet: Sheet, others: Sequence[str]) -> str:
     """Return which columns runs need, those of the table, and options that name what is missing."""
     options = dict[str, str]()
-    with_unit_first = sorted(others, key=lambda column: len([*divisions(column)]), reverse=True)
+    with_unit = [column for column in others if len([*divisions(column)]) > 1]
     for name in missing:
-        for column in with_unit_first:
-            if column not in options and not LIKE_NUMBER.match(column):
-                with suppress(Unreadable):  # it has the unit of something else
-                    read_headings([column], VOCABULARY, named={column: name})
-                    options[column] = f"--column {name}={quote(column)}"
-                    break
+        options[name] = f"--column {name}=HEADING"
+        for column in with_unit:
+            with suppress(Unreadable):  # it has the unit of something else
+                read_headings([column], VOCABULARY, named={column: name})
+                options[name] = f"--column {name}={quote(column)}"
+                with_unit.remove(column)
+                break
     said = f"runs need columns m1, m2, and t or a; there are {listed(sheet.columns)}"
-    if not options or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
+    if all(map(LIKE_NUMBER.match, others)) or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
         return f"{said}; make each run a row, below headings, as m1 (g),m2 (g),t (s)"
     repeats = ", and likewise each repeat" if "t" in missing else ""
     return f"{said}; name them, as {' '.join(options.values())}{repeats}"

@@ -185,7 +185,7 @@ HEADS = {
     "friction_per_metre": "friction f (N/m)",
 }
 """The headings of a point's columns; the normal force by angle is the tension, (13)."""
-FORCES = {"friction": "friction", "normal": "normal force", "sum": "sum", "resultant": "compare: T1 + T2"}
+FORCES = {"friction": "friction", "normal": "normal force", "sum": "sum"}
 """The forces in the balance, in words."""
 
 
@@ -216,9 +216,10 @@ def print_contact(answers: Answers, arc: Contact, tables: bool) -> None:
     columns = [aligned(cell(row[name]) for row in rows) for name in names]
     page.table([HEADS[name] for name in names], [list(zip(*columns, strict=True))])
     forces = {words: arc.balance[name] for name, words in FORCES.items()}
+    forces["compare: T1 + T2 as vectors"] = arc.balance["resultant"]
     xs, ys = (aligned(cell(force[axis]) for force in forces.values()) for axis in "xy")
     force_rows = list(zip(forces, xs, ys, strict=True))
-    heads = ["Force on the pulley", "x towards m1 (N)", "y upwards (N)"]
+    heads = ["Force of the string on the pulley", "x towards m1 (N)", "y upwards (N)"]
     page.table(heads, [force_rows[:2], force_rows[2:3], force_rows[3:]])
     torques = aligned(map(cell, arc.balance["torque"].values()))
     head, ends = ("Torque on the pulley / R (N)", "T2 - T1")

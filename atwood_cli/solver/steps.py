@@ -62,9 +62,9 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
     if not only:
         answer += remarks(answers)
     reading = (
-        f"Numbers after = are exact. Results after ≈ have {digits} significant digits, and numbers put into"
-        f" formulas {digits + GUARD_DIGITS}. Equation numbers are those of de Oliveira and Lemos, Force and"
-        " torque of a string on a pulley, arXiv:1706.10139."
+        f"Numbers after = are exact. Results after ≈ have {digits} significant digits; numbers that are put"
+        f" into formulas have {digits + GUARD_DIGITS}. Equation numbers are those of de Oliveira and Lemos,"
+        " Force and torque of a string on a pulley, arXiv:1706.10139."
     )
     return Explanation(answer, reading, paragraphs)
 

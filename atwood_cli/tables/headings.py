@@ -80,6 +80,8 @@ def read_headings(
     names of this grammar. Raises Unreadable if two columns hold the same, a unit is wrong or an uncertainty
     belongs to no column, SceneError if the table lacks a heading that is ``named``.
     """
+    if both := [label for label in labels if label in named]:
+        raise SceneError("label", both[0], "is also named by --column; leave one of them out")
     if absent := [heading for heading in named if heading not in columns]:
         word = f"{named[absent[0]]}={absent[0]}"
         raise SceneError("column", word, f"is not there; there are {listed(columns)}")
@@ -201,13 +203,13 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
             raise Malformed("has angles in radians; give degrees or turns")
         return read_unit(unit, dimension)
     except Malformed as error:
-        raise refused(column, str(error)) from None
+        raise refused(column, f"{error}; rename it") from None
 
 
 def refused(column: str, why: str) -> Unreadable:
     """Return the error for a heading, with the option that lets it pass."""
     column = in_quotes(column)
-    return Unreadable(f"column {column} {why}; or --label {column} passes it over")
+    return Unreadable(f"column {column} {why}; or leave it unread by --label {column}")
 
 
 def listed(names: Sequence[str]) -> str:
