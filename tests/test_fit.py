@@ -447,7 +447,7 @@ def test_csv_has_a_row_a_run_or_a_result_and_bare_values_a_line_each() -> None:
     assert resting.out.splitlines()[-1] == "3,1,1,0,,,"
     bare = called([*RIT, "--only", "c,axle"])
     assert [f"{float(word):.3g}" for word in bare.out.split()] == ["0.0323", "0.0159"]
-    assert "0.032 ± 0.021 kg\natwood: axle = 0.0159 ± 0.0016 N\natwood: All" in bare.err
+    assert "0.032 ± 0.021 kg\natwood: axle = 0.0159 ± 0.0016 N\natwood: It is" in bare.err
 
 
 def test_in_python_it_is_what_json_has() -> None:

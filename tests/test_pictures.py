@@ -221,7 +221,7 @@ def test_curves_are_those_of_the_table_with_a_step_where_the_string_is_stuck(wor
     step = float(scene["mu"]) * min(s.tension_1, s.tension_2) * np.sign(s.acceleration)
     steps = [max(two, key=abs) for two in beside if 0 in two and any(two)]
     assert steps == pytest.approx([step] * ("M" in scene), rel=1e-6)
-    stuck = [text for text in axes.texts if text.get_text() == "stuck"]
+    stuck = [text for text in axes.texts if text.get_text() == "no friction"]
     if steps:
         (grey,), (text,) = axes.patches, stuck
         box, band = text.get_window_extent(), grey.get_window_extent()

@@ -129,12 +129,12 @@ def run(arguments: list[str] | None = None) -> int:
         say(error.describe(flag(error.parameter)))
         return WRONG_USAGE
     except UsageError as error:
-        hint = f"{error.ctx.command_path} -h shows how" if error.ctx else ""
+        hint = f"{error.ctx.command_path} -h" if error.ctx else ""
         words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
         said = shortened(words, LONGEST_NAME)
         if "extra argument" in said:
             said += ": names take commas, as a,T1; a value with a blank takes quotation marks, as '200 g'"
-        say(f"{said}{' ' if said.endswith('?') else '; '}{hint}" if hint else said)
+        say(f"{said}{' See' if said.endswith('?') else '; see'} {hint}" if hint else said)
         return WRONG_USAGE
     except (KeyboardInterrupt, typer.Abort):
         drop(sys.stdout)  # its reader may have stopped, and writing would wait for ever

@@ -69,11 +69,11 @@ Examples:
 
 Each row is a run, with columns m1, m2, and a, or t and drop, the height of fall (or --drop for all). Units
 stand in headings, as m1 (g) or t/s, or in cells, as solve takes them. Repeats are further rows, or columns
-t1, t2 and so on. Uncertainties are in cells, 2.05(2), or in columns u(t), t_err, or a column ± behind it.
-Columns by other names are labels, unless --column says what they are. A note says how columns of numbers were
-read. Either mass may be the heavier. Values of --M, --I, --axle and --g are not fitted.
-Results: rim_mass is the pulley's inertia as a mass at its rim, c = I/R², for a disk M/2; axle is
-the friction of its axle as a force there. Both are fitted, unless --find names others. A note names rows in
+t1, t2 and so on. Uncertainties are in cells, 2.05(2), or in columns headed u(t), t_err, or ±, which is that
+of the column before it. Columns by other names are labels, unless --column says what they are. A note says
+how columns of numbers were read. Either mass may be the heavier. Values of --M, --I, --axle and --g are not
+fitted. Results: rim_mass is the pulley's inertia as a mass at its rim, c = I/R², for a disk M/2; axle is the
+axle's friction as a force at the rim. Both are fitted, unless --find names others. A note names rows in
 which nothing moves or the lighter side falls; they are not used. Others are left out only by --without.
 """
 
@@ -87,9 +87,9 @@ def fit(
     without: Without = None,
     drop: Annotated[str | None, scene_option("drop", "Measured", ", if all runs have the same")] = None,
     M: Annotated[str | None, scene_option("M", remark=", if it is known")] = None,
-    inertia: Annotated[str | None, scene_option("inertia", remark=", or disk: gives the pulley mass")] = None,
+    inertia: Annotated[str | None, scene_option("inertia", remark=", or disk; adds pulley_mass")] = None,
     I: Annotated[str | None, scene_option("I", remark=", if it is known; needs R")] = None,
-    R: Annotated[str | None, scene_option("R", remark=", which gives the moment of inertia")] = None,
+    R: Annotated[str | None, scene_option("R", remark="; adds moment_of_inertia")] = None,
     axle: Annotated[str | None, scene_option("axle", remark=", if it is known")] = None,
     g: Annotated[str | None, scene_option("g")] = None,
     column: Column = None,

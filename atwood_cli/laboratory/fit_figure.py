@@ -26,7 +26,8 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     u_x = best.sigma if data.drop is None else 2 * best.sigma * x / (best.data.measured - delay)
     residual = (best.data.measured - expected(best.data, best.values)) / best.sigma
     captions = {
-        "Error bars are standard uncertainties, scatter between runs included.": True,
+        "Error bars are standard uncertainties.": True,
+        "Scatter between runs is included.": best.line.between > 0,
         "Points are numbered as rows.": True,
         "Outliers are ringed.": bool(fit.outliers),
         "Hollow points are left out.": not used.all(),

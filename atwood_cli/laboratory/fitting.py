@@ -151,7 +151,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     except CannotSeparate as error:
         raise CannotSeparate(f"{error}{behind_an_error(remarks)}") from None
     odd = [*_outliers(runs, used, whole.data, whole.values, names)]
-    return Fitted(runs, used, shown, given, whole, odd, _delay(runs, used, given, whole))
+    return Fitted(runs, used, shown, given, whole, odd, _delay(runs, used, given, whole, bool(odd)))
 
 
 def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -> Estimate:
@@ -194,8 +194,8 @@ def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -
     return best._replace(results=results)
 
 
-def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate) -> list[str]:
-    """Return a sentence if all times seem too long, or if the runs cannot show that.
+def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate, odd: bool) -> list[str]:
+    """Return a sentence if all times seem too long, or if sound runs cannot show that, none being ``odd``.
 
     An F test judges what a delay takes off χ². The repeats count in it, unless runs scatter more than they do
     with the delay, too.
@@ -213,10 +213,12 @@ def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate) -> l
             if fdtrc(1, dof, taken_off / max(rest, TINY) * dof) < RARE:
                 size, long = published(abs(value), u)[0], "long" if value > 0 else "short"
                 return [f"All times seem {size} s too {long}: --find {','.join(names)} fits that, too."]
-            half, size = high - value, f" ({published(value, u)[0]} s by --find {','.join(names)})"
-    if half <= WIDE_DELAY:
+            half, size = high - value, f" (--find {','.join(names)} gives {published(value, u)[0]} s)"
+    if half <= WIDE_DELAY or odd:
         return []
-    said = f"All times may be too long or too short by a delay{size}; the results assume none. More heights"
+    said = (
+        f"It is open whether all times are too long by a delay{size}; the results assume none. More heights"
+    )
     return [f"{said} of fall, or wider ranges of m2 - m1 and m1 + m2, would show it."]
 
 

@@ -26,7 +26,7 @@ NEEDS = {
 
 
 def verdict(fit: Fitted) -> str:
-    """Return how many runs there are, and which quantities differ from 0."""
+    """Return how many runs there are, and which quantities differ from 0 as shown."""
     measurements = counted(int(fit.whole.data.counts.sum()), MEASURED[fit.runs.kind])
     said = [f"{counted(len(fit.whole.data.l), 'run')}, {measurements}."]
     if not fit.whole.names:
@@ -35,8 +35,8 @@ def verdict(fit: Fitted) -> str:
         if name in fit.whole.results:
             _, u, (low, high) = fit.whole.results[name]
             may_be = f"is not distinguishable from 0; it may be up to {cut(high, u)} {QUANTITIES[name].unit}."
-            is_above = low > u / 20  # as shown, too
-            said.append(_capital(f"{QUANTITIES[name].words} {'is clearly above 0.' if is_above else may_be}"))
+            verb = "is clearly above 0." if low > u / 20 else may_be
+            said.append(_capital(f"{QUANTITIES[name].words} {verb}"))
     return " ".join(said)
 
 
@@ -151,8 +151,8 @@ def _print_page(fit: Fitted, found: Fit) -> None:
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
-    u_is = "u is the standard uncertainty of a run's mean, with scatter between runs, if the fit finds any."
-    page.say(u_is, *found.notes[first:])
+    between = " Scatter between runs is included." if fit.whole.line.between else ""
+    page.say(f"u is the standard uncertainty of a run's mean.{between}", *found.notes[first:])
     page.say(*found.notes[:first], style="bold")
     if results:
         numbers = ((x, published(*one), QUANTITIES[x]) for x, one in results.items())

@@ -61,7 +61,7 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
     if motion.time is not None and motion.a is not None:
         return "and a both give the acceleration; leave one of them out"
     if mu is not None and finds != "mu_k":
-        return f"conflicts with mu, as it finds {finds} only if the string does not slip; leave mu out"
+        return f"finds {finds} by assuming that the string does not slip; leave mu out"
     if finds in MASSES:
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a instead, positive when m2 descends"

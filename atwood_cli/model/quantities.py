@@ -40,7 +40,7 @@ QUANTITIES = {
     "tension_1": About("motion", "T₁", "N", "(4)", "tension of the string at m1", "(1), (26)"),
     "tension_2": About("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)"),
     "mu_verge": About("friction", "μ*", "", "(27)", "friction coefficient below which the string slips"),
-    "safety_factor": About("friction", "μ/μ*", "", "", "mu divided by mu_verge; below 1 it slips (loads may not grow by this factor)"),
+    "safety_factor": About("friction", "μ/μ*", "", "", "mu divided by mu_verge, and no factor for loads; below 1 it slips"),
     "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser", "(26)"),
     "capstan_ratio": About("friction", "k", "", "(26)", "greatest ratio of tensions that friction holds"),
     "friction_force": About("friction", "F", "N", "(32)", "magnitude of the vector sum of friction along the arc"),
@@ -55,8 +55,8 @@ QUANTITIES = {
     "critical_pulley_mass": About("limits", "M*", "kg", "(34)", "pulley mass above which the string slips"),
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
     "critical_lighter_mass": About("limits", "l*", "kg", "", "lighter mass below which the string slips"),
-    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "no pulley makes the string slip if the heavier mass is at most this"),
-    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "no heavier mass makes the string slip if the pulley's mass is at most this"),
+    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "critical_heavier_mass on a locked pulley, the least of all"),
+    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "critical_pulley_mass for an infinite heavier mass, the least of all"),
     "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
     # Of a scene whose motion was measured:
     "pulley_mass": About("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration"),
@@ -116,7 +116,7 @@ NOT_DEFINITE = "not unique while the string grips; `friction_force_min` and `fri
 DEFINITE = "no value, as `friction_force` is unique"
 LONG_WRAP = "known only up to half a turn of wrap (180 degrees)"
 NO_CRITICAL_MASS = "no value, as the string holds on any pulley, however heavy"
-NO_CRITICAL_HEAVIER_MASS = "no value, as on this pulley the string holds with every heavier mass"
+NO_CRITICAL_HEAVIER_MASS = "no value, as on this pulley the string holds, whatever the heavier mass"
 AXLE_HOLDS = "no value, as the axle holds the difference on any pulley"
 ALWAYS_SLIPS = "no value, as axle friction makes the string slip on any pulley, however light"
 AXLE_ENOUGH = "no value, as with axle friction the string slips on every pulley, under some heavier mass"

@@ -58,7 +58,7 @@ def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = Fa
         forces = {name: force for name, force in forces.items() if name[0] == "T"}
     scale = LONGEST / (max(forces.values()) or 1)
     lengths = {name: max(scale * force, SHORTEST) if force else 0.0 for name, force in forces.items()}
-    below = [*_caption(few, kind, wrap, bare)]
+    below = [*_caption(few, kind, wrap)]
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
     given = inputs_in_words(case.scene, case.motion, answers.uncertain)
@@ -79,16 +79,16 @@ def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = Fa
             _draw_tensions(machine, few, lengths, radians(wrap))
 
 
-def _caption(few: Answers, kind: arc.Profile | None, wrap: float, bare: bool) -> Iterator[str]:
-    """Yield sentences on the friction along the arc, unless it is ``bare``, and on what is not drawn."""
-    if kind == "creep" and not bare:
+def _caption(few: Answers, kind: arc.Profile | None, wrap: float) -> Iterator[str]:
+    """Yield sentences on the friction along the arc, and on what is not drawn."""
+    if kind == "creep":
         why = ", as on a slightly elastic string"
         if few["friction_force_max"] is not None:
             greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
             why = f". Its vector sum is friction_force_max, {greatest} N; friction_force_min is {least} N"
         angle = format_number(few["least_wrap"])
         yield f"Drawn: friction at its limit on the {angle}° of the arc next to the heavier mass{why}."
-    elif kind and not bare:
+    elif kind:
         yield about(few, kind)
         if force := few["friction_force"]:
             yield f"The vector sum of friction is {format_number(force)} N."
@@ -239,7 +239,7 @@ def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:
 
 
 def _draw_curves(axes: "Axes", few: Answers, kind: arc.Profile, wrap: float) -> None:
-    """Draw normal force and friction along the arc, over grey where the string is stuck."""
+    """Draw normal force and friction along the arc, over grey where there is no friction."""
     stuck = float(few.settle(lambda m: (m.phi - m.alpha) / m.phi, to_double)) if kind == "creep" else 0.0
     edge, start = (stuck, 0) if few.case.sign >= 0 else (1 - stuck, 1)
     shares = np.sort([*np.linspace(0, 1, CURVE_POINTS), *np.nextafter(edge, [0, edge, 1])])
@@ -258,4 +258,4 @@ def _draw_curves(axes: "Axes", few: Answers, kind: arc.Profile, wrap: float) -> 
         axes.axvspan(wrap * edge, wrap * start, color=FAINT, alpha=0.2, lw=0)
     if stuck > 0.1:  # else the word is wider
         middle, top = wrap * (edge + start) / 2, axes.get_ylim()[1]
-        axes.text(middle, top, "stuck", ha="center", va="top")
+        axes.text(middle, top, "no friction", ha="center", va="top")
