@@ -27,7 +27,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     residual = (best.data.measured - expected(best.data, best.values)) / best.sigma
     captions = {
         "Error bars are standard uncertainties.": True,
-        "Scatter between runs is included.": best.line.between > 0,
+        "They include a scatter of forces between runs.": best.line.between > 0,
         "Points are numbered as rows.": True,
         "Outliers are ringed.": bool(fit.outliers),
         "Hollow points are left out.": not used.all(),

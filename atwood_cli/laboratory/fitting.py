@@ -212,7 +212,8 @@ def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate, odd:
                 rest, dof = rest + late.data.repeats[0], dof + late.data.repeats[1]
             if fdtrc(1, dof, taken_off / max(rest, TINY) * dof) < RARE:
                 size, long = published(abs(value), u)[0], "long" if value > 0 else "short"
-                return [f"All times seem {size} s too {long}: --find {','.join(names)} fits that, too."]
+                also = " and may explain outliers" if odd else ", too"
+                return [f"All times seem {size} s too {long}: --find {','.join(names)} fits that{also}."]
             half, size = high - value, f" (--find {','.join(names)} gives {published(value, u)[0]} s)"
     if half <= WIDE_DELAY or odd:
         return []

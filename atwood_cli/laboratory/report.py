@@ -151,7 +151,7 @@ def _print_page(fit: Fitted, found: Fit) -> None:
     unit = parameter_of(kind).unit
     heads = f"{kind} ({unit})", f"expected ({unit})", f"u ({unit})", "residual/u"
     _print_table(page, ("row", "m1 (kg)", "m2 (kg)", *heads), _rows(fit, found))
-    between = " Scatter between runs is included." if fit.whole.line.between else ""
+    between = " It includes a scatter of forces between runs." if fit.whole.line.between else ""
     page.say(f"u is the standard uncertainty of a run's mean.{between}", *found.notes[first:])
     page.say(*found.notes[:first], style="bold")
     if results:

@@ -40,7 +40,7 @@ QUANTITIES = {
     "tension_1": About("motion", "T₁", "N", "(4)", "tension of the string at m1", "(1), (26)"),
     "tension_2": About("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)"),
     "mu_verge": About("friction", "μ*", "", "(27)", "friction coefficient below which the string slips"),
-    "safety_factor": About("friction", "μ/μ*", "", "", "mu divided by mu_verge, and no factor for loads; below 1 it slips"),
+    "safety_factor": About("friction", "μ/μ*", "", "", "ratio of friction coefficients, mu over mu_verge; below 1 it slips"),
     "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser", "(26)"),
     "capstan_ratio": About("friction", "k", "", "(26)", "greatest ratio of tensions that friction holds"),
     "friction_force": About("friction", "F", "N", "(32)", "magnitude of the vector sum of friction along the arc"),
@@ -55,8 +55,8 @@ QUANTITIES = {
     "critical_pulley_mass": About("limits", "M*", "kg", "(34)", "pulley mass above which the string slips"),
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
     "critical_lighter_mass": About("limits", "l*", "kg", "", "lighter mass below which the string slips"),
-    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "critical_heavier_mass on a locked pulley, the least of all"),
-    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "critical_pulley_mass for an infinite heavier mass, the least of all"),
+    "least_heavier_mass": About("limits", "m min", "kg", "(36)", "critical_heavier_mass if the pulley were locked"),
+    "least_pulley_mass": About("limits", "M min", "kg", "(36)", "critical_pulley_mass if the heavier mass were infinite"),
     "least_wrap": About("limits", "φ*", "°", "(27)", "angle of wrap below which the string slips"),
     # Of a scene whose motion was measured:
     "pulley_mass": About("measured", "M", "kg", "(4)", "pulley mass that gives the measured acceleration"),
@@ -112,7 +112,7 @@ NEEDS_R = "`give` `R`, the pulley's radius"
 UNKNOWN_SHAPE = "`give` `M`, the pulley's mass, with `I`"
 FIXED_END = "not defined, as the string's end is fixed to the pulley and no friction holds it"
 NOT_BOUNDED = "not unique while the string grips; as the wrap exceeds half a turn, no bounds are known"
-NOT_DEFINITE = "not unique while the string grips; `friction_force_min` and `friction_force_max` bound its magnitude if all friction acts in the same sense of rotation"
+NOT_DEFINITE = "not unique while the string grips; `friction_force_min` and `friction_force_max` bound its magnitude if friction nowhere reverses along the arc"
 DEFINITE = "no value, as `friction_force` is unique"
 LONG_WRAP = "known only up to half a turn of wrap (180 degrees)"
 NO_CRITICAL_MASS = "no value, as the string holds on any pulley, however heavy"

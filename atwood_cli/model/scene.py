@@ -242,7 +242,7 @@ def checked(inputs: Mapping[str, Input], unknown: str = "") -> dict[str, Any]:
         alike = to_double(mu_k) == to_double(mu)  # then a float's digits are the point
         both = [Fraction(x) if alike else x for x in (mu_k, mu)]
         sizes = " > ".join(shortened(as_typed(x, inf)) for x in both)
-        refuse("mu_k", f"must not be above mu; exactly, {sizes}")
+        refuse("mu_k", f"must not be above mu: {sizes}")
     if I is not None and R is None:
         refuse("I", "needs the radius R as well")
     if axle is not None and axle.unit == "N m" and R is None:

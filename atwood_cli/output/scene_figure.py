@@ -180,8 +180,8 @@ def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float, das
     if greatest := abs(friction).max():
         around = friction / greatest * LONGEST_ON_ARC * 1j * np.exp(-1j * phi * shares)
         _draw_arrows(axes, FRICTION_AT * outwards, around, RED)
-        scale = f"{normal.max() / greatest:.3g} times the scale of nR"
-        axes.plot([], [], color=RED, ls=dash, marker=">", ms=4, label=typeset(f"friction fR, at {scale}"))
+        label = f"friction fR (arrows {normal.max() / greatest:.3g} times as long as to scale)"
+        axes.plot([], [], color=RED, ls=dash, marker=">", ms=4, label=typeset(label))
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), ncols=2, handlelength=3)
 
 

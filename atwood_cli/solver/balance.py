@@ -27,14 +27,11 @@ USUAL_POINTS, MAX_POINTS = 13, 100_000
 ZERO_DIGITS = 50
 """The digits of a sum that must be 0 if it is to be 0."""
 
-ABOUT_KIND = {
-    "creep": (
-        "The tension is not unique while the string grips with friction to spare. Shown is that of a slightly"
-        " elastic string: friction is at its limit on the {angle}° of the arc next to the heavier mass, and 0"
-        " elsewhere."
-    ),
-    "exponential": "Friction is at its limit all along the arc.",
-}
+CREEP = (
+    "The tension is not unique while the string grips with friction to spare. Shown is that of a slightly"
+    " elastic string: friction is at its limit on the {angle}° of the arc next to the heavier mass, and 0"
+    " elsewhere."
+)
 WITHOUT_MU = "mu is not given: the forces shown are for the least mu that holds."
 WITHOUT_FRICTION = "Both tensions are equal: there is no friction."
 
@@ -159,4 +156,7 @@ def about(answers: Answers, kind: Profile) -> str:
         return WITHOUT_FRICTION
     if answers.case.mu_assumed:
         return WITHOUT_MU
-    return ABOUT_KIND[kind].format(angle=format_number(answers.shown["least_wrap"]))
+    if kind == "creep":
+        return CREEP.format(angle=format_number(answers.shown["least_wrap"]))
+    mu = "mu_k" if answers.case.slides_by_mu_k else "mu"
+    return f"Friction is at its limit, {mu} n, all along the arc."
