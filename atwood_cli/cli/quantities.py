@@ -14,9 +14,8 @@ Examples:
 ON_FRICTION = (
     "Friction acts along the string, which bends around the pulley, so its vector sum, friction_force, is not"
     " T2 - T1. While a string grips with friction to spare, the tension along its arc is not unique."
-    " friction_force is then between friction_force_min and friction_force_max, if friction nowhere"
-    " reverses along the arc."
-    " Without mu, friction_force is the one at mu_verge."
+    " friction_force is then between friction_force_min and friction_force_max, if friction nowhere reverses"
+    " along the arc. Without mu, friction_force is the one at mu_verge."
 )
 
 

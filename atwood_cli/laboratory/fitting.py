@@ -114,9 +114,8 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
     for name in names:
         for known in QUANTITIES[name].given_by:
             if given.inputs[known].given is not None:
-                raise SceneError(
-                    "find", name, f"conflicts with {known}, which gives it; leave one of them out"
-                )
+                rule = f"conflicts with {known}, which gives it; leave one of them out"
+                raise SceneError("find", name, rule)
     left = [x for x in USUAL if x not in names and x not in given.values]
     if names and left:
         what, give = (" and ".join(words[x] for x in left) for words in (RESULTS, GIVE))
@@ -217,10 +216,8 @@ def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate, odd:
             half, size = high - value, f" (--find {','.join(names)} gives {published(value, u)[0]} s)"
     if half <= WIDE_DELAY or odd:
         return []
-    said = (
-        f"It is open whether all times are too long by a delay{size}; the results assume none. More heights"
-    )
-    return [f"{said} of fall, or wider ranges of m2 - m1 and m1 + m2, would show it."]
+    said = f"It is open whether all times are too long by a delay{size}; the results assume none."
+    return [f"{said} More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it."]
 
 
 def _with_derived(values: Mapping[str, float], names: Sequence[str], given: Conditions) -> dict[str, float]:
