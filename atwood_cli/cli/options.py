@@ -162,7 +162,7 @@ Labels = Annotated[
         "Files",
         "--label",
         metavar="COLUMN",
-        help="Leave this column as it is, though it may be meant for an input; repeatable.",
+        help="Do not read this column, though it may be meant for an input; repeatable.",
     ),
 ]
 

@@ -58,7 +58,9 @@ def _scatter(fit: Fitted) -> str:
         return f"Because of outliers, it is open whether the runs scatter more than their {by}."
     if whole.p_value > 1 - RARE:
         return f"The runs scatter less than their {by}."
-    return f"The runs do not clearly scatter more than their {by}."
+    if whole.line.between:
+        return f"The runs scatter more than their {by}, but chance may explain that."
+    return f"The runs do not scatter more than their {by}."
 
 
 def _capital(words: str) -> str:

@@ -203,7 +203,7 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
             raise Malformed("has angles in radians; give degrees or turns")
         return read_unit(unit, dimension)
     except Malformed as error:
-        raise refused(column, f"{error}; rename it") from None
+        raise Unreadable(f"column {in_quotes(column)} {error}; rename it") from None
 
 
 def refused(column: str, why: str) -> Unreadable:
