@@ -29,7 +29,7 @@ REMARKS = {
     "inertia": ", or disk, hoop, ring, sphere, shell; 0.5 if not given",
     "I": ", instead of inertia; needs R",
     "wrap": ": degrees, 3rad, pi/2, 2.5turn (half a turn and two whole turns); 180 if not given",
-    "axle": ", as 15mN, or with R a torque, as 0.4mNm",
+    "axle": ", as 15mN, or a torque with its unit, as 0.4mNm (needs R)",
     "a": ": finds M, or a mass, g, mu_k",
     "drop": ": finds time and speed",
     "time": ", with drop instead of a",

@@ -162,7 +162,7 @@ def remarks(answers: Answers) -> list[str]:
         most = answers.settle(lambda m: critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b, -1))
         said.append(
             f"The string slips if the heavier mass is between {_say(answers, 'critical_heavier_mass')} and"
-            f" {format_number(most)} kg. Above that the pulley turns, and the string holds again."
+            f" {format_number(most)} kg. Above that it holds again, as the pulley turns with it."
         )
     if case.locked and case.has_axle_friction:
         said.append("A locked pulley does not turn, so `axle` has no effect.")
