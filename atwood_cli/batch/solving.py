@@ -64,8 +64,10 @@ def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> 
     doubtful = {column: name for column in columns if column not in passed and (name := _meant(column))}
     for column, name in doubtful.items():
         if name in INPUTS and not (whole and name in inputs):  # in NDJSON, another row may lack the input
-            way = f"give --column {name}={in_quotes(column)}"
-            raise refused(column, f"may mean {name}; rename it, or {way}")
+            *_, (_, unit) = divisions(column)
+            asked_unit = "" if unit or not INPUTS[name].unit else " (UNIT)"
+            way = f"--column {in_quotes(f'{name}{asked_unit}={column}')}"
+            raise refused(column, f"may mean {name}; rename it, or give {way}")
     missing = [mass for mass in MASSES if mass not in inputs]
     if missing and whole:
         lacking = f"column {missing[0]} is" if len(missing) == 1 else "columns m1 and m2 are"

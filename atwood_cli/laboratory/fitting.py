@@ -201,7 +201,7 @@ def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate, odd:
     """
     if runs.kind != "time" or "delay" in whole.names:
         return []
-    names, half, size = [*whole.names, "delay"], inf, ""
+    names, half, estimated = [*whole.names, "delay"], inf, ""
     if whole.dof > 1:
         with suppress(CannotSeparate):
             late = _fit(runs, used, given, names)
@@ -213,10 +213,10 @@ def _delay(runs: Runs, used: Selection, given: Conditions, whole: Estimate, odd:
                 size, long = published(abs(value), u)[0], "long" if value > 0 else "short"
                 also = " and may explain outliers" if odd else ", too"
                 return [f"All times seem {size} s too {long}: --find {','.join(names)} fits that{also}."]
-            half, size = high - value, f" (--find {','.join(names)} gives {published(value, u)[0]} s)"
+            half, estimated = high - value, f" (--find {','.join(names)} gives {published(value, u)[0]} s)"
     if half <= WIDE_DELAY or odd:
         return []
-    said = f"It is open whether all times are too long by a delay{size}; the results assume none."
+    said = f"It is open whether all times are too long by a delay{estimated}; the results assume none."
     return [f"{said} More heights of fall, or wider ranges of m2 - m1 and m1 + m2, would show it."]
 
 

@@ -35,7 +35,7 @@ def verdict(fit: Fitted) -> str:
         if name in fit.whole.results:
             _, u, (low, high) = fit.whole.results[name]
             may_be = f"is not distinguishable from 0; it may be up to {cut(high, u)} {QUANTITIES[name].unit}."
-            verb = "is clearly above 0." if low > u / 20 else may_be
+            verb = "is clearly above 0." if low > u / 20 else may_be  # as cut at the second digit of u
             said.append(_capital(f"{QUANTITIES[name].words} {verb}"))
     return " ".join(said)
 

@@ -252,8 +252,8 @@ def critical_heavier_mass(l: N, c: N, friction_mass: N, b: N, sign: int = 1) -> 
 
     c - b and c + b - 2 l (k - 1) must have that sign.
 
-    >>> critical_heavier_mass(1, 4, 1, 0), critical_heavier_mass(1, 6, 2, 1)
-    (4.0, 5.0)
+    >>> critical_heavier_mass(1, 6, 2, 1), critical_heavier_mass(1, 1, 2, 2, -1)
+    (5.0, 3.0)
     """
     difference, rest = sign * (c - b), sign * (c + b - 2 * friction_mass)
     return difference / rest * least_heavier_mass(l, friction_mass)

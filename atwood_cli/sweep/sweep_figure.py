@@ -105,7 +105,7 @@ def _curve(along: Range, name: str, point: str, found: list[Change], solved: dic
     marks = []
     for change in found:
         if change.before[0] != change.after[0]:
-            places = sorted((change.last, change.first), reverse=change.after[0] != "slip")  # it holds first
+            places = sorted((change.last, change.first), reverse=change.after[0] != "slip")  # there it holds
             height = next((y for x in places if not isnan(y := heights[float(x)])), nan)
             words = f"{BEGINS[change.after[0]]} {along.in_units(change.at)}"
             marks.append((float(change.at.exact), height, words))
