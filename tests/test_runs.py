@@ -173,6 +173,7 @@ def test_uncertainties_are_in_the_unit_of_their_column(read: Any) -> None:
         (TABLE.replace("\n", "\n\n"), ""),
         (TABLE.replace("\n", ",,\n", 1), ""),
         (TABLE.replace("\n", ",,\n"), ""),
+        (re.sub("(?<=[0-9])\n", ",,\n", TABLE), ""),  # a fit of it ended in a traceback
         (SEMICOLONS, PARTED),
         (TABLE.replace(",", "\t"), ""),
         ("sep=;\r\n" + SEMICOLONS, PARTED),

@@ -111,5 +111,5 @@ def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[s
             if separator == "," and len(row) > len(columns):
                 hint = "; is there a decimal comma (write a point), or one at its end?"
             raise Unreadable(f"row {number} has {len(row)} cells, and the header {len(columns)}{hint}")
-        row += [""] * (len(columns) - len(row))
+        row[len(columns) :] = [""] * (len(columns) - len(row))
     return columns, rows
