@@ -87,9 +87,9 @@ def _meant(column: str) -> str | None:
     words = [word for word in re.split("[^0-9a-z]+", letters) if word]
     if meant := OTHER_NAMES.get("_".join(words)):
         return meant
-    if meant := OTHER_NAMES.get("_".join(words[:-1])):
+    if (meant := OTHER_NAMES.get("_".join(words[:-1]))) and (dimension := parameter_of(meant).dimension):
         with suppress(Malformed):
-            read_unit(re.split(r"[\W_]+", name)[-1], parameter_of(meant).dimension or "")
+            read_unit(re.split(r"[\W_]+", name)[-1], dimension)
             return meant
     return None
 

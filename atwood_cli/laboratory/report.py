@@ -76,7 +76,7 @@ def conditions(fit: Fitted) -> str:
     g = "" if "gravity" in fit.whole.names else "g"
     inertia = "" if inputs["M"].given is None else "inertia"
     shown = (x for x, one in inputs.items() if one.given is not None or x in (g, inertia, "drop"))
-    return ", ".join(words[x] for x in shown)
+    return ", ".join(words[x] for x in shown if x in words)
 
 
 # Records and pages
