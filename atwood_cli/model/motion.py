@@ -127,15 +127,14 @@ def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
         return {}
     case: Any = Decisions(values)  # about the pulley, as a mass may be missing
     c, f, b = case.rim_mass, case.axle_friction, case.axle_mass
+    a = motion.acceleration({"m2": 1, "m1": -1}.get(finds) or (m2 > m1) - (m2 < m1))
+    if finds != "g" and a >= g:
+        raise Undetermined(f"must be slower than free fall, {format_number(to_double(g))} m/s²")
     if finds in MASSES:
-        known, down = (m1, motion.acceleration(1)) if finds == "m2" else (m2, motion.acceleration(-1))
-        if down >= g:
-            side, limit = ("below", g) if finds == "m2" else ("above", -g)
-            raise Undetermined(f"must be {side} {format_number(to_double(limit))} m/s², that of free fall")
-        if down > 0:
-            return {finds: physics.heavier_mass(known, c, down, g, f)}
-        return {finds: physics.lighter_mass(known, c, -down, g, f)}
-    a = motion.acceleration((m2 > m1) - (m2 < m1))
+        known = m1 if finds == "m2" else m2
+        if a > 0:
+            return {finds: physics.heavier_mass(known, c, a, g, f)}
+        return {finds: physics.lighter_mass(known, c, -a, g, f)}
     if a <= 0:
         heavier, side = ("m2", "above") if m2 > m1 else ("m1", "below")
         raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass")
