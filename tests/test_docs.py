@@ -35,6 +35,7 @@ PYTHON = {
 }
 
 
+@pytest.mark.filterwarnings("error::RuntimeWarning")  # of NumPy, which a user would read on stderr
 @pytest.mark.parametrize("file", dict.fromkeys(kept.file for kept in KEPT), ids=lambda file: file.name)
 def test_what_is_kept_is_what_is_printed_today(file: Path, pytestconfig: pytest.Config) -> None:
     lacking = {kept.lacks for kept in KEPT if kept.file == file and kept.lacks}

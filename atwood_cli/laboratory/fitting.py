@@ -310,7 +310,7 @@ def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> str:
         is_mistaken |= is_unusual
         if is_unusual.any() and not said:
             i, unit = int(np.argmax(is_unusual)), parameter_of(name.split()[0]).unit
-            value, times, there = (rounded(float(x[i]), 3) for x in (values, ratio, values / ratio))
+            value, times, there = (rounded(float(x), 3) for x in (values[i], ratio[i], values[i] / ratio[i]))
             far = f"{name} = {value} {unit} is {times} times {what}, {there} {unit}"
             said = f"{runs.rows_in_words(np.flatnonzero(used)[i])}: {far}; {CHECK}"
     if is_mistaken.mean() > 0.5:
