@@ -227,7 +227,7 @@ SENTENCES: dict[str, Callable[..., None]] = {
     + r"\.": open_range,
     rf"(.*?): ({RANGES})\.": out_of_range,
     rf"The inertia factor I/\(M R\^2\) is {NUMBER}, above 1: .*": inertia,
-    rf"The wrap is {NUMBER} degrees; for radians write {NUMBER}rad, for turns {NUMBER}turn\.": short_wrap,
+    rf"The wrap is {NUMBER}°; for radians write {NUMBER}rad, for turns {NUMBER}turn\.": short_wrap,
 }
 """What is said of a scene, and the claim in it."""
 

@@ -15,7 +15,7 @@ from .fitting import RARE, SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, published, rounded
 from .runs import MEASURED, WORDS
 
-NOT_FITTED = "has no value: it is given, was not to be fitted, or the runs do not determine it"
+NOT_FITTED = "no value, as it is given, was not to be fitted, or the runs do not determine it"
 NEEDS = {
     "moment_of_inertia": "needs the rim mass to be fitted, and R",
     "pulley_mass": "needs the rim mass to be fitted, and the pulley's shape, --inertia",

@@ -151,7 +151,7 @@ def remarks(answers: Answers) -> list[str]:
     wrap = case.scene.wrap
     if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
         typed = as_typed(wrap.number)
-        said.append(f"The wrap is {typed} degrees; for radians write {typed}rad, for turns {typed}turn.")
+        said.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
     mu_k = case.scene.mu_k
     if mu_k is not None and case.regime != "slip" and not case.tensions_equal:
         said.append("`mu_k` has no effect here, as the string does not slip.")

@@ -100,7 +100,7 @@ def read_headings(
         if is_repeat and column in named and not found.number:  # its user may name repeats alike
             key = found.name, str(1 + sum(own.name == found.name for own in headings.values()))
         if same := headings.get(key):
-            way = f"number what is repeated, as '{found.name} 1'" if is_repeat else "rename one"
+            way = "give each repeat its own number" if is_repeat else "rename one"
             raise refused(column, f"holds {found.name}, as {in_quotes(same.column)} does; {way}")
         headings[key] = found._replace(number=key[1], factor=unit_factor(found.name, found.unit, column))
     for found in uncertain:
