@@ -219,10 +219,7 @@ def test_what_a_unit_takes_beyond_the_doubles_is_an_error_of_the_row() -> None:
 # Usage and files
 
 
-@pytest.mark.parametrize(
-    "line",
-    ["in.csv -o in.csv", "in.csv -o hard.csv", "in.csv -o soft.csv", "- -o in.csv < in.csv", "in.csv >> in.csv", "- < in.csv >> in.csv"],
-)  # fmt: skip
+@pytest.mark.parametrize("line", ["in.csv -o in.csv", "in.csv -o hard.csv", "in.csv -o soft.csv", "- -o in.csv < in.csv", "in.csv >> in.csv", "- < in.csv >> in.csv"])  # fmt: skip
 def test_the_input_is_never_overwritten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, line: str) -> None:
     scenes, said = tmp_path / "in.csv", io.StringIO()
     scenes.write_text(TEXT)
@@ -232,7 +229,7 @@ def test_the_input_is_never_overwritten(tmp_path: Path, monkeypatch: pytest.Monk
     with chdir(tmp_path), scenes.open() as stdin, scenes.open("a") as out, redirect_stderr(said):
         monkeypatch.setattr(sys, "stdin", stdin if "<" in line else None)
         with redirect_stdout(out if ">>" in line else io.StringIO()):
-            assert run(["batch", *words, "--force"]) == 2
+            assert run(["batch", *words, *["--force"] * ("-o" in words)]) == 2
     name = words[-1] if "-o" in words else "-"
     refused = f"atwood: --output {name!r} is the input, which is never overwritten; name another\n"
     assert (said.getvalue(), scenes.read_text()) == (refused, TEXT)

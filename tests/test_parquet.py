@@ -64,10 +64,7 @@ NO_NUMBER = "{} 'x' is not a number; write it like 2, 1/3 or 1.5e-3"
 @pytest.mark.parametrize(
     ("kind", "bad", "first", "second"),
     [
-        *(
-            (kind, -1, f"{{}} '{shown}g' {BELOW}", f"{{}} -1.0 {BELOW}")
-            for kind, shown in [(pl.Int8, "-1"), (pl.Int64, "-1"), (pl.Float32, "-1.0"), (pl.Float64, "-1.0"), (pl.Decimal(10, 2), "-1.00")]
-        ),
+        *((kind, -1, f"{{}} '{shown}g' {BELOW}", f"{{}} -1.0 {BELOW}") for kind, shown in [(pl.Int8, "-1"), (pl.Int64, "-1"), (pl.Float32, "-1.0"), (pl.Float64, "-1.0"), (pl.Decimal(10, 2), "-1.00")]),
         *((kind, None, MISSING, MISSING) for kind in (pl.UInt64, pl.String)),
         *((kind, "x", NO_NUMBER, NO_NUMBER) for kind in (pl.String, pl.Categorical)),
         *((kind, " NA ", MISSING, MISSING) for kind in (pl.String, pl.Categorical)),
@@ -77,7 +74,6 @@ NO_NUMBER = "{} 'x' is not a number; write it like 2, 1/3 or 1.5e-3"
 def test_inputs_keep_their_types_and_what_is_wrong_is_an_error_of_its_row(
     solved: Any, kind: Any, bad: Any, first: str, second: str
 ) -> None:
-    """It ended the run."""
     cells = {"m1 (g)": [1, bad, 2], "m2": [3, 3, bad]}
     frame = pl.DataFrame({name: [cell and str(cell) for cell in cells[name]] for name in cells}).cast(kind)
     ran, result = solved(frame, "--only regime")
@@ -87,6 +83,13 @@ def test_inputs_keep_their_types_and_what_is_wrong_is_an_error_of_its_row(
     assert result.drop("regime", "error").schema == frame.schema
     assert result["error"].to_list() == [None, first.format("m1"), second.format("m2")]
     assert solve_table(frame, "regime").equals(result)
+
+
+def test_decimals_in_another_unit_are_rounded_once() -> None:
+    """They were divided as doubles, and a string slipped that holds."""
+    texts = pl.DataFrame({"m1 (g)": ["120879.946"], "m2": [120.879946], "M": [1e15], "mu": [1e-17]})
+    numbers = texts.cast({"m1 (g)": pl.Decimal(12, 3)})
+    assert solve_table(numbers).drop("m1 (g)").equals(solve_table(texts).drop("m1 (g)"))
 
 
 @pytest.mark.parametrize(

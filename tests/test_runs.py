@@ -279,3 +279,4 @@ def test_a_header_may_come_in_two_pieces(batch: Batch, monkeypatch: pytest.Monke
     """A heading with a line end, from a pipe, was "a quotation mark out of place"."""
     monkeypatch.setattr(sources, "BLOCK_BYTES", 1)
     assert batch('"time\nof day";m1;m2\n9;1;3\n').out.startswith('"time\nof day";m1;m2;regime;')
+    assert batch('{"m1":1,"m2":3}\n{"m1":1,"m2":3,"n":9}\n', "--column M=n", "in.ndjson").status == 0

@@ -84,12 +84,13 @@ def drawn(rng: Random) -> dict[str, str]:
 
 
 def ends_of(x: str, given: Mapping[str, Any], step: Fraction) -> dict[str, Any]:
-    """What is given, with an input as much more as it may be."""
+    """What is given, with an input so much more, but not below 0, and mu_k at most mu."""
     value = given[x]
-    number = max(getattr(value, "number", value) + step, Fraction(given.get("mu_k") or 0) if x == "mu" else 0)
-    if x == "mu_k":
-        number = min(number, given["mu"])
-    return {**given, x: type(value)(number, value.unit) if hasattr(value, "unit") else number}
+    number = max(getattr(value, "number", value) + step, 0)
+    there = {**given, x: type(value)(number, value.unit) if hasattr(value, "unit") else number}
+    if (there.get("mu_k") or 0) > (there.get("mu") or 0):
+        there |= {"mu": number, "mu_k": number}
+    return there
 
 
 def solved_if_valid(given: Mapping[str, Any]) -> Any:

@@ -14,7 +14,7 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 from ..model.scene import SceneError
 from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
-from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
+from ..tables.headings import Heading, decimal_commas_in, listed, read_as, read_headings, recognised
 from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream, opened
 from .frames import check_polars, solve_parquet
@@ -117,17 +117,18 @@ def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memo
 
 def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
     """Solve lines, each of which is an object: results become its last members."""
-    layout = Layout([])
+    layout, there, asked = Layout([]), list[str](), job.asked
 
     def headings(keys: Sequence[str]) -> Sequence[Heading]:
         nonlocal layout
-        layout = read_layout(keys, job.asked, whole=False)
+        there[:], layout = keys, read_layout(keys, asked, whole=False)
         return layout.headings
 
     with _watched(read_ndjson(blocks_of(source), headings), job, source) as watched:
         for piece in watched:
-            target.write(_ndjson(piece, solve_cells(piece.cells, layout, job.asked, tally, piece.errors)))
+            target.write(_ndjson(piece, solve_cells(piece.cells, layout, asked, tally, piece.errors)))
             target.flush()
+    read_headings(there, VOCABULARY, asked.labels, asked.named)  # which any line may have had
     return _remarks(layout)
 
 

@@ -14,7 +14,7 @@ from unicodedata import normalize
 from ..model.digits import to_double
 from ..model.quantities import NAMES, REGIMES
 from ..model.scene import INPUTS, MASSES, OTHER_NAMES, Scene, SceneError, parameter_of, read_plain, read_value
-from ..model.units import Malformed, counted, in_quotes, read_unit, shortened
+from ..model.units import Malformed, counted, in_quotes, read_unit, shortened, without_blanks
 from ..solver.messages import reasons_in
 from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
 from ..tables.sources import Unreadable
@@ -58,13 +58,13 @@ def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> 
         raise Unreadable(
             f"column {in_quotes(clash[0])} would be there twice, as a result is named so; rename it"
         )
-    headings = read_headings(columns, VOCABULARY, asked.labels, asked.named)
+    headings = read_headings(columns, VOCABULARY, asked.labels, asked.named, whole)
     inputs = {heading.name for heading in headings}
     passed = {*asked.labels, *(heading.column for heading in headings)}
     doubtful = {column: name for column in columns if column not in passed and (name := _meant(column))}
     for column, name in doubtful.items():
         if name in INPUTS and not (whole and name in inputs):  # in NDJSON, another row may lack the input
-            *_, (_, unit) = divisions(column)
+            *_, (_, unit) = divisions(without_blanks(column))
             asked_unit = "" if unit or not INPUTS[name].unit else " (UNIT)"
             way = f"--column {in_quotes(f'{name}{asked_unit}={column}')}"
             raise refused(column, f"may mean {name}; rename it, or give {way}")
@@ -82,7 +82,7 @@ def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> 
 
 def _meant(column: str) -> str | None:
     """Return the input that a heading may mean: in other letters, by another name or with a unit behind."""
-    *_, (name, _) = divisions(column)
+    *_, (name, _) = divisions(without_blanks(column))
     letters = normalize("NFKC", name).casefold().translate(GREEK_SPELLED)
     words = [word for word in re.split("[^0-9a-z]+", letters) if word]
     if meant := OTHER_NAMES.get("_".join(words)):
@@ -201,6 +201,8 @@ def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
     power = len(str(max(factor, 1 / factor))) - 1
     if max(factor, 1 / factor) != 10**power:
         return pl.repeat(None, len(cells), dtype=pl.Float64, eager=True)
+    if power and not cells.dtype.is_float():
+        cells = cells.cast(pl.String)  # a decimal or a long integer would round twice
     if cells.dtype == pl.String:
         texts = cells.set(cells.str.len_bytes() > LONG_CELL, None)
         if comma:

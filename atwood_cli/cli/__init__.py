@@ -105,7 +105,7 @@ def run(arguments: list[str] | None = None) -> int:
     """Run the command line. Every error ends in a sentence on stderr and an exit status."""
     # A stream that the caller has closed is None. Lost results are an error, lost messages are not.
     sys.stdout = sys.stdout or os.fdopen(os.open(os.devnull, os.O_RDONLY))
-    sys.stderr = sys.stderr or io.StringIO()
+    sys.stderr = sys.stderr or os.fdopen(os.open(os.devnull, os.O_WRONLY), "w", errors="replace")
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="replace")  # for symbols that it cannot write
     try:

@@ -5,7 +5,7 @@ from typing import Annotated
 import typer
 
 from ..model.quantities import STANDARD, read_names
-from ..model.scene import INPUTS
+from ..model.scene import INPUTS, SceneError
 from ..model.units import counted
 from ..output.text import say
 from ..tables.sources import FORMATS, check_format, read_format
@@ -89,6 +89,8 @@ def batch(
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
     kind = read_format(from_, table)
     check_format(output, kind)
+    if force and output == "-":
+        raise SceneError("force", None, "needs --output")
     job = Job(table, kind, output, force, Question(names, label or (), read_named(column or (), VOCABULARY)))
     tally = Tally(set(names))
     try:

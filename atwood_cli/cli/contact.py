@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from ..model.scene import Scene, read_digits
+from ..model.scene import Scene, SceneError, read_digits
 from ..output.scene_page import contact_record, print_contact
 from ..output.text import Destination, Report, say, show
 from ..solver import balance
@@ -45,7 +45,9 @@ def contact(
     answers = Answers(Scene.read(given), read_digits(digits))
     if not target.form:
         answers = answers.shown
-    arc = balance.contact(answers, points or balance.USUAL_POINTS)
+    if points is not None and figure is not None and not target.form and target.file is None:
+        raise SceneError("points", points, "has no effect on a picture; leave it out")
+    arc = balance.contact(answers, balance.USUAL_POINTS if points is None else points)
     if figure is not None:
         from ..output.scene_figure import save
 

@@ -59,7 +59,7 @@ def tradeoff(
 
     families = list(dict.fromkeys(read_names("family", family or FAMILIES, FAMILIES, "family of scenes")))
     check_figure(figure, target.force)
-    count = read_whole("scenes", scenes or DEFAULT_SCENES, 1, MOST_SCENES)
+    count = read_whole("scenes", DEFAULT_SCENES if scenes is None else scenes, 1, MOST_SCENES)
     parts = (measure(name, draw_scenes(name, count)) for name in families)
     with progress(parts, len(families)) as measuring:
         measured = list(chain.from_iterable(measuring))

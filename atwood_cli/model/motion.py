@@ -12,7 +12,15 @@ from typing import Any
 from ..arithmetic.rational import EXACT
 from . import physics
 from .decisions import ZERO, Decisions
-from .digits import SHOWN_DIGITS, as_typed, format_number, strip_zeros, to_digits, to_double
+from .digits import (
+    SHOWN_DIGITS,
+    as_typed,
+    format_number,
+    rounding_apart_from,
+    strip_zeros,
+    to_digits,
+    to_double,
+)
 from .quantities import Undetermined
 from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError, checked
 from .units import Angle
@@ -65,9 +73,9 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
     if finds in MASSES:
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a instead, positive when m2 descends"
-        if M == inf or (motion.a == 0 and values.axle is not None):
+        if M == inf or (motion.a == 0 and case.has_axle_friction):
             return f"says nothing about {finds} on a pulley at rest; give {finds}"
-        if 0 in (values.m1, values.m2) and not case.rim_mass:
+        if 0 in (values.m1, values.m2) and not case.rim_mass and not case.has_axle_friction:
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         return ""
     if finds == "g" and g_given:
@@ -90,7 +98,8 @@ def _impossible(scene: Scene, motion: Motion) -> str:
     if finds == "mu_k":
         if case.slide_ratio_minus_1(EXACT) < 0:
             drive, load = (of(case.light, case.heavy, ZERO) for of in (physics.drive, physics.load))
-            most = to_digits(SHOWN_DIGITS)(case.sign * physics.acceleration(drive, load, scene.g))
+            apart = rounding_apart_from(case.sign * motion.acceleration(case.sign), SHOWN_DIGITS)
+            most = apart(case.sign * physics.acceleration(drive, load, scene.g))
             return f"is too large: without friction the acceleration is {format_number(most)} m/s²; {MOTOR}"
         if scene.mu is not None and case.exceeds(case.slide_ratio_minus_1, scene.mu):
             return "needs more kinetic friction than mu; check both"

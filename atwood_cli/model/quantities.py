@@ -125,9 +125,9 @@ NO_WRAP = "no value, as without friction no wrap holds"
 NOT_APPLICABLE = "no value, as conditions (36) do not apply without friction"
 LOCKED_AXLE = "no value, as the weight of a pulley with `M` = `inf` is not known; atwood contact has the force of the string"
 ONE_SIDED = "not computed unless both ends pull downwards (half a turn of wrap, plus whole turns); atwood contact has the force of the string"
-NEEDS_A = "`give` `a`, a measured acceleration, without `M`; see also `critical_pulley_mass`"
-NEEDS_A_BESIDE_M = "`give` `a`, a measured acceleration, with `M` and instead of `g`"
-NEEDS_A_AND_M = "`give` `a`, a measured acceleration, and `M` instead of `{}`"
+NEEDS_A = "`give` `a`, a measured acceleration, without `M`, `I` and `mu`; see also `critical_pulley_mass`"
+NEEDS_A_BESIDE_M = "`give` `a`, a measured acceleration, with a finite `M`, and without `g` and `mu`"
+NEEDS_A_AND_M = "`give` `a`, a measured acceleration, with a finite `M`, and without `{}` and `mu`"
 NEEDS_A_OF_A_SLIDE = (
     "`give` `a`, a measured acceleration, with `M` = `inf`, or with `M` and a `mu` that is too small"
 )

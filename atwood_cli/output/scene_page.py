@@ -102,7 +102,7 @@ def as_text(answers: Answers) -> str:
     page = Page(is_plain=True)
     with page.console.capture() as captured:
         print_table(answers, page=page)
-    encoding = sys.stdout.encoding or "ascii"
+    encoding = getattr(sys.stdout, "encoding", None) or "utf-8"
     return captured.get().rstrip("\n").encode(encoding, "replace").decode(encoding)
 
 

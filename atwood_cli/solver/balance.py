@@ -158,5 +158,5 @@ def about(answers: Answers, kind: Profile) -> str:
         return WITHOUT_MU
     if kind == "creep":
         return CREEP.format(angle=format_number(answers.shown["least_wrap"]))
-    mu = "mu_k" if answers.case.slides_by_mu_k else "mu"
+    mu = "mu_k" if answers.case.slides_by_mu_k or answers.case.slide_measured else "mu"
     return f"Friction is at its limit, {mu} n, all along the arc."

@@ -75,8 +75,9 @@ def failure(answers: Answers, expected: Condition) -> str:
     elif failing := [end for end in ends if not (end and _holds(end, expected))]:
         regime = failing[0].case.regime if failing[0] and expected.name in REGIMES else ""
         instead = f"within two standard uncertainties it may {MAY.get(regime, 'fail')}"
-    elif expected.name in REGIMES and answers.case.mu_assumed:
-        instead = "that is only assumed: give mu"
+    elif expected.name in REGIMES and any(one.case.mu_assumed for one in (answers, *ends) if one):
+        finds = answers.case.motion.finds
+        instead = f"that is only assumed: give mu{f', with the {finds} found and without a' if finds else ''}"
     else:
         return ""
     return f"expected {expected.typed}; {instead}"

@@ -164,7 +164,7 @@ def remarks(answers: Answers) -> list[str]:
             f"The string slips if the heavier mass is between {_say(answers, 'critical_heavier_mass')} and"
             f" {format_number(most)} kg. Above that it holds again, as the pulley turns with it."
         )
-    if case.locked and case.has_axle_friction:
+    if case.locked and case.has_axle_friction and not case.axle_holds:
         said.append("A locked pulley does not turn, so `axle` has no effect.")
     if case.scene.mu is not None and answers["acceleration"] is None:  # it depends on the pulley's mass
         ends = [_on_pulley(answers, mass) for mass in (Fraction(0), inf)]

@@ -98,18 +98,20 @@ class Uncertainties:
         self._spreads: dict[str, Spread] = {}
 
     def _end(self, x: str, step: Fraction) -> End:
-        """Solve the scene with an input so much more, as far as it may be; what is found may go below 0."""
+        """Solve the scene with an input so much more, but not below 0; what is found may go below it.
+
+        As mu_k is at most mu, one of them moves the other along.
+        """
         scene, motion = self.case.scene, self.case.motion
         number: Fraction = number_of(scene, motion, x) + step
-        if x == "mu_k" and scene.mu is not None:
-            number = min(number, scene.mu)
         if x != "a":
-            least = scene.mu_k if x == "mu" and scene.mu_k is not None else Fraction(0)
-            number = max(number, least)
-        if not number and x != "a" and not parameter_of(x).zero:
+            number = max(number, Fraction(0))
+        if not number and x != "a" and (not parameter_of(x).zero or (x == "M" and scene.I is not None)):
             return End(number, None, NO_SCENE)
         try:
             scene, motion = with_number(scene, motion, x, number)
+            if scene.mu is not None and scene.mu_k is not None and scene.mu_k > scene.mu:
+                scene = scene._replace(mu=number, mu_k=number)
             there = scene._replace(**found_inputs(scene, motion))
             if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
                 return End(number, None, NO_SCENE)

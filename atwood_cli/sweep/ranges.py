@@ -11,6 +11,7 @@ from decimal import ROUND_HALF_EVEN, Decimal
 from fractions import Fraction
 from itertools import product
 from math import inf, prod
+from operator import attrgetter
 from typing import Any, NamedTuple
 
 from ..arithmetic.interval import decimal_context
@@ -115,7 +116,7 @@ class Range(NamedTuple):
     @property
     def finite(self) -> list[Point]:
         """Return the finite points, in ascending order."""
-        return sorted(point for point in self.points if point != LOCKED)
+        return sorted((point for point in self.points if point != LOCKED), key=attrgetter("exact"))
 
     @property
     def ends(self) -> tuple[Fraction, Fraction]:
@@ -183,6 +184,7 @@ class Row(NamedTuple):
 
     at: dict[str, Point]
     regime: str
+    mu_assumed: bool
     values: dict[str, object]
     reasons: dict[str, str]
 
@@ -205,7 +207,7 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
         for name, words in typed.items()
     ]
     # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
-    corners = ([x.finite[0], x.finite[-1], max(x.points)] for x in ranges)
+    corners = ([x.finite[0], x.finite[-1], max(x.points, key=attrgetter("exact"))] for x in ranges)
     scene, *_ = (scene_at(fixed, ranges, corner) for corner in product(*corners))
     sweep = Sweep(ranges, scene)
     if sweep.total > MAX_POINTS:
@@ -250,9 +252,13 @@ def read_list(name: str, typed: str) -> Range:
     if name not in ("M", "wrap") and re.fullmatch(r"0,\d+", typed.strip()):
         decimal, spaced = typed.strip().replace(",", "."), ", ".join(words)
         raise SceneError(name, typed, f"can mean {decimal} or a list; write {decimal}, or '{spaced}'")
-    if any(re.match(r"0\d", word) for word in words[1:]):
-        read_value(name, typed)  # refuses 1,05 and 1,000: numbers rather than lists
+    if odd := [word for word in words[1:] if re.match(r"0\d", word)]:
+        if not words[2:]:
+            read_value(name, typed)  # refuses 1,05 and 1,000: numbers rather than lists
+        raise SceneError(name, typed, f"has {in_quotes(odd[0])} in it; write values without a 0 before them")
     values, suffix = _read_numbers(name, typed, words)
+    if min(values) == inf:
+        raise SceneError(name, typed, "has no finite value; give one")
     named = [word.lower() if word.lower() in INPUTS[name].names else "" for word in words]
     points = [exact_point(value, suffix, word) for value, word in zip(values, named, strict=True)]
     return Range(name, typed, points, False, suffix)
@@ -330,4 +336,5 @@ def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterat
     for scene, place in sweep.scenes(sweep.ranges):
         answers = Answers(scene, digits)
         reasons = {name: reason for name in names if (reason := answers.answer(name).reason)}
-        yield Row(place, answers.case.regime, {name: answers[name] for name in names}, reasons)
+        case, values = answers.case, {name: answers[name] for name in names}
+        yield Row(place, case.regime, case.mu_assumed, values, reasons)

@@ -30,6 +30,7 @@ class SweepPage:
         # If a sentence says the regimes, they have a column only if it is asked for.
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
         self.reasons: Counter[tuple[str, str]] = Counter()
+        self.mu_assumed = False
         self.done = 0
         """The rows that are solved and, as JSON or CSV, written."""
 
@@ -39,6 +40,7 @@ class SweepPage:
         with progress(rows, self.sweep.total, rows=lambda row: 1) if watch else nullcontext(rows) as rows:
             for row in rows:
                 self.reasons.update(row.reasons.items())
+                self.mu_assumed |= row.mu_assumed
                 self.missing = {name for name in self.missing if not cell(row.values[name])}
                 yield row
                 self.done += 1
@@ -52,10 +54,8 @@ class SweepPage:
         yield from [*self._assumption(), *self.notes()]
 
     def _assumption(self) -> list[str]:
-        """Say that the string is assumed not to slip, if no slip needs friction and mu is not given."""
-        scene = self.sweep.scene
-        needs_friction = scene.M or scene.I is not None or any(one.name == "M" for one in self.sweep.ranges)
-        return [ASSUMED] if scene.mu is None and needs_friction else []
+        """Say that the string is assumed not to slip, if friction that is not given must hold it in a row."""
+        return [ASSUMED] if self.mu_assumed else []
 
     def json(self) -> Mapping[str, object]:
         ranges = {range_.name: range_.typed for range_ in self.sweep.ranges}

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from unicodedata import normalize
 
 from ..model.scene import Input, SceneError, parameter_of, read_input
-from ..model.units import PERCENT, Malformed, in_quotes, read_unit, symbol_of, without_blanks
+from ..model.units import PERCENT, Malformed, in_quotes, read_unit, without_blanks
 from .sources import Unreadable
 
 SEPARATORS = ",\t;"
@@ -73,18 +73,18 @@ def read_headings(
     vocabulary: Vocabulary,
     labels: Collection[str] = (),
     named: Mapping[str, str] = {},
+    whole: bool = True,
 ) -> list[Heading]:
     """Return the columns that hold a quantity, in their order, each with its column of uncertainties.
 
     ``labels`` are headings of columns without a quantity, whatever they look like. ``named`` maps headings to
-    names of this grammar. Raises Unreadable if two columns hold the same, a unit is wrong or an uncertainty
-    belongs to no column, SceneError if the table lacks a heading that is ``named``.
+    names of this grammar. Raises Unreadable if two columns hold the same, a unit is wrong, an uncertainty
+    belongs to no column, or a ``whole`` table lacks one of these headings; SceneError if a label is named.
     """
     if both := [label for label in labels if label in named]:
         raise SceneError("label", both[0], "is also named by --column; leave one of them out")
-    if absent := [heading for heading in named if heading not in columns]:
-        word = f"{named[absent[0]]}={absent[0]}"
-        raise SceneError("column", word, f"is not there; there are {listed(columns)}")
+    if whole and (absent := [heading for heading in (*named, *labels) if heading not in columns]):
+        raise Unreadable(f"there is no column {in_quotes(absent[0])}; there are {listed(columns)}")
     headings: dict[tuple[str, str], Heading] = {}
     uncertain: list[Heading] = []
     for place, column in enumerate(columns):
@@ -101,7 +101,9 @@ def read_headings(
             key = found.name, str(1 + sum(own.name == found.name for own in headings.values()))
         if same := headings.get(key):
             way = "give each repeat its own number" if is_repeat else "rename one"
-            raise refused(column, f"holds {found.name}, as {in_quotes(same.column)} does; {way}")
+            one, other = (same.column, column) if column in named else (column, same.column)
+            why = f"holds {found.name}, as {in_quotes(other)} does; {way}"
+            raise refused(one, why) if one != other else Unreadable(f"column {in_quotes(one)} {why}")
         headings[key] = found._replace(number=key[1], factor=unit_factor(found.name, found.unit, column))
     for found in uncertain:
         _add_uncertainty(headings, found)
@@ -199,7 +201,7 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
     try:
         if dimension is None:
             raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")
-        if symbol_of(unit) == "rad":
+        if dimension == "angle" and unit.lower().startswith("rad"):
             raise Malformed("has angles in radians; give degrees or turns")
         return read_unit(unit, dimension)
     except Malformed as error:
