@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from atwood_cli import solve
 from atwood_cli.model.decisions import Decisions
 from atwood_cli.model.digits import SHOWN_DIGITS
+from atwood_cli.model.motion import with_value
 from atwood_cli.sweep.changes import LEAST_INPUT, changes
-from atwood_cli.sweep.ranges import read_sweep, with_value
+from atwood_cli.sweep.ranges import read_sweep
 
 from . import oracle
 from .conftest import examples

@@ -8,7 +8,8 @@ from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
 from ..model.quantities import divided
-from ..model.scene import INPUTS, Given, read_input
+from ..model.scene import INPUTS, Given, SceneError, read_input
+from ..model.units import without_blanks
 from ..tables.sources import Unreadable
 from .results import Fit as Fit
 
@@ -63,9 +64,19 @@ def fit(
     given = {"g": g, "M": M, "inertia": inertia, "I": I, "R": R, "axle": axle, "drop": drop}
     names = [find] if isinstance(find, str) else find or ()
     left_out = divided([without]) if isinstance(without, str) else without
-    found = results_of(fit_of(runs, given, names, without=left_out))
-    options = re.compile(r"--(find|without) (\S*[^\s.,;:)])")
-    return found._replace(notes=[options.sub(r"\1='\2'", note) for note in found.notes])
+    try:
+        found = results_of(fit_of(runs, given, names, without=left_out))
+    except SceneError:
+        raise
+    except (ValueError, ArithmeticError) as error:
+        raise type(error)(_in_python(str(error))) from None
+    return found._replace(notes=[*map(_in_python, found.notes)])
+
+
+def _in_python(words: str) -> str:
+    """Return a sentence with the parameters of `fit` for options, and without those that it lacks."""
+    words = re.sub("; or leave it unread by --label .*|; name them, as .*", "", words)
+    return re.sub(r"--(find|without) (\S*[^\s.,;:)])", r"\1='\2'", words)
 
 
 def fit_of(
@@ -87,9 +98,10 @@ def fit_of(
 
     known = [x for x, value in given.items() if value is not None]
     inputs = {x: read_input(x, given.get(x)) for x in dict.fromkeys((*INPUTS, *known))}
-    same, named = conditions_of(inputs), read_named(columns, VOCABULARY)
+    same, named = conditions_of(inputs), read_named(map(without_blanks, columns), VOCABULARY)
     names = read_find(find, same)
     try:
+        labels = [*map(without_blanks, labels)]
         return fitted(read_runs(table, labels, inputs.get("drop"), without, named), same, names)
     except Unreadable as why:
         if isinstance(table, str | PathLike):

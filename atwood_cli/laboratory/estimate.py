@@ -74,7 +74,7 @@ def as_data(runs: Runs, used: Selection, kept: Selection | None = None) -> Data:
     run = (np.cumsum(used) - 1)[runs.run[here]]
     values, u = (runs.sign[runs.run] * runs.values)[here], runs.u_values[here]
     stated = bool(u.any())
-    weight = u**-2 if stated else np.ones_like(values)
+    weight = np.where(u > 0, u, 1.0) ** -2  # a run that is left out may have none
     total, counts = np.bincount(run, weight), np.bincount(run)
     measured = np.bincount(run, weight * values) / total
     chi2 = sum_of_squares(np.sqrt(weight) * (values - measured[run]))
@@ -216,6 +216,6 @@ def _least_squares(
 
     start = np.maximum([values[name] for name in names], np.divide(least, 2))
     exactly: Any = {"ftol": 1e-15, "xtol": 1e-12, "gtol": None, "jac": "cs", "x_scale": "jac"}
-    with np.errstate(divide="ignore", invalid="ignore"):  # a step may try a gravity of 0
+    with np.errstate(all="ignore"):  # a step may try a gravity of 0
         found = least_squares(rest, start, bounds=(least, inf), **exactly).x.tolist()
     return dict(zip(names, found, strict=True))

@@ -20,7 +20,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
     """Draw runs and their line to a file, below sentences unless it is bare. Raises OSError."""
     best, used, data = fit.whole, fit.used[fit.shown], as_data(fit.runs, fit.shown)
     g, c, f, delay = (best.values[name] for name in ("gravity", "rim_mass", "axle", "delay"))
-    a = accelerations(data, data.measured, delay)
+    a = accelerations(data, np.where(data.measured > delay, data.measured, np.nan), delay)
     difference: Any = physics.difference_of_moving_masses(data.l, data.h, a, np.float64(g))
     x, y = a[used], difference[used]
     u_x = best.sigma if data.drop is None else 2 * best.sigma * x / (best.data.measured - delay)
@@ -43,7 +43,7 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         line, rest = figure.subplots(2, 1, sharex=True, height_ratios=[2.4, 1])
         for axes in line, rest:
             axes.margins(0, 0.15)
-        end = 1.06 * max(x + u_x)
+        end = 1.06 * np.nanmax(x + u_x)
         line.plot([0, end], [f, f + c * end], color=BLUE)
         bars: Any = {"fmt": "o", "ms": 4, "capsize": 2, "lw": 1, "color": INK}
         line.errorbar(x, y, (best.data.l + best.data.h) * u_x, u_x, **bars)
@@ -67,4 +67,4 @@ def save(fit: Fitted, bare: bool, path: str, force: bool) -> None:
         )
         is_named = ~used | np.isin(np.flatnonzero(fit.shown), suspects) | (len(used) <= MOST_NAMED)
         rows = [",".join(map(str, fit.runs.rows[run])) for run in np.flatnonzero(fit.shown).tolist()]
-        write_beside(line, [(a[i], difference[i], rows[i], INK) for i in np.flatnonzero(is_named)])
+        write_beside(line, [(a[i], difference[i], rows[i], INK) for i in np.flatnonzero(is_named & (a > 0))])

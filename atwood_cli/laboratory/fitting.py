@@ -44,8 +44,8 @@ LEAST_SINGULAR = 4e-4
 """Below this singular value of its slopes, each of length 1, a design does not separate the quantities."""
 MOST_RATIO = 100
 """A value that many times above or below the median of its kind must be a mistake."""
-LEAST_SHARE, MOST_SHARE = 1e-4, 1.02
-"""The least and the most share that an acceleration may have of that without a pulley and friction."""
+SHARES = 1e-4, 2.0
+"""An acceleration outside these shares of that without a pulley and friction must be a mistake, too."""
 GIVE = {"rim_mass": "M (or I and R)", "axle": "axle (0 if it has no friction)"}
 """What to give for a quantity that is neither given nor fitted."""
 CHECK = "check masses, heights, measurements, their units and signs"
@@ -150,6 +150,7 @@ def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     except CannotSeparate as error:
         raise CannotSeparate(f"{error}{behind_an_error(remarks)}") from None
     odd = [*_outliers(runs, used, whole.data, whole.values, names)]
+    odd = odd or _mistake(runs, used, whole.data, given.values["gravity"], names)
     return Fitted(runs, used, shown, given, whole, odd, _delay(runs, used, given, whole, bool(odd)))
 
 
@@ -162,8 +163,9 @@ def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -
     needed = len(names) + (not data.scatter.any() and not data.uncertain)
     if count < needed:
         why = f"{counted(count, 'run')} cannot determine {' and '.join(what)}"
-        raise CannotSeparate(f"{why}: give {needed} or more, or M or axle")
-    mistake = _mistake(runs, used, data, None if "gravity" in names else given.values["gravity"])
+        given_too = " or ".join(x for x, name in (("M", "rim_mass"), ("axle", "axle")) if name in names)
+        raise CannotSeparate(f"{why}: give {', or '.join(filter(None, [f'{needed} or more', given_too]))}")
+    mistake = "".join(words for _, words in _mistake(runs, used, data, given.values["gravity"], names))
     if not _separates(data, given.values, names):
         verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
         raise CannotSeparate(mistake or f"the runs do not {verb} {' from '.join(what)}: {vary}")
@@ -284,25 +286,26 @@ def _separates(data: Data, given: Mapping[str, float], names: Sequence[str]) -> 
     return bool(singular.min(initial=1.0) > LEAST_SINGULAR)
 
 
-def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> str:
-    """Return what must be a mistake in the table, "" if nothing must. Raises CannotSeparate if most have one.
+def _mistake(
+    runs: Runs, used: Selection, data: Data, g: float, names: Sequence[str]
+) -> list[tuple[int, str]]:
+    """Return the first run that must have a mistake, in words. Raises CannotSeparate if most runs have one.
 
     Each value is compared with the median of its kind, and each acceleration with that of free masses,
-    unless gravity is fitted.
+    unless gravity or a delay is fitted.
     """
     columns = {x: runs.given[x][used] for x in runs.given} | {runs.kind: data.measured}
     mass, ratios = np.median([data.l, data.h]), (1 / MOST_RATIO, MOST_RATIO)
-    checks: list[tuple[str, str, Any, Any, tuple[float, Any]]] = [
+    checks: list[tuple[str, str, Any, Any, tuple[float, float]]] = [
         (x, "the median", values, mass if x[0] == "m" else np.median(values), ratios)
         for x, values in columns.items()
     ]
-    if g is not None:
-        name, factor = ("a", 1) if data.drop is None else ("a = 2 drop/t²", 2)
+    if not {"gravity", "delay"} & {*names}:
+        name = "a" if data.drop is None else "a = 2 drop/t²"
         free = physics.acceleration(data.h - data.l, data.h + data.l, g)
-        most = np.maximum(MOST_SHARE, 1 + 3 * factor * data.scatter / data.measured)
         what = "the acceleration without friction and pulley"
-        checks.append((name, what, accelerations(data, data.measured), free, (LEAST_SHARE, most)))
-    said, is_mistaken = "", np.zeros(len(data.l), dtype=bool)
+        checks.append((name, what, accelerations(data, data.measured), free, SHARES))
+    said, is_mistaken = list[tuple[int, str]](), np.zeros(len(data.l), dtype=bool)
     for name, what, values, typical, (least, most) in checks:
         with np.errstate(divide="ignore"):
             ratio = values / typical
@@ -312,7 +315,8 @@ def _mistake(runs: Runs, used: Selection, data: Data, g: float | None) -> str:
             i, unit = int(np.argmax(is_unusual)), parameter_of(name.split()[0]).unit
             value, times, there = (rounded(float(x), 3) for x in (values[i], ratio[i], values[i] / ratio[i]))
             far = f"{name} = {value} {unit} is {times} times {what}, {there} {unit}"
-            said = f"{runs.rows_in_words(np.flatnonzero(used)[i])}: {far}; {CHECK}"
+            run = int(np.flatnonzero(used)[i])
+            said = [(run, f"{runs.rows_in_words(run)}: {far}; {CHECK}")]
     if is_mistaken.mean() > 0.5:
-        raise CannotSeparate(said)
+        raise CannotSeparate(said[0][1])
     return said

@@ -43,10 +43,10 @@ def verdict(fit: Fitted) -> str:
 def _scatter(fit: Fitted) -> str:
     """Return how the scatter of the runs is known, and its p value."""
     whole = fit.whole
-    if whole.chi2 is None:
-        return f"No {MEASURED[fit.runs.kind]} was repeated, so only the residuals show the scatter."
-    if whole.p_value is None:
+    if not whole.dof:
         return "There are as many runs as results, so nothing is left to test the fit."
+    if whole.chi2 is None or whole.p_value is None:
+        return f"No {MEASURED[fit.runs.kind]} was repeated, so only the residuals show the scatter."
     probability = f"p = {rounded(whole.p_value)}" if whole.p_value >= 0.001 else "p < 0.001"
     source = "uncertainties" if whole.data.stated else "repeats"
     test = f" by an F({whole.dof}, {whole.data.repeats[1]}) test" if whole.is_f_test else ""

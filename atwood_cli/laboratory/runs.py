@@ -2,10 +2,8 @@
 
 import re
 from collections.abc import Collection, Mapping, Sequence
-from contextlib import suppress
 from decimal import Decimal
 from fractions import Fraction
-from shlex import quote
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -17,7 +15,6 @@ from ..tables.headings import (
     Heading,
     Vocabulary,
     decimal_commas_in,
-    divisions,
     listed,
     read_as,
     read_cell,
@@ -73,7 +70,8 @@ class Runs(NamedTuple):
     @property
     def sign(self) -> Column:
         """Return 1 for each run, but -1 if m1 is the heavier mass and some acceleration is negative."""
-        return np.where((self.values < 0).any() & (self.given["m2"] < self.given["m1"]), -1.0, 1.0)
+        has_signs = (self.values[~self.left_out[self.run]] < 0).any()
+        return np.where(has_signs & (self.given["m2"] < self.given["m1"]), -1.0, 1.0)
 
     def rows_in_words(self, *runs: int) -> str:
         """Return the rows of these runs for a sentence: row 1, or rows 1, 2."""
@@ -105,7 +103,9 @@ def read_runs(
     sheet = sheet_of(source, VOCABULARY, named)
     headings = read_headings(sheet.columns, VOCABULARY, labels, named)
     kind: Kind = "a" if any(heading.name == "a" for heading in headings) else "time"
-    headings = [heading for heading in headings if kind == "time" or heading.name != "drop"]
+    if kind == "a":  # a height has no effect
+        labels = [*labels, *(one.u.column for one in headings if one.name == "drop" and one.u)]
+        headings = [one for one in headings if one.name != "drop"]
     places = [column.place for heading in headings for column in (heading, heading.u) if column]
     others = _others(sheet, places, labels)
     _check(sheet, headings, others, drop)
@@ -123,7 +123,7 @@ def read_runs(
         else:
             remarks.append(f"row {number} has no {kind}: it is not used.")
     if not runs:
-        raise Unreadable("it has no runs")
+        raise Unreadable(f"it has no runs{behind_an_error(remarks)}")
     words = [*map(str, without)]
     if words:
         remarks.append(f"left out, as asked: {', '.join(map(in_words, words))}.")
@@ -146,9 +146,9 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, count: int, words: Sequence[str]) 
     used = [some or cells for some, cells in zip(kept, measured, strict=True)]
     cells = [cell for some in used for cell in some]
     values, u_values = np.array([number for some in used for number in some.values()], float).T
-    if u_values.any() and not u_values.all():
-        lacking = in_words(cells[int(np.argmin(u_values))])
-        raise Unreadable(f"{lacking} has no uncertainty, as others have; give all")
+    lacking = [cell for some in kept for cell, (_, u) in some.items() if not u]
+    if u_values.any() and lacking:
+        raise Unreadable(f"{in_words(lacking[0])} has no uncertainty, as others have; give all")
     given = {x: np.array([dict(run)[x] for run in runs], float).T for x, _ in next(iter(runs))}
     return Runs(
         kind,
@@ -214,21 +214,11 @@ def _check(sheet: Sheet, headings: Sequence[Heading], others: Sequence[str], dro
 
 def _missing(missing: Sequence[str], sheet: Sheet, others: Sequence[str]) -> str:
     """Return which columns runs need, those of the table, and options that name what is missing."""
-    options = dict[str, str]()
-    with_unit = [column for column in others if len([*divisions(column)]) > 1]
-    for name in missing:
-        options[name] = f"--column {name}=HEADING"
-        for column in with_unit:
-            with suppress(Unreadable):  # it has the unit of something else
-                read_headings([column], VOCABULARY, named={column: name})
-                options[name] = f"--column {name}={quote(column)}"
-                with_unit.remove(column)
-                break
     said = f"runs need columns m1, m2, and t or a; there are {listed(sheet.columns)}"
     if all(map(LIKE_NUMBER.match, others)) or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
         return f"{said}; make each run a row, below headings, as m1 (g),m2 (g),t (s)"
     repeats = ", and likewise each repeat" if "t" in missing else ""
-    return f"{said}; name them, as {' '.join(options.values())}{repeats}"
+    return f"{said}; name them, as {' '.join(f'--column {name}=HEADING' for name in missing)}{repeats}"
 
 
 # Rows

@@ -12,17 +12,9 @@ from typing import Any
 from ..arithmetic.rational import EXACT
 from . import physics
 from .decisions import ZERO, Decisions
-from .digits import (
-    SHOWN_DIGITS,
-    as_typed,
-    format_number,
-    rounding_apart_from,
-    strip_zeros,
-    to_digits,
-    to_double,
-)
+from .digits import SHOWN_DIGITS, as_typed, format_number, rounding_apart_from, strip_zeros, to_digits
 from .quantities import Undetermined
-from .scene import INPUTS, MASSES, MEASURED, Axle, Input, Motion, Scene, SceneError, checked
+from .scene import INPUTS, MASSES, MEASURED, UNMEASURED, Axle, Input, Motion, Scene, SceneError, checked
 from .units import Angle
 
 Values = Any
@@ -126,6 +118,11 @@ def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scen
     return scene._replace(**{x: given}), motion
 
 
+def with_value(scene: Scene, name: str, value: Any) -> Scene:
+    """Return the scene with another value of an input, in the unit that it has there."""
+    return with_number(scene, UNMEASURED, name, value)[0]
+
+
 def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
     """Return the input that follows from a motion, by its name; it may be below 0. Raises Undetermined.
 
@@ -138,7 +135,7 @@ def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
     c, f, b = case.rim_mass, case.axle_friction, case.axle_mass
     a = motion.acceleration({"m2": 1, "m1": -1}.get(finds) or (m2 > m1) - (m2 < m1))
     if finds != "g" and a >= g:
-        raise Undetermined(f"must be slower than free fall, {format_number(to_double(g))} m/s²")
+        raise Undetermined(f"must be slower than free fall, {as_typed(g)} m/s²")
     if finds in MASSES:
         known = m1 if finds == "m2" else m2
         if a > 0:

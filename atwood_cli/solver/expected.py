@@ -8,15 +8,7 @@ from fractions import Fraction
 from typing import Any, NamedTuple
 
 from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, rounding_apart_from, to_digits
-from ..model.quantities import (
-    MEASURED_NAMES,
-    NAMES,
-    NAMES_BY_SYMBOL,
-    QUANTITIES,
-    REGIMES,
-    Undetermined,
-    read_name,
-)
+from ..model.quantities import NAMES_BY_SYMBOL, QUANTITIES, REGIMES, Undetermined, read_name
 from ..model.scene import INPUTS, MEASURED, SceneError, with_unit
 from ..model.units import Angle, Malformed, TypedNumber, in_quotes, read_number
 from .answers import TOO_SMALL, Answers
@@ -56,7 +48,7 @@ def read_condition(typed: str) -> Condition:
     if not (match := COMPARISON.fullmatch(typed)):
         raise SceneError("expect", typed, f"must be {CONDITIONS}")
     word, sign, number = map(str.strip, match.groups())
-    name = read_name("expect", word, (*NAMES[1:], *MEASURED_NAMES), "quantity", NAMES_BY_SYMBOL)
+    name = read_name("expect", word, QUANTITIES, "quantity", NAMES_BY_SYMBOL)
     try:
         value = read_number(number, DIMENSIONS.get(QUANTITIES[name].unit))
     except Malformed as error:

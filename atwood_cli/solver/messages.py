@@ -9,15 +9,7 @@ from decimal import Decimal
 from fractions import Fraction
 from math import inf
 
-from ..model.digits import (
-    SHOWN_DIGITS,
-    Rounding,
-    as_typed,
-    format_number,
-    is_infinite,
-    rounding_apart_from,
-    strip_zeros,
-)
+from ..model.digits import SHOWN_DIGITS, Rounding, as_typed, format_number, rounding_apart_from, strip_zeros
 from ..model.physics import critical_heavier_mass
 from ..model.quantities import QUANTITIES
 from ..model.scene import with_unit
@@ -82,7 +74,7 @@ def verdict(answers: Answers) -> str:
     if scene.mu is None or case.pulley_known:
         return _grips(answers)
     least = answers.rounded("least_heavier_mass", _beside(answers, case.heavy))
-    if is_infinite(least) or least.adjusted() > MAX_MAGNITUDE:
+    if least.is_infinite() or least.adjusted() > MAX_MAGNITUDE:
         return "No slip on any pulley, for any heavier mass that can be typed."
     heavy, above = as_typed(case.heavy), format_number(least)
     return (

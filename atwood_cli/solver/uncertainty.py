@@ -98,10 +98,7 @@ class Uncertainties:
         self._spreads: dict[str, Spread] = {}
 
     def _end(self, x: str, step: Fraction) -> End:
-        """Solve the scene with an input so much more, but not below 0; what is found may go below it.
-
-        As mu_k is at most mu, one of them moves the other along.
-        """
+        """Solve the scene with an input so much more, but not below 0; what is found may go below it."""
         scene, motion = self.case.scene, self.case.motion
         number: Fraction = number_of(scene, motion, x) + step
         if x != "a":
@@ -110,7 +107,7 @@ class Uncertainties:
             return End(number, None, NO_SCENE)
         try:
             scene, motion = with_number(scene, motion, x, number)
-            if scene.mu is not None and scene.mu_k is not None and scene.mu_k > scene.mu:
+            if (scene.mu_k or 0) > (scene.mu or 0):  # one moves the other along
                 scene = scene._replace(mu=number, mu_k=number)
             there = scene._replace(**found_inputs(scene, motion))
             if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):

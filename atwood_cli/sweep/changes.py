@@ -33,9 +33,10 @@ from typing import Any, NamedTuple
 
 from ..model.decisions import Decisions
 from ..model.digits import SHOWN_DIGITS, to_digits
+from ..model.motion import with_value
 from ..model.scene import MASSES, Scene
 from ..model.units import MAX_MAGNITUDE
-from .ranges import LOCKED, Point, Range, decimal_point, exact_point, with_value
+from .ranges import LOCKED, Point, Range, decimal_point, exact_point
 
 NEIGHBOUR_SHARE = Fraction(1, 10**60)
 """A value's neighbour, at which it is decided whether the regime changes there, is off by this part of it."""

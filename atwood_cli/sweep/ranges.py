@@ -25,18 +25,8 @@ from ..model.digits import (
     strip_zeros,
     to_digits,
 )
-from ..model.motion import with_number
-from ..model.scene import (
-    INPUTS,
-    UNMEASURED,
-    Input,
-    Scene,
-    SceneError,
-    read_exactly,
-    read_value,
-    read_whole,
-    with_unit,
-)
+from ..model.motion import with_value
+from ..model.scene import INPUTS, Input, Scene, SceneError, read_exactly, read_value, read_whole, with_unit
 from ..model.units import MAX_DIGITS, in_quotes, read_number
 from ..output.text import inputs_in_words
 from ..solver.answers import Answers
@@ -253,9 +243,8 @@ def read_list(name: str, typed: str) -> Range:
         decimal, spaced = typed.strip().replace(",", "."), ", ".join(words)
         raise SceneError(name, typed, f"can mean {decimal} or a list; write {decimal}, or '{spaced}'")
     if odd := [word for word in words[1:] if re.match(r"0\d", word)]:
-        if not words[2:]:
-            read_value(name, typed)  # refuses 1,05 and 1,000: numbers rather than lists
-        raise SceneError(name, typed, f"has {in_quotes(odd[0])} in it; write values without a 0 before them")
+        rule = "numbers take no comma, and values of a list no 0 before them"
+        raise SceneError(name, typed, f"has {in_quotes(odd[0])} in it; {rule}")
     values, suffix = _read_numbers(name, typed, words)
     if min(values) == inf:
         raise SceneError(name, typed, "has no finite value; give one")
@@ -304,11 +293,6 @@ def steps(
         share = Fraction(i, count)
         yield start * power(stop / start, share, digits) if log else start + (stop - start) * share
     yield stop
-
-
-def with_value(scene: Scene, name: str, value: Fraction | float) -> Scene:
-    """Return the scene with another value of an input, in the unit that it has there."""
-    return with_number(scene, UNMEASURED, name, value)[0]
 
 
 def power(ratio: Fraction, share: Fraction, digits: int = DOUBLE_DIGITS) -> Fraction:

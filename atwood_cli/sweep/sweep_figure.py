@@ -7,6 +7,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from ..model.digits import is_infinite
+from ..model.motion import with_value
 from ..model.quantities import QUANTITIES
 from ..model.scene import Scene, SceneError
 from ..output.figure import COLOURS, FAINT, INK, axis_words, check_file, page, typeset, write_beside
@@ -14,7 +15,7 @@ from ..output.text import wrapped
 from ..solver.answers import Answers
 from ..solver.messages import unmarked
 from .changes import Change, changes
-from .ranges import Range, Sweep, steps, with_value
+from .ranges import Range, Sweep, steps
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -12,6 +12,7 @@ from contextlib import suppress
 from fractions import Fraction
 from io import StringIO
 from itertools import islice
+from shlex import quote
 from typing import NamedTuple
 from unicodedata import normalize
 
@@ -210,8 +211,8 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
 
 def refused(column: str, why: str) -> Unreadable:
     """Return the error for a heading, with the option that lets it pass."""
-    column = in_quotes(column)
-    return Unreadable(f"column {column} {why}; or leave it unread by --label {column}")
+    label = quote(column) if column.isprintable() and len(column) <= LONGEST_HEADING else in_quotes(column)
+    return Unreadable(f"column {in_quotes(column)} {why}; or leave it unread by --label {label}")
 
 
 def listed(names: Sequence[str]) -> str:

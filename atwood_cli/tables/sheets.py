@@ -9,7 +9,7 @@ from io import StringIO
 from os import PathLike, fspath
 from typing import Any, NamedTuple
 
-from ..model.units import in_quotes
+from ..model.units import in_quotes, without_blanks
 from .headings import SEPARATORS, Vocabulary, best_header, recognised
 from .sources import Unreadable, blocks_of, opened, whole_lines
 
@@ -81,7 +81,7 @@ def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str])
 
     known = partial(recognised, vocabulary=vocabulary, named=named)
     lines = re.sub(r'\A"?sep=[,;\t]"?\r?\n', "", text, flags=re.IGNORECASE).split("\n")
-    for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
+    for i in [i for i, line in enumerate(lines) if re.match(r"\s*#(?! *[,;\t])", line)]:
         bare = lines[i].lstrip("# \t")  # NumPy writes headings so
         is_header = max(best_header(bare, mark, known)[0] for mark in SEPARATORS) > 1
         lines[i] = bare if is_header else ""
@@ -112,4 +112,4 @@ def _rows(text: str, separator: str, start: int) -> tuple[list[str], list[list[s
                 hint = "; is there a decimal comma (write a point), or one at its end?"
             raise Unreadable(f"row {number} has {len(row)} cells, and the header {len(columns)}{hint}")
         row[len(columns) :] = [""] * (len(columns) - len(row))
-    return columns, rows
+    return [*map(without_blanks, columns)], rows
