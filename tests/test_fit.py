@@ -479,6 +479,7 @@ def test_in_python_it_is_what_json_has() -> None:
         (3, {}, ValueError, "cannot read the runs: it is of type int; give a path, a mapping or a data frame"),
         ({"m1": [1], "m2": [2, 3]}, {}, ValueError, "cannot read the runs: its columns differ in length: 'm1' has 1 cells, 'm2' has 2 cells"),
         ({"m1": 1, "m2": [2]}, {}, ValueError, "cannot read the runs: column 'm1' is of type int; give a sequence of cells"),
+        ({"m1": [1], "m2": [2], "a": [1], "unc": [1]}, {}, ValueError, "cannot read the runs: column 'unc' could be an uncertainty; name what of, as in 'u(t)'"),
         (Path("none.csv"), {}, OSError, "cannot read none.csv: No such file or directory"),
         (EQUAL, {"find": ["g"], "g": 9.8}, SceneError, "find 'gravity' conflicts with g, which gives it; leave one of them out"),
         (EQUAL, {}, ArithmeticError, "2 runs cannot determine the pulley's inertia and axle friction: give 3 or more, or M or axle"),
