@@ -128,7 +128,7 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
         for piece in watched:
             target.write(_ndjson(piece, solve_cells(piece.cells, layout, asked, tally, piece.errors)))
             target.flush()
-    read_headings(there, VOCABULARY, asked.labels, asked.named)  # which any line may have had
+    read_headings(there, VOCABULARY, {*asked.labels} & {*there}, asked.named)  # any line may have them
     return _remarks(layout)
 
 
