@@ -86,11 +86,9 @@ def drawn(rng: Random) -> dict[str, str]:
 def ends_of(x: str, given: Mapping[str, Any], step: Fraction) -> dict[str, Any]:
     """What is given, with an input so much more, but not below 0, and mu_k at most mu."""
     value = given[x]
-    number = max(getattr(value, "number", value) + step, 0)
+    number = min(max(getattr(value, "number", value) + step, 0), given["mu"] if x == "mu_k" else inf)
     there = {**given, x: type(value)(number, value.unit) if hasattr(value, "unit") else number}
-    if (there.get("mu_k") or 0) > (there.get("mu") or 0):
-        there |= {"mu": number, "mu_k": number}
-    return there
+    return there | ({"mu_k": min(given["mu_k"], number)} if x == "mu" and given.get("mu_k") else {})
 
 
 def solved_if_valid(given: Mapping[str, Any]) -> Any:

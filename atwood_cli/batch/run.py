@@ -14,7 +14,7 @@ from typing import IO, TYPE_CHECKING, NamedTuple
 from ..model.scene import SceneError
 from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
-from ..tables.headings import Heading, decimal_commas_in, listed, read_as, read_headings, recognised
+from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream, opened
 from .frames import check_polars, solve_parquet
@@ -128,7 +128,8 @@ def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally
         for piece in watched:
             target.write(_ndjson(piece, solve_cells(piece.cells, layout, asked, tally, piece.errors)))
             target.flush()
-    read_headings(there, VOCABULARY, {*asked.labels} & {*there}, asked.named)  # any line may have them
+    if there and (absent := [heading for heading in asked.named if heading not in there]):
+        raise Unreadable(f"there is no column {listed(absent[:1])}; there are {listed(there)}")
     return _remarks(layout)
 
 

@@ -58,9 +58,12 @@ def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> 
         raise Unreadable(
             f"column {in_quotes(clash[0])} would be there twice, as a result is named so; rename it"
         )
-    headings = read_headings(columns, VOCABULARY, asked.labels, asked.named, whole)
+    known = {without_blanks(column): column for column in columns}
+    labels = {known.get(without_blanks(label), label) for label in asked.labels}
+    named = {known.get(without_blanks(one), one): name for one, name in asked.named.items()}
+    headings = read_headings(columns, VOCABULARY, labels, named, whole)
     inputs = {heading.name for heading in headings}
-    passed = {*asked.labels, *(heading.column for heading in headings)}
+    passed = {*labels, *(heading.column for heading in headings)}
     doubtful = {column: name for column in columns if column not in passed and (name := _meant(column))}
     for column, name in doubtful.items():
         if name in INPUTS and not (whole and name in inputs):  # in NDJSON, another row may lack the input

@@ -216,6 +216,5 @@ def _least_squares(
 
     start = np.maximum([values[name] for name in names], np.divide(least, 2))
     exactly: Any = {"ftol": 1e-15, "xtol": 1e-12, "gtol": None, "jac": "cs", "x_scale": "jac"}
-    with np.errstate(all="ignore"):  # a step may try a gravity of 0
-        found = least_squares(rest, start, bounds=(least, inf), **exactly).x.tolist()
-    return dict(zip(names, found, strict=True))
+    found = least_squares(rest, start, bounds=(least, inf), **exactly)
+    return dict(zip(names, found.x.tolist(), strict=True))

@@ -127,6 +127,7 @@ def read_find(words: Sequence[str], given: Conditions) -> list[str]:
 # From runs to a result
 
 
+@np.errstate(all="ignore")  # what a step tries may be 0, or beyond doubles
 def fitted(runs: Runs, given: Conditions, names: Sequence[str]) -> Fitted:
     """Return the fit of these quantities, and outliers. Raises SceneError, CannotSeparate."""
     if "delay" in names and runs.kind != "time":
@@ -163,8 +164,7 @@ def _fit(runs: Runs, used: Selection, given: Conditions, names: Sequence[str]) -
     needed = len(names) + (not data.scatter.any() and not data.uncertain)
     if count < needed:
         why = f"{counted(count, 'run')} cannot determine {' and '.join(what)}"
-        given_too = " or ".join(x for x, name in (("M", "rim_mass"), ("axle", "axle")) if name in names)
-        raise CannotSeparate(f"{why}: give {', or '.join(filter(None, [f'{needed} or more', given_too]))}")
+        raise CannotSeparate(f"{why}: give {needed} or more")
     mistake = "".join(words for _, words in _mistake(runs, used, data, given.values["gravity"], names))
     if not _separates(data, given.values, names):
         verb, vary = "separate" if names[1:] else "determine", "vary both m2 - m1 and m1 + m2 more"
@@ -294,7 +294,8 @@ def _mistake(
     Each value is compared with the median of its kind, and each acceleration with that of free masses,
     unless gravity or a delay is fitted.
     """
-    columns = {x: runs.given[x][used] for x in runs.given} | {runs.kind: data.measured}
+    columns = {x: runs.given[x][used] for x in runs.given}
+    columns |= {"time": data.measured} if runs.kind == "time" else {}  # small masses apart accelerate little
     mass, ratios = np.median([data.l, data.h]), (1 / MOST_RATIO, MOST_RATIO)
     checks: list[tuple[str, str, Any, Any, tuple[float, float]]] = [
         (x, "the median", values, mass if x[0] == "m" else np.median(values), ratios)
@@ -307,8 +308,7 @@ def _mistake(
         checks.append((name, what, accelerations(data, data.measured), free, SHARES))
     said, is_mistaken = list[tuple[int, str]](), np.zeros(len(data.l), dtype=bool)
     for name, what, values, typical, (least, most) in checks:
-        with np.errstate(divide="ignore"):
-            ratio = values / typical
+        ratio = values / typical
         is_unusual = (values > 0) & ((ratio < least) | (ratio > most))
         is_mistaken |= is_unusual
         if is_unusual.any() and not said:

@@ -147,7 +147,7 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, count: int, words: Sequence[str]) 
     cells = [cell for some in used for cell in some]
     values, u_values = np.array([number for some in used for number in some.values()], float).T
     lacking = [cell for some in kept for cell, (_, u) in some.items() if not u]
-    if u_values.any() and lacking:
+    if 0 < len(lacking) < sum(map(len, kept)):
         raise Unreadable(f"{in_words(lacking[0])} has no uncertainty, as others have; give all")
     given = {x: np.array([dict(run)[x] for run in runs], float).T for x, _ in next(iter(runs))}
     return Runs(

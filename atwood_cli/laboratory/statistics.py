@@ -81,7 +81,6 @@ def fit_line(linear: Linear) -> Line:
     return Line(coefficients, covariance, variance, scale, dof or NORMAL_DOF, chi2, between)
 
 
-@np.errstate(over="ignore", invalid="ignore")
 def _solved(J: Any, y: Column, variance: Column) -> tuple[Column, Any, float]:
     """Return the weighted solution, its covariance, and χ². Raises CannotSeparate."""
     sigma = np.sqrt(variance)

@@ -7,6 +7,7 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
+from ..model.decisions import REGIME_ASSUMED
 from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, rounding_apart_from, to_digits
 from ..model.quantities import NAMES_BY_SYMBOL, QUANTITIES, REGIMES, Undetermined, read_name
 from ..model.scene import INPUTS, MEASURED, SceneError, with_unit
@@ -68,8 +69,7 @@ def failure(answers: Answers, expected: Condition) -> str:
         regime = failing[0].case.regime if failing[0] and expected.name in REGIMES else ""
         instead = f"within two standard uncertainties it may {MAY.get(regime, 'fail')}"
     elif expected.name in REGIMES and any(one.case.mu_assumed for one in (answers, *ends) if one):
-        finds = answers.case.motion.finds
-        instead = f"that is only assumed: give mu{f', with the {finds} found and without a' if finds else ''}"
+        instead = f"that is only {REGIME_ASSUMED}"
     else:
         return ""
     return f"expected {expected.typed}; {instead}"

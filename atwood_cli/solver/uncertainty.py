@@ -101,14 +101,16 @@ class Uncertainties:
         """Solve the scene with an input so much more, but not below 0; what is found may go below it."""
         scene, motion = self.case.scene, self.case.motion
         number: Fraction = number_of(scene, motion, x) + step
+        if x == "mu_k" and scene.mu is not None:
+            number = min(number, scene.mu)
         if x != "a":
             number = max(number, Fraction(0))
         if not number and x != "a" and (not parameter_of(x).zero or (x == "M" and scene.I is not None)):
             return End(number, None, NO_SCENE)
         try:
             scene, motion = with_number(scene, motion, x, number)
-            if (scene.mu_k or 0) > (scene.mu or 0):  # one moves the other along
-                scene = scene._replace(mu=number, mu_k=number)
+            if x == "mu" and scene.mu_k is not None:
+                scene = scene._replace(mu_k=min(scene.mu_k, number))  # it is at most mu
             there = scene._replace(**found_inputs(scene, motion))
             if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
                 return End(number, None, NO_SCENE)

@@ -30,7 +30,7 @@ class SweepPage:
         # If a sentence says the regimes, they have a column only if it is asked for.
         self.columns = self.names if names or sweep.ranges[1:] else STANDARD[1:]
         self.reasons: Counter[tuple[str, str]] = Counter()
-        self.mu_assumed = False
+        self.assumed: list[str] = []
         self.done = 0
         """The rows that are solved and, as JSON or CSV, written."""
 
@@ -40,7 +40,7 @@ class SweepPage:
         with progress(rows, self.sweep.total, rows=lambda row: 1) if watch else nullcontext(rows) as rows:
             for row in rows:
                 self.reasons.update(row.reasons.items())
-                self.mu_assumed |= row.mu_assumed
+                self.assumed = [ASSUMED] if row.mu_assumed else self.assumed
                 self.missing = {name for name in self.missing if not cell(row.values[name])}
                 yield row
                 self.done += 1
@@ -51,11 +51,7 @@ class SweepPage:
 
     def _all_notes(self) -> Iterator[str]:
         """Say what is assumed and why values are missing: an iterator that begins after all rows."""
-        yield from [*self._assumption(), *self.notes()]
-
-    def _assumption(self) -> list[str]:
-        """Say that the string is assumed not to slip, if friction that is not given must hold it in a row."""
-        return [ASSUMED] if self.mu_assumed else []
+        yield from [*self.assumed, *self.notes()]
 
     def json(self) -> Mapping[str, object]:
         ranges = {range_.name: range_.typed for range_ in self.sweep.ranges}
@@ -85,7 +81,7 @@ class SweepPage:
         cells = {name: [cell(row.values[name]) for row in rows] for name in names}
         shown = {name: column for name, column in cells.items() if any(column)}
         same = {name: column[0] for name, column in shown.items() if len(set(column)) == 1}
-        above = [", ".join(sweep.inputs.values()), *self._assumption(), *_regimes(sweep, rows, self.digits)]
+        above = [", ".join(sweep.inputs.values()), *self.assumed, *_regimes(sweep, rows, self.digits)]
         if PULLEY not in same and any(row.regime == "verge" for row in rows):
             above.append(PULLEYS)
         numbers = [name for name in same if name != "regime"]

@@ -81,8 +81,8 @@ def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str])
 
     known = partial(recognised, vocabulary=vocabulary, named=named)
     lines = re.sub(r'\A"?sep=[,;\t]"?\r?\n', "", text, flags=re.IGNORECASE).split("\n")
-    for i in [i for i, line in enumerate(lines) if re.match(r"\s*#(?! *[,;\t])", line)]:
-        bare = lines[i].lstrip("# \t")  # NumPy writes headings so
+    for i in [i for i, line in enumerate(lines) if line.lstrip().startswith("#")]:
+        bare = re.sub(r"^\s*#[# \t]*(?![,;])", "", lines[i])  # NumPy writes headings so; # may be one, too
         is_header = max(best_header(bare, mark, known)[0] for mark in SEPARATORS) > 1
         lines[i] = bare if is_header else ""
         if not is_header and COMMENTS not in remarks:
