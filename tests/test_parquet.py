@@ -131,7 +131,7 @@ def test_solve_table_appends_what_batch_does(solved: Any, quantities: list[str] 
         (TABLE.drop("m2"), "cannot read the table: column m2 is missing; there are 'id', 'm1 (g)', 'M', 'x'"),
         (TABLE.rename({"M": "M (u)"}), "cannot read the table: column 'M (u)' has the unit 'u'; it takes kg, g, mg, ug, t, lb, lbs, oz, st, slug; rename it"),
         (TABLE.rename({"id": "radius"}), "cannot read the table: column 'radius' may mean R; rename it"),
-        (TABLE.rename({"id": "error"}), "cannot read the table: column 'error' would be there twice, as a result is named so; rename it"),
+        (TABLE.rename({"id": "error"}), "cannot read the table: column 'error' has the name of a result; rename it"),
     ],
 )  # fmt: skip
 def test_what_solve_table_refuses(table: Any, why: str) -> None:

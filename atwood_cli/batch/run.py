@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple
 
 from ..model.scene import SceneError
+from ..model.units import without_blanks
 from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
 from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
@@ -117,18 +118,20 @@ def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memo
 
 def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
     """Solve lines, each of which is an object: results become its last members."""
-    layout, there, asked = Layout([]), list[str](), job.asked
+    layout, asked = Layout([]), job.asked
 
     def headings(keys: Sequence[str]) -> Sequence[Heading]:
         nonlocal layout
-        there[:], layout = keys, read_layout(keys, asked, whole=False)
+        layout = read_layout(keys, asked, whole=False)
         return layout.headings
 
     with _watched(read_ndjson(blocks_of(source), headings), job, source) as watched:
         for piece in watched:
             target.write(_ndjson(piece, solve_cells(piece.cells, layout, asked, tally, piece.errors)))
             target.flush()
-    if there and (absent := [heading for heading in asked.named if heading not in there]):
+    there = [*(one.column for one in layout.headings if one.place >= 0), *layout.not_read]
+    known = {*map(without_blanks, there)}  # any line may have what --column names
+    if known and (absent := [one for one in asked.named if without_blanks(one) not in known]):
         raise Unreadable(f"there is no column {listed(absent[:1])}; there are {listed(there)}")
     return _remarks(layout)
 

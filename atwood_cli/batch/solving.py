@@ -55,9 +55,7 @@ def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> 
     Raises Unreadable if a column has the name of a result, or may mean an input and is no label.
     """
     if clash := [column for column in columns if column in (*asked.names, ERROR)]:
-        raise Unreadable(
-            f"column {in_quotes(clash[0])} would be there twice, as a result is named so; rename it"
-        )
+        raise Unreadable(f"column {in_quotes(clash[0])} has the name of a result; rename it")
     known = {without_blanks(column): column for column in columns}
     labels = {known.get(without_blanks(label), label) for label in asked.labels}
     named = {known.get(without_blanks(one), one): name for one, name in asked.named.items()}

@@ -291,15 +291,14 @@ def _mistake(
 ) -> list[tuple[int, str]]:
     """Return the first run that must have a mistake, in words. Raises CannotSeparate if most runs have one.
 
-    Each value is compared with the median of its kind, and each acceleration with that of free masses,
-    unless gravity or a delay is fitted.
+    Masses, heights and times are compared with the median of their kind. Accelerations, which may be small,
+    are compared with those of free masses, unless gravity or a delay is fitted.
     """
-    columns = {x: runs.given[x][used] for x in runs.given}
-    columns |= {"time": data.measured} if runs.kind == "time" else {}  # small masses apart accelerate little
+    each = {x: c[used] for x, c in runs.given.items()} | ({} if runs.kind == "a" else {"time": data.measured})
     mass, ratios = np.median([data.l, data.h]), (1 / MOST_RATIO, MOST_RATIO)
     checks: list[tuple[str, str, Any, Any, tuple[float, float]]] = [
         (x, "the median", values, mass if x[0] == "m" else np.median(values), ratios)
-        for x, values in columns.items()
+        for x, values in each.items()
     ]
     if not {"gravity", "delay"} & {*names}:
         name = "a" if data.drop is None else "a = 2 drop/t²"
