@@ -11,8 +11,9 @@ from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, over
 from .model.quantities import MEASURED_NAMES, QUANTITIES
 from .model.scene import OTHER_NAMES, Given, Scene, read_digits
 from .model.units import nearest
-from .solver.answers import Answers, read_answers
+from .solver.answers import Answers
 from .solver.messages import notes
+from .solver.reading import read_answers
 
 
 class Inputs(TypedDict, total=False):
@@ -96,9 +97,8 @@ class Solution(Generic[T]):
     final_speed: T | None
     uncertainty: Mapping[str, T | None]
 
-    def __init__(self, *given: Any) -> None:
-        """Make the solution for what `Answers` takes. A copied or pickled one is computed anew when read."""
-        object.__setattr__(self, "_answers", Answers(*given))
+    def __init__(self, answers: Answers) -> None:
+        object.__setattr__(self, "_answers", answers)
 
     if TYPE_CHECKING:
         _answers: Answers  # no field
@@ -113,7 +113,8 @@ class Solution(Generic[T]):
                 case "scene":
                     value = answers.case.scene
                 case "uncertainty":
-                    value = answers.standard_uncertainties(answers.names)
+                    names = answers.names[1:] if answers.uncertain else ()
+                    value = {name: answers.uncertainty(name) for name in names}
                 case "notes":
                     value = tuple(notes(answers, answers.names))
                 case _:
@@ -148,7 +149,12 @@ class Solution(Generic[T]):
         return hash(self.scene)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return Solution, self._answers.given
+        return _again, (type(self._answers), self._answers.given)
+
+
+def _again(kind: type[Answers], given: tuple[Any, ...]) -> Solution[Any]:
+    """Make a copied or pickled solution, which is computed anew when it is read."""
+    return Solution(kind(*given))
 
 
 Mass = Given | None
@@ -202,7 +208,7 @@ def solve(
         hint = f"; did you mean {meant}?" if meant else nearest(name, Inputs.__annotations__)
         raise TypeError(f"solve() got an unexpected keyword argument {name!r}{hint}")
     inputs: dict[str, Any] = {"m1": m1, "m2": m2, **given}
-    return Solution(*read_answers(inputs, read_digits(digits)).given)
+    return Solution(read_answers(inputs, read_digits(digits)))
 
 
 _masses = [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD, default=None) for name in ("m1", "m2")]

@@ -17,9 +17,10 @@ from atwood_cli.model.quantities import NAMES, QUANTITIES
 from atwood_cli.model.scene import Scene
 from atwood_cli.output.text import inputs_in_words
 from atwood_cli.output.typeset import as_markdown, as_text, chain, written
-from atwood_cli.solver.answers import Answers, read_answers
+from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.equations import Derivation, Equation
 from atwood_cli.solver.equations import plain as in_letters
+from atwood_cli.solver.reading import read_answers
 from atwood_cli.solver.steps import Explanation, explain
 
 from . import oracle

@@ -16,8 +16,9 @@ from atwood_cli import solve, solve_arrays
 from atwood_cli.arithmetic.settling import is_positive, settle
 from atwood_cli.model.digits import to_digits
 from atwood_cli.model.scene import Scene
-from atwood_cli.solver.answers import Answers, read_answers
+from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.balance import contact
+from atwood_cli.solver.reading import read_answers
 
 from .running import Atwood
 

@@ -16,7 +16,7 @@ from atwood_cli import SceneError, solve
 from atwood_cli.model.digits import rounding_to_place, to_digits, with_uncertainty
 from atwood_cli.model.scene import read_input
 from atwood_cli.model.units import Angle
-from atwood_cli.solver.answers import read_answers
+from atwood_cli.solver.reading import read_answers
 
 from .conftest import many
 from .running import LOADED, process
@@ -50,7 +50,7 @@ def test_a_wrap_in_radians_has_its_uncertainty_in_radians() -> None:
     """The least heavier mass is l e^{μφ}."""
     found = read_answers(inputs("m1=2 m2=30 mu=0.3±0.01 wrap=3±0.05rad"), None)
     steps = [exp(0.31 * 3) - exp(0.29 * 3), exp(0.3 * 3.05) - exp(0.3 * 2.95)]
-    assert found.answer("least_heavier_mass").uncertainty == pytest.approx(hypot(*steps), rel=1e-14)
+    assert found.uncertainty("least_heavier_mass") == pytest.approx(hypot(*steps), rel=1e-14)
     assert read_input("wrap", "0.5±0.01turn")[:2] == (Angle(Fraction(180)), Fraction("3.6"))
     share = 100 * steps[0] ** 2 / (steps[0] ** 2 + steps[1] ** 2)
     assert found.budget("least_heavier_mass") == {
@@ -169,7 +169,7 @@ def test_what_does_not_depend_on_an_input_is_certain(words: str, wrap: str) -> N
             read_answers({**given, x: str(Decimal(given[x]) + step)}, 30) for step in (0, Decimal("1e-4"))
         ]
         for name in answers.names[1:]:
-            if (u := answers.answer(name).uncertainty) is not None:
+            if (u := answers.uncertainty(name)) is not None:
                 assert (u > 0) == (ends[0][name] != ends[1][name]), (x, name)
 
 

@@ -7,9 +7,9 @@ from ..model.quantities import MEASURED_NAMES, NAMES, read_names
 from ..model.scene import SceneError, read_digits
 from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_steps, print_table, record
 from ..output.text import Destination, Report, cell, say, show
-from ..solver.answers import read_answers
 from ..solver.expected import failure, read_condition
 from ..solver.messages import reasons
+from ..solver.reading import read_answers
 from .options import (
     COULD_NOT,
     DONE,
@@ -79,9 +79,9 @@ def solve(
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
     conditions = [read_condition(typed) for typed in expect or []]
     answers = read_answers({**given, "a": a, "drop": drop, "time": time}, read_digits(digits))
-    if budget and not answers.uncertainties:
+    if budget and not answers.uncertain:
         raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
-    if explain and answers.uncertainties:
+    if explain and answers.uncertain:
         raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
     if figure is not None:
         from ..output.scene_figure import save

@@ -24,7 +24,7 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
     """Return the record for JSON: all quantities with scene and notes, or only the quantities named."""
     names = only or answers.names
     results: dict[str, object] = {name: answers[name] for name in names}
-    uncertainty = answers.standard_uncertainties(names) or None
+    uncertainty = _uncertainties(answers, names) or None
     shares = {name: answers.budget(name) or None for name in names if name != "regime"} if budget else None
     uncertain = {"uncertainty": uncertainty, "budget": shares}
     if only:
@@ -44,10 +44,17 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
 def csv_record(answers: Answers, names: Sequence[str], budget: bool) -> dict[str, object]:
     """Return the record for CSV: values, then uncertainties, then each input's share of the variances."""
     values = {name: answers[name] for name in names}
-    uncertainties = answers.standard_uncertainties(names)
+    uncertainties = _uncertainties(answers, names)
     columns = [(name, given) for name in uncertainties for given in answers.uncertain if budget]
     shares = {f"budget_{name}_{given}": answers.budget(name).get(given) for name, given in columns}
     return values | {f"u_{name}": u for name, u in uncertainties.items()} | shares
+
+
+def _uncertainties(answers: Answers, names: Sequence[str]) -> dict[str, object]:
+    """Return the standard uncertainties of the quantities named, {} if all inputs are exact."""
+    return (
+        {name: answers.uncertainty(name) for name in names if name != "regime"} if answers.uncertain else {}
+    )
 
 
 def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> list[str]:
@@ -55,7 +62,7 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
 
     With ``values``, uncertain ones are said with their uncertainties.
     """
-    said = [_stated(answers, name) for name in names if values and answers.answer(name).uncertainty]
+    said = [_stated(answers, name) for name in names if values and answers.uncertainty(name)]
     if "regime" in names and answers.case.mu_assumed:
         said.insert(0, f"regime: {REGIME_ASSUMED}.")
     return [*said, *map(unmarked, remarks(answers.shown)), *reasons(answers, names or answers.names)]
@@ -130,9 +137,7 @@ def _stated(answers: Answers, name: str) -> str:
 def _with_uncertainty(answers: Answers, name: str) -> str:
     """Return a value, with its uncertainty if it has one; "" if it has no value."""
     shown = cell(answers[name])
-    if not (shown and answers.uncertainties and answers.answer(name).uncertainty):
-        return shown
-    u = answers.uncertainties.of(name, 2)
+    u = answers.uncertainty(name, 2) if shown else None
     return with_uncertainty(lambda place: answers.rounded(name, rounding_to_place(place)), u) if u else shown
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from copy import copy
 from decimal import Decimal
 from fractions import Fraction
@@ -15,14 +15,10 @@ from ..model.decisions import Decisions
 from ..model.digits import DOUBLE_DIGITS, SHOWN_DIGITS, Rounding, is_infinite, to_digits, to_double
 from ..model.machine import Machine
 from ..model.quantities import FROM_MOTION, MAIN, NAMES, Undetermined
-from ..model.scene import INPUTS, MEASURED, UNMEASURED, Given, Input, Motion, Scene, SceneError, read_input
-from ..model.units import GRAVITY, read_number
+from ..model.scene import UNMEASURED, Motion, Scene
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from ..arithmetic.rational import Arithmetic, N, Quantity
-    from .uncertainty import Uncertainties
 
     OnMachine = Callable[[Machine[Any]], Any]
     """A function of a machine in any arithmetic."""
@@ -34,38 +30,20 @@ BELOW_DOUBLES = "not 0 but below the range of doubles; ask for digits (--digits 
 
 
 class Answer(NamedTuple):
-    """A quantity: its value, why that is None or cannot be shown as it is, and its standard uncertainty.
-
-    The uncertainty is None if all inputs are exact, or if an end of an input gives no value.
-    """
+    """A quantity: its value, and why that is None or cannot be shown as it is."""
 
     value: Any
     reason: str = ""
-    uncertainty: Any = None
 
 
 class Answers:
-    """The quantities of a scene, each computed when it is asked for: as doubles, or to ``digits`` digits.
+    """The quantities of a scene, each computed when it is asked for: as doubles, or to ``digits`` digits."""
 
-    ``uncertain`` has the standard uncertainties of the inputs that have one.
-    """
-
-    def __init__(
-        self,
-        scene: Scene,
-        digits: int | None = None,
-        motion: Motion = UNMEASURED,
-        uncertain: Mapping[str, Fraction] = {},
-    ) -> None:
-        self.case, self.uncertain = Decisions(scene, motion), uncertain
+    def __init__(self, scene: Scene, digits: int | None = None, motion: Motion = UNMEASURED) -> None:
+        self.case = Decisions(scene, motion)
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._by_digits: dict[int | None, Answers] = {}
         self._round_to(digits)
-        self.uncertainties: Uncertainties | None = None
-        if uncertain:
-            from .uncertainty import Uncertainties
-
-            self.uncertainties = Uncertainties(self.case, uncertain, Answers)
 
     def _round_to(self, digits: int | None) -> None:
         self.digits = digits
@@ -81,9 +59,9 @@ class Answers:
         return self._by_digits[digits]
 
     @property
-    def given(self) -> tuple[Scene, int | None, Motion, Mapping[str, Fraction]]:
+    def given(self) -> tuple[Any, ...]:
         """The arguments that make these answers again."""
-        return self.case.scene, self.digits, self.case.motion, self.uncertain
+        return self.case.scene, self.digits, self.case.motion
 
     @property
     def shown(self) -> Answers:
@@ -132,8 +110,7 @@ class Answers:
         if name == "regime":
             return Answer(self.case.regime)
         if name not in self._answers:
-            value, reason = self._settled(attrgetter(name))
-            self._answers[name] = Answer(value, reason, self._uncertainty(name, value, reason))
+            self._answers[name] = Answer(*self._settled(attrgetter(name)))
         return self._answers[name]
 
     def _settled(self, quantity: OnMachine) -> tuple[Any, str]:
@@ -150,25 +127,30 @@ class Answers:
         below = value == 0 and self.digits is None and settle(on_machines, to_digits(1), DOUBLE_DIGITS)
         return value, BELOW_DOUBLES if below else ""
 
-    def _uncertainty(self, name: str, value: Any, reason: str) -> Any:
-        """Return the rounded uncertainty of a quantity, None if it has none."""
-        if self.uncertainties is None or value is None or reason == TOO_SMALL:
-            return None
-        u = self.uncertainties.of(name, self.digits)
-        return to_double(u) if u is not None and self.digits is None else u
+    # Inputs are exact. `UncertainAnswers` has another answer to these.
 
-    def standard_uncertainties(self, names: Iterable[str]) -> dict[str, Any]:
-        """Return the standard uncertainties of the quantities named, {} if all inputs are exact."""
-        if self.uncertainties is None:
-            return {}
-        return {name: self.answer(name).uncertainty for name in names if name != "regime"}
+    uncertain: Mapping[str, Fraction] = {}
+    """The standard uncertainties of inputs that have one."""
+
+    def uncertainty(self, name: str, digits: int | None = None) -> Any:
+        """Return the standard uncertainty of a quantity, None if it has none."""
+        return None
 
     def budget(self, name: str, round_: Rounding[Any] | None = None) -> dict[str, Any]:
         """Return the percentage of each uncertain input in a variance, {} if there is none or it is 0."""
-        if self.uncertainties is None or not self.answer(name).uncertainty:
-            return {}
-        percents = self.uncertainties.percents(name).items()
-        return {x: (round_ or self.round)(percent) for x, percent in percents}
+        return {}
+
+    def doubts(self) -> list[str]:
+        """Say which decisions differ near the scene."""
+        return []
+
+    def open_ended(self, names: Iterable[str]) -> list[str]:
+        """Say which quantities have no value at an end of an input."""
+        return []
+
+    def in_doubt(self) -> list[Answers | None]:
+        """Return the answers at all ends at which decisions may differ, None if an end makes no scene."""
+        return []
 
     def rounded(self, name: str, round_: Rounding[Decimal]) -> Decimal:
         """Return the value of a quantity that exists, rounded in another way."""
@@ -189,28 +171,3 @@ class Answers:
             return value
 
         return of
-
-
-def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answers:
-    """Read the inputs, which may have uncertainties, and return the answers. Raises SceneError."""
-    inputs = {name: read_input(name, given.get(name)) for name in (*INPUTS, *MEASURED)}
-    inputs["a"] = _of_gravity(inputs["a"], inputs["g"])
-    if all(inputs[name].given is None for name in MEASURED):
-        scene, motion = Scene.of(inputs), UNMEASURED
-    else:
-        from ..model.motion import read_motion
-
-        scene, motion = read_motion(inputs)
-    uncertain = {name: read.uncertainty for name, read in inputs.items() if read.uncertainty}
-    return Answers(scene, digits, motion, uncertain)
-
-
-def _of_gravity(a: Input, g: Input) -> Input:
-    """Return an acceleration; one typed as a multiple of g is of the scene's. Raises SceneError."""
-    if not isinstance(a.given, str):
-        return a
-    number = read_number(a.given, "acceleration")
-    if g.uncertainty and number.unit == GRAVITY:
-        raise SceneError("a", a.given, "is a multiple of g, which is uncertain; give it in m/s2")
-    value, _, uncertainty = number.with_gravity(g.value)
-    return a._replace(value=value, uncertainty=uncertainty)

@@ -62,7 +62,7 @@ def read_condition(typed: str) -> Condition:
 
 def failure(answers: Answers, expected: Condition) -> str:
     """Say what holds instead of what is expected, "" if that holds."""
-    ends = answers.uncertainties.answers_in_doubt() if answers.uncertainties else []
+    ends = answers.in_doubt()
     if not _holds(answers, expected):
         instead = unmarked(_instead(answers, expected))
     elif failing := [end for end in ends if not (end and _holds(end, expected))]:
@@ -89,7 +89,7 @@ def _instead(answers: Answers, expected: Condition) -> str:
     """Say the regime, or the value of the quantity, or why it has none."""
     if expected.name in REGIMES:
         return f"it is {answers.case.regime}"
-    value, reason, *_ = answers.answer(expected.name)
+    value, reason = answers.answer(expected.name)
     if value is None or reason == TOO_SMALL:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
         return f"{expected.name} has {why}"

@@ -32,10 +32,10 @@ def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return sentences on why quantities or their uncertainties are missing or doubtful."""
     found = {name: answers.answer(name) for name in names if name != "regime"}
     said = reasons_in({(name, one.reason): 1 for name, one in found.items() if one.reason}, 1)
-    if answers.uncertainties is not None:
-        without = [name for name, one in found.items() if one.uncertainty is None and one.value is not None]
-        said += [*answers.uncertainties.doubts(), *map(unmarked, answers.uncertainties.open_ended(without))]
-    return said
+    without = [
+        name for name, one in found.items() if one.value is not None and answers.uncertainty(name) is None
+    ]
+    return [*said, *answers.doubts(), *map(unmarked, answers.open_ended(without))]
 
 
 def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:

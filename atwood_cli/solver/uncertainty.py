@@ -11,22 +11,28 @@ uncertainty is right to `RIGHT_DIGITS` digits.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import ROUND_HALF_EVEN, Decimal, localcontext
 from fractions import Fraction
 from operator import attrgetter
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 from ..arithmetic.interval import ZERO, decimal_context
 from ..arithmetic.lazy import lazy
-from ..model.decisions import Decisions
-from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, strip_zeros, to_digits
+from ..model.digits import (
+    SHOWN_DIGITS,
+    Rounding,
+    as_typed,
+    format_number,
+    is_infinite,
+    strip_zeros,
+    to_digits,
+    to_double,
+)
 from ..model.motion import found_inputs, number_of, with_number
 from ..model.quantities import QUANTITIES, Undetermined
 from ..model.scene import Motion, Scene, parameter_of, with_unit
-
-if TYPE_CHECKING:
-    from .answers import Answers
+from .answers import TOO_SMALL, Answers
 
 DIGITS, RIGHT_DIGITS = 48, 15
 NEGLIGIBLE = Decimal("1e-30")
@@ -83,19 +89,21 @@ class Spread(NamedTuple):
     variance: Decimal
 
 
-class Uncertainties:
-    """The standard uncertainties of a scene: of its inputs, ``given`` in SI units, and of its quantities.
-
-    ``solve`` returns the answers to a scene, to so many digits, with a motion.
-    """
+class UncertainAnswers(Answers):
+    """The quantities of a scene with standard uncertainties: of inputs, ``uncertain``, and of quantities."""
 
     def __init__(
-        self, case: Decisions, given: Mapping[str, Fraction], solve: Callable[[Scene, int, Motion], Answers]
+        self, scene: Scene, digits: int | None, motion: Motion, uncertain: Mapping[str, Fraction]
     ) -> None:
-        self.case, self.given, self._solve = case, given, solve
-        self._here = End(Fraction(0), solve(case.scene, DIGITS, case.motion))
-        self._ends = {x: (self._end(x, -u), self._end(x, u)) for x, u in given.items()}
+        super().__init__(scene, digits, motion)
+        self.uncertain = uncertain
+        self._here = End(Fraction(0), Answers(scene, DIGITS, motion))
+        self._ends = {x: (self._end(x, -u), self._end(x, u)) for x, u in uncertain.items()}
         self._spreads: dict[str, Spread] = {}
+
+    @property
+    def given(self) -> tuple[Any, ...]:
+        return *super().given, self.uncertain
 
     def _end(self, x: str, step: Fraction) -> End:
         """Solve the scene with an input so much more, but not below 0; what is found may go below it."""
@@ -114,7 +122,7 @@ class Uncertainties:
             there = scene._replace(**found_inputs(scene, motion))
             if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
                 return End(number, None, NO_SCENE)
-            answers = self._solve(there, DIGITS, motion)
+            answers = Answers(there, DIGITS, motion)
             _ = answers.case.axle_mass, answers.case.rim_mass
         except (Undetermined, ZeroDivisionError):
             return End(number, None, NO_FIT)
@@ -139,31 +147,35 @@ class Uncertainties:
         self._spreads[name] = Spread(here, ends, steps, variance)
         return self._spreads[name]
 
-    def of(self, name: str, digits: int | None = None) -> Decimal | None:
-        """Return the standard uncertainty of a quantity, to `RIGHT_DIGITS` digits or to fewer.
+    def uncertainty(self, name: str, digits: int | None = None) -> Any:
+        """Return the standard uncertainty of a quantity: a double, or to at most `RIGHT_DIGITS` digits.
 
         It is None if the quantity has no value at an end of an input, or no finite one in the scene.
         """
-        spread = self._spread(name)
+        value, reason = self.answer(name)
+        has_none = value is None or reason == TOO_SMALL or name == "regime"
+        spread = None if has_none else self._spread(name)
         if spread is None or any(value.number is None for pair in spread.ends.values() for value in pair):
             return None
-        return to_digits(min(digits or RIGHT_DIGITS, RIGHT_DIGITS))(CONTEXT.sqrt(spread.variance))
+        digits = digits or self.digits
+        u = to_digits(min(digits or RIGHT_DIGITS, RIGHT_DIGITS))(CONTEXT.sqrt(spread.variance))
+        return u if digits else to_double(u)
 
-    def percents(self, name: str) -> dict[str, Decimal]:
-        """Return the share of each input in the variance of a quantity, if that is finite and not 0."""
-        spread = self._spread(name)
+    def budget(self, name: str, round_: Rounding[Any] | None = None) -> dict[str, Any]:
+        """Return the percentage of each uncertain input in a variance, {} if there is none or it is 0."""
+        spread = self._spread(name) if self.uncertainty(name) else None
         if spread is None or not spread.steps or is_infinite(spread.variance):
             return {}
         with localcontext(CONTEXT):
-            shares = {x: 100 * spread.steps.get(x, ZERO) ** 2 / spread.variance for x in self.given}
-        return {x: to_digits(RIGHT_DIGITS)(share) for x, share in shares.items()}
+            shares = {x: 100 * spread.steps.get(x, ZERO) ** 2 / spread.variance for x in self.uncertain}
+        return {x: (round_ or self.round)(to_digits(RIGHT_DIGITS)(share)) for x, share in shares.items()}
 
     # In sentences
 
     @lazy
     def _ends_in_doubt(self) -> list[tuple[str, str, End]]:
         """Each input at the ends at which decisions may differ, the nearest first, and how far these are."""
-        steps = [(within, x, n * u) for n, within in WITHIN.items() for x, u in self.given.items()]
+        steps = [(within, x, n * u) for n, within in WITHIN.items() for x, u in self.uncertain.items()]
         return [(within, x, self._end(x, side * step)) for within, x, step in steps for side in (-1, 1)]
 
     def doubts(self) -> list[str]:
@@ -180,7 +192,7 @@ class Uncertainties:
                     break  # others follow from it
         return [*said.values()]
 
-    def answers_in_doubt(self) -> list[Answers | None]:
+    def in_doubt(self) -> list[Answers | None]:
         """Return the answers at all ends at which decisions may differ, None if an end makes no scene."""
         return [end.answers for _, _, end in self._ends_in_doubt]
 
