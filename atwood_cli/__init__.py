@@ -10,18 +10,18 @@ if TYPE_CHECKING:
     from .batch.frames import solve_table as solve_table
     from .laboratory import Fit as Fit
     from .laboratory import fit as fit
-    from .model.quantities import REGIMES as REGIMES
-    from .model.scene import Scene as Scene
-    from .model.scene import SceneError as SceneError
+    from .solver.quantities import REGIMES as REGIMES
+    from .solver.scene import Scene as Scene
+    from .solver.scene import SceneError as SceneError
 
 __version__ = "1.0.0"
 
 _HOMES = {
     **dict.fromkeys(("Solution", "solve"), "api"),
     **dict.fromkeys(("STATUSES", "solve_arrays"), "arrays"),
-    **{"solve_table": "batch.frames", "REGIMES": "model.quantities"},
+    **{"solve_table": "batch.frames", "REGIMES": "solver.quantities"},
     **dict.fromkeys(("Fit", "fit"), "laboratory"),
-    **dict.fromkeys(("Scene", "SceneError"), "model.scene"),
+    **dict.fromkeys(("Scene", "SceneError"), "solver.scene"),
 }
 """The names that the package exports, and the modules that have them."""
 __all__ = [*_HOMES]

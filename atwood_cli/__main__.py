@@ -40,7 +40,7 @@ def _status() -> int:
         # The environment may allow fewer digits than we do.
         sys.set_int_max_str_digits(sys.int_info.default_max_str_digits)
         gc.disable()  # imported code stays: searching it for garbage takes a seventh of a short run
-        from .cli import run  # here, so that Ctrl-C during the import shows no traceback
+        from .cli import run
 
         gc.freeze()
         gc.enable()

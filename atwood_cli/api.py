@@ -8,12 +8,13 @@ from inspect import Parameter, Signature
 from math import isinf
 from typing import TYPE_CHECKING, Any, Generic, TypedDict, TypeVar, Unpack, overload
 
-from .model.quantities import MEASURED_NAMES, QUANTITIES
-from .model.scene import OTHER_NAMES, Given, Scene, read_digits
-from .model.units import nearest
+from .explain.messages import notes
+from .numbers.text import nearest
+from .reading.answers import read_answers
+from .reading.inputs import OTHER_NAMES, read_digits
 from .solver.answers import Answers
-from .solver.messages import notes
-from .solver.reading import read_answers
+from .solver.quantities import MEASURED_NAMES, QUANTITIES
+from .solver.scene import Given, Scene
 
 
 class Inputs(TypedDict, total=False):

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 
 from atwood_cli import solve_arrays
-from atwood_cli.model.quantities import ACCURACIES
+from atwood_cli.solver.quantities import ACCURACIES
 from atwood_cli.tradeoff.measure import in_numpy
 
 Columns = dict[str, Any]

@@ -16,7 +16,8 @@ from atwood_cli.laboratory.fitting import Fitted, conditions_of, fitted
 from atwood_cli.laboratory.results import USUAL
 from atwood_cli.laboratory.runs import Kind, Runs
 from atwood_cli.laboratory.statistics import CannotSeparate
-from atwood_cli.model.scene import INPUTS, read_input
+from atwood_cli.reading.inputs import read_input
+from atwood_cli.solver.scene import INPUTS
 
 C, F, G, DROP = 0.028, 0.009, 9.80665, 1.1
 BLUNDER = 0.01

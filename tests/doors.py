@@ -12,8 +12,8 @@ import numpy as np
 import polars as pl
 
 from atwood_cli import REGIMES, solve, solve_arrays, solve_table
-from atwood_cli.model.quantities import NAMES
-from atwood_cli.model.scene import INPUTS
+from atwood_cli.solver.quantities import NAMES
+from atwood_cli.solver.scene import INPUTS
 
 from .running import called
 from .scenes import Given

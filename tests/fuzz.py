@@ -13,9 +13,9 @@ import typer
 from hypothesis import strategies as st
 
 from atwood_cli import cli
-from atwood_cli.model.quantities import NAMES
-from atwood_cli.model.scene import INPUTS, MASSES, MEASURED
-from atwood_cli.model.units import UNITS
+from atwood_cli.reading.units import UNITS
+from atwood_cli.solver.quantities import NAMES
+from atwood_cli.solver.scene import INPUTS, MASSES, MEASURED
 from atwood_cli.tables.sources import FORMATS
 
 T = TypeVar("T")

@@ -12,7 +12,7 @@ from typing import Any
 
 import flint
 
-from atwood_cli.model.scene import Scene
+from atwood_cli.solver.scene import Scene
 
 LARGEST_EXPONENT = 10**8
 """Beyond this power of ten the package says infinite, and below its inverse that it is too small to be written."""

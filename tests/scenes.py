@@ -11,9 +11,9 @@ from typing import Any
 
 import flint
 
-from atwood_cli.model.decisions import Decisions
-from atwood_cli.model.scene import Scene
+from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
+from atwood_cli.solver.decisions import Decisions
 
 Given = dict[str, str]
 
@@ -208,7 +208,7 @@ def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
 
 def as_doubles(given: Given) -> Given | None:
     """A scene whose numbers are the doubles nearest to those of this one; None if that is no such scene."""
-    scene = Scene.read(given)
+    scene = read_scene(given)
     numbers = scene._asdict() | {"wrap": scene.wrap.number, "axle": Decisions(scene).axle_friction}
     try:
         row = {name: float(value) for name, value in numbers.items() if value is not None}
@@ -221,7 +221,7 @@ def as_doubles(given: Given) -> Given | None:
 
 def with_axle(rng: Random, given: Given) -> Given:
     """The scene with an axle: of no matter, or such that it decides; as a torque now and then."""
-    scene = Scene.read(given)
+    scene = read_scene(given)
     l, h = sorted((scene.m1, scene.m2))
     g = scene.g
     limits = [g * (h - l), g * l, g * h]
@@ -233,7 +233,7 @@ def with_axle(rng: Random, given: Given) -> Given:
     if scene.mu and scene.mu < 1 and h > l and rng.random() < 0.3:
         # The verge of a massless pulley: where b (h + l) = (k - 1) l (2 h - b).
         k_minus_1 = Fraction(
-            Answers(Scene.read({**given, "M": "1", "I": None}), 30).settle(lambda m: m.k_minus_1)
+            Answers(read_scene({**given, "M": "1", "I": None}), 30).settle(lambda m: m.k_minus_1)
         )
         near = 1 + Fraction(rng.choice([-1, 1]) * 10 ** rng.uniform(-15, -3))
         f = g * 2 * h * l * k_minus_1 / (h + l + l * k_minus_1) * near

@@ -15,15 +15,15 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from atwood_cli import solve
-from atwood_cli.arithmetic import settling
-from atwood_cli.arithmetic.interval import Enclosure, Enclosures, NeedsMoreDigits, enclosures
-from atwood_cli.arithmetic.rational import EXACT, Irrational
-from atwood_cli.arithmetic.settling import settle
-from atwood_cli.model.digits import as_typed, share_exponent, strip_zeros, to_digits, to_double
-from atwood_cli.model.digits import format_number as text_of
+from atwood_cli.numbers import settling
+from atwood_cli.numbers.digits import as_typed, share_exponent, strip_zeros, to_digits, to_double
+from atwood_cli.numbers.digits import format_number as text_of
+from atwood_cli.numbers.interval import Enclosure, Enclosures, NeedsMoreDigits, enclosures
+from atwood_cli.numbers.rational import EXACT, Irrational
+from atwood_cli.numbers.settling import settle
 
 if TYPE_CHECKING:
-    from atwood_cli.arithmetic.rational import Arithmetic, N, Quantity
+    from atwood_cli.numbers.rational import Arithmetic, N, Quantity
 
 precisions = st.sampled_from([20, 25, 50, 97, 200, 1000])
 rationals = st.fractions().filter(lambda q: abs(q) < 10**30)

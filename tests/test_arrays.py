@@ -22,13 +22,14 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from atwood_cli import REGIMES, SceneError, arrays, solve, solve_arrays
-from atwood_cli.arithmetic.lazy import lazy
 from atwood_cli.arrays import STATUSES
 from atwood_cli.arrays.plan import plan
-from atwood_cli.model.decisions import REGIME_ASSUMED, Decisions
-from atwood_cli.model.quantities import ACCURACIES, NAMES, Accuracy
-from atwood_cli.model.scene import INPUTS, MASSES, Scene
+from atwood_cli.numbers.lazy import lazy
+from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
+from atwood_cli.solver.decisions import REGIME_ASSUMED, Decisions
+from atwood_cli.solver.quantities import ACCURACIES, NAMES, Accuracy
+from atwood_cli.solver.scene import INPUTS, MASSES
 
 from .conftest import examples
 from .doors import columns_of, solve_any, within_promise
@@ -141,7 +142,7 @@ def _fault(row: Row) -> str | None:
     if any(map(isnan, row.values())):
         return "NaN"
     try:
-        Scene.read(row)
+        read_scene(row)
     except SceneError as error:
         return next((fault for rule, fault in FAULTS.items() if error.rule.startswith(rule)), error.parameter)
     return None
@@ -188,7 +189,7 @@ def test_inputs_are_broadcast(
 
 def reasons_of(rows: list[Row]) -> Counter[tuple[str, str]]:
     """Why quantities have no value, and that a regime is assumed, as each row's own scene says it, counted."""
-    solved = [Answers(Scene.read(row)) for row in rows]
+    solved = [Answers(read_scene(row)) for row in rows]
     found = Counter((name, one.answer(name).reason) for name in NAMES for one in solved if one[name] is None)
     return found + Counter({("regime", REGIME_ASSUMED): sum(one.case.mu_assumed for one in solved)})
 

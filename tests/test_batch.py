@@ -22,7 +22,7 @@ import pytest
 from atwood_cli import SceneError, solve, solve_table
 from atwood_cli.batch import solving
 from atwood_cli.cli import run
-from atwood_cli.model.units import UNITS
+from atwood_cli.reading.units import UNITS
 from atwood_cli.tables import sources
 
 from .running import FROM, HANGS, TOP, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process

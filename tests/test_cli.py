@@ -17,7 +17,8 @@ import pytest
 
 from atwood_cli import cli, solve
 from atwood_cli.__main__ import main
-from atwood_cli.model.quantities import ASCII, QUANTITIES, read_names
+from atwood_cli.reading.names import ASCII, read_names
+from atwood_cli.solver.quantities import QUANTITIES
 
 from .running import LOADED, PAPER, TOP, Atwood, called, process
 from .scenes import inputs

@@ -4,7 +4,7 @@ from typing import Any
 
 import pytest
 
-from atwood_cli.model import physics
+from atwood_cli.solver import physics
 
 pytest.importorskip("sympy", reason="needs sympy, which knows the closed forms")
 

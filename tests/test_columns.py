@@ -13,12 +13,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve_arrays
-from atwood_cli.arithmetic.symbolic import Formula, Term
 from atwood_cli.arrays import doubles as doubles_
 from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, LIMIT, PROMISE, UNIT, Bounded, certified
 from atwood_cli.arrays.pairs import PAIRS, STEP, TABLE_STEPS, head_of, powers, two_product
 from atwood_cli.arrays.program import Program
-from atwood_cli.model.quantities import ACCURACIES, Accuracy
+from atwood_cli.numbers.formula import Formula, Term
+from atwood_cli.solver.quantities import ACCURACIES, Accuracy
 
 from . import oracle
 from .conftest import examples

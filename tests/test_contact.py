@@ -11,9 +11,10 @@ import pytest
 from scipy.optimize import linprog, minimize_scalar
 from scipy.sparse import diags_array, vstack
 
-from atwood_cli import Scene, SceneError, solve
+from atwood_cli import SceneError, solve
+from atwood_cli.explain.contact import contact
+from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
-from atwood_cli.solver.balance import contact
 
 from . import oracle
 from .conftest import many
@@ -25,7 +26,7 @@ def test_forces_along_the_arc_add_up_and_keep_to_the_limits_of_friction() -> Non
     mpmath.mp.dps, kinds = 60, Counter[str]()
     for scene in of_all_kinds(many(240)):
         try:
-            seen = contact(Answers(Scene.read(scene), 30), 7)
+            seen = contact(Answers(read_scene(scene), 30), 7)
         except SceneError:  # a free end, or a motion that is open
             continue
         kinds[seen.kind] += 1

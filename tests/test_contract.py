@@ -22,8 +22,8 @@ from atwood_cli import Fit, Scene, SceneError, Solution, fit, solve, solve_array
 from atwood_cli.__main__ import INTERRUPTED
 from atwood_cli.cli import COMMANDS
 from atwood_cli.cli.options import COULD_NOT, DONE, WRONG_USAGE
-from atwood_cli.model.machine import Machine
-from atwood_cli.model.quantities import NAMES, QUANTITIES, STANDARD
+from atwood_cli.solver.machine import Machine
+from atwood_cli.solver.quantities import NAMES, QUANTITIES, STANDARD
 
 from . import oracle
 from .running import Atwood, process

@@ -11,8 +11,8 @@ from shutil import which
 
 import pytest
 
-from atwood_cli.model.scene import BODIES
-from atwood_cli.model.units import UNITS
+from atwood_cli.reading.units import UNITS
+from atwood_cli.solver.scene import BODIES
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS
 from atwood_cli.tradeoff.tradeoff_page import LEGEND
 

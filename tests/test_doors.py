@@ -13,8 +13,8 @@ from typing import Any
 
 import pytest
 
-from atwood_cli.model.quantities import NAMES
-from atwood_cli.model.scene import Scene
+from atwood_cli.reading.inputs import read_scene
+from atwood_cli.solver.quantities import NAMES
 
 from . import oracle
 from .conftest import many
@@ -49,7 +49,7 @@ def check(door: Door, tried: Sequence[Given], truths: Sequence[Mapping[str, Any]
 
 
 def truth(given: Given) -> dict[str, Any]:
-    found = oracle.expected(Scene.read(given))
+    found = oracle.expected(read_scene(given))
     return {name: found[name] for name in NAMES if name not in BOUNDS}
 
 

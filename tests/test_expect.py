@@ -7,8 +7,8 @@ import mpmath
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli.solver.expected import failure, read_condition
-from atwood_cli.solver.reading import read_answers
+from atwood_cli.explain.conditions import failure, read_condition
+from atwood_cli.reading.answers import read_answers
 
 from .conftest import examples
 

@@ -12,16 +12,17 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli.model.digits import is_infinite
-from atwood_cli.model.quantities import NAMES, QUANTITIES
-from atwood_cli.model.scene import Scene
+from atwood_cli.explain.derivation import Explanation, explain
+from atwood_cli.explain.equations import Derivation, Equation
+from atwood_cli.explain.equations import plain as in_letters
+from atwood_cli.numbers.digits import is_infinite
 from atwood_cli.output.text import inputs_in_words
 from atwood_cli.output.typeset import as_markdown, as_text, chain, written
+from atwood_cli.reading.answers import read_answers
+from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
-from atwood_cli.solver.equations import Derivation, Equation
-from atwood_cli.solver.equations import plain as in_letters
-from atwood_cli.solver.reading import read_answers
-from atwood_cli.solver.steps import Explanation, explain
+from atwood_cli.solver.quantities import NAMES, QUANTITIES
+from atwood_cli.solver.scene import Scene
 
 from . import oracle
 from .conftest import examples, many
@@ -136,7 +137,7 @@ def test_every_line_gives_its_result(kind: str) -> None:
 @examples(60)
 @given(st.sampled_from(sorted(FAMILIES)), st.integers(0, 10**9), st.sampled_from([None, 2, 17]))
 def test_every_line_gives_its_result_in_any_scene(family: str, seed: int, digits: int | None) -> None:
-    scene = Scene.read(next(scenes(family, 1, seed)))
+    scene = read_scene(next(scenes(family, 1, seed)))
     answers = Answers(scene, digits)
     found = explain(answers)
     check_lesson(answers, found, (NAMES[seed % len(NAMES)], "tension_1"))

@@ -17,9 +17,10 @@ from hypothesis import strategies as st
 from mpmath import MPContext
 
 from atwood_cli import solve
-from atwood_cli.model.quantities import NAMES, QUANTITIES
-from atwood_cli.model.scene import INPUTS, Scene
+from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
+from atwood_cli.solver.quantities import NAMES, QUANTITIES
+from atwood_cli.solver.scene import INPUTS
 
 from .conftest import examples, many
 from .doors import solve_any
@@ -131,7 +132,7 @@ def test_in_units_smaller_by_powers_of_ten_the_point_alone_moves(family: str) ->
             powers = zip(units, DIMENSIONS.get(name, (0, 0, 0)), strict=True)
             return Fraction(10) ** sum(unit * power for unit, power in powers)
 
-        scene = Scene.read(drawn)
+        scene = read_scene(drawn)
         numbers: dict[str, Any] = {
             name: value * factor(name) for name, value in scene._asdict().items() if type(value) is Fraction
         }

@@ -33,7 +33,7 @@ from atwood_cli.laboratory.statistics import (
     outliers,
     sum_of_squares,
 )
-from atwood_cli.model.scene import read_input
+from atwood_cli.reading.inputs import read_input
 
 from . import coverage
 from .conftest import many

@@ -8,8 +8,8 @@ import pytest
 import typer
 
 from atwood_cli import cli
-from atwood_cli.model.quantities import NAMES
-from atwood_cli.model.scene import BODIES, INERTIA_FACTORS
+from atwood_cli.solver.quantities import NAMES
+from atwood_cli.solver.scene import BODIES, INERTIA_FACTORS
 from atwood_cli.tables.sources import FORMATS
 from atwood_cli.tradeoff.measure import FAMILIES
 

@@ -8,9 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli import Scene, Solution, solve
-from atwood_cli.model.quantities import NAMES
+from atwood_cli import Solution, solve
+from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
+from atwood_cli.solver.quantities import NAMES
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
 
@@ -31,7 +32,7 @@ def test_what_is_found_gives_the_measured_acceleration_exactly(
     m1, m2 = (h, l) if mirrored else (l, h)
     known: dict[str, Any] = {"m1": m1, "m2": m2, "M": M, "g": g, "axle": f, "inertia": beta}
     exact = solve(**known, digits=30)
-    assert exact.acceleration == Answers(Scene.read(known), 30).round(a)
+    assert exact.acceleration == Answers(read_scene(known), 30).round(a)
     for unknown in ("m1", "m2", "M", "g"):
         found: Any = solve(**{**known, unknown: None}, a=a, digits=30)
         assert found.scene == exact.scene

@@ -10,8 +10,8 @@ import pytest
 
 from atwood_cli import solve
 from atwood_cli.laboratory import results as laboratory
-from atwood_cli.model.quantities import QUANTITIES
-from atwood_cli.model.scene import INPUTS, MEASURED
+from atwood_cli.solver.quantities import QUANTITIES
+from atwood_cli.solver.scene import INPUTS, MEASURED
 
 from .running import TOP, Atwood
 

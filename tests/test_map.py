@@ -11,14 +11,14 @@ from subprocess import run
 import pytest
 
 from atwood_cli import Solution
-from atwood_cli.model import quantities
-from atwood_cli.model.machine import Machine
-from atwood_cli.model.quantities import MEASURED_NAMES, QUANTITIES
-from atwood_cli.model.scene import Scene
-from atwood_cli.model.units import UNITS
+from atwood_cli.explain.conditions import DIMENSIONS
+from atwood_cli.explain.equations import plain
 from atwood_cli.output.typeset import IN_LATEX
-from atwood_cli.solver.equations import plain
-from atwood_cli.solver.expected import DIMENSIONS
+from atwood_cli.reading.inputs import read_scene
+from atwood_cli.reading.units import UNITS
+from atwood_cli.solver import quantities
+from atwood_cli.solver.machine import Machine
+from atwood_cli.solver.quantities import MEASURED_NAMES, QUANTITIES
 
 from . import oracle
 from .running import TOP, process
@@ -33,12 +33,12 @@ CHANGES = [
     ("add a quantity", "test_contract", "pulley_mass moment_of_inertia gravity m1", "trial "),
     ("take a unit", "test_scene", "kg 1 g 0.001 mg", "stater 7 "),
     ("take a unit", "examples/hoist.md", "kg, g, mg, ug", "stater, "),
-    ("add a quantity", "model/quantities.py", "    # Of a scene whose motion was",
+    ("add a quantity", "solver/quantities.py", "    # Of a scene whose motion was",
      '    "trial": About("limits", "Q", "kg", "", "both masses"),\n'),
-    ("add a quantity", "model/machine.py", "    @property\n    def gravity(",
+    ("add a quantity", "solver/machine.py", "    @property\n    def gravity(",
      "    @property\n    def trial(self) -> N:\n        return self.ar.number(self.case.light) + self.case.heavy\n\n"),
     ("add a quantity", "api.py", "    pulley_mass: T |", "    trial: T | None\n"),
-    ("take a unit", "model/units.py", '"kg": "1", ', '"stater": "7", '),
+    ("take a unit", "reading/units.py", '"kg": "1", ', '"stater": "7", '),
     ("add a form", "output/text.py", '    "csv": Form(',
      '    "lines": Form(".lines", "Print lines.", lambda forms: print(len(forms.json())), True),\n'),
 ]
@@ -96,16 +96,16 @@ OF_MOTION = ("NEEDS_A", "NEEDS_DROP", "AT_REST")
 
 def lacking() -> Iterator[str]:
     """What quantities, reasons, symbols and units lack: in which file what is to be added."""
-    known = oracle.expected(Scene.read({"m1": 1, "m2": 3, "M": 10, "mu": "0.3", "R": 1}))
+    known = oracle.expected(read_scene({"m1": 1, "m2": 3, "M": 10, "mu": "0.3", "R": 1}))
     for name, about in QUANTITIES.items():
         if name not in known and name not in MEASURED_NAMES:
             yield f"tests/oracle.py: expected() has no {name!r}"
         if not hasattr(Machine, name):
-            yield f"atwood_cli/model/machine.py: Machine has no property {name!r}"
+            yield f"atwood_cli/solver/machine.py: Machine has no property {name!r}"
         if name not in Solution.__dataclass_fields__:
             yield f"atwood_cli/api.py: Solution has no field {name!r}"
         if about.unit not in (*DIMENSIONS, *WITHOUT_DIMENSION):
-            yield f"atwood_cli/solver/expected.py: DIMENSIONS has no {about.unit!r}"
+            yield f"atwood_cli/explain/conditions.py: DIMENSIONS has no {about.unit!r}"
         for sign in plain(about.symbol):
             if not sign.isascii() and ord(sign) not in IN_LATEX:
                 yield f"atwood_cli/output/typeset.py: {sign!r} has no LaTeX in SIGNS"

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from atwood_cli.model import physics
+from atwood_cli.solver import physics
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
 axles = st.just(Fraction(0)) | masses

@@ -14,8 +14,8 @@ import numpy as np
 import pytest
 
 from atwood_cli import solve
-from atwood_cli.model.quantities import NAMES
 from atwood_cli.output import figure
+from atwood_cli.solver.quantities import NAMES
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Measured
 from atwood_cli.tradeoff.tradeoff_page import GREATEST, LEAST
 from atwood_cli.tradeoff.tradeoff_page import save as save_tradeoff

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve
-from atwood_cli.model.decisions import Decisions
-from atwood_cli.model.digits import SHOWN_DIGITS
-from atwood_cli.model.motion import with_value
+from atwood_cli.numbers.digits import SHOWN_DIGITS
+from atwood_cli.solver.decisions import Decisions
+from atwood_cli.solver.inverse import with_value
 from atwood_cli.sweep.changes import LEAST_INPUT, changes
 from atwood_cli.sweep.ranges import read_sweep
 

@@ -16,8 +16,9 @@ import pytest
 
 from atwood_cli.batch.solving import Question, read_layout
 from atwood_cli.laboratory.runs import VOCABULARY, Runs, read_runs
-from atwood_cli.model.quantities import NAMES
-from atwood_cli.model.scene import INPUTS, read_input
+from atwood_cli.reading.inputs import read_input
+from atwood_cli.solver.quantities import NAMES
+from atwood_cli.solver.scene import INPUTS
 from atwood_cli.tables import headings, sheets, sources
 from atwood_cli.tables.sources import Unreadable
 

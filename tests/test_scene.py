@@ -11,10 +11,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli import Scene, SceneError, solve
-from atwood_cli.model.decisions import Decisions
-from atwood_cli.model.scene import BODIES, Axle
-from atwood_cli.model.units import UNITS
+from atwood_cli import SceneError, solve
+from atwood_cli.reading.inputs import read_scene
+from atwood_cli.reading.units import UNITS
+from atwood_cli.solver.decisions import Decisions
+from atwood_cli.solver.scene import BODIES, Axle
 
 NUMBER = re.compile(r"\s*[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*", re.ASCII)
 
@@ -66,7 +67,7 @@ def test_an_int_too_long_to_write_out_is_still_an_error_that_can_be_shown() -> N
         assert error(m1=long).endswith(TOO_LONG)
     assert error(m1=10**5000) == f"m1 <int> {TOO_LONG}"
     assert error(m1=Fraction(1, 10**1500)).endswith(TOO_LONG)
-    assert Scene.read({"m1": Fraction(1, 10**1500 - 1), "m2": "1"}).m1.denominator == 10**1500 - 1
+    assert read_scene({"m1": Fraction(1, 10**1500 - 1), "m2": "1"}).m1.denominator == 10**1500 - 1
 
 
 def test_error_carries_its_parts() -> None:
@@ -84,10 +85,10 @@ def test_the_grammar_of_numbers(text: str) -> None:
     match = NUMBER.fullmatch(text)
     negative = text.strip().startswith("-")
     if match and abs(int((match[3] or "e0")[1:])) <= 500 and not negative:
-        assert Scene.read({"m1": text, "m2": 1}).m1 == Fraction(text)
+        assert read_scene({"m1": text, "m2": 1}).m1 == Fraction(text)
     elif match is None or negative:
         try:
-            value = Scene.read({"m1": text, "m2": 1}).m1
+            value = read_scene({"m1": text, "m2": 1}).m1
         except SceneError:
             return
         # Only a unit, a blank of another script, or minus nothing, makes a mass of what is no plain number.
@@ -151,14 +152,14 @@ def test_every_unit_is_the_one_that_is_defined(dimension: str) -> None:
     ("name", "text", "value"), [(name, *pair) for name, pairs in TEXTS.items() for pair in pairs.items()]
 )
 def test_text_means_exactly_itself(name: str, text: str, value: Any) -> None:
-    scene = Scene.read({"m1": 1, "m2": 1, "R": 1, name: text})
+    scene = read_scene({"m1": 1, "m2": 1, "R": 1, name: text})
     read = getattr(scene, name)
     assert getattr(read, "number", read) == (value if value == inf else Fraction(value))
 
 
 @pytest.mark.parametrize(("axle", "newtons"), AXLES.items())
 def test_an_axle_is_a_force_at_the_rim_or_a_torque(axle: Any, newtons: Any) -> None:
-    scene = Scene.read({"m1": 1, "m2": 3, "R": "5cm", "axle": axle})
+    scene = read_scene({"m1": 1, "m2": 3, "R": "5cm", "axle": axle})
     assert Decisions(scene).axle_friction == Fraction(newtons)
 
 
@@ -181,7 +182,7 @@ def test_what_was_measured_takes_units_and_multiples_of_g() -> None:
 )
 def test_numbers_mean_exactly_themselves(number: Any) -> None:
     exact = number.item() if isinstance(number, np.generic) else number
-    assert Scene.read({"m1": number, "m2": 1}).m1 == Fraction(exact)
+    assert read_scene({"m1": number, "m2": 1}).m1 == Fraction(exact)
 
 
 @pytest.mark.parametrize("text", ["0.1", "1e4000", "1e-4000", "-inf", "nan"])
@@ -191,9 +192,9 @@ def test_a_long_double_is_exact_or_an_error(text: str) -> None:
     exact = Fraction(*number.as_integer_ratio()) if np.isfinite(number) else None
     if exact is None or max(exact.numerator, exact.denominator) >= 10**1500:
         with pytest.raises(SceneError, match=r"^m1 np\.longdouble\('.*'\) (is too long; |must be 0 or more)"):
-            Scene.read({"m1": number, "m2": 1})
+            read_scene({"m1": number, "m2": 1})
     else:
-        assert Scene.read({"m1": number, "m2": 1}).m1 == exact
+        assert read_scene({"m1": number, "m2": 1}).m1 == exact
 
 
 GM_AND_RADIUS = """
@@ -206,5 +207,5 @@ saturn 37931187 60268, uranus 5793939 25559, neptune 6836529 24764, pluto 869.6 
 def test_gravity_is_that_of_a_mass_at_its_radius() -> None:
     bodies = [row.split() for row in GM_AND_RADIUS.split(",")]
     wanted = {body: 1000 * float(gm) / float(radius) ** 2 for body, gm, radius in bodies}
-    given = {body: float(Scene.read({"m1": 1, "m2": 1, "g": body}).g) for body in BODIES if body != "earth"}
+    given = {body: float(read_scene({"m1": 1, "m2": 1, "g": body}).g) for body in BODIES if body != "earth"}
     assert given == pytest.approx(wanted, abs=0.006)

@@ -11,11 +11,12 @@ from typing import Any
 
 import pytest
 
-from atwood_cli.model import quantities as reasons
-from atwood_cli.model.scene import Scene
+from atwood_cli.explain.messages import notes, unmarked
+from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver import answers as answers_
+from atwood_cli.solver import quantities as reasons
 from atwood_cli.solver.answers import Answers
-from atwood_cli.solver.messages import notes, unmarked
+from atwood_cli.solver.scene import Scene
 
 from . import oracle
 from .conftest import many
@@ -263,7 +264,7 @@ def drawn(rng: Random) -> dict[str, str]:
         words["wrap"] = rng.choice(["0.5", "3.14", "12.5"])
     if "mu" not in words:
         return words | {"m1": "0"} if rng.random() < 0.1 else words
-    verge = Answers(Scene.read({**words, "mu": None}), 20)["mu_verge"]
+    verge = Answers(read_scene({**words, "mu": None}), 20)["mu_verge"]
     if verge and rng.random() < 0.4:
         words["mu"] = str(verge * (1 + Decimal(10) ** -rng.randint(1, 9) * rng.choice([-1, 1])))
     if rng.random() < 0.4:
@@ -277,7 +278,7 @@ def test_every_sentence_is_true(seed: int) -> None:
     for _ in range(many(240)):
         words, digits = drawn(rng), rng.choice([None, 2, 12])
         try:
-            scene = Scene.read(words)
+            scene = read_scene(words)
         except ValueError:
             continue
         answers, claims = Answers(scene, digits), Claims(scene)

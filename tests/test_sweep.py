@@ -16,8 +16,8 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from atwood_cli import solve
-from atwood_cli.model.digits import SHOWN_DIGITS
-from atwood_cli.model.quantities import STANDARD
+from atwood_cli.numbers.digits import SHOWN_DIGITS
+from atwood_cli.solver.quantities import STANDARD
 from atwood_cli.sweep.ranges import Row, read_range, read_sweep, solve_rows
 from atwood_cli.sweep.sweep_figure import Curve, panels_of
 

@@ -13,12 +13,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from atwood_cli import solve, solve_arrays
-from atwood_cli.arithmetic.settling import is_positive, settle
-from atwood_cli.model.digits import to_digits
-from atwood_cli.model.scene import Scene
+from atwood_cli.explain.contact import contact
+from atwood_cli.numbers.digits import to_digits
+from atwood_cli.numbers.settling import is_positive, settle
+from atwood_cli.reading.answers import read_answers
+from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
-from atwood_cli.solver.balance import contact
-from atwood_cli.solver.reading import read_answers
 
 from .running import Atwood
 
@@ -120,7 +120,7 @@ def test_resultants_at_angles_with_rational_cosines(wrap: int, m1: int, more: in
     """On a locked pulley the tensions are rational, and with them half of the resultants."""
     mpmath.mp.dps = 60
     g, m2 = F("1.25"), m1 + more
-    balance = contact(Answers(Scene.read({"m1": m1, "m2": m2, "M": inf, "wrap": wrap, "g": g}), digits), 2)
+    balance = contact(Answers(read_scene({"m1": m1, "m2": m2, "M": inf, "wrap": wrap, "g": g}), digits), 2)
     t1, t2, phi = m1 * mpmath.mpf(1.25), m2 * mpmath.mpf(1.25), mpmath.radians(wrap)
     for axis, value in {"x": -t2 * mpmath.sin(phi), "y": t2 * mpmath.cos(phi) - t1}.items():
         exact = Context(45).create_decimal(mpmath.nstr(value, 50, strip_zeros=False))
@@ -133,7 +133,7 @@ def test_tensions_that_are_powers_of_a_rational_ratio(a: int, b: int, parts: int
     """Where r = (b/a)^n, T_l r^(j/n) is rational."""
     mpmath.mp.dps = 60
     m1, m2 = F(a**parts), F(b**parts)
-    answers = Answers(Scene.read({"m1": m1, "m2": m2, "M": inf, "g": "0.5"}), digits)
+    answers = Answers(read_scene({"m1": m1, "m2": m2, "M": inf, "g": "0.5"}), digits)
     points = contact(answers, parts + 1).points
     for j, point in enumerate(points):
         exact = F(1, 2) * F(a) ** (parts - j) * F(b) ** j
@@ -150,7 +150,7 @@ def test_friction_in_which_the_capstan_ratio_cancels(l: int, q: int, digits: int
 
 
 def test_torque_along_the_arc_is_a_tie_like_that_of_the_ends() -> None:
-    found = contact(Answers(Scene.read({"m1": 1, "m2": "1.5", "M": inf}), 6), 2).balance["torque"]
+    found = contact(Answers(read_scene({"m1": 1, "m2": "1.5", "M": inf}), 6), 2).balance["torque"]
     assert found == {"contact": Decimal("4.90332"), "ends": Decimal("4.90332")}
 
 

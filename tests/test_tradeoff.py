@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from atwood_cli import solve_arrays
-from atwood_cli.model.quantities import REGIMES, STANDARD
-from atwood_cli.model.scene import Scene
+from atwood_cli.reading.inputs import read_scene
+from atwood_cli.solver.quantities import REGIMES, STANDARD
 from atwood_cli.tradeoff import measure as tradeoff
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, draw_scenes, measure
 from atwood_cli.tradeoff.tradeoff_page import LEGEND, short
@@ -75,7 +75,7 @@ def test_errors_are_those_against_the_oracle_and_promises_hold(family: str) -> N
     measured = measure(family, rows)
     assert [(one.family, one.setting) for one in measured] == [(family, name) for name in NAMES]
     columns = {name: np.array([row[name] for row in rows]) for name in rows[0]}
-    rights = [oracle.expected(Scene.read(row)) for row in rows]
+    rights = [oracle.expected(read_scene(row)) for row in rows]
     by_setting = {one.setting: one for one in measured}
     for one in measured[:-1]:  # the oracle's balls end before 50 digits
         solved = SETTINGS[one.setting](**columns)

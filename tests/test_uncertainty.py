@@ -13,10 +13,10 @@ from typing import Any
 import pytest
 
 from atwood_cli import SceneError, solve
-from atwood_cli.model.digits import rounding_to_place, to_digits, with_uncertainty
-from atwood_cli.model.scene import read_input
-from atwood_cli.model.units import Angle
-from atwood_cli.solver.reading import read_answers
+from atwood_cli.numbers.digits import rounding_to_place, to_digits, with_uncertainty
+from atwood_cli.reading.answers import read_answers
+from atwood_cli.reading.inputs import read_input
+from atwood_cli.solver.scene import Angle
 
 from .conftest import many
 from .running import LOADED, process

@@ -17,9 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.decisions import REGIME_ASSUMED, Decisions
-from ..model.quantities import ACCURACIES, Accuracy, read_name, read_quantities
-from ..model.scene import INPUTS, MASSES, MISSING_MASS, SceneError
+from ..reading.names import read_name, read_quantities
+from ..solver.decisions import REGIME_ASSUMED, Decisions
+from ..solver.quantities import ACCURACIES, Accuracy
+from ..solver.scene import INPUTS, MASSES, MISSING_MASS, SceneError
 from .inputs import STATUSES as STATUSES
 from .inputs import GivenColumn, Numbers, groups, read_column
 from .plan import LEVELS, Task

@@ -34,11 +34,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic.interval import enclosures
-from ..arithmetic.lazy import lazy
-from ..arithmetic.rational import EXACT, Irrational
-from ..arithmetic.symbolic import Formula, Term, formula
-from ..model.quantities import Accuracy
+from ..numbers.formula import Formula, Term, formula
+from ..numbers.interval import enclosures
+from ..numbers.lazy import lazy
+from ..numbers.rational import EXACT, Irrational
+from ..solver.quantities import Accuracy
 
 UNIT = 2.0**-53
 """u, the largest relative error of a rounded double."""

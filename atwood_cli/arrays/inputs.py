@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..model.scene import DEFAULTS as SCENE_DEFAULTS
-from ..model.scene import INERTIA_FACTORS, INPUTS, MASSES, SceneError
+from ..solver.scene import DEFAULTS as SCENE_DEFAULTS
+from ..solver.scene import INERTIA_FACTORS, INPUTS, MASSES, SceneError
 from .doubles import WINDOW, Column
 from .plan import COLUMN, Pattern
 

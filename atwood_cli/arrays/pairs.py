@@ -29,7 +29,7 @@ from typing import Any
 
 import numpy as np
 
-from ..arithmetic.symbolic import Formula, Term, formula
+from ..numbers.formula import Formula, Term, formula
 from .doubles import (
     EIGHTY_DIGITS,
     UNIT,

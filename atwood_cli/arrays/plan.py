@@ -35,15 +35,14 @@ from fractions import Fraction
 from functools import lru_cache
 from typing import Any, Literal, NamedTuple, cast
 
-from ..arithmetic.lazy import lazy
-from ..arithmetic.settling import settle
-from ..arithmetic.symbolic import Formula, Term, formula
-from ..model.decisions import Decisions, LimitingCase
-from ..model.digits import to_double
-from ..model.machine import Machine
-from ..model.quantities import REGIMES, Accuracy, Undetermined
-from ..model.scene import INPUTS, Axle, Scene
-from ..model.units import Angle
+from ..numbers.digits import to_double
+from ..numbers.formula import Formula, Term, formula
+from ..numbers.lazy import lazy
+from ..numbers.settling import settle
+from ..solver.decisions import Decisions, LimitingCase
+from ..solver.machine import Machine
+from ..solver.quantities import REGIMES, Accuracy, Undetermined
+from ..solver.scene import INPUTS, Angle, Axle, Scene
 from .doubles import DOUBLES, Doubles, NoProgram, certified, equal, less
 from .pairs import PAIRS
 from .program import Program

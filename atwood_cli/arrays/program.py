@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arithmetic.symbolic import Formula, Term, formula
+from ..numbers.formula import Formula, Term, formula
 from .doubles import Column
 from .pairs import cos_sin_in_doubles
 

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.decisions import Decisions
-from ..model.quantities import REGIMES, Accuracy
 from ..solver.answers import Answers
+from ..solver.decisions import Decisions
+from ..solver.quantities import REGIMES, Accuracy
 from .doubles import Column
 from .inputs import Index
 from .pairs import PAIRS

@@ -11,8 +11,8 @@ from io import TextIOWrapper
 from queue import SimpleQueue
 from typing import IO, TYPE_CHECKING, TypeVar
 
-from ..model.quantities import read_quantities
 from ..output.page import progress
+from ..reading.names import read_quantities
 from ..tables.sources import Unreadable
 from .solving import Layout, Question, Tally, read_layout, solve_cells
 

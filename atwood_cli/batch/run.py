@@ -11,10 +11,10 @@ from itertools import chain, islice
 from pathlib import Path
 from typing import IO, TYPE_CHECKING, NamedTuple
 
-from ..model.scene import SceneError
-from ..model.units import without_blanks
+from ..numbers.text import without_blanks
 from ..output.files import STDOUT, Stdout, written_beside
 from ..output.page import progress
+from ..solver.scene import SceneError
 from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream, opened

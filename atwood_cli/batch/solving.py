@@ -11,11 +11,13 @@ from math import inf, isfinite
 from typing import TYPE_CHECKING, Any, NamedTuple
 from unicodedata import normalize
 
-from ..model.digits import to_double
-from ..model.quantities import NAMES, REGIMES
-from ..model.scene import INPUTS, MASSES, OTHER_NAMES, Scene, SceneError, parameter_of, read_plain, read_value
-from ..model.units import Malformed, counted, in_quotes, read_unit, shortened, without_blanks
-from ..solver.messages import reasons_in
+from ..explain.messages import reasons_in
+from ..numbers.digits import to_double
+from ..numbers.text import counted, in_quotes, shortened, without_blanks
+from ..reading.inputs import OTHER_NAMES, read_plain, read_scene, read_value
+from ..reading.units import Malformed, read_unit
+from ..solver.quantities import NAMES, REGIMES
+from ..solver.scene import INPUTS, MASSES, SceneError, parameter_of
 from ..tables.headings import EMPTY, Heading, Vocabulary, divisions, listed, pointed, read_headings, refused
 from ..tables.sources import Unreadable
 
@@ -248,7 +250,7 @@ def _why(layout: Layout, row: Sequence[Any]) -> str:
             text = f"{text}{heading.unit}"
         cells[heading.name] = text if isinstance(text, str) else float(text)
     try:
-        Scene.read(cells)
+        read_scene(cells)
     except SceneError as error:
         return str(error)
     return "this row cannot be solved"

@@ -12,9 +12,9 @@ import typer
 from typer.core import TyperCommand
 
 from .. import __version__
-from ..model.scene import SceneError
-from ..model.units import LONGEST_NAME, shortened
+from ..numbers.text import LONGEST_NAME, shortened
 from ..output.text import drop, finish, say
+from ..solver.scene import SceneError
 from .options import COMPLETING, COULD_NOT, DONE, WRONG_USAGE, flag, write_options
 
 COMMANDS = ("solve", "sweep", "contact", "fit", "batch", "quantities", "tradeoff")

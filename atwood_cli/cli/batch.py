@@ -4,10 +4,11 @@ from typing import Annotated
 
 import typer
 
-from ..model.quantities import STANDARD, read_names
-from ..model.scene import INPUTS, SceneError
-from ..model.units import counted
+from ..numbers.text import counted
 from ..output.text import say
+from ..reading.names import read_names
+from ..solver.quantities import STANDARD
+from ..solver.scene import INPUTS, SceneError
 from ..tables.sources import FORMATS, check_format, read_format
 from .options import COULD_NOT, DONE, Columns, Force, Labels, option
 

@@ -3,11 +3,12 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from ..model.scene import Scene, SceneError, read_digits
+from ..explain import contact as balance
 from ..output.scene_page import contact_record, print_contact
 from ..output.text import Destination, Report, say, show
-from ..solver import balance
+from ..reading.inputs import read_digits, read_scene
 from ..solver.answers import Answers
+from ..solver.scene import SceneError
 from .options import DONE, OUTPUT, SCENE, Bare, Digits, FigureFile, option, with_options
 
 HELP = """Show the forces along the arc of contact and their sum.
@@ -42,7 +43,7 @@ def contact(
     figure: FigureFile = None,
     bare: Bare = False,
 ) -> int:
-    answers = Answers(Scene.read(given), read_digits(digits))
+    answers = Answers(read_scene(given), read_digits(digits))
     if not target.form:
         answers = answers.shown
     if points is not None and figure is not None and not target.form and target.file is None:

@@ -5,9 +5,9 @@ from typing import Annotated
 import typer
 
 from ..laboratory.results import FITTED, QUANTITIES, RESULTS, SYMBOLS
-from ..model.quantities import divided, read_names
-from ..model.scene import SceneError
 from ..output.text import Destination, say, show
+from ..reading.names import divided, read_names
+from ..solver.scene import SceneError
 from .options import (
     COULD_NOT,
     DONE,

@@ -10,10 +10,10 @@ from typing import Annotated, Any, get_args
 
 import typer
 
-from ..model.quantities import NAMES, QUANTITIES
-from ..model.scene import INPUTS, SceneError, parameter_of
 from ..output.files import STDOUT, check_free
 from ..output.text import FORMS, Destination
+from ..solver.quantities import NAMES, QUANTITIES
+from ..solver.scene import INPUTS, SceneError, parameter_of
 
 COMPLETING = "_ATWOOD_COMPLETE"
 """The environment variable by which a shell asks for completions of a word."""

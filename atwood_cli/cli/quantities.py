@@ -1,7 +1,7 @@
 """`atwood quantities`: the quantities that can be asked for by name."""
 
-from ..model.quantities import QUANTITIES, REGIMES
 from ..output.text import VERSION, Destination, Report, show
+from ..solver.quantities import QUANTITIES, REGIMES
 from .options import DONE, OUTPUT, with_options
 
 HELP = """List the quantities: symbols, units, meanings, equations.

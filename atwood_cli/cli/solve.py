@@ -3,13 +3,15 @@
 from collections.abc import Mapping
 from typing import Annotated
 
-from ..model.quantities import MEASURED_NAMES, NAMES, read_names
-from ..model.scene import SceneError, read_digits
+from ..explain.conditions import failure, read_condition
+from ..explain.messages import reasons
 from ..output.scene_page import csv_record, notes_on_stderr, print_budget, print_steps, print_table, record
 from ..output.text import Destination, Report, cell, say, show
-from ..solver.expected import failure, read_condition
-from ..solver.messages import reasons
-from ..solver.reading import read_answers
+from ..reading.answers import read_answers
+from ..reading.inputs import read_digits
+from ..reading.names import read_names
+from ..solver.quantities import MEASURED_NAMES, NAMES
+from ..solver.scene import SceneError
 from .options import (
     COULD_NOT,
     DONE,

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from functools import partial
 
-from ..model.quantities import read_names
-from ..model.scene import read_digits
-from ..model.units import counted
+from ..numbers.text import counted
 from ..output.text import Destination, Report, say, show
+from ..reading.inputs import read_digits
+from ..reading.names import read_names
 from ..sweep.ranges import read_sweep
 from ..sweep.sweep_figure import save
 from ..sweep.sweep_page import SweepPage

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from itertools import chain
 from typing import Annotated
 
-from ..model.quantities import read_names
-from ..model.scene import read_whole
 from ..output.text import Destination, Report, show
+from ..reading.inputs import read_whole
+from ..reading.names import read_names
 from .options import DONE, Bare, FigureFile, check_figure, option, results, with_options
 
 

@@ -7,9 +7,10 @@ from collections.abc import Collection, Iterable, Mapping, Sequence
 from os import PathLike, fspath
 from typing import TYPE_CHECKING
 
-from ..model.quantities import divided
-from ..model.scene import INPUTS, Given, SceneError, read_input
-from ..model.units import without_blanks
+from ..numbers.text import without_blanks
+from ..reading.inputs import read_input
+from ..reading.names import divided
+from ..solver.scene import INPUTS, Given, SceneError
 from ..tables.sources import Unreadable
 from .results import Fit as Fit
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.special import fdtrc
 
-from ..model import physics
+from ..solver import physics
 from .results import FITTED, Result
 from .runs import Column, Places, Runs, Selection
 from .statistics import NORMAL_DOF, CannotSeparate, Line, Linear, fit_line, sum_of_squares

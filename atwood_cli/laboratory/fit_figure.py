@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from ..model import physics
 from ..output.figure import BLUE, FAINT, INK, RED, page, typeset, write_beside
+from ..solver import physics
 from .estimate import accelerations, as_data, expected
 from .fitting import Fitted
 from .report import conditions, verdict

@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.special import fdtrc, stdtrit
 
-from ..model import physics
-from ..model.decisions import Decisions
-from ..model.digits import format_number
-from ..model.quantities import read_names
-from ..model.scene import Input, Scene, SceneError, parameter_of
-from ..model.units import counted
+from ..numbers.digits import format_number
+from ..numbers.text import counted
+from ..reading.names import read_names
+from ..solver import physics
+from ..solver.decisions import Decisions
+from ..solver.scene import Input, Scene, SceneError, parameter_of
 from .estimate import (
     TINY,
     Data,

@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
-from ..model.digits import format_number
-from ..model.scene import UNMEASURED, parameter_of
-from ..model.units import counted
+from ..numbers.digits import format_number
+from ..numbers.text import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
+from ..solver.scene import UNMEASURED, parameter_of
 from .estimate import as_data, expected
 from .fitting import RARE, SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, published, rounded

@@ -5,7 +5,14 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..model.digits import Rounding, format_number, rounding_to_place, share_exponent, strip_zeros, to_digits
+from ..numbers.digits import (
+    Rounding,
+    format_number,
+    rounding_to_place,
+    share_exponent,
+    strip_zeros,
+    to_digits,
+)
 
 
 class Quantity(NamedTuple):

@@ -9,8 +9,8 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..model.scene import INPUTS, Input, SceneError
-from ..model.units import in_quotes
+from ..numbers.text import in_quotes
+from ..solver.scene import INPUTS, Input, SceneError
 from ..tables.headings import (
     Heading,
     Vocabulary,

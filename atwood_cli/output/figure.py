@@ -16,9 +16,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.sax.saxutils import escape
 
-from ..model.quantities import QUANTITIES
-from ..model.scene import SceneError
-from ..model.units import LONGEST_NAME, shortened
+from ..numbers.text import LONGEST_NAME, shortened
+from ..solver.quantities import QUANTITIES
+from ..solver.scene import SceneError
 from .files import check_free, written_beside
 from .text import say, wrapped
 

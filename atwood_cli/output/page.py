@@ -9,7 +9,7 @@ from shutil import get_terminal_size
 from time import monotonic
 from typing import Any, TypeVar
 
-from ..model.units import counted
+from ..numbers.text import counted
 from .files import printable
 from .text import wrapped
 

@@ -11,12 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..model import arc
-from ..model.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
-from ..model.scene import SceneError
+from ..explain.contact import about, kind_of, point
+from ..explain.messages import unmarked, verdict
+from ..numbers.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
+from ..solver import arc
 from ..solver.answers import Answers
-from ..solver.balance import about, kind_of, point
-from ..solver.messages import unmarked, verdict
+from ..solver.scene import SceneError
 from .figure import BLUE, FAINT, GREEN, INK, ORANGE, PURPLE, RED, check_file, page, typeset, write_beside
 from .text import inputs_in_words
 

@@ -6,13 +6,13 @@ from decimal import Decimal
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from ..model.decisions import REGIME_ASSUMED
-from ..model.digits import rounding_to_place, strip_zeros, with_uncertainty
-from ..model.quantities import MEASURED_NAMES, QUANTITIES, cited
-from ..model.scene import with_unit
+from ..explain.contact import Contact
+from ..explain.messages import notes, reasons, remarks, unmarked, verdict
+from ..numbers.digits import rounding_to_place, strip_zeros, with_uncertainty
 from ..solver.answers import Answers
-from ..solver.balance import Contact
-from ..solver.messages import notes, reasons, remarks, unmarked, verdict
+from ..solver.decisions import REGIME_ASSUMED
+from ..solver.quantities import MEASURED_NAMES, QUANTITIES, cited
+from ..solver.scene import with_unit
 from .files import printable
 from .text import VERSION, cell, inputs_in_words, scene_record
 
@@ -162,7 +162,7 @@ LEAST_WIDTH, MOST_WIDTH = 40, 80
 
 def print_steps(answers: Answers, names: Sequence[str], markdown: bool) -> None:
     """Print the derivation of these quantities, or of all: in the columns of a terminal, or as Markdown."""
-    from ..solver.steps import explain
+    from ..explain.derivation import explain
     from .page import Page
     from .typeset import as_markdown, as_text
 

@@ -10,9 +10,8 @@ from fractions import Fraction
 from math import inf
 from typing import Any, NamedTuple, TextIO
 
-from ..model.digits import Rounding, as_typed, exact_or_rounded, format_number, is_infinite, to_double
-from ..model.scene import MEASURED, UNMEASURED, Axle, Motion, Scene, parameter_of, with_unit
-from ..model.units import Angle
+from ..numbers.digits import Rounding, as_typed, exact_or_rounded, format_number, is_infinite, to_double
+from ..solver.scene import MEASURED, UNMEASURED, Angle, Axle, Motion, Scene, parameter_of, with_unit
 from .files import Stdout, printable, stdout_into
 
 

@@ -8,12 +8,12 @@ from itertools import groupby
 from operator import attrgetter
 from typing import Any
 
-from ..arithmetic.symbolic import Formula, Symbol, factors
-from ..model.digits import format_number
-from ..model.quantities import QUANTITIES
-from ..model.scene import INPUTS
-from ..solver.equations import Equation, plain
-from ..solver.steps import Explanation, Paragraph
+from ..explain.derivation import Explanation, Paragraph
+from ..explain.equations import Equation, plain
+from ..numbers.digits import format_number
+from ..numbers.formula import Formula, Symbol, factors
+from ..solver.quantities import QUANTITIES
+from ..solver.scene import INPUTS
 from .text import wrapped
 
 Written = tuple[str, int]

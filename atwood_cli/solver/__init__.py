@@ -1,1 +1,1 @@
-"""The answers for one scene, to the digits asked for."""
+"""The solver: a scene of exact numbers in, every quantity out. It reads no text and writes no page."""

@@ -9,16 +9,16 @@ from fractions import Fraction
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..arithmetic.interval import LARGEST_EXPONENT
-from ..arithmetic.settling import settle
-from ..model.decisions import Decisions
-from ..model.digits import DOUBLE_DIGITS, SHOWN_DIGITS, Rounding, is_infinite, to_digits, to_double
-from ..model.machine import Machine
-from ..model.quantities import FROM_MOTION, MAIN, NAMES, Undetermined
-from ..model.scene import UNMEASURED, Motion, Scene
+from ..numbers.digits import DOUBLE_DIGITS, SHOWN_DIGITS, Rounding, is_infinite, to_digits, to_double
+from ..numbers.interval import LARGEST_EXPONENT
+from ..numbers.settling import settle
+from .decisions import Decisions
+from .machine import Machine
+from .quantities import FROM_MOTION, MAIN, NAMES, Undetermined
+from .scene import UNMEASURED, Motion, Scene
 
 if TYPE_CHECKING:
-    from ..arithmetic.rational import Arithmetic, N, Quantity
+    from ..numbers.rational import Arithmetic, N, Quantity
 
     OnMachine = Callable[[Machine[Any]], Any]
     """A function of a machine in any arithmetic."""

@@ -17,9 +17,7 @@ from fractions import Fraction
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..arithmetic.interval import ZERO, decimal_context
-from ..arithmetic.lazy import lazy
-from ..model.digits import (
+from ..numbers.digits import (
     SHOWN_DIGITS,
     Rounding,
     as_typed,
@@ -29,10 +27,12 @@ from ..model.digits import (
     to_digits,
     to_double,
 )
-from ..model.motion import found_inputs, number_of, with_number
-from ..model.quantities import QUANTITIES, Undetermined
-from ..model.scene import Motion, Scene, parameter_of, with_unit
+from ..numbers.interval import ZERO, decimal_context
+from ..numbers.lazy import lazy
 from .answers import TOO_SMALL, Answers
+from .inverse import found_inputs, number_of, with_number
+from .quantities import QUANTITIES, Undetermined
+from .scene import Motion, Scene, parameter_of, with_unit
 
 DIGITS, RIGHT_DIGITS = 48, 15
 NEGLIGIBLE = Decimal("1e-30")

@@ -31,11 +31,11 @@ from math import inf
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..model.decisions import Decisions
-from ..model.digits import SHOWN_DIGITS, to_digits
-from ..model.motion import with_value
-from ..model.scene import MASSES, Scene
-from ..model.units import MAX_MAGNITUDE
+from ..numbers.digits import SHOWN_DIGITS, to_digits
+from ..reading.units import MAX_MAGNITUDE
+from ..solver.decisions import Decisions
+from ..solver.inverse import with_value
+from ..solver.scene import MASSES, Scene
 from .ranges import LOCKED, Point, Range, decimal_point, exact_point
 
 NEIGHBOUR_SHARE = Fraction(1, 10**60)

@@ -14,8 +14,7 @@ from math import inf, prod
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..arithmetic.interval import decimal_context
-from ..model.digits import (
+from ..numbers.digits import (
     DOUBLE_DIGITS,
     SHOWN_DIGITS,
     as_typed,
@@ -25,11 +24,14 @@ from ..model.digits import (
     strip_zeros,
     to_digits,
 )
-from ..model.motion import with_value
-from ..model.scene import INPUTS, Input, Scene, SceneError, read_exactly, read_value, read_whole, with_unit
-from ..model.units import MAX_DIGITS, in_quotes, read_number
+from ..numbers.interval import decimal_context
+from ..numbers.text import in_quotes
 from ..output.text import inputs_in_words
+from ..reading.inputs import read_exactly, read_value, read_whole
+from ..reading.units import MAX_DIGITS, read_number
 from ..solver.answers import Answers
+from ..solver.inverse import with_value
+from ..solver.scene import INPUTS, Input, Scene, SceneError, with_unit
 
 UNIT_SUFFIXES = {"rad": "rad", "N m": "Nm"}
 """The units that points carry, as they are not the usual ones of their input."""

@@ -6,14 +6,14 @@ from math import isnan, nan
 from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..model.digits import is_infinite
-from ..model.motion import with_value
-from ..model.quantities import QUANTITIES
-from ..model.scene import Scene, SceneError
+from ..explain.messages import unmarked
+from ..numbers.digits import is_infinite
 from ..output.figure import COLOURS, FAINT, INK, axis_words, check_file, page, typeset, write_beside
 from ..output.text import wrapped
 from ..solver.answers import Answers
-from ..solver.messages import unmarked
+from ..solver.inverse import with_value
+from ..solver.quantities import QUANTITIES
+from ..solver.scene import Scene, SceneError
 from .changes import Change, changes
 from .ranges import Range, Sweep, steps
 

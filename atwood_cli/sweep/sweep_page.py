@@ -7,12 +7,12 @@ from contextlib import nullcontext
 from fractions import Fraction
 from itertools import groupby
 
-from ..model.digits import SHOWN_DIGITS, to_digits, to_double
-from ..model.quantities import QUANTITIES, STANDARD
-from ..model.scene import with_unit
+from ..explain.messages import reasons_in
+from ..numbers.digits import SHOWN_DIGITS, to_digits, to_double
 from ..output.page import Page, aligned, progress
 from ..output.text import VERSION, cell, scene_record
-from ..solver.messages import reasons_in
+from ..solver.quantities import QUANTITIES, STANDARD
+from ..solver.scene import with_unit
 from .changes import changes, regimes
 from .ranges import LOCKED, Row, Sweep, solve_rows
 from .sweep_figure import MAX_CURVES

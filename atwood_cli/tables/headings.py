@@ -16,8 +16,10 @@ from shlex import quote
 from typing import NamedTuple
 from unicodedata import normalize
 
-from ..model.scene import Input, SceneError, parameter_of, read_input
-from ..model.units import PERCENT, Malformed, in_quotes, read_unit, without_blanks
+from ..numbers.text import in_quotes, without_blanks
+from ..reading.inputs import read_input
+from ..reading.units import PERCENT, Malformed, read_unit
+from ..solver.scene import Input, SceneError, parameter_of
 from .sources import Unreadable
 
 SEPARATORS = ",\t;"

@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from io import StringIO
 from typing import TYPE_CHECKING, NamedTuple
 
-from ..model.units import counted, in_quotes
+from ..numbers.text import counted, in_quotes
 from . import sources
 from .headings import SEPARATORS, Heading, best_header
 from .sources import LONGEST_RECORD, TOO_LONG, Unreadable, whole_lines

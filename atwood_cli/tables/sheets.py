@@ -9,7 +9,7 @@ from io import StringIO
 from os import PathLike, fspath
 from typing import Any, NamedTuple
 
-from ..model.units import in_quotes, without_blanks
+from ..numbers.text import in_quotes, without_blanks
 from .headings import SEPARATORS, Vocabulary, best_header, recognised
 from .sources import Unreadable, blocks_of, opened, whole_lines
 

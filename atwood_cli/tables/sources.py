@@ -14,8 +14,8 @@ from select import select
 from time import monotonic
 from typing import IO, Any
 
-from ..model.scene import SceneError
-from ..model.units import LONGEST_NAME, in_quotes, shortened
+from ..numbers.text import LONGEST_NAME, in_quotes, shortened
+from ..solver.scene import SceneError
 
 FORMATS = ("csv", "tsv", "ndjson", "parquet")
 """The formats of tables, each by its file suffix."""

@@ -18,8 +18,8 @@ import numpy as np
 
 from ..api import solve
 from ..arrays import solve_arrays
-from ..model.quantities import ACCURACIES, REGIMES, STANDARD
-from ..model.units import STANDARD_GRAVITY
+from ..solver.quantities import ACCURACIES, REGIMES, STANDARD
+from ..solver.scene import STANDARD_GRAVITY
 
 Inputs = dict[str, Any]
 """The inputs of a scene by parameter, as doubles."""

@@ -6,7 +6,7 @@ from itertools import chain, groupby
 from math import isinf
 from operator import attrgetter
 
-from ..model.digits import format_number
+from ..numbers.digits import format_number
 from ..output.figure import BLUE, GREEN, PURPLE, RED, page
 from ..output.page import Page
 from ..output.text import VERSION

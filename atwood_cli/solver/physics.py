@@ -23,7 +23,7 @@ Most examples are of l = 1, h = 3, c = 5 and g = 9, so that a = 2, T_l = 11 and 
 
 from collections.abc import Callable
 
-from ..arithmetic.rational import N
+from ..numbers.rational import N
 
 Function = Callable[[N], N]
 

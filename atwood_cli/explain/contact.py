@@ -11,14 +11,15 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, Literal, NamedTuple
 
-from ..arithmetic.settling import is_positive
-from ..model import arc, physics
-from ..model.arc import Profile
-from ..model.decisions import Decisions
-from ..model.digits import format_number, rounding_to_place
-from ..model.machine import Machine
-from ..model.scene import SceneError, read_whole
-from .answers import Answers
+from ..numbers.digits import format_number, rounding_to_place
+from ..numbers.settling import is_positive
+from ..reading.inputs import read_whole
+from ..solver import arc, physics
+from ..solver.answers import Answers
+from ..solver.arc import Profile
+from ..solver.decisions import Decisions
+from ..solver.machine import Machine
+from ..solver.scene import SceneError
 from .messages import reasons, remarks, unmarked
 
 Rounded = float | Decimal

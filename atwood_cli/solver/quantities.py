@@ -1,12 +1,7 @@
 """Every quantity, once: name, symbol, unit, equation, meaning; why one has no value; names as typed."""
 
-import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import chain
 from typing import Literal, NamedTuple, get_args
-
-from .scene import INPUTS, SceneError
-from .units import nearest
 
 
 class Undetermined(Exception):
@@ -133,61 +128,3 @@ NEEDS_A_OF_A_SLIDE = (
 )
 NEEDS_DROP = "`give` `drop`, the height that the heavier mass falls from rest"
 AT_REST = "no value, as nothing moves"
-
-# Names as they are typed
-
-SPELLED = "mu u phi beta pi tau alpha theta chi 1 2 ^2 deg * +/- <= >= ~ sqrt"
-ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", SPELLED.split(), strict=True)))
-"""The letters to type for those of symbols."""
-
-
-def _plain(symbol: str) -> str:
-    """Return a symbol or a name without blanks and dashes, so that Fmin and F_min are the same as F min."""
-    return re.sub("[ _-]", "", symbol.translate(ASCII))
-
-
-NAMES_BY_SYMBOL = {
-    _plain(typed): name for name, about in QUANTITIES.items() for typed in (name, about.symbol)
-}
-
-
-def read_names(
-    parameter: str,
-    typed: Iterable[str],
-    known: Collection[str] = NAMES,
-    kind: str = "quantity",
-    symbols: Mapping[str, str] = NAMES_BY_SYMBOL,
-) -> list[str]:
-    """Read names; a word may hold several with commas between. Raises SceneError."""
-    return [read_name(parameter, word, known, kind, symbols) for word in divided(typed)]
-
-
-def read_quantities(words: Sequence[str] | None) -> list[str]:
-    """Read the quantities that a program names, each once; by default the standard ones. Raises SceneError."""
-    if words is None:
-        return list(STANDARD)
-    typed = [words] if isinstance(words, str) else map(str, words)
-    return list(dict.fromkeys(read_names("quantities", typed)))
-
-
-def read_name(
-    parameter: str, word: str, known: Collection[str], kind: str, symbols: Mapping[str, str]
-) -> str:
-    """Read one of the names ``known``, or its symbol as tables show it. Raises SceneError."""
-    if word in known:
-        return word
-    if (name := symbols.get(_plain(word), "")) in known:
-        return name
-    there_are = "see atwood quantities" if kind == "quantity" else f"there are {', '.join(known)}"
-    a_kind = f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}"
-    if word in INPUTS:
-        raise SceneError(parameter, word, f"is an input, not {a_kind}; {there_are}")
-    small = _plain(word).lower()
-    alike = [name for symbol, name in symbols.items() if symbol.lower() == small and name in known]
-    hint = f"did you mean {alike[0]}?" if len(alike) == 1 else there_are
-    raise SceneError(parameter, word, f"is not {a_kind}{nearest(word, known) or f'; {hint}'}")
-
-
-def divided(typed: Iterable[str]) -> list[str]:
-    """Return the words of a repeatable option, each of which may hold several with commas between."""
-    return [word.strip() for words in typed for word in words.split(",")]

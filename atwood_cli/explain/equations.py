@@ -1,6 +1,6 @@
 """Write the equations of a scene, each as the model has it, with numbers put in.
 
-An equation is what the model does with symbols (`symbolic`), and the numbers are the solver's.
+An equation is what the model does with symbols (`formula`), and the numbers are the solver's.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from fractions import Fraction
 from operator import attrgetter
 from typing import Any, NamedTuple
 
-from ..arithmetic.rational import EXACT, Irrational
-from ..arithmetic.symbolic import Formula, Symbol, Symbols, formula
-from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, to_digits
-from ..model.machine import Machine
-from ..model.quantities import QUANTITIES
-from .answers import Answers
+from ..numbers.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, to_digits
+from ..numbers.formula import Formula, Symbol, Symbols, formula
+from ..numbers.rational import EXACT, Irrational
+from ..solver.answers import Answers
+from ..solver.machine import Machine
+from ..solver.quantities import QUANTITIES
 
 INPUT_DIGITS = 17
 """Digits up to which an input is put in as it was typed."""

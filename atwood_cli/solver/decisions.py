@@ -29,14 +29,14 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import TYPE_CHECKING, Literal
 
-from ..arithmetic.lazy import lazy
-from ..arithmetic.rational import EXACT
-from ..arithmetic.settling import is_positive
+from ..numbers.lazy import lazy
+from ..numbers.rational import EXACT
+from ..numbers.settling import is_positive
 from . import physics
 from .scene import UNMEASURED, Motion, Scene
 
 if TYPE_CHECKING:
-    from ..arithmetic.rational import Arithmetic, N, Quantity
+    from ..numbers.rational import Arithmetic, N, Quantity
 
 ZERO, ONE = Fraction(0), Fraction(1)
 REGIME_ASSUMED = "assumed, as mu is not given"

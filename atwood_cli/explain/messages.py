@@ -9,12 +9,12 @@ from decimal import Decimal
 from fractions import Fraction
 from math import inf
 
-from ..model.digits import SHOWN_DIGITS, Rounding, as_typed, format_number, rounding_apart_from, strip_zeros
-from ..model.physics import critical_heavier_mass
-from ..model.quantities import QUANTITIES
-from ..model.scene import with_unit
-from ..model.units import MAX_MAGNITUDE
-from .answers import Answers
+from ..numbers.digits import SHOWN_DIGITS, Rounding, as_typed, format_number, rounding_apart_from, strip_zeros
+from ..reading.units import MAX_MAGNITUDE
+from ..solver.answers import Answers
+from ..solver.physics import critical_heavier_mass
+from ..solver.quantities import QUANTITIES
+from ..solver.scene import with_unit
 
 
 def unmarked(words: str) -> str:

@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from decimal import ROUND_FLOOR, Decimal
 from fractions import Fraction
 from math import inf
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-from .digits import as_typed, to_digits
+from ..numbers.digits import as_typed, to_digits
+from ..numbers.text import in_quotes, without_blanks
+from ..solver.scene import STANDARD_GRAVITY
 
 if TYPE_CHECKING:
-    from ..arithmetic.rational import Arithmetic, N
+    pass
 
-STANDARD_GRAVITY = "9.80665"
-"""m/s², exact by definition: 3rd General Conference on Weights and Measures, 1901."""
 GRAVITY = "gravity"
 """The unit of a multiple of g, as the symbol g is a gram's."""
 FOOT, INCH, POUND = Fraction("0.3048"), Fraction("0.0254"), Fraction("0.45359237")
@@ -106,61 +106,6 @@ class TypedNumber(NamedTuple):
         """Return the number; if it is a multiple of g, with this value of g (m/s²)."""
         factor = g / Fraction(STANDARD_GRAVITY) if self.unit == GRAVITY else 1
         return self._replace(value=self.value * factor, uncertainty=self.uncertainty * factor)
-
-
-class Angle(NamedTuple):
-    """An angle of wrap, exact: a number of degrees or of radians, as it was given.
-
-    No rational number of degrees is a rational number of radians. In arrays, ``number`` is a column.
-    """
-
-    number: Any
-    unit: Literal["°", "rad"] = "°"
-
-    def radians(self, ar: Arithmetic[N]) -> N:
-        """Return the angle in radians."""
-        if self.unit == "rad":
-            return ar.number(self.number)
-        return ar.pi * ar.number(self.number / 180)
-
-    def degrees(self, ar: Arithmetic[N], share: Any = 1) -> N:
-        """Return a share of the angle in degrees; a share of 0 is exactly 0."""
-        number = ar.number(share * self.number)
-        return number * 180 / ar.pi if self.unit == "rad" and share else number
-
-    def cos_sin(self, ar: Arithmetic[N], parts: int = 1) -> tuple[N, N]:
-        """Return cosine and sine of one of equal parts of the angle; exact at multiples of 90°."""
-        if self.unit == "rad":
-            return ar.cos_sin(ar.number(self.number) / parts)
-        return ar.cos_sin_of_degrees(self.number / parts)
-
-    @property
-    def is_half_turn(self) -> bool:
-        return bool(self.unit == "°" and self.number == 180)
-
-
-LONGEST_NAME = 255
-"""The most characters of a file name that a message shows."""
-
-
-def shortened(text: str, most: int = 60) -> str:
-    """Return the text as a message shows it: if it is too long, only its beginning and its end."""
-    return text if len(text) <= most else f"{text[: most - 20]}...{text[-10:]}"
-
-
-def in_quotes(value: object) -> str:
-    """Return what was typed or read, as a message shows it."""
-    return shortened(repr(str(value) if isinstance(value, str) else value))  # not np.str_("hoop")
-
-
-def counted(count: int, thing: str) -> str:
-    """Return a count with its noun: 1 row, 2 rows."""
-    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
-
-
-def without_blanks(text: str) -> str:
-    """Return the text without blanks around it, and with single spaces within."""
-    return " ".join(text.split())
 
 
 def is_uncertain(text: str) -> bool:
@@ -283,12 +228,3 @@ def read_unit(unit: str, wanted: str) -> Fraction:
 def symbol_of(unit: str) -> str:
     """Return the symbol of a unit as the table has it, "" if it is none of them."""
     return _SYMBOLS.get(unit.translate(_PLAIN), "")
-
-
-def nearest(word: str, words: Iterable[str]) -> str:
-    """Return a hint at the word that was probably meant, "" if none is near."""
-    from difflib import get_close_matches
-
-    words = list(words) if word else []
-    close = get_close_matches(word.lower(), words, n=1) or [w for w in words if w.startswith(word.lower())]
-    return f"; did you mean {close[0]}?" if close else ""

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ..model.scene import INPUTS, MEASURED, UNMEASURED, Given, Input, Scene, SceneError, read_input
-from ..model.units import GRAVITY, read_number
-from .answers import Answers
+from ..solver.answers import Answers
+from ..solver.scene import INPUTS, MEASURED, UNMEASURED, Given, Input, Scene, SceneError
+from .inputs import read_input
+from .units import GRAVITY, read_number
 
 
 def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answers:
@@ -16,13 +17,13 @@ def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answe
     if all(inputs[name].given is None for name in MEASURED):
         scene, motion = Scene.of(inputs), UNMEASURED
     else:
-        from ..model.motion import read_motion
+        from ..solver.inverse import read_motion
 
         scene, motion = read_motion(inputs)
     uncertain = {name: read.uncertainty for name, read in inputs.items() if read.uncertainty}
     if not uncertain:
         return Answers(scene, digits, motion)
-    from .uncertainty import UncertainAnswers
+    from ..solver.uncertainty import UncertainAnswers
 
     return UncertainAnswers(scene, digits, motion, uncertain)
 

@@ -7,12 +7,21 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-from ..model.decisions import REGIME_ASSUMED
-from ..model.digits import SHOWN_DIGITS, as_typed, format_number, is_infinite, rounding_apart_from, to_digits
-from ..model.quantities import NAMES_BY_SYMBOL, QUANTITIES, REGIMES, Undetermined, read_name
-from ..model.scene import INPUTS, MEASURED, SceneError, with_unit
-from ..model.units import Angle, Malformed, TypedNumber, in_quotes, read_number
-from .answers import TOO_SMALL, Answers
+from ..numbers.digits import (
+    SHOWN_DIGITS,
+    as_typed,
+    format_number,
+    is_infinite,
+    rounding_apart_from,
+    to_digits,
+)
+from ..numbers.text import in_quotes
+from ..reading.names import NAMES_BY_SYMBOL, read_name
+from ..reading.units import Malformed, TypedNumber, read_number
+from ..solver.answers import TOO_SMALL, Answers
+from ..solver.decisions import REGIME_ASSUMED
+from ..solver.quantities import QUANTITIES, REGIMES, Undetermined
+from ..solver.scene import INPUTS, MEASURED, Angle, SceneError, with_unit
 from .messages import unmarked
 
 COMPARISON = re.compile("([^<>=]*)(<=|>=|==|<|>)([^<>=]*)")

@@ -9,13 +9,31 @@ from math import inf
 from types import SimpleNamespace
 from typing import Any
 
-from ..arithmetic.rational import EXACT
+from ..numbers.digits import (
+    SHOWN_DIGITS,
+    as_typed,
+    format_number,
+    rounding_apart_from,
+    strip_zeros,
+    to_digits,
+)
+from ..numbers.rational import EXACT
 from . import physics
 from .decisions import ZERO, Decisions
-from .digits import SHOWN_DIGITS, as_typed, format_number, rounding_apart_from, strip_zeros, to_digits
 from .quantities import Undetermined
-from .scene import INPUTS, MASSES, MEASURED, UNMEASURED, Axle, Input, Motion, Scene, SceneError, checked
-from .units import Angle
+from .scene import (
+    INPUTS,
+    MASSES,
+    MEASURED,
+    UNMEASURED,
+    Angle,
+    Axle,
+    Input,
+    Motion,
+    Scene,
+    SceneError,
+    checked,
+)
 
 Values = Any
 """The exact values of inputs as attributes; one is None if it is not given, or is to be found."""

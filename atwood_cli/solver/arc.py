@@ -18,11 +18,11 @@ from collections.abc import Callable, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, Generic, Literal, NamedTuple
 
-from ..arithmetic.rational import N
+from ..numbers.rational import N
 from . import physics
 
 if TYPE_CHECKING:
-    from ..arithmetic.rational import Arithmetic
+    from ..numbers.rational import Arithmetic
 
 Profile = Literal["exponential", "creep", "least"]
 

@@ -8,8 +8,8 @@ from fractions import Fraction
 from math import inf, isinf
 from typing import TypeVar
 
-from ..arithmetic.interval import ZERO, decimal_context
-from ..arithmetic.rational import OfFloat
+from .interval import ZERO, decimal_context
+from .rational import OfFloat
 
 T = TypeVar("T", bound=float | Decimal)
 Rounding = Callable[[Fraction | Decimal], T]

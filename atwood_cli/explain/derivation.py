@@ -20,9 +20,9 @@ from importlib.resources import files
 from operator import mul, truediv
 from typing import Any, NamedTuple
 
-from ..model import physics
-from ..model.quantities import REGIMES
-from .answers import Answers
+from ..solver import physics
+from ..solver.answers import Answers
+from ..solver.quantities import REGIMES
 from .equations import GUARD_DIGITS, MOTION, Derivation, Equation
 from .messages import remarks, verdict
 

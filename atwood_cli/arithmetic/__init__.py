@@ -1,1 +1,0 @@
-"""The number types the equations run in, and how one rounded result is settled."""

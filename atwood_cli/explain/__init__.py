@@ -1,0 +1,1 @@
+"""What is said of one scene, in words and equations."""

@@ -1,0 +1,35 @@
+"""Texts as messages show them."""
+
+from collections.abc import Iterable
+
+LONGEST_NAME = 255
+"""The most characters of a file name that a message shows."""
+
+
+def shortened(text: str, most: int = 60) -> str:
+    """Return the text as a message shows it: if it is too long, only its beginning and its end."""
+    return text if len(text) <= most else f"{text[: most - 20]}...{text[-10:]}"
+
+
+def in_quotes(value: object) -> str:
+    """Return what was typed or read, as a message shows it."""
+    return shortened(repr(str(value) if isinstance(value, str) else value))  # not np.str_("hoop")
+
+
+def counted(count: int, thing: str) -> str:
+    """Return a count with its noun: 1 row, 2 rows."""
+    return f"{count} {thing}" if count == 1 else f"{count} {thing}s"
+
+
+def without_blanks(text: str) -> str:
+    """Return the text without blanks around it, and with single spaces within."""
+    return " ".join(text.split())
+
+
+def nearest(word: str, words: Iterable[str]) -> str:
+    """Return a hint at the word that was probably meant, "" if none is near."""
+    from difflib import get_close_matches
+
+    words = list(words) if word else []
+    close = get_close_matches(word.lower(), words, n=1) or [w for w in words if w.startswith(word.lower())]
+    return f"; did you mean {close[0]}?" if close else ""

@@ -1,0 +1,1 @@
+"""What people type, read as exact inputs: numbers, units, names."""

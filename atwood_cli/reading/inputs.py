@@ -1,0 +1,189 @@
+"""Read inputs, words and numbers, exactly."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from decimal import Decimal
+from fractions import Fraction
+from functools import cache
+from math import inf
+from numbers import Rational, Real
+from typing import Any
+
+from ..numbers.rational import OfFloat
+from ..numbers.text import nearest, shortened, without_blanks
+from ..solver.scene import (
+    DEFAULTS,
+    INPUTS,
+    MEASURED,
+    Angle,
+    Axle,
+    Given,
+    Input,
+    Parameter,
+    Scene,
+    SceneError,
+    parameter_of,
+)
+from .units import (
+    MAX_DIGITS,
+    MAX_MAGNITUDE,
+    NOT_A_NUMBER,
+    NUMBER,
+    TOO_LONG,
+    UNITS,
+    Malformed,
+    NotANumber,
+    TypedNumber,
+    is_uncertain,
+    limited,
+    read_number,
+)
+
+# fmt: off
+OTHER_NAMES = {
+    **{"mass1": "m1", "mass_1": "m1", "mass2": "m2", "mass_2": "m2"},
+    **dict.fromkeys("m mp m_p m_pulley pulley pulley_mass mass_pulley mass_of_pulley mass".split(), "M"),
+    **dict.fromkeys("mu_s mus mu_static static_friction friction coefficient coeff".split(), "mu"),
+    **dict.fromkeys("friction_coefficient coefficient_of_friction friction_coeff".split(), "mu"),
+    **{"muk": "mu_k", "mu_kinetic": "mu_k", "kinetic_friction": "mu_k"},
+    **{"gravity": "g", "beta": "inertia", "inertia_factor": "inertia", "moment_of_inertia": "I"},
+    **{"axle_friction": "axle", "bearing_friction": "axle"},
+    **{"r": "R", "radius": "R", "pulley_radius": "R", "wrap_angle": "wrap", "angle": "wrap", "phi": "wrap"},
+    **{name.lower(): name for name in (*reversed(INPUTS), *MEASURED) if name != "I"},  # i may count rows
+}
+# fmt: on
+"""The inputs that other names may mean, in small ASCII letters."""
+
+
+def read_scene(given: Mapping[str, Given | None]) -> Scene:
+    """Read a scene, by parameter; absent or None is not given. Raises SceneError."""
+    return Scene.of({name: read_exactly(name, given.get(name)) for name in INPUTS})
+
+
+def read_input(name: str, given: Given | None) -> Input:
+    """Read one input, whose text may carry a standard uncertainty. Raises SceneError."""
+    if given is None:
+        return _default(name)
+    if isinstance(given, str):
+        number = _read_text(name, given, given)
+    elif (isinstance(given, Angle) and name == "wrap") or (isinstance(given, Axle) and name == "axle"):
+        number = TypedNumber(_exact_number(name, given.number), given.unit)
+    else:
+        number = TypedNumber(_exact_number(name, given))
+    return Input(_checked(name, given, number), number.uncertainty, given)
+
+
+@cache
+def _default(name: str) -> Input:
+    """Return an input that is not given."""
+    default = DEFAULTS.get(name)
+    value = read_value(name, default) if default else None
+    return Input(value, Fraction(0), None)
+
+
+def read_exactly(name: str, given: Given | None) -> Input:
+    """Read one input, which must carry no uncertainty. Raises SceneError."""
+    if isinstance(given, str) and is_uncertain(given):
+        raise SceneError(name, given, NO_UNCERTAINTY)
+    return read_input(name, given)
+
+
+def read_value(name: str, given: Given | None) -> Any:
+    """Read the exact value of one input, as `Input` has it. Raises SceneError."""
+    return read_exactly(name, given).value
+
+
+def read_plain(name: str, given: str, text: str) -> Fraction | float:
+    """Read the number in a cell of a table, as ``text``, which has no unit or name. Raises SceneError."""
+    if is_uncertain(text):
+        raise SceneError(name, given, NO_UNCERTAINTY)
+    return _read_text(name, given, text, INPUTS[name]._replace(dimension=None, names={})).value
+
+
+def read_whole(name: str, given: int | str, least: int, most: int) -> int:
+    """Read a whole number within bounds. Raises SceneError."""
+    whole = given
+    if isinstance(given, str) and given.isascii() and given.isdigit() and len(given) <= len(str(most)):
+        whole = int(given)
+    if type(whole) is not int or not least <= whole <= most:
+        raise SceneError(name, given, f"must be a whole number from {least} to {most}")
+    return whole
+
+
+def read_digits(given: int | str | None) -> int | None:
+    """Read how many significant digits are asked for. Raises SceneError."""
+    return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
+
+
+def _checked(name: str, given: Given, number: TypedNumber) -> Any:
+    """Return a number as the value of an input: an angle or an axle, if it is one. Raises SceneError."""
+    parameter, (value, unit, _) = parameter_of(name), number
+    too_small = not parameter.signed and (value < 0 or (value == 0 and not parameter.zero))
+    if too_small or (abs(value) == inf and not parameter.inf):
+        raise SceneError(name, given, parameter.domain)
+    if parameter.dimension == "angle":
+        return Angle(value, "rad" if unit == "rad" else "°")
+    if name == "axle":
+        return Axle(value, "N m" if unit in UNITS["torque"] else "N")
+    return value
+
+
+def _read_text(name: str, given: Given, text: str, parameter: Parameter | None = None) -> TypedNumber:
+    """Read the number in a text that is all or part of what was given; errors show all. Raises SceneError."""
+    parameter = parameter or parameter_of(name)
+    word = without_blanks(text).lower()
+    if parameter.inf and word == "inf":
+        return TypedNumber(inf)
+    try:
+        return read_number(parameter.names.get(word, text), parameter.dimension)
+    except NotANumber:
+        rule = _not_a_number(parameter, without_blanks(text))
+    except Malformed as error:
+        rule = str(error)
+    raise SceneError(name, given, rule)
+
+
+NO_UNCERTAINTY = "has an uncertainty, which only solve and fit take; give the value alone"
+THOUSANDS = re.compile(r"[+-]?\d{1,3},\d{3}[^,]*", re.ASCII)
+"""A number with one comma before three digits; with more commas it may be a list."""
+
+
+def _not_a_number(parameter: Parameter, word: str) -> str:
+    if not word:
+        return "is empty; give a value, or leave it out"
+    if word.lower() in ("nan", "inf", "+inf", "-inf", "infinity"):
+        return parameter.domain
+    meant = [word.replace(",", sign) for sign in ("", ".") if sign or THOUSANDS.fullmatch(word)]
+    numbers = [shortened(number) for number in meant if NUMBER.fullmatch(number)]
+    if "," in word and numbers:
+        return f"is not a number; write {' or '.join(numbers)}, without a comma"
+    if re.match(r"[-+.]?\d.*[:,]|[\d.]+-[\d.]+$", word):
+        return "is not a number; atwood sweep takes a range as start:stop:count, and a list as 1,2,5"
+    names = f", or one of {', '.join(parameter.names)}" if parameter.names else ""
+    locked = "; inf is a locked pulley" if parameter.inf else ""
+    return f"{NOT_A_NUMBER}{names}{locked}{nearest(word, parameter.names)}"
+
+
+def _exact_number(name: str, given: object) -> Fraction | float:
+    is_duration = getattr(getattr(given, "dtype", None), "kind", "") == "m"  # NumPy's pass for integers
+    if isinstance(given, bool) or is_duration or not isinstance(given, Real | Decimal):
+        raise SceneError(name, given, "must be text or a number (str, int, float, Decimal, Fraction)")
+    if isinstance(given, Decimal) and given.is_finite() and given:
+        longest = max(given.adjusted(), -int(given.as_tuple().exponent))
+        if longest > MAX_MAGNITUDE:  # it must not become a huge integer
+            raise SceneError(name, given, TOO_LONG)
+    try:
+        if isinstance(given, Rational):
+            ratio: tuple[Any, Any] = given.numerator, given.denominator
+        else:  # NumPy's long doubles are beyond doubles
+            ratio = (given if hasattr(given, "as_integer_ratio") else float(given)).as_integer_ratio()
+        kind = Fraction if isinstance(given, Rational | Decimal) else OfFloat
+        return limited(kind(*map(int, ratio)))  # NumPy's integers have parts that are no ints
+    except Malformed as error:
+        raise SceneError(name, given, str(error)) from None
+    except ValueError:  # not a number
+        raise SceneError(name, given, parameter_of(name).domain) from None
+    except OverflowError:
+        return float(given)
