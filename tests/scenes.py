@@ -14,6 +14,7 @@ import flint
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.decisions import Decisions
+from atwood_cli.solver.scene import INPUTS
 
 Given = dict[str, str]
 
@@ -209,7 +210,8 @@ def scenes(family: str, count: int, seed: int = 2026) -> Iterator[Given]:
 def as_doubles(given: Given) -> Given | None:
     """A scene whose numbers are the doubles nearest to those of this one; None if that is no such scene."""
     scene = read_scene(given)
-    numbers = scene._asdict() | {"wrap": scene.wrap.number, "axle": Decisions(scene).axle_friction}
+    numbers = {x: getattr(scene, x) for x in INPUTS}
+    numbers |= {"wrap": scene.wrap.number, "axle": Decisions(scene).axle_friction}
     try:
         row = {name: float(value) for name, value in numbers.items() if value is not None}
     except OverflowError:

@@ -192,7 +192,7 @@ PYTHON: dict[str, tuple[Iterable[str], str]] = {
     "solve_table": (parameters(solve_table), "table quantities?"),
     "fit": (parameters(fit), "runs * drop? g? M? inertia? I? R? axle? find? without=()"),
     "Solution": ([one.name for one in fields(Solution)], f"scene notes regime {VALUES} uncertainty"),
-    "Scene": (Scene._fields, SCENE),
+    "Scene": (Scene._fields, f"{SCENE} motion"),
     "Fit": (Fit._fields, FITTED),
     "REGIMES": (atwood_cli.REGIMES, "no-slip verge slip"),
     "STATUSES": (

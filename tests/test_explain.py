@@ -22,7 +22,7 @@ from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import NAMES, QUANTITIES
-from atwood_cli.solver.scene import Scene
+from atwood_cli.solver.scene import INPUTS, Scene
 
 from . import oracle
 from .conftest import examples, many
@@ -162,9 +162,8 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     case = read_answers(SCENES[kind], None).case
     scene, motion, wrap = case.scene, case.motion, exact(case.scene.wrap.number)
     names = {"mu": "μ", "mu_k": "μ_k", "drop": "s", "time": "t"}
-    known = {
-        names.get(name, name): q for name, q in (scene._asdict() | motion._asdict()).items() if q is not None
-    }
+    given = {x: getattr(scene, x) for x in INPUTS} | motion._asdict()
+    known = {names.get(name, name): q for name, q in given.items() if q is not None}
     known |= {"M": case.pulley_mass or Fraction(0), "c": case.rim_mass, "β": case.beta, "b": case.axle_mass}
     known |= {"f_axle": case.axle_friction, "τ_axle": scene.axle and scene.axle.number}
     env = {name: exact(q) for name, q in ({"a": Fraction(0)} | known).items() if isinstance(q, Fraction)}
@@ -279,7 +278,7 @@ IN_MATHEMATICS = re.compile(r"\$\$.*?\$\$|\$.*?\$", re.DOTALL)
 def handout(given: Any) -> str:
     answers = read_answers(given, None)
     case = answers.case
-    return "\n".join(as_markdown(inputs_in_words(case.scene, case.motion).values(), explain(answers)))
+    return "\n".join(as_markdown(inputs_in_words(case.scene).values(), explain(answers)))
 
 
 def check_handout(page: str) -> None:

@@ -9,7 +9,7 @@ from ..numbers.digits import format_number
 from ..numbers.text import counted
 from ..output.page import Page, aligned
 from ..output.text import VERSION, Report, cell, inputs_in_words
-from ..solver.scene import UNMEASURED, parameter_of
+from ..solver.scene import Motion, parameter_of
 from .estimate import as_data, expected
 from .fitting import RARE, SELDOM, Fitted
 from .results import QUANTITIES, USUAL, Fit, cut, equation, published, rounded
@@ -70,9 +70,11 @@ def _capital(words: str) -> str:
 def conditions(fit: Fitted) -> str:
     """Return what is the same in all runs, in words."""
     inputs = fit.given.inputs
-    motion = UNMEASURED._replace(drop=inputs["drop"].value) if "drop" in inputs else UNMEASURED
+    scene = fit.given.scene
+    if "drop" in inputs:
+        scene = scene._replace(motion=Motion(drop=inputs["drop"].value))
     uncertain = {name: one.uncertainty for name, one in inputs.items() if one.uncertainty}
-    words = inputs_in_words(fit.given.scene, motion, uncertain)
+    words = inputs_in_words(scene, uncertain)
     g = "" if "gravity" in fit.whole.names else "g"
     inertia = "" if inputs["M"].given is None else "inertia"
     shown = (x for x, one in inputs.items() if one.given is not None or x in (g, inertia, "drop"))

@@ -61,7 +61,7 @@ def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = Fa
     below = [*_caption(few, kind, wrap)]
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
-    given = inputs_in_words(case.scene, case.motion, answers.uncertain)
+    given = inputs_in_words(case.scene, answers.uncertain)
     above = [", ".join(given.values()), unmarked(verdict(few))]
     with page(path, force, above, " ".join(below), bare, panels=1 + curves) as figure:
         machine, *more = figure.subplots(1 + curves, height_ratios=[1.6, 1][: 1 + curves], squeeze=False).flat

@@ -32,7 +32,7 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
     absent = dict.fromkeys(QUANTITIES)
     return {
         "version": VERSION,
-        "scene": scene_record(answers.case.scene, answers.case.motion, answers.round),
+        "scene": scene_record(answers.case.scene, answers.round),
         "regime": answers.case.regime,
         **absent,
         **results,
@@ -95,7 +95,7 @@ def print_table(
 
 def _print_head(page: "Page", answers: Answers, found: str = "") -> None:
     """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
-    given = inputs_in_words(answers.case.scene, answers.case.motion, answers.uncertain)
+    given = inputs_in_words(answers.case.scene, answers.uncertain)
     page.say(", ".join(given.values()))
     if found:
         page.say(found, style="bold")
@@ -166,7 +166,7 @@ def print_steps(answers: Answers, names: Sequence[str], markdown: bool) -> None:
     from .page import Page
     from .typeset import as_markdown, as_text
 
-    given = inputs_in_words(answers.case.scene, answers.case.motion).values()
+    given = inputs_in_words(answers.case.scene).values()
     explanation = explain(answers, names)
     if markdown:
         for line in as_markdown(given, explanation):

@@ -11,7 +11,7 @@ from math import inf
 from typing import Any, NamedTuple, TextIO
 
 from ..numbers.digits import Rounding, as_typed, exact_or_rounded, format_number, is_infinite, to_double
-from ..solver.scene import MEASURED, UNMEASURED, Angle, Axle, Motion, Scene, parameter_of, with_unit
+from ..solver.scene import Angle, Axle, Scene, parameter_of, with_unit
 from .files import Stdout, printable, stdout_into
 
 
@@ -182,9 +182,7 @@ def cell(value: object) -> str:
     return "" if value is None else str(value)
 
 
-def scene_record(
-    scene: Scene, motion: Motion = UNMEASURED, round_: Rounding[Any] = to_double
-) -> dict[str, object]:
+def scene_record(scene: Scene, round_: Rounding[Any] = to_double) -> dict[str, object]:
     """Return the inputs for JSON, in SI units and degrees: numbers, or text with a unit.
 
     A number that is a finite decimal is exact. Others are rounded as results are.
@@ -196,14 +194,15 @@ def scene_record(
         number = exact_or_rounded(value, round_)
         return f"{format_number(number)}{unit}" if unit else number
 
-    return {name: written(value, unit) for name, (value, unit) in _given(scene, motion).items()}
+    return {name: written(value, unit) for name, (value, unit) in _given(scene).items()}
 
 
-def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
+def _given(scene: Scene) -> dict[str, tuple[Any, str]]:
     """Return the inputs by name, each with its unit if this is not the usual one."""
-    given: dict[str, Any] = scene._asdict() | {name: getattr(motion, name) for name in MEASURED}
-    if motion.finds:
-        given[motion.finds] = None
+    given: dict[str, Any] = scene._asdict()
+    given |= given.pop("motion")._asdict()
+    if found := given.pop("finds"):
+        given[found] = None
     if scene.M == inf:
         given["M"] = "inf"
     units = {"rad": "rad", "N m": " Nm"}
@@ -213,12 +212,10 @@ def _given(scene: Scene, motion: Motion) -> dict[str, tuple[Any, str]]:
     }
 
 
-def inputs_in_words(
-    scene: Scene, motion: Motion = UNMEASURED, uncertain: Mapping[str, Fraction] = {}
-) -> dict[str, str]:
+def inputs_in_words(scene: Scene, uncertain: Mapping[str, Fraction] = {}) -> dict[str, str]:
     """Say each input, as m1 = 1 kg, with at least as many decimals as its uncertainty: 3.00 ± 0.02."""
     parts = {}
-    for name, (value, unit) in _given(scene, motion).items():
+    for name, (value, unit) in _given(scene).items():
         words = as_typed(value) if isinstance(value, Fraction) else value
         if name in uncertain:
             u = as_typed(uncertain[name])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..solver.answers import Answers
-from ..solver.scene import INPUTS, MEASURED, UNMEASURED, Given, Input, Scene, SceneError
+from ..solver.scene import INPUTS, MEASURED, Given, Input, Scene, SceneError
 from .inputs import read_input
 from .units import GRAVITY, read_number
 
@@ -15,17 +15,17 @@ def read_answers(given: Mapping[str, Given | None], digits: int | None) -> Answe
     inputs = {name: read_input(name, given.get(name)) for name in (*INPUTS, *MEASURED)}
     inputs["a"] = _of_gravity(inputs["a"], inputs["g"])
     if all(inputs[name].given is None for name in MEASURED):
-        scene, motion = Scene.of(inputs), UNMEASURED
+        scene = Scene.of(inputs)
     else:
         from ..solver.inverse import read_motion
 
-        scene, motion = read_motion(inputs)
+        scene = read_motion(inputs)
     uncertain = {name: read.uncertainty for name, read in inputs.items() if read.uncertainty}
     if not uncertain:
-        return Answers(scene, digits, motion)
+        return Answers(scene, digits)
     from ..solver.uncertainty import UncertainAnswers
 
-    return UncertainAnswers(scene, digits, motion, uncertain)
+    return UncertainAnswers(scene, digits, uncertain)
 
 
 def _of_gravity(a: Input, g: Input) -> Input:

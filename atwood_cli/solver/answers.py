@@ -15,7 +15,7 @@ from ..numbers.settling import settle
 from .decisions import Decisions
 from .machine import Machine
 from .quantities import FROM_MOTION, MAIN, NAMES, Undetermined
-from .scene import UNMEASURED, Motion, Scene
+from .scene import Scene
 
 if TYPE_CHECKING:
     from ..numbers.rational import Arithmetic, N, Quantity
@@ -39,8 +39,8 @@ class Answer(NamedTuple):
 class Answers:
     """The quantities of a scene, each computed when it is asked for: as doubles, or to ``digits`` digits."""
 
-    def __init__(self, scene: Scene, digits: int | None = None, motion: Motion = UNMEASURED) -> None:
-        self.case = Decisions(scene, motion)
+    def __init__(self, scene: Scene, digits: int | None = None) -> None:
+        self.case = Decisions(scene)
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._by_digits: dict[int | None, Answers] = {}
         self._round_to(digits)
@@ -61,7 +61,7 @@ class Answers:
     @property
     def given(self) -> tuple[Any, ...]:
         """The arguments that make these answers again."""
-        return self.case.scene, self.digits, self.case.motion
+        return self.case.scene, self.digits
 
     @property
     def shown(self) -> Answers:

@@ -33,7 +33,7 @@ from ..numbers.lazy import lazy
 from ..numbers.rational import EXACT
 from ..numbers.settling import is_positive
 from . import physics
-from .scene import UNMEASURED, Motion, Scene
+from .scene import Scene
 
 if TYPE_CHECKING:
     from ..numbers.rational import Arithmetic, N, Quantity
@@ -54,8 +54,8 @@ class Decisions:
     Each is made when it is asked for; the ``lazy`` ones once.
     """
 
-    def __init__(self, scene: Scene, motion: Motion = UNMEASURED) -> None:
-        self.scene, self.motion = scene, motion
+    def __init__(self, scene: Scene) -> None:
+        self.scene, self.motion = scene, scene.motion
         self._known_to_slip = False
 
     @lazy

@@ -41,39 +41,40 @@ Values = Any
 MOTOR = "for a motor or a brake see examples/hoist.md"
 
 
-def read_motion(inputs: Mapping[str, Input]) -> tuple[Scene, Motion]:
-    """Return the scene, with the input that follows from what was measured, and that. Raises SceneError."""
+def read_motion(inputs: Mapping[str, Input]) -> Scene:
+    """Return the scene, with the input that follows from what was measured. Raises SceneError."""
     a, drop, time = (inputs[name].value for name in MEASURED)
     if a is None and time is None:
-        return Scene.of(inputs), Motion(drop=drop)
+        return Scene.of(inputs)._replace(motion=Motion(drop=drop))
     name = "a" if time is None else "time"
     missing = [mass for mass in MASSES if inputs[mass].value is None]
     unknown = missing[0] if len(missing) == 1 else ""
     if unknown and inputs["M"].value is None is inputs["I"].value:
         raise SceneError(unknown, None, f"is missing; give it, or M, with which {name} finds it")
-    values = SimpleNamespace(**checked(inputs, unknown))
+    values = SimpleNamespace(**checked(inputs, unknown), motion=UNMEASURED)
     if unknown:
         finds = unknown
     elif values.M == inf or (values.mu is not None and values.M is not None):
         finds = "mu_k"
     else:
         finds = "M" if values.M is None and values.I is None else "g"
-    motion = Motion(a, drop, time, finds)
-    rule = _contradiction(values, motion, inputs["g"].given is not None)
+    values.motion = Motion(a, drop, time, finds)
+    rule = _contradiction(values, inputs["g"].given is not None)
     if not rule:
         try:
-            scene = Scene(**{**vars(values), **found_inputs(values, motion)})
-            rule = _impossible(scene, motion)
+            scene = Scene(**{**vars(values), **found_inputs(values)})
+            rule = _impossible(scene)
         except Undetermined as undetermined:
             rule = str(undetermined)
     if rule:
         raise SceneError(name, inputs[name].given, rule)
-    return scene, motion
+    return scene
 
 
-def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
+def _contradiction(values: Values, g_given: bool) -> str:
     """Return why what was measured contradicts the other inputs, "" if it does not."""
-    case, finds, M, mu = Decisions(values), motion.finds, values.M, values.mu
+    motion, M, mu = values.motion, values.M, values.mu
+    case, finds = Decisions(values), motion.finds
     if motion.time is not None and motion.drop is None:
         return "needs drop, the height of that fall"
     if motion.time is not None and motion.a is not None:
@@ -102,9 +103,10 @@ def _contradiction(values: Values, motion: Motion, g_given: bool) -> str:
     return ""
 
 
-def _impossible(scene: Scene, motion: Motion) -> str:
+def _impossible(scene: Scene) -> str:
     """Return why the scene that follows from a motion is none, "" if it is one."""
-    finds, case = str(motion.finds), Decisions(scene, motion)
+    case = Decisions(scene)
+    motion, finds = case.motion, str(case.motion.finds)
     if finds == "mu_k":
         if case.slide_ratio_minus_1(EXACT) < 0:
             drive, load = (of(case.light, case.heavy, ZERO) for of in (physics.drive, physics.load))
@@ -121,32 +123,33 @@ def _impossible(scene: Scene, motion: Motion) -> str:
     return ""
 
 
-def number_of(scene: Scene, motion: Motion, x: str) -> Any:
+def given_as(scene: Scene, x: str) -> Any:
+    """Return an input, or what was measured, as it was given."""
+    return getattr(scene if x in INPUTS else scene.motion, x)
+
+
+def number_of(scene: Scene, x: str) -> Any:
     """Return the number given for an input, in the unit that it was given in."""
-    value = getattr(scene if x in Scene._fields else motion, x)
+    value = given_as(scene, x)
     return getattr(value, "number", value)
 
 
-def with_number(scene: Scene, motion: Motion, x: str, number: Any) -> tuple[Scene, Motion]:
-    """Return the scene, and what was measured, with another number for an input, in the same unit."""
-    if x not in Scene._fields:
-        return scene, motion._replace(**{x: number})
+def with_number(scene: Scene, x: str, number: Any) -> Scene:
+    """Return the scene with another number for an input, or for what was measured, in the same unit."""
+    if x not in INPUTS:
+        return scene._replace(motion=scene.motion._replace(**{x: number}))
     value: Any = getattr(scene, x)
     given: Any = value._replace(number=number) if isinstance(value, Angle | Axle) else number
-    return scene._replace(**{x: given}), motion
+    return scene._replace(**{x: given})
 
 
-def with_value(scene: Scene, name: str, value: Any) -> Scene:
-    """Return the scene with another value of an input, in the unit that it has there."""
-    return with_number(scene, UNMEASURED, name, value)[0]
-
-
-def found_inputs(values: Values, motion: Motion) -> dict[str, Any]:
+def found_inputs(values: Values) -> dict[str, Any]:
     """Return the input that follows from a motion, by its name; it may be below 0. Raises Undetermined.
 
     Kinetic friction is no rational number: the machine computes it.
     """
-    m1, m2, g, finds = values.m1, values.m2, values.g, motion.finds
+    m1, m2, g, motion = values.m1, values.m2, values.g, values.motion
+    finds = motion.finds
     if finds is None:
         return {}
     case: Any = Decisions(values)  # about the pulley, as a mass may be missing

@@ -184,10 +184,33 @@ class Input(NamedTuple):
     given: Given | None
 
 
+class Motion(NamedTuple):
+    """Measurements of the motion in SI units, exact; one that is not given is None.
+
+    ``finds`` is the input, such as "M" or "g", that was not given and follows from them.
+    """
+
+    a: Fraction | None = None
+    drop: Fraction | None = None
+    time: Fraction | None = None
+    finds: str | None = None
+
+    def acceleration(self, sign: int) -> Fraction:
+        """Return the measured acceleration (m/s²) of the heavier mass: m2 if its sign is 1, m1 if -1."""
+        if self.a is not None:
+            return sign * self.a
+        assert self.drop is not None
+        assert self.time is not None
+        return physics.acceleration_of_fall(self.drop, self.time)
+
+
+UNMEASURED = Motion()
+
+
 class Scene(NamedTuple):
     """A valid scene in SI units, exact; an input that is not given is None.
 
-    ``M`` is a float only if it is infinite, for a locked pulley.
+    ``M`` is a float only if it is infinite, for a locked pulley. ``motion`` has what was measured of it.
     """
 
     m1: Fraction
@@ -201,6 +224,7 @@ class Scene(NamedTuple):
     R: Fraction | None
     wrap: Angle
     axle: Axle | None = None
+    motion: Motion = UNMEASURED
 
     @classmethod
     def of(cls, inputs: Mapping[str, Input]) -> Scene:
@@ -245,26 +269,3 @@ def checked(inputs: Mapping[str, Input], unknown: str = "") -> dict[str, Any]:
     if I is not None and M is not None and not 0 < M < inf:
         refuse("I", f"contradicts M = {shortened(str(inputs['M'].given))}; leave one of them out")
     return values
-
-
-class Motion(NamedTuple):
-    """Measurements of the motion in SI units, exact; one that is not given is None.
-
-    ``finds`` is the input, such as "M" or "g", that was not given and follows from them.
-    """
-
-    a: Fraction | None = None
-    drop: Fraction | None = None
-    time: Fraction | None = None
-    finds: str | None = None
-
-    def acceleration(self, sign: int) -> Fraction:
-        """Return the measured acceleration (m/s²) of the heavier mass: m2 if its sign is 1, m1 if -1."""
-        if self.a is not None:
-            return sign * self.a
-        assert self.drop is not None
-        assert self.time is not None
-        return physics.acceleration_of_fall(self.drop, self.time)
-
-
-UNMEASURED = Motion()

@@ -30,9 +30,9 @@ from ..numbers.digits import (
 from ..numbers.interval import ZERO, decimal_context
 from ..numbers.lazy import lazy
 from .answers import TOO_SMALL, Answers
-from .inverse import found_inputs, number_of, with_number
+from .inverse import found_inputs, given_as, number_of, with_number
 from .quantities import QUANTITIES, Undetermined
-from .scene import Motion, Scene, parameter_of, with_unit
+from .scene import Scene, parameter_of, with_unit
 
 DIGITS, RIGHT_DIGITS = 48, 15
 NEGLIGIBLE = Decimal("1e-30")
@@ -92,12 +92,10 @@ class Spread(NamedTuple):
 class UncertainAnswers(Answers):
     """The quantities of a scene with standard uncertainties: of inputs, ``uncertain``, and of quantities."""
 
-    def __init__(
-        self, scene: Scene, digits: int | None, motion: Motion, uncertain: Mapping[str, Fraction]
-    ) -> None:
-        super().__init__(scene, digits, motion)
+    def __init__(self, scene: Scene, digits: int | None, uncertain: Mapping[str, Fraction]) -> None:
+        super().__init__(scene, digits)
         self.uncertain = uncertain
-        self._here = End(Fraction(0), Answers(scene, DIGITS, motion))
+        self._here = End(Fraction(0), Answers(scene, DIGITS))
         self._ends = {x: (self._end(x, -u), self._end(x, u)) for x, u in uncertain.items()}
         self._spreads: dict[str, Spread] = {}
 
@@ -107,8 +105,8 @@ class UncertainAnswers(Answers):
 
     def _end(self, x: str, step: Fraction) -> End:
         """Solve the scene with an input so much more, but not below 0; what is found may go below it."""
-        scene, motion = self.case.scene, self.case.motion
-        number: Fraction = number_of(scene, motion, x) + step
+        scene = self.case.scene
+        number: Fraction = number_of(scene, x) + step
         if x == "mu_k" and scene.mu is not None:
             number = min(number, scene.mu)
         if x != "a":
@@ -116,13 +114,13 @@ class UncertainAnswers(Answers):
         if not number and x != "a" and (not parameter_of(x).zero or (x == "M" and scene.I is not None)):
             return End(number, None, NO_SCENE)
         try:
-            scene, motion = with_number(scene, motion, x, number)
+            scene = with_number(scene, x, number)
             if x == "mu" and scene.mu_k is not None:
                 scene = scene._replace(mu_k=min(scene.mu_k, number))  # it is at most mu
-            there = scene._replace(**found_inputs(scene, motion))
+            there = scene._replace(**found_inputs(scene))
             if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
                 return End(number, None, NO_SCENE)
-            answers = Answers(there, DIGITS, motion)
+            answers = Answers(there, DIGITS)
             _ = answers.case.axle_mass, answers.case.rim_mass
         except (Undetermined, ZeroDivisionError):
             return End(number, None, NO_FIT)
@@ -219,7 +217,7 @@ class UncertainAnswers(Answers):
 
     def _at(self, x: str, end: End) -> str:
         """Say an input at an end, with its unit: "mu = 0.35"."""
-        given = getattr(self.case.scene if x in Scene._fields else self.case.motion, x)
+        given = given_as(self.case.scene, x)
         unit = getattr(given, "unit", parameter_of(x).unit)
         return f"{x} = {with_unit(as_typed(end.input), unit)}"
 

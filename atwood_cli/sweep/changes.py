@@ -34,7 +34,7 @@ from typing import Any, NamedTuple
 from ..numbers.digits import SHOWN_DIGITS, to_digits
 from ..reading.units import MAX_MAGNITUDE
 from ..solver.decisions import Decisions
-from ..solver.inverse import with_value
+from ..solver.inverse import with_number
 from ..solver.scene import MASSES, Scene
 from .ranges import LOCKED, Point, Range, decimal_point, exact_point
 
@@ -70,7 +70,7 @@ def changes(
     """
 
     def state(value: Fraction) -> Any:
-        return what(Decisions(with_value(scene, along.name, value)))
+        return what(Decisions(with_number(scene, along.name, value)))
 
     start, stop = along.ends
     asked = [start, *(value for value in _turns(scene, along.name) if start < value < stop), stop]
@@ -92,7 +92,7 @@ def regimes(along: Range, found: Sequence[Change], scene: Scene) -> str:
         begins = before.at.exact if before else along.ends[0]
         where = "at" if change.at.exact == begins else "up to"
         parts.append(f"{change.before} {where} {place if before else f'{along.name} = {place}'}")
-    last = found[-1].after if found else Decisions(with_value(scene, along.name, along.ends[0])).regime
+    last = found[-1].after if found else Decisions(with_number(scene, along.name, along.ends[0])).regime
     parts.append(f"{last} beyond" if found else last)
     locks = along.is_list and LOCKED in along.points
     if locks and (locked := Decisions(scene._replace(M=inf)).regime) != last:

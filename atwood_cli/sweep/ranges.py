@@ -30,7 +30,7 @@ from ..output.text import inputs_in_words
 from ..reading.inputs import read_exactly, read_value, read_whole
 from ..reading.units import MAX_DIGITS, read_number
 from ..solver.answers import Answers
-from ..solver.inverse import with_value
+from ..solver.inverse import with_number
 from ..solver.scene import INPUTS, Input, Scene, SceneError, with_unit
 
 UNIT_SUFFIXES = {"rad": "rad", "N m": "Nm"}
@@ -162,7 +162,7 @@ class Sweep(NamedTuple):
         for points in product(*(range_.points for range_ in ranges)):
             scene, place = self.scene, dict[str, Point]()
             for range_, point in zip(ranges, points, strict=True):
-                place[range_.name], scene = point, with_value(scene, range_.name, point.exact)
+                place[range_.name], scene = point, with_number(scene, range_.name, point.exact)
             yield scene, place
 
     def in_words(self, place: Mapping[str, Point]) -> str:

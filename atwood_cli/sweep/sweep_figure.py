@@ -11,7 +11,7 @@ from ..numbers.digits import is_infinite
 from ..output.figure import COLOURS, FAINT, INK, axis_words, check_file, page, typeset, write_beside
 from ..output.text import wrapped
 from ..solver.answers import Answers
-from ..solver.inverse import with_value
+from ..solver.inverse import with_number
 from ..solver.quantities import QUANTITIES
 from ..solver.scene import Scene, SceneError
 from .changes import Change, changes
@@ -65,13 +65,13 @@ def _drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
 def _solve(along: Range, scene: Scene, digits: int | None) -> tuple[list[Change], dict[float, Answers]]:
     """Return the changes along a range, and the answers at its values; those of a list are by place."""
     if along.is_list:
-        scenes = (with_value(scene, along.name, point.exact) for point in along.points)
+        scenes = (with_number(scene, along.name, point.exact) for point in along.points)
         return [], {float(place): Answers(there) for place, there in enumerate(scenes)}
     corners = attrgetter("regime", "sign", "axle_holds")  # where one of these changes
     found = list(changes(scene, along, digits, what=corners))
     values = [*steps(*along.ends, CURVE_STEPS, along.log)]
     values += [x for change in found for x in (change.last, change.first)]
-    return found, {float(x): Answers(with_value(scene, along.name, x)) for x in sorted(values)}
+    return found, {float(x): Answers(with_number(scene, along.name, x)) for x in sorted(values)}
 
 
 def panels_of(sweep: Sweep, names: Sequence[str], digits: int | None = None) -> list[list[Curve]]:
