@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, settings
 
 from atwood_cli.cli import run
 
-from .running import HEARD, HOW_TO_PRINT, Atwood, Batch, Ran
+from .tools.running import HEARD, HOW_TO_PRINT, Atwood, Batch, Ran
 
 # No test fails where a machine is slow.
 ANYWHERE = [HealthCheck.too_slow, HealthCheck.data_too_large, HealthCheck.function_scoped_fixture]

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
 
-from .running import TOP
+from .tools.running import TOP
 
 PATHS = {
     ".".join(path.relative_to(TOP).with_suffix("").parts).removesuffix(".__init__"): path

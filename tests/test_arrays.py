@@ -32,9 +32,9 @@ from atwood_cli.solver.quantities import ACCURACIES, NAMES, Accuracy
 from atwood_cli.solver.scene import INPUTS, MASSES
 
 from .conftest import examples
-from .doors import columns_of, solve_any, within_promise
-from .running import HANGS
-from .scenes import DANGERS, ON_AN_AXLE, Given, Row, as_doubles, scenes
+from .tools.doors import columns_of, solve_any, within_promise
+from .tools.running import HANGS
+from .tools.scenes import DANGERS, ON_AN_AXLE, Given, Row, as_doubles, scenes
 
 Columns = dict[str, Any]
 

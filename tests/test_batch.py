@@ -25,7 +25,7 @@ from atwood_cli.cli import run
 from atwood_cli.reading.units import UNITS
 from atwood_cli.tables import sources
 
-from .running import FROM, HANGS, TOP, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
+from .tools.running import FROM, HANGS, TOP, Atwood, Batch, Ran, on_real_terminal, on_terminal, plain, process
 
 TEXT = "m1,m2\n1,3\n"
 

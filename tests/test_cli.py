@@ -20,8 +20,8 @@ from atwood_cli.__main__ import main
 from atwood_cli.reading.names import ASCII, read_names
 from atwood_cli.solver.quantities import QUANTITIES
 
-from .running import LOADED, PAPER, TOP, Atwood, called, process
-from .scenes import inputs
+from .tools.running import LOADED, PAPER, TOP, Atwood, called, process
+from .tools.scenes import inputs
 
 # The table
 

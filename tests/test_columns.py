@@ -20,8 +20,8 @@ from atwood_cli.arrays.program import Program
 from atwood_cli.numbers.formula import Formula, Term
 from atwood_cli.solver.quantities import ACCURACIES, Accuracy
 
-from . import oracle
 from .conftest import examples
+from .tools import oracle
 
 LEVELS: dict[str, Any] = {"doubles": DOUBLES, "pairs": PAIRS}
 rng = np.random.default_rng(2026)

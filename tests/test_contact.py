@@ -16,9 +16,9 @@ from atwood_cli.explain.contact import contact
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 
-from . import oracle
 from .conftest import many
-from .scenes import inputs, of_all_kinds
+from .tools import oracle
+from .tools.scenes import inputs, of_all_kinds
 
 
 def test_forces_along_the_arc_add_up_and_keep_to_the_limits_of_friction() -> None:

@@ -25,9 +25,9 @@ from atwood_cli.cli.options import COULD_NOT, DONE, WRONG_USAGE
 from atwood_cli.solver.machine import Machine
 from atwood_cli.solver.quantities import NAMES, QUANTITIES, STANDARD
 
-from . import oracle
-from .running import Atwood, process
-from .scenes import inputs, table
+from .tools import oracle
+from .tools.running import TOP, Atwood, process
+from .tools.scenes import inputs, table
 
 # The table of what is given, and its corners
 
@@ -136,7 +136,7 @@ assert not {"typer", "rich", "numpy"} & set(sys.modules)
 
 def test_a_users_script_runs() -> None:
     """`mypy` checks its types."""
-    run_path(str(Path(__file__).with_name("user_script.py")))
+    run_path(str(TOP / "tests" / "tools" / "user_script.py"))
 
 
 @pytest.mark.parametrize("function", [solve, solve_arrays])

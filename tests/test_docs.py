@@ -16,8 +16,8 @@ from atwood_cli.solver.scene import BODIES
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS
 from atwood_cli.tradeoff.tradeoff_page import LEGEND
 
-from .regenerate import CASES, KEPT, SCRIPTS, ends_otherwise, essence
-from .running import TOP, labels, process
+from .tools.regenerate import CASES, KEPT, SCRIPTS, ends_otherwise, essence
+from .tools.running import TOP, labels, process
 
 PAGES = {
     path.relative_to(TOP).as_posix(): path.read_text(encoding="utf-8")
@@ -42,7 +42,7 @@ def test_what_is_kept_is_what_is_printed_today(file: Path, pytestconfig: pytest.
     lacking |= {"matplotlib"} if pytestconfig.getoption("quick") else set()
     tried = [kept for kept in KEPT if kept.file == file and kept.needs not in lacking]
     for kept in tried:
-        assert essence(kept.today()) == essence(kept.text), "after a look: python -m tests.regenerate"
+        assert essence(kept.today()) == essence(kept.text), "after a look: python -m tests.tools.regenerate"
     if not tried:
         pytest.skip(f"needs {' '.join(lacking)}, or no --quick")
 

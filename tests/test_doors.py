@@ -16,10 +16,10 @@ import pytest
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.quantities import NAMES
 
-from . import oracle
 from .conftest import many
-from .doors import DOUBLES, TEXTS, Door, of_solutions, solve_any, within_promise
-from .scenes import DANGERS, FAMILIES, ON_AN_AXLE, Given, as_doubles, scenes
+from .tools import oracle
+from .tools.doors import DOUBLES, TEXTS, Door, of_solutions, solve_any, within_promise
+from .tools.scenes import DANGERS, FAMILIES, ON_AN_AXLE, Given, as_doubles, scenes
 
 BOUNDS = ("friction_force_min", "friction_force_max")
 """They have no closed form: test_contact checks those of `solve`, with which the other doors must agree."""

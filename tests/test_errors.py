@@ -7,7 +7,7 @@ from pathlib import Path
 
 import atwood_cli
 
-from .regenerate import CASES, KEPT
+from .tools.regenerate import CASES, KEPT
 
 PACKAGE, TESTS = Path(atwood_cli.__file__).parent, Path(__file__).parent
 SENTENCES = ("SceneError", "Malformed", "Rule", "Unreadable", "OSError", "FileExistsError", "ArithmeticError")

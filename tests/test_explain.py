@@ -24,9 +24,9 @@ from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import NAMES, QUANTITIES
 from atwood_cli.solver.scene import INPUTS, Scene
 
-from . import oracle
 from .conftest import examples, many
-from .scenes import FAMILIES, KINDS, inputs, scenes, table
+from .tools import oracle
+from .tools.scenes import FAMILIES, KINDS, inputs, scenes, table
 
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
 SCENES = {kind: inputs(words) for kind, words in table(KINDS)}

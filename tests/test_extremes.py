@@ -23,8 +23,8 @@ from atwood_cli.solver.quantities import NAMES, QUANTITIES
 from atwood_cli.solver.scene import INPUTS
 
 from .conftest import examples, many
-from .doors import solve_any
-from .scenes import FAMILIES, ON_AN_AXLE, G, scenes
+from .tools.doors import solve_any
+from .tools.scenes import FAMILIES, ON_AN_AXLE, G, scenes
 
 mp: Any = MPContext()
 mp.dps = 60

@@ -35,11 +35,24 @@ from atwood_cli.laboratory.statistics import (
 )
 from atwood_cli.reading.inputs import read_input
 
-from . import coverage
 from .conftest import many
-from .coverage import CELLS, DELAYS, NOTHING, OTHERS, C, Design, F, G, blunders_named, by_scipy, counts, drawn
-from .coverage import expected as textbook
-from .running import FROM, TOP, Ran, called, pages_seen, process
+from .tools import simulated_laboratories
+from .tools.running import FROM, TOP, Ran, called, pages_seen, process
+from .tools.simulated_laboratories import (
+    CELLS,
+    DELAYS,
+    NOTHING,
+    OTHERS,
+    C,
+    Design,
+    F,
+    G,
+    blunders_named,
+    by_scipy,
+    counts,
+    drawn,
+)
+from .tools.simulated_laboratories import expected as textbook
 
 pytestmark = pytest.mark.filterwarnings("error")
 TABLE = TOP / "examples" / "rit.csv"
@@ -74,7 +87,7 @@ def without_nulls(value: Any) -> Any:
 
 def data_of(kind: Kind, l: Any, h: Any, drop: Any, measured: Any) -> Data:
     """Runs without repeats and uncertainties."""
-    return as_data(coverage.runs_of(kind, l, h, drop, measured[:, None]), l > 0)
+    return as_data(simulated_laboratories.runs_of(kind, l, h, drop, measured[:, None]), l > 0)
 
 
 # Data made from the model
@@ -100,7 +113,7 @@ def test_what_made_exact_runs_is_found(kind: Kind) -> None:
 
 
 def test_intervals_hold_the_truth_as_often_as_they_say() -> None:
-    """A short `python -m tests.coverage`: coverage within 3 standard deviations of a binomial."""
+    """A short `python -m tests.tools.simulated_laboratories`: coverage within 3 standard deviations of a binomial."""
     sets = max(20, many(30))
     for design in [*CELLS[::6], *OTHERS[::4]]:
         one, is_true = counts(design, sets), not (design.masses or design.axle)

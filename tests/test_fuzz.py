@@ -28,9 +28,9 @@ from hypothesis import given, settings
 from atwood_cli.tables import sources
 from atwood_cli.tradeoff import measure
 
-from . import fuzz
 from .conftest import many
-from .running import Ran, called
+from .tools import fuzz
+from .tools.running import Ran, called
 
 BUSY = timedelta(minutes=1)  # for any run, on a busy machine
 MOST_SAID = 2000  # characters of a sentence

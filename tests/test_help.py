@@ -13,7 +13,7 @@ from atwood_cli.solver.scene import BODIES, INERTIA_FACTORS
 from atwood_cli.tables.sources import FORMATS
 from atwood_cli.tradeoff.measure import FAMILIES
 
-from .running import LOADED, TOP, process
+from .tools.running import LOADED, TOP, process
 
 GROUP: Any = cli.program()
 

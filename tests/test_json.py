@@ -13,7 +13,7 @@ from atwood_cli.laboratory import results as laboratory
 from atwood_cli.solver.quantities import QUANTITIES
 from atwood_cli.solver.scene import INPUTS, MEASURED
 
-from .running import TOP, Atwood
+from .tools.running import TOP, Atwood
 
 PAGE = (TOP / "examples" / "json.md").read_text(encoding="utf-8")
 ROW = r"^- `(.*?)` \((.*?)(?:, (.*?))?\): .*?(?:; null: (.*))?$"

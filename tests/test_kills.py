@@ -20,7 +20,7 @@ from tempfile import TemporaryDirectory
 import polars as pl
 import pytest
 
-from .running import HANGS, TOP, around, hearing
+from .tools.running import HANGS, TOP, around, hearing
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="needs POSIX signals")
 

@@ -20,10 +20,10 @@ from atwood_cli.solver import quantities
 from atwood_cli.solver.machine import Machine
 from atwood_cli.solver.quantities import MEASURED_NAMES, QUANTITIES
 
-from . import oracle
-from .running import TOP, process
 from .test_scene import BY_DEFINITION
 from .test_sentences import REASONS
+from .tools import oracle
+from .tools.running import TOP, process
 
 MAP = (TOP / "atwood_cli" / "README.md").read_text(encoding="utf-8")
 # fmt: off
@@ -72,7 +72,10 @@ def changed(tmp_path: Path) -> Path:
 def test_the_suite_passes_with_what_the_map_names(changed: Path, pytestconfig: pytest.Config) -> None:
     if not pytestconfig.getoption("every_digit"):
         pytest.skip("a suite in the suite: --every-digit")
-    for words in (["tests.regenerate", "--accept"], ["pytest", "--quick", "--ignore", "tests/test_map.py"]):
+    for words in (
+        ["tests.tools.regenerate", "--accept"],
+        ["pytest", "--quick", "--ignore", "tests/test_map.py"],
+    ):
         ran = run(
             [sys.executable, "-m", *words],
             cwd=changed,
@@ -99,7 +102,7 @@ def lacking() -> Iterator[str]:
     known = oracle.expected(read_scene({"m1": 1, "m2": 3, "M": 10, "mu": "0.3", "R": 1}))
     for name, about in QUANTITIES.items():
         if name not in known and name not in MEASURED_NAMES:
-            yield f"tests/oracle.py: expected() has no {name!r}"
+            yield f"tests/tools/oracle.py: expected() has no {name!r}"
         if not hasattr(Machine, name):
             yield f"atwood_cli/solver/machine.py: Machine has no property {name!r}"
         if name not in Solution.__dataclass_fields__:

@@ -13,7 +13,7 @@ import pytest
 
 from atwood_cli import solve_table
 
-from .running import Batch, Ran, process
+from .tools.running import Batch, Ran, process
 
 NO_PARQUET = "atwood: cannot read IN: it is not Parquet that polars can read: "
 

@@ -20,10 +20,10 @@ from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, Measured
 from atwood_cli.tradeoff.tradeoff_page import GREATEST, LEAST
 from atwood_cli.tradeoff.tradeoff_page import save as save_tradeoff
 
-from . import doors, running
-from .regenerate import CASES
-from .running import TOP, called, labels, misplaced, pages_seen, process, words_on
-from .scenes import inputs
+from .tools import doors, running
+from .tools.regenerate import CASES
+from .tools.running import TOP, called, labels, misplaced, pages_seen, process, words_on
+from .tools.scenes import inputs
 
 (PICTURES,) = (page.read_text(encoding="utf-8") for page in CASES if page.stem == "pictures")
 KEPT = re.findall(r"^\$ (?:printf '(.*)' \| )?atwood (.*) --figure \S+(.*)", PICTURES, re.MULTILINE)

@@ -16,9 +16,9 @@ from atwood_cli.solver.inverse import with_number
 from atwood_cli.sweep.changes import LEAST_INPUT, changes
 from atwood_cli.sweep.ranges import read_sweep
 
-from . import oracle
 from .conftest import examples
-from .scenes import with_friction
+from .tools import oracle
+from .tools.scenes import with_friction
 
 positive = st.decimals(Decimal("0.01"), Decimal(100), places=4, allow_nan=False)
 

@@ -22,7 +22,7 @@ from atwood_cli.solver.scene import INPUTS
 from atwood_cli.tables import headings, sheets, sources
 from atwood_cli.tables.sources import Unreadable
 
-from .running import Batch
+from .tools.running import Batch
 
 # Headings and cells: the grammar that `fit` and `batch` share
 

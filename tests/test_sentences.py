@@ -18,9 +18,9 @@ from atwood_cli.solver import quantities as reasons
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.scene import Scene
 
-from . import oracle
 from .conftest import many
-from .scenes import with_friction
+from .tools import oracle
+from .tools.scenes import with_friction
 
 NUMBER = r"([-+\d.e]+)"
 

@@ -21,7 +21,7 @@ from atwood_cli.solver.quantities import STANDARD
 from atwood_cli.sweep.ranges import Row, read_range, read_sweep, solve_rows
 from atwood_cli.sweep.sweep_figure import Curve, panels_of
 
-from .running import FROM, TOP, Atwood, called, on_terminal, plain, process
+from .tools.running import FROM, TOP, Atwood, called, on_terminal, plain, process
 
 SWEEP = ["sweep", "--m1", "1", "--m2", "3", "--mu", "0.3"]
 HELD = ["sweep", "--m1", "1", "--m2", "3"]

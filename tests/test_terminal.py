@@ -10,8 +10,8 @@ import pytest
 
 from atwood_cli.output.text import wrapped
 
-from . import running
-from .running import PAPER, called, on_real_terminal, plain, process
+from .tools import running
+from .tools.running import PAPER, called, on_real_terminal, plain, process
 
 SCENE = "--m1 1 --m2 3"
 COMMANDS = {

@@ -20,7 +20,7 @@ from atwood_cli.reading.answers import read_answers
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 
-from .running import Atwood
+from .tools.running import Atwood
 
 F = Fraction
 

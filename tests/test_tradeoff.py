@@ -16,8 +16,8 @@ from atwood_cli.tradeoff import measure as tradeoff
 from atwood_cli.tradeoff.measure import FAMILIES, SETTINGS, draw_scenes, measure
 from atwood_cli.tradeoff.tradeoff_page import LEGEND, short
 
-from . import oracle
-from .running import Atwood, called
+from .tools import oracle
+from .tools.running import Atwood, called
 
 NAMES = [*SETTINGS]
 

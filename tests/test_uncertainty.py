@@ -19,8 +19,8 @@ from atwood_cli.reading.inputs import read_input
 from atwood_cli.solver.scene import Angle
 
 from .conftest import many
-from .running import LOADED, process
-from .scenes import inputs, of_all_kinds, with_friction
+from .tools.running import LOADED, process
+from .tools.scenes import inputs, of_all_kinds, with_friction
 
 # How they are typed
 

@@ -21,7 +21,7 @@ import pytest
 from atwood_cli import cli
 
 HANGS = 600  # seconds: nothing takes so long on any machine
-TOP = Path(__file__).parent.parent
+TOP = Path(__file__).parent.parent.parent
 FROM = "atwood-cli"
 """What pip is given to install the extras of the program that is installed."""
 PAPER = ["solve", "--m1", "1", "--m2", "3", "--mu", "0.3"]

@@ -1,4 +1,4 @@
-"""solve_arrays beside the paper's formulas in lean NumPy: python -m tests.bench_arrays [ROWS]
+"""solve_arrays beside the paper's formulas in lean NumPy: python -m tests.tools.bench_arrays [ROWS]
 
 Of each family of rows the nanoseconds of processor time a row: the least of some runs, which take turns; and the
 throughput of each accuracy as a part of the paper's, which knows neither regimes nor digits. Where rows take long,

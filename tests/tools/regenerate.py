@@ -1,7 +1,7 @@
-"""The outputs that are kept in files, and what prints each: python -m tests.regenerate brings them up to date.
+"""The outputs that are kept in files, and what prints each: python -m tests.tools.regenerate brings them up to date.
 
 It stops if the exit status of a transcript has changed, or if it prints nothing any more, until told `--accept`.
-`python -m tests.regenerate measured` measures the table and the picture of `examples/tradeoff.md` anew, in minutes.
+`python -m tests.tools.regenerate measured` measures the table and the picture of `examples/tradeoff.md` anew, in minutes.
 """
 
 import re
@@ -25,7 +25,7 @@ PAGES = [TOP / "README.md", *sorted(EXAMPLES.glob("*.md"))]
 SCRIPTS = sorted(EXAMPLES.glob("*.sh"))
 ENGINES = {EXAMPLES / "dask_tables.py": "distributed", EXAMPLES / "polars_lazy.py": "polars"}
 """Examples that another package runs."""
-CASES = sorted((Path(__file__).parent / "cases").glob("*.md"))
+CASES = sorted((TOP / "tests" / "cases").glob("*.md"))
 UNSEEN = "[\0-\x09\x0b-\x1f\x7f\xa0\u2009\u2028\ufeff]"
 SCENE = "--m1 1 --m2 3 --M 10 --mu 0.3"
 

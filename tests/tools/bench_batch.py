@@ -1,4 +1,4 @@
-"""Tables of a million scenes, CSV to CSV and Parquet to Parquet: python -m tests.bench_batch [ROUNDS [ROWS]]
+"""Tables of a million scenes, CSV to CSV and Parquet to Parquet: python -m tests.tools.bench_batch [ROUNDS [ROWS]]
 
 Whole processes, which take turns: rows a second of processor time, and the largest memory of any run.
 """

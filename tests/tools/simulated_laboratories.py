@@ -1,4 +1,4 @@
-"""What `atwood fit` says of laboratories whose truth is known: `python -m tests.coverage [SETS]`.
+"""What `atwood fit` says of laboratories whose truth is known: `python -m tests.tools.simulated_laboratories [SETS]`.
 
 Sets are drawn with a known pulley (c at the rim), axle (f) and delay, with errors of what is measured and of what the
 table does not say. Counted are the 95 % intervals that hold the truth, and their widths over the ideal ones (weighted
