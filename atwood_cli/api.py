@@ -112,7 +112,7 @@ class Solution(Generic[T]):
             answers = self._answers
             match name:
                 case "scene":
-                    value = answers.case.scene
+                    value = answers.decided.scene
                 case "uncertainty":
                     names = answers.names[1:] if answers.uncertain else ()
                     value = {name: answers.uncertainty(name) for name in names}

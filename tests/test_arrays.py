@@ -81,7 +81,7 @@ def hostile() -> list[tuple[Columns, Columns]]:
 @pytest.mark.parametrize("limit", [5e-16, 2e-15])
 def test_errors_are_within_any_limit_that_bounds_are(limit: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Not only within the promise, from which most are far: so a bound that is too small shows."""
-    monkeypatch.setattr(arrays.doubles, "LIMIT", limit)
+    monkeypatch.setattr(arrays.doubles, "MOST_ERROR", limit)
     plan.cache_clear()
     worst = 0.0
     for inputs, exact in hostile():
@@ -191,7 +191,7 @@ def reasons_of(rows: list[Row]) -> Counter[tuple[str, str]]:
     """Why quantities have no value, and that a regime is assumed, as each row's own scene says it, counted."""
     solved = [Answers(read_scene(row)) for row in rows]
     found = Counter((name, one.answer(name).reason) for name in NAMES for one in solved if one[name] is None)
-    return found + Counter({("regime", REGIME_ASSUMED): sum(one.case.mu_assumed for one in solved)})
+    return found + Counter({("regime", REGIME_ASSUMED): sum(one.decided.mu_assumed for one in solved)})
 
 
 @pytest.mark.parametrize("accuracy", ACCURACIES)

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from atwood_cli import solve_arrays
 from atwood_cli.arrays import doubles as doubles_
-from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, LIMIT, PROMISE, UNIT, Bounded, certified
+from atwood_cli.arrays.doubles import DOUBLES, LIBRARY, MOST_ERROR, PROMISE, UNIT, Bounded, proven_double
 from atwood_cli.arrays.pairs import PAIRS, STEP, TABLE_STEPS, head_of, powers, two_product
 from atwood_cli.arrays.program import Program
 from atwood_cli.numbers.formula import Formula, Term
@@ -163,7 +163,7 @@ def test_there_is_no_bound_where_an_exponential_is_too_large() -> None:
     assert [isfinite(bound) for bound in bounds] == [True, False, False]
     (mu,) = symbols(DOUBLES, 1)
     _, bounds = values(DOUBLES.expm1(mu * DOUBLES.pi), np.array([10.0, 90.0, 1e10]) / np.pi)
-    assert [bound < LIMIT for bound in bounds] == [True, False, False]
+    assert [bound < MOST_ERROR for bound in bounds] == [True, False, False]
 
 
 @pytest.mark.parametrize("level", LEVELS)
@@ -204,7 +204,7 @@ def test_bounds_of_pairs_are_hardly_larger_than_errors(name: str) -> None:
 
 def test_the_limit_leaves_room_for_what_bounds_leave_out() -> None:
     """Products of two bounds, and the rounding of a pair to a double."""
-    assert LIMIT * (1 + 100 * LIMIT) + UNIT < PROMISE
+    assert MOST_ERROR * (1 + 100 * MOST_ERROR) + UNIT < PROMISE
 
 
 def test_bounds_are_as_tight_as_they_need_be() -> None:
@@ -268,7 +268,7 @@ def test_what_may_be_off_by_more_than_promised_is_not_certified(
 ) -> None:
     (x,) = symbols(DOUBLES, 1)
     column = x.parts[0] * row_error if row_error else 0.0
-    _, condition = certified(Bounded(DOUBLES, x.parts, fixed_error, column), "certified")
+    _, condition = proven_double(Bounded(DOUBLES, x.parts, fixed_error, column), "certified")
     if condition is None:
         assert (right, row_error) == (True, 0)
     else:
@@ -291,7 +291,7 @@ def test_exact_takes_a_double_just_where_both_ends_of_the_bound_round_to_it() ->
     columns = [first, second, bound]
     *parts, row_error = (Formula("symbol", f"x{i}") for i in range(3))
     value = Bounded(PAIRS, parts, 0.0, row_error, False)
-    double, condition = certified(value, "exact")
+    double, condition = proven_double(value, "exact")
     assert condition is not None
     doubles, sure = worked_out([double, condition], **{f"x{i}": x for i, x in enumerate(columns)})
     taken = Counter[str]()

@@ -159,13 +159,18 @@ def exact(q: Fraction) -> Any:
 def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
     """The formula as printed, with what is given and the results so far, gives each result; the laws hold."""
     mp.mp.dps = 60
-    case = read_answers(SCENES[kind], None).case
-    scene, motion, wrap = case.scene, case.motion, exact(case.scene.wrap.number)
+    decided = read_answers(SCENES[kind], None).decided
+    scene, motion, wrap = decided.scene, decided.motion, exact(decided.scene.wrap.number)
     names = {"mu": "μ", "mu_k": "μ_k", "drop": "s", "time": "t"}
     given = {x: getattr(scene, x) for x in INPUTS} | motion._asdict()
     known = {names.get(name, name): q for name, q in given.items() if q is not None}
-    known |= {"M": case.pulley_mass or Fraction(0), "c": case.rim_mass, "β": case.beta, "b": case.axle_mass}
-    known |= {"f_axle": case.axle_friction, "τ_axle": scene.axle and scene.axle.number}
+    known |= {
+        "M": decided.pulley_mass or Fraction(0),
+        "c": decided.rim_mass,
+        "β": decided.beta,
+        "b": decided.axle_mass,
+    }
+    known |= {"f_axle": decided.axle_friction, "τ_axle": scene.axle and scene.axle.number}
     env = {name: exact(q) for name, q in ({"a": Fraction(0)} | known).items() if isinstance(q, Fraction)}
     env |= {"π": +mp.pi, "φ": wrap if scene.wrap.unit == "rad" else mp.radians(wrap), "|a|": abs(env["a"])}
     if scene.mu == 0 or scene.mu_k == 0:
@@ -216,20 +221,20 @@ def check_lesson(answers: Answers, full: Explanation, names: tuple[str, ...]) ->
     lesson = explain(answers, names)
     known = {*Derivation(answers).inputs} - derived(full)
     known |= {"π", "φ"} | {side for one in all_equations(full) for side in [symbol_of(one)] if not one.needs}
-    known |= {"c"} if answers.case.locked else set()  # (33) is solved for it
+    known |= {"c"} if answers.decided.locked else set()  # (33) is solved for it
     for equation in all_equations(lesson):
-        assert equation.needs - derived(lesson) <= known, (answers.case.scene, names, equation)
+        assert equation.needs - derived(lesson) <= known, (answers.decided.scene, names, equation)
     introduced = {*"m1 m2 T1 T2 a α I M c f_axle".split()}  # before (1) to (3)
     left_out = derived(full) - derived(lesson) - known - introduced
     for _, words, formulas in lesson.paragraphs:
         marked = [*" ".join(words).split("`")[1::2], *(chain(one)[0] for one in formulas)]
         mentioned = re.findall(r"\(\d+\)", " ".join(words)) + re.findall(r"[^\W\d]\w*\*?", " ".join(marked))
-        assert not left_out.intersection(mentioned), (answers.case.scene, names, words)
+        assert not left_out.intersection(mentioned), (answers.decided.scene, names, words)
     for name in names:
-        value = answers.shown[name]
+        value = answers.to_six_digits[name]
         if name != "regime" and value is not None and not is_infinite(value):
             symbol = Derivation(answers).symbol({"acceleration": "magnitude"}.get(name, name))
-            assert symbol in derived(lesson) | known, (answers.case.scene, name)
+            assert symbol in derived(lesson) | known, (answers.decided.scene, name)
 
 
 def derived(found: Explanation) -> set[str]:
@@ -277,8 +282,8 @@ IN_MATHEMATICS = re.compile(r"\$\$.*?\$\$|\$.*?\$", re.DOTALL)
 
 def handout(given: Any) -> str:
     answers = read_answers(given, None)
-    case = answers.case
-    return "\n".join(as_markdown(inputs_in_words(case.scene).values(), explain(answers)))
+    decided = answers.decided
+    return "\n".join(as_markdown(inputs_in_words(decided.scene).values(), explain(answers)))
 
 
 def check_handout(page: str) -> None:

@@ -36,7 +36,7 @@ CHANGES = [
     ("add a quantity", "solver/quantities.py", "    # Of a scene whose motion was",
      '    "trial": About("limits", "Q", "kg", "", "both masses"),\n'),
     ("add a quantity", "solver/machine.py", "    @property\n    def gravity(",
-     "    @property\n    def trial(self) -> N:\n        return self.ar.number(self.case.light) + self.case.heavy\n\n"),
+     "    @property\n    def trial(self) -> N:\n        return self.ar.number(self.decided.light) + self.decided.heavy\n\n"),
     ("add a quantity", "api.py", "    pulley_mass: T |", "    trial: T | None\n"),
     ("take a unit", "reading/units.py", '"kg": "1", ', '"stater": "7", '),
     ("add a form", "output/text.py", '    "csv": Form(',

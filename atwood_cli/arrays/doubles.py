@@ -21,7 +21,7 @@ The proof. Let u = 2^-53.
   large. So no operation on a certified value leaves the normal doubles, but for squares that are negligible
   beside the term to which they are added.
 - Bounds are of first order: products of two bounds are left out. They are below 1e-27, and the limit that
-  bounds are compared with is 5e-16 below the promise (`LIMIT`).
+  bounds are compared with is 5e-16 below the promise (`MOST_ERROR`).
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ WINDOW = 2.0**-120, 2.0**120
 """The range of inputs for which the bounds hold, in SI units."""
 PROMISE = 2e-14
 """The largest relative error of a value that is certified."""
-LIMIT = PROMISE - 5e-16
+MOST_ERROR = PROMISE - 5e-16
 """The largest bound that is certified. Bounds leave out products of two, and the rounding of a pair."""
 END_ERROR = 2.0**-104
 """A bound on the relative rounding error of the ends between which a value lies."""
@@ -244,7 +244,7 @@ class Doubles:
     def is_zero(self, x: Bounded) -> bool:
         return x.parts == (0.0,)
 
-    def not_negative(self, x: Bounded) -> Bounded:
+    def known_not_negative(self, x: Bounded) -> Bounded:
         x.positive = True
         return x
 
@@ -317,7 +317,7 @@ def precise_cos_sin(degrees: Fraction) -> tuple[Fraction, Fraction]:
 # When a double is right: within the promise of `certified`, or nearest to the exact value
 
 
-def certified(value: Bounded, accuracy: Accuracy) -> tuple[Term, Formula | None]:
+def proven_double(value: Bounded, accuracy: Accuracy) -> tuple[Term, Formula | None]:
     """Return a value as a double, and the condition that it is right in a row; None if it always is.
 
     A double is the nearest one if both ends of the bound round to it.
@@ -328,6 +328,6 @@ def certified(value: Bounded, accuracy: Accuracy) -> tuple[Term, Formula | None]
         error = absolute(first) * (value.bound + END_ERROR)
         ends = [equal(first + (second - error), first), equal(first + (second + error), first)]
         return double, either(both(*ends), equal(value.bound, 0.0))
-    if not isinstance(value.row_error, Formula) and value.fixed_error <= LIMIT:
+    if not isinstance(value.row_error, Formula) and value.fixed_error <= MOST_ERROR:
         return double, None
-    return double, at_most(value.bound, LIMIT)
+    return double, at_most(value.bound, MOST_ERROR)

@@ -120,8 +120,8 @@ class Kind(IntEnum):
 
 OUTSIDE = {
     name: {Kind.NEGATIVE}
-    | (set() if domain.zero else {Kind.ZERO})
-    | (set() if domain.inf else {Kind.INFINITE})
+    | (set() if domain.may_be_zero else {Kind.ZERO})
+    | (set() if domain.may_be_infinite else {Kind.INFINITE})
     for name, domain in INPUTS.items()
 }
 """The kinds of numbers that are outside the domain of an input, by its name."""

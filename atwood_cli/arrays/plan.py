@@ -43,7 +43,7 @@ from ..solver.decisions import Decisions, LimitingCase
 from ..solver.machine import Machine
 from ..solver.quantities import REGIMES, Accuracy, Undetermined
 from ..solver.scene import INPUTS, Angle, Axle, Scene
-from .doubles import DOUBLES, Doubles, NoProgram, certified, equal, less
+from .doubles import DOUBLES, Doubles, NoProgram, equal, less, proven_double
 from .pairs import PAIRS
 from .program import Program
 
@@ -121,14 +121,14 @@ class _GroupDecisions(Decisions):
         is_column = not isinstance(self.scene.wrap.number, Fraction)
         return self._decided("ends_hang_down") if is_column else super().ends_hang_down
 
-    def slips_at(self, which: LimitingCase) -> bool:
-        return self._decided(f"slips_at {which}")
+    def slips_at(self, at: LimitingCase) -> bool:
+        return self._decided(f"slips_at {at}")
 
-    def slides_at(self, which: LimitingCase) -> bool:
-        return self.slips_at(which) if self.limit_is_static else self._decided(f"slides_at {which}")
+    def slides_at(self, at: LimitingCase) -> bool:
+        return self.slips_at(at) if self.limit_is_static else self._decided(f"slides_at {at}")
 
-    def moves_axle(self, which: Literal["difference", "heavy"]) -> bool:
-        return self._decided(f"moves_axle {which}")
+    def moves_axle(self, name: Literal["difference", "heavy"]) -> bool:
+        return self._decided(f"moves_axle {name}")
 
 
 def _machine_of_columns(task: Task, ar: Doubles) -> Machine[Any]:
@@ -170,9 +170,9 @@ def plan(task: Task, accuracy: Accuracy) -> Plan:
     for name in task.names:
         try:
             if name == "regime":
-                constants[name] = REGIMES.index(machine.case.regime)
+                constants[name] = REGIMES.index(machine.decided.regime)
                 continue
-            values[name], condition = certified(getattr(machine, name), accuracy)
+            values[name], condition = proven_double(getattr(machine, name), accuracy)
         except Undecided as undecided:
             question = question or str(undecided)
             asking.append(name)
@@ -203,19 +203,19 @@ def _answer(task: Task, question: str, ar: Doubles) -> dict[str, Term]:
     if question == "ends_hang_down":
         return {"sure": less(0.0, wrap), "answer": equal(Formula("fmod", wrap, formula(360.0)), 180.0)}
     machine, (method, point) = _machine_of_columns(task, ar), question.split()
-    case = machine.case
+    decided = machine.decided
     if method == "moves_axle":
-        margin: Any = getattr(case, point) * machine.g - machine.f
+        margin: Any = getattr(decided, point) * machine.g - machine.f
     else:
-        mu = case.scene.mu if method == "slips_at" else case.limiting_mu
-        margin = ar.log1p(case.ratio_minus_1(cast(LimitingCase, point), ar)) - ar.number(mu) * machine.phi
+        mu = decided.scene.mu if method == "slips_at" else decided.limiting_mu
+        margin = ar.log1p(decided.ratio_minus_1(cast(LimitingCase, point), ar)) - ar.number(mu) * machine.phi
     return {"sure": less(margin.bound, 0.25), "answer": less(0.0, margin.parts[0])}
 
 
 def nearest_double(task: Task, name: str, number: Callable[[str], Any]) -> float | None:
     """Solve one quantity of one row exactly, by its group's decisions; None if they do not suffice."""
-    case = _GroupDecisions(task, number)
+    decided = _GroupDecisions(task, number)
     try:
-        return settle(lambda ar: getattr(Machine(case, ar), name), to_double, ENOUGH_DIGITS)
+        return settle(lambda ar: getattr(Machine(decided, ar), name), to_double, ENOUGH_DIGITS)
     except (Undecided, Undetermined, OverflowError):
         return None

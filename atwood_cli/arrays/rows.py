@@ -119,8 +119,8 @@ class Rows:
         # Exact arithmetic decides the rest.
         for place in np.flatnonzero(~sure).tolist():
             method, point = question.split()
-            case = Decisions(task.pattern.scene(partial(self.number, rows[place])))
-            answers[place] = getattr(case, method)(point)
+            decided = Decisions(task.pattern.scene(partial(self.number, rows[place])))
+            answers[place] = getattr(decided, method)(point)
         return answers
 
     def _solve_one_by_one(self, rows: Index, task: Task) -> None:
@@ -142,7 +142,7 @@ class Rows:
             answers = Answers(task.pattern.scene(number))
             for name in task.names:
                 if name == "regime":
-                    self.results[name][same] = REGIMES.index(answers.case.regime)
+                    self.results[name][same] = REGIMES.index(answers.decided.regime)
                     continue
                 value = answers[name]
                 self.results[name][same] = nan if value is None else float(value)

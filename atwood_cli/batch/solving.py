@@ -231,7 +231,7 @@ def _double(heading: Heading, cell: str | float, comma: bool) -> float:
     else:
         read_value(name, cell)  # raises if it is NaN, or infinite and must not be
         exact = Fraction(cell) if isfinite(cell) else inf
-    if exact == inf and parameter_of(name).inf:
+    if exact == inf and parameter_of(name).may_be_infinite:
         return inf
     value = to_double(Fraction(exact) * heading.factor)
     if abs(value) == inf or (exact and not value):

@@ -45,7 +45,7 @@ def contact(
 ) -> int:
     answers = Answers(read_scene(given), read_digits(digits))
     if not target.form:
-        answers = answers.shown
+        answers = answers.to_six_digits
     if points is not None and figure is not None and not target.form and target.file is None:
         raise SceneError("points", points, "has no effect on a picture; leave it out")
     arc = balance.contact(answers, balance.USUAL_POINTS if points is None else points)

@@ -64,7 +64,7 @@ def scene_option(name: str, group: str = "Scene", remark: str | None = None) -> 
     text = f"{meaning}{unit}{REMARKS.get(name, '') if remark is None else remark}."
     metavar = (parameter.dimension or "number").split()[-1].upper()
     words = dict(parameter.names)
-    if parameter.inf:
+    if parameter.may_be_infinite:
         words["inf"] = "a locked pulley"
     return option(group, *flags, help=text, metavar=metavar, words=(lambda: words) if words else None)
 

@@ -98,7 +98,7 @@ def solve(
         bare=[] if explain else values,
         below=lambda: print_budget(answers, names) if budget else None,
     )
-    aside = [*show(report, target), *(reasons(answers.shown, names) if explain else [])]
+    aside = [*show(report, target), *(reasons(answers.to_six_digits, names) if explain else [])]
     failures = [why for condition in conditions if (why := failure(answers, condition))]
     say(*aside, *failures)
     return COULD_NOT if "" in values or failures else DONE

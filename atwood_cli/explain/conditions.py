@@ -71,13 +71,13 @@ def read_condition(typed: str) -> Condition:
 
 def failure(answers: Answers, expected: Condition) -> str:
     """Say what holds instead of what is expected, "" if that holds."""
-    ends = answers.in_doubt()
+    ends = answers.nearby()
     if not _holds(answers, expected):
         instead = unmarked(_instead(answers, expected))
     elif failing := [end for end in ends if not (end and _holds(end, expected))]:
-        regime = failing[0].case.regime if failing[0] and expected.name in REGIMES else ""
+        regime = failing[0].decided.regime if failing[0] and expected.name in REGIMES else ""
         instead = f"within two standard uncertainties it may {MAY.get(regime, 'fail')}"
-    elif expected.name in REGIMES and any(one.case.mu_assumed for one in (answers, *ends) if one):
+    elif expected.name in REGIMES and any(one.decided.mu_assumed for one in (answers, *ends) if one):
         instead = f"that is only {REGIME_ASSUMED}"
     else:
         return ""
@@ -87,7 +87,7 @@ def failure(answers: Answers, expected: Condition) -> str:
 def _holds(answers: Answers, expected: Condition) -> bool:
     """Decide whether a condition is true; a comparison is not if the quantity has no finite value."""
     if expected.name in REGIMES:
-        return answers.case.regime == expected.name
+        return answers.decided.regime == expected.name
     try:
         return bool(OPERATORS[expected.sign](_above(answers, expected), 0))
     except (Undetermined, ArithmeticError):
@@ -97,12 +97,12 @@ def _holds(answers: Answers, expected: Condition) -> bool:
 def _instead(answers: Answers, expected: Condition) -> str:
     """Say the regime, or the value of the quantity, or why it has none."""
     if expected.name in REGIMES:
-        return f"it is {answers.case.regime}"
+        return f"it is {answers.decided.regime}"
     value, reason = answers.answer(expected.name)
     if value is None or reason == TOO_SMALL:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
         return f"{expected.name} has {why}"
-    number = expected.number.with_gravity(answers.case.scene.g)
+    number = expected.number.with_gravity(answers.decided.scene.g)
     given = None if number.unit == "rad" else Fraction(number.value)
     if given is not None and not _above(answers, expected):  # digits would not show that the two are equal
         shown = as_typed(given)

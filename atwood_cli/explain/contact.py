@@ -46,20 +46,20 @@ class Contact(NamedTuple):
     notes: list[str]
 
 
-def kind_of(case: Decisions) -> Profile:
+def kind_of(decided: Decisions) -> Profile:
     """Return the profile of the tension along the arc: with friction to spare, the string creeps.
 
     Raises SceneError if the scene does not determine the arc.
     """
-    if not case.light:
+    if not decided.light:
         raise SceneError(
-            "m1" if case.scene.m1 == 0 else "m2",
+            "m1" if decided.scene.m1 == 0 else "m2",
             0,
             "leaves no arc of contact, as that end is fixed to the pulley; give both masses above 0",
         )
-    if case.regime == "no-slip" and not (case.pulley_known or case.sign == 0):
+    if decided.regime == "no-slip" and not (decided.pulley_known or decided.sign == 0):
         raise SceneError("M", None, "is missing: the forces depend on the pulley's mass; give M")
-    spare = case.regime == "no-slip" and case.scene.mu is not None and not case.tensions_equal
+    spare = decided.regime == "no-slip" and decided.scene.mu is not None and not decided.tensions_equal
     return "creep" if spare else "exponential"
 
 
@@ -68,24 +68,24 @@ def contact(answers: Answers, points: int | str = USUAL_POINTS) -> Contact:
 
     Raises SceneError if the scene does not determine the arc.
     """
-    kind = kind_of(answers.case)
+    kind = kind_of(answers.decided)
     last = read_whole("points", points, 2, MAX_POINTS) - 1
     rows = [point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
-    notes = [about(answers, kind), *map(unmarked, remarks(answers.shown))]
+    notes = [about(answers, kind), *map(unmarked, remarks(answers.to_six_digits))]
     notes += reasons(answers, ("tension_1", "tension_2"))
     return Contact(kind, rows, _balance(answers, kind), notes)
 
 
 def point(answers: Answers, kind: Profile, q: Fraction) -> dict[str, Rounded]:
     """Return the columns at the fraction q of the arc, counted from m1's end."""
-    scene, sign = answers.case.scene, answers.case.sign
+    scene, sign = answers.decided.scene, answers.decided.sign
     from_light = q if sign >= 0 else 1 - q
 
     def beyond_the_stuck_piece(machine: Machine[Any]) -> Any:
         return machine.ar.number(from_light) * machine.phi - machine.arcs(kind)[0].end.angle
 
-    piece = int(kind == "creep" and is_positive(answers.on_machines(beyond_the_stuck_piece)))
-    stuck = (kind == "creep" and piece == 0) or answers.case.frictionless
+    piece = int(kind == "creep" and is_positive(answers.in_any_arithmetic(beyond_the_stuck_piece)))
+    stuck = (kind == "creep" and piece == 0) or answers.decided.frictionless
 
     def tension(machine: Machine[Any]) -> Any:
         # Tensions at both ends are exact, and so is that of a piece stuck from the light end on.
@@ -140,7 +140,7 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
 
     torque = {
         "contact": answers.settle(
-            lambda m: arc.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.case.sign
+            lambda m: arc.torque_per_radius(m.ar, m.arcs(kind)) * _radius(m) * m.decided.sign
         ),
         "ends": answers.settle(lambda m: m.tension_difference * _radius(m)),
     }
@@ -153,11 +153,11 @@ def _radius(machine: Machine[Any]) -> Any:
 
 def about(answers: Answers, kind: Profile) -> str:
     """Return the sentence on a profile of the tension."""
-    if answers.case.frictionless:
+    if answers.decided.frictionless:
         return WITHOUT_FRICTION
-    if answers.case.mu_assumed:
+    if answers.decided.mu_assumed:
         return WITHOUT_MU
     if kind == "creep":
-        return CREEP.format(angle=format_number(answers.shown["least_wrap"]))
-    mu = "mu_k" if answers.case.slides_by_mu_k or answers.case.slide_measured else "mu"
+        return CREEP.format(angle=format_number(answers.to_six_digits["least_wrap"]))
+    mu = "mu_k" if answers.decided.slides_by_mu_k or answers.decided.slide_measured else "mu"
     return f"Friction is at its limit, {mu} n, all along the arc."

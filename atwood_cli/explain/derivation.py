@@ -48,12 +48,14 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
 
     Digits are those of ``answers``, or as many as tables show.
     """
-    answers, derivation = answers.shown, Derivation(answers.shown)
+    answers, derivation = answers.to_six_digits, Derivation(answers.to_six_digits)
     digits, paragraphs = derivation.digits, [*_paragraphs(derivation)]
     names = dict.fromkeys(only or [*answers.found, *MOTION])
     known = [name for name in names if name != "regime" and derivation.exists(name)]
     if only:
-        decides = ["mu_verge"] if derivation.case.pulley_known else ["least_heavier_mass", "massless_verge"]
+        decides = (
+            ["mu_verge"] if derivation.decided.pulley_known else ["least_heavier_mass", "mu_verge_massless"]
+        )
         wanted = [*known, *(decides if "regime" in only else ())]
         paragraphs = _needed(paragraphs, {*map(derivation.symbol, wanted)})
     answer = [verdict(answers)]
@@ -145,16 +147,16 @@ FUNCTIONS: Mapping[str, Callable[..., Any]] = {**vars(physics), "product": mul, 
 
 def _fields(derivation: Derivation) -> dict[str, str]:
     """Return what stands between braces in `derivation.md`."""
-    case = derivation.case
+    decided = derivation.decided
     return {
         "l": derivation.light,
         "h": derivation.heavy,
         "a": derivation.symbol("magnitude"),
         "difference": derivation.symbol("difference"),
         "phi": derivation.symbol("phi"),
-        "kinetic": "kinetic " if case.slides_by_mu_k else "",
-        "kin": "_kin" if case.slides_by_mu_k else "",
-        "limiting_": "limiting_" if case.slides_by_mu_k else "",
+        "kinetic": "kinetic " if decided.slides_by_mu_k else "",
+        "kin": "_kin" if decided.slides_by_mu_k else "",
+        "limiting_": "limiting_" if decided.slides_by_mu_k else "",
         "limiting_symbol": derivation.symbol("limiting_k_minus_1"),
         "verdict": verdict(derivation.answers),
     }
@@ -162,47 +164,47 @@ def _fields(derivation: Derivation) -> dict[str, str]:
 
 def _holds(derivation: Derivation, condition: str, conditions: Mapping[str, bool]) -> bool:
     """Decide a condition: one of ``conditions``, on an input, a regime, or a decision of `Decisions`."""
-    case = derivation.case
+    decided = derivation.decided
     match condition.split():
         case ["not", *others]:
             return not _holds(derivation, " ".join(others), conditions)
         case [name, "is", "given"]:
-            return {**case.scene._asdict(), **case.motion._asdict()}[name] is not None
+            return {**decided.scene._asdict(), **decided.motion._asdict()}[name] is not None
         case ["finds", name]:
-            return case.motion.finds == name
+            return decided.motion.finds == name
         case [name, "exists"]:
             return derivation.answers[name] is not None
         case [regime] if regime in REGIMES:
-            return case.regime == regime
+            return decided.regime == regime
     if condition in conditions:
         return conditions[condition]
-    return bool(getattr(case, condition.replace(" ", "_")))
+    return bool(getattr(decided, condition.replace(" ", "_")))
 
 
 def _conditions(derivation: Derivation) -> dict[str, bool]:
     """Decide the conditions of `derivation.md` that are made of several decisions."""
-    case, scene, answers = derivation.case, derivation.scene, derivation.answers
-    at_rest = case.sign == 0 or case.pulley_at_rest
-    grips, moves = case.regime == "no-slip", answers["acceleration"] is not None
+    decided, scene, answers = derivation.decided, derivation.scene, derivation.answers
+    at_rest = decided.sign == 0 or decided.pulley_at_rest
+    grips, moves = decided.regime == "no-slip", answers["acceleration"] is not None
     is_disk = scene.I is None and scene.inertia == Fraction(1, 2)
     critical_pulley, heavier, lighter = (
         answers[f"critical_{name}_mass"] is not None for name in ("pulley", "heavier", "lighter")
     )
-    by_heavier = heavier and not case.slips_at_rest
-    by_lighter = lighter and not (case.pulley_is_ideal or case.pulley_at_rest_until_it_slips)
+    by_heavier = heavier and not decided.slips_at_rest
+    by_lighter = lighter and not (decided.pulley_is_ideal or decided.pulley_at_rest_until_it_slips)
     return {
-        "equal masses": case.sign == 0,
-        "m1 is heavier": case.sign < 0,
+        "equal masses": decided.sign == 0,
+        "m1 is heavier": decided.sign < 0,
         "half a turn": scene.wrap.is_half_turn,
-        "axle torque": "τ_axle" in derivation.inputs and case.has_axle_friction,
-        "paper's pulley": is_disk and not case.has_axle_friction and not case.pulley_at_rest,
-        "ratio is known": case.pulley_known and not case.tensions_equal,
+        "axle torque": "τ_axle" in derivation.inputs and decided.has_axle_friction,
+        "paper's pulley": is_disk and not decided.has_axle_friction and not decided.pulley_at_rest,
+        "ratio is known": decided.pulley_known and not decided.tensions_equal,
         "mu is positive": bool(scene.mu),
-        "held by the axle": case.axle_holds and not case.locked,
-        "turning": not (case.pulley_at_rest or case.tensions_equal),
-        "masses at rest": grips and at_rest and not case.motion.finds,
-        "a is computed": moves and grips and not at_rest and not case.motion.finds,
-        "a from friction": not grips and not case.slide_measured,
-        "rim at rest": case.regime == "slip" and (case.rim_at_rest or case.frictionless),
+        "held by the axle": decided.axle_holds and not decided.locked,
+        "turning": not (decided.pulley_at_rest or decided.tensions_equal),
+        "masses at rest": grips and at_rest and not decided.motion.finds,
+        "a is computed": moves and grips and not at_rest and not decided.motion.finds,
+        "a from friction": not grips and not decided.slide_measured,
+        "rim at rest": decided.regime == "slip" and (decided.rim_at_rest or decided.frictionless),
         "verge by the ratio": critical_pulley or by_heavier or by_lighter,
     }

@@ -57,18 +57,18 @@ UNITS = {
     ),
     **dict.fromkeys(("light_tension", "heavy_tension", "difference", "f_axle"), "N"),
     **dict.fromkeys(("magnitude", "a", "|a|", "g"), "m/s²"),
-    **dict.fromkeys(("phi", "alpha"), "rad"),
+    **dict.fromkeys(("phi", "limiting_arc"), "rad"),
 }
 """Units of the model's intermediate values, by name, and of inputs, by symbol."""
 INTERMEDIATE_SYMBOLS = {
     "half_sine": "sin(φ/2)",
     "ratio_minus_1": "x",
-    "massless_verge": "μ_0",
+    "mu_verge_massless": "μ_0",
     "k_minus_1": "k - 1",
     "capstan_ratio": "k",
     "friction_mass": "z",
     "drive": "d",
-    "alpha": "φ_lim",
+    "limiting_arc": "φ_lim",
     "critical_pulley_mass": "M*",
     "mu_verge": "μ*",
 }
@@ -85,30 +85,30 @@ class Derivation:
     """
 
     def __init__(self, answers: Answers) -> None:
-        self.answers, self.case, self.scene = answers, answers.case, answers.case.scene
+        self.answers, self.decided, self.scene = answers, answers.decided, answers.decided.scene
         self.digits = answers.digits or SHOWN_DIGITS
-        self.shown: set[str] = set()
-        self.light, self.heavy = ("2", "1") if self.case.sign < 0 else ("1", "2")
+        self.to_six_digits: set[str] = set()
+        self.light, self.heavy = ("2", "1") if self.decided.sign < 0 else ("1", "2")
         self.symbols = self._symbols()
         self.inputs = {name: Symbol(name, x) for name, x in self._values().items() if x is not None}
-        motion = self.case.motion
+        motion = self.decided.motion
         self.found = {"c", "M"} if motion.finds == "M" else {motion.finds}
         if motion.time is not None:
             self.found.add(self.symbols["magnitude"])
 
     def _values(self) -> dict[str, Fraction | None]:
         """Return what is given or found, by symbol."""
-        case, scene, motion = self.case, self.scene, self.case.motion
+        decided, scene, motion = self.decided, self.scene, self.decided.motion
         return {
             **{name: getattr(scene, name) for name in ("m1", "m2", "g", "I", "R")},
-            "M": case.pulley_mass,
-            "c": case.rim_mass,
-            "β": case.beta,
+            "M": decided.pulley_mass,
+            "c": decided.rim_mass,
+            "β": decided.beta,
             "μ": scene.mu,
             "μ_k": scene.mu_k,
-            "f_axle": case.axle_friction if case.has_axle_friction else None,
-            "b": case.axle_mass if case.has_axle_friction else None,
-            self.symbols["magnitude"]: case.measured_acceleration if motion.finds else None,
+            "f_axle": decided.axle_friction if decided.has_axle_friction else None,
+            "b": decided.axle_mass if decided.has_axle_friction else None,
+            self.symbols["magnitude"]: decided.measured_acceleration if motion.finds else None,
             "s": motion.drop,
             "t": motion.time,
             "τ_axle": scene.axle.number if scene.axle and scene.axle.unit == "N m" else None,
@@ -116,21 +116,21 @@ class Derivation:
 
     def _symbols(self) -> dict[str, str]:
         """Return the symbols that are not in the table of quantities, or differ from it in this scene."""
-        case, scene = self.case, self.scene
-        kin = "_kin" if case.slides_by_mu_k else ""
+        decided, scene = self.decided, self.scene
+        kin = "_kin" if decided.slides_by_mu_k else ""
         symbols = INTERMEDIATE_SYMBOLS | {
             "limiting_k_minus_1": f"k{kin} - 1",
             "limiting_friction_mass": f"z{kin}",
             "limiting_drive": f"d{kin}",
             "phi": "π" if scene.wrap.is_half_turn else "φ",
-            "magnitude": "a" if case.sign >= 0 else "|a|",
+            "magnitude": "a" if decided.sign >= 0 else "|a|",
             "light_tension": f"T{self.light}",
             "heavy_tension": f"T{self.heavy}",
             "difference": f"T{self.heavy} - T{self.light}",
             "tension_ratio": f"T{self.heavy}/T{self.light}",
-            "rim_acceleration": "a_rim" if case.regime == "slip" else "a",
+            "rim_acceleration": "a_rim" if decided.regime == "slip" else "a",
         }
-        if case.slide_measured:
+        if decided.slide_measured:
             symbols |= {"limiting_k_minus_1": "x_kin", "mu_k": "μ_k"}
         return symbols
 
@@ -154,7 +154,7 @@ class Derivation:
         arithmetic: Any = Symbols([*self.inputs.values()])
         known = {other: Formula("symbol", Symbol(symbol, other)) for other, symbol in self.symbols.items()}
         known.pop(name, None)
-        recorded: Formula = getattr(Machine(self.case, arithmetic, known), name)
+        recorded: Formula = getattr(Machine(self.decided, arithmetic, known), name)
         return recorded
 
     def by(self, label: str, name: str, law: Callable[..., Any], symbols: str) -> Equation:
@@ -189,9 +189,9 @@ class Derivation:
         else:
             quantity, keep = attrgetter(symbol.of), digits
             try:
-                exact = self.answers.on_machines(quantity)(EXACT)
+                exact = self.answers.in_any_arithmetic(quantity)(EXACT)
             except Irrational:
-                return Decimal(self.answers.to(digits).settle(quantity)), False
+                return Decimal(self.answers.rounded_to(digits).settle(quantity)), False
         if Fraction(to_digits(keep)(exact)) == exact:
             return Decimal(as_typed(exact)), True
         return to_digits(digits)(exact), False
@@ -207,9 +207,9 @@ class Derivation:
 
         Only the result is shown if it is said from which symbols it ``follows``.
         """
-        if name in self.shown or not self.exists(name):
+        if name in self.to_six_digits or not self.exists(name):
             return
-        self.shown.add(name)
+        self.to_six_digits.add(name)
         recorded = None if follows else self._formula(name)
         yield self._worked_out(label, Symbol(self.symbol(name), name), recorded, follows)
 

@@ -24,7 +24,7 @@ def unmarked(words: str) -> str:
 
 def notes(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return sentences on the regime and why, and on the quantities named, as `reasons`."""
-    said = [verdict(answers), *remarks(answers.shown)]
+    said = [verdict(answers), *remarks(answers.to_six_digits)]
     return [*map(unmarked, said), *reasons(answers, names)]
 
 
@@ -55,28 +55,28 @@ def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:
 
 def verdict(answers: Answers) -> str:
     """Say what the string does, and why."""
-    answers = answers.shown
-    case, scene = answers.case, answers.case.scene
-    if case.sign == 0:
+    answers = answers.to_six_digits
+    decided, scene = answers.decided, answers.decided.scene
+    if decided.sign == 0:
         return "At rest: the masses are equal, so no friction is needed."
-    if case.regime == "verge":
+    if decided.regime == "verge":
         return _on_the_verge(answers)
-    if case.regime == "slip":
+    if decided.regime == "slip":
         return _slips(answers)
-    if case.axle_holds:
-        most = format_number(_beside(answers, case.difference)(case.axle_mass))
+    if decided.axle_holds:
+        most = format_number(_beside(answers, decided.difference)(decided.axle_mass))
         held = f"At rest: axle friction can hold a difference of masses of up to {most} kg."
-        return f"{held} {_grips(answers)}" if case.light else held
-    if case.tensions_equal:
+        return f"{held} {_grips(answers)}" if decided.light else held
+    if decided.tensions_equal:
         return "No slip: a massless pulley needs no friction to turn, so both tensions are equal."
-    if not case.light:
+    if not decided.light:
         return "No slip: the string's end is fixed to the pulley."
-    if scene.mu is None or case.pulley_known:
+    if scene.mu is None or decided.pulley_known:
         return _grips(answers)
-    least = answers.rounded("least_heavier_mass", _beside(answers, case.heavy))
+    least = answers.rounded("least_heavier_mass", _beside(answers, decided.heavy))
     if least.is_infinite() or least.adjusted() > MAX_MAGNITUDE:
         return "No slip on any pulley, for any heavier mass that can be typed."
-    heavy, above = as_typed(case.heavy), format_number(least)
+    heavy, above = as_typed(decided.heavy), format_number(least)
     return (
         f"No slip on any pulley: the heavier mass is {heavy} kg, and only above {above} kg does a heavy"
         " enough pulley make the string slip."
@@ -85,14 +85,14 @@ def verdict(answers: Answers) -> str:
 
 def _enough(answers: Answers, name: str = "mu_verge") -> str:
     """Say the least coefficient that holds the string."""
-    return format_number(answers.rounded(name, _beside(answers, answers.case.scene.mu)))
+    return format_number(answers.rounded(name, _beside(answers, answers.decided.scene.mu)))
 
 
 def _grips(answers: Answers) -> str:
     """Say why the string does not slip on the pulley, or that this is assumed."""
-    case, scene = answers.case, answers.case.scene
+    decided, scene = answers.decided, answers.decided.scene
     if scene.mu is None:
-        no_mass = scene.M is None and scene.I is None and not case.axle_holds
+        no_mass = scene.M is None and scene.I is None and not decided.axle_holds
         where = " on a massless pulley" if no_mass else ""
         return (
             f"`mu` is not given, so the string is assumed not to slip: true{where} if `mu` is at least"
@@ -102,7 +102,7 @@ def _grips(answers: Answers) -> str:
 
 
 def _on_the_verge(answers: Answers) -> str:
-    if not answers.case.scene.mu:
+    if not answers.decided.scene.mu:
         return "Slips on any pulley with mass, as `mu` = 0; the values are for a massless pulley."
     massless = _on_pulley(answers, Fraction(0))
     return (
@@ -113,17 +113,19 @@ def _on_the_verge(answers: Answers) -> str:
 
 
 def _slips(answers: Answers) -> str:
-    case, scene = answers.case, answers.case.scene
+    decided, scene = answers.decided, answers.decided.scene
     if scene.mu is None:
         return "Slides over the locked pulley."
     mu = f"`mu` = {as_typed(scene.mu)}"
     kinetic = "" if scene.mu_k is None else f"; it slides with `mu_k` = {as_typed(scene.mu_k)}"
-    if not case.pulley_known:
+    if not decided.pulley_known:
         return (
             f"Slips on any pulley, because of axle friction: {mu} is below the"
-            f" {_enough(answers, 'massless_verge')} needed even on a massless one{kinetic}."
+            f" {_enough(answers, 'mu_verge_massless')} needed even on a massless one{kinetic}."
         )
-    slips = "Slips over a pulley held by axle friction" if case.rim_at_rest and not case.locked else "Slips"
+    slips = (
+        "Slips over a pulley held by axle friction" if decided.rim_at_rest and not decided.locked else "Slips"
+    )
     return f"{slips}: {mu} is below the {_enough(answers)} needed to hold the string{kinetic}."
 
 
@@ -133,32 +135,32 @@ LIKE_RADIANS = (0.3, 12.6)
 
 def remarks(answers: Answers) -> list[str]:
     """Return further sentences on the scene, as far as they apply."""
-    case, said = answers.case, []
-    if case.beta is not None and case.beta > 1:
-        shown = strip_zeros(_beside(answers, Fraction(1))(case.beta))
+    decided, said = answers.decided, []
+    if decided.beta is not None and decided.beta > 1:
+        shown = strip_zeros(_beside(answers, Fraction(1))(decided.beta))
         said.append(
             f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
-    wrap = case.scene.wrap
+    wrap = decided.scene.wrap
     if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
         typed = as_typed(wrap.number)
         said.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
-    mu_k = case.scene.mu_k
-    if mu_k is not None and case.regime != "slip" and not case.tensions_equal:
+    mu_k = decided.scene.mu_k
+    if mu_k is not None and decided.regime != "slip" and not decided.tensions_equal:
         said.append("`mu_k` has no effect here, as the string does not slip.")
         if answers["mu_verge"] is not None and answers.settle(lambda m: m.mu_verge - m.ar.number(mu_k)) > 0:
             said.append("A string that already slides keeps sliding, as `mu_k` is below `mu_verge`.")
-    c, slips_above_a_mass = case.rim_mass, case.scene.mu is not None and case.slips_once_it_moves
-    if slips_above_a_mass and c is not None and not case.slips_at("heaviest"):
+    c, slips_above_a_mass = decided.rim_mass, decided.scene.mu is not None and decided.slips_once_it_moves
+    if slips_above_a_mass and c is not None and not decided.slips_at("heaviest"):
         most = answers.settle(lambda m: critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b, -1))
         said.append(
             f"The string slips if the heavier mass is between {_say(answers, 'critical_heavier_mass')} and"
             f" {format_number(most)} kg. Above that it holds again, as the pulley turns with it."
         )
-    if case.locked and case.has_axle_friction and not case.axle_holds:
+    if decided.locked and decided.has_axle_friction and not decided.axle_holds:
         said.append("A locked pulley does not turn, so `axle` has no effect.")
-    if case.scene.mu is not None and answers["acceleration"] is None:  # it depends on the pulley's mass
+    if decided.scene.mu is not None and answers["acceleration"] is None:  # it depends on the pulley's mass
         ends = [_on_pulley(answers, mass) for mass in (Fraction(0), inf)]
         ranges = (
             f"`{name}` from {_say(ends[0], name)} to {with_unit(_say(ends[1], name), QUANTITIES[name].unit)}"
@@ -170,7 +172,7 @@ def remarks(answers: Answers) -> list[str]:
 
 def _on_pulley(answers: Answers, mass: Fraction | float) -> Answers:
     """Return the answers to the scene on a pulley of that mass (inf: locked), without slip."""
-    return Answers(answers.case.scene._replace(M=mass, mu=None, mu_k=None), answers.digits)
+    return Answers(answers.decided.scene._replace(M=mass, mu=None, mu_k=None), answers.digits)
 
 
 def _beside(answers: Answers, given: Fraction | None) -> Rounding[Decimal]:

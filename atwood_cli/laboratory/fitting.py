@@ -86,11 +86,11 @@ def conditions_of(inputs: Mapping[str, Input]) -> Conditions:
             raise SceneError(x, one.given, OUT_OF_RANGE)
     masses = {f"m{i}": Input(Fraction(i), Fraction(0), None) for i in (1, 2)}  # any would do
     scene = Scene.of({**inputs, **masses})
-    case, values = Decisions(scene), {"gravity": float(scene.g)}
+    decided, values = Decisions(scene), {"gravity": float(scene.g)}
     if scene.axle is not None:
-        values["axle"] = float(case.axle_friction)
+        values["axle"] = float(decided.axle_friction)
     if scene.M is not None or scene.I is not None:
-        values["rim_mass"] = float(case.rim_mass or 0)
+        values["rim_mass"] = float(decided.rim_mass or 0)
     return Conditions(inputs, scene, values)
 
 
@@ -98,7 +98,7 @@ def _neighbours(given: Conditions) -> Iterator[list[Conditions]]:
     """Yield the conditions with each uncertain one less and more by its uncertainty. Raises SceneError."""
     for x, one in given.inputs.items():
         u, size = one.uncertainty, getattr(one.value, "number", one.value)
-        if u and not parameter_of(x).zero and u >= size:
+        if u and not parameter_of(x).may_be_zero and u >= size:
             raise SceneError(x, one.given, "has an uncertainty that reaches 0")
         if u:
             ends = (one.value._replace(number=end) if x == "axle" else end for end in (size - u, size + u))

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
         def number(self, q: Fraction | int) -> N: ...
         def is_zero(self, x: N) -> bool: ...
-        def not_negative(self, x: N) -> N:
+        def known_not_negative(self, x: N) -> N:
             """Return x, which is known not to be negative; that saves work in columns."""
             ...
 
@@ -73,7 +73,7 @@ class Rationals:
     def is_zero(self, x: Fraction) -> bool:
         return x == 0
 
-    def not_negative(self, x: Fraction) -> Fraction:
+    def known_not_negative(self, x: Fraction) -> Fraction:
         return x
 
     def sqrt(self, x: Fraction) -> Fraction:

@@ -43,25 +43,28 @@ def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = Fa
     ``bare`` leaves out all sentences except on how it is drawn. Raises SceneError, OSError.
     """
     check_file(path, force)
-    kind = kind_of(answers.case) if answers.case.light else None  # else an end is fixed to the pulley
-    case, few = answers.case, answers.to(min(answers.digits or SHOWN_DIGITS, SHOWN_DIGITS))
-    doubles, forces = answers.to(None), dict[str, float]()
-    for end, mass in (("1", case.scene.m1), ("2", case.scene.m2)):
+    kind = kind_of(answers.decided) if answers.decided.light else None  # else an end is fixed to the pulley
+    decided, few = answers.decided, answers.rounded_to(min(answers.digits or SHOWN_DIGITS, SHOWN_DIGITS))
+    doubles, forces = answers.rounded_to(None), dict[str, float]()
+    for end, mass in (("1", decided.scene.m1), ("2", decided.scene.m2)):
         if mass:
-            forces |= {f"T{end}": float(doubles[f"tension_{end}"]), f"W{end}": to_double(mass * case.scene.g)}
+            forces |= {
+                f"T{end}": float(doubles[f"tension_{end}"]),
+                f"W{end}": to_double(mass * decided.scene.g),
+            }
     least = min(force for name, force in forces.items() if kind or name[0] == "W")
-    wrap = float(doubles.settle(lambda m: case.scene.wrap.degrees(m.ar)))
+    wrap = float(doubles.settle(lambda m: decided.scene.wrap.degrees(m.ar)))
     if not (LEAST <= least <= max(forces.values()) <= MOST_FORCE and LEAST <= wrap <= MOST_WRAP):
         rule = f"draws forces from {LEAST} to {MOST_FORCE} N and wraps from {LEAST} to {MOST_WRAP}° only"
         raise SceneError("figure", path, rule)
-    if not case.ends_hang_down:
+    if not decided.ends_hang_down:
         forces = {name: force for name, force in forces.items() if name[0] == "T"}
     scale = LONGEST / (max(forces.values()) or 1)
     lengths = {name: max(scale * force, SHORTEST) if force else 0.0 for name, force in forces.items()}
     below = [*_caption(few, kind, wrap)]
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
-    given = inputs_in_words(case.scene, answers.uncertain)
+    given = inputs_in_words(decided.scene, answers.uncertain)
     above = [", ".join(given.values()), unmarked(verdict(few))]
     with page(path, force, above, " ".join(below), bare, panels=1 + curves) as figure:
         machine, *more = figure.subplots(1 + curves, height_ratios=[1.6, 1][: 1 + curves], squeeze=False).flat
@@ -73,7 +76,7 @@ def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = Fa
             _draw_contact(machine, few, kind, radians(wrap), "--" if curves else "-")
             for axes in more:
                 _draw_curves(axes, few, kind, wrap)
-        if case.ends_hang_down:
+        if decided.ends_hang_down:
             _draw_masses(machine, few, lengths)
         else:
             _draw_tensions(machine, few, lengths, radians(wrap))
@@ -93,16 +96,16 @@ def _caption(few: Answers, kind: arc.Profile | None, wrap: float) -> Iterator[st
         if force := few["friction_force"]:
             yield f"The vector sum of friction is {format_number(force)} N."
     if wrap > 360:
-        turns = _number(few.settle(lambda m: few.case.scene.wrap.degrees(m.ar) / 360), few)
+        turns = _number(few.settle(lambda m: few.decided.scene.wrap.degrees(m.ar) / 360), few)
         one = ", and the forces on the one at the heavier mass are drawn" if kind else ""
         yield f"There are {turns} turns{one}."
-    if not few.case.ends_hang_down:
+    if not few.decided.ends_hang_down:
         yield "m2 hangs over a guide that is not drawn." if kind else "The mass is not drawn."
 
 
 def _forces(few: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:
     """Return tension and friction per radian (N) at shares of the arc; nR is the tension, too."""
-    points = [point(few.to(None), kind, Fraction(share)) for share in shares]
+    points = [point(few.rounded_to(None), kind, Fraction(share)) for share in shares]
     tension, friction = ([float(one[name]) for one in points] for name in ("tension", "friction_per_radian"))
     return np.array(tension), np.array(friction)
 
@@ -114,7 +117,7 @@ def _rim(angle: Any) -> Any:
 
 def _draw_pulley(axes: "Axes", few: Answers, phi: float) -> None:
     """Draw the pulley with its mass, how it turns, its axle's friction, and the string around it."""
-    scene, around = few.case.scene, _rim(np.linspace(0, TURN, RIM_POINTS))
+    scene, around = few.decided.scene, _rim(np.linspace(0, TURN, RIM_POINTS))
     axes.fill(around.real, around.imag, facecolor="#f0f0f0", edgecolor=FAINT, lw=1)
     axes.plot(0, 0, "o", color=FAINT, ms=3)
     string = around if phi > TURN else _rim(np.linspace(0, phi, RIM_POINTS))
@@ -122,10 +125,10 @@ def _draw_pulley(axes: "Axes", few: Answers, phi: float) -> None:
     for mass, end in ((scene.m1, -1 + 0j), (scene.m2, _rim(phi))):
         if not mass:
             axes.plot(end.real, end.imag, "o", color=INK, ms=6)
-        elif few.case.ends_hang_down:
+        elif few.decided.ends_hang_down:
             axes.plot([end.real] * 2, [0, -STRING], color=FAINT, lw=2.4, solid_capstyle="butt")
     axes.text(0, 0.26, _pulley(few), ha="center", va="center", size=8)
-    above = 1j * np.exp(-1j * few.case.sign * np.linspace(-0.6, 0.6, 40))  # clockwise if m2 descends
+    above = 1j * np.exp(-1j * few.decided.sign * np.linspace(-0.6, 0.6, 40))  # clockwise if m2 descends
     if few["rim_acceleration"]:
         _draw_arc(axes, ROTATION_AT * above, PURPLE, "white")
     if friction := _axle_friction(few):
@@ -142,21 +145,21 @@ def _draw_arc(axes: "Axes", path: Any, colour: str, head: str) -> None:
 
 def _pulley(few: Answers) -> str:
     """Return the pulley's inertia, as far as it is known, in words; empty if the scene leaves it open."""
-    case, scene = few.case, few.case.scene
-    if case.locked:
+    decided, scene = few.decided, few.decided.scene
+    if decided.locked:
         return "locked"
     if scene.I is not None and scene.M is None:
         return f"I = {_number(scene.I, few)} kg m²"
-    mass = few["critical_pulley_mass"] if case.regime == "verge" else case.pulley_mass
+    mass = few["critical_pulley_mass"] if decided.regime == "verge" else decided.pulley_mass
     return "" if mass is None else f"M = {_number(mass, few)} kg"
 
 
 def _axle_friction(few: Answers) -> str:
     """Return the axle's friction as a force at the rim (N), as much of it as acts; empty if none does."""
-    case = few.case
-    if not case.has_axle_friction or case.locked or not case.sign:
+    decided = few.decided
+    if not decided.has_axle_friction or decided.locked or not decided.sign:
         return ""
-    held = case.rim_at_rest if case.regime == "slip" else case.axle_holds
+    held = decided.rim_at_rest if decided.regime == "slip" else decided.axle_holds
     return _number(few.settle(lambda m: m.difference if held else m.f), few)
 
 
@@ -171,7 +174,7 @@ def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float, das
     count = int(drawn * phi / BETWEEN_ARROWS + 1e-9)
     both = phi < TURN  # both ends of a turn are one place
     shares = np.linspace(0, drawn, count + both, endpoint=both) if count else np.array([drawn / 2])
-    if few.case.sign >= 0:
+    if few.decided.sign >= 0:
         shares = 1 - shares
     outwards, (normal, friction) = _rim(phi * shares), _forces(few, kind, shares)
     lengths = normal / normal.max() * LONGEST_ON_ARC
@@ -187,7 +190,7 @@ def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float, das
 
 def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> None:
     """Draw the masses that hang on the string, their forces, and their acceleration."""
-    scene, acceleration = few.case.scene, few["acceleration"]
+    scene, acceleration = few.decided.scene, few["acceleration"]
     for x, end, mass in ((-1, "1", scene.m1), (1, "2", scene.m2)):
         if not mass:
             continue
@@ -205,7 +208,7 @@ def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> No
             axes.text(x * (1 + away), height, typeset(words), **look)
         if acceleration:
             centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
-            way = -1j * x * few.case.sign * ACCELERATION
+            way = -1j * x * few.decided.sign * ACCELERATION
             _draw_arc(axes, centre + way * np.array([-0.5, 0.5]), PURPLE, "white")
     words = typeset(f"a = {_number(abs(acceleration))} m/s²") if acceleration else "a = 0"
     height = -STRING - LARGER_SIDE - 0.17 - (LONGEST if len(words) > BETWEEN_WEIGHTS else 0)
@@ -240,8 +243,10 @@ def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:
 
 def _draw_curves(axes: "Axes", few: Answers, kind: arc.Profile, wrap: float) -> None:
     """Draw normal force and friction along the arc, over grey where there is no friction."""
-    stuck = float(few.settle(lambda m: (m.phi - m.alpha) / m.phi, to_double)) if kind == "creep" else 0.0
-    edge, start = (stuck, 0) if few.case.sign >= 0 else (1 - stuck, 1)
+    stuck = (
+        float(few.settle(lambda m: (m.phi - m.limiting_arc) / m.phi, to_double)) if kind == "creep" else 0.0
+    )
+    edge, start = (stuck, 0) if few.decided.sign >= 0 else (1 - stuck, 1)
     shares = np.sort([*np.linspace(0, 1, CURVE_POINTS), *np.nextafter(edge, [0, edge, 1])])
     tension, friction = _forces(few, kind, shares)
     axes.axhline(0, color=FAINT, lw=0.8)

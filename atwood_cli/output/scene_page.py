@@ -32,8 +32,8 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
     absent = dict.fromkeys(QUANTITIES)
     return {
         "version": VERSION,
-        "scene": scene_record(answers.case.scene, answers.round),
-        "regime": answers.case.regime,
+        "scene": scene_record(answers.decided.scene, answers.round),
+        "regime": answers.decided.regime,
         **absent,
         **results,
         **{key: values and absent | values for key, values in uncertain.items()},
@@ -63,9 +63,9 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
     With ``values``, uncertain ones are said with their uncertainties.
     """
     said = [_stated(answers, name) for name in names if values and answers.uncertainty(name)]
-    if "regime" in names and answers.case.mu_assumed:
+    if "regime" in names and answers.decided.mu_assumed:
         said.insert(0, f"regime: {REGIME_ASSUMED}.")
-    return [*said, *map(unmarked, remarks(answers.shown)), *reasons(answers, names or answers.names)]
+    return [*said, *map(unmarked, remarks(answers.to_six_digits)), *reasons(answers, names or answers.names)]
 
 
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
@@ -78,7 +78,7 @@ def print_table(
     """Print the scene, the verdict, the main quantities or the ``whole`` table, notes, and the budget."""
     from .page import Page
 
-    answers, page = answers.shown, page or Page()
+    answers, page = answers.to_six_digits, page or Page()
     names = answers.names[1:] if whole else answers.main
     groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *answers.found)])
     found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
@@ -95,11 +95,11 @@ def print_table(
 
 def _print_head(page: "Page", answers: Answers, found: str = "") -> None:
     """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
-    given = inputs_in_words(answers.case.scene, answers.uncertain)
+    given = inputs_in_words(answers.decided.scene, answers.uncertain)
     page.say(", ".join(given.values()))
     if found:
         page.say(found, style="bold")
-    page.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.case.regime]}")
+    page.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.decided.regime]}")
 
 
 def as_text(answers: Answers) -> str:
@@ -120,9 +120,9 @@ def _rows(answers: Answers, names: Sequence[str]) -> list[list[list[str]]]:
     values = {name: shown for name in names if (shown := _with_uncertainty(answers, name))}
     groups: dict[str, list[list[str]]] = {}
     for name, value in zip(values, aligned(values.values()), strict=True):
-        about, case = QUANTITIES[name], answers.case
-        equation = cited(name, case.regime == "slip", case.has_axle_friction and not case.locked)
-        at_limit = name.startswith("friction_force") and case.mu_assumed  # and has a single value then
+        about, decided = QUANTITIES[name], answers.decided
+        equation = cited(name, decided.regime == "slip", decided.has_axle_friction and not decided.locked)
+        at_limit = name.startswith("friction_force") and decided.mu_assumed  # and has a single value then
         shown = f"{name} at mu_verge" if at_limit else name
         row = [shown, value, about.unit, about.symbol, equation]
         groups.setdefault(about.group, []).append(row)
@@ -166,7 +166,7 @@ def print_steps(answers: Answers, names: Sequence[str], markdown: bool) -> None:
     from .page import Page
     from .typeset import as_markdown, as_text
 
-    given = inputs_in_words(answers.case.scene).values()
+    given = inputs_in_words(answers.decided.scene).values()
     explanation = explain(answers, names)
     if markdown:
         for line in as_markdown(given, explanation):
@@ -198,8 +198,8 @@ def contact_record(answers: Answers, arc: Contact) -> dict[str, object]:
     """Return the record of an arc for JSON."""
     return {
         "version": VERSION,
-        "scene": scene_record(answers.case.scene, round_=answers.round),
-        "regime": answers.case.regime,
+        "scene": scene_record(answers.decided.scene, round_=answers.round),
+        "regime": answers.decided.regime,
         "profile": arc.kind,
         "points": [{name: point.get(name) for name in POINT} for point in arc.points],
         "balance": arc.balance,
@@ -228,7 +228,7 @@ def print_contact(answers: Answers, arc: Contact, tables: bool) -> None:
     page.table(heads, [force_rows[:2], force_rows[2:3], force_rows[3:]])
     torques = aligned(map(cell, arc.balance["torque"].values()))
     head, ends = ("Torque on the pulley / R (N)", "T2 - T1")
-    if answers.case.scene.R is not None:
+    if answers.decided.scene.R is not None:
         head, ends = ("Torque on the pulley (N m)", "R (T2 - T1)")
     page.table([head, ""], [[("friction along the arc", torques[0])], [(f"compare: {ends}", torques[1])]])
     page.say(*arc.notes)

@@ -120,8 +120,8 @@ def read_digits(given: int | str | None) -> int | None:
 def _checked(name: str, given: Given, number: TypedNumber) -> Any:
     """Return a number as the value of an input: an angle or an axle, if it is one. Raises SceneError."""
     parameter, (value, unit, _) = parameter_of(name), number
-    too_small = not parameter.signed and (value < 0 or (value == 0 and not parameter.zero))
-    if too_small or (abs(value) == inf and not parameter.inf):
+    too_small = not parameter.signed and (value < 0 or (value == 0 and not parameter.may_be_zero))
+    if too_small or (abs(value) == inf and not parameter.may_be_infinite):
         raise SceneError(name, given, parameter.domain)
     if parameter.dimension == "angle":
         return Angle(value, "rad" if unit == "rad" else "°")
@@ -134,7 +134,7 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
     """Read the number in a text that is all or part of what was given; errors show all. Raises SceneError."""
     parameter = parameter or parameter_of(name)
     word = without_blanks(text).lower()
-    if parameter.inf and word == "inf":
+    if parameter.may_be_infinite and word == "inf":
         return TypedNumber(inf)
     try:
         return read_number(parameter.names.get(word, text), parameter.dimension)
@@ -162,7 +162,7 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
     if re.match(r"[-+.]?\d.*[:,]|[\d.]+-[\d.]+$", word):
         return "is not a number; atwood sweep takes a range as start:stop:count, and a list as 1,2,5"
     names = f", or one of {', '.join(parameter.names)}" if parameter.names else ""
-    locked = "; inf is a locked pulley" if parameter.inf else ""
+    locked = "; inf is a locked pulley" if parameter.may_be_infinite else ""
     return f"{NOT_A_NUMBER}{names}{locked}{nearest(word, parameter.names)}"
 
 

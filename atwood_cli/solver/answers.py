@@ -40,7 +40,7 @@ class Answers:
     """The quantities of a scene, each computed when it is asked for: as doubles, or to ``digits`` digits."""
 
     def __init__(self, scene: Scene, digits: int | None = None) -> None:
-        self.case = Decisions(scene)
+        self.decided = Decisions(scene)
         self._machines: dict[Arithmetic[Any], Machine[Any]] = {}
         self._by_digits: dict[int | None, Answers] = {}
         self._round_to(digits)
@@ -51,7 +51,7 @@ class Answers:
         self.round: Rounding[Any] = to_double if digits is None else to_digits(digits)
         self._answers: dict[str, Answer] = {}
 
-    def to(self, digits: int | None) -> Answers:
+    def rounded_to(self, digits: int | None) -> Answers:
         """Return the same quantities to so many digits; all that the machines computed is shared."""
         if digits not in self._by_digits:
             self._by_digits[digits] = copy(self)
@@ -61,42 +61,42 @@ class Answers:
     @property
     def given(self) -> tuple[Any, ...]:
         """The arguments that make these answers again."""
-        return self.case.scene, self.digits
+        return self.decided.scene, self.digits
 
     @property
-    def shown(self) -> Answers:
+    def to_six_digits(self) -> Answers:
         """The same answers to six digits, unless digits were asked for."""
-        return self.to(SHOWN_DIGITS) if self.digits is None else self
+        return self.rounded_to(SHOWN_DIGITS) if self.digits is None else self
 
     @property
     def names(self) -> tuple[str, ...]:
         """The quantities that every scene has, then those that follow from measurements."""
-        motion = self.case.motion
+        motion = self.decided.motion
         drop = "drop" if motion.drop is not None else None
         return (*NAMES, *FROM_MOTION.get(motion.finds, ()), *FROM_MOTION.get(drop, ()))
 
     @property
     def found(self) -> tuple[str, ...]:
         """The quantities that follow from measurements, the unknown input first."""
-        by_time = {"fall_time": "acceleration"} if self.case.motion.time is not None else {}
+        by_time = {"fall_time": "acceleration"} if self.decided.motion.time is not None else {}
         return tuple(by_time.get(name, name) for name in self.names[len(NAMES) :])
 
     @property
     def main(self) -> tuple[str, ...]:
         """The quantities that a table shows unless all are asked for."""
-        case, scene = self.case, self.case.scene
+        decided, scene = self.decided, self.decided.scene
         has_mu = scene.mu is not None
         bounded = has_mu and self["friction_force"] is None
         also = {
             "friction_force_min": bounded,
             "friction_force_max": bounded,
-            "axle_force": case.has_axle_friction and case.ends_hang_down,
+            "axle_force": decided.has_axle_friction and decided.ends_hang_down,
             "torque": scene.R is not None,
-            "rim_acceleration": case.regime == "slip",
+            "rim_acceleration": decided.regime == "slip",
             "angular_acceleration": scene.R is not None,
             "critical_pulley_mass": has_mu,
-            "critical_heavier_mass": has_mu and case.pulley_known,
-            "safety_factor": has_mu and case.pulley_known and not case.tensions_equal,
+            "critical_heavier_mass": has_mu and decided.pulley_known,
+            "safety_factor": has_mu and decided.pulley_known and not decided.tensions_equal,
             "least_wrap": has_mu and not scene.wrap.is_half_turn,
         }
         return tuple(name for name in self.names[1:] if also.get(name, name in MAIN or name not in NAMES))
@@ -108,23 +108,23 @@ class Answers:
     def answer(self, name: str) -> Answer:
         """Return the value of a quantity, its uncertainty, and why one of them is missing."""
         if name == "regime":
-            return Answer(self.case.regime)
+            return Answer(self.decided.regime)
         if name not in self._answers:
             self._answers[name] = Answer(*self._settled(attrgetter(name)))
         return self._answers[name]
 
     def _settled(self, quantity: OnMachine) -> tuple[Any, str]:
         """Return the rounded value of a quantity, or None, and why it cannot be shown as it is."""
-        on_machines = self.on_machines(quantity)
+        in_any_arithmetic = self.in_any_arithmetic(quantity)
         try:
-            value = settle(on_machines, self.round, self._computed)
+            value = settle(in_any_arithmetic, self.round, self._computed)
         except Undetermined as undetermined:
             return None, str(undetermined)
         except OverflowError:  # of a denominator
             return 0.0 if self.digits is None else None, TOO_SMALL
         if is_infinite(value):
             return value, ABOVE_DOUBLES if self.digits is None else TOO_LARGE
-        below = value == 0 and self.digits is None and settle(on_machines, to_digits(1), DOUBLE_DIGITS)
+        below = value == 0 and self.digits is None and settle(in_any_arithmetic, to_digits(1), DOUBLE_DIGITS)
         return value, BELOW_DOUBLES if below else ""
 
     # Inputs are exact. `UncertainAnswers` has another answer to these.
@@ -148,7 +148,7 @@ class Answers:
         """Say which quantities have no value at an end of an input."""
         return []
 
-    def in_doubt(self) -> list[Answers | None]:
+    def nearby(self) -> list[Answers | None]:
         """Return the answers at all ends at which decisions may differ, None if an end makes no scene."""
         return []
 
@@ -158,15 +158,17 @@ class Answers:
 
     def settle(self, quantity: OnMachine, round_: Rounding[Any] | None = None) -> float | Decimal:
         """Return any number of a machine, rounded as quantities are or by ``round_``. Raises Undetermined."""
-        value: float | Decimal = settle(self.on_machines(quantity), round_ or self.round, self._computed)
+        value: float | Decimal = settle(
+            self.in_any_arithmetic(quantity), round_ or self.round, self._computed
+        )
         return value
 
-    def on_machines(self, quantity: OnMachine) -> Quantity:
+    def in_any_arithmetic(self, quantity: OnMachine) -> Quantity:
         """Return any number of a machine as a function of the arithmetic."""
 
         def of(ar: Arithmetic[N]) -> N:
             if ar not in self._machines:
-                self._machines[ar] = Machine(self.case, ar)
+                self._machines[ar] = Machine(self.decided, ar)
             value: N = quantity(self._machines[ar])
             return value
 

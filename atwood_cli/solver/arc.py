@@ -56,7 +56,7 @@ def arcs(ar: Arithmetic[N], pieces: Sequence[tuple[N, N]], light: N, end: Knot[N
     return [Arc(mu, *both) for (mu, _), both in zip(pieces, ends, strict=True)]
 
 
-def least_lead(ar: Arithmetic[N], mu: N, alpha: N, stuck: N, light: N, end: Knot[N]) -> N:
+def least_lead(ar: Arithmetic[N], mu: N, limiting: N, stuck: N, light: N, end: Knot[N]) -> N:
     """Return the lead s (rad) of the profile with the least net friction; needs φ <= π."""
     _, half_sine = ar.cos_sin(stuck / 2)
     chord = 2 * light * half_sine
@@ -66,7 +66,7 @@ def least_lead(ar: Arithmetic[N], mu: N, alpha: N, stuck: N, light: N, end: Knot
         cos, sin = ar.cos_sin(s + stuck / 2)
         return physics.least_friction_slope(mu, chord, ar.expm1(mu * s) + 1, cos, sin, dx, dy)
 
-    return ar.root(slope, alpha)
+    return ar.root(slope, limiting)
 
 
 def force(pieces: Sequence[Arc[N]], law: Callable[[N, N, N], tuple[N, N]]) -> tuple[N, N]:

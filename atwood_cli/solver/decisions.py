@@ -9,12 +9,12 @@ the result of the first line below that answers. The second table has the scenes
     is mu not given?                                                                         no-slip, assumed
     are both tensions equal without friction?            m1 = m2, or c = 0 and f = 0         no-slip
     is the pulley known, or at rest?                     rim_mass; locked; h - l <= b
-      does the string slip on it?                        (33) at "scene", "locked" at rest   slip, or no-slip
+      does the string slip on it?                        (33) "as_given", "locked" at rest    slip, or no-slip
     can it slip on no pulley, however heavy?             (36) at "locked"                    no-slip
     does it slip on every pulley, however light?         (33) at "massless"                  slip
     else it slips on a heavy enough pulley               (34)                                verge
 
-    scene, locked, massless    as given; D = 0; c = 0    see above
+    as_given, locked, massless as it is; D = 0; c = 0    see above
     massless                   in slip                   is the rim at rest under the string that slips?
     heaviest                   h = ∞                     does it slip under some heavier mass?
     heaviest_at_rest           c = 0, h = l + b          does it slip as soon as the axle turns?
@@ -40,12 +40,17 @@ if TYPE_CHECKING:
 
 ZERO, ONE = Fraction(0), Fraction(1)
 REGIME_ASSUMED = "assumed, as mu is not given"
-LimitingCase = Literal["scene", "locked", "massless", "heaviest", "heaviest_at_rest", "lightest_at_rest"]
+LimitingCase = Literal["as_given", "locked", "massless", "heaviest", "heaviest_at_rest", "lightest_at_rest"]
+
+
+def is_column(value: object) -> bool:
+    """Decide whether an input is a column of many rows, as in `arrays`, and no single number."""
+    return not hasattr(value, "numerator")
 
 
 def is_zero(value: object) -> bool:
     """Decide whether an input is exactly 0. A column is not: rows with a zero are a group of their own."""
-    return hasattr(value, "numerator") and not value
+    return not is_column(value) and not value
 
 
 class Decisions:
@@ -76,7 +81,7 @@ class Decisions:
     @property
     def one_mass_is_0(self) -> bool:
         """Whether one mass is 0; or below, as a mass that is found with an uncertain acceleration may be."""
-        return hasattr(self.light, "numerator") and self.light <= 0
+        return not is_column(self.light) and self.light <= 0
 
     @lazy
     def locked(self) -> bool:
@@ -134,9 +139,9 @@ class Decisions:
         """The heavier mass less the lighter one (kg)."""
         return self.heavy - self.light
 
-    def moves_axle(self, which: Literal["difference", "heavy"]) -> bool:
+    def moves_axle(self, name: Literal["difference", "heavy"]) -> bool:
         """Decide whether the difference, or the heavier mass alone, exceeds what the axle holds, b."""
-        mass: Fraction = getattr(self, which)
+        mass: Fraction = getattr(self, name)
         return mass * self.scene.g > self.axle_friction
 
     @property
@@ -179,8 +184,8 @@ class Decisions:
     @lazy
     def slips(self) -> bool:
         """Whether the string slips on a pulley that is known and friction that is given."""
-        which: LimitingCase = "locked" if self.pulley_at_rest else "scene"
-        self._known_to_slip = not self.tensions_equal and self.slips_at(which)
+        at: LimitingCase = "locked" if self.pulley_at_rest else "as_given"
+        self._known_to_slip = not self.tensions_equal and self.slips_at(at)
         return self._known_to_slip
 
     @lazy
@@ -280,29 +285,29 @@ class Decisions:
 
     # The tension ratio of a string that grips, against e^{μφ}
 
-    def ratio_minus_1(self, which: LimitingCase, ar: Arithmetic[N]) -> N:
+    def ratio_minus_1(self, at: LimitingCase, ar: Arithmetic[N]) -> N:
         """Return T_h/T_l - 1 of a string that grips, in a case of the table at the head."""
         l, h, b = self.light, self.heavy, self.axle_mass
         # A limit does not read the pulley's mass: so a sweep of it computes the limit once.
-        c = self.rim_mass if which in ("scene", "heaviest") else ZERO
-        if which == "heaviest":
+        c = self.rim_mass if at in ("as_given", "heaviest") else ZERO
+        if at == "heaviest":
             assert c is not None
             return physics.heaviest_ratio_minus_1(*map(ar.number, (l, c, b)))
-        if c is None or which == "locked" or (which == "scene" and self.pulley_at_rest):
+        if c is None or at == "locked" or (at == "as_given" and self.pulley_at_rest):
             return physics.gripping_ratio_minus_1(*map(ar.number, (l, h, ONE, b, ZERO)))
-        if which == "lightest_at_rest":
+        if at == "lightest_at_rest":
             l = h - b
-        elif which == "heaviest_at_rest":
+        elif at == "heaviest_at_rest":
             h = l + b
         return physics.gripping_ratio_minus_1(*map(ar.number, (l, h, c, b, ONE)))
 
-    def slips_at(self, which: LimitingCase) -> bool:
+    def slips_at(self, at: LimitingCase) -> bool:
         """Decide whether the string slips in a limiting case, as static friction cannot hold it."""
-        return self.exceeds(lambda ar: self.ratio_minus_1(which, ar), self.scene.mu)
+        return self.exceeds(lambda ar: self.ratio_minus_1(at, ar), self.scene.mu)
 
-    def slides_at(self, which: LimitingCase) -> bool:
+    def slides_at(self, at: LimitingCase) -> bool:
         """Decide whether the string goes on sliding there, with the friction that acts in its regime."""
-        return self.exceeds(lambda ar: self.ratio_minus_1(which, ar), self.limiting_mu)
+        return self.exceeds(lambda ar: self.ratio_minus_1(at, ar), self.limiting_mu)
 
     def exceeds(self, ratio_minus_1: Quantity, mu: Fraction | None) -> bool:
         """Decide whether 1 + ratio_minus_1 > e^{μφ}; by logarithms, so that a huge e^{μφ} is never formed.

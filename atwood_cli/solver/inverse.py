@@ -74,7 +74,7 @@ def read_motion(inputs: Mapping[str, Input]) -> Scene:
 def _contradiction(values: Values, g_given: bool) -> str:
     """Return why what was measured contradicts the other inputs, "" if it does not."""
     motion, M, mu = values.motion, values.M, values.mu
-    case, finds = Decisions(values), motion.finds
+    decided, finds = Decisions(values), motion.finds
     if motion.time is not None and motion.drop is None:
         return "needs drop, the height of that fall"
     if motion.time is not None and motion.a is not None:
@@ -84,36 +84,36 @@ def _contradiction(values: Values, g_given: bool) -> str:
     if finds in MASSES:
         if motion.time is not None:
             return f"does not tell which way {finds} moves; give a instead, positive when m2 descends"
-        if M == inf or (motion.a == 0 and case.has_axle_friction):
+        if M == inf or (motion.a == 0 and decided.has_axle_friction):
             return f"says nothing about {finds} on a pulley at rest; give {finds}"
-        if 0 in (values.m1, values.m2) and not case.rim_mass and not case.has_axle_friction:
+        if 0 in (values.m1, values.m2) and not decided.rim_mass and not decided.has_axle_friction:
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         return ""
     if finds == "g" and g_given:
         pulley = "I" if M is None else "M"
         return f"leaves nothing to find if both {pulley} and g are given; leave one of them out"
-    if case.sign == 0:
+    if decided.sign == 0:
         return "says nothing about equal masses, which rest on any pulley; leave it out"
-    if finds == "mu_k" and not case.light:
+    if finds == "mu_k" and not decided.light:
         return "conflicts with M = inf and a mass of 0, an end that is fixed to the pulley; leave it out"
     if values.mu_k is not None:
         return "and mu_k both say how the string slides; leave one of them out"
-    if mu is not None and not case.slips:
+    if mu is not None and not decided.slips:
         return f"needs a string that slips; with mu = {as_typed(mu)} it does not: leave mu out, or {MOTOR}"
     return ""
 
 
 def _impossible(scene: Scene) -> str:
     """Return why the scene that follows from a motion is none, "" if it is one."""
-    case = Decisions(scene)
-    motion, finds = case.motion, str(case.motion.finds)
+    decided = Decisions(scene)
+    motion, finds = decided.motion, str(decided.motion.finds)
     if finds == "mu_k":
-        if case.slide_ratio_minus_1(EXACT) < 0:
-            drive, load = (of(case.light, case.heavy, ZERO) for of in (physics.drive, physics.load))
-            apart = rounding_apart_from(case.sign * motion.acceleration(case.sign), SHOWN_DIGITS)
-            most = apart(case.sign * physics.acceleration(drive, load, scene.g))
+        if decided.slide_ratio_minus_1(EXACT) < 0:
+            drive, load = (of(decided.light, decided.heavy, ZERO) for of in (physics.drive, physics.load))
+            apart = rounding_apart_from(decided.sign * motion.acceleration(decided.sign), SHOWN_DIGITS)
+            most = apart(decided.sign * physics.acceleration(drive, load, scene.g))
             return f"is too large: without friction the acceleration is {format_number(most)} m/s²; {MOTOR}"
-        if scene.mu is not None and case.exceeds(case.slide_ratio_minus_1, scene.mu):
+        if scene.mu is not None and decided.exceeds(decided.slide_ratio_minus_1, scene.mu):
             return "needs more kinetic friction than mu; check both"
     elif scene.m1 == scene.m2 == 0:
         return "implies that both masses are 0"
@@ -152,8 +152,8 @@ def found_inputs(values: Values) -> dict[str, Any]:
     finds = motion.finds
     if finds is None:
         return {}
-    case: Any = Decisions(values)  # about the pulley, as a mass may be missing
-    c, f, b = case.rim_mass, case.axle_friction, case.axle_mass
+    decided: Any = Decisions(values)  # about the pulley, as a mass may be missing
+    c, f, b = decided.rim_mass, decided.axle_friction, decided.axle_mass
     a = motion.acceleration({"m2": 1, "m1": -1}.get(finds) or (m2 > m1) - (m2 < m1))
     if finds != "g" and a >= g:
         raise Undetermined(f"must be slower than free fall, {as_typed(g)} m/s²")

@@ -33,11 +33,11 @@ class Machine(Generic[N]):
     Critical masses are made of those of static friction (`drive` and so on).
     """
 
-    def __init__(self, case: Decisions, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:
-        self.case, self.scene, self.ar = case, case.scene, ar
-        self.l, self.h = ar.number(case.light), ar.number(case.heavy)
+    def __init__(self, decided: Decisions, ar: Arithmetic[N], known: Mapping[str, N] = {}) -> None:
+        self.decided, self.scene, self.ar = decided, decided.scene, ar
+        self.l, self.h = ar.number(decided.light), ar.number(decided.heavy)
         # The axle's friction as a force at the rim (N), and as a mass (kg).
-        self.f, self.b = map(ar.number, (case.axle_friction, case.axle_mass))
+        self.f, self.b = map(ar.number, (decided.axle_friction, decided.axle_mass))
         self._arcs: dict[arc.Profile, list[arc.Arc[N]]] = {}
         for name, value in known.items():
             setattr(self, name, value)
@@ -62,7 +62,7 @@ class Machine(Generic[N]):
     @property
     def mu(self) -> N:
         """Coefficient of static friction; not given if one mass is 0."""
-        reason = quantities.FIXED_END if self.case.one_mass_is_0 else quantities.NEEDS_MU
+        reason = quantities.FIXED_END if self.decided.one_mass_is_0 else quantities.NEEDS_MU
         return self._given(self.scene.mu, reason)
 
     def _capstan_ratio_minus_1(self, given: Fraction | None, mu: N) -> N:
@@ -77,7 +77,7 @@ class Machine(Generic[N]):
     @lazy
     def ratio_minus_1(self) -> N:
         """T_h/T_l - 1 of a string that grips, (33)."""
-        return self.ar.not_negative(self.case.ratio_minus_1("scene", self.ar))
+        return self.ar.known_not_negative(self.decided.ratio_minus_1("as_given", self.ar))
 
     @lazy
     def log_ratio(self) -> N:
@@ -92,14 +92,14 @@ class Machine(Generic[N]):
     @lazy
     def drive(self) -> N:
         """Drive at the limit of static friction (kg)."""
-        return self.ar.not_negative(physics.drive(self.l, self.h, self.friction_mass))
+        return self.ar.known_not_negative(physics.drive(self.l, self.h, self.friction_mass))
 
     @lazy
     def limiting_k_minus_1(self) -> N:
         """T_h/T_l - 1 on the verge and in slip, as friction is at its limit."""
-        if self.case.slide_measured:
-            return self.case.slide_ratio_minus_1(self.ar)
-        mu = self.case.limiting_mu
+        if self.decided.slide_measured:
+            return self.decided.slide_ratio_minus_1(self.ar)
+        mu = self.decided.limiting_mu
         return self._capstan_ratio_minus_1(mu, self.ar.number(mu))
 
     @lazy
@@ -110,31 +110,31 @@ class Machine(Generic[N]):
     @lazy
     def limiting_drive(self) -> N:
         """Drive on the verge and in slip (kg)."""
-        return self.ar.not_negative(physics.drive(self.l, self.h, self.limiting_friction_mass))
+        return self.ar.known_not_negative(physics.drive(self.l, self.h, self.limiting_friction_mass))
 
     @lazy
     def magnitude(self) -> N:
         """Magnitude of the acceleration (m/s²)."""
-        l, h, case = self.l, self.h, self.case
-        if case.regime != "no-slip":
+        l, h, decided = self.l, self.h, self.decided
+        if decided.regime != "no-slip":
             drive, load = self.limiting_drive, physics.load(l, h, self.limiting_friction_mass)
-        elif case.sign == 0 or case.pulley_at_rest:
+        elif decided.sign == 0 or decided.pulley_at_rest:
             return self.ar.number(0)
         else:
-            drive = self.ar.not_negative(physics.drive(l, h, self.b))
-            load = physics.load(l, h, self._given(case.rim_mass, quantities.NEEDS_M))
+            drive = self.ar.known_not_negative(physics.drive(l, h, self.b))
+            load = physics.load(l, h, self._given(decided.rim_mass, quantities.NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
     @lazy
     def friction_mu(self) -> N:
         """The μ of T(θ) = T1 e^{±μθ}. Raises Undetermined if the string grips with friction to spare."""
-        if self.case.slide_measured:
+        if self.decided.slide_measured:
             return self.mu_k
-        if self.case.regime != "no-slip":
-            return self.ar.number(self.case.limiting_mu)
-        if self.scene.mu is None or self.case.tensions_equal or not self.case.pulley_known:
+        if self.decided.regime != "no-slip":
+            return self.ar.number(self.decided.limiting_mu)
+        if self.scene.mu is None or self.decided.tensions_equal or not self.decided.pulley_known:
             return self.mu_verge
-        raise Undetermined(quantities.NOT_BOUNDED if self.case.long_wrap else quantities.NOT_DEFINITE)
+        raise Undetermined(quantities.NOT_BOUNDED if self.decided.long_wrap else quantities.NOT_DEFINITE)
 
     @lazy
     def friction_vector(self) -> tuple[N, N]:
@@ -143,10 +143,10 @@ class Machine(Generic[N]):
 
     def seen_from_m1(self, vector: tuple[N, N]) -> tuple[N, N]:
         """Return a vector that is given from the lighter mass's end of the arc as seen from m1's end."""
-        return vector if self.case.sign >= 0 else physics.mirrored(*vector, *self._direction)
+        return vector if self.decided.sign >= 0 else physics.mirrored(*vector, *self._direction)
 
     @lazy
-    def alpha(self) -> N:
+    def limiting_arc(self) -> N:
         """The arc (rad) over which friction at its limit makes up the ratio of the tensions."""
         mu = self.mu
         return physics.verge_coefficient(self.log_ratio, mu)
@@ -164,11 +164,11 @@ class Machine(Generic[N]):
         end = arc.Knot(phi, *self._direction, self.heavy_tension)
         if kind == "exponential":
             return arc.arcs(ar, [(mu, phi)], light, end)
-        stuck = phi - self.alpha
+        stuck = phi - self.limiting_arc
         if kind == "creep":
-            return arc.arcs(ar, [(zero, stuck), (mu, self.alpha)], light, end)
-        lead = arc.least_lead(ar, mu, self.alpha, stuck, light, end)
-        return arc.arcs(ar, [(mu, lead), (zero, stuck), (mu, self.alpha - lead)], light, end)
+            return arc.arcs(ar, [(zero, stuck), (mu, self.limiting_arc)], light, end)
+        lead = arc.least_lead(ar, mu, self.limiting_arc, stuck, light, end)
+        return arc.arcs(ar, [(mu, lead), (zero, stuck), (mu, self.limiting_arc - lead)], light, end)
 
     def arc_mu(self, kind: arc.Profile) -> N:
         """Return the coefficient of a profile's friction at its limit."""
@@ -194,43 +194,45 @@ class Machine(Generic[N]):
     @lazy
     def difference(self) -> N:
         """Magnitude of T2 - T1 (N)."""
-        case = self.case
-        if case.regime != "no-slip":
+        decided = self.decided
+        if decided.regime != "no-slip":
             return physics.friction_at_limit(self.light_tension, self.limiting_k_minus_1)
-        if case.tensions_equal:
+        if decided.tensions_equal:
             return self.ar.number(0)
-        if case.pulley_at_rest:
+        if decided.pulley_at_rest:
             rest = self.ar.number(0)
-            return self.ar.not_negative(physics.difference_of_moving_masses(self.l, self.h, rest, self.g))
-        c = self._given(case.rim_mass, quantities.NEEDS_M)
+            return self.ar.known_not_negative(
+                physics.difference_of_moving_masses(self.l, self.h, rest, self.g)
+            )
+        c = self._given(decided.rim_mass, quantities.NEEDS_M)
         return physics.difference_of_a_pulley(c, self.magnitude, self.f)
 
     @property
     def tension_difference(self) -> N:
         """T2 - T1 (N)."""
-        return self.difference * self.case.sign
+        return self.difference * self.decided.sign
 
     def _tensions_differ(self) -> bool:
         """Decide whether a string that grips has unequal tensions. Raises Undetermined if they are not known.
 
         If they differ and the pulley is not known, they are those on the verge.
         """
-        if self.case.one_mass_is_0:
+        if self.decided.one_mass_is_0:
             raise Undetermined(quantities.FIXED_END)
-        if self.case.tensions_equal:
+        if self.decided.tensions_equal:
             return False
-        if not self.case.pulley_known and self.case.regime != "verge":
+        if not self.decided.pulley_known and self.decided.regime != "verge":
             raise Undetermined(quantities.NEEDS_M)
         return True
 
     def _bounded(self) -> bool:
         """Decide whether the friction force has bounds above 0. Raises Undetermined if it has none."""
-        if self.case.regime != "no-slip":
+        if self.decided.regime != "no-slip":
             raise Undetermined(quantities.DEFINITE)
         if not self._tensions_differ():
             return False
         _ = self.mu  # raises if it is not given
-        if self.case.long_wrap:
+        if self.decided.long_wrap:
             raise Undetermined(quantities.LONG_WRAP)
         return True
 
@@ -238,7 +240,7 @@ class Machine(Generic[N]):
 
     @property
     def acceleration(self) -> N:
-        return self.magnitude if self.case.sign > 0 else self.magnitude * self.case.sign
+        return self.magnitude if self.decided.sign > 0 else self.magnitude * self.decided.sign
 
     @lazy
     def light_tension(self) -> N:
@@ -252,31 +254,31 @@ class Machine(Generic[N]):
 
     @property
     def tension_1(self) -> N:
-        return self.case.by_side(self.light_tension, self.heavy_tension)[0]
+        return self.decided.by_side(self.light_tension, self.heavy_tension)[0]
 
     @property
     def tension_2(self) -> N:
-        return self.case.by_side(self.light_tension, self.heavy_tension)[1]
+        return self.decided.by_side(self.light_tension, self.heavy_tension)[1]
 
     @lazy
     def mu_verge(self) -> N:
         if not self._tensions_differ():
             return self.ar.number(0)
-        if not self.case.pulley_known:
-            return self.ar.number(self.case.limiting_mu)
+        if not self.decided.pulley_known:
+            return self.ar.number(self.decided.limiting_mu)
         phi = self.phi  # first, as fractions give up on π sooner than on the ratio
         return physics.verge_coefficient(self.log_ratio, phi)
 
     @lazy
     def safety_factor(self) -> N:
         mu = self.mu
-        if self.case.tensions_equal or (self.case.regime == "verge" and is_zero(self.scene.mu)):
+        if self.decided.tensions_equal or (self.decided.regime == "verge" and is_zero(self.scene.mu)):
             raise Undetermined(quantities.NO_NEED)
         return mu / self.mu_verge
 
     @lazy
     def tension_ratio(self) -> N:
-        if self.case.regime != "no-slip":
+        if self.decided.regime != "no-slip":
             return self.limiting_k_minus_1 + 1
         return self.ratio_minus_1 + 1 if self._tensions_differ() else self.ar.number(1)
 
@@ -285,9 +287,9 @@ class Machine(Generic[N]):
         return self.k_minus_1 + 1
 
     @lazy
-    def massless_verge(self) -> N:
+    def mu_verge_massless(self) -> N:
         """Friction coefficient at which the string is on the verge over a massless pulley."""
-        ratio_minus_1 = self.case.ratio_minus_1("massless", self.ar)
+        ratio_minus_1 = self.decided.ratio_minus_1("massless", self.ar)
         return physics.verge_coefficient(self.ar.log1p(ratio_minus_1), self.phi)
 
     @lazy
@@ -295,7 +297,7 @@ class Machine(Generic[N]):
         mu = self.friction_mu
         if self.ar.is_zero(mu):
             return self.ar.number(0)
-        if self.case.ends_hang_down:
+        if self.decided.ends_hang_down:
             force = self.light_tension + self.heavy_tension  # (20)
         else:
             force = self._resultant(self.half_sine)
@@ -320,12 +322,12 @@ class Machine(Generic[N]):
 
     @lazy
     def rim_acceleration(self) -> N:
-        if self.case.regime != "slip":
+        if self.decided.regime != "slip":
             return self.acceleration
-        if self.case.rim_at_rest:
+        if self.decided.rim_at_rest:
             return self.ar.number(0)
-        c = self._given(self.case.rim_mass, quantities.NEEDS_M)
-        return physics.rim_acceleration(self.difference, c, self.f) * self.case.sign
+        c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
+        return physics.rim_acceleration(self.difference, c, self.f) * self.decided.sign
 
     @lazy
     def angular_acceleration(self) -> N:
@@ -333,7 +335,7 @@ class Machine(Generic[N]):
 
     @lazy
     def mu_k(self) -> N:
-        if not self.case.slide_measured:
+        if not self.decided.slide_measured:
             raise Undetermined(quantities.NEEDS_A_OF_A_SLIDE)
         return physics.verge_coefficient(self.ar.log1p(self.limiting_k_minus_1), self.phi)
 
@@ -350,41 +352,43 @@ class Machine(Generic[N]):
         """Greatest net friction force (N) of a string that grips, if all friction acts one way."""
         if not self._bounded():
             return self.ar.number(0)
-        _, sin_half = self.ar.cos_sin(self.alpha / 2)
+        _, sin_half = self.ar.cos_sin(self.limiting_arc / 2)
         return physics.friction_magnitude(self.arc_mu("creep"), self._resultant(sin_half), self.ar.sqrt)
 
     # Limits, what follows from a measured motion, and a fall
 
     @lazy
     def axle_force(self) -> N:
-        if not self.case.ends_hang_down:
+        if not self.decided.ends_hang_down:
             raise Undetermined(quantities.ONE_SIDED)
-        if self.case.locked:
+        if self.decided.locked:
             raise Undetermined(quantities.LOCKED_AXLE)
-        if self.case.regime == "verge":
+        if self.decided.regime == "verge":
             mass = self.critical_pulley_mass
         else:
-            mass = self._given(self.case.pulley_mass, quantities.NEEDS_M)
+            mass = self._given(self.decided.pulley_mass, quantities.NEEDS_M)
         return physics.axle_force(self.tension_1, self.tension_2, mass, self.g)
 
     @lazy
     def critical_pulley_mass(self) -> N:
         _ = self.mu  # raises if it is not given
-        if not self.case.can_slip:
-            raise Undetermined(quantities.AXLE_HOLDS if self.case.axle_holds else quantities.NO_CRITICAL_MASS)
-        if self.case.always_slips:
+        if not self.decided.can_slip:
+            raise Undetermined(
+                quantities.AXLE_HOLDS if self.decided.axle_holds else quantities.NO_CRITICAL_MASS
+            )
+        if self.decided.always_slips:
             raise Undetermined(quantities.ALWAYS_SLIPS)
         friction_mass = self.friction_mass
-        beta = self._given(self.case.beta, quantities.UNKNOWN_SHAPE)
+        beta = self._given(self.decided.beta, quantities.UNKNOWN_SHAPE)
         return physics.critical_pulley_mass(self.l, self.h, friction_mass, self.drive, beta, self.b)
 
     @lazy
     def critical_heavier_mass(self) -> N:
         friction_mass = self.friction_mass
-        if self.case.slips_at_rest:
+        if self.decided.slips_at_rest:
             return self.least_heavier_mass
-        c = self._given(self.case.rim_mass, quantities.NEEDS_M)
-        if self.case.pulley_is_ideal or not self.case.slips_at("heaviest"):
+        c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
+        if self.decided.pulley_is_ideal or not self.decided.slips_at("heaviest"):
             raise Undetermined(quantities.NO_CRITICAL_HEAVIER_MASS)
         return physics.critical_heavier_mass(self.l, c, friction_mass, self.b)
 
@@ -392,10 +396,10 @@ class Machine(Generic[N]):
     def critical_lighter_mass(self) -> N:
         """Lighter mass below which the string slips (kg); 0 if it slips under none."""
         k_minus_1, h = self.k_minus_1, self.h
-        if self.case.pulley_at_rest_until_it_slips:
+        if self.decided.pulley_at_rest_until_it_slips:
             return physics.lighter_mass_at_rest(h, self.capstan_ratio)
-        c = self._given(self.case.rim_mass, quantities.NEEDS_M)
-        if self.case.pulley_is_ideal:
+        c = self._given(self.decided.rim_mass, quantities.NEEDS_M)
+        if self.decided.pulley_is_ideal:
             return self.ar.number(0)
         return physics.critical_lighter_mass(h, c, k_minus_1, self.b)
 
@@ -408,14 +412,14 @@ class Machine(Generic[N]):
     def least_pulley_mass(self) -> N:
         self._check_applicable()
         friction_mass = self.friction_mass
-        if self.case.slips_once_it_moves:
+        if self.decided.slips_once_it_moves:
             raise Undetermined(quantities.AXLE_ENOUGH)
-        beta = self._given(self.case.beta, quantities.UNKNOWN_SHAPE)
+        beta = self._given(self.decided.beta, quantities.UNKNOWN_SHAPE)
         return physics.least_pulley_mass(friction_mass, beta, self.b)
 
     def _check_applicable(self) -> None:
         """Raise Undetermined if the critical pulley has no mass, so that (36) has no meaning."""
-        if is_zero(self.scene.mu) and not self.case.pulley_known and not self.case.has_axle_friction:
+        if is_zero(self.scene.mu) and not self.decided.pulley_known and not self.decided.has_axle_friction:
             raise Undetermined(quantities.NOT_APPLICABLE)
 
     @lazy
@@ -423,15 +427,15 @@ class Machine(Generic[N]):
         _ = self.mu  # raises if it is not given
         if not self._tensions_differ():
             return self.ar.number(0)
-        if not self.case.pulley_known:
+        if not self.decided.pulley_known:
             return self.scene.wrap.degrees(self.ar)
         if is_zero(self.scene.mu):
             raise Undetermined(quantities.NO_WRAP)
-        return self.alpha * 180 / self.ar.pi
+        return self.limiting_arc * 180 / self.ar.pi
 
     def _found(self, name: str, otherwise: str) -> N:
         """Return the input that follows from the measured acceleration, if it is this one."""
-        if self.case.motion.finds != name:
+        if self.decided.motion.finds != name:
             raise Undetermined(otherwise)
         return self.ar.number(getattr(self.scene, name))
 
@@ -443,7 +447,7 @@ class Machine(Generic[N]):
     def moment_of_inertia(self) -> N:
         _ = self.pulley_mass  # raises unless it follows from the motion
         R = self._given(self.scene.R, quantities.NEEDS_R)
-        return physics.moment_of_inertia(self._given(self.case.rim_mass, quantities.NEEDS_M), R)
+        return physics.moment_of_inertia(self._given(self.decided.rim_mass, quantities.NEEDS_M), R)
 
     @property
     def gravity(self) -> N:
@@ -467,7 +471,7 @@ class Machine(Generic[N]):
 
     def _fall(self) -> tuple[N, N]:
         """Return the height fallen (m), and the acceleration (m/s²)."""
-        drop = self._given(self.case.motion.drop, quantities.NEEDS_DROP)
+        drop = self._given(self.decided.motion.drop, quantities.NEEDS_DROP)
         if self.ar.is_zero(self.magnitude):
             raise Undetermined(quantities.AT_REST)
         return drop, self.magnitude

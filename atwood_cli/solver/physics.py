@@ -66,13 +66,13 @@ def load(l: N, h: N, added: N) -> N:
     return l + h + added
 
 
-def acceleration(drive: N, load: N, g: N) -> N:
-    """Return the magnitude of the masses' acceleration (m/s²): (4), and (1) with (26).
+def acceleration(d: N, s: N, g: N) -> N:
+    """Return the magnitude of the masses' acceleration (m/s²), of drive d and load s: (4), (1) with (26).
 
     >>> acceleration(2, 9, 9)
     2.0
     """
-    return g * (drive / load)
+    return g * (d / s)
 
 
 def rim_mass(l: N, h: N, a: N, g: N, b: N) -> N:
@@ -235,7 +235,7 @@ def verge_coefficient(log_ratio: N, phi: N) -> N:
     return log_ratio / phi
 
 
-def critical_pulley_mass(l: N, h: N, friction_mass: N, drive: N, beta: N, b: N) -> N:
+def critical_pulley_mass(l: N, h: N, friction_mass: N, d: N, beta: N, b: N) -> N:
     """Return the pulley mass (kg) above which the string slips (34); z and d at the limit of friction.
 
     >>> z = 1.56633  # e^{0.3 π} - 1, the paper's example
@@ -244,7 +244,7 @@ def critical_pulley_mass(l: N, h: N, friction_mass: N, drive: N, beta: N, b: N) 
     >>> critical_pulley_mass(1, 3, 1, 1, 0.5, 1)
     2.0
     """
-    return (2 * friction_mass * h - b * (h + l + friction_mass)) / (drive * beta)
+    return (2 * friction_mass * h - b * (h + l + friction_mass)) / (d * beta)
 
 
 def critical_heavier_mass(l: N, c: N, friction_mass: N, b: N, sign: int = 1) -> N:

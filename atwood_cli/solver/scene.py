@@ -122,8 +122,8 @@ class Parameter(NamedTuple):
 
     meaning: str
     unit: str = ""
-    zero: bool = False
-    inf: bool = False
+    may_be_zero: bool = False
+    may_be_infinite: bool = False
     dimension: str | None = None
     names: Mapping[str, str] = {}
     signed: bool = False
@@ -132,23 +132,24 @@ class Parameter(NamedTuple):
     def domain(self) -> str:
         if self.signed:
             return "must be finite"
-        bound = "0 or more" if self.zero else "above 0"
-        return f"must be {bound} (inf locks the pulley)" if self.inf else f"must be {bound}, and finite"
+        bound = "0 or more" if self.may_be_zero else "above 0"
+        end = " (inf locks the pulley)" if self.may_be_infinite else ", and finite"
+        return f"must be {bound}{end}"
 
 
 INPUTS = {
-    "m1": Parameter("mass on one end of the string", "kg", zero=True, dimension="mass"),
-    "m2": Parameter("mass on the other end", "kg", zero=True, dimension="mass"),
-    "M": Parameter("mass of the pulley", "kg", zero=True, inf=True, dimension="mass"),
-    "mu": Parameter("coefficient of static friction between string and pulley", zero=True),
-    "mu_k": Parameter("coefficient of kinetic friction, once the string slips", zero=True),
+    "m1": Parameter("mass on one end of the string", "kg", may_be_zero=True, dimension="mass"),
+    "m2": Parameter("mass on the other end", "kg", may_be_zero=True, dimension="mass"),
+    "M": Parameter("mass of the pulley", "kg", may_be_zero=True, may_be_infinite=True, dimension="mass"),
+    "mu": Parameter("coefficient of static friction between string and pulley", may_be_zero=True),
+    "mu_k": Parameter("coefficient of kinetic friction, once the string slips", may_be_zero=True),
     "g": Parameter("gravity", "m/s²", dimension="acceleration", names=BODIES),
     "inertia": Parameter("inertia factor β = I/(M R²)", names=INERTIA_FACTORS),
     "I": Parameter("moment of inertia of the pulley", "kg m²", dimension="moment of inertia"),
     "R": Parameter("radius of the pulley", "m", dimension="length"),
     "wrap": Parameter("angle over which the string touches the pulley", "°", dimension="angle"),
     "axle": Parameter(
-        "friction of the axle: a force at the rim", "N", zero=True, dimension="torque or force"
+        "friction of the axle: a force at the rim", "N", may_be_zero=True, dimension="torque or force"
     ),
 }
 """The inputs of a scene, which columns of arrays and of tables may have, too."""
@@ -159,7 +160,7 @@ MEASURED = {
     "drop": Parameter("height that the heavier mass falls from rest", "m", dimension="length"),
     "time": Parameter("measured time of that fall", "s", dimension="time"),
 }
-"""Measurements of the motion, in addition to a scene or instead of one of its inputs; see `motion`."""
+"""Measurements of the motion, in addition to a scene or instead of one of its inputs; see `inverse`."""
 
 
 def parameter_of(name: str) -> Parameter:

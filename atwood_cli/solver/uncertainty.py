@@ -105,14 +105,15 @@ class UncertainAnswers(Answers):
 
     def _end(self, x: str, step: Fraction) -> End:
         """Solve the scene with an input so much more, but not below 0; what is found may go below it."""
-        scene = self.case.scene
+        scene = self.decided.scene
         number: Fraction = number_of(scene, x) + step
         if x == "mu_k" and scene.mu is not None:
             number = min(number, scene.mu)
         if x != "a":
             number = max(number, Fraction(0))
-        if not number and x != "a" and (not parameter_of(x).zero or (x == "M" and scene.I is not None)):
-            return End(number, None, NO_SCENE)
+            may_be_zero = parameter_of(x).may_be_zero and (x != "M" or scene.I is None)
+            if not (number or may_be_zero):
+                return End(number, None, NO_SCENE)
         try:
             scene = with_number(scene, x, number)
             if x == "mu" and scene.mu_k is not None:
@@ -121,7 +122,7 @@ class UncertainAnswers(Answers):
             if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
                 return End(number, None, NO_SCENE)
             answers = Answers(there, DIGITS)
-            _ = answers.case.axle_mass, answers.case.rim_mass
+            _ = answers.decided.axle_mass, answers.decided.rim_mass
         except (Undetermined, ZeroDivisionError):
             return End(number, None, NO_FIT)
         return End(number, answers)
@@ -171,7 +172,7 @@ class UncertainAnswers(Answers):
     # In sentences
 
     @lazy
-    def _ends_in_doubt(self) -> list[tuple[str, str, End]]:
+    def _nearby_ends(self) -> list[tuple[str, str, End]]:
         """Each input at the ends at which decisions may differ, the nearest first, and how far these are."""
         steps = [(within, x, n * u) for n, within in WITHIN.items() for x, u in self.uncertain.items()]
         return [(within, x, self._end(x, side * step)) for within, x, step in steps for side in (-1, 1)]
@@ -179,9 +180,9 @@ class UncertainAnswers(Answers):
     def doubts(self) -> list[str]:
         """Say which of the `DOUBTFUL` decisions differ near the scene, and at which nearest end."""
         said: dict[str, str] = {}
-        for within, x, end in self._ends_in_doubt:
+        for within, x, end in self._nearby_ends:
             for what, name in DOUBTFUL.items():
-                if end.answers and getattr(end.answers.case, name) != getattr(self.case, name):
+                if end.answers and getattr(end.answers.decided, name) != getattr(self.decided, name):
                     said.setdefault(
                         what,
                         f"{what} is in doubt: the answer differs within {within}, at {self._at(x, end)}."
@@ -190,9 +191,9 @@ class UncertainAnswers(Answers):
                     break  # others follow from it
         return [*said.values()]
 
-    def in_doubt(self) -> list[Answers | None]:
+    def nearby(self) -> list[Answers | None]:
         """Return the answers at all ends at which decisions may differ, None if an end makes no scene."""
-        return [end.answers for _, _, end in self._ends_in_doubt]
+        return [end.answers for _, _, end in self._nearby_ends]
 
     def open_ended(self, names: Iterable[str]) -> list[str]:
         """Say which quantities have no value at an end of an input, and their bound from the other end."""
@@ -217,7 +218,7 @@ class UncertainAnswers(Answers):
 
     def _at(self, x: str, end: End) -> str:
         """Say an input at an end, with its unit: "mu = 0.35"."""
-        given = given_as(self.case.scene, x)
+        given = given_as(self.decided.scene, x)
         unit = getattr(given, "unit", parameter_of(x).unit)
         return f"{x} = {with_unit(as_typed(end.input), unit)}"
 

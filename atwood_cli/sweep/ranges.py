@@ -322,5 +322,5 @@ def solve_rows(sweep: Sweep, names: Sequence[str], digits: int | None) -> Iterat
     for scene, place in sweep.scenes(sweep.ranges):
         answers = Answers(scene, digits)
         reasons = {name: reason for name in names if (reason := answers.answer(name).reason)}
-        case, values = answers.case, {name: answers[name] for name in names}
-        yield Row(place, case.regime, case.mu_assumed, values, reasons)
+        decided, values = answers.decided, {name: answers[name] for name in names}
+        yield Row(place, decided.regime, decided.mu_assumed, values, reasons)
