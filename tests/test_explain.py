@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 
 from atwood_cli.explain.derivation import Explanation, explain
 from atwood_cli.explain.equations import Derivation, Equation
-from atwood_cli.explain.equations import plain as in_letters
 from atwood_cli.numbers.digits import is_infinite
 from atwood_cli.output.text import inputs_in_words
 from atwood_cli.output.typeset import as_markdown, as_text, chain, written
@@ -108,7 +107,7 @@ def symbol_of(equation: Equation) -> str:
     return written(equation.left)
 
 
-VALUES = {in_letters(about.symbol): name for name, about in QUANTITIES.items() if name in NAMES}
+VALUES = {about.letters: name for name, about in QUANTITIES.items() if name in NAMES}
 VALUES["|a|"] = "acceleration"
 
 

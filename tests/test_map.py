@@ -12,7 +12,6 @@ import pytest
 
 from atwood_cli import Solution
 from atwood_cli.explain.conditions import DIMENSIONS
-from atwood_cli.explain.equations import plain
 from atwood_cli.output.typeset import IN_LATEX
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.reading.units import UNITS
@@ -109,7 +108,7 @@ def lacking() -> Iterator[str]:
             yield f"atwood_cli/api.py: Solution has no field {name!r}"
         if about.unit not in (*DIMENSIONS, *WITHOUT_DIMENSION):
             yield f"atwood_cli/explain/conditions.py: DIMENSIONS has no {about.unit!r}"
-        for sign in plain(about.symbol):
+        for sign in about.letters:
             if not sign.isascii() and ord(sign) not in IN_LATEX:
                 yield f"atwood_cli/output/typeset.py: {sign!r} has no LaTeX in SIGNS"
     source = Path(quantities.__file__).read_text(encoding="utf-8")

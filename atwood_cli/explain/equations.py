@@ -51,28 +51,25 @@ class Equation(NamedTuple):
 
 MOTION = ("acceleration", "tension_1", "tension_2")
 """Quantities that a derivation gives first."""
+INTERMEDIATE = {
+    "half_sine": ("sin(φ/2)", ""),
+    "ratio_minus_1": ("x", ""),
+    "mu_verge_massless": ("μ_0", ""),
+    "k_minus_1": ("k - 1", ""),
+    "friction_mass": ("z", "kg"),
+    "drive": ("d", "kg"),
+    "limiting_arc": ("φ_lim", "rad"),
+}
+"""The symbols and units of intermediate values, by the machine's names."""
 UNITS = {
-    **dict.fromkeys(
-        ("friction_mass", "limiting_friction_mass", "drive", "limiting_drive", "M", "c", "b"), "kg"
-    ),
+    **{name: unit for name, (_, unit) in INTERMEDIATE.items()},
+    **{"limiting_friction_mass": "kg", "limiting_drive": "kg", "magnitude": "m/s²", "phi": "rad"},
     **dict.fromkeys(("light_tension", "heavy_tension", "difference", "f_axle"), "N"),
-    **dict.fromkeys(("magnitude", "a", "|a|", "g"), "m/s²"),
-    **dict.fromkeys(("phi", "limiting_arc"), "rad"),
+    **{"a": "m/s²", "|a|": "m/s²", "g": "m/s²", "M": "kg", "c": "kg", "b": "kg"},
 }
-"""Units of the model's intermediate values, by name, and of inputs, by symbol."""
-INTERMEDIATE_SYMBOLS = {
-    "half_sine": "sin(φ/2)",
-    "ratio_minus_1": "x",
-    "mu_verge_massless": "μ_0",
-    "k_minus_1": "k - 1",
-    "capstan_ratio": "k",
-    "friction_mass": "z",
-    "drive": "d",
-    "limiting_arc": "φ_lim",
-    "critical_pulley_mass": "M*",
-    "mu_verge": "μ*",
-}
-"""Symbols of what equations refer to, by the model's names."""
+"""The units of intermediate values, by name, and of inputs, by symbol."""
+REFERRED_TO = ("capstan_ratio", "critical_pulley_mass", "mu_verge")
+"""Quantities that equations of others refer to."""
 WITHOUT_AXLE_FRICTION = {"f_axle": 0, "b": 0, "D": 1}
 """Values of symbols if the axle has no friction."""
 
@@ -118,7 +115,7 @@ class Derivation:
         """Return the symbols that are not in the table of quantities, or differ from it in this scene."""
         decided, scene = self.decided, self.scene
         kin = "_kin" if decided.slides_by_mu_k else ""
-        symbols = INTERMEDIATE_SYMBOLS | {
+        symbols = {name: symbol for name, (symbol, _) in INTERMEDIATE.items()} | {
             "limiting_k_minus_1": f"k{kin} - 1",
             "limiting_friction_mass": f"z{kin}",
             "limiting_drive": f"d{kin}",
@@ -129,6 +126,7 @@ class Derivation:
             "difference": f"T{self.heavy} - T{self.light}",
             "tension_ratio": f"T{self.heavy}/T{self.light}",
             "rim_acceleration": "a_rim" if decided.regime == "slip" else "a",
+            **{name: QUANTITIES[name].letters for name in REFERRED_TO},
         }
         if decided.slide_measured:
             symbols |= {"limiting_k_minus_1": "x_kin", "mu_k": "μ_k"}
@@ -136,7 +134,7 @@ class Derivation:
 
     def symbol(self, name: str) -> str:
         """Return the symbol of a quantity."""
-        return self.symbols.get(name) or plain(QUANTITIES[name].symbol)
+        return self.symbols.get(name) or QUANTITIES[name].letters
 
     def formula(self, symbol: str) -> Formula:
         """Return the formula of a symbol, or of its value without axle friction."""
@@ -223,10 +221,3 @@ class Derivation:
 def unit_of(name: str) -> str:
     """Return the unit of a quantity, an intermediate value or an input."""
     return QUANTITIES[name].unit if name in QUANTITIES else UNITS.get(name, "")
-
-
-def plain(symbol: str) -> str:
-    """Return a symbol of the table of quantities in plain letters, as equations write it."""
-    letters = {"T₁": "T1", "T₂": "T2", "m₁": "m1", "m₂": "m2", "μ kin": "μ_k"}
-    letters |= {"a rim": "a_rim", "Fx": "F_x", "Fy": "F_y"}
-    return letters.get(symbol, symbol)

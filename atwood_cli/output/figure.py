@@ -18,7 +18,7 @@ from xml.sax.saxutils import escape
 
 from ..numbers.text import LONGEST_NAME, shortened
 from ..solver.quantities import QUANTITIES
-from ..solver.scene import SceneError
+from ..solver.scene import INPUTS, SceneError
 from .files import check_free, written_beside
 from .text import say, wrapped
 
@@ -27,25 +27,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.path import Path as MatplotlibPath
 
-AXIS_WORDS = {
-    "m1": ("mass", "m₁"),
-    "m2": ("mass", "m₂"),
-    "M": ("pulley mass", "M"),
-    "mu": ("friction coefficient", "μ"),
-    "mu_k": ("kinetic friction coefficient", "μₖ"),
-    "g": ("gravity", "g"),
-    "inertia": ("inertia factor", "β"),
-    "I": ("moment of inertia", "I"),
-    "R": ("radius", "R"),
-    "wrap": ("angle of wrap", "φ"),
-    "axle": ("axle friction", "f_axle"),
-    "mu_verge": ("verge coefficient", "μ*"),
-    "friction_force_min": ("least friction force", "F min"),
-    "friction_force_max": ("greatest friction force", "F max"),
-    "friction_force_x": ("horizontal friction force", "Fx"),
-    "friction_force_y": ("vertical friction force", "Fy"),
-}
-"""The names and symbols on axes: of parameters, and of quantities whose own name says less."""
 BLUE, RED, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b05d91", "#b07800", "#56b4e9"
 """Colours that differ on paper and without seeing red or green (M. Okabe, K. Ito, Color universal design)."""
 COLOURS = (BLUE, RED, GREEN, PURPLE, ORANGE, SKY)
@@ -86,10 +67,9 @@ FORMATS: Any = {"svg": {"Date": None}, "png": {}, "pdf": {"CreationDate": None}}
 
 
 def axis_words(name: str) -> tuple[str, str]:
-    """Return the name and the symbol of a parameter or a quantity."""
-    if name in AXIS_WORDS:
-        return AXIS_WORDS[name]
-    return name.rstrip("_12").replace("_", " "), QUANTITIES[name].symbol
+    """Return the words and the symbol of a parameter or a quantity."""
+    about = INPUTS.get(name) or QUANTITIES[name]
+    return about.axis or name.rstrip("_12").replace("_", " "), about.symbol
 
 
 def check_file(path: str, force: bool) -> None:
@@ -139,7 +119,7 @@ def page(
 
 def typeset(words: str) -> str:
     """Return words as print has them: symbols for names, minus signs, powers of ten, no endless digits."""
-    words = NAMES_IN_WORDS.sub(lambda name: AXIS_WORDS[name[0]][1], LONG_DIGITS.sub(r"\1…", words))
+    words = NAMES_IN_WORDS.sub(lambda name: INPUTS[name[0]].symbol, LONG_DIGITS.sub(r"\1…", words))
     words = SIDES_IN_WORDS.sub(lambda name: name[0].translate(SUBSCRIPTS), words)
     words = EXPONENT.sub(lambda power: f" × 10{power[1].translate(SUPERSCRIPTS)}", words)
     return MINUS.sub("−", words)

@@ -9,11 +9,11 @@ from operator import attrgetter
 from typing import Any
 
 from ..explain.derivation import Explanation, Paragraph
-from ..explain.equations import Equation, plain
+from ..explain.equations import Equation
 from ..numbers.digits import format_number
 from ..numbers.formula import Formula, Symbol, factors
 from ..solver.quantities import QUANTITIES
-from ..solver.scene import INPUTS
+from ..solver.scene import INPUTS, MEASURED
 from .text import wrapped
 
 Written = tuple[str, int]
@@ -225,14 +225,10 @@ def _aligned(equation: Equation) -> str:
     return f"\\begin{{aligned}}\n{left} {rows}\n\\end{{aligned}}"
 
 
-SYMBOLS = {name: f"`{plain(about.symbol)}`" for name, about in QUANTITIES.items() if name not in INPUTS} | {
-    "mu": "`μ`",
-    "mu_k": "`μ_k`",
-    "inertia": "inertia factor `β`",
-    "wrap": "angle of wrap `φ`",
-    "axle": "axle friction",
-    "drop": "height of fall `s`",
-    "time": "time of fall `t`",
-    "inf": "`∞`",
-}
+SYMBOLS = (
+    {name: f"`{about.letters}`" for name, about in QUANTITIES.items() if name not in INPUTS}
+    # Names of one or two letters are symbols themselves.
+    | {name: f"{one.axis} `{one.symbol}`" for name, one in (INPUTS | MEASURED).items() if len(name) > 2}
+    | {"mu": "`μ`", "mu_k": "`μ_k`", "axle": "axle friction", "inf": "`∞`"}
+)
 """Symbols for names of the program; a name that is not here is its own symbol."""

@@ -19,7 +19,11 @@ ACCURACIES: tuple[Accuracy, ...] = get_args(Accuracy)
 
 
 class About(NamedTuple):
-    """How a quantity is shown, and the paper's equation for it, "" if it has none."""
+    """How a quantity is shown, and the paper's equation for it, "" if it has none.
+
+    ``in_equations`` is the symbol that equations write, unless that is the usual one with plain digits.
+    ``axis`` are the words on an axis, unless those are the quantity's name.
+    """
 
     group: str
     symbol: str
@@ -27,6 +31,16 @@ class About(NamedTuple):
     equation: str
     meaning: str
     equation_in_slip: str | None = None
+    in_equations: str = ""
+    axis: str = ""
+
+    @property
+    def letters(self) -> str:
+        """The symbol as equations write it: T1, F_x."""
+        return self.in_equations or self.symbol.translate(PLAIN_DIGITS)
+
+
+PLAIN_DIGITS = str.maketrans("₁₂", "12")
 
 
 # fmt: off
@@ -34,18 +48,18 @@ QUANTITIES = {
     "acceleration": About("motion", "a", "m/s²", "(4)", "acceleration, positive when m2 descends", "(1), (26)"),
     "tension_1": About("motion", "T₁", "N", "(4)", "tension of the string at m1", "(1), (26)"),
     "tension_2": About("motion", "T₂", "N", "(4)", "tension of the string at m2", "(1), (26)"),
-    "mu_verge": About("friction", "μ*", "", "(27)", "friction coefficient below which the string slips"),
+    "mu_verge": About("friction", "μ*", "", "(27)", "friction coefficient below which the string slips", axis="verge coefficient"),
     "safety_factor": About("friction", "μ/μ*", "", "", "ratio of friction coefficients, mu over mu_verge; below 1 it slips"),
     "tension_ratio": About("friction", "r", "", "(33)", "ratio of the tensions, the greater over the lesser", "(26)"),
     "capstan_ratio": About("friction", "k", "", "(26)", "greatest ratio of tensions that friction holds"),
     "friction_force": About("friction", "F", "N", "(32)", "magnitude of the vector sum of friction along the arc"),
-    "friction_force_min": About("friction", "F min", "N", "", "least friction_force while the string grips"),
-    "friction_force_max": About("friction", "F max", "N", "", "greatest friction_force while the string grips"),
-    "friction_force_x": About("friction", "Fx", "N", "(31)", "component of friction_force towards m1's side"),
-    "friction_force_y": About("friction", "Fy", "N", "(31)", "component of friction_force upwards"),
+    "friction_force_min": About("friction", "F min", "N", "", "least friction_force while the string grips", axis="least friction force"),
+    "friction_force_max": About("friction", "F max", "N", "", "greatest friction_force while the string grips", axis="greatest friction force"),
+    "friction_force_x": About("friction", "Fx", "N", "(31)", "component of friction_force towards m1's side", None, "F_x", "horizontal friction force"),
+    "friction_force_y": About("friction", "Fy", "N", "(31)", "component of friction_force upwards", None, "F_y", "vertical friction force"),
     "axle_force": About("pulley", "A", "N", "(20)", "force on the axle, with the pulley's weight"),
     "torque": About("pulley", "τ", "N m", "(23)", "torque of the string on the pulley"),
-    "rim_acceleration": About("pulley", "a rim", "m/s²", "(3)", "acceleration of the pulley's rim"),
+    "rim_acceleration": About("pulley", "a rim", "m/s²", "(3)", "acceleration of the pulley's rim", None, "a_rim"),
     "angular_acceleration": About("pulley", "α", "rad/s²", "(2)", "angular acceleration of the pulley"),
     "critical_pulley_mass": About("limits", "M*", "kg", "(34)", "pulley mass above which the string slips"),
     "critical_heavier_mass": About("limits", "m*", "kg", "(35)", "heavier mass above which the string slips"),
@@ -59,7 +73,7 @@ QUANTITIES = {
     "gravity": About("measured", "g", "m/s²", "(4)", "gravity that gives the measured acceleration"),
     "m1": About("measured", "m₁", "kg", "(1), (3)", "mass m1 that gives the measured acceleration"),
     "m2": About("measured", "m₂", "kg", "(1), (3)", "mass m2 that gives the measured acceleration"),
-    "mu_k": About("measured", "μ kin", "", "(26)", "mu_k that gives the measured acceleration"),
+    "mu_k": About("measured", "μ kin", "", "(26)", "mu_k that gives the measured acceleration", None, "μ_k"),
     "fall_time": About("measured", "t", "s", "", "time to fall the height from rest"),
     "final_speed": About("measured", "v", "m/s", "", "speed after that"),
 }

@@ -118,9 +118,11 @@ class SceneError(ValueError):
 
 
 class Parameter(NamedTuple):
-    """An input: its meaning, its unit, and the values that it may have."""
+    """An input: its meaning, its symbol, its words on an axis, its unit, and the values that it may have."""
 
     meaning: str
+    symbol: str
+    axis: str
     unit: str = ""
     may_be_zero: bool = False
     may_be_infinite: bool = False
@@ -137,30 +139,49 @@ class Parameter(NamedTuple):
         return f"must be {bound}{end}"
 
 
+# fmt: off
 INPUTS = {
-    "m1": Parameter("mass on one end of the string", "kg", may_be_zero=True, dimension="mass"),
-    "m2": Parameter("mass on the other end", "kg", may_be_zero=True, dimension="mass"),
-    "M": Parameter("mass of the pulley", "kg", may_be_zero=True, may_be_infinite=True, dimension="mass"),
-    "mu": Parameter("coefficient of static friction between string and pulley", may_be_zero=True),
-    "mu_k": Parameter("coefficient of kinetic friction, once the string slips", may_be_zero=True),
-    "g": Parameter("gravity", "m/s²", dimension="acceleration", names=BODIES),
-    "inertia": Parameter("inertia factor β = I/(M R²)", names=INERTIA_FACTORS),
-    "I": Parameter("moment of inertia of the pulley", "kg m²", dimension="moment of inertia"),
-    "R": Parameter("radius of the pulley", "m", dimension="length"),
-    "wrap": Parameter("angle over which the string touches the pulley", "°", dimension="angle"),
+    "m1": Parameter("mass on one end of the string", "m₁", "mass", "kg", may_be_zero=True, dimension="mass"),
+    "m2": Parameter("mass on the other end", "m₂", "mass", "kg", may_be_zero=True, dimension="mass"),
+    "M": Parameter(
+        "mass of the pulley", "M", "pulley mass", "kg",
+        may_be_zero=True, may_be_infinite=True, dimension="mass",
+    ),
+    "mu": Parameter(
+        "coefficient of static friction between string and pulley", "μ", "friction coefficient",
+        may_be_zero=True,
+    ),
+    "mu_k": Parameter(
+        "coefficient of kinetic friction, once the string slips", "μₖ", "kinetic friction coefficient",
+        may_be_zero=True,
+    ),
+    "g": Parameter("gravity", "g", "gravity", "m/s²", dimension="acceleration", names=BODIES),
+    "inertia": Parameter("inertia factor β = I/(M R²)", "β", "inertia factor", names=INERTIA_FACTORS),
+    "I": Parameter(
+        "moment of inertia of the pulley", "I", "moment of inertia", "kg m²", dimension="moment of inertia"
+    ),
+    "R": Parameter("radius of the pulley", "R", "radius", "m", dimension="length"),
+    "wrap": Parameter(
+        "angle over which the string touches the pulley", "φ", "angle of wrap", "°", dimension="angle"
+    ),
     "axle": Parameter(
-        "friction of the axle: a force at the rim", "N", may_be_zero=True, dimension="torque or force"
+        "friction of the axle: a force at the rim", "f_axle", "axle friction", "N",
+        may_be_zero=True, dimension="torque or force",
     ),
 }
 """The inputs of a scene, which columns of arrays and of tables may have, too."""
 MEASURED = {
     "a": Parameter(
-        "measured acceleration, positive when m2 descends", "m/s²", dimension="acceleration", signed=True
+        "measured acceleration, positive when m2 descends", "a", "acceleration", "m/s²",
+        dimension="acceleration", signed=True,
     ),
-    "drop": Parameter("height that the heavier mass falls from rest", "m", dimension="length"),
-    "time": Parameter("measured time of that fall", "s", dimension="time"),
+    "drop": Parameter(
+        "height that the heavier mass falls from rest", "s", "height of fall", "m", dimension="length"
+    ),
+    "time": Parameter("measured time of that fall", "t", "time of fall", "s", dimension="time"),
 }
 """Measurements of the motion, in addition to a scene or instead of one of its inputs; see `inverse`."""
+# fmt: on
 
 
 def parameter_of(name: str) -> Parameter:
