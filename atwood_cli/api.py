@@ -1,6 +1,5 @@
 """The Python interface to one scene: `solve`, and the `Solution` that it returns."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from decimal import Decimal
@@ -126,14 +125,16 @@ class Solution(Generic[T]):
     def to_dict(self) -> dict[str, Any]:
         """Return the record that ``--json`` prints, for `json`: Decimals are text, infinite values None."""
         from .output.scene_page import record
-        from .output.text import VERSION, as_json
+        from .output.text import cell
 
-        def number(typed: str) -> str | float:
-            value = float(typed)
-            return typed if self._answers.digits or isinf(value) else value
+        def plain(value: Any) -> Any:
+            if isinstance(value, Mapping):
+                return {key: plain(item) for key, item in value.items()}
+            if not isinstance(value, float | Decimal) or not (typed := cell(value)):
+                return None if isinstance(value, float | Decimal) else value
+            return typed if self._answers.digits or isinf(float(typed)) else float(typed)
 
-        printed = "".join(as_json(record(self._answers)))
-        return {**json.loads(printed, parse_float=number, parse_int=number), "version": VERSION}
+        return dict(plain(record(self._answers)))
 
     def __str__(self) -> str:
         """Return the page that ``atwood solve`` prints, without colours."""

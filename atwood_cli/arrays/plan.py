@@ -106,7 +106,7 @@ class _GroupDecisions(Decisions):
         super().__init__(task.pattern.scene(number))
         self.sign, self._branches = task.pattern.sign, dict(task.branches)
 
-    def _decided(self, question: str) -> bool:
+    def _branch(self, question: str) -> bool:
         if question not in self._branches:
             raise Undecided(question)
         return self._branches[question]
@@ -114,21 +114,21 @@ class _GroupDecisions(Decisions):
     @lazy
     def long_wrap(self) -> bool:
         is_column = not isinstance(self.scene.wrap.number, Fraction)
-        return self._decided("long_wrap") if is_column else super().long_wrap
+        return self._branch("long_wrap") if is_column else super().long_wrap
 
     @lazy
     def ends_hang_down(self) -> bool:
         is_column = not isinstance(self.scene.wrap.number, Fraction)
-        return self._decided("ends_hang_down") if is_column else super().ends_hang_down
+        return self._branch("ends_hang_down") if is_column else super().ends_hang_down
 
     def slips_at(self, at: LimitingCase) -> bool:
-        return self._decided(f"slips_at {at}")
+        return self._branch(f"slips_at {at}")
 
     def slides_at(self, at: LimitingCase) -> bool:
-        return self.slips_at(at) if self.limit_is_static else self._decided(f"slides_at {at}")
+        return self.slips_at(at) if self.limit_is_static else self._branch(f"slides_at {at}")
 
     def moves_axle(self, name: Literal["difference", "heavy"]) -> bool:
-        return self._decided(f"moves_axle {name}")
+        return self._branch(f"moves_axle {name}")
 
 
 def _machine_of_columns(task: Task, ar: Doubles) -> Machine[Any]:

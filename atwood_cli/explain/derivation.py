@@ -20,11 +20,12 @@ from importlib.resources import files
 from operator import mul, truediv
 from typing import Any, NamedTuple
 
+from ..numbers.rational import N
 from ..solver import physics
 from ..solver.answers import Answers
 from ..solver.quantities import REGIMES
 from .equations import GUARD_DIGITS, MOTION, Derivation, Equation
-from .messages import remarks, verdict
+from .messages import measured_quantities, remarks, verdict
 
 
 class Paragraph(NamedTuple):
@@ -50,7 +51,7 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
     """
     answers, derivation = answers.to_six_digits, Derivation(answers.to_six_digits)
     digits, paragraphs = derivation.digits, [*_paragraphs(derivation)]
-    names = dict.fromkeys(only or [*answers.found, *MOTION])
+    names = dict.fromkeys(only or [*measured_quantities(answers), *MOTION])
     known = [name for name in names if name != "regime" and derivation.exists(name)]
     if only:
         decides = (
@@ -141,7 +142,27 @@ def _equation(derivation: Derivation, line: str) -> Iterator[Equation]:
         yield Equation(label, left, right, follows)
 
 
-FUNCTIONS: Mapping[str, Callable[..., Any]] = {**vars(physics), "product": mul, "quotient": truediv}
+def ratio_in_the_paper(l: N, h: N, M: N) -> N:
+    """Return T_h/T_l of a string that grips a disk, as (33) has it; 1 + `gripping_ratio_minus_1`."""
+    return (4 * l + M) * h / ((4 * h + M) * l)
+
+
+def pulley_mass_in_the_paper(l: N, h: N, k: N) -> N:
+    """Return the mass (kg) of a disk above which the string slips, as (34) has it; `critical_pulley_mass`."""
+    return 4 * l * h * (k - 1) / (h - l * k)
+
+
+def heavier_mass_in_the_paper(l: N, M: N, k: N) -> N:
+    """Return the heavier mass (kg) on the verge, as (35) has it; `critical_heavier_mass`."""
+    return M * l * k / (M - 4 * l * (k - 1))
+
+
+THE_PAPERS = (ratio_in_the_paper, pulley_mass_in_the_paper, heavier_mass_in_the_paper)
+FUNCTIONS: Mapping[str, Callable[..., Any]] = {
+    **vars(physics),
+    **{law.__name__: law for law in THE_PAPERS},
+    **{"product": mul, "quotient": truediv},
+}
 """Functions that equations of `derivation.md` name."""
 
 

@@ -13,7 +13,7 @@ from ..numbers.digits import SHOWN_DIGITS, Rounding, as_typed, format_number, ro
 from ..reading.units import MAX_MAGNITUDE
 from ..solver.answers import Answers
 from ..solver.physics import critical_heavier_mass
-from ..solver.quantities import QUANTITIES
+from ..solver.quantities import NAMES, QUANTITIES
 from ..solver.scene import with_unit
 
 
@@ -26,6 +26,12 @@ def notes(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return sentences on the regime and why, and on the quantities named, as `reasons`."""
     said = [verdict(answers), *remarks(answers.to_six_digits)]
     return [*map(unmarked, said), *reasons(answers, names)]
+
+
+def measured_quantities(answers: Answers) -> list[str]:
+    """Return the names of the quantities that follow from measurements, the unknown input first."""
+    by_time = {"fall_time": "acceleration"} if answers.decided.motion.time is not None else {}
+    return [by_time.get(name, name) for name in answers.names[len(NAMES) :]]
 
 
 def reasons(answers: Answers, names: Sequence[str]) -> list[str]:

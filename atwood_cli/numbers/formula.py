@@ -103,12 +103,13 @@ class Symbols:
     expm1, log1p, sqrt = map(_recorded, ("expm1", "log1p", "sqrt"))
 
     def __init__(self, inputs: Sequence[Symbol]) -> None:
-        self.symbols = {id(symbol.of): symbol for symbol in reversed(inputs)}  # two may be equal
+        self.inputs = inputs
 
     def number(self, q: Fraction | int) -> Formula:
-        """Return the symbol of an input, or the 0 or 1 of a limit."""
-        if id(q) in self.symbols:
-            return Formula("symbol", self.symbols[id(q)])
+        """Return the symbol of an input, which is this object, as two may be equal; or a limit's 0 or 1."""
+        for symbol in self.inputs:
+            if symbol.of is q:
+                return Formula("symbol", symbol)
         assert q in (0, 1), f"{q} is no input with a symbol"
         return formula(int(q))
 

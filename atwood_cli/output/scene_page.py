@@ -7,7 +7,7 @@ from itertools import groupby
 from typing import TYPE_CHECKING
 
 from ..explain.contact import Contact
-from ..explain.messages import notes, reasons, remarks, unmarked, verdict
+from ..explain.messages import measured_quantities, notes, reasons, remarks, unmarked, verdict
 from ..numbers.digits import rounding_to_place, strip_zeros, with_uncertainty
 from ..solver.answers import Answers
 from ..solver.decisions import REGIME_ASSUMED
@@ -68,6 +68,30 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
     return [*said, *map(unmarked, remarks(answers.to_six_digits)), *reasons(answers, names or answers.names)]
 
 
+MAIN = ("acceleration", "tension_1", "tension_2", "mu_verge", "friction_force")
+"""The quantities that every table of a scene shows."""
+
+
+def main_quantities(answers: Answers) -> list[str]:
+    """Return the names of the quantities that a table shows unless all are asked for."""
+    decided, scene = answers.decided, answers.decided.scene
+    has_mu = scene.mu is not None
+    bounded = has_mu and answers["friction_force"] is None
+    also = {
+        "friction_force_min": bounded,
+        "friction_force_max": bounded,
+        "axle_force": decided.has_axle_friction and decided.ends_hang_down,
+        "torque": scene.R is not None,
+        "rim_acceleration": decided.regime == "slip",
+        "angular_acceleration": scene.R is not None,
+        "critical_pulley_mass": has_mu,
+        "critical_heavier_mass": has_mu and decided.pulley_known,
+        "safety_factor": has_mu and decided.pulley_known and not decided.tensions_equal,
+        "least_wrap": has_mu and not scene.wrap.is_half_turn,
+    }
+    return [name for name in answers.names[1:] if also.get(name, name in MAIN or name in MEASURED_NAMES)]
+
+
 REGIME_STYLES = {"no-slip": "green", "verge": "yellow", "slip": "red"}
 COLUMNS = ("Quantity", "Value", "Unit", "Symbol", "Equation")
 
@@ -79,13 +103,14 @@ def print_table(
     from .page import Page
 
     answers, page = answers.to_six_digits, page or Page()
-    names = answers.names[1:] if whole else answers.main
-    groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *answers.found)])
-    found = [_stated(answers, name) for name in answers.found if cell(answers[name])]
-    _print_head(page, answers, f"Found: {', '.join(found)}." if found else "")
+    names = answers.names[1:] if whole else main_quantities(answers)
+    measured = measured_quantities(answers)
+    groups = _rows(answers, [name for name in names if name not in (*MEASURED_NAMES, *measured)])
+    stated = [_stated(answers, name) for name in measured if cell(answers[name])]
+    _print_head(page, answers, f"Found: {', '.join(stated)}." if stated else "")
     if groups:
         page.table(COLUMNS, groups)
-    lacking = dict.fromkeys([*names, *answers.found])
+    lacking = dict.fromkeys([*names, *measured])
     if cell(answers["friction_force_min"]):  # the table has the bounds
         lacking.pop("friction_force", None)
     page.say(*map(unmarked, remarks(answers)), *reasons(answers, list(lacking)))
@@ -93,12 +118,12 @@ def print_table(
         print_budget(answers, names, page)
 
 
-def _print_head(page: "Page", answers: Answers, found: str = "") -> None:
+def _print_head(page: "Page", answers: Answers, measured: str = "") -> None:
     """Print the scene, a sentence on the quantities found from a motion, and the verdict."""
     given = inputs_in_words(answers.decided.scene, answers.uncertain)
     page.say(", ".join(given.values()))
-    if found:
-        page.say(found, style="bold")
+    if measured:
+        page.say(measured, style="bold")
     page.say(unmarked(verdict(answers)), style=f"bold {REGIME_STYLES[answers.decided.regime]}")
 
 

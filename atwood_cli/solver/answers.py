@@ -14,7 +14,7 @@ from ..numbers.interval import LARGEST_EXPONENT
 from ..numbers.settling import settle
 from .decisions import Decisions
 from .machine import Machine
-from .quantities import FROM_MOTION, MAIN, NAMES, Undetermined
+from .quantities import FROM_MOTION, NAMES, Undetermined
 from .scene import Scene
 
 if TYPE_CHECKING:
@@ -75,38 +75,12 @@ class Answers:
         drop = "drop" if motion.drop is not None else None
         return (*NAMES, *FROM_MOTION.get(motion.finds, ()), *FROM_MOTION.get(drop, ()))
 
-    @property
-    def found(self) -> tuple[str, ...]:
-        """The quantities that follow from measurements, the unknown input first."""
-        by_time = {"fall_time": "acceleration"} if self.decided.motion.time is not None else {}
-        return tuple(by_time.get(name, name) for name in self.names[len(NAMES) :])
-
-    @property
-    def main(self) -> tuple[str, ...]:
-        """The quantities that a table shows unless all are asked for."""
-        decided, scene = self.decided, self.decided.scene
-        has_mu = scene.mu is not None
-        bounded = has_mu and self["friction_force"] is None
-        also = {
-            "friction_force_min": bounded,
-            "friction_force_max": bounded,
-            "axle_force": decided.has_axle_friction and decided.ends_hang_down,
-            "torque": scene.R is not None,
-            "rim_acceleration": decided.regime == "slip",
-            "angular_acceleration": scene.R is not None,
-            "critical_pulley_mass": has_mu,
-            "critical_heavier_mass": has_mu and decided.pulley_known,
-            "safety_factor": has_mu and decided.pulley_known and not decided.tensions_equal,
-            "least_wrap": has_mu and not scene.wrap.is_half_turn,
-        }
-        return tuple(name for name in self.names[1:] if also.get(name, name in MAIN or name not in NAMES))
-
     def __getitem__(self, name: str) -> Any:
         """Return the value of a quantity by its name, None if it has none."""
         return self.answer(name).value
 
     def answer(self, name: str) -> Answer:
-        """Return the value of a quantity, its uncertainty, and why one of them is missing."""
+        """Return the value of a quantity, and why it is missing."""
         if name == "regime":
             return Answer(self.decided.regime)
         if name not in self._answers:

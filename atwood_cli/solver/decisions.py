@@ -61,7 +61,6 @@ class Decisions:
 
     def __init__(self, scene: Scene) -> None:
         self.scene, self.motion = scene, scene.motion
-        self._known_to_slip = False
 
     @lazy
     def sign(self) -> int:
@@ -185,8 +184,7 @@ class Decisions:
     def slips(self) -> bool:
         """Whether the string slips on a pulley that is known and friction that is given."""
         at: LimitingCase = "locked" if self.pulley_at_rest else "as_given"
-        self._known_to_slip = not self.tensions_equal and self.slips_at(at)
-        return self._known_to_slip
+        return not self.tensions_equal and self.slips_at(at)
 
     @lazy
     def limiting_mu(self) -> Fraction:
@@ -231,9 +229,8 @@ class Decisions:
     @lazy
     def can_slip(self) -> bool:
         """Whether the string slips on a pulley that is heavy enough: first condition of (36)."""
-        # A string that slips on this pulley slips on a heavier one. If that was not asked, the pulley's mass
-        # is not read: so a sweep of it computes what depends on this once.
-        return self._known_to_slip or self.slips_at("locked")
+        # A string that slips on this pulley slips on a heavier one.
+        return (self.pulley_known and self.slips) or self.slips_at("locked")
 
     @lazy
     def always_slips(self) -> bool:
@@ -288,7 +285,7 @@ class Decisions:
     def ratio_minus_1(self, at: LimitingCase, ar: Arithmetic[N]) -> N:
         """Return T_h/T_l - 1 of a string that grips, in a case of the table at the head."""
         l, h, b = self.light, self.heavy, self.axle_mass
-        # A limit does not read the pulley's mass: so a sweep of it computes the limit once.
+        # A limit does not read the pulley's mass: in a sweep of it the caches of `interval` have the limit.
         c = self.rim_mass if at in ("as_given", "heaviest") else ZERO
         if at == "heaviest":
             assert c is not None

@@ -44,7 +44,7 @@ class Machine(Generic[N]):
 
     @lazy
     def g(self) -> N:
-        """Gravity (m/s²). It is read only where it enters, so that a sweep of it computes the rest once."""
+        """Gravity (m/s²), read only where it enters: in a sweep of it `interval` keeps the rest."""
         return self.ar.number(self.scene.g)
 
     @lazy
@@ -64,6 +64,10 @@ class Machine(Generic[N]):
         """Coefficient of static friction; not given if one mass is 0."""
         reason = quantities.FIXED_END if self.decided.one_mass_is_0 else quantities.NEEDS_MU
         return self._given(self.scene.mu, reason)
+
+    def _require_mu(self) -> None:
+        """Raise Undetermined if mu is not given."""
+        _ = self.mu
 
     def _capstan_ratio_minus_1(self, given: Fraction | None, mu: N) -> N:
         """Return e^{μφ} - 1, exactly 0 without friction."""
@@ -231,7 +235,7 @@ class Machine(Generic[N]):
             raise Undetermined(quantities.DEFINITE)
         if not self._tensions_differ():
             return False
-        _ = self.mu  # raises if it is not given
+        self._require_mu()
         if self.decided.long_wrap:
             raise Undetermined(quantities.LONG_WRAP)
         return True
@@ -266,8 +270,7 @@ class Machine(Generic[N]):
             return self.ar.number(0)
         if not self.decided.pulley_known:
             return self.ar.number(self.decided.limiting_mu)
-        phi = self.phi  # first, as fractions give up on π sooner than on the ratio
-        return physics.verge_coefficient(self.log_ratio, phi)
+        return physics.verge_coefficient(self.log_ratio, self.phi)
 
     @lazy
     def safety_factor(self) -> N:
@@ -371,7 +374,7 @@ class Machine(Generic[N]):
 
     @lazy
     def critical_pulley_mass(self) -> N:
-        _ = self.mu  # raises if it is not given
+        self._require_mu()
         if not self.decided.can_slip:
             raise Undetermined(
                 quantities.AXLE_HOLDS if self.decided.axle_holds else quantities.NO_CRITICAL_MASS
@@ -424,7 +427,7 @@ class Machine(Generic[N]):
 
     @lazy
     def least_wrap(self) -> N:
-        _ = self.mu  # raises if it is not given
+        self._require_mu()
         if not self._tensions_differ():
             return self.ar.number(0)
         if not self.decided.pulley_known:

@@ -277,33 +277,6 @@ def lighter_mass_at_rest(h: N, k: N) -> N:
     return h / k
 
 
-def ratio_in_the_paper(l: N, h: N, M: N) -> N:
-    """Return T_h/T_l of a string that grips a disk of mass M, as (33) has it; 1 + `gripping_ratio_minus_1`.
-
-    >>> ratio_in_the_paper(1, 3, 12)
-    2.0
-    """
-    return (4 * l + M) * h / ((4 * h + M) * l)
-
-
-def pulley_mass_in_the_paper(l: N, h: N, k: N) -> N:
-    """Return the mass (kg) of a disk above which the string slips, as (34) has it; `critical_pulley_mass`.
-
-    >>> pulley_mass_in_the_paper(1, 3, 2)
-    12.0
-    """
-    return 4 * l * h * (k - 1) / (h - l * k)
-
-
-def heavier_mass_in_the_paper(l: N, M: N, k: N) -> N:
-    """Return the heavier mass (kg) on the verge, as (35) has it; `critical_heavier_mass`.
-
-    >>> heavier_mass_in_the_paper(1, 12, 2)
-    3.0
-    """
-    return M * l * k / (M - 4 * l * (k - 1))
-
-
 def least_heavier_mass(l: N, friction_mass: N) -> N:
     """Return the heavier mass (kg) above which the string slips on some pulley, l k: first condition of (36).
 

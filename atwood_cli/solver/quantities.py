@@ -107,10 +107,15 @@ FROM_MOTION: dict[str | None, tuple[str, ...]] = {
 MEASURED_NAMES = tuple(chain.from_iterable(FROM_MOTION.values()))
 NAMES = ("regime", *(name for name in QUANTITIES if name not in MEASURED_NAMES))
 """The quantities that every scene has."""
-MAIN = ("acceleration", "tension_1", "tension_2", "mu_verge", "friction_force")
-"""The quantities that every table of a scene shows."""
-
-STANDARD = ("regime", *MAIN, "critical_pulley_mass")
+STANDARD = (
+    "regime",
+    "acceleration",
+    "tension_1",
+    "tension_2",
+    "mu_verge",
+    "friction_force",
+    "critical_pulley_mass",
+)
 """The quantities of many scenes in a table, unless others are named."""
 
 # Why a scene does not determine a quantity, and what to give.
