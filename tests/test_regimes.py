@@ -44,13 +44,15 @@ def check_with_oracle(words: dict[str, str], *places: float) -> int:
     (along,) = swept.ranges
     said = list(changes(swept.scene, along))
     low, high = along.ends
-    stretches = list(pairwise([low, *(end for change in said for end in (change.last, change.first)), high]))
+    stretches = list(
+        pairwise([low, *(end for change in said for end in (change.holds_at, change.differs_at)), high])
+    )
     in_turn = [said[0].before if said else Decisions(swept.scene).regime, *(change.after for change in said)]
     assert in_turn[:-1] == [change.before for change in said]
     for change in said:
-        assert change.at.exact in (change.last, change.first)
-        a_digit = change.first / 10 ** (SHOWN_DIGITS - 1)
-        assert 0 < change.first - change.last <= max(a_digit, LEAST_INPUT), (words, change)
+        assert change.at.exact in (change.holds_at, change.differs_at)
+        a_digit = change.differs_at / 10 ** (SHOWN_DIGITS - 1)
+        assert 0 < change.differs_at - change.holds_at <= max(a_digit, LEAST_INPUT), (words, change)
     for (start, stop), there in zip(stretches[::2], in_turn, strict=True):
         values = [start + (stop - start) * Fraction(i, 5) for i in range(6)]
         for value in [*values, *(Fraction(x) for x in places if start < x < stop)]:

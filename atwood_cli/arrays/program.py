@@ -176,10 +176,10 @@ def _numbered(results: Iterable[Formula]) -> tuple[list[Value], list[int]]:
     number_of: dict[Formula, int] = {}
 
     def number(op: str, parts: tuple[Any, ...], key: Any = None) -> int:
-        found = numbers.setdefault((op, parts if key is None else key), len(values))
-        if found == len(values):
+        place = numbers.setdefault((op, parts if key is None else key), len(values))
+        if place == len(values):
             values.append((op, parts))
-        return found
+        return place
 
     def constant(value: Any) -> int:
         return number(

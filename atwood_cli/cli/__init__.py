@@ -131,10 +131,10 @@ def run(arguments: list[str] | None = None) -> int:
     except UsageError as error:
         hint = f"{error.ctx.command_path} -h" if error.ctx else ""
         words = " ".join(map(shortened, error.format_message().rstrip(".").split(" ")))
-        said = shortened(words, LONGEST_NAME)
-        if "extra argument" in said:
-            said += ": names take commas, as a,T1; a value with a blank takes quotation marks, as '200 g'"
-        say(f"{said}{' See' if said.endswith('?') else '; see'} {hint}" if hint else said)
+        message = shortened(words, LONGEST_NAME)
+        if "extra argument" in message:
+            message += ": names take commas, as a,T1; a value with a blank takes quotation marks, as '200 g'"
+        say(f"{message}{' See' if message.endswith('?') else '; see'} {hint}" if hint else message)
         return WRONG_USAGE
     except (KeyboardInterrupt, typer.Abort):
         drop(sys.stdout)  # its reader may have stopped, and writing would wait for ever

@@ -36,7 +36,7 @@ CONDITIONS = "no-slip, slip or verge, or a comparison by < <= > >= ==, as 'safet
 MAY = {"no-slip": "not slip", "verge": "be on the verge", "slip": "slip"}
 """What a string may do, by its regime."""
 DIMENSIONS = {
-    **{one.unit: one.dimension for one in (*INPUTS.values(), *MEASURED.values())},
+    **{parameter.unit: parameter.dimension for parameter in (*INPUTS.values(), *MEASURED.values())},
     **{"N": "force", "N m": "torque"},
 }
 """The dimension of a quantity, by its unit."""
@@ -77,7 +77,7 @@ def failure(answers: Answers, expected: Condition) -> str:
     elif failing := [end for end in ends if not (end and _holds(end, expected))]:
         regime = failing[0].decided.regime if failing[0] and expected.name in REGIMES else ""
         instead = f"within two standard uncertainties it may {MAY.get(regime, 'fail')}"
-    elif expected.name in REGIMES and any(one.decided.mu_assumed for one in (answers, *ends) if one):
+    elif expected.name in REGIMES and any(scene.decided.mu_assumed for scene in (answers, *ends) if scene):
         instead = f"that is only {REGIME_ASSUMED}"
     else:
         return ""

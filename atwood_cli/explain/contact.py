@@ -71,7 +71,7 @@ def contact(answers: Answers, points: int | str = USUAL_POINTS) -> Contact:
     kind = kind_of(answers.decided)
     last = read_whole("points", points, 2, MAX_POINTS) - 1
     rows = [point(answers, kind, Fraction(j, last)) for j in range(last + 1)]
-    notes = [about(answers, kind), *map(unmarked, remarks(answers.to_six_digits))]
+    notes = [say_profile(answers, kind), *map(unmarked, remarks(answers.to_six_digits))]
     notes += reasons(answers, ("tension_1", "tension_2"))
     return Contact(kind, rows, _balance(answers, kind), notes)
 
@@ -127,15 +127,15 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
     forces = {"friction": vector(friction), "normal": vector(normal)}
     ends = vector(lambda m: m.resultant_vector)
 
-    def total(axis: Literal[0, 1]) -> Rounded:
+    def total(axis: str, place: Literal[0, 1]) -> Rounded:
         """Return a component of the sum, rounded once.
 
         If it is 0, as that of both ends, its enclosures have other numbers in them, too, however narrow they
         are. It is then 0 if `ZERO_DIGITS` digits of it, counted from those of its terms, are.
         """
-        term, end = forces["friction"]["xy"[axis]], ends["xy"[axis]]
+        term, end = forces["friction"][axis], ends[axis]
         round_ = rounding_to_place(Decimal(term).adjusted() - ZERO_DIGITS) if term and not end else None
-        rounded = answers.settle(lambda m: friction(m)[axis] + normal(m)[axis], round_)
+        rounded = answers.settle(lambda m: friction(m)[place] + normal(m)[place], round_)
         return rounded if rounded else end  # a 0 of the type that was asked for
 
     torque = {
@@ -144,14 +144,14 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
         ),
         "ends": answers.settle(lambda m: m.tension_difference * _radius(m)),
     }
-    return {**forces, "sum": {"x": total(0), "y": total(1)}, "resultant": ends, "torque": torque}
+    return {**forces, "sum": {"x": total("x", 0), "y": total("y", 1)}, "resultant": ends, "torque": torque}
 
 
 def _radius(machine: Machine[Any]) -> Any:
     return machine.ar.number(machine.scene.R or Fraction(1))
 
 
-def about(answers: Answers, kind: Profile) -> str:
+def say_profile(answers: Answers, kind: Profile) -> str:
     """Return the sentence on a profile of the tension."""
     if answers.decided.frictionless:
         return WITHOUT_FRICTION

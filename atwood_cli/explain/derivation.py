@@ -85,7 +85,9 @@ def _needed(paragraphs: Sequence[Paragraph], wanted: set[str]) -> list[Paragraph
     An equation rests on its symbols, and on the symbols and equations that its label and the sentences before
     it mention. A number refers to the first paragraph that has it. Sentences alone lead to what is below.
     """
-    first = {one.label: paragraph for paragraph in reversed(paragraphs) for one in paragraph.equations}
+    first = {
+        equation.label: paragraph for paragraph in reversed(paragraphs) for equation in paragraph.equations
+    }
     kept = list[Paragraph]()
 
     def is_wanted(equation: Equation, place: Paragraph) -> bool:
@@ -121,7 +123,9 @@ def _paragraphs(derivation: Derivation) -> Iterator[Paragraph]:
             title = lines[0][1] if lines else ""
             continue
         sentences = [content for start, content in lines if not start]
-        equations = [one for start, content in lines if start for one in _equation(derivation, content)]
+        equations = [
+            equation for start, content in lines if start for equation in _equation(derivation, content)
+        ]
         if equations or (sentences and "\n    " not in block):
             yield Paragraph(title, sentences, equations)
 

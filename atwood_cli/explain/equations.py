@@ -77,7 +77,7 @@ WITHOUT_AXLE_FRICTION = {"f_axle": 0, "b": 0, "D": 1}
 class Derivation:
     """Write the equations of a scene, each once, with the solver's numbers.
 
-    ``inputs`` are the symbols with their values, ``found`` those that follow from a measured motion.
+    ``inputs`` are the symbols with their values, ``measured_symbols`` those that follow from a motion.
     ``light`` and ``heavy`` are the indices of the masses. ``shown`` are the names of equations written.
     """
 
@@ -89,9 +89,9 @@ class Derivation:
         self.symbols = self._symbols()
         self.inputs = {name: Symbol(name, x) for name, x in self._values().items() if x is not None}
         motion = self.decided.motion
-        self.found = {"c", "M"} if motion.finds == "M" else {motion.finds}
+        self.measured_symbols = {"c", "M"} if motion.finds == "M" else {motion.finds}
         if motion.time is not None:
-            self.found.add(self.symbols["magnitude"])
+            self.measured_symbols.add(self.symbols["magnitude"])
 
     def _values(self) -> dict[str, Fraction | None]:
         """Return what is given or found, by symbol."""
@@ -183,7 +183,7 @@ class Derivation:
         More than ``digits`` are wanted of an input, up to ``typed``.
         """
         if isinstance(symbol.of, Fraction):
-            exact, keep = symbol.of, digits if symbol.name in self.found else max(digits, typed)
+            exact, keep = symbol.of, digits if symbol.name in self.measured_symbols else max(digits, typed)
         else:
             quantity, keep = attrgetter(symbol.of), digits
             try:

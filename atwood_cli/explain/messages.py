@@ -24,8 +24,8 @@ def unmarked(words: str) -> str:
 
 def notes(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return sentences on the regime and why, and on the quantities named, as `reasons`."""
-    said = [verdict(answers), *remarks(answers.to_six_digits)]
-    return [*map(unmarked, said), *reasons(answers, names)]
+    sentences = [verdict(answers), *remarks(answers.to_six_digits)]
+    return [*map(unmarked, sentences), *reasons(answers, names)]
 
 
 def measured_quantities(answers: Answers) -> list[str]:
@@ -36,12 +36,16 @@ def measured_quantities(answers: Answers) -> list[str]:
 
 def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return sentences on why quantities or their uncertainties are missing or doubtful."""
-    found = {name: answers.answer(name) for name in names if name != "regime"}
-    said = reasons_in({(name, one.reason): 1 for name, one in found.items() if one.reason}, 1)
+    with_reasons = {name: answers.answer(name) for name in names if name != "regime"}
+    sentences = reasons_in(
+        {(name, answer.reason): 1 for name, answer in with_reasons.items() if answer.reason}, 1
+    )
     without = [
-        name for name, one in found.items() if one.value is not None and answers.uncertainty(name) is None
+        name
+        for name, answer in with_reasons.items()
+        if answer.value is not None and answers.uncertainty(name) is None
     ]
-    return [*said, *answers.doubts(), *map(unmarked, answers.open_ended(without))]
+    return [*sentences, *answers.doubts(), *map(unmarked, answers.open_ended(without))]
 
 
 def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:
@@ -52,11 +56,11 @@ def reasons_in(counted: Mapping[tuple[str, str], int], rows: int) -> list[str]:
     names: dict[tuple[str, int], list[str]] = {}
     for (name, reason), times in counted.items():
         names.setdefault((reason, times), []).append(name)
-    said = []
+    sentences = []
     for (reason, times), group in names.items():
         place = "" if times == rows else f" (in {times} of {rows} rows)"
-        said.append(f"{', '.join(group)}: {unmarked(reason)}{place}.")
-    return said
+        sentences.append(f"{', '.join(group)}: {unmarked(reason)}{place}.")
+    return sentences
 
 
 def verdict(answers: Answers) -> str:
@@ -141,39 +145,39 @@ LIKE_RADIANS = (0.3, 12.6)
 
 def remarks(answers: Answers) -> list[str]:
     """Return further sentences on the scene, as far as they apply."""
-    decided, said = answers.decided, []
+    decided, sentences = answers.decided, []
     if decided.beta is not None and decided.beta > 1:
         shown = strip_zeros(_beside(answers, Fraction(1))(decided.beta))
-        said.append(
+        sentences.append(
             f"The inertia factor `I/(M R^2)` is {format_number(shown)}, above 1: some mass must lie outside"
             " the string's rim. If none does, check `inertia`, `I` and `R`."
         )
     wrap = decided.scene.wrap
     if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
         typed = as_typed(wrap.number)
-        said.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
+        sentences.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
     mu_k = decided.scene.mu_k
     if mu_k is not None and decided.regime != "slip" and not decided.tensions_equal:
-        said.append("`mu_k` has no effect here, as the string does not slip.")
+        sentences.append("`mu_k` has no effect here, as the string does not slip.")
         if answers["mu_verge"] is not None and answers.settle(lambda m: m.mu_verge - m.ar.number(mu_k)) > 0:
-            said.append("A string that already slides keeps sliding, as `mu_k` is below `mu_verge`.")
+            sentences.append("A string that already slides keeps sliding, as `mu_k` is below `mu_verge`.")
     c, slips_above_a_mass = decided.rim_mass, decided.scene.mu is not None and decided.slips_once_it_moves
     if slips_above_a_mass and c is not None and not decided.slips_at("heaviest"):
         most = answers.settle(lambda m: critical_heavier_mass(m.l, m.ar.number(c), m.friction_mass, m.b, -1))
-        said.append(
+        sentences.append(
             f"The string slips if the heavier mass is between {_say(answers, 'critical_heavier_mass')} and"
             f" {format_number(most)} kg. Above that it holds again, as the pulley turns with it."
         )
     if decided.locked and decided.has_axle_friction and not decided.axle_holds:
-        said.append("A locked pulley does not turn, so `axle` has no effect.")
+        sentences.append("A locked pulley does not turn, so `axle` has no effect.")
     if decided.scene.mu is not None and answers["acceleration"] is None:  # it depends on the pulley's mass
         ends = [_on_pulley(answers, mass) for mass in (Fraction(0), inf)]
         ranges = (
             f"`{name}` from {_say(ends[0], name)} to {with_unit(_say(ends[1], name), QUANTITIES[name].unit)}"
             for name in ("acceleration", "tension_1", "tension_2", "mu_verge")
         )
-        said.append(f"As `M` goes from 0 to `inf`: {', '.join(ranges)}.")
-    return said
+        sentences.append(f"As `M` goes from 0 to `inf`: {', '.join(ranges)}.")
+    return sentences
 
 
 def _on_pulley(answers: Answers, mass: Fraction | float) -> Answers:

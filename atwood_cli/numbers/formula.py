@@ -44,9 +44,9 @@ class Formula:
         return formula(other) - self
 
     def __mul__(self, other: Term) -> Formula:
-        for one, factor in ((self, other), (other, self)):
-            if is_number(one, 0) or is_number(factor, 1):
-                return formula(one)
+        for term, factor in ((self, other), (other, self)):
+            if is_number(term, 0) or is_number(factor, 1):
+                return formula(term)
         return self if other == 1 else Formula("*", self, formula(other))
 
     def __rmul__(self, other: float) -> Formula:

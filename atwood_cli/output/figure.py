@@ -138,7 +138,7 @@ def write_beside(axes: "Axes", labels: Sequence[tuple[float, float, str, str]]) 
     figure: Any = axes.figure
     if labels:
         figure.draw_without_rendering()
-    paths, boxes = [*_drawn(axes)], [one.get_window_extent() for one in axes.texts]
+    paths, boxes = [*_drawn(axes)], [text.get_window_extent() for text in axes.texts]
     edge, anchors = axes.bbox.padded(3), [axes.transData.transform(label[:2]) for label in labels]
     for (x, y, words, colour), anchor in zip(labels, anchors, strict=True):
         for right, up, by in BESIDE:

@@ -20,7 +20,7 @@ def printable(words: str, keep: str = "\n") -> str:
 
     All text that the program did not make itself passes through this on its way to a terminal.
     """
-    return STEERING.sub(lambda found: found[0] if found[0] in keep else ascii(found[0])[1:-1], words)
+    return STEERING.sub(lambda sign: sign[0] if sign[0] in keep else ascii(sign[0])[1:-1], words)
 
 
 class Stdout:

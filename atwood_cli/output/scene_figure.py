@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..explain.contact import about, kind_of, point
+from ..explain.contact import kind_of, point, say_profile
 from ..explain.messages import unmarked, verdict
 from ..numbers.digits import SHOWN_DIGITS, format_number, strip_zeros, to_double
 from ..solver import arc
@@ -92,13 +92,13 @@ def _caption(few: Answers, kind: arc.Profile | None, wrap: float) -> Iterator[st
         angle = format_number(few["least_wrap"])
         yield f"Drawn: friction at its limit on the {angle}° of the arc next to the heavier mass{why}."
     elif kind:
-        yield about(few, kind)
+        yield say_profile(few, kind)
         if force := few["friction_force"]:
             yield f"The vector sum of friction is {format_number(force)} N."
     if wrap > 360:
         turns = _number(few.settle(lambda m: few.decided.scene.wrap.degrees(m.ar) / 360), few)
-        one = ", and the forces on the one at the heavier mass are drawn" if kind else ""
-        yield f"There are {turns} turns{one}."
+        which = ", and the forces on the one at the heavier mass are drawn" if kind else ""
+        yield f"There are {turns} turns{which}."
     if not few.decided.ends_hang_down:
         yield "m2 hangs over a guide that is not drawn." if kind else "The mass is not drawn."
 
@@ -106,7 +106,7 @@ def _caption(few: Answers, kind: arc.Profile | None, wrap: float) -> Iterator[st
 def _forces(few: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:
     """Return tension and friction per radian (N) at shares of the arc; nR is the tension, too."""
     points = [point(few.rounded_to(None), kind, Fraction(share)) for share in shares]
-    tension, friction = ([float(one[name]) for one in points] for name in ("tension", "friction_per_radian"))
+    tension, friction = ([float(row[name]) for row in points] for name in ("tension", "friction_per_radian"))
     return np.array(tension), np.array(friction)
 
 
@@ -233,7 +233,7 @@ def _draw_tensions(axes: "Axes", few: Answers, lengths: Mapping[str, float], phi
 
 def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:
     """Draw arrows that are long enough to be seen; the head is at most 0.4 of an arrow."""
-    tails, along = (np.asarray(one)[np.abs(arrows) > LEAST_ON_ARC] for one in (starts, arrows))
+    tails, along = (np.asarray(values)[np.abs(arrows) > LEAST_ON_ARC] for values in (starts, arrows))
     look: Any = {"units": "inches", "width": 1.3 / 72, "headwidth": 5, "headlength": 6, "headaxislength": 6}
     look |= {"minshaft": 1.5, "minlength": 0, "angles": "xy", "scale_units": "xy", "scale": 1, "zorder": 4}
     if len(tails):

@@ -62,10 +62,14 @@ def notes_on_stderr(answers: Answers, names: Sequence[str], values: bool) -> lis
 
     With ``values``, uncertain ones are said with their uncertainties.
     """
-    said = [_stated(answers, name) for name in names if values and answers.uncertainty(name)]
+    sentences = [_stated(answers, name) for name in names if values and answers.uncertainty(name)]
     if "regime" in names and answers.decided.mu_assumed:
-        said.insert(0, f"regime: {REGIME_ASSUMED}.")
-    return [*said, *map(unmarked, remarks(answers.to_six_digits)), *reasons(answers, names or answers.names)]
+        sentences.insert(0, f"regime: {REGIME_ASSUMED}.")
+    return [
+        *sentences,
+        *map(unmarked, remarks(answers.to_six_digits)),
+        *reasons(answers, names or answers.names),
+    ]
 
 
 MAIN = ("acceleration", "tension_1", "tension_2", "mu_verge", "friction_force")

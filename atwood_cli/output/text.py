@@ -201,8 +201,8 @@ def _given(scene: Scene) -> dict[str, tuple[Any, str]]:
     """Return the inputs by name, each with its unit if this is not the usual one."""
     given: dict[str, Any] = scene._asdict()
     given |= given.pop("motion")._asdict()
-    if found := given.pop("finds"):
-        given[found] = None
+    if unknown := given.pop("finds"):
+        given[unknown] = None
     if scene.M == inf:
         given["M"] = "inf"
     units = {"rad": "rad", "N m": " Nm"}

@@ -125,7 +125,7 @@ def as_text(given: Iterable[str], explanation: Explanation, width: int) -> Itera
 
     ``given`` has each input in words, as "m1 = 1 kg".
     """
-    labels = [one.label for paragraph in explanation.paragraphs for one in paragraph.equations]
+    labels = [equation.label for paragraph in explanation.paragraphs for equation in paragraph.equations]
     label_width = max(map(len, labels), default=0)
     for words in (scene(given), *explanation.answer, explanation.reading):
         style = "bold" if words in explanation.answer else ""
@@ -134,8 +134,8 @@ def as_text(given: Iterable[str], explanation: Explanation, width: int) -> Itera
         yield from (("", ""), (title, "bold"))
         for _, sentences, equations in paragraphs:
             lines = [line for words in sentences for line in wrapped(in_text(words), width)]
-            for one in equations:
-                lines += _equation_lines(one, width, f"  {one.label:<{label_width}} ")
+            for equation in equations:
+                lines += _equation_lines(equation, width, f"  {equation.label:<{label_width}} ")
             yield from ((line, "") for line in lines)
 
 
@@ -148,9 +148,9 @@ def as_markdown(given: Iterable[str], explanation: Explanation) -> Iterator[str]
         yield f"\n## {title}"
         for _, sentences, equations in paragraphs:
             yield from (f"\n{in_markdown(words)}" for words in sentences)
-            for one in equations:
-                label = rf" \qquad {one.label}" if one.label else ""  # not every reader knows \tag
-                yield f"\n$$\n{_aligned(one)}{label}\n$$"
+            for equation in equations:
+                label = rf" \qquad {equation.label}" if equation.label else ""  # not every reader knows \tag
+                yield f"\n$$\n{_aligned(equation)}{label}\n$$"
 
 
 def steps(explanation: Explanation) -> Iterator[tuple[str, Iterator[Paragraph]]]:
@@ -188,7 +188,9 @@ def in_markdown(words: str) -> str:
 
 def chain(equation: Equation, latex: bool = False) -> list[str]:
     """Return the right sides of an equation, each with its sign: symbols, numbers put in, result."""
-    before, after, result = (in_math(one) if latex else one for one in (*equation.signs, equation.result))
+    before, after, result = (
+        in_math(words) if latex else words for words in (*equation.signs, equation.result)
+    )
     sides = []
     if equation.right is not None:
         sides.append(f"= {written(equation.right, None, latex)}")
@@ -228,7 +230,7 @@ def _aligned(equation: Equation) -> str:
 SYMBOLS = (
     {name: f"`{about.letters}`" for name, about in QUANTITIES.items() if name not in INPUTS}
     # Names of one or two letters are symbols themselves.
-    | {name: f"{one.axis} `{one.symbol}`" for name, one in (INPUTS | MEASURED).items() if len(name) > 2}
+    | {name: f"{about.axis} `{about.symbol}`" for name, about in (INPUTS | MEASURED).items() if len(name) > 2}
     | {"mu": "`μ`", "mu_k": "`μ_k`", "axle": "axle friction", "inf": "`∞`"}
 )
 """Symbols for names of the program; a name that is not here is its own symbol."""

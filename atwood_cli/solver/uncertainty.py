@@ -118,10 +118,10 @@ class UncertainAnswers(Answers):
             scene = with_number(scene, x, number)
             if x == "mu" and scene.mu_k is not None:
                 scene = scene._replace(mu_k=min(scene.mu_k, number))  # it is at most mu
-            there = scene._replace(**found_inputs(scene))
-            if 0 in (there.m1, there.m2) and (there.mu is not None or there.m1 == there.m2):
+            moved = scene._replace(**found_inputs(scene))
+            if 0 in (moved.m1, moved.m2) and (moved.mu is not None or moved.m1 == moved.m2):
                 return End(number, None, NO_SCENE)
-            answers = Answers(there, DIGITS)
+            answers = Answers(moved, DIGITS)
             _ = answers.decided.axle_mass, answers.decided.rim_mass
         except (Undetermined, ZeroDivisionError):
             return End(number, None, NO_FIT)
@@ -179,17 +179,17 @@ class UncertainAnswers(Answers):
 
     def doubts(self) -> list[str]:
         """Say which of the `DOUBTFUL` decisions differ near the scene, and at which nearest end."""
-        said: dict[str, str] = {}
+        sentences: dict[str, str] = {}
         for within, x, end in self._nearby_ends:
             for what, name in DOUBTFUL.items():
                 if end.answers and getattr(end.answers.decided, name) != getattr(self.decided, name):
-                    said.setdefault(
+                    sentences.setdefault(
                         what,
                         f"{what} is in doubt: the answer differs within {within}, at {self._at(x, end)}."
                         " Results use the inputs as given.",
                     )
                     break  # others follow from it
-        return [*said.values()]
+        return [*sentences.values()]
 
     def nearby(self) -> list[Answers | None]:
         """Return the answers at all ends at which decisions may differ, None if an end makes no scene."""
@@ -197,7 +197,7 @@ class UncertainAnswers(Answers):
 
     def open_ended(self, names: Iterable[str]) -> list[str]:
         """Say which quantities have no value at an end of an input, and their bound from the other end."""
-        found: dict[str, list[str]] = {}
+        groups: dict[str, list[str]] = {}
         for name in names:
             spread = self._spread(name)
             if spread is None:
@@ -208,13 +208,13 @@ class UncertainAnswers(Answers):
                     place, why = self._at(x, self._ends[x][missing[0]]), values[missing[0]].reason
                     reason = f"{place} {why}" if why == NO_SCENE else f"at {place}, {why}"
                     other = values[1 - missing[0]].number
-                    found.setdefault(reason, []).append(_one_sided(name, spread.here, other))
-        said = []
-        for reason, group in found.items():
+                    groups.setdefault(reason, []).append(_one_sided(name, spread.here, other))
+        sentences = []
+        for reason, group in groups.items():
             others = len(group) - MOST_NAMED
             more = f" and {others} more" if others > 0 else ""
-            said.append(f"No uncertainty of {', '.join(group[:MOST_NAMED])}{more}: {reason}.")
-        return said
+            sentences.append(f"No uncertainty of {', '.join(group[:MOST_NAMED])}{more}: {reason}.")
+        return sentences
 
     def _at(self, x: str, end: End) -> str:
         """Say an input at an end, with its unit: "mu = 0.35"."""

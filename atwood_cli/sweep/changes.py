@@ -47,14 +47,14 @@ LEAST_INPUT = Fraction(1, 10**MAX_MAGNITUDE)
 class Change(NamedTuple):
     """A change along a range: ``at`` is the value itself, or the decimal nearest to it.
 
-    ``last`` and ``first`` are the nearest values before and after the change.
+    ``holds_at`` and ``differs_at`` are the nearest values before and after the change.
     """
 
     at: Point
     before: Any
     after: Any
-    last: Fraction
-    first: Fraction
+    holds_at: Fraction
+    differs_at: Fraction
 
 
 def changes(
@@ -75,25 +75,28 @@ def changes(
     start, stop = along.ends
     asked = [start, *(value for value in _turns(scene, along.name) if start < value < stop), stop]
     states = {value: state(value) for value in asked if value not in known} | dict(known)
-    for last, other in pairwise(sorted(states)):
-        while states[last] != states[other]:
-            before = states[last]
-            place, last, first = _between(state, before, last, other, digits or SHOWN_DIGITS, along.suffix)
-            states.setdefault(first, state(first))
-            yield Change(place, before, states[first], last, first)
-            last = first
+    for holds_at, other in pairwise(sorted(states)):
+        while states[holds_at] != states[other]:
+            before = states[holds_at]
+            place, holds_at, differs_at = _between(
+                state, before, holds_at, other, digits or SHOWN_DIGITS, along.suffix
+            )
+            states.setdefault(differs_at, state(differs_at))
+            yield Change(place, before, states[differs_at], holds_at, differs_at)
+            holds_at = differs_at
 
 
-def regimes(along: Range, found: Sequence[Change], scene: Scene) -> str:
+def say_regimes(along: Range, in_order: Sequence[Change], scene: Scene) -> str:
     """Say each regime along a range, and up to which value it holds."""
     parts = []
-    for before, change in zip([None, *found], found, strict=False):
+    for before, change in zip([None, *in_order], in_order, strict=False):
         place = along.in_units(change.at)
         begins = before.at.exact if before else along.ends[0]
         where = "at" if change.at.exact == begins else "up to"
         parts.append(f"{change.before} {where} {place if before else f'{along.name} = {place}'}")
-    last = found[-1].after if found else Decisions(with_number(scene, along.name, along.ends[0])).regime
-    parts.append(f"{last} beyond" if found else last)
+    first_regime = Decisions(with_number(scene, along.name, along.ends[0])).regime
+    last = in_order[-1].after if in_order else first_regime
+    parts.append(f"{last} beyond" if in_order else last)
     locks = along.is_list and LOCKED in along.points
     if locks and (locked := Decisions(scene._replace(M=inf)).regime) != last:
         parts.append(f"{locked} at {along.in_words(LOCKED)}")
@@ -109,27 +112,34 @@ def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
 
 
 def _between(
-    state: Callable[[Fraction], Any], before: Any, last: Fraction, first: Fraction, digits: int, suffix: str
+    state: Callable[[Fraction], Any],
+    before: Any,
+    holds_at: Fraction,
+    differs_at: Fraction,
+    digits: int,
+    suffix: str,
 ) -> tuple[Point, Fraction, Fraction]:
     """Return a change between two values, and the nearest values on both sides of it.
 
-    The state is ``before`` at ``last``, and another one at ``first``.
+    The state is ``before`` at ``holds_at``, and another one at ``differs_at``.
     """
-    gap = (first - last) / 2
-    above = last + min(gap, last * NEIGHBOUR_SHARE or LEAST_INPUT)
-    below = first - min(gap, first * NEIGHBOUR_SHARE)
+    gap = (differs_at - holds_at) / 2
+    above = holds_at + min(gap, holds_at * NEIGHBOUR_SHARE or LEAST_INPUT)
+    below = differs_at - min(gap, differs_at * NEIGHBOUR_SHARE)
     if state(above) != before:
-        return exact_point(last, suffix), last, above
+        return exact_point(holds_at, suffix), holds_at, above
     if state(below) == before:
-        return exact_point(first, suffix), below, first
-    start, stop = last, first
+        return exact_point(differs_at, suffix), below, differs_at
+    start, stop = holds_at, differs_at
     while True:
-        place = to_digits(digits)(first)
-        is_settled = to_digits(digits)(last) == place or first - last < first * NEIGHBOUR_SHARE
+        place = to_digits(digits)(differs_at)
+        is_settled = (
+            to_digits(digits)(holds_at) == place or differs_at - holds_at < differs_at * NEIGHBOUR_SHARE
+        )
         if is_settled and not start < place < stop:  # at the ends it is known that the state holds on
             digits += 1
             continue
-        value = Fraction(place) if is_settled else (last + first) / 2
-        last, first = (value, first) if state(value) == before else (last, value)
+        value = Fraction(place) if is_settled else (holds_at + differs_at) / 2
+        holds_at, differs_at = (value, differs_at) if state(value) == before else (holds_at, value)
         if is_settled:
-            return decimal_point(place, suffix), last, first
+            return decimal_point(place, suffix), holds_at, differs_at

@@ -97,9 +97,9 @@ class Range(NamedTuple):
             start, stop = self.points[0], self.points[-1]
             return f"{self.name} from {self.cell(start)} to {self.in_units(stop)}"
         values = zip(self.points, map(self.in_units, self.points), strict=True)
-        said = [f"{point.name} ({value})" if point.name else value for point, value in values]
-        first = said[:-1] if len(said) <= MOST_VALUES_SAID else [*said[:2], "..."]
-        return f"{self.name} = {', '.join(first)} or {said[-1]}"
+        texts = [f"{point.name} ({value})" if point.name else value for point, value in values]
+        first = texts[:-1] if len(texts) <= MOST_VALUES_SAID else [*texts[:2], "..."]
+        return f"{self.name} = {', '.join(first)} or {texts[-1]}"
 
     @property
     def unit(self) -> str:

@@ -66,12 +66,12 @@ def _solve(along: Range, scene: Scene, digits: int | None) -> tuple[list[Change]
     """Return the changes along a range, and the answers at its values; those of a list are by place."""
     if along.is_list:
         scenes = (with_number(scene, along.name, point.exact) for point in along.points)
-        return [], {float(place): Answers(there) for place, there in enumerate(scenes)}
+        return [], {float(place): Answers(at_value) for place, at_value in enumerate(scenes)}
     corners = attrgetter("regime", "sign", "axle_holds")  # where one of these changes
-    found = list(changes(scene, along, digits, what=corners))
+    in_order = list(changes(scene, along, digits, what=corners))
     values = [*steps(*along.ends, CURVE_STEPS, along.log)]
-    values += [x for change in found for x in (change.last, change.first)]
-    return found, {float(x): Answers(with_number(scene, along.name, x)) for x in sorted(values)}
+    values += [x for change in in_order for x in (change.holds_at, change.differs_at)]
+    return in_order, {float(x): Answers(with_number(scene, along.name, x)) for x in sorted(values)}
 
 
 def panels_of(sweep: Sweep, names: Sequence[str], digits: int | None = None) -> list[list[Curve]]:
@@ -90,8 +90,10 @@ def panels_of(sweep: Sweep, names: Sequence[str], digits: int | None = None) -> 
         if numbers:
             panels.setdefault(QUANTITIES[name].unit, []).extend(curves)
     if not panels:
-        answers = [one for _, _, solved in scenes for one in solved.values()]
-        why = unmarked("; ".join(dict.fromkeys(one.answer(name).reason for name in names for one in answers)))
+        answers = [answer for _, _, solved in scenes for answer in solved.values()]
+        why = unmarked(
+            "; ".join(dict.fromkeys(answer.answer(name).reason for name in names for answer in answers))
+        )
         raise ArithmeticError(f"{', '.join(names)} exists at no point, so there is nothing to draw: {why}")
     return [*panels.values()]
 
@@ -100,13 +102,17 @@ def _numbers(curves: Sequence[Curve]) -> list[float]:
     return [y for curve in curves for y in curve.ys if not isnan(y)]
 
 
-def _curve(along: Range, name: str, point: str, found: list[Change], solved: dict[float, Answers]) -> Curve:
+def _curve(
+    along: Range, name: str, point: str, in_order: list[Change], solved: dict[float, Answers]
+) -> Curve:
     """Return the curve of a quantity."""
     heights = {x: _height(answers[name]) for x, answers in solved.items()}
     marks = []
-    for change in found:
+    for change in in_order:
         if change.before[0] != change.after[0]:
-            places = sorted((change.last, change.first), reverse=change.after[0] != "slip")  # there it holds
+            places = sorted(
+                (change.holds_at, change.differs_at), reverse=change.after[0] != "slip"
+            )  # there it holds
             height = next((y for x in places if not isnan(y := heights[float(x)])), nan)
             words = f"{BEGINS[change.after[0]]} {along.in_units(change.at)}"
             marks.append((float(change.at.exact), height, words))
@@ -146,7 +152,9 @@ def save(sweep: Sweep, names: Sequence[str], digits: int | None, path: str, forc
             words = axis_title(drawn, QUANTITIES[curves[0].quantity].unit)
             axes.set_ylabel("\n".join(wrapped(words, TITLE_CHARACTERS)))
             # Curves are drawn, and stand in the legend, in the order of their right ends.
-            for place, curve in sorted(enumerate(curves), key=lambda one: one[1].ys[-1], reverse=True):
+            for place, curve in sorted(
+                enumerate(curves), key=lambda numbered: numbered[1].ys[-1], reverse=True
+            ):
                 symbols = [axis_words(curve.quantity)[1]] if drawn.keys() - {curve.quantity} else []
                 _draw(axes, curve, place, ", ".join(filter(None, [*symbols, curve.point])), along.is_list)
             _set_heights(axes, _numbers(curves))

@@ -13,7 +13,7 @@ from ..output.page import Page, aligned, progress
 from ..output.text import VERSION, cell, scene_record
 from ..solver.quantities import QUANTITIES, STANDARD
 from ..solver.scene import with_unit
-from .changes import changes, regimes
+from .changes import changes, say_regimes
 from .ranges import LOCKED, Row, Sweep, solve_rows
 from .sweep_figure import MAX_CURVES
 
@@ -115,15 +115,17 @@ PULLEYS = "M is not given, so each row on the verge has its own critical pulley 
 
 def _regimes(sweep: Sweep, rows: Sequence[Row], digits: int | None) -> Iterator[str]:
     """Say the regimes along one range, for each point of the other range, if these are few."""
-    along, said = sweep.along, dict[str, str]()
+    along, sentences = sweep.along, dict[str, str]()
     if sweep.total <= MAX_CURVES * len(along.points):
         for scene, place in sweep.scenes(sweep.others):
             here = [row for row in rows if place.items() <= row.at.items() and row.at[along.name] != LOCKED]
             known = {Fraction(row.at[along.name].exact): row.regime for row in here}
-            said[sweep.in_words(place)] = regimes(along, list(changes(scene, along, digits, known)), scene)
-        if len({*said.values()}) == 1:
-            said = {"Regimes": next(iter(said.values()))}
-        yield from (f"{where}: {words}." for where, words in said.items())
+            sentences[sweep.in_words(place)] = say_regimes(
+                along, list(changes(scene, along, digits, known)), scene
+            )
+        if len({*sentences.values()}) == 1:
+            sentences = {"Regimes": next(iter(sentences.values()))}
+        yield from (f"{where}: {words}." for where, words in sentences.items())
     elif len({row.regime for row in rows}) == 1:
         yield f"Regime of all rows: {rows[0].regime}."
 
