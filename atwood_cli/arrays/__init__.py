@@ -27,7 +27,7 @@ from .plan import LEVELS, Task
 from .rows import Rows, select, size_of
 
 CHUNK_ROWS = 1 << 20
-"""The most rows that one thread solves by itself; fewer rows share their programs with fewer others."""
+"""The most rows that one thread solves by itself. Smaller chunks would run each program more often."""
 CODE_TYPES = {"regime": np.int8, "status": np.int8}
 """The types of results that are codes; all others are doubles."""
 

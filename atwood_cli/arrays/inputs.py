@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..solver.scene import DEFAULTS as SCENE_DEFAULTS
-from ..solver.scene import INERTIA_FACTORS, INPUTS, MASSES, SceneError
+from ..solver.scene import DEFAULTS, INERTIA_FACTORS, INPUTS, MASSES, SceneError
 from .doubles import WINDOW, Column
 from .plan import COLUMN, Pattern
 
@@ -22,9 +21,9 @@ Index = slice | NDArray[np.intp]
 Numbers = ArrayLike | Sequence[str | float | Decimal | Fraction | None]
 """The types that a column may have: whatever NumPy makes an array of. A polars column is one too."""
 DISK = INERTIA_FACTORS["disk"]
-DEFAULTS = {name: Fraction(default) for name, default in {**SCENE_DEFAULTS, "inertia": DISK}.items()}
+IF_ABSENT = {name: Fraction(default) for name, default in {**DEFAULTS, "inertia": DISK}.items()}
 """The exact values of inputs that always have one, in SI units and degrees."""
-WHERE_ABSENT = {**{name: float(default) for name, default in DEFAULTS.items()}, "axle": 0.0}
+WHERE_ABSENT = {**{name: float(default) for name, default in IF_ABSENT.items()}, "axle": 0.0}
 """The doubles in columns of inputs for rows in which they are not given; for other inputs it is NaN."""
 BUILT_IN = ("inertia", "wrap")
 """Inputs whose common value is built into a program: with 1/2 and π it is simpler than with a column."""
@@ -178,7 +177,7 @@ def groups(given: Mapping[str, GivenColumn], size: int) -> Iterator[Group]:
     # Rows differ by the digits of a key, each with its base: kinds, the heavier mass, a mu_k above mu.
     digits: list[tuple[int, NDArray[Any]]] = [(len(Kind), kinds) for kinds in columns.values() if kinds.ndim]
     if not (m2 > m1).all():
-        digits.append((3, 1 * (m1 > m2) + 2 * (m1 == m2)))
+        digits.append((3, np.where(m1 > m2, 1, np.where(m1 == m2, 2, 0))))
     if mu_k_above.any():
         digits.append((2, mu_k_above))
     keys, weight = np.zeros(1, np.int64), 1
@@ -229,8 +228,8 @@ def _fault(kinds: Mapping[str, int], mu_k_above_mu: bool) -> str:
 
 def _in_pattern(name: str, kind: int, doubles: Column) -> Fraction | float | str | None:
     """Return an input in the `Pattern` of a row."""
-    if kind == Kind.ABSENT and name in DEFAULTS:
-        return DEFAULTS[name]  # exact; the doubles have the nearest one
+    if kind == Kind.ABSENT and name in IF_ABSENT:
+        return IF_ABSENT[name]  # exact; the doubles have the nearest one
     if kind in SAME_IN_ALL:
         return None if name == "axle" else SAME_IN_ALL[kind]  # an axle without friction is none
     return Fraction(float(doubles)) if name in BUILT_IN and not doubles.ndim else COLUMN

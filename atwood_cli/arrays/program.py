@@ -78,6 +78,7 @@ RESULT_TYPES: dict[str, type[Any]] = {
     **dict.fromkeys(("int", "bits", ">>"), np.intp),
 }
 """The types of operations' results that are not doubles."""
+COMMUTATIVE = {"+", "*"}
 NOT_IN_PLACE = ("where", "take")
 """Operations that write results before they have read all operands."""
 
@@ -192,7 +193,7 @@ def _numbered(results: Iterable[Formula]) -> tuple[list[Value], list[int]]:
         if node.op == "number":
             return constant(float(node.parts[0]))
         parts = [number_of[part] if isinstance(part, Formula) else constant(part) for part in node.parts]
-        return number(node.op, tuple(sorted(parts) if node.op in "+*" else parts))
+        return number(node.op, tuple(sorted(parts) if node.op in COMMUTATIVE else parts))
 
     wanted = []
     for result in results:

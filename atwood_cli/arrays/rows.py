@@ -27,7 +27,7 @@ from .program import Program, columns_for
 TILE_ROWS = 65_536
 """The most rows of a tile: the columns of a program's intermediate values have as many."""
 ROWS_ONE_BY_ONE = 4
-"""The most rows that are solved sooner one by one than by a program that is yet to be made."""
+"""The most rows that are solved one by one, as making a program would take longer."""
 
 Flags = NDArray[np.bool_]
 

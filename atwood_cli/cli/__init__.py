@@ -34,7 +34,7 @@ Examples:
 
 DASHES = "-–—"
 # The parent of all usage errors, which typer does not export.
-UsageError: Any = typer.BadParameter.__mro__[1]
+UsageError: Any = typer.BadParameter.__base__
 ON_CTRL_C = 130
 """The status that typer returns for a command that was interrupted."""
 

@@ -50,9 +50,9 @@ def contact(
         raise SceneError("points", points, "has no effect on a picture; leave it out")
     arc = balance.contact(answers, balance.USUAL_POINTS if points is None else points)
     if figure is not None:
-        from ..output.scene_figure import save
+        from ..output.scene_figure import save_scene
 
-        save(answers, figure, target.force, bare, curves=True)
+        save_scene(answers, figure, target.force, bare, curves=True)
     report = Report(
         json=lambda: contact_record(answers, arc),
         records=lambda: arc.points,

@@ -86,9 +86,9 @@ def solve(
     if explain and answers.uncertain:
         raise SceneError("explain", None, "shows exact numbers; leave their uncertainties out")
     if figure is not None:
-        from ..output.scene_figure import save
+        from ..output.scene_figure import save_scene
 
-        save(answers, figure, target.force, bare)
+        save_scene(answers, figure, target.force, bare)
     values = [cell(answers[name]) for name in names]
     report = Report(
         json=lambda: record(answers, names, budget),

@@ -8,7 +8,7 @@ from ..output.text import Destination, Report, say, show
 from ..reading.inputs import read_digits
 from ..reading.names import read_names
 from ..sweep.ranges import read_sweep
-from ..sweep.sweep_figure import save
+from ..sweep.sweep_figure import save_sweep
 from ..sweep.sweep_page import SweepPage
 from .options import COULD_NOT, DONE, OUTPUT, SCENE, Bare, Columns, Digits, FigureFile, with_options
 
@@ -43,7 +43,7 @@ def sweep(
     precision = read_digits(digits)
     swept = read_sweep(given, precision)
     if figure is not None:
-        save(swept, names, precision, figure, target.force, bare)
+        save_sweep(swept, names, precision, figure, target.force, bare)
     swept_page = SweepPage(swept, names, precision)
     try:
         # What is drawn is not printed, too, but to a file that is asked for.

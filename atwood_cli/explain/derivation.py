@@ -24,7 +24,7 @@ from ..numbers.rational import N
 from ..solver import physics
 from ..solver.answers import Answers
 from ..solver.quantities import REGIMES
-from .equations import GUARD_DIGITS, MOTION, Derivation, Equation
+from .equations import EXTRA_DIGITS, MOTION, Derivation, Equation
 from .messages import measured_quantities, remarks, verdict
 
 
@@ -66,7 +66,7 @@ def explain(answers: Answers, only: Sequence[str] = ()) -> Explanation:
         answer += remarks(answers)
     reading = (
         f"Numbers after = are exact. Results after ≈ have {digits} significant digits; numbers that are put"
-        f" into formulas have {digits + GUARD_DIGITS}. Equation numbers are those of de Oliveira and Lemos,"
+        f" into formulas have {digits + EXTRA_DIGITS}. Equation numbers are those of de Oliveira and Lemos,"
         " Force and torque of a string on a pulley, arXiv:1706.10139."
     )
     return Explanation(answer, reading, paragraphs)

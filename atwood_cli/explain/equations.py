@@ -20,7 +20,7 @@ from ..solver.quantities import QUANTITIES
 
 INPUT_DIGITS = 17
 """Digits up to which an input is put in as it was typed."""
-GUARD_DIGITS = 2
+EXTRA_DIGITS = 2
 """Digits that a number put in has beyond those of the result."""
 
 
@@ -61,7 +61,7 @@ INTERMEDIATE = {
     "limiting_arc": ("φ_lim", "rad"),
 }
 """The symbols and units of intermediate values, by the machine's names."""
-UNITS = {
+UNIT_BY_NAME = {
     **{name: unit for name, (_, unit) in INTERMEDIATE.items()},
     **{"limiting_friction_mass": "kg", "limiting_drive": "kg", "magnitude": "m/s²", "phi": "rad"},
     **dict.fromkeys(("light_tension", "heavy_tension", "difference", "f_axle"), "N"),
@@ -166,7 +166,7 @@ class Derivation:
         """Return the equation with numbers put in; without a formula if there is none, or no symbol in it."""
         value, exact = self.number(result, self.digits)
         rounded = {
-            symbol: self.number(symbol, self.digits + GUARD_DIGITS, INPUT_DIGITS)
+            symbol: self.number(symbol, self.digits + EXTRA_DIGITS, INPUT_DIGITS)
             for symbol in (sorted(recorded.symbols()) if recorded else ())
         }
         numbers = {symbol: number for symbol, (number, _) in rounded.items()}
@@ -220,4 +220,4 @@ class Derivation:
 
 def unit_of(name: str) -> str:
     """Return the unit of a quantity, an intermediate value or an input."""
-    return QUANTITIES[name].unit if name in QUANTITIES else UNITS.get(name, "")
+    return QUANTITIES[name].unit if name in QUANTITIES else UNIT_BY_NAME.get(name, "")

@@ -4,6 +4,7 @@ Backticks mark names, as in the messages of `Undetermined`: `unmarked` takes the
 (`output.typeset`) replaces the names by symbols.
 """
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from fractions import Fraction
@@ -36,14 +37,10 @@ def measured_quantities(answers: Answers) -> list[str]:
 
 def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
     """Return sentences on why quantities or their uncertainties are missing or doubtful."""
-    with_reasons = {name: answers.answer(name) for name in names if name != "regime"}
-    sentences = reasons_in(
-        {(name, answer.reason): 1 for name, answer in with_reasons.items() if answer.reason}, 1
-    )
+    by_name = {name: answers.answer(name) for name in names if name != "regime"}
+    sentences = reasons_in(Counter((x, answer.reason) for x, answer in by_name.items() if answer.reason), 1)
     without = [
-        name
-        for name, answer in with_reasons.items()
-        if answer.value is not None and answers.uncertainty(name) is None
+        x for x, answer in by_name.items() if answer.value is not None and answers.uncertainty(x) is None
     ]
     return [*sentences, *answers.doubts(), *map(unmarked, answers.open_ended(without))]
 

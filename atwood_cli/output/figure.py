@@ -62,7 +62,7 @@ STYLE: Any = {
     "svg.hashsalt": "atwood",  # else the SVG's ids are random
     "pdf.fonttype": 42,  # fonts that can be edited and searched
 }
-FORMATS: Any = {"svg": {"Date": None}, "png": {}, "pdf": {"CreationDate": None}}
+PICTURE_FORMATS: Any = {"svg": {"Date": None}, "png": {}, "pdf": {"CreationDate": None}}
 """The formats of pictures, and what of their metadata would differ each time."""
 
 
@@ -74,8 +74,10 @@ def axis_words(name: str) -> tuple[str, str]:
 
 def check_file(path: str, force: bool) -> None:
     """Import matplotlib, and check that it can write the picture. Raises SceneError, ImportError, OSError."""
-    if Path(path).suffix[1:].lower() not in FORMATS:
-        raise SceneError("figure", path, f"must end in one of {', '.join(f'.{kind}' for kind in FORMATS)}")
+    if Path(path).suffix[1:].lower() not in PICTURE_FORMATS:
+        raise SceneError(
+            "figure", path, f"must end in one of {', '.join(f'.{kind}' for kind in PICTURE_FORMATS)}"
+        )
     os.environ["MPLBACKEND"] = "agg"
     getLogger("matplotlib").setLevel(ERROR)  # silent about settings of the user, which are not used
     import_module("matplotlib")
@@ -98,7 +100,10 @@ def page(
     kind = Path(path).suffix[1:].lower()
     title, *others = map(typeset, [*above, below])
     description = " ".join(others).strip()
-    metadata = FORMATS[kind] | {"Title": title, "Subject" if kind == "pdf" else "Description": description}
+    metadata = PICTURE_FORMATS[kind] | {
+        "Title": title,
+        "Subject" if kind == "pdf" else "Description": description,
+    }
     os.environ.pop("SOURCE_DATE_EPOCH", None)  # a figure has no date, whatever this is set to
     image = BytesIO()  # matplotlib would not report a full disk as we do
     with written_beside(Path(path), force) as beside:

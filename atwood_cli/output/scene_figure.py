@@ -37,14 +37,15 @@ BETWEEN_WEIGHTS = 18  # characters for which there is room
 ROTATION_AT, AXLE_AT, ACCELERATION = 0.56, 0.24, 0.4  # two distances from the axle, and a length
 
 
-def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = False) -> None:
+def save_scene(answers: Answers, path: str, force: bool, bare: bool, curves: bool = False) -> None:
     """Draw the machine to a file, whose suffix is its format, and with ``curves`` the forces along the arc.
 
     ``bare`` leaves out all sentences except on how it is drawn. Raises SceneError, OSError.
     """
     check_file(path, force)
     kind = kind_of(answers.decided) if answers.decided.light else None  # else an end is fixed to the pulley
-    decided, few = answers.decided, answers.rounded_to(min(answers.digits or SHOWN_DIGITS, SHOWN_DIGITS))
+    answers = answers.rounded_to(min(answers.digits or SHOWN_DIGITS, SHOWN_DIGITS))
+    decided = answers.decided
     doubles, forces = answers.rounded_to(None), dict[str, float]()
     for end, mass in (("1", decided.scene.m1), ("2", decided.scene.m2)):
         if mass:
@@ -61,51 +62,52 @@ def save(answers: Answers, path: str, force: bool, bare: bool, curves: bool = Fa
         forces = {name: force for name, force in forces.items() if name[0] == "T"}
     scale = LONGEST / (max(forces.values()) or 1)
     lengths = {name: max(scale * force, SHORTEST) if force else 0.0 for name, force in forces.items()}
-    below = [*_caption(few, kind, wrap)]
+    below = [*_caption(answers, kind, wrap)]
     if longer := [name for name, force in forces.items() if 0 < scale * force < SHORTEST]:
         below.append(f"Drawn longer than to scale: {', '.join(longer)}.")
     given = inputs_in_words(decided.scene, answers.uncertain)
-    above = [", ".join(given.values()), unmarked(verdict(few))]
-    with page(path, force, above, " ".join(below), bare, panels=1 + curves) as figure:
-        machine, *more = figure.subplots(1 + curves, height_ratios=[1.6, 1][: 1 + curves], squeeze=False).flat
+    above = [", ".join(given.values()), unmarked(verdict(answers))]
+    panels = 2 if curves else 1
+    with page(path, force, above, " ".join(below), bare, panels=panels) as figure:
+        machine, *more = figure.subplots(panels, height_ratios=[1.6, 1][:panels], squeeze=False).flat
         machine.axis("off")
         machine.set_aspect("equal", adjustable="datalim")
         machine.margins(0.01)
-        _draw_pulley(machine, few, radians(wrap))
+        _draw_pulley(machine, answers, radians(wrap))
         if kind:
-            _draw_contact(machine, few, kind, radians(wrap), "--" if curves else "-")
+            _draw_contact(machine, answers, kind, radians(wrap), "--" if curves else "-")
             for axes in more:
-                _draw_curves(axes, few, kind, wrap)
+                _draw_curves(axes, answers, kind, wrap)
         if decided.ends_hang_down:
-            _draw_masses(machine, few, lengths)
+            _draw_masses(machine, answers, lengths)
         else:
-            _draw_tensions(machine, few, lengths, radians(wrap))
+            _draw_tensions(machine, answers, lengths, radians(wrap))
 
 
-def _caption(few: Answers, kind: arc.Profile | None, wrap: float) -> Iterator[str]:
+def _caption(answers: Answers, kind: arc.Profile | None, wrap: float) -> Iterator[str]:
     """Yield sentences on the friction along the arc, and on what is not drawn."""
     if kind == "creep":
         why = ", as on a slightly elastic string"
-        if few["friction_force_max"] is not None:
-            greatest, least = (format_number(few[f"friction_force_{edge}"]) for edge in ("max", "min"))
+        if answers["friction_force_max"] is not None:
+            greatest, least = (format_number(answers[f"friction_force_{edge}"]) for edge in ("max", "min"))
             why = f". Its vector sum is friction_force_max, {greatest} N; friction_force_min is {least} N"
-        angle = format_number(few["least_wrap"])
+        angle = format_number(answers["least_wrap"])
         yield f"Drawn: friction at its limit on the {angle}° of the arc next to the heavier mass{why}."
     elif kind:
-        yield say_profile(few, kind)
-        if force := few["friction_force"]:
+        yield say_profile(answers, kind)
+        if force := answers["friction_force"]:
             yield f"The vector sum of friction is {format_number(force)} N."
     if wrap > 360:
-        turns = _number(few.settle(lambda m: few.decided.scene.wrap.degrees(m.ar) / 360), few)
+        turns = _number(answers.settle(lambda m: answers.decided.scene.wrap.degrees(m.ar) / 360), answers)
         which = ", and the forces on the one at the heavier mass are drawn" if kind else ""
         yield f"There are {turns} turns{which}."
-    if not few.decided.ends_hang_down:
+    if not answers.decided.ends_hang_down:
         yield "m2 hangs over a guide that is not drawn." if kind else "The mass is not drawn."
 
 
-def _forces(few: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:
+def _forces(answers: Answers, kind: arc.Profile, shares: Any) -> tuple[Any, Any]:
     """Return tension and friction per radian (N) at shares of the arc; nR is the tension, too."""
-    points = [point(few.rounded_to(None), kind, Fraction(share)) for share in shares]
+    points = [point(answers.rounded_to(None), kind, Fraction(share)) for share in shares]
     tension, friction = ([float(row[name]) for row in points] for name in ("tension", "friction_per_radian"))
     return np.array(tension), np.array(friction)
 
@@ -115,9 +117,9 @@ def _rim(angle: Any) -> Any:
     return -np.exp(-1j * angle)
 
 
-def _draw_pulley(axes: "Axes", few: Answers, phi: float) -> None:
+def _draw_pulley(axes: "Axes", answers: Answers, phi: float) -> None:
     """Draw the pulley with its mass, how it turns, its axle's friction, and the string around it."""
-    scene, around = few.decided.scene, _rim(np.linspace(0, TURN, RIM_POINTS))
+    scene, around = answers.decided.scene, _rim(np.linspace(0, TURN, RIM_POINTS))
     axes.fill(around.real, around.imag, facecolor="#f0f0f0", edgecolor=FAINT, lw=1)
     axes.plot(0, 0, "o", color=FAINT, ms=3)
     string = around if phi > TURN else _rim(np.linspace(0, phi, RIM_POINTS))
@@ -125,13 +127,13 @@ def _draw_pulley(axes: "Axes", few: Answers, phi: float) -> None:
     for mass, end in ((scene.m1, -1 + 0j), (scene.m2, _rim(phi))):
         if not mass:
             axes.plot(end.real, end.imag, "o", color=INK, ms=6)
-        elif few.decided.ends_hang_down:
+        elif answers.decided.ends_hang_down:
             axes.plot([end.real] * 2, [0, -STRING], color=FAINT, lw=2.4, solid_capstyle="butt")
-    axes.text(0, 0.26, _pulley(few), ha="center", va="center", size=8)
-    above = 1j * np.exp(-1j * few.decided.sign * np.linspace(-0.6, 0.6, 40))  # clockwise if m2 descends
-    if few["rim_acceleration"]:
+    axes.text(0, 0.26, _pulley(answers), ha="center", va="center", size=8)
+    above = 1j * np.exp(-1j * answers.decided.sign * np.linspace(-0.6, 0.6, 40))  # clockwise if m2 descends
+    if answers["rim_acceleration"]:
         _draw_arc(axes, ROTATION_AT * above, PURPLE, "white")
-    if friction := _axle_friction(few):
+    if friction := _axle_friction(answers):
         _draw_arc(axes, AXLE_AT * above.conj(), ORANGE, ORANGE)
         axes.text(0, -0.42, f"f_axle = {friction} N", ha="center", va="center", size=8, color=ORANGE)
 
@@ -143,40 +145,40 @@ def _draw_arc(axes: "Axes", path: Any, colour: str, head: str) -> None:
     axes.plot(path[-1].real, path[-1].imag, marker=(3, 0, turned), ms=7, color=colour, mfc=head)
 
 
-def _pulley(few: Answers) -> str:
+def _pulley(answers: Answers) -> str:
     """Return the pulley's inertia, as far as it is known, in words; empty if the scene leaves it open."""
-    decided, scene = few.decided, few.decided.scene
+    decided, scene = answers.decided, answers.decided.scene
     if decided.locked:
         return "locked"
     if scene.I is not None and scene.M is None:
-        return f"I = {_number(scene.I, few)} kg m²"
-    mass = few["critical_pulley_mass"] if decided.regime == "verge" else decided.pulley_mass
-    return "" if mass is None else f"M = {_number(mass, few)} kg"
+        return f"I = {_number(scene.I, answers)} kg m²"
+    mass = answers["critical_pulley_mass"] if decided.regime == "verge" else decided.pulley_mass
+    return "" if mass is None else f"M = {_number(mass, answers)} kg"
 
 
-def _axle_friction(few: Answers) -> str:
+def _axle_friction(answers: Answers) -> str:
     """Return the axle's friction as a force at the rim (N), as much of it as acts; empty if none does."""
-    decided = few.decided
+    decided = answers.decided
     if not decided.has_axle_friction or decided.locked or not decided.sign:
         return ""
     held = decided.rim_at_rest if decided.regime == "slip" else decided.axle_holds
-    return _number(few.settle(lambda m: m.difference if held else m.f), few)
+    return _number(answers.settle(lambda m: m.difference if held else m.f), answers)
 
 
-def _number(value: Any, few: Answers | None = None) -> str:
-    """Return a result as tables have it, or with ``few`` an input with no more digits than its results."""
-    return typeset(format_number(strip_zeros(few.round(value)) if few else value))
+def _number(value: Any, answers: Answers | None = None) -> str:
+    """Return a result as tables have it, or with ``answers`` an input, rounded as their results are."""
+    return typeset(format_number(strip_zeros(answers.round(value)) if answers else value))
 
 
-def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float, dash: str) -> None:
+def _draw_contact(axes: "Axes", answers: Answers, kind: arc.Profile, phi: float, dash: str) -> None:
     """Draw the arrows of normal force and friction over the turn at the heavier mass, with a legend."""
     drawn = min(1, TURN / phi)
     count = int(drawn * phi / BETWEEN_ARROWS + 1e-9)
     both = phi < TURN  # both ends of a turn are one place
     shares = np.linspace(0, drawn, count + both, endpoint=both) if count else np.array([drawn / 2])
-    if few.decided.sign >= 0:
+    if answers.decided.sign >= 0:
         shares = 1 - shares
-    outwards, (normal, friction) = _rim(phi * shares), _forces(few, kind, shares)
+    outwards, (normal, friction) = _rim(phi * shares), _forces(answers, kind, shares)
     lengths = normal / normal.max() * LONGEST_ON_ARC
     _draw_arrows(axes, (NORMAL_AT + lengths) * outwards, -lengths * outwards, BLUE)
     axes.plot([], [], color=BLUE, marker=">", ms=4, label="normal force nR")
@@ -188,9 +190,9 @@ def _draw_contact(axes: "Axes", few: Answers, kind: arc.Profile, phi: float, das
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, 0), ncols=2, handlelength=3)
 
 
-def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> None:
+def _draw_masses(axes: "Axes", answers: Answers, lengths: Mapping[str, float]) -> None:
     """Draw the masses that hang on the string, their forces, and their acceleration."""
-    scene, acceleration = few.decided.scene, few["acceleration"]
+    scene, acceleration = answers.decided.scene, answers["acceleration"]
     for x, end, mass in ((-1, "1", scene.m1), (1, "2", scene.m2)):
         if not mass:
             continue
@@ -200,15 +202,20 @@ def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> No
         _draw_arrows(axes, [x + top * 1j], [pull * 1j], INK)
         _draw_arrows(axes, [x + bottom * 1j], [-weight * 1j], GREEN)
         for away, height, words, colour in (
-            (0.12, top + max(pull / 2, 0.17), f"T{end} = {_number(few[f'tension_{end}'])} N", INK),
-            (side / 2 + 0.08, (top + bottom) / 2, f"m{end} = {_number(mass, few)} kg", INK),
-            (0.12, bottom - max(weight / 2, 0.17), f"W{end} = {_number(few.round(mass * scene.g))} N", GREEN),
+            (0.12, top + max(pull / 2, 0.17), f"T{end} = {_number(answers[f'tension_{end}'])} N", INK),
+            (side / 2 + 0.08, (top + bottom) / 2, f"m{end} = {_number(mass, answers)} kg", INK),
+            (
+                0.12,
+                bottom - max(weight / 2, 0.17),
+                f"W{end} = {_number(answers.round(mass * scene.g))} N",
+                GREEN,
+            ),
         ):
             look: Any = {"color": colour, "ha": "left" if x > 0 else "right", "va": "center"}
             axes.text(x * (1 + away), height, typeset(words), **look)
         if acceleration:
             centre = complex(x * (1 - side / 2 - 0.13), -STRING - LARGER_SIDE / 2)
-            way = -1j * x * few.decided.sign * ACCELERATION
+            way = -1j * x * answers.decided.sign * ACCELERATION
             _draw_arc(axes, centre + way * np.array([-0.5, 0.5]), PURPLE, "white")
     words = typeset(f"a = {_number(abs(acceleration))} m/s²") if acceleration else "a = 0"
     height = -STRING - LARGER_SIDE - 0.17 - (LONGEST if len(words) > BETWEEN_WEIGHTS else 0)
@@ -216,14 +223,14 @@ def _draw_masses(axes: "Axes", few: Answers, lengths: Mapping[str, float]) -> No
     axes.update_datalim([(0, height - 0.1)])
 
 
-def _draw_tensions(axes: "Axes", few: Answers, lengths: Mapping[str, float], phi: float) -> None:
+def _draw_tensions(axes: "Axes", answers: Answers, lengths: Mapping[str, float], phi: float) -> None:
     """Draw the tensions as arrows along the string where it leaves the pulley, with their values."""
     labels = []
     for name, length in lengths.items():
         angle = 0 if name == "T1" else phi
         arrow = length * (-1j if name == "T1" else 1j) * np.exp(-1j * angle)
         _draw_arrows(axes, [_rim(angle)], [arrow], INK)
-        tip, tension = _rim(angle) + arrow, _number(few[f"tension_{name[1]}"])
+        tip, tension = _rim(angle) + arrow, _number(answers[f"tension_{name[1]}"])
         labels.append((tip.real, tip.imag, typeset(f"{name} = {tension} N"), INK))
     axes.autoscale_view()
     spokes = np.outer([0, 1], _rim(np.linspace(0, TURN, 37)))
@@ -241,14 +248,16 @@ def _draw_arrows(axes: "Axes", starts: Any, arrows: Any, colour: str) -> None:
         axes.quiver(tails.real, tails.imag, along.real, along.imag, color=colour, **look)
 
 
-def _draw_curves(axes: "Axes", few: Answers, kind: arc.Profile, wrap: float) -> None:
+def _draw_curves(axes: "Axes", answers: Answers, kind: arc.Profile, wrap: float) -> None:
     """Draw normal force and friction along the arc, over grey where there is no friction."""
     stuck = (
-        float(few.settle(lambda m: (m.phi - m.limiting_arc) / m.phi, to_double)) if kind == "creep" else 0.0
+        float(answers.settle(lambda m: (m.phi - m.limiting_arc) / m.phi, to_double))
+        if kind == "creep"
+        else 0.0
     )
-    edge, start = (stuck, 0) if few.decided.sign >= 0 else (1 - stuck, 1)
+    edge, start = (stuck, 0) if answers.decided.sign >= 0 else (1 - stuck, 1)
     shares = np.sort([*np.linspace(0, 1, CURVE_POINTS), *np.nextafter(edge, [0, edge, 1])])
-    tension, friction = _forces(few, kind, shares)
+    tension, friction = _forces(answers, kind, shares)
     axes.axhline(0, color=FAINT, lw=0.8)
     axes.plot(wrap * shares, tension, color=BLUE)
     axes.plot(wrap * shares, friction, color=RED, ls="--")

@@ -167,7 +167,7 @@ def scene(given: Iterable[str]) -> str:
 
 def with_symbols(words: str) -> str:
     """Return a sentence with symbols for the program's names, both between backticks."""
-    return re.sub("`([^`]*)`", lambda name: SYMBOLS.get(name[1], name[0]), words)
+    return re.sub("`([^`]*)`", lambda name: IN_PROSE.get(name[1], name[0]), words)
 
 
 def in_text(words: str) -> str:
@@ -227,7 +227,7 @@ def _aligned(equation: Equation) -> str:
     return f"\\begin{{aligned}}\n{left} {rows}\n\\end{{aligned}}"
 
 
-SYMBOLS = (
+IN_PROSE = (
     {name: f"`{about.letters}`" for name, about in QUANTITIES.items() if name not in INPUTS}
     # Names of one or two letters are symbols themselves.
     | {name: f"{about.axis} `{about.symbol}`" for name, about in (INPUTS | MEASURED).items() if len(name) > 2}

@@ -43,7 +43,7 @@ MOST_NAMED = 3
 """The most quantities that a sentence names."""
 WITHIN = {1: "one standard uncertainty", 2: "two standard uncertainties"}
 """A decision is in doubt if it differs within so many standard uncertainties of an input."""
-NO_SCENE, NO_FIT = "makes no valid scene", "nothing fits what was measured"
+NO_SCENE, NOTHING_FITS = "makes no valid scene", "nothing fits what was measured"
 DOUBTFUL = {
     "Which mass is heavier": "sign",
     "Whether the axle holds the difference": "axle_holds",
@@ -124,7 +124,7 @@ class UncertainAnswers(Answers):
             answers = Answers(moved, DIGITS)
             _ = answers.decided.axle_mass, answers.decided.rim_mass
         except (Undetermined, ZeroDivisionError):
-            return End(number, None, NO_FIT)
+            return End(number, None, NOTHING_FITS)
         return End(number, answers)
 
     def _spread(self, name: str) -> Spread | None:

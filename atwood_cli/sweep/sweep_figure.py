@@ -133,7 +133,9 @@ def axis_title(names: Iterable[str], unit: str = "") -> str:
     return f"{title} ({unit})" if unit else title
 
 
-def save(sweep: Sweep, names: Sequence[str], digits: int | None, path: str, force: bool, bare: bool) -> None:
+def save_sweep(
+    sweep: Sweep, names: Sequence[str], digits: int | None, path: str, force: bool, bare: bool
+) -> None:
     """Draw the curves of quantities, or of the acceleration, to a file; if bare, without a caption.
 
     Raises SceneError, OSError, and ArithmeticError if there is nothing to draw.
