@@ -14,7 +14,6 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from atwood_cli import solve
 from atwood_cli.numbers import settling
 from atwood_cli.numbers.digits import as_typed, share_exponent, strip_zeros, to_digits, to_double
 from atwood_cli.numbers.digits import format_number as text_of
@@ -284,11 +283,3 @@ def test_text_is_what_people_write() -> None:
 def test_text_reads_back_to_the_same_double(value: float) -> None:
     assert float(text_of(value)) == value
     assert len(text_of(value)) <= len(repr(value))
-
-
-def test_the_callers_decimal_context_changes_nothing() -> None:
-    given = {"m1": "1.0000000001", "m2": "2.3", "M": "55", "mu": "0.25", "R": "0.1"}
-    plain = solve(**given, digits=60)
-    hostile = decimal.Context(prec=2, rounding=decimal.ROUND_UP, Emin=-3, Emax=3, traps=[decimal.Inexact])
-    with decimal.localcontext(hostile):
-        assert solve(**given, digits=60) == plain

@@ -1,5 +1,7 @@
-"""Help and completion, as people and shells ask for them."""
+"""Help and completion, as people, shells and Python ask for them."""
 
+import pydoc
+import re
 import subprocess
 import sys
 from typing import Any
@@ -7,8 +9,8 @@ from typing import Any
 import pytest
 import typer
 
-from atwood_cli import cli
-from atwood_cli.solver.quantities import NAMES
+from atwood_cli import Solution, cli, solve, solve_arrays, solve_table
+from atwood_cli.solver.quantities import NAMES, QUANTITIES, STANDARD
 from atwood_cli.solver.scene import BODIES, INERTIA_FACTORS
 from atwood_cli.tables.sources import FORMATS
 from atwood_cli.tradeoff.measure import FAMILIES
@@ -113,3 +115,23 @@ def test_every_shell_gets_names_with_what_they_mean() -> None:
     for words, status in (("solve --only tor", 0), ("batch in", 1)):
         asked = {"_TYPER_COMPLETE_ARGS": f"atwood {words}", "_TYPER_COMPLETE_FISH_ACTION": "is-args"}
         assert process(**asked, _ATWOOD_COMPLETE="complete_fish") == (status, "", "")
+
+
+# Python's help
+
+
+@pytest.mark.parametrize("function", [solve, solve_arrays])
+def test_help_begins_with_what_a_function_does(function: Any) -> None:
+    described = " ".join(pydoc.plain(pydoc.render_doc(function)).split())
+    assert described.index((function.__doc__ or "").split("\n")[0]) < 500
+
+
+@pytest.mark.parametrize("function", [solve_arrays, solve_table])
+def test_a_docstring_names_the_usual_quantities(function: Any) -> None:
+    assert f"if None, {', '.join(STANDARD[:-1])} and {STANDARD[-1]}." in " ".join(function.__doc__.split())
+
+
+def test_every_quantity_is_described() -> None:
+    for name, about in QUANTITIES.items():
+        line = rf"\n    {name} +{re.escape(about.meaning)}.*{re.escape(about.unit)}.*{re.escape(about.equation)}\n"
+        assert re.search(line, str(Solution.__doc__)), name

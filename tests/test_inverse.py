@@ -1,5 +1,6 @@
 """From a measured acceleration back to the pulley or to gravity, and the fall from rest."""
 
+import re
 from decimal import Decimal
 from fractions import Fraction
 from typing import Any
@@ -8,11 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from atwood_cli import Solution, solve
+from atwood_cli import SceneError, Solution, solve
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.answers import Answers
 from atwood_cli.solver.quantities import NAMES
 from atwood_cli.solver.scene import UNMEASURED
+
+from .tools.scenes import inputs
 
 masses = st.fractions(min_value=Fraction(1, 10**6), max_value=10**6)
 
@@ -102,3 +105,12 @@ ROOTS = [
 def test_roots_are_exact_where_they_are_rational_and_ties_end(drop: str, digits: int, shown: str) -> None:
     s = measured(a="1", drop=drop, digits=digits)
     assert str(s.fall_time) == str(s.final_speed) == shown
+
+
+@pytest.mark.parametrize("masses", ["m1=1", "m1=3 m2=1", "m2=1.1", "m1=7 m2=2.9", "m1=0.1 m2=0.3"])
+def test_about_the_greatest_acceleration_that_an_error_names_is_taken(masses: str) -> None:
+    given = inputs(f"{masses} M=inf")
+    with pytest.raises(SceneError, match="without friction the acceleration is") as caught:
+        solve(**given, a=9 if Fraction(given["m2"]) > Fraction(given["m1"]) else -9)
+    [greatest] = re.findall("the acceleration is (.*) m/s²", str(caught.value))
+    assert solve(**given, a=Fraction(greatest) * Fraction("0.99999")).mu_k is not None

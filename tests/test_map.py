@@ -19,7 +19,7 @@ from atwood_cli.solver import quantities
 from atwood_cli.solver.machine import Machine
 from atwood_cli.solver.quantities import MEASURED_NAMES, QUANTITIES
 
-from .test_scene import BY_DEFINITION
+from .test_inputs import BY_DEFINITION
 from .test_sentences import REASONS
 from .tools import oracle
 from .tools.running import TOP, process
@@ -30,7 +30,7 @@ CHANGES = [
     ("add a quantity", "oracle.py", '    out["regime"] = regime\n', '    out["trial"] = l + h\n'),
     ("add a quantity", "oracle.py", '\n""".split()', " trial"),
     ("add a quantity", "test_contract", "pulley_mass moment_of_inertia gravity m1", "trial "),
-    ("take a unit", "test_scene", "kg 1 g 0.001 mg", "stater 7 "),
+    ("take a unit", "test_inputs", "kg 1 g 0.001 mg", "stater 7 "),
     ("take a unit", "examples/hoist.md", "kg, g, mg, ug", "stater, "),
     ("add a quantity", "solver/quantities.py", "    # Of a scene whose motion was",
      '    "trial": About("limits", "Q", "kg", "", "both masses"),\n'),
@@ -121,7 +121,7 @@ def lacking() -> Iterator[str]:
     for dimension, units in UNITS.items():
         for unit in units:
             if unit.replace(" ", "_") not in BY_DEFINITION[dimension].split():
-                yield f"tests/test_scene.py: BY_DEFINITION has no {unit!r}"
+                yield f"tests/test_inputs.py: BY_DEFINITION has no {unit!r}"
 
 
 def test_nothing_lacks_what_a_change_needs() -> None:

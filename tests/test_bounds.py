@@ -1,4 +1,4 @@
-"""The arithmetics of columns: every bound holds, and what is assumed of NumPy does; and their programs."""
+"""The arithmetics of arrays: every bound holds, and what is assumed of NumPy does; and their programs."""
 
 from collections import Counter
 from collections.abc import Callable, Sequence

@@ -1,4 +1,4 @@
-"""Bad input: one clear sentence that names the parameter, the value and the rule."""
+"""What is typed: the grammar of numbers, units, what each means, and what is refused, with parameter, value and rule."""
 
 import re
 from decimal import Decimal
