@@ -25,6 +25,7 @@ PAGES = {
         TOP / "README.md",
         *sorted((TOP / "examples").glob("*.md")),
         TOP / "atwood_cli" / "README.md",
+        TOP / "tests" / "README.md",
     )
 }
 README, TRADEOFF = PAGES["README.md"], PAGES["examples/tradeoff.md"]
@@ -113,6 +114,13 @@ def test_the_map_names_every_module() -> None:
     package = TOP / "atwood_cli"
     modules = {path.relative_to(package).with_suffix("").as_posix() for path in package.rglob("*.py")}
     assert named == {module for module in modules if not module.endswith("/__init__")}
+
+
+def test_the_page_of_the_tests_names_every_file() -> None:
+    named = re.findall(r"`(?:test)?(_\w+)`|`tools/(\w+)[.]py`", PAGES["tests/README.md"])
+    files = {path.stem.removeprefix("test") for path in (TOP / "tests").glob("test_*.py")}
+    assert files <= {name for name, _ in named}
+    assert all((TOP / "tests" / "tools" / f"{tool}.py").exists() for _, tool in named if tool)
 
 
 def test_the_setup_commands_are_what_the_workflow_runs() -> None:

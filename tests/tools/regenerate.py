@@ -80,17 +80,21 @@ def picture(line: str) -> str:
 
 
 def answered(block: str) -> str:
-    """The block as its command gives it, called here: stdout, stderr, the words of pictures, and a status but 0."""
+    """The block as its command gives it, called here: stdout, stderr, the words of pictures, and a status but 0.
+
+    A filter behind a bar, as `| grep sum`, is given stdout: what others show need not stand here again.
+    """
     line = block.splitlines()[0]
-    found = re.fullmatch(r"\$ (?:printf '(.*)' \| )?atwood ?(.*)", line)
+    found = re.fullmatch(r"\$ (?:printf '(.*)' \| )?atwood ?((?:'[^']*'|[^|'])*?)(?: \| (.*))?", line)
     assert found, line
     content = (found[1] or "").replace("%%", "%").encode().decode("unicode_escape").encode("latin-1")
     draws = "--figure" in line and find_spec("matplotlib")
     with TemporaryDirectory() as folder, chdir(folder), ExitStack() as stack:
         pages = stack.enter_context(pages_seen()) if draws else []
         ran = called(shlex.split(found[2]), content)
+    out = printed(found[3], ran.out) if found[3] else ran.out
     shown = re.sub(
-        UNSEEN, lambda unseen: "".join(f"\\x{unit:02x}" for unit in unseen[0].encode()), ran.out + ran.err
+        UNSEEN, lambda unseen: "".join(f"\\x{unit:02x}" for unit in unseen[0].encode()), out + ran.err
     )
     end = "" if not shown or shown.endswith("\n") else "\n"
     words = "".join(f"| {words}\n" for page in pages for words in words_on(page))
