@@ -22,6 +22,7 @@ from ..solver.decisions import REGIME_ASSUMED, Decisions
 from ..solver.quantities import ACCURACIES, Accuracy
 from ..solver.scene import INPUTS, MASSES, MISSING_MASS, SceneError
 from .inputs import STATUSES as STATUSES
+from .inputs import VALID as VALID
 from .inputs import GivenColumn, Numbers, groups, read_column
 from .plan import LEVELS, Task
 from .rows import Rows, select, size_of

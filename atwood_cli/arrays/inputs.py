@@ -36,6 +36,7 @@ STATUSES = (
 )
 """The meanings of the codes in ``status``: an input that is outside its domain (or a mass that is not given),
 inputs that do not go together, or one that is not a number."""
+VALID = STATUSES.index("valid")
 
 
 class GivenColumn(NamedTuple):

@@ -18,21 +18,22 @@ from ..solver.scene import SceneError
 from ..tables.headings import Heading, decimal_commas_in, listed, read_as, recognised
 from ..tables.records import Csv, Piece, read_ndjson
 from ..tables.sources import STDIN, Unreadable, blocks_of, cannot_read, is_packed, is_stream, opened
-from .frames import check_polars, solve_parquet
-from .solving import ERROR, VOCABULARY, Layout, Question, Tally, read_layout, solve_cells
+from .frames import check_polars
+from .parquet import solve_parquet
+from .solving import ERROR, VOCABULARY, ReadColumns, Tally, Wanted, read_columns, solve_cells
 
 if TYPE_CHECKING:
     import polars as pl
 
 
 class Job(NamedTuple):
-    """A table and its format, the file that it goes to, and the question that is asked of it."""
+    """A table and its format, the file that it goes to, and the question that is wanted of it."""
 
     source: str
     kind: str
     target: str
     force: bool
-    asked: Question
+    wanted: Wanted
 
 
 def run_batch(job: Job, tally: Tally) -> list[str]:
@@ -78,22 +79,22 @@ def _watched(pieces: Iterator[Piece], job: Job, source: IO[bytes]) -> AbstractCo
 
 def _solve_csv(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
     """Solve rows of cells: results follow with the separator and the decimal mark of the table."""
-    asked = job.asked
-    table = Csv(blocks_of(source), lambda columns: recognised(columns, VOCABULARY, asked.named))
-    layout = read_layout(table.columns, asked)
-    pieces = table.pieces(layout.headings)
+    wanted = job.wanted
+    table = Csv(blocks_of(source), lambda columns: recognised(columns, VOCABULARY, wanted.named))
+    columns = read_columns(table.columns, wanted)
+    pieces = table.pieces(columns.headings)
     first = [*islice(pieces, 1)]
     for piece in first:
         cells = piece.cells
         comma = decimal_commas_in(cells.iter_rows(), range(cells.width), table.separator)
-        layout = layout._replace(comma=comma)
-    target.write((table.separator.join([table.header, *asked.names, ERROR]) + table.line_end).encode())
+        columns = columns._replace(comma=comma)
+    target.write((table.separator.join([table.header, *wanted.names, ERROR]) + table.line_end).encode())
     with _watched(chain(first, pieces), job, source) as watched:
         for piece in watched:
-            results = solve_cells(piece.cells, layout, asked, tally, piece.errors)
-            target.write(_csv(piece, results, table, layout.comma))
+            results = solve_cells(piece.cells, columns, wanted, tally, piece.errors)
+            target.write(_csv(piece, results, table, columns.comma))
             target.flush()
-    return _remarks(layout, table.separator)
+    return _remarks(columns, table.separator)
 
 
 def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memoryview:
@@ -118,22 +119,22 @@ def _csv(piece: Piece, results: "pl.DataFrame", table: Csv, comma: bool) -> memo
 
 def _solve_ndjson(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tally: Tally) -> list[str]:
     """Solve lines, each of which is an object: results become its last members."""
-    layout, asked = Layout([]), job.asked
+    columns, wanted = ReadColumns([]), job.wanted
 
     def headings(keys: Sequence[str]) -> Sequence[Heading]:
-        nonlocal layout
-        layout = read_layout(keys, asked, whole=False)
-        return layout.headings
+        nonlocal columns
+        columns = read_columns(keys, wanted, whole=False)
+        return columns.headings
 
     with _watched(read_ndjson(blocks_of(source), headings), job, source) as watched:
         for piece in watched:
-            target.write(_ndjson(piece, solve_cells(piece.cells, layout, asked, tally, piece.errors)))
+            target.write(_ndjson(piece, solve_cells(piece.cells, columns, wanted, tally, piece.errors)))
             target.flush()
-    there = [*(one.column for one in layout.headings if one.place >= 0), *layout.not_read]
+    there = [*(one.column for one in columns.headings if one.place >= 0), *columns.not_read]
     known = {*map(without_blanks, there)}  # any line may have what --column names
-    if known and (absent := [one for one in asked.named if without_blanks(one) not in known]):
+    if known and (absent := [one for one in wanted.named if without_blanks(one) not in known]):
         raise Unreadable(f"there is no column {listed(absent[:1])}; there are {listed(there)}")
-    return _remarks(layout)
+    return _remarks(columns)
 
 
 def _ndjson(piece: Piece, results: "pl.DataFrame") -> memoryview:
@@ -154,13 +155,13 @@ def _solve_parquet(job: Job, source: IO[bytes], target: IO[bytes] | Stdout, tall
         source = BytesIO(b"".join(blocks_of(source)))
     whole = BytesIO()
     file = whole if isinstance(target, Stdout) or is_stream(job.target) else target
-    layout = solve_parquet(source, file, job.asked, tally)
+    columns = solve_parquet(source, file, job.wanted, tally)
     target.write(whole.getbuffer())
-    return _remarks(layout)
+    return _remarks(columns)
 
 
-def _remarks(layout: Layout, separator: str = "") -> list[str]:
+def _remarks(columns: ReadColumns, separator: str = "") -> list[str]:
     """Return sentences on how a table was read, if not as usual."""
-    headings = [heading for heading in layout.headings if heading.place >= 0]
-    not_read = [f"not read: {listed(layout.not_read)}."] if layout.not_read else []
-    return [*read_as(headings, separator, layout.comma), *not_read]
+    headings = [heading for heading in columns.headings if heading.place >= 0]
+    not_read = [f"not read: {listed(columns.not_read)}."] if columns.not_read else []
+    return [*read_as(headings, separator, columns.comma), *not_read]

@@ -32,7 +32,7 @@ LONG_CELL = 100
 """The characters up to which any text of a nonzero double is within the limits of digits and exponents."""
 
 
-class Question(NamedTuple):
+class Wanted(NamedTuple):
     """The quantities wanted of a table, its columns that hold no input, and the inputs by other headings."""
 
     names: Sequence[str]
@@ -40,7 +40,7 @@ class Question(NamedTuple):
     named: Mapping[str, str] = {}
 
 
-class Layout(NamedTuple):
+class ReadColumns(NamedTuple):
     """The columns of inputs, the headings of all that are not read, and whether commas are decimal."""
 
     headings: Sequence[Heading]
@@ -51,16 +51,16 @@ class Layout(NamedTuple):
 # Columns
 
 
-def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> Layout:
+def read_columns(columns: Sequence[str], wanted: Wanted, whole: bool = True) -> ReadColumns:
     """Find the inputs among the columns. If the table is not ``whole``, a mass without a column has no cells.
 
     Raises Unreadable if a column has the name of a result, or may mean an input and is no label.
     """
-    if clash := [column for column in columns if column in (*asked.names, ERROR)]:
+    if clash := [column for column in columns if column in (*wanted.names, ERROR)]:
         raise Unreadable(f"column {in_quotes(clash[0])} has the name of a result; rename it")
     known = {without_blanks(column): column for column in columns}
-    labels = {known.get(without_blanks(label), label) for label in asked.labels}
-    named = {known.get(without_blanks(one), one): name for one, name in asked.named.items()}
+    labels = {known.get(without_blanks(label), label) for label in wanted.labels}
+    named = {known.get(without_blanks(one), one): name for one, name in wanted.named.items()}
     headings = read_headings(columns, VOCABULARY, labels, named, whole)
     inputs = {heading.name for heading in headings}
     passed = {*labels, *(heading.column for heading in headings)}
@@ -69,18 +69,18 @@ def read_layout(columns: Sequence[str], asked: Question, whole: bool = True) -> 
         if name in INPUTS and not (whole and name in inputs):  # in NDJSON, another row may lack the input
             *_, (_, unit) = divisions(without_blanks(column))
             asked_unit = "" if unit or not INPUTS[name].unit else " (UNIT)"
-            way = f"--column {in_quotes(f'{name}{asked_unit}={column}')}"
-            raise refused(column, f"may mean {name}; rename it, or give {way}")
+            way = f", or give --column {in_quotes(f'{name}{asked_unit}={column}')}"
+            raise refused(column, f"may mean {name}; rename it", way)
     missing = [mass for mass in MASSES if mass not in inputs]
     if missing and whole:
         lacking = f"column {missing[0]} is" if len(missing) == 1 else "columns m1 and m2 are"
         way = " ".join(f"--column {mass}=HEADING" for mass in missing)
-        raise Unreadable(f"{lacking} missing; there are {listed(columns)}; or give {way}")
+        raise Unreadable(f"{lacking} missing; there are {listed(columns)}", f"; or give {way}")
     for column, name in doubtful.items():
         if name not in INPUTS:
             raise refused(column, "has measurements, which only solve takes")
     not_read = [column for column in columns if column not in passed]
-    return Layout([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read)
+    return ReadColumns([*headings, *(Heading(-1, mass, mass) for mass in missing)], not_read)
 
 
 def _meant(column: str) -> str | None:
@@ -137,7 +137,7 @@ class Tally:
 
 
 def solve_cells(
-    cells: "pl.DataFrame", layout: Layout, asked: Question, tally: Tally, unread: Mapping[int, str] = {}
+    cells: "pl.DataFrame", columns: ReadColumns, wanted: Wanted, tally: Tally, unread: Mapping[int, str] = {}
 ) -> "pl.DataFrame":
     """Return the columns to append to rows with these cells: the results, and the errors of bad rows.
 
@@ -145,37 +145,43 @@ def solve_cells(
     """
     import polars as pl
 
-    from ..arrays import solve_and_count
+    from ..arrays import VALID, solve_and_count
 
-    doubles: Any
-    doubles, errors = _doubles(cells, layout)
+    doubles, errors = _doubles(cells, columns)
     errors |= unread
-    doubles["m1"].scatter(list(errors), None)  # such a row has no results
-    solved, reasons = solve_and_count(doubles, "exact", ["regime", *asked.names])
-    regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
-    bad = [row for row in regimes.is_null().arg_true() if row not in errors]
-    why = cache(partial(_why, layout))  # as many rows may be alike
+    rows = pl.int_range(cells.height, eager=True)
+    if errors:  # only rows that could be read are solved
+        rows = rows.filter(~rows.is_in([*errors]))
+        doubles = doubles[rows]
+    given: Any = doubles.to_dict()
+    solved, reasons = solve_and_count(given, "exact", ["regime", *wanted.names])
+    bad = rows.filter(pl.Series(solved.pop("status")) != VALID)
+    why = cache(partial(_why, columns))  # as many rows may be alike
     errors |= dict(zip(bad, map(why, cells[bad].iter_rows()), strict=True))
+    regimes = pl.Series([*REGIMES, None], dtype=pl.String).gather(solved["regime"])
+    values = pl.DataFrame({**solved, "regime": regimes})
+    if len(rows) < cells.height:
+        places = pl.repeat(None, cells.height, dtype=pl.Int64, eager=True)
+        values = values.select(pl.all().gather(places.scatter(rows, range(len(rows)))))
+    numbers = pl.selectors.float()
+    beyond = sum(map(sum, values.select(numbers.is_infinite().sum()).iter_rows()))
+    values = values.select(pl.when(numbers.is_finite()).then(numbers).name.keep(), "regime")
     error = pl.repeat(None, cells.height, dtype=pl.String, eager=True)
     error = error.scatter(list(errors), list(errors.values()))
-    columns = pl.DataFrame({**solved, "regime": regimes})
-    values = pl.selectors.float()
-    beyond = sum(map(sum, columns.select(values.is_infinite().sum()).iter_rows()))
-    columns = columns.select(pl.when(values.is_finite()).then(values).name.keep(), "regime")
-    results = columns.select(*asked.names, error.alias(ERROR))
+    results = values.select(*wanted.names, error.alias(ERROR))
     tally.beyond += beyond
-    tally.reasons.update({key: count for key, count in reasons.items() if key[0] in asked.names})
-    tally.add(results, regimes)
+    tally.reasons.update({key: count for key, count in reasons.items() if key[0] in wanted.names})
+    tally.add(results, values["regime"])
     return results
 
 
-def _doubles(cells: "pl.DataFrame", layout: Layout) -> "tuple[dict[str, pl.Series], dict[int, str]]":
+def _doubles(cells: "pl.DataFrame", columns: ReadColumns) -> "tuple[pl.DataFrame, dict[int, str]]":
     """Return the inputs by name, null if a cell is empty or wrong, and the first error of each bad row."""
     import polars as pl
 
-    columns: dict[str, pl.Series] = {}
+    inputs: dict[str, pl.Series] = {}
     errors: dict[int, str] = {}
-    for heading, column in zip(layout.headings, cells, strict=True):
+    for heading, column in zip(columns.headings, cells, strict=True):
         if column.dtype in (pl.Categorical, pl.Enum):
             column = column.cast(pl.String)
         if not (column.dtype.is_numeric() or column.dtype in (pl.String, pl.Null)):
@@ -183,17 +189,17 @@ def _doubles(cells: "pl.DataFrame", layout: Layout) -> "tuple[dict[str, pl.Serie
         if column.dtype == pl.String:
             column = column.str.strip_chars()
             column = column.set(column.is_in(EMPTY), None)
-        doubles = _in_bulk(column, heading, layout.comma)
+        doubles = _in_bulk(column, heading, columns.comma)
         rows = (column.is_not_null() & doubles.is_null()).arg_true()
         found: list[float | None] = []
         for row, cell in zip(rows, column[rows], strict=True):
             try:
-                found.append(_double(heading, cell, layout.comma))
+                found.append(_double(heading, cell, columns.comma))
             except SceneError as error:
                 found.append(None)
                 errors.setdefault(row, str(error))
-        columns[heading.name] = doubles.scatter(rows, pl.Series(found, dtype=pl.Float64))
-    return columns, errors
+        inputs[heading.name] = doubles.scatter(rows, pl.Series(found, dtype=pl.Float64))
+    return pl.DataFrame(inputs), errors
 
 
 def _in_bulk(cells: "pl.Series", heading: Heading, comma: bool) -> "pl.Series":
@@ -239,11 +245,11 @@ def _double(heading: Heading, cell: str | float, comma: bool) -> float:
     return value
 
 
-def _why(layout: Layout, row: Sequence[Any]) -> str:
+def _why(columns: ReadColumns, row: Sequence[Any]) -> str:
     """Return the error of a row, in the words of `solve`. It quotes numbers as they were typed."""
     cells: dict[str, Any] = {}
-    for heading, cell in zip(layout.headings, row, strict=True):
-        text = pointed(heading.name, cell, layout.comma) if isinstance(cell, str) else cell
+    for heading, cell in zip(columns.headings, row, strict=True):
+        text = pointed(heading.name, cell, columns.comma) if isinstance(cell, str) else cell
         if text is None or text in EMPTY:
             continue
         if heading.unit and str(text).lower() != "inf":

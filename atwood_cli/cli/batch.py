@@ -84,7 +84,7 @@ def batch(
     force: Force = False,
 ) -> int:
     from ..batch.run import Job, run_batch
-    from ..batch.solving import VOCABULARY, Question, Tally
+    from ..batch.solving import VOCABULARY, Tally, Wanted
     from ..tables.headings import read_named
 
     names = list(dict.fromkeys(read_names("only", only or STANDARD)))
@@ -92,7 +92,7 @@ def batch(
     check_format(output, kind)
     if force and output == "-":
         raise SceneError("force", None, "needs --output")
-    job = Job(table, kind, output, force, Question(names, label or (), read_named(column or (), VOCABULARY)))
+    job = Job(table, kind, output, force, Wanted(names, label or (), read_named(column or (), VOCABULARY)))
     tally = Tally(set(names))
     try:
         remarks = run_batch(job, tally)

@@ -76,7 +76,7 @@ def fit(
 
 def _in_python(words: str) -> str:
     """Return a sentence with the parameters of `fit` for options, and without those that it lacks."""
-    words = re.sub("; or leave it unread by --label .*|; name them, as .*|(?<=give )--", "", words)
+    words = re.sub("(?<=give )--", "", words)
     return re.sub(r"--(find|without) (\S*[^\s.,;:)])", r"\1='\2'", words)
 
 

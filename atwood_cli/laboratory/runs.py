@@ -205,20 +205,20 @@ def _check(sheet: Sheet, headings: Sequence[Heading], others: Sequence[str], dro
     if not kinds:
         missing.append("t")
     if missing:
-        raise Unreadable(_missing(missing, sheet, others))
+        raise Unreadable(*_missing(missing, sheet, others))
     if drop is None and not names & {"a", "drop"}:
         raise Unreadable("the height of fall is missing: give drop, or a column of that name")
     if drop is not None and (has := names & {"a", "drop"}):
         raise SceneError("drop", drop.given, f"is not needed, as the table has {min(has)}; leave it out")
 
 
-def _missing(missing: Sequence[str], sheet: Sheet, others: Sequence[str]) -> str:
+def _missing(missing: Sequence[str], sheet: Sheet, others: Sequence[str]) -> tuple[str, str]:
     """Return which columns runs need, those of the table, and options that name what is missing."""
     said = f"runs need columns m1, m2, and t or a; there are {listed(sheet.columns)}"
     if all(map(LIKE_NUMBER.match, others)) or len(recognised([row[0] for row in sheet.rows], VOCABULARY)) > 1:
-        return f"{said}; make each run a row, below headings, as m1 (g),m2 (g),t (s)"
+        return f"{said}; make each run a row, below headings, as m1 (g),m2 (g),t (s)", ""
     repeats = ", and likewise each repeat" if "t" in missing else ""
-    return f"{said}; name them, as {' '.join(f'--column {name}=HEADING' for name in missing)}{repeats}"
+    return said, f"; name them, as {' '.join(f'--column {name}=HEADING' for name in missing)}{repeats}"
 
 
 # Rows

@@ -211,10 +211,10 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
         raise Unreadable(f"column {in_quotes(column)} {error}; rename it") from None
 
 
-def refused(column: str, why: str) -> Unreadable:
-    """Return the error for a heading, with the option that lets it pass."""
+def refused(column: str, why: str, way: str = "") -> Unreadable:
+    """Return the error for a heading; a user of the command may go another ``way``, or label the column."""
     label = quote(column) if column.isprintable() and len(column) <= LONGEST_HEADING else in_quotes(column)
-    return Unreadable(f"column {in_quotes(column)} {why}; or leave it unread by --label {label}")
+    return Unreadable(f"column {in_quotes(column)} {why}", f"{way}; or leave it unread by --label {label}")
 
 
 def listed(names: Sequence[str]) -> str:

@@ -58,7 +58,7 @@ class Csv:
     def __init__(self, blocks: Iterator[bytes], known: Callable[[Sequence[str]], Collection[str]]):
         """Read the header by the separator that makes most ``known`` columns, then most columns."""
         csv.field_size_limit(LONGEST_RECORD)
-        self._texts = map(_decoded, whole_lines(blocks, cells=True))
+        self._texts = map(_decoded, whole_lines(blocks, is_csv=True))
         text = next(self._texts, "")
         mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
         text = text.removeprefix(BYTE_ORDER_MARK)
@@ -203,7 +203,7 @@ def read_ndjson(
     keys: dict[str, object] = {}
     known = -1
     wanted: Sequence[Heading] = ()
-    for text in whole_lines(blocks, cells=False):
+    for text in whole_lines(blocks, is_csv=False):
         lines: list[str] = []
         objects: list[dict[str, object]] = []
         errors: dict[int, str] = {}

@@ -64,7 +64,7 @@ def _content(blocks: Iterator[bytes]) -> bytes:
     if content.startswith(UTF_16_MARKS):
         with suppress(UnicodeDecodeError):
             content = content.decode("utf-16").encode()
-    return b"".join(whole_lines(iter([content]), cells=True))
+    return b"".join(whole_lines(iter([content]), is_csv=True))
 
 
 def read_sheet(content: bytes, vocabulary: Vocabulary, named: Mapping[str, str]) -> Sheet:

@@ -40,7 +40,11 @@ JSON_FOR_CSV = {rb'\{"': "NDJSON; batch reads it with --from ndjson, and fit rea
 
 
 class Unreadable(Exception):
-    """A file or a stream is no table; the message says why."""
+    """A table cannot be read; the message says why. ``options`` may help, words for a user of the command."""
+
+    def __init__(self, why: str, options: str = "") -> None:
+        super().__init__(why)
+        self.options = options
 
 
 def read_format(given: str | None, path: str) -> str:
@@ -88,12 +92,13 @@ def opened(source: str, stack: ExitStack) -> IO[bytes]:
         file: IO[bytes] = stack.enter_context(opener(source, "rb"))
         return file
     except OSError as error:
-        raise Unreadable(error.strerror) from None
+        raise Unreadable(str(error.strerror)) from None
 
 
 def cannot_read(source: str, why: Unreadable) -> OSError:
     """Return the error for a file, or stdin, that is no table."""
-    return OSError(f"cannot read {'stdin' if source == STDIN else shortened(source, LONGEST_NAME)}: {why}")
+    name = "stdin" if source == STDIN else shortened(source, LONGEST_NAME)
+    return OSError(f"cannot read {name}: {why}{why.options}")
 
 
 def blocks_of(file: IO[bytes]) -> Iterator[bytes]:
@@ -122,13 +127,13 @@ def _what_comes(pipe: Any, most: int) -> bytes:
     return block
 
 
-def whole_lines(blocks: Iterator[bytes], cells: bool) -> Iterator[bytes]:
-    """Yield blocks of whole lines. Raises Unreadable for a file of no ``cells``, or else of no objects."""
+def whole_lines(blocks: Iterator[bytes], is_csv: bool) -> Iterator[bytes]:
+    """Yield blocks of whole lines. Raises Unreadable for a file that is no CSV, or else no NDJSON."""
     rest, line = b"", 1
     for block in chain(blocks, [b""]):
         if line == 1 and not rest:
             start = block.removeprefix(b"\xef\xbb\xbf")
-            for pattern, kind in (FOREIGN | JSON_FOR_CSV if cells else FOREIGN).items():
+            for pattern, kind in (FOREIGN | JSON_FOR_CSV if is_csv else FOREIGN).items():
                 if re.match(pattern, start, re.DOTALL):
                     raise Unreadable(f"it is {kind}")
         rest += block
