@@ -22,8 +22,13 @@ def counted(count: int, thing: str) -> str:
 
 
 def without_blanks(text: str) -> str:
-    """Return the text without blanks around it, and with single spaces within."""
-    return " ".join(text.split())
+    """Return the text without blanks around it, with single spaces within, and with accents joined (NFC)."""
+    text = " ".join(text.split())
+    if text.isascii():
+        return text
+    from unicodedata import normalize
+
+    return normalize("NFC", text)
 
 
 def nearest(word: str, words: Iterable[str]) -> str:

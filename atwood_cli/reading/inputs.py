@@ -12,7 +12,7 @@ from numbers import Rational, Real
 from typing import Any
 
 from ..numbers.rational import OfFloat
-from ..numbers.text import nearest, shortened, without_blanks
+from ..numbers.text import in_quotes, nearest, shortened, without_blanks
 from ..solver.scene import (
     DEFAULTS,
     INPUTS,
@@ -36,6 +36,7 @@ from .units import (
     Malformed,
     NotANumber,
     TypedNumber,
+    in_ascii,
     is_uncertain,
     limited,
     read_number,
@@ -139,7 +140,7 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
     try:
         return read_number(parameter.names.get(word, text), parameter.dimension)
     except NotANumber:
-        rule = _not_a_number(parameter, without_blanks(text))
+        rule = _not_a_number(parameter, in_ascii(text))
     except Malformed as error:
         rule = str(error)
     raise SceneError(name, given, rule)
@@ -148,6 +149,8 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
 NO_UNCERTAINTY = "has an uncertainty, which only solve and fit take; give the value alone"
 THOUSANDS = re.compile(r"[+-]?\d{1,3},\d{3}[^,]*", re.ASCII)
 """A number with one comma before three digits; with more commas it may be a list."""
+NUMBER_SIGNS = "±µμ°·²⁻π"
+"""The characters beyond ASCII that numbers and their units may have."""
 
 
 def _not_a_number(parameter: Parameter, word: str) -> str:
@@ -159,6 +162,13 @@ def _not_a_number(parameter: Parameter, word: str) -> str:
     numbers = [shortened(number) for number in meant if NUMBER.fullmatch(number)]
     if "," in word and numbers:
         return f"is not a number; write {' or '.join(numbers)}, without a comma"
+    if parameter.dimension == "time" and ":" in word:
+        return "is no time; write minutes and seconds as 1:02.50"
+    if not word.isascii() and re.search("[0-9]", word):
+        from unicodedata import name
+
+        odd = min(re.findall("[^ -~]", word), key=NUMBER_SIGNS.__contains__)
+        return f"{NOT_A_NUMBER}, without the {in_quotes(odd)} ({name(odd, 'no letter').lower()})"
     if re.match(r"[-+.]?\d.*[:,]|[\d.]+-[\d.]+$", word):
         return "is not a number; atwood sweep takes a range as start:stop:count, and a list as 1,2,5"
     names = f", or one of {', '.join(parameter.names)}" if parameter.names else ""

@@ -14,7 +14,7 @@ ASCII = str.maketrans(dict(zip("μµφβπταθχ₁₂²°·±≤≥≈√", S
 
 def _plain(symbol: str) -> str:
     """Return a symbol or a name without blanks and dashes, so that Fmin and F_min are the same as F min."""
-    return re.sub("[ _-]", "", symbol.translate(ASCII))
+    return re.sub("[ _-]", "", symbol.replace("\N{MICRO SIGN}", "μ").translate(ASCII))
 
 
 NAMES_BY_SYMBOL = {

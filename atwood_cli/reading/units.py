@@ -1,4 +1,4 @@
-"""Read numbers as people type them, exactly: 1.5e-3, 1/3, 250g, 9.81 m/s2, 3pi/2, 1.000(2), (250±1)g."""
+"""Read numbers as people type them, exactly: 1.5e-3, 1½, 12cm/2, 9.81 m/s2, 3pi/2, 1.000(2), (250±1)g."""
 
 from __future__ import annotations
 
@@ -7,14 +7,11 @@ from collections.abc import Mapping
 from decimal import ROUND_FLOOR, Decimal
 from fractions import Fraction
 from math import inf
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from ..numbers.digits import as_typed, to_digits
 from ..numbers.text import in_quotes, without_blanks
 from ..solver.scene import STANDARD_GRAVITY
-
-if TYPE_CHECKING:
-    pass
 
 GRAVITY = "gravity"
 """The unit of a multiple of g, as the symbol g is a gram's."""
@@ -32,7 +29,7 @@ UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
         "in": INCH, "ft": FOOT, "yd": FOOT * 3,
     },
     "angle": {"deg": "1", "°": "1", "turn": "360", "turns": "360", "rad": "1"},
-    "time": {"s": "1", "ms": "1e-3", "min": "60", "h": "3600"},
+    "time": {"s": "1", "ms": "1e-3", "us": "1e-6", "min": "60", "h": "3600"},
     "force": {"N": "1", "mN": "1e-3", "kN": "1e3", "lbf": POUND_FORCE, "kgf": STANDARD_GRAVITY},
     "torque": {
         "N m": "1", "mN m": "1e-3", "N cm": "1e-2",
@@ -67,6 +64,17 @@ MULTIPLES = {
     "acceleration": (_MULTIPLE % "g", GRAVITY, Fraction(STANDARD_GRAVITY)),
 }
 """The pattern of multiples of a constant, as 3pi/2, its name and its value, by dimension."""
+SHARE = re.compile(rf"({_DECIMAL} ?{_UNIT}) ?/ ?({_DECIMAL})", re.ASCII)
+"""A number with a unit, divided, as a diameter of 12cm/2."""
+STOPWATCH = re.compile(r"(?:(\d+):(?=[0-5]\d:))?(\d+):([0-5]\d(?:\.\d*)?)", re.ASCII)
+"""A time in hours, minutes and seconds."""
+_ALIKE = str.maketrans("０１２３４５６７８９＋－．／（）％：−⁄", "0123456789+-./()%:-/")
+"""Characters that mean those of ASCII. Superscripts do not, as 10² is not 102."""
+_VULGAR = dict(
+    zip("½⅓⅔¼¾⅕⅖⅗⅘⅙⅚⅛⅜⅝⅞", "1/2 1/3 2/3 1/4 3/4 1/5 2/5 3/5 4/5 1/6 5/6 1/8 3/8 5/8 7/8".split(), strict=True)
+)
+_MIXED = re.compile(rf"(?<![\d./eE])(?<![eE][+-])(?:(\d+) ?)?([{''.join(_VULGAR)}])(?! ?[\d.eE/(])", re.ASCII)
+"""A vulgar fraction, perhaps behind a whole number."""
 _PLAIN = str.maketrans("µμ⁻²", "uu-2", "*·^ ")
 _SYMBOLS = {symbol.translate(_PLAIN): symbol for symbols in UNITS.values() for symbol in symbols}
 
@@ -108,6 +116,17 @@ class TypedNumber(NamedTuple):
         return self._replace(value=self.value * factor, uncertainty=self.uncertainty * factor)
 
 
+def in_ascii(text: str) -> str:
+    """Return a number without needless blanks and in the characters of ASCII: −1½ is -3/2."""
+    text = without_blanks(text).translate(_ALIKE)
+    return text if text.isascii() else _MIXED.sub(_as_quotient, text)
+
+
+def _as_quotient(mixed: re.Match[str]) -> str:
+    over, under = map(int, _VULGAR[mixed[2]].split("/"))
+    return f"{int(mixed[1] or 0) * under + over}/{under}"
+
+
 def is_uncertain(text: str) -> bool:
     """Decide whether the text is meant to carry an uncertainty."""
     return any(mark in text for mark in UNCERTAIN)
@@ -118,7 +137,7 @@ def read_number(text: str, dimension: str | None) -> TypedNumber:
 
     ``dimension`` is one of `UNITS`, or two with an "or" between, or None for a number that takes no unit.
     """
-    text = without_blanks(text)
+    text = in_ascii(text)
     if not is_uncertain(text):
         return TypedNumber(*_value_and_unit(text, dimension))
     typed, u = _split_uncertainty(text)
@@ -158,6 +177,12 @@ def _value_and_unit(text: str, dimension: str | None) -> tuple[Fraction, str]:
         if not times.strip("+-"):
             times += "1"
         return limited(_quotient(times) * worth * _quotient(f"1/{parts}")), constant
+    if dimension == "time" and (clock := STOPWATCH.fullmatch(text)):
+        hours, minutes, seconds = map(_decimal, clock.groups(default="0"))
+        return limited((hours * 60 + minutes) * 60 + seconds), "s"
+    if share := SHARE.fullmatch(text):
+        value, unit = _value_and_unit(share[1], dimension)
+        return limited(value * _quotient(f"1/{share[2]}")), unit
     match = NUMBER.fullmatch(text)
     if not match:
         raise NotANumber(NOT_A_NUMBER)

@@ -33,8 +33,8 @@ DIVIDED = (r"(.+?)[ /]*[(\[]([^()\[\]]*)[)\]]", r"([^/]+?) ?(?:/| in ) ?(.+)")
 UNCERTAINTY = re.compile(r"u ?\((.+)\)|(.+?)[ _]err")
 OF_COLUMN_BEFORE = ("±", "+/-")
 """The names of columns that hold the uncertainties of the column before."""
-OWN_UNIT = re.compile(r"(?![eE][+-]?\d)[^\W\d_]|°")
-"""The sign that a cell has a unit: a letter that is not an exponent's."""
+OWN_UNIT = re.compile(r"(?![eE][+-]?\d)[^\W\d_]|[°:]")
+"""The sign that a cell has a unit: a letter that is not an exponent's, or the colon of minutes."""
 PART_THOUSANDS = r"^\s*[+-]?[1-9]\d{0,2}(,\d{3})+(\.\d*)?\s*$"
 ONE = Fraction(1)
 
