@@ -406,7 +406,7 @@ def test_a_picture_that_cannot_be_written_is_a_sentence_and_no_file(
 def test_the_picture_of_tradeoff_has_a_panel_for_each_family(tmp_path: Path) -> None:
     names = [*SETTINGS]
     off = dict(zip(names, (None, 39.2, 0.499, 4.2e-34), strict=True))
-    measured = [Measured(family, name, 1e-7, off[name], 0.0) for family in FAMILIES for name in names]
+    measured = [Measured(family, name, 1e-7, None, off[name], 0.0) for family in FAMILIES for name in names]
     for bare in (False, True):
         with pages_seen() as pages:
             save_tradeoff(measured, str(tmp_path / "a.svg"), force=True, bare=bare)

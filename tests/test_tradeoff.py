@@ -3,6 +3,7 @@
 import json
 from fractions import Fraction
 from math import inf, isfinite, ulp
+from statistics import median
 from types import SimpleNamespace
 from typing import Any
 
@@ -83,12 +84,17 @@ def test_errors_are_those_against_the_oracle_and_promises_hold(family: str) -> N
         off = [*map(oracle_error, rights, got)]
         assert one.seconds > 0
         assert one.share_wrong_regime == pytest.approx(off.count(None) / len(rows))
-        assert one.worst_ulp == pytest.approx(max(filter(None, off)), rel=1e-9, abs=1e-12)
+        right = [ulps for ulps in off if ulps is not None]
+        for measured_ulp, ulps in ((one.worst_ulp, max(right)), (one.median_ulp, median(right))):
+            assert measured_ulp == pytest.approx(ulps, rel=1e-9, abs=1e-12)
     # Half a unit in the last of the digits, of a number whose ulp is at least 2^-53 of it.
     for name, ulps in {"certified": 2e-14 * 2**53, "exact": 0.5, "50 digits": 0.5e-49 * 2**53}.items():
         assert (by_setting[name].worst_ulp or 0) <= ulps
         assert by_setting[name].share_wrong_regime == 0
-    assert by_setting["paper"].share_wrong_regime > 0.1
+    plain = by_setting["plain doubles"]
+    if family in ("ordinary", "light-pulley", "whole-range"):  # of others, a few in a hundred are wrong
+        assert (plain.share_wrong_regime > 0) == (family != "ordinary")
+    assert (plain.median_ulp or 0) > 4
 
 
 def oracle_error(right: dict[str, Any], got: tuple[Any, ...]) -> float | None:
@@ -153,12 +159,15 @@ def test_one_table_family_by_setting() -> None:
     lines = ran.out.splitlines()
     assert lines[0] == "6 scenes of each family, seed 1"
     rows = [[cell.strip() for cell in line.strip("│").split("│")] for line in lines if line.startswith("│")]
-    firsts = ["Family", *(word for name in FAMILIES for word in (name, "error (ulp)", "wrong"))]
+    firsts = [
+        "Family",
+        *(word for name in FAMILIES for word in (name, "median (ulp)", "worst (ulp)", "wrong")),
+    ]
     assert (rows[0][1:], [row[0] for row in rows]) == (NAMES, firsts)
-    assert all(0.001 < float(cell) < 1e5 for row in rows[1::3] for cell in row[1:])
-    assert all(float(row[NAMES.index("exact") + 1]) <= 0.5 for row in rows[2::3])
-    assert all(row[NAMES.index("certified") + 1] == "0 %" for row in rows[3::3])
-    assert max(map(len, lines[:-3])) <= 80
+    assert all(0.001 < float(cell) < 1e5 for row in rows[1::4] for cell in row[1:])
+    assert all(float(row[NAMES.index("exact") + 1]) <= 0.5 for row in rows[3::4])
+    assert all(row[NAMES.index("certified") + 1] == "0 %" for row in rows[4::4])
+    assert max(len(line) for line in lines if line[0] in "│╭╰├") <= 80
     assert " ".join(" ".join(lines).split()).endswith(" ".join(LEGEND))
 
 

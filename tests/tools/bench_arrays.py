@@ -1,24 +1,26 @@
-"""solve_arrays beside the paper's formulas in lean NumPy: python -m tests.tools.bench_arrays [ROWS]
+"""solve_arrays beside the same model in plain doubles: python -m tests.tools.bench_arrays [ROWS]
 
-Of each family of rows the nanoseconds of processor time a row: the least of some runs, which take turns; and the
-throughput of each accuracy as a part of the paper's, which knows neither regimes nor digits. Where rows take long,
-they are fewer. In brackets stand nanoseconds on the clock, as there are threads.
+For each family of rows, the nanoseconds of processor time a row: the least of some runs, which take turns. Behind
+these, the median of the ratios to plain doubles, run by run. Plain doubles run on whole arrays, and in tiles that fit
+the cache. Where rows take long, they are fewer. Brackets have nanoseconds on the clock, as there are threads.
 """
 
 import sys
 import time
 from collections.abc import Callable, Mapping
+from statistics import median
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from atwood_cli import solve_arrays
-from atwood_cli.solver.quantities import ACCURACIES
+from atwood_cli.solver.quantities import ACCURACIES, STANDARD
 from atwood_cli.tradeoff.measure import in_numpy
 
 Columns = dict[str, Any]
 T = TypeVar("T")
 ROUNDS, LONG = 5, 0.3  # seconds: rows that take as long are enough
+TILE_ROWS = 8192
 BOUNDS = {"quantities": ["friction_force_min", "friction_force_max"]}
 
 
@@ -78,26 +80,39 @@ def in_turn(works: Mapping[str, Callable[[], T]], rounds: int) -> dict[str, list
     return {name: [turn[name] for turn in turns[1:]] for name in works}
 
 
-def compared(draw: Callable[[int], Columns], accuracy: Any, most: int) -> tuple[int, list[Taken]]:
-    """The rows that are enough, and the least that they take by the paper and with an accuracy."""
+def in_tiles(*columns: Any) -> Columns:
+    """Plain doubles, so many rows at a time that intermediate values stay in the cache."""
+    results = {name: np.empty(len(columns[0])) for name in STANDARD}
+    for start in range(0, len(columns[0]), TILE_ROWS):
+        rows = slice(start, start + TILE_ROWS)
+        for name, values in in_numpy(*(column[rows] for column in columns)).items():
+            results[name][rows] = values
+    return results
+
+
+def compared(draw: Callable[[int], Columns], accuracy: Any, most: int) -> tuple[int, list[list[Taken]]]:
+    """The rows that are enough, and what they take in plain doubles, in tiles, and with an accuracy."""
     given = draw(rows := 100)
     works: dict[str, Callable[[], Taken]] = {
-        "paper": lambda: taken_by(lambda: in_numpy(*(given[x] for x in ("m1", "m2", "M", "mu")))),
+        "plain": lambda: taken_by(lambda: in_numpy(*(given[x] for x in ("m1", "m2", "M", "mu")))),
+        "in tiles": lambda: taken_by(lambda: in_tiles(*(given[x] for x in ("m1", "m2", "M", "mu")))),
         accuracy: lambda: taken_by(lambda: solve_arrays(**given, accuracy=accuracy)),
     }
     while rows < most and works[accuracy]().clock < LONG:
         given = draw(rows := min(10 * rows, most))
-    return rows, [min(times) for times in in_turn(works, ROUNDS).values()]
+    return rows, [*in_turn(works, ROUNDS).values()]
 
 
 def main(most: int) -> None:
     for family, draw in FAMILIES.items():
         for accuracy in ACCURACIES:
-            rows, (paper, ours) = compared(draw, accuracy, most)
-            a_row, on_clock, of_paper = (1e9 * taken / rows for taken in (*ours, paper.processor))
+            rows, runs = compared(draw, accuracy, most)
+            plain, tiles, ours = (1e9 * min(run.processor for run in times) / rows for times in runs)
+            on_clock = 1e9 * min(run.clock for run in runs[2]) / rows
+            ratio = median(b.processor / a.processor for a, b in zip(runs[0], runs[2], strict=True))
             print(
-                f"{family:18} {accuracy:9} {rows:8} rows: {a_row:9.1f} ns a row ({on_clock:.1f}),"
-                f" the paper {of_paper:5.1f} ns: {of_paper / a_row:.4f} of its throughput"
+                f"{family:18} {accuracy:9} {rows:8} rows: {ours:9.1f} ns a row ({on_clock:.1f}),"
+                f" plain {plain:5.1f}, in tiles {tiles:5.1f}: {ratio:.3f} of plain"
             )
 
 
