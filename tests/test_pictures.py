@@ -26,7 +26,7 @@ from .tools.running import TOP, called, labels, misplaced, pages_seen, process, 
 from .tools.scenes import inputs
 
 (PICTURES,) = (page.read_text(encoding="utf-8") for page in CASES if page.stem == "pictures")
-KEPT = re.findall(r"^\$ (?:printf '(.*)' \| )?atwood (.*) --figure \S+(.*)", PICTURES, re.MULTILINE)
+KEPT = re.findall(r"^\$ (?:printf '(.*)' \| )?atwood (.*) --figure \S+([^|\n]*)", PICTURES, re.MULTILINE)
 FIGURE = "--m1 1 --m2 3 --M 10 --mu 0.3"
 MORE = f"""
 {"|".join(f"contact {FIGURE} --wrap {wrap}" for wrap in (1, 76, 225, 300, 345, 2000))}
