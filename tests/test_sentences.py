@@ -240,7 +240,6 @@ REASONS: dict[str, Callable[[Claims], bool]] = {
     reasons.AXLE_ENOUGH: lambda c: c.any_pulley(h=c.l + c.b) == {"slip"},
     reasons.NO_NEED: lambda c: c.regime(mu=Fraction(0)) == "no-slip" or c.scene.mu == 0,
     reasons.NO_WRAP: lambda c: c.regime(mu=Fraction(0)) == "slip",
-    reasons.NOT_APPLICABLE: lambda c: c.scene.mu == c.b == 0 and c.scene.M is None,
     reasons.FIXED_END: lambda c: c.l == 0,
     reasons.DEFINITE: lambda c: c.regime() != "no-slip",
     reasons.NOT_DEFINITE: lambda c: c.regime() == "no-slip" and c.scene.mu is not None,

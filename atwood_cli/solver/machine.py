@@ -408,31 +408,25 @@ class Machine(Generic[N]):
 
     @lazy
     def least_heavier_mass(self) -> N:
-        self._check_applicable()
         return physics.least_heavier_mass(self.l, self.friction_mass)
 
     @lazy
     def least_pulley_mass(self) -> N:
-        self._check_applicable()
         friction_mass = self.friction_mass
         if self.decided.slips_once_it_moves:
             raise Undetermined(quantities.AXLE_ENOUGH)
         beta = self._given(self.decided.beta, quantities.UNKNOWN_SHAPE)
         return physics.least_pulley_mass(friction_mass, beta, self.b)
 
-    def _check_applicable(self) -> None:
-        """Raise Undetermined if the critical pulley has no mass, so that (36) has no meaning."""
-        if is_zero(self.scene.mu) and not self.decided.pulley_known and not self.decided.has_axle_friction:
-            raise Undetermined(quantities.NOT_APPLICABLE)
-
     @lazy
     def least_wrap(self) -> N:
         self._require_mu()
         if not self._tensions_differ():
             return self.ar.number(0)
-        if not self.decided.pulley_known:
-            return self.scene.wrap.degrees(self.ar)
-        if is_zero(self.scene.mu):
+        no_friction = is_zero(self.scene.mu)
+        if not self.decided.pulley_known:  # without friction the pulley on the verge has no mass
+            return self.ar.number(0) if no_friction else self.scene.wrap.degrees(self.ar)
+        if no_friction:
             raise Undetermined(quantities.NO_WRAP)
         return self.limiting_arc * 180 / self.ar.pi
 

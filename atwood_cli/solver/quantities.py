@@ -136,7 +136,6 @@ ALWAYS_SLIPS = "no value, as axle friction makes the string slip on any pulley, 
 AXLE_ENOUGH = "no value, as with axle friction the string slips on every pulley, under some heavier mass"
 NO_NEED = "no value, as no friction is needed"
 NO_WRAP = "no value, as without friction no wrap holds"
-NOT_APPLICABLE = "no value, as conditions (36) do not apply without friction"
 LOCKED_AXLE = "no value, as the weight of a pulley with `M` = `inf` is not known; atwood contact has the force of the string"
 ONE_SIDED = "not computed unless both ends pull downwards (half a turn of wrap, plus whole turns); atwood contact has the force of the string"
 NEEDS_A = "`give` `a`, a measured acceleration, without `M`, `I` and `mu`; see also `critical_pulley_mass`"

@@ -240,7 +240,7 @@ def expected(scene: Scene) -> dict[str, Any]:
         if l and equal:
             out["least_wrap"] = zero
         elif regime == "verge":
-            out["least_wrap"] = wrap
+            out["least_wrap"] = wrap if mu else zero
         elif grip is not None and mu:
             out["least_wrap"] = lambda: log(grip) / mu * 180 / flint.arb.pi()
         if slips_locked and not always and not rests and beta is not None:
@@ -251,10 +251,9 @@ def expected(scene: Scene) -> dict[str, Any]:
                 return (z * (g + a) - f) / a / beta
 
             out["critical_pulley_mass"] = of_k(mu, critical_pulley_mass)
-        if mu > 0 or known or f:
-            out["least_heavier_mass"] = of_k(mu, lambda k: l * k)
-            if beta is not None and not (f and beats(1 + b / l)):
-                out["least_pulley_mass"] = of_k(mu, lambda k: (2 * l * (k - 1) - b) / beta)
+        out["least_heavier_mass"] = of_k(mu, lambda k: l * k)
+        if beta is not None and not (f and beats(1 + b / l)):
+            out["least_pulley_mass"] = of_k(mu, lambda k: (2 * l * (k - 1) - b) / beta)
         if locked or (f and beats(1 + b / l)):
             out["critical_heavier_mass"] = of_k(mu, lambda k: l * k)
         elif c is not None and l and beats(1 + (c + b) / (2 * l)):
