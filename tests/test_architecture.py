@@ -1,6 +1,7 @@
 """The folders are the architecture: which may import which, without a circle, and no module unseen."""
 
 import ast
+import re
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from pathlib import Path
@@ -88,3 +89,31 @@ def test_packages_hold_nothing_but_their_docstring() -> None:
             tree = ast.parse(path.read_text(encoding="utf-8"))
             assert [type(node) for node in tree.body] == [ast.Expr], module
             assert ast.get_docstring(tree), module
+
+
+def closure(module: str) -> set[str]:
+    """A module and all that it imports, directly or not."""
+    reached, waiting = set[str](), [module]
+    while waiting:
+        if (name := waiting.pop()) not in reached:
+            reached.add(name)
+            waiting += IMPORTS[name]
+    return reached
+
+
+def test_one_scene_is_solved_by_what_the_map_says_to_read() -> None:
+    """In so many lines; a measured motion and uncertainties stand behind that, and nothing there reads text."""
+    section = (TOP / "atwood_cli" / "README.md").read_text(encoding="utf-8").split("\n## ")[1]
+    rows = re.findall(r"^\| (`.*?) \|", section, re.MULTILINE)
+    read = [(row.split("/")[0].lstrip("`"), name) for row in rows for name in re.findall(r"(\w+)\.py", row)]
+    modules = [f"atwood_cli.{folder}.{name}" for folder, name in read]
+    assert sorted(modules) == sorted(closure("atwood_cli.solver.answers"))
+    lines = sum(len(PATHS[module].read_text(encoding="utf-8").splitlines()) for module in modules)
+    (said,) = re.findall(r"about ([\d,]+) lines", section)
+    assert abs(lines - int(said.replace(",", ""))) <= 100
+    for module, path in PATHS.items():
+        if place(module) == "solver":
+            nodes = [*ast.walk(ast.parse(path.read_text(encoding="utf-8")))]
+            names = {node.id for node in nodes if isinstance(node, ast.Name)}
+            names |= {alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names}
+            assert not names & {"re", "sys", "json", "print", "open", "numpy"}, module
