@@ -22,6 +22,7 @@ What each accuracy promises, and why it holds:
 - ``exact``: the double nearest to the exact value, by pairs and then by a single scene. A value is certified
   where both ends of its bound round to the same double (Ziv's test), or where it is the product of two
   inputs, whose pair is exact. Other ties, half-way between two doubles, are left to a single scene.
+  Questions are asked in doubles first here, too.
 
 Rows with an input beyond `doubles.WINDOW`, other than 0, are solved one by one at once. Quantities are, too,
 if they need the sine of an angle that is computed, not given in degrees: the least and the greatest friction

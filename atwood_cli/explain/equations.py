@@ -84,7 +84,7 @@ class Derivation:
     def __init__(self, answers: Answers) -> None:
         self.answers, self.decided, self.scene = answers, answers.decided, answers.decided.scene
         self.digits = answers.digits or SHOWN_DIGITS
-        self.to_six_digits: set[str] = set()
+        self.shown: set[str] = set()
         self.light, self.heavy = ("2", "1") if self.decided.sign < 0 else ("1", "2")
         self.symbols = self._symbols()
         self.inputs = {name: Symbol(name, x) for name, x in self._values().items() if x is not None}
@@ -205,9 +205,9 @@ class Derivation:
 
         Only the result is shown if it is said from which symbols it ``follows``.
         """
-        if name in self.to_six_digits or not self.exists(name):
+        if name in self.shown or not self.exists(name):
             return
-        self.to_six_digits.add(name)
+        self.shown.add(name)
         recorded = None if follows else self._formula(name)
         yield self._worked_out(label, Symbol(self.symbol(name), name), recorded, follows)
 

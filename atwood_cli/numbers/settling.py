@@ -67,7 +67,7 @@ def settle(quantity: Quantity, round_: Callable[[Fraction | Decimal], T], digits
 
 
 def is_positive(quantity: Quantity) -> bool:
-    """Decide whether a quantity is positive that is irrational, and so not zero.
+    """Decide whether an irrational quantity, which cannot be 0, is positive.
 
     By the theorem of Gelfond, e^{πq} is transcendental for rational q other than 0, and so is every rational
     function of it that is not constant.

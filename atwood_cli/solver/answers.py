@@ -123,7 +123,7 @@ class Answers:
         return []
 
     def nearby(self) -> list[Answers | None]:
-        """Return the answers at all ends at which decisions may differ, None if an end makes no scene."""
+        """Return the answers with each input one and two uncertainties off, None if that is no scene."""
         return []
 
     def rounded(self, name: str, round_: Rounding[Decimal]) -> Decimal:

@@ -12,7 +12,7 @@ the result of the first line below that answers. The second table has the scenes
       does the string slip on it?                        (33) "as_given", "locked" at rest    slip, or no-slip
     can it slip on no pulley, however heavy?             (36) at "locked"                    no-slip
     does it slip on every pulley, however light?         (33) at "massless"                  slip
-    else it slips on a heavy enough pulley               (34)                                verge
+    else it slips on a heavy enough pulley               (34) gives its mass                 verge
 
     as_given, locked, massless as it is; D = 0; c = 0    see above
     massless                   in slip                   is the rim at rest under the string that slips?
@@ -70,12 +70,12 @@ class Decisions:
     @lazy
     def light(self) -> Fraction:
         """The lighter mass (kg)."""
-        return self.by_side(self.scene.m1, self.scene.m2)[0]
+        return self.scene.m1 if self.sign >= 0 else self.scene.m2
 
     @lazy
     def heavy(self) -> Fraction:
         """The heavier mass (kg)."""
-        return self.by_side(self.scene.m1, self.scene.m2)[1]
+        return self.scene.m2 if self.sign >= 0 else self.scene.m1
 
     @property
     def one_mass_is_0(self) -> bool:
@@ -147,10 +147,6 @@ class Decisions:
     def pulley_at_rest(self) -> bool:
         """Whether the pulley is at rest, as it is locked or its axle holds it."""
         return self.locked or self.axle_holds
-
-    def by_side(self, of_m1: N, of_m2: N) -> tuple[N, N]:
-        """Turn (of m1, of m2) into (of the lighter mass, of the heavier mass), or these into those."""
-        return (of_m1, of_m2) if self.sign >= 0 else (of_m2, of_m1)
 
     @property
     def pulley_known(self) -> bool:

@@ -258,11 +258,11 @@ class Machine(Generic[N]):
 
     @property
     def tension_1(self) -> N:
-        return self.decided.by_side(self.light_tension, self.heavy_tension)[0]
+        return self.light_tension if self.decided.sign >= 0 else self.heavy_tension
 
     @property
     def tension_2(self) -> N:
-        return self.decided.by_side(self.light_tension, self.heavy_tension)[1]
+        return self.heavy_tension if self.decided.sign >= 0 else self.light_tension
 
     @lazy
     def mu_verge(self) -> N:

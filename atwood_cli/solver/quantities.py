@@ -8,7 +8,7 @@ class Undetermined(Exception):
     """The scene does not determine a quantity; the message says why and what to give.
 
     Backticks mark names, and the word "give", which LaTeX output replaces by symbols and words. Other output
-    takes them out (`solver.messages.unmarked`).
+    takes them out (`explain.messages.unmarked`).
     """
 
 

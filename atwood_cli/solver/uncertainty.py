@@ -173,7 +173,7 @@ class UncertainAnswers(Answers):
 
     @lazy
     def _nearby_ends(self) -> list[tuple[str, str, End]]:
-        """Each input at the ends at which decisions may differ, the nearest first, and how far these are."""
+        """Each input one and two uncertainties off, the nearest ends first, and how far these are."""
         steps = [(within, x, n * u) for n, within in WITHIN.items() for x, u in self.uncertain.items()]
         return [(within, x, self._end(x, side * step)) for within, x, step in steps for side in (-1, 1)]
 
@@ -192,7 +192,7 @@ class UncertainAnswers(Answers):
         return [*sentences.values()]
 
     def nearby(self) -> list[Answers | None]:
-        """Return the answers at all ends at which decisions may differ, None if an end makes no scene."""
+        """Return the answers with each input one and two uncertainties off, None if that is no scene."""
         return [end.answers for _, _, end in self._nearby_ends]
 
     def open_ended(self, names: Iterable[str]) -> list[str]:
