@@ -31,6 +31,8 @@ class Inputs(TypedDict, total=False):
     a: Given | None
     drop: Given | None
     time: Given | None
+    speed: Given | None
+    find: str | None
 
 
 T = TypeVar("T", float, Decimal)
@@ -93,6 +95,9 @@ class Solution(Generic[T]):
     m1: T | None
     m2: T | None
     mu_k: T | None
+    axle: T | None
+    axle_torque: T | None
+    drop: T | None
     fall_time: T | None
     final_speed: T | None
     uncertainty: Mapping[str, T | None]
@@ -192,8 +197,10 @@ def solve(
         wrap: The angle that the string wraps, in degrees; 180 unless given.
         a: A measured acceleration, in m/s². Without M it finds M. Beside M it finds the mass or the g that
             is not given, or mu_k if the string slips, as it must on M="inf".
-        drop, time: A height of fall, in m, gives the time and the speed of the fall. With a measured time,
-            in s, it stands for the acceleration ``a`` that they imply.
+        drop, time, speed: Of a fall from rest the height, in m, the time, in s, and the speed at its end, in
+            m/s. Two stand for the acceleration ``a`` that they imply; one gives the others. Where a mass is
+            to be found, m2 falls, and rises if the height or the speed is below 0.
+        find: The input that the motion gives, "m1", "m2", "M", "g", "mu_k" or "axle".
         digits: The number of significant digits of Decimals; None gives floats.
 
     Returns:
@@ -210,7 +217,7 @@ def solve(
         hint = f"; did you mean {meant}?" if meant else nearest(name, Inputs.__annotations__)
         raise TypeError(f"solve() got an unexpected keyword argument {name!r}{hint}")
     inputs: dict[str, Any] = {"m1": m1, "m2": m2, **given}
-    return Solution(read_answers(inputs, read_digits(digits)))
+    return Solution(read_answers(inputs, read_digits(digits), inputs.pop("find", None)))
 
 
 _masses = [Parameter(name, Parameter.POSITIONAL_OR_KEYWORD, default=None) for name in ("m1", "m2")]

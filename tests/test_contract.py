@@ -22,13 +22,13 @@ VALUES = """
     acceleration tension_1 tension_2 mu_verge safety_factor tension_ratio capstan_ratio friction_force
     friction_force_min friction_force_max friction_force_x friction_force_y axle_force torque rim_acceleration
     angular_acceleration critical_pulley_mass critical_heavier_mass critical_lighter_mass least_heavier_mass
-    least_pulley_mass least_wrap pulley_mass moment_of_inertia gravity m1 m2 mu_k fall_time final_speed"""
+    least_pulley_mass least_wrap pulley_mass moment_of_inertia gravity m1 m2 mu_k axle axle_torque drop fall_time final_speed"""
 SCENE = "m1 m2 M mu mu_k g inertia I R wrap axle"
 FITTED = """rim_mass axle gravity delay pulley_mass moment_of_inertia uncertainty interval correlation chi2 dof
     between_runs runs notes"""
 RIT = TOP / "examples" / "rit.csv"
 JSON = {
-    "solve --m1 1 --m2 3": f"version scene regime {VALUES} uncertainty budget notes",
+    "solve --m1 1 --m2 3": f"version scene terms found regime {VALUES} uncertainty budget notes",
     "sweep --m1 1:2:2 --m2 3": "version scene rows notes",
     "contact --m1 1 --m2 3": "version scene regime profile points balance notes",
     f"fit {RIT} --drop 98cm": f"version {FITTED}",
@@ -49,7 +49,7 @@ PYTHON: dict[str, tuple[Iterable[str], str]] = {
     ),
     "solve": (
         parameters(solve),
-        "m1? m2? * M? mu? mu_k? g? inertia? I? R? wrap? axle? a? drop? time? digits?",
+        "m1? m2? * M? mu? mu_k? g? inertia? I? R? wrap? axle? a? drop? time? speed? find? digits?",
     ),
     "solve_arrays": (
         parameters(solve_arrays),
@@ -58,7 +58,7 @@ PYTHON: dict[str, tuple[Iterable[str], str]] = {
     "solve_table": (parameters(solve_table), "table quantities?"),
     "fit": (parameters(fit), "runs * drop? g? M? inertia? I? R? axle? find? without=()"),
     "Solution": ([one.name for one in fields(Solution)], f"scene notes regime {VALUES} uncertainty"),
-    "Scene": (Scene._fields, f"{SCENE} motion"),
+    "Scene": (Scene._fields, f"{SCENE} motion terms"),
     "Fit": (Fit._fields, FITTED),
     "REGIMES": (atwood_cli.REGIMES, "no-slip verge slip"),
     "STATUSES": (

@@ -169,7 +169,7 @@ def test_the_symbols_say_what_the_numbers_do(kind: str) -> None:
         "β": decided.beta,
         "b": decided.axle_mass,
     }
-    known |= {"f_axle": decided.axle_friction, "τ_axle": scene.axle and scene.axle.number}
+    known |= {"f_axle": decided.axle_friction, "τ_axle": scene.number_of("axle")}
     env = {name: exact(q) for name, q in ({"a": Fraction(0)} | known).items() if isinstance(q, Fraction)}
     env |= {"π": +mp.pi, "φ": wrap if scene.wrap.unit == "rad" else mp.radians(wrap), "|a|": abs(env["a"])}
     if scene.mu == 0 or scene.mu_k == 0:

@@ -28,7 +28,7 @@ NAMED = {
     "solve": {
         rf"^{QUANTITY}$": "QUANTITY",
         r"^(uncertainty|budget)\.\w+": r"\1.QUANTITY",
-        r"^(budget\.QUANTITY)\.\w+": r"\1.INPUT",
+        r"^(budget\.QUANTITY|terms)\.\w+": r"\1.INPUT",
     },
     "sweep": {rf"^(rows\[\])\.{INPUT}$": r"\1.INPUT", r"^(rows\[\])\.[a-z]\w+": r"\1.QUANTITY"},
     "contact": {r"^balance\.(friction|normal|sum|resultant|residual)": "balance.FORCE"},
@@ -43,6 +43,7 @@ PRINTED = {
         "--m1 1 --m2 3 --drop 1 --time 1",
         "--m1 0.1 --m2 0.4 --M inf --a 2.141",
         "--m1 1 --M 10 --a 2 --inertia hoop",
+        "--m1 20N --M 1 --R 5cm --speed 40rad/s --time 2",
     ],
     "sweep": ["--m1 1 --m2 3 --M 1,inf", "--m1 1 --m2 3 --mu 0.3 --wrap 1rad:2rad:2 --g 1:2:2 --only regime"],
     "contact": ["--m1 1 --m2 3 --mu 0.3", "--m1 1 --m2 3 --M inf --R 1 --axle 1N --points 2"],

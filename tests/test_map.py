@@ -90,9 +90,9 @@ def test_what_the_map_names_is_enough(changed: Path) -> None:
     assert (ran.out, ran.err) == ("True\n10.0 3.0 4.0\n10\nM,trial\n1,10\n2,10\n1\n", "")
 
 
-WITHOUT_DIMENSION = ("", "m/s", "rad/s²")
+WITHOUT_DIMENSION = ("", "rad/s²")
 """Units with which --expect compares plain numbers."""
-OF_MOTION = ("NEEDS_A", "NEEDS_DROP", "AT_REST")
+OF_MOTION = ("NEEDS_A", "NEEDS_FIND_AXLE", "NEEDS_FALL", "AT_REST", "SLOWS_DOWN")
 """How reasons of quantities begin that a measurement gives: no scene lacks them."""
 
 

@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from atwood_cli import solve
 from atwood_cli.numbers.digits import SHOWN_DIGITS
 from atwood_cli.solver.decisions import Decisions
-from atwood_cli.solver.inverse import with_number
 from atwood_cli.sweep.changes import LEAST_INPUT, changes
 from atwood_cli.sweep.ranges import read_sweep
 
@@ -56,7 +55,7 @@ def check_with_oracle(words: dict[str, str], *places: float) -> int:
     for (start, stop), there in zip(stretches[::2], in_turn, strict=True):
         values = [start + (stop - start) * Fraction(i, 5) for i in range(6)]
         for value in [*values, *(Fraction(x) for x in places if start < x < stop)]:
-            found = oracle.expected(with_number(swept.scene, along.name, value))["regime"]
+            found = oracle.expected(swept.scene.with_number(along.name, value))["regime"]
             assert found == there, (words, float(value))
     return len(said)
 

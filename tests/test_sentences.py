@@ -32,9 +32,7 @@ class Claims:
         self.scene = scene
         self.heavy = "m1" if scene.m1 > scene.m2 else "m2"
         self.l, self.h = sorted((scene.m1, scene.m2))
-        axle = scene.axle
-        f = 0 if axle is None else axle.number / (scene.R or 1) if axle.unit == "N m" else axle.number
-        self.b = Fraction(f / scene.g)
+        self.b = (scene.axle or Fraction(0)) / scene.g
 
     def regime(self, **other: Any) -> str:
         return str(self.expected(**other)["regime"])
@@ -96,7 +94,9 @@ def rest(c: Claims, held: str, then: str, digits: int) -> None:
         c.least_mu(match[1])
 
 
-def on_the_verge(c: Claims, critical: str, a: str, digits: int) -> None:
+def on_the_verge(c: Claims, critical: str, a: str, locked: str, digits: int) -> None:
+    assert Fraction(locked) > (c.scene.mu or 0)
+    c.least_mu(locked, pulley=inf)
     assert is_shown(critical, c.expected()["critical_pulley_mass"], digits)
     for factor, regime in (("0.99", "no-slip"), ("1.01", "slip")):
         assert c.regime(M=Fraction(critical) * Fraction(factor) ** (1 if digits > 2 else 60)) == regime
@@ -197,7 +197,8 @@ SENTENCES: dict[str, Callable[..., None]] = {
         lambda c: c.any_pulley() == {"slip"} and c.regime(pulley=Fraction(0)) == "no-slip"
     ),
     rf"On the verge of slipping: as M is not given, this is for the critical pulley mass, {NUMBER} kg\. On a"
-    rf" heavier pulley the string slips; on a massless one the acceleration is {NUMBER} m/s²\.": on_the_verge,
+    rf" heavier pulley the string slips; on a massless one the acceleration is {NUMBER} m/s²\. On a locked"
+    rf" pulley \(--M inf\) it slips: {NUMBER} is needed\.": on_the_verge,
     rf"Slips on any pulley, because of axle friction: mu = {NUMBER} is below the {NUMBER} needed even on a"
     rf" massless one{KINETIC}\.": slips_on_any,
     rf"Slips( over a pulley held by axle friction)?: mu = {NUMBER} is below the {NUMBER} needed to hold"

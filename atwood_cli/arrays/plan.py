@@ -43,7 +43,7 @@ from ..numbers.settling import settle
 from ..solver.decisions import Decisions, LimitingCase
 from ..solver.machine import Machine
 from ..solver.quantities import REGIMES, Accuracy, Undetermined
-from ..solver.scene import INPUTS, Angle, Axle, Scene
+from ..solver.scene import INPUTS, Angle, Scene
 from .doubles import DOUBLES, Doubles, NoProgram, equal, less, proven_double
 from .pairs import PAIRS
 from .program import Program
@@ -75,7 +75,6 @@ class Pattern(NamedTuple):
             for name, value in zip(INPUTS, self.inputs, strict=True)
         }
         fields["wrap"] = Angle(fields["wrap"])
-        fields["axle"] = None if fields["axle"] is None else Axle(fields["axle"])
         return Scene(**fields)
 
 

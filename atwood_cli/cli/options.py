@@ -22,7 +22,7 @@ DONE, COULD_NOT, WRONG_USAGE = 0, 1, 2
 
 ALIASES = {"M": ["--pulley-mass"], "R": ["--radius"]}
 REMARKS = {
-    "m1": ', 250g or "2 lb"',
+    "m1": ', 250g or "2 lb"; 20N, 2kN or 5lbf is its weight',
     "M": "; inf locks it",
     "mu_k": "; mu if not given",
     "g": ", or a planet, moon or pluto; 9.80665 if not given",
@@ -30,9 +30,9 @@ REMARKS = {
     "I": ", instead of inertia; needs R",
     "wrap": ": degrees, 3rad, pi/2, 2.5turn (half a turn and two whole turns); 180 if not given",
     "axle": ", as 15mN, or a torque with its unit, as 0.4mNm (needs R)",
-    "a": ": finds M, or a mass, g, mu_k",
-    "drop": ": finds time and speed",
-    "time": ", with drop instead of a",
+    "a": ", or 0.3g, 5rad/s2 (needs R): finds M, or a mass, g, mu_k, axle",
+    "drop": ": two of drop, time, speed stand for a, one gives the others",
+    "speed": ", or 20rad/s of the rim (needs R)",
 }
 
 

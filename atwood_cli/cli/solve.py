@@ -11,7 +11,7 @@ from ..reading.answers import read_answers
 from ..reading.inputs import read_digits
 from ..reading.names import read_names
 from ..solver.quantities import MEASURED_NAMES, NAMES
-from ..solver.scene import SceneError
+from ..solver.scene import FINDABLE, INPUTS, SceneError
 from .options import (
     COULD_NOT,
     DONE,
@@ -33,6 +33,15 @@ Only = Annotated[
         metavar="NAME",
         words=lambda: {**quantity_meanings(), **dict.fromkeys(MEASURED_NAMES, "found from measurements")},
         help="Print only this, or several: a,T1; see atwood quantities.",
+    ),
+]
+Find = Annotated[
+    str | None,
+    option(
+        "Measured",
+        metavar="NAME",
+        words=lambda: {name: INPUTS[name].meaning for name in FINDABLE},
+        help="What the motion finds: M, g, m1, m2, mu_k, axle; the one that is lacking if not given.",
     ),
 ]
 Expect = Annotated[
@@ -60,6 +69,8 @@ def solve(
     a: Annotated[str | None, scene_option("a", "Measured")] = None,
     drop: Annotated[str | None, scene_option("drop", "Measured")] = None,
     time: Annotated[str | None, scene_option("time", "Measured")] = None,
+    speed: Annotated[str | None, scene_option("speed", "Measured")] = None,
+    find: Find = None,
     only: Only = None,
     expect: Expect = None,
     all_: Annotated[
@@ -80,7 +91,8 @@ def solve(
 ) -> int:
     names = read_names("only", only or [], known=(*NAMES, *MEASURED_NAMES))
     conditions = [read_condition(typed) for typed in expect or []]
-    answers = read_answers({**given, "a": a, "drop": drop, "time": time}, read_digits(digits))
+    measured = {"a": a, "drop": drop, "time": time, "speed": speed}
+    answers = read_answers({**given, **measured}, read_digits(digits), find)
     if budget and not answers.uncertain:
         raise SceneError("budget", None, "needs an input with its uncertainty, like --m1 '1.000(2)'")
     if explain and answers.uncertain:

@@ -17,7 +17,7 @@ from ..numbers.digits import (
 )
 from ..numbers.text import in_quotes
 from ..reading.names import NAMES_BY_SYMBOL, read_name
-from ..reading.units import Malformed, TypedNumber, read_number
+from ..reading.units import GRAVITY, Malformed, TypedNumber, read_number
 from ..solver.answers import TOO_SMALL, Answers
 from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import QUANTITIES, REGIMES, Undetermined
@@ -102,8 +102,7 @@ def _instead(answers: Answers, expected: Condition) -> str:
     if value is None or reason == TOO_SMALL:
         why = reason if reason.startswith("no value") else f"no value: {reason}"
         return f"{expected.name} has {why}"
-    number = expected.number.with_gravity(answers.decided.scene.g)
-    given = None if number.unit == "rad" else Fraction(number.value)
+    given = None if expected.number.unit == "rad" else _in_si(expected.number, answers.decided.scene)
     if given is not None and not _above(answers, expected):  # digits would not show that the two are equal
         shown = as_typed(given)
     else:
@@ -125,4 +124,9 @@ def _bound(machine: Any, number: TypedNumber) -> Any:
     """Return the number in the arithmetic of a machine; an angle in degrees."""
     if number.unit == "rad":
         return Angle(number.value, "rad").degrees(machine.ar)
-    return machine.ar.number(Fraction(number.with_gravity(machine.scene.g).value))
+    return machine.ar.number(_in_si(number, machine.scene))
+
+
+def _in_si(number: TypedNumber, scene: Any) -> Fraction:
+    """Return the number in SI units; a multiple of g is of the scene's."""
+    return Fraction(number.value) * (scene.g if number.unit == GRAVITY else 1)

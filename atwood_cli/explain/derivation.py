@@ -17,6 +17,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from importlib.resources import files
+from itertools import combinations
 from operator import mul, truediv
 from typing import Any, NamedTuple
 
@@ -24,6 +25,7 @@ from ..numbers.rational import N
 from ..solver import physics
 from ..solver.answers import Answers
 from ..solver.quantities import REGIMES
+from ..solver.scene import FALL
 from .equations import EXTRA_DIGITS, MOTION, Derivation, Equation
 from .messages import measured_quantities, remarks, verdict
 
@@ -194,7 +196,8 @@ def _holds(derivation: Derivation, condition: str, conditions: Mapping[str, bool
         case ["not", *others]:
             return not _holds(derivation, " ".join(others), conditions)
         case [name, "is", "given"]:
-            return {**decided.scene._asdict(), **decided.motion._asdict()}[name] is not None
+            given = {**derivation.inputs, **decided.scene._asdict(), **decided.motion._asdict()}
+            return given.get(name) is not None
         case ["finds", name]:
             return decided.motion.finds == name
         case [name, "exists"]:
@@ -209,6 +212,8 @@ def _holds(derivation: Derivation, condition: str, conditions: Mapping[str, bool
 def _conditions(derivation: Derivation) -> dict[str, bool]:
     """Decide the conditions of `derivation.md` that are made of several decisions."""
     decided, scene, answers = derivation.decided, derivation.scene, derivation.answers
+    motion = decided.motion
+    by = motion.fall if motion.finds and motion.a is None else ()
     at_rest = decided.sign == 0 or decided.pulley_at_rest
     grips, moves = decided.regime == "no-slip", answers["acceleration"] is not None
     is_disk = scene.I is None and scene.inertia == Fraction(1, 2)
@@ -221,7 +226,8 @@ def _conditions(derivation: Derivation) -> dict[str, bool]:
         "equal masses": decided.sign == 0,
         "m1 is heavier": decided.sign < 0,
         "half a turn": scene.wrap.is_half_turn,
-        "axle torque": "τ_axle" in derivation.inputs and decided.has_axle_friction,
+        **{f"a by {x} and {y}": by == (x, y) for x, y in combinations(FALL, 2)},
+        "falls": bool(motion.fall),
         "paper's pulley": is_disk and not decided.has_axle_friction and not decided.pulley_at_rest,
         "ratio is known": decided.pulley_known and not decided.tensions_equal,
         "mu is positive": bool(scene.mu),

@@ -17,6 +17,7 @@ from ..numbers.rational import EXACT, Irrational
 from ..solver.answers import Answers
 from ..solver.machine import Machine
 from ..solver.quantities import QUANTITIES
+from ..solver.scene import ANGULAR_ACCELERATION, ANGULAR_SPEED, MULTIPLE_OF_G, TORQUE, WEIGHT
 
 INPUT_DIGITS = 17
 """Digits up to which an input is put in as it was typed."""
@@ -65,11 +66,21 @@ UNIT_BY_NAME = {
     **{name: unit for name, (_, unit) in INTERMEDIATE.items()},
     **{"limiting_friction_mass": "kg", "limiting_drive": "kg", "magnitude": "m/s²", "phi": "rad"},
     **dict.fromkeys(("light_tension", "heavy_tension", "difference", "f_axle"), "N"),
-    **{"a": "m/s²", "|a|": "m/s²", "g": "m/s²", "M": "kg", "c": "kg", "b": "kg"},
+    **{"a": "m/s²", "|a|": "m/s²", "a_1": "m/s²", "v": "m/s", "g": "m/s²", "M": "kg", "c": "kg", "b": "kg"},
 }
 """The units of intermediate values, by name, and of inputs, by symbol."""
 REFERRED_TO = ("capstan_ratio", "critical_pulley_mass", "mu_verge")
 """Quantities that equations of others refer to."""
+TERM_SYMBOLS = {
+    ("m1", WEIGHT): "W1",
+    ("m2", WEIGHT): "W2",
+    ("M", WEIGHT): "W_M",
+    ("axle", TORQUE): "τ_axle",
+    ("a", MULTIPLE_OF_G): "n_g",
+    ("a", ANGULAR_ACCELERATION): "α_given",
+    ("speed", ANGULAR_SPEED): "ω_given",
+}
+"""Symbols of inputs as they were given in other terms."""
 WITHOUT_AXLE_FRICTION = {"f_axle": 0, "b": 0, "D": 1}
 """Values of symbols if the axle has no friction."""
 
@@ -90,12 +101,15 @@ class Derivation:
         self.inputs = {name: Symbol(name, x) for name, x in self._values().items() if x is not None}
         motion = self.decided.motion
         self.measured_symbols = {"c", "M"} if motion.finds == "M" else {motion.finds}
-        if motion.time is not None:
+        symbols = {"axle": "f_axle", "a": self.symbols["magnitude"], "speed": "v"}
+        self.measured_symbols |= {symbols.get(name, name) for name, _ in self.scene.terms}
+        if motion.finds and motion.a is None:
             self.measured_symbols.add(self.symbols["magnitude"])
 
     def _values(self) -> dict[str, Fraction | None]:
         """Return what is given or found, by symbol."""
         decided, scene, motion = self.decided, self.scene, self.decided.motion
+        terms = {TERM_SYMBOLS[x, given.terms]: abs(given.number) for x, given in scene.terms}
         return {
             **{name: getattr(scene, name) for name in ("m1", "m2", "g", "I", "R")},
             "M": decided.pulley_mass,
@@ -106,9 +120,8 @@ class Derivation:
             "f_axle": decided.axle_friction if decided.has_axle_friction else None,
             "b": decided.axle_mass if decided.has_axle_friction else None,
             self.symbols["magnitude"]: decided.measured_acceleration if motion.finds else None,
-            "s": motion.drop,
-            "t": motion.time,
-            "τ_axle": scene.axle.number if scene.axle and scene.axle.unit == "N m" else None,
+            **dict(zip("stv", decided.fall, strict=True)),
+            **terms,
         }
 
     def _symbols(self) -> dict[str, str]:
@@ -120,7 +133,7 @@ class Derivation:
             "limiting_friction_mass": f"z{kin}",
             "limiting_drive": f"d{kin}",
             "phi": "π" if scene.wrap.is_half_turn else "φ",
-            "magnitude": "a" if decided.sign >= 0 else "|a|",
+            "magnitude": "a" if decided.sign >= 0 else "a_1" if decided.slows_down else "|a|",
             "light_tension": f"T{self.light}",
             "heavy_tension": f"T{self.heavy}",
             "difference": f"T{self.heavy} - T{self.light}",

@@ -14,8 +14,8 @@ from ..numbers.digits import SHOWN_DIGITS, Rounding, as_typed, format_number, ro
 from ..reading.units import MAX_MAGNITUDE
 from ..solver.answers import Answers
 from ..solver.physics import critical_heavier_mass
-from ..solver.quantities import NAMES, QUANTITIES
-from ..solver.scene import with_unit
+from ..solver.quantities import FROM_MOTION, NAMES, QUANTITIES
+from ..solver.scene import MASSES, WEIGHT, with_unit
 
 
 def unmarked(words: str) -> str:
@@ -31,8 +31,12 @@ def notes(answers: Answers, names: Sequence[str]) -> list[str]:
 
 def measured_quantities(answers: Answers) -> list[str]:
     """Return the names of the quantities that follow from measurements, the unknown input first."""
-    by_time = {"fall_time": "acceleration"} if answers.decided.motion.time is not None else {}
-    return [by_time.get(name, name) for name in answers.names[len(NAMES) :]]
+    motion = answers.decided.motion
+    given = {"fall_time": motion.time, "final_speed": motion.speed}
+    names = [name for name in answers.names[len(NAMES) :] if given.get(name) is None]
+    if motion.finds and motion.a is None:
+        names.insert(len(FROM_MOTION[motion.finds]), "acceleration")
+    return names
 
 
 def reasons(answers: Answers, names: Sequence[str]) -> list[str]:
@@ -64,6 +68,10 @@ def verdict(answers: Answers) -> str:
     """Say what the string does, and why."""
     answers = answers.to_six_digits
     decided, scene = answers.decided, answers.decided.scene
+    if decided.slows_down:
+        most = format_number(_beside(answers, decided.difference)(decided.axle_mass))
+        stops = f"Slows down, and stops: axle friction can hold a difference of masses of up to {most} kg."
+        return f"{stops} {_grips(answers)}" if decided.light else stops
     if decided.sign == 0:
         return "At rest: the masses are equal, so no friction is needed."
     if decided.regime == "verge":
@@ -111,11 +119,13 @@ def _grips(answers: Answers) -> str:
 def _on_the_verge(answers: Answers) -> str:
     if not answers.decided.scene.mu:
         return "Slips on any pulley with mass, as `mu` = 0; the values are for a massless pulley."
-    massless = _on_pulley(answers, Fraction(0))
+    massless, locked = (_on_pulley(answers, mass) for mass in (Fraction(0), inf))
+    enough = locked.rounded("mu_verge", _beside(answers, answers.decided.scene.mu))
     return (
         "On the verge of slipping: as `M` is not given, this is for the critical pulley mass,"
         f" {_say(answers, 'critical_pulley_mass')} kg. On a heavier pulley the string slips; on a"
-        f" massless one the acceleration is {_say(massless, 'acceleration')} m/s²."
+        f" massless one the acceleration is {_say(massless, 'acceleration')} m/s². On a locked pulley"
+        f" (--M inf) it slips: {format_number(enough)} is needed."
     )
 
 
@@ -153,6 +163,7 @@ def remarks(answers: Answers) -> list[str]:
     if wrap.unit == "°" and LIKE_RADIANS[0] < wrap.number < LIKE_RADIANS[1]:
         typed = as_typed(wrap.number)
         sentences.append(f"The wrap is {typed}°; for radians write {typed}rad, for turns {typed}turn.")
+    sentences += [*_on_weights(answers), *_on_direction(answers)]
     mu_k = decided.scene.mu_k
     if mu_k is not None and decided.regime != "slip" and not decided.tensions_equal:
         sentences.append("`mu_k` has no effect here, as the string does not slip.")
@@ -175,6 +186,47 @@ def remarks(answers: Answers) -> list[str]:
         )
         sentences.append(f"As `M` goes from 0 to `inf`: {', '.join(ranges)}.")
     return sentences
+
+
+def _on_weights(answers: Answers) -> list[str]:
+    """Say the masses of weights, and that a mass beside a weight is none."""
+    scene = answers.decided.scene
+    weights = {x: given for x, given in scene.terms if given.terms == WEIGHT and given.number}
+    if not weights:
+        return []
+    shown = [
+        (f"`{x}`", f"{_short(answers, given.number)} N", f"{_short(answers, getattr(scene, x))} kg")
+        for x, given in weights.items()
+    ]
+    names, forces, masses = map(" and ".join, zip(*shown, strict=True))
+    said = f"{names} is a weight of {forces}, the mass {masses}"
+    if len(weights) > 1:
+        said = f"{names} are weights of {forces}, the masses {masses}"
+    pull = "" if answers["acceleration"] == 0 else "; a pull that is no weight accelerates differently"
+    others = [
+        x for x in MASSES if x not in weights and getattr(scene, x) and x != answers.decided.motion.finds
+    ]
+    beside = [
+        f"`{x}` is a mass of {_short(answers, getattr(scene, x))} kg; for a weight give its unit."
+        for x in others
+    ]
+    return [f"{said}{pull}.", *beside]
+
+
+def _on_direction(answers: Answers) -> list[str]:
+    """Say which way the masses are taken to move, if one is found from a fall that does not tell."""
+    scene, motion = answers.decided.scene, answers.decided.motion
+    if motion.a is not None or motion.finds not in MASSES or 0 in (scene.m1, scene.m2):
+        return []
+    name = "speed" if motion.drop is None else "drop"
+    if getattr(motion, name) > 0:
+        return [f"`m2` is taken to fall; if it rises, give a `{name}` below 0."]
+    return [f"`m2` rises, as `{name}` is below 0."]
+
+
+def _short(answers: Answers, number: Fraction) -> str:
+    """Return an exact number as the table shows numbers, without zeros at its end."""
+    return format_number(strip_zeros(_beside(answers, None)(number)))
 
 
 def _on_pulley(answers: Answers, mass: Fraction | float) -> Answers:

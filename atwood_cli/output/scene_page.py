@@ -14,7 +14,7 @@ from ..solver.decisions import REGIME_ASSUMED
 from ..solver.quantities import MEASURED_NAMES, QUANTITIES, cited
 from ..solver.scene import with_unit
 from .files import printable
-from .text import VERSION, cell, inputs_in_words, scene_record
+from .text import VERSION, cell, inputs_in_words, scene_record, terms_record
 
 if TYPE_CHECKING:
     from .page import Page
@@ -33,6 +33,8 @@ def record(answers: Answers, only: Sequence[str] = (), budget: bool = False) -> 
     return {
         "version": VERSION,
         "scene": scene_record(answers.decided.scene, answers.round),
+        "terms": terms_record(answers.decided.scene, answers.round),
+        "found": [*filter(None, [answers.decided.motion.finds])],
         "regime": answers.decided.regime,
         **absent,
         **results,

@@ -11,7 +11,7 @@ from math import inf
 from typing import Any, NamedTuple, TextIO
 
 from ..numbers.digits import Rounding, as_typed, exact_or_rounded, format_number, is_infinite, to_double
-from ..solver.scene import Angle, Axle, Scene, parameter_of, with_unit
+from ..solver.scene import INPUTS, MEASURED, Scene, parameter_of, with_unit
 from .files import Stdout, printable, stdout_into
 
 
@@ -187,28 +187,33 @@ def scene_record(scene: Scene, round_: Rounding[Any] = to_double) -> dict[str, o
 
     A number that is a finite decimal is exact. Others are rounded as results are.
     """
+    values = {**scene._asdict(), **scene.motion._asdict(), str(scene.motion.finds): None}
+    own = {name: (values[name], "") for name in (*INPUTS, *MEASURED)}
+    with_units = {name: given for name, given in _given(scene).items() if name in ("axle", "wrap")}
+    return {name: _written(*given, round_) for name, given in (own | with_units).items()}
 
-    def written(value: object, unit: str) -> object:
-        if not isinstance(value, Fraction):
-            return value
-        number = exact_or_rounded(value, round_)
-        return f"{format_number(number)}{unit}" if unit else number
 
-    return {name: written(value, unit) for name, (value, unit) in _given(scene).items()}
+def terms_record(scene: Scene, round_: Rounding[Any] = to_double) -> dict[str, object]:
+    """Return the inputs that were given in other terms than those of `scene_record`, as text with a unit."""
+    given = _given(scene)
+    return {name: _written(*given[name], round_) for name, _ in scene.terms}
+
+
+def _written(value: object, unit: str, round_: Rounding[Any]) -> object:
+    if not isinstance(value, Fraction):
+        return "inf" if value == inf else value
+    number = exact_or_rounded(value, round_)
+    return f"{format_number(number)}{unit}" if unit else number
 
 
 def _given(scene: Scene) -> dict[str, tuple[Any, str]]:
-    """Return the inputs by name, each with its unit if this is not the usual one."""
-    given: dict[str, Any] = scene._asdict()
-    given |= given.pop("motion")._asdict()
-    if unknown := given.pop("finds"):
-        given[unknown] = None
-    if scene.M == inf:
-        given["M"] = "inf"
-    units = {"rad": "rad", "N m": " Nm"}
+    """Return the inputs as they were given, by name, each with its unit if this is not the usual one."""
+    given = {name: scene.given_as(name) for name in (*INPUTS, *MEASURED) if name != scene.motion.finds}
+    units = {"°": "", "rad": "rad"}
     return {
-        name: (value.number, units.get(value.unit, "")) if isinstance(value, Angle | Axle) else (value, "")
+        name: (getattr(value, "number", value), units.get(unit, f" {unit}") if unit else "")
         for name, value in given.items()
+        for unit in [getattr(value, "unit", "")]
     }
 
 
@@ -216,7 +221,7 @@ def inputs_in_words(scene: Scene, uncertain: Mapping[str, Fraction] = {}) -> dic
     """Say each input, as m1 = 1 kg, with at least as many decimals as its uncertainty: 3.00 ± 0.02."""
     parts = {}
     for name, (value, unit) in _given(scene).items():
-        words = as_typed(value) if isinstance(value, Fraction) else value
+        words = as_typed(value) if isinstance(value, Fraction) else str(value)
         if name in uncertain:
             u = as_typed(uncertain[name])
             if not {"e", "/"} & {*words, *u}:

@@ -20,7 +20,7 @@ Written = tuple[str, int]
 """A formula as text, and its precedence, which decides where it needs parentheses."""
 SUM, PRODUCT, POWER, ATOM = range(4)
 """The precedences, from the lowest on."""
-SIGNS = dict(zip("μπφθαβτ≈∞", "mu pi varphi theta alpha beta tau approx infty".split(), strict=True))
+SIGNS = dict(zip("μπφθαβτω≈∞", "mu pi varphi theta alpha beta tau omega approx infty".split(), strict=True))
 IN_LATEX = str.maketrans({sign: f"\\{name} " for sign, name in SIGNS.items()} | {"*": r"^{\ast}"})
 """Signs in symbols, and how LaTeX writes them."""
 UNITS_IN_LATEX = str.maketrans({"²": "^2", "°": r"^{\circ}", " ": "~"})

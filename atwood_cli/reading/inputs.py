@@ -17,22 +17,23 @@ from ..solver.scene import (
     DEFAULTS,
     INPUTS,
     MEASURED,
+    STANDARD_GRAVITY,
     Angle,
-    Axle,
     Given,
     Input,
+    InTerms,
     Parameter,
     Scene,
     SceneError,
     parameter_of,
 )
 from .units import (
+    GRAVITY,
     MAX_DIGITS,
     MAX_MAGNITUDE,
     NOT_A_NUMBER,
     NUMBER,
     TOO_LONG,
-    UNITS,
     Malformed,
     NotANumber,
     TypedNumber,
@@ -40,6 +41,7 @@ from .units import (
     is_uncertain,
     limited,
     read_number,
+    terms_of,
 )
 
 # fmt: off
@@ -63,17 +65,20 @@ def read_scene(given: Mapping[str, Given | None]) -> Scene:
     return Scene.of({name: read_exactly(name, given.get(name)) for name in INPUTS})
 
 
-def read_input(name: str, given: Given | None) -> Input:
-    """Read one input, whose text may carry a standard uncertainty. Raises SceneError."""
+def read_input(name: str, given: Given | None, signed: bool = False) -> Input:
+    """Read one input, whose text may carry a standard uncertainty; ``signed`` allows it to be below 0.
+
+    Raises SceneError.
+    """
     if given is None:
         return _default(name)
     if isinstance(given, str):
         number = _read_text(name, given, given)
-    elif (isinstance(given, Angle) and name == "wrap") or (isinstance(given, Axle) and name == "axle"):
+    elif isinstance(given, Angle) and name == "wrap":
         number = TypedNumber(_exact_number(name, given.number), given.unit)
     else:
         number = TypedNumber(_exact_number(name, given))
-    return Input(_checked(name, given, number), number.uncertainty, given)
+    return Input(_checked(name, given, number, signed), number.uncertainty, given)
 
 
 @cache
@@ -100,7 +105,7 @@ def read_plain(name: str, given: str, text: str) -> Fraction | float:
     """Read the number in a cell of a table, as ``text``, which has no unit or name. Raises SceneError."""
     if is_uncertain(text):
         raise SceneError(name, given, NO_UNCERTAINTY)
-    return _read_text(name, given, text, INPUTS[name]._replace(dimension=None, names={})).value
+    return _read_text(name, given, text, INPUTS[name]._replace(dimension=None, terms=(), names={})).value
 
 
 def read_whole(name: str, given: int | str, least: int, most: int) -> int:
@@ -118,17 +123,17 @@ def read_digits(given: int | str | None) -> int | None:
     return None if given is None else read_whole("digits", given, 1, MAX_DIGITS)
 
 
-def _checked(name: str, given: Given, number: TypedNumber) -> Any:
-    """Return a number as the value of an input: an angle or an axle, if it is one. Raises SceneError."""
+def _checked(name: str, given: Given, number: TypedNumber, signed: bool) -> Any:
+    """Return a number as the value of an input: an angle, or in other terms. Raises SceneError."""
     parameter, (value, unit, _) = parameter_of(name), number
-    too_small = not parameter.signed and (value < 0 or (value == 0 and not parameter.may_be_zero))
+    too_small = (value < 0 and not signed) or (value == 0 and not parameter.may_be_zero)
+    too_small &= not parameter.signed
     if too_small or (abs(value) == inf and not parameter.may_be_infinite):
         raise SceneError(name, given, parameter.domain)
     if parameter.dimension == "angle":
         return Angle(value, "rad" if unit == "rad" else "°")
-    if name == "axle":
-        return Axle(value, "N m" if unit in UNITS["torque"] else "N")
-    return value
+    terms = terms_of(parameter, unit)
+    return InTerms(value, terms) if terms else value
 
 
 def _read_text(name: str, given: Given, text: str, parameter: Parameter | None = None) -> TypedNumber:
@@ -138,7 +143,9 @@ def _read_text(name: str, given: Given, text: str, parameter: Parameter | None =
     if parameter.may_be_infinite and word == "inf":
         return TypedNumber(inf)
     try:
-        return read_number(parameter.names.get(word, text), parameter.dimension)
+        number = read_number(parameter.names.get(word, text), parameter.dimensions or None)
+        is_own = number.unit == GRAVITY and not parameter.terms  # g as a multiple of standard gravity
+        return number.times(Fraction(STANDARD_GRAVITY)) if is_own else number
     except NotANumber:
         rule = _not_a_number(parameter, in_ascii(text))
     except Malformed as error:

@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 from ..numbers.digits import as_typed, to_digits
 from ..numbers.text import in_quotes, without_blanks
-from ..solver.scene import STANDARD_GRAVITY
+from ..solver.scene import MULTIPLE_OF_G, STANDARD_GRAVITY, Parameter, Terms
 
-GRAVITY = "gravity"
+GRAVITY = MULTIPLE_OF_G.dimension
 """The unit of a multiple of g, as the symbol g is a gram's."""
 FOOT, INCH, POUND = Fraction("0.3048"), Fraction("0.0254"), Fraction("0.45359237")
 POUND_FORCE = POUND * Fraction(STANDARD_GRAVITY)
@@ -36,6 +36,9 @@ UNITS: Mapping[str, Mapping[str, Fraction | str]] = {
         "lbf ft": POUND_FORCE * FOOT, "lbf in": POUND_FORCE * INCH,
     },
     "acceleration": {"m/s2": "1", "m s-2": "1", "cm/s2": "1e-2", "ft/s2": FOOT, "N/kg": "1"},
+    "angular acceleration": {"rad/s2": "1", "rad s-2": "1"},
+    "speed": {"m/s": "1", "cm/s": "1e-2", "mm/s": "1e-3", "km/h": Fraction(5, 18), "ft/s": FOOT},
+    "angular speed": {"rad/s": "1"},
     "moment of inertia": {
         "kg m2": "1", "kg cm2": "1e-4", "g cm2": "1e-7", "lb ft2": POUND * FOOT**2, "lb in2": POUND * INCH**2,
     },
@@ -61,9 +64,9 @@ NUMBER = re.compile(rf"({_QUOTIENT})(?: ?({_UNIT}))?", re.ASCII)
 _MULTIPLE = rf"({_QUOTIENT}|[+-]?) ?\*? ?(?:%s)(?: ?/ ?({_DECIMAL}))?"
 MULTIPLES = {
     "angle": (_MULTIPLE % "(?i:pi)|π" + "(?: ?rad)?", "pi", Fraction(180)),
-    "acceleration": (_MULTIPLE % "g", GRAVITY, Fraction(STANDARD_GRAVITY)),
+    "acceleration": (_MULTIPLE % "g", GRAVITY, Fraction(1)),
 }
-"""The pattern of multiples of a constant, as 3pi/2, its name and its value, by dimension."""
+"""The pattern of multiples of a constant, as 3pi/2, its name and its value, by dimension; of g it is 1."""
 SHARE = re.compile(rf"({_DECIMAL} ?{_UNIT}) ?/ ?({_DECIMAL})", re.ASCII)
 """A number with a unit, divided, as a diameter of 12cm/2."""
 STOPWATCH = re.compile(r"(?:(\d+):(?=[0-5]\d:))?(\d+):([0-5]\d(?:\.\d*)?)", re.ASCII)
@@ -77,6 +80,7 @@ _MIXED = re.compile(rf"(?<![\d./eE])(?<![eE][+-])(?:(\d+) ?)?([{''.join(_VULGAR)
 """A vulgar fraction, perhaps behind a whole number."""
 _PLAIN = str.maketrans("µμ⁻²", "uu-2", "*·^ ")
 _SYMBOLS = {symbol.translate(_PLAIN): symbol for symbols in UNITS.values() for symbol in symbols}
+_DIMENSIONS = {symbol: dimension for dimension, symbols in UNITS.items() for symbol in symbols}
 
 # An uncertainty: in units of the last digit, 1.000(2), or written out, 1.000±0.002, (1.000±0.002)g, 1g±2%.
 _SIGN = r" ?(?:±|\+/?-) ?"
@@ -110,10 +114,9 @@ class TypedNumber(NamedTuple):
     unit: str = ""
     uncertainty: Fraction = Fraction(0)
 
-    def with_gravity(self, g: Fraction) -> TypedNumber:
-        """Return the number; if it is a multiple of g, with this value of g (m/s²)."""
-        factor = g / Fraction(STANDARD_GRAVITY) if self.unit == GRAVITY else 1
-        return self._replace(value=self.value * factor, uncertainty=self.uncertainty * factor)
+    def times(self, factor: Fraction) -> TypedNumber:
+        """Return the number times a factor, without a unit."""
+        return TypedNumber(self.value * factor, "", self.uncertainty * factor)
 
 
 def in_ascii(text: str) -> str:
@@ -171,7 +174,7 @@ def _split_uncertainty(text: str) -> tuple[str, str]:
 
 def _value_and_unit(text: str, dimension: str | None) -> tuple[Fraction, str]:
     """Return the value of a number without an uncertainty, and its unit. Raises Malformed."""
-    pattern, constant, worth = MULTIPLES.get(dimension or "", ("", "", Fraction(0)))
+    pattern, constant, worth = MULTIPLES.get((dimension or "").split(" or ")[0], ("", "", Fraction(0)))
     if pattern and (multiple := re.fullmatch(pattern, text, re.ASCII)):
         times, parts = multiple.groups(default="1")
         if not times.strip("+-"):
@@ -248,6 +251,12 @@ def read_unit(unit: str, wanted: str) -> Fraction:
     if (symbol := symbol_of(unit)) not in units:
         raise Malformed(f"has the unit {in_quotes(unit)}; it takes {', '.join(units)}")
     return Fraction(units[symbol])
+
+
+def terms_of(parameter: Parameter, unit: str) -> Terms | None:
+    """Return the terms, other than its own, in which a parameter has this unit."""
+    dimension = GRAVITY if unit == GRAVITY else _DIMENSIONS.get(symbol_of(unit))
+    return next((terms for terms in parameter.terms if terms.dimension == dimension), None)
 
 
 def symbol_of(unit: str) -> str:

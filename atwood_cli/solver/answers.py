@@ -72,8 +72,8 @@ class Answers:
     def names(self) -> tuple[str, ...]:
         """The quantities that every scene has, then those that follow from measurements."""
         motion = self.decided.motion
-        drop = "drop" if motion.drop is not None else None
-        return (*NAMES, *FROM_MOTION.get(motion.finds, ()), *FROM_MOTION.get(drop, ()))
+        fall = FROM_MOTION["fall"][motion.drop is not None :] if motion.fall else ()
+        return (*NAMES, *FROM_MOTION.get(motion.finds, ()), *fall)
 
     def __getitem__(self, name: str) -> Any:
         """Return the value of a quantity by its name, None if it has none."""

@@ -33,7 +33,7 @@ from ..numbers.lazy import lazy
 from ..numbers.rational import EXACT
 from ..numbers.settling import is_positive
 from . import physics
-from .scene import Scene
+from .scene import FALL, Scene
 
 if TYPE_CHECKING:
     from ..numbers.rational import Arithmetic, N, Quantity
@@ -64,7 +64,9 @@ class Decisions:
 
     @lazy
     def sign(self) -> int:
-        """1 if m2 is the heavier mass, -1 if m1 is, else 0."""
+        """1 if m2 is the heavier mass, -1 if m1 is, else 0. Equal masses that slow down have one, too."""
+        if self.motion.finds == "axle":
+            return self.motion.direction
         return (self.scene.m2 > self.scene.m1) - (self.scene.m2 < self.scene.m1)
 
     @lazy
@@ -115,8 +117,7 @@ class Decisions:
     @lazy
     def axle_friction(self) -> Fraction:
         """The axle's friction as a force at the rim, f (N)."""
-        axle = self.scene.axle
-        return ZERO if axle is None else axle.force(self.scene.R)
+        return ZERO if self.scene.axle is None else self.scene.axle
 
     @property
     def has_axle_friction(self) -> bool:
@@ -130,7 +131,9 @@ class Decisions:
 
     @lazy
     def axle_holds(self) -> bool:
-        """Whether the axle's friction holds unequal masses at rest, h - l <= b."""
+        """Whether the axle's friction holds unequal masses at rest, h - l <= b; not masses that slow down."""
+        if self.motion.finds == "axle":
+            return False
         return self.has_axle_friction and self.sign != 0 and not self.moves_axle("difference")
 
     @property
@@ -214,6 +217,17 @@ class Decisions:
     def measured_acceleration(self) -> Fraction:
         """The measured acceleration (m/s²), positive when the heavier mass descends."""
         return self.motion.acceleration(self.sign)
+
+    @lazy
+    def fall(self) -> tuple[Fraction | None, ...]:
+        """Height (m), time (s) and speed (m/s) of a fall, without signs; None if one is not given."""
+        given = (getattr(self.motion, name) for name in FALL)
+        return tuple(-x if x and x < 0 else x for x in given)
+
+    @property
+    def slows_down(self) -> bool:
+        """Whether the heavier mass descends ever slower, as the measured acceleration says."""
+        return self.motion.finds == "axle" and self.measured_acceleration < 0
 
     @property
     def frictionless(self) -> bool:

@@ -22,43 +22,60 @@ from . import physics
 from .decisions import ZERO, Decisions
 from .quantities import Undetermined
 from .scene import (
+    FALL,
     INPUTS,
     MASSES,
     MEASURED,
-    UNMEASURED,
-    Angle,
-    Axle,
     Input,
     Motion,
     Scene,
     SceneError,
     checked,
+    own_values,
+    parameter_of,
 )
 
 Values = Any
 """The exact values of inputs as attributes; one is None if it is not given, or is to be found."""
 
 MOTOR = "for a motor or a brake see examples/hoist.md"
+IF_IT_SLOWS_DOWN = "for masses that slow down give a and --find axle"
+NOT_BELOW_0 = "must be above 0, unless a mass is found from it: then it is below 0 if m2 rises"
 
 
-def read_motion(inputs: Mapping[str, Input]) -> Scene:
-    """Return the scene, with the input that follows from what was measured. Raises SceneError."""
-    a, drop, time = (inputs[name].value for name in MEASURED)
-    if a is None and time is None:
-        return Scene.of(inputs)._replace(motion=Motion(drop=drop))
-    name = "a" if time is None else "time"
-    missing = [mass for mass in MASSES if inputs[mass].value is None]
-    unknown = missing[0] if len(missing) == 1 else ""
-    if unknown and inputs["M"].value is None is inputs["I"].value:
-        raise SceneError(unknown, None, f"is missing; give it, or M, with which {name} finds it")
-    values = SimpleNamespace(**checked(inputs, unknown), motion=UNMEASURED)
-    if unknown:
-        finds = unknown
-    elif values.M == inf or (values.mu is not None and values.M is not None):
-        finds = "mu_k"
-    else:
-        finds = "M" if values.M is None and values.I is None else "g"
-    values.motion = Motion(a, drop, time, finds)
+def read_motion(inputs: Mapping[str, Input], find: str | None = None) -> Scene:
+    """Return the scene, with the input that follows from what was measured. Raises SceneError.
+
+    ``find`` names that input; without it, the one that is lacking is found.
+    """
+    given = [name for name in MEASURED if inputs[name].given is not None]
+    fall = [name for name in FALL if name in given]
+    a_given = "a" in given
+    if find and not a_given and len(fall) < 2:
+        raise SceneError("find", find, f"needs a measured motion: a, or two of {', '.join(FALL)}")
+    if len(fall) > 1 and (a_given or len(fall) > 2):
+        excess = "a" if a_given else fall[2]
+        rule = f"is one too many beside {fall[0]} and {fall[1]}, which give the acceleration; leave one out"
+        raise SceneError(excess, inputs[excess].given, rule)
+    name = "a" if a_given else fall[-1]
+    finds = _asked(inputs, find) or _mass_to_find(inputs, name) if a_given or len(fall) > 1 else None
+    values = SimpleNamespace(**checked(inputs, finds or ""))
+    measured, terms = own_values(inputs, MEASURED)
+    values.terms += (*terms.items(),)
+    if not finds and (a_given or len(fall) > 1):
+        finds = _left_to_find(values)
+    values.motion = Motion(**measured, finds=finds, direction=_direction(values, measured, finds))
+    for x in fall:
+        if measured[x] < 0 and (finds not in MASSES or a_given or 0 in (values.m1, values.m2)):
+            raise SceneError(x, inputs[x].given, NOT_BELOW_0)
+    if not finds:
+        return Scene(**vars(values))
+    for x, in_terms in values.terms:
+        if finds == in_terms.terms.by == "g":
+            rule = (
+                f"is {in_terms.terms.words}, and g is to be found; give g, or {x} in {parameter_of(x).unit}"
+            )
+            raise SceneError(x, inputs[x].given, rule)
     rule = _contradiction(values, inputs["g"].given is not None)
     if not rule:
         try:
@@ -71,29 +88,68 @@ def read_motion(inputs: Mapping[str, Input]) -> Scene:
     return scene
 
 
+def _asked(inputs: Mapping[str, Input], find: str | None) -> str | None:
+    """Return the input that is asked for. Raises SceneError if it is given."""
+    if find and inputs[find].given is not None:
+        raise SceneError("find", find, f"conflicts with {find}, which is given; leave one of them out")
+    return find
+
+
+def _mass_to_find(inputs: Mapping[str, Input], name: str) -> str | None:
+    """Return the mass that is not given, if the other one is. Raises SceneError without a pulley."""
+    missing = [mass for mass in MASSES if inputs[mass].value is None]
+    if len(missing) != 1:
+        return None
+    if inputs["M"].value is None is inputs["I"].value:
+        raise SceneError(missing[0], None, f"is missing; give it, or M, with which {name} finds it")
+    return missing[0]
+
+
+def _left_to_find(values: Values) -> str:
+    """Return the input that a motion finds beside both masses, if none is asked for."""
+    if values.M == inf or (values.mu is not None and values.M is not None):
+        return "mu_k"
+    return "M" if values.M is None and values.I is None else "g"
+
+
+def _direction(values: Values, measured: Mapping[str, Any], finds: str | None) -> int:
+    """Return the direction of a motion that the masses do not tell, as `Motion` has it."""
+    if finds in MASSES:
+        return -1 if values.m2 == 0 else 1  # only m1 can fall beside an end fixed to the pulley
+    if finds != "axle":
+        return 0
+    a = measured["a"] or 0  # equal masses move only if they slow down
+    return (values.m2 > values.m1) - (values.m2 < values.m1) or (a < 0) - (a > 0)
+
+
 def _contradiction(values: Values, g_given: bool) -> str:
     """Return why what was measured contradicts the other inputs, "" if it does not."""
-    motion, M, mu = values.motion, values.M, values.mu
+    motion, M, I, mu = values.motion, values.M, values.I, values.mu
     decided, finds = Decisions(values), motion.finds
-    if motion.time is not None and motion.drop is None:
-        return "needs drop, the height of that fall"
-    if motion.time is not None and motion.a is not None:
-        return "and a both give the acceleration; leave one of them out"
     if mu is not None and finds != "mu_k":
         return f"finds {finds} by assuming that the string does not slip; leave mu out"
     if finds in MASSES:
-        if motion.time is not None:
-            return f"does not tell which way {finds} moves; give a instead, positive when m2 descends"
         if M == inf or (motion.a == 0 and decided.has_axle_friction):
             return f"says nothing about {finds} on a pulley at rest; give {finds}"
         if 0 in (values.m1, values.m2) and not decided.rim_mass and not decided.has_axle_friction:
             return f"says nothing about {finds}, which falls freely; give the other mass or M above 0"
         return ""
+    if finds == "axle" and M == inf:
+        return "says nothing about the axle of a locked pulley; leave M out"
+    if finds == "mu_k" and M != inf and (mu is None or M is I is None):
+        return "finds mu_k only if the string slips: give M = inf, or M and mu"
+    if finds == "M" and I is not None:
+        return "finds no M beside I, which is the pulley's inertia; leave I out"
     if finds == "g" and g_given:
         pulley = "I" if M is None else "M"
-        return f"leaves nothing to find if both {pulley} and g are given; leave one of them out"
+        return (
+            f"leaves nothing to find if both {pulley} and g are given; leave one of them out,"
+            " or ask for the axle's friction: --find axle"
+        )
     if decided.sign == 0:
-        return "says nothing about equal masses, which rest on any pulley; leave it out"
+        return f"says nothing about equal masses, which rest on any pulley; {IF_IT_SLOWS_DOWN}"
+    if finds == "axle":
+        return ""
     if finds == "mu_k" and not decided.light:
         return "conflicts with M = inf and a mass of 0, an end that is fixed to the pulley; leave it out"
     if values.mu_k is not None:
@@ -123,26 +179,6 @@ def _impossible(scene: Scene) -> str:
     return ""
 
 
-def given_as(scene: Scene, x: str) -> Any:
-    """Return an input, or what was measured, as it was given."""
-    return getattr(scene if x in INPUTS else scene.motion, x)
-
-
-def number_of(scene: Scene, x: str) -> Any:
-    """Return the number given for an input, in the unit that it was given in."""
-    value = given_as(scene, x)
-    return getattr(value, "number", value)
-
-
-def with_number(scene: Scene, x: str, number: Any) -> Scene:
-    """Return the scene with another number for an input, or for what was measured, in the same unit."""
-    if x not in INPUTS:
-        return scene._replace(motion=scene.motion._replace(**{x: number}))
-    value: Any = getattr(scene, x)
-    given: Any = value._replace(number=number) if isinstance(value, Angle | Axle) else number
-    return scene._replace(**{x: given})
-
-
 def found_inputs(values: Values) -> dict[str, Any]:
     """Return the input that follows from a motion, by its name; it may be below 0. Raises Undetermined.
 
@@ -154,18 +190,20 @@ def found_inputs(values: Values) -> dict[str, Any]:
         return {}
     decided: Any = Decisions(values)  # about the pulley, as a mass may be missing
     c, f, b = decided.rim_mass, decided.axle_friction, decided.axle_mass
-    a = motion.acceleration({"m2": 1, "m1": -1}.get(finds) or (m2 > m1) - (m2 < m1))
-    if finds != "g" and a >= g:
+    a = motion.acceleration({"m2": 1, "m1": -1}.get(finds) or decided.sign)
+    if finds != "g" and (a >= g or (finds == "axle" and -a >= g)):
         raise Undetermined(f"must be slower than free fall, {as_typed(g)} m/s²")
     if finds in MASSES:
         known = m1 if finds == "m2" else m2
         if a > 0:
             return {finds: physics.heavier_mass(known, c, a, g, f)}
         return {finds: physics.lighter_mass(known, c, -a, g, f)}
+    l, h = decided.light, decided.heavy
+    if finds == "axle":
+        return {"axle": physics.axle_friction(l, h, c, a, g)}
     if a <= 0:
         heavier, side = ("m2", "above") if m2 > m1 else ("m1", "below")
-        raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass")
-    l, h = sorted((m1, m2))
+        raise Undetermined(f"must be {side} 0, as {heavier} is the heavier mass; {IF_IT_SLOWS_DOWN}")
     if finds == "M":
         return {"M": physics.rim_mass(l, h, a, g, b) / values.inertia}
     if finds == "g":

@@ -125,7 +125,8 @@ class Machine(Generic[N]):
         elif decided.sign == 0 or decided.pulley_at_rest:
             return self.ar.number(0)
         else:
-            drive = self.ar.known_not_negative(physics.drive(l, h, self.b))
+            drive = physics.drive(l, h, self.b)
+            drive = drive if decided.slows_down else self.ar.known_not_negative(drive)
             load = physics.load(l, h, self._given(decided.rim_mass, quantities.NEEDS_M))
         return physics.acceleration(drive, load, self.g)
 
@@ -459,16 +460,44 @@ class Machine(Generic[N]):
         return self._found("m2", quantities.NEEDS_A_AND_M.format("m2"))
 
     @property
+    def axle(self) -> N:
+        return self._found("axle", quantities.NEEDS_FIND_AXLE)
+
+    @property
+    def axle_torque(self) -> N:
+        return self.axle * self._given(self.scene.R, quantities.NEEDS_R)
+
+    @property
+    def drop(self) -> N:
+        a, drop, time, speed = self._fall()
+        if drop is not None:
+            return drop
+        if speed is not None:
+            return physics.height_by_speed(a, speed)
+        assert time is not None
+        return physics.height_in_time(a, time)
+
+    @property
     def fall_time(self) -> N:
-        return physics.fall_time(*self._fall(), self.ar.sqrt)
+        a, drop, time, speed = self._fall()
+        if time is not None:
+            return time
+        return speed / a if drop is None else physics.fall_time(drop, a, self.ar.sqrt)
 
     @property
     def final_speed(self) -> N:
-        return physics.final_speed(*self._fall(), self.ar.sqrt)
+        a, drop, time, speed = self._fall()
+        if speed is not None:
+            return speed
+        return a * time if drop is None else physics.final_speed(drop, a, self.ar.sqrt)
 
-    def _fall(self) -> tuple[N, N]:
-        """Return the height fallen (m), and the acceleration (m/s²)."""
-        drop = self._given(self.decided.motion.drop, quantities.NEEDS_DROP)
+    def _fall(self) -> tuple[N, N | None, N | None, N | None]:
+        """Return the acceleration (m/s²), and height, time and speed of a fall; None if one is not given."""
+        if not self.decided.motion.fall:
+            raise Undetermined(quantities.NEEDS_FALL)
+        if self.decided.slows_down:
+            raise Undetermined(quantities.SLOWS_DOWN)
         if self.ar.is_zero(self.magnitude):
             raise Undetermined(quantities.AT_REST)
-        return drop, self.magnitude
+        drop, time, speed = (None if x is None else self.ar.number(x) for x in self.decided.fall)
+        return self.magnitude, drop, time, speed

@@ -21,7 +21,8 @@ Divisions come before products that could leave the range of doubles though the 
 Most examples are of l = 1, h = 3, c = 5 and g = 9, so that a = 2, T_l = 11 and T_h = 21.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 from ..numbers.rational import N
 
@@ -111,6 +112,17 @@ def lighter_mass(h: N, c: N, a: N, g: N, f: N) -> N:
     return (h * (g - a) - difference_of_a_pulley(c, a, f)) / (g + a)
 
 
+def axle_friction(l: N, h: N, c: N, a: N, g: N) -> N:
+    """Return the axle's friction f (N) with which masses have a measured acceleration a; (1) with (3).
+
+    ``a`` is negative if ``h`` descends ever slower.
+
+    >>> axle_friction(1, 3, 5, 2, 9), axle_friction(1, 3, 5, 1, 9), axle_friction(2, 2, 5, -1, 9)
+    (0, 9, 9)
+    """
+    return difference_of_moving_masses(l, h, a, g) - c * a
+
+
 def slide_ratio_minus_1(l: N, h: N, a: N, g: N) -> N:
     """Return T_h/T_l - 1 of masses with a measured acceleration, from (1).
 
@@ -145,6 +157,50 @@ def acceleration_of_fall(drop: N, time: N) -> N:
     2.0
     """
     return 2 * drop / (time * time)
+
+
+def acceleration_by_speed(drop: N, speed: N) -> N:
+    """Return the constant acceleration (m/s²) from rest to ``speed`` (m/s) over the height ``drop`` (m).
+
+    >>> acceleration_by_speed(9, 6)
+    2.0
+    """
+    return speed * speed / (2 * drop)
+
+
+def acceleration_in_time(time: N, speed: N) -> N:
+    """Return the constant acceleration (m/s²) from rest to ``speed`` (m/s) in ``time`` (s).
+
+    >>> acceleration_in_time(3, 6)
+    2.0
+    """
+    return speed / time
+
+
+ACCELERATION_OF_FALL: Mapping[tuple[str, ...], Callable[[Any, Any], Any]] = {
+    ("drop", "time"): acceleration_of_fall,
+    ("drop", "speed"): acceleration_by_speed,
+    ("time", "speed"): acceleration_in_time,
+}
+"""The acceleration of a fall from rest, by what was measured of it."""
+
+
+def height_in_time(a: N, time: N) -> N:
+    """Return the height (m) fallen from rest in ``time`` (s) with the acceleration ``a`` (m/s²).
+
+    >>> height_in_time(2, 3)
+    9.0
+    """
+    return a * time * time / 2
+
+
+def height_by_speed(a: N, speed: N) -> N:
+    """Return the height (m) of a fall from rest to ``speed`` (m/s) with the acceleration ``a`` (m/s²).
+
+    >>> height_by_speed(2, 6)
+    9.0
+    """
+    return speed * speed / (2 * a)
 
 
 def fall_time(drop: N, a: N, sqrt: Function[N]) -> N:

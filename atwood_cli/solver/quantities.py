@@ -74,8 +74,11 @@ QUANTITIES = {
     "m1": About("measured", "m₁", "kg", "(1), (3)", "mass m1 that gives the measured acceleration"),
     "m2": About("measured", "m₂", "kg", "(1), (3)", "mass m2 that gives the measured acceleration"),
     "mu_k": About("measured", "μ kin", "", "(26)", "mu_k that gives the measured acceleration", None, "μ_k"),
-    "fall_time": About("measured", "t", "s", "", "time to fall the height from rest"),
-    "final_speed": About("measured", "v", "m/s", "", "speed after that"),
+    "axle": About("measured", "f", "N", "", "axle friction that gives the measured acceleration", in_equations="f_axle"),
+    "axle_torque": About("measured", "τ axle", "N m", "", "the same as a torque", in_equations="τ_axle"),
+    "drop": About("measured", "s", "m", "", "height of the fall from rest"),
+    "fall_time": About("measured", "t", "s", "", "time of that fall"),
+    "final_speed": About("measured", "v", "m/s", "", "speed at its end"),
 }
 # fmt: on
 
@@ -101,9 +104,10 @@ FROM_MOTION: dict[str | None, tuple[str, ...]] = {
     "m1": ("m1",),
     "m2": ("m2",),
     "mu_k": ("mu_k",),
-    "drop": ("fall_time", "final_speed"),
+    "axle": ("axle", "axle_torque"),
+    "fall": ("drop", "fall_time", "final_speed"),
 }
-"""The quantities that only a measurement gives: by the input that it finds, or by the height of fall."""
+"""The quantities that only a measurement gives: by the input that it finds, or of a fall."""
 MEASURED_NAMES = tuple(chain.from_iterable(FROM_MOTION.values()))
 NAMES = ("regime", *(name for name in QUANTITIES if name not in MEASURED_NAMES))
 """The quantities that every scene has."""
@@ -144,5 +148,9 @@ NEEDS_A_AND_M = "`give` `a`, a measured acceleration, with a finite `M`, and wit
 NEEDS_A_OF_A_SLIDE = (
     "`give` `a`, a measured acceleration, with `M` = `inf`, or with `M` and a `mu` that is too small"
 )
-NEEDS_DROP = "`give` `drop`, the height that the heavier mass falls from rest"
+NEEDS_FIND_AXLE = "`give` `a`, a measured acceleration, and find `axle` (--find axle)"
+NEEDS_FALL = (
+    "`give` `drop`, the height that the heavier mass falls from rest, or `time` or `speed` of that fall"
+)
 AT_REST = "no value, as nothing moves"
+SLOWS_DOWN = "no value, as the masses slow down and do not start from rest"

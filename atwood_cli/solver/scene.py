@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from math import inf
@@ -50,18 +50,43 @@ class Angle(NamedTuple):
         return bool(self.unit == "°" and self.number == 180)
 
 
-class Axle(NamedTuple):
-    """The friction of an axle as it was given: a force at the rim (N) or a torque (N m).
+class Terms(NamedTuple):
+    """Terms in which an input may be given besides its own: in words, their dimension, and their SI unit.
 
-    A torque is not converted when it is read, as R may be uncertain.
+    The input is the number given times another input, ``by``, or divided by it.
     """
 
-    number: Any
-    unit: Literal["N", "N m"] = "N"
+    words: str
+    dimension: str
+    unit: str
+    by: str
+    divided: bool = False
 
-    def force(self, R: Any) -> Any:
-        """Return the friction as a force at the rim (N) of a pulley of radius R (m)."""
-        return self.number / R if self.unit == "N m" else self.number
+    def own(self, number: Any, by: Any) -> Any:
+        """Return the input from the number given."""
+        return number / by if self.divided else number * by
+
+    def number(self, own: Any, by: Any) -> Any:
+        """Return the number that gives the input."""
+        return own * by if self.divided else own / by
+
+
+WEIGHT = Terms("a weight", "force", "N", "g", divided=True)
+TORQUE = Terms("a torque", "torque", "Nm", "R", divided=True)
+ANGULAR_ACCELERATION = Terms("an angular acceleration", "angular acceleration", "rad/s²", "R")
+ANGULAR_SPEED = Terms("an angular speed", "angular speed", "rad/s", "R")
+MULTIPLE_OF_G = Terms("a multiple of g", "gravity", "g", "g")
+
+
+class InTerms(NamedTuple):
+    """An input as it was given in other terms: a number in their SI unit."""
+
+    number: Any
+    terms: Terms
+
+    @property
+    def unit(self) -> str:
+        return self.terms.unit
 
 
 if TYPE_CHECKING:
@@ -71,7 +96,7 @@ if TYPE_CHECKING:
 else:
     OfNumPy = float
 
-Given = str | int | float | Decimal | Fraction | Angle | Axle | OfNumPy
+Given = str | int | float | Decimal | Fraction | Angle | InTerms | OfNumPy
 """An input. Text, int, Decimal and Fraction mean exactly themselves, a float its binary value."""
 
 INERTIA_FACTORS = {"disk": "1/2", "hoop": "1", "ring": "1", "sphere": "2/5", "shell": "2/3"}
@@ -92,7 +117,13 @@ BODIES = {
 giants at the equator where the pressure is 1 bar. Earth has standard gravity."""
 
 MASSES = ("m1", "m2")
+FINDABLE = (*MASSES, "M", "g", "mu_k", "axle")
+"""The inputs that a measured motion may give."""
+FALL = ("drop", "time", "speed")
+"""What is measured of a fall from rest; the acceleration follows from two."""
 DEFAULTS = {"g": STANDARD_GRAVITY, "wrap": "180"}
+BY_IN_WORDS = {"g": "g", "R": "the radius R"}
+"""What converts other terms, in words."""
 MISSING_MASS = "is missing; give both masses, m1 and m2"
 
 
@@ -129,6 +160,7 @@ class Parameter(NamedTuple):
     dimension: str | None = None
     names: Mapping[str, str] = {}
     signed: bool = False
+    terms: tuple[Terms, ...] = ()
 
     @property
     def domain(self) -> str:
@@ -138,14 +170,25 @@ class Parameter(NamedTuple):
         end = " (inf locks the pulley)" if self.may_be_infinite else ", and finite"
         return f"must be {bound}{end}"
 
+    @property
+    def dimensions(self) -> str:
+        """The dimensions that its units may have, its own first, with an "or" between."""
+        others = [terms.dimension for terms in self.terms if terms != MULTIPLE_OF_G]
+        return " or ".join([self.dimension or "", *others])
+
 
 # fmt: off
 INPUTS = {
-    "m1": Parameter("mass on one end of the string", "m₁", "mass", "kg", may_be_zero=True, dimension="mass"),
-    "m2": Parameter("mass on the other end", "m₂", "mass", "kg", may_be_zero=True, dimension="mass"),
+    "m1": Parameter(
+        "mass on one end of the string", "m₁", "mass", "kg",
+        may_be_zero=True, dimension="mass", terms=(WEIGHT,),
+    ),
+    "m2": Parameter(
+        "mass on the other end", "m₂", "mass", "kg", may_be_zero=True, dimension="mass", terms=(WEIGHT,)
+    ),
     "M": Parameter(
         "mass of the pulley", "M", "pulley mass", "kg",
-        may_be_zero=True, may_be_infinite=True, dimension="mass",
+        may_be_zero=True, may_be_infinite=True, dimension="mass", terms=(WEIGHT,),
     ),
     "mu": Parameter(
         "coefficient of static friction between string and pulley", "μ", "friction coefficient",
@@ -166,19 +209,23 @@ INPUTS = {
     ),
     "axle": Parameter(
         "friction of the axle: a force at the rim", "f_axle", "axle friction", "N",
-        may_be_zero=True, dimension="torque or force",
+        may_be_zero=True, dimension="force", terms=(TORQUE,),
     ),
 }
 """The inputs of a scene, which columns of arrays and of tables may have, too."""
 MEASURED = {
     "a": Parameter(
         "measured acceleration, positive when m2 descends", "a", "acceleration", "m/s²",
-        dimension="acceleration", signed=True,
+        dimension="acceleration", signed=True, terms=(MULTIPLE_OF_G, ANGULAR_ACCELERATION),
     ),
     "drop": Parameter(
         "height that the heavier mass falls from rest", "s", "height of fall", "m", dimension="length"
     ),
     "time": Parameter("measured time of that fall", "t", "time of fall", "s", dimension="time"),
+    "speed": Parameter(
+        "speed at the end of that fall", "v", "final speed", "m/s",
+        dimension="speed", terms=(ANGULAR_SPEED,),
+    ),
 }
 """Measurements of the motion, in addition to a scene or instead of one of its inputs; see `inverse`."""
 # fmt: on
@@ -197,7 +244,7 @@ def with_unit(value: str, unit: str) -> str:
 class Input(NamedTuple):
     """An input as it was read: its exact value in SI units, its standard uncertainty, and what was given.
 
-    ``value`` is a Fraction, inf for a locked pulley, an `Angle` for the wrap, or an `Axle`; it is None if
+    ``value`` is a Fraction, inf for a locked pulley, an `Angle` for the wrap, or `InTerms`; it is None if
     nothing was given and there is no default. The uncertainty is in the unit of the value.
     """
 
@@ -209,21 +256,30 @@ class Input(NamedTuple):
 class Motion(NamedTuple):
     """Measurements of the motion in SI units, exact; one that is not given is None.
 
-    ``finds`` is the input, such as "M" or "g", that was not given and follows from them.
+    ``finds`` is the input, such as "M" or "g", that was not given and follows from them. ``direction`` is 1
+    if m2 descends and -1 if m1 does, where the masses do not tell: one of them is found from a fall (m2 rises
+    if height or speed is below 0), or the axle's friction is.
     """
 
     a: Fraction | None = None
     drop: Fraction | None = None
     time: Fraction | None = None
+    speed: Fraction | None = None
     finds: str | None = None
+    direction: int = 0
+
+    @property
+    def fall(self) -> tuple[str, ...]:
+        """What was measured of a fall, by name."""
+        return tuple(name for name in FALL if getattr(self, name) is not None)
 
     def acceleration(self, sign: int) -> Fraction:
         """Return the measured acceleration (m/s²) of the heavier mass: m2 if its sign is 1, m1 if -1."""
         if self.a is not None:
             return sign * self.a
-        assert self.drop is not None
-        assert self.time is not None
-        return physics.acceleration_of_fall(self.drop, self.time)
+        first, second = (getattr(self, name) for name in self.fall)
+        a: Fraction = physics.ACCELERATION_OF_FALL[self.fall](first, second)
+        return sign * self.direction * a if self.finds in MASSES else a
 
 
 UNMEASURED = Motion()
@@ -232,7 +288,8 @@ UNMEASURED = Motion()
 class Scene(NamedTuple):
     """A valid scene in SI units, exact; an input that is not given is None.
 
-    ``M`` is a float only if it is infinite, for a locked pulley. ``motion`` has what was measured of it.
+    ``M`` is a float only if it is infinite, for a locked pulley. ``motion`` has what was measured of it, and
+    ``terms`` the inputs and measurements that were given in other terms, by name, as they were given.
     """
 
     m1: Fraction
@@ -245,13 +302,66 @@ class Scene(NamedTuple):
     I: Fraction | None
     R: Fraction | None
     wrap: Angle
-    axle: Axle | None = None
+    axle: Fraction | None = None
     motion: Motion = UNMEASURED
+    terms: tuple[tuple[str, InTerms], ...] = ()
 
     @classmethod
     def of(cls, inputs: Mapping[str, Input]) -> Scene:
         """Make a scene of inputs that were read one by one. Raises SceneError if they contradict another."""
         return cls(**checked(inputs))
+
+    def given_as(self, x: str) -> Any:
+        """Return an input, or what was measured, as it was given."""
+        return dict(self.terms).get(x) or getattr(self if x in INPUTS else self.motion, x)
+
+    def number_of(self, x: str) -> Any:
+        """Return the number given for an input, in the unit that it was given in."""
+        given = self.given_as(x)
+        return getattr(given, "number", given)
+
+    def in_terms_of(self, x: str, own: Any) -> Any:
+        """Return a value of an input in the terms in which the input is given."""
+        given = self.given_as(x)
+        return given.terms.number(own, getattr(self, given.terms.by)) if isinstance(given, InTerms) else own
+
+    def with_number(self, x: str, number: Any) -> Scene:
+        """Return the scene with another number for an input, or for what was measured, in the same unit.
+
+        What was given in other terms is converted anew, as that number may convert it.
+        """
+        given, scene = self.given_as(x), self
+        value: Any = given._replace(number=number) if isinstance(given, Angle | InTerms) else number
+        if isinstance(value, InTerms):
+            scene = scene._replace(terms=(*(dict(scene.terms) | {x: value}).items(),))
+        elif x in INPUTS:
+            scene = scene._replace(**{x: value})
+        else:
+            scene = scene._replace(motion=scene.motion._replace(**{x: value}))
+        return scene._converted() if scene.terms else scene
+
+    def _converted(self) -> Scene:
+        own = {x: given.terms.own(given.number, getattr(self, given.terms.by)) for x, given in self.terms}
+        motion = self.motion._replace(**{x: value for x, value in own.items() if x in MEASURED})
+        return self._replace(**{x: value for x, value in own.items() if x in INPUTS}, motion=motion)
+
+
+def own_values(
+    inputs: Mapping[str, Input], names: Iterable[str]
+) -> tuple[dict[str, Any], dict[str, InTerms]]:
+    """Return the values of inputs in their own terms, and those that were given in other terms.
+
+    Raises SceneError if the input is missing that converts one.
+    """
+    values = {name: inputs[name].value for name in names}
+    terms = {name: value for name, value in values.items() if isinstance(value, InTerms)}
+    for name, given in terms.items():
+        by = inputs[given.terms.by].value
+        if by is None:
+            needs = f"is {given.terms.words}, which needs {BY_IN_WORDS[given.terms.by]} as well"
+            raise SceneError(name, inputs[name].given, needs)
+        values[name] = given.terms.own(given.number, by)
+    return values, terms
 
 
 def checked(inputs: Mapping[str, Input], unknown: str = "") -> dict[str, Any]:
@@ -263,8 +373,8 @@ def checked(inputs: Mapping[str, Input], unknown: str = "") -> dict[str, Any]:
     def refuse(name: str, rule: str) -> NoReturn:
         raise SceneError(name, inputs[name].given, rule)
 
-    values = {name: inputs[name].value for name in INPUTS}
-    m1, m2, M, mu, mu_k, _, inertia, I, R, _, axle = values.values()
+    values, terms = own_values(inputs, INPUTS)
+    m1, m2, M, mu, mu_k, _, inertia, I, R, *_ = values.values()
     for mass in MASSES:
         if values[mass] is None and mass != unknown:
             refuse(mass, MISSING_MASS)
@@ -286,8 +396,6 @@ def checked(inputs: Mapping[str, Input], unknown: str = "") -> dict[str, Any]:
         refuse("mu_k", f"must not be above mu: {sizes}")
     if I is not None and R is None:
         refuse("I", "needs the radius R as well")
-    if axle is not None and axle.unit == "N m" and R is None:
-        refuse("axle", "is a torque, which needs the radius R as well")
     if I is not None and M is not None and not 0 < M < inf:
         refuse("I", f"contradicts M = {shortened(str(inputs['M'].given))}; leave one of them out")
-    return values
+    return {**values, "terms": (*terms.items(),)}

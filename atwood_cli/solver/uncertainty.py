@@ -30,7 +30,7 @@ from ..numbers.digits import (
 from ..numbers.interval import ZERO, decimal_context
 from ..numbers.lazy import lazy
 from .answers import TOO_SMALL, Answers
-from .inverse import found_inputs, given_as, number_of, with_number
+from .inverse import found_inputs
 from .quantities import QUANTITIES, Undetermined
 from .scene import Scene, parameter_of, with_unit
 
@@ -106,16 +106,16 @@ class UncertainAnswers(Answers):
     def _end(self, x: str, step: Fraction) -> End:
         """Solve the scene with an input so much more, but not below 0; what is found may go below it."""
         scene = self.decided.scene
-        number: Fraction = number_of(scene, x) + step
+        number: Fraction = scene.number_of(x) + step
         if x == "mu_k" and scene.mu is not None:
             number = min(number, scene.mu)
         if x != "a":
-            number = max(number, Fraction(0))
+            number = max(number, Fraction(0)) if scene.number_of(x) >= 0 else min(number, Fraction(0))
             may_be_zero = parameter_of(x).may_be_zero and (x != "M" or scene.I is None)
             if not (number or may_be_zero):
                 return End(number, None, NO_SCENE)
         try:
-            scene = with_number(scene, x, number)
+            scene = scene.with_number(x, number)
             if x == "mu" and scene.mu_k is not None:
                 scene = scene._replace(mu_k=min(scene.mu_k, number))  # it is at most mu
             moved = scene._replace(**found_inputs(scene))
@@ -218,7 +218,7 @@ class UncertainAnswers(Answers):
 
     def _at(self, x: str, end: End) -> str:
         """Say an input at an end, with its unit: "mu = 0.35"."""
-        given = given_as(self.decided.scene, x)
+        given = self.decided.scene.given_as(x)
         unit = getattr(given, "unit", parameter_of(x).unit)
         return f"{x} = {with_unit(as_typed(end.input), unit)}"
 

@@ -16,6 +16,8 @@ c = 0 and for c = ∞. Along one parameter ln r - μφ is monotone, but for a sw
 - It rises, or stays, with b = f/g: q rises to 1. So it rises along f (the axle) and falls along g.
 - It falls, or stays, along R: so do c = I/R², if I is given, and b, if the axle's friction is a torque.
 - It does not depend on μ_k.
+- Along a weight it goes as along its mass. Along g all masses that are given as weights would change, and
+  nothing is proven: `ranges` refuses that.
 - It falls with l: so do h/l and, if the axle turns, (2l + c + b)/l = 2 + (c + b)/l.
 - It rises with h up to l + b, as h/l does. Beyond, r goes with h/(2h + c - b): it rises for c >= b and falls
   for c < b.
@@ -34,7 +36,6 @@ from typing import Any, NamedTuple
 from ..numbers.digits import SHOWN_DIGITS, to_digits
 from ..reading.units import MAX_MAGNITUDE
 from ..solver.decisions import Decisions
-from ..solver.inverse import with_number
 from ..solver.scene import MASSES, Scene
 from .ranges import LOCKED, Point, Range, decimal_point, exact_point
 
@@ -70,7 +71,7 @@ def changes(
     """
 
     def state(value: Fraction) -> Any:
-        return what(Decisions(with_number(scene, along.name, value)))
+        return what(Decisions(scene.with_number(along.name, value)))
 
     start, stop = along.ends
     asked = [start, *(value for value in _turns(scene, along.name) if start < value < stop), stop]
@@ -94,7 +95,7 @@ def say_regimes(along: Range, in_order: Sequence[Change], scene: Scene) -> str:
         begins = before.at.exact if before else along.ends[0]
         where = "at" if change.at.exact == begins else "up to"
         parts.append(f"{change.before} {where} {place if before else f'{along.name} = {place}'}")
-    first_regime = Decisions(with_number(scene, along.name, along.ends[0])).regime
+    first_regime = Decisions(scene.with_number(along.name, along.ends[0])).regime
     last = in_order[-1].after if in_order else first_regime
     parts.append(f"{last} beyond" if in_order else last)
     locks = along.is_list and LOCKED in along.points
@@ -107,8 +108,8 @@ def _turns(scene: Scene, name: str) -> Iterator[Fraction]:
     """Yield the values of an input at which the tension ratio turns from rising to falling, or back."""
     if name in MASSES:
         other = scene.m1 if name == "m2" else scene.m2
-        yield other
-        yield other + Decisions(scene).axle_mass
+        yield scene.in_terms_of(name, other)
+        yield scene.in_terms_of(name, other + Decisions(scene).axle_mass)
 
 
 def _between(

@@ -30,11 +30,8 @@ from ..output.text import inputs_in_words
 from ..reading.inputs import read_exactly, read_value, read_whole
 from ..reading.units import MAX_DIGITS, read_number
 from ..solver.answers import Answers
-from ..solver.inverse import with_number
 from ..solver.scene import INPUTS, Input, Scene, SceneError, with_unit
 
-UNIT_SUFFIXES = {"rad": "rad", "N m": "Nm"}
-"""The units that points carry, as they are not the usual ones of their input."""
 MAX_POINTS, MAX_RANGES = 1_000_000, 2
 FORM = "start:stop:count, as 0:10:11, or 1:1000:4:log for equal ratios"
 MORE_DIGITS = 20
@@ -162,7 +159,7 @@ class Sweep(NamedTuple):
         for points in product(*(range_.points for range_ in ranges)):
             scene, place = self.scene, dict[str, Point]()
             for range_, point in zip(ranges, points, strict=True):
-                place[range_.name], scene = point, with_number(scene, range_.name, point.exact)
+                place[range_.name], scene = point, scene.with_number(range_.name, point.exact)
             yield scene, place
 
     def in_words(self, place: Mapping[str, Point]) -> str:
@@ -201,6 +198,11 @@ def read_sweep(given: Mapping[str, str | None], digits: int | None = None) -> Sw
     # Whatever makes a scene invalid does so at a corner: each rule bounds one value, or one by another.
     corners = ([x.finite[0], x.finite[-1], max(x.points, key=attrgetter("exact"))] for x in ranges)
     scene, *_ = (scene_at(fixed, ranges, corner) for corner in product(*corners))
+    if "g" in typed and (weights := [x for x, given in scene.terms if given.terms.by == "g"]):
+        rule = (
+            f"cannot be swept beside {weights[0]}, a weight, whose mass would change; give {weights[0]} in kg"
+        )
+        raise SceneError("g", typed["g"], rule)
     sweep = Sweep(ranges, scene)
     if sweep.total > MAX_POINTS:
         rule = f"makes {sweep.total} points with {names[0]}; at most {MAX_POINTS} are taken"
@@ -262,10 +264,10 @@ def _read_numbers(name: str, typed: str, words: Sequence[str]) -> tuple[list[Any
     named = (LOCKED.text, *INPUTS[name].names)
     # A name is typed neither with a unit nor without, and 0 is 0 in any.
     plain = [i for i, word in enumerate(words) if numbers[i] and word.strip().lower() not in named]
-    if len({bool(read_number(words[i], INPUTS[name].dimension).unit) for i in plain}) > 1:
+    if len({bool(read_number(words[i], INPUTS[name].dimensions or None).unit) for i in plain}) > 1:
         # 100:500g is from 100 kg to half a kilogram: hardly what was meant.
         raise SceneError(name, typed, "has a unit at some numbers only; write it at each")
-    suffixes = {UNIT_SUFFIXES.get(getattr(values[i], "unit", ""), "") for i in plain}
+    suffixes = {getattr(values[i], "unit", "").replace("°", "") for i in plain}  # "" is the usual unit
     if len(suffixes) > 1:
         raise SceneError(name, typed, "has units of two kinds; write all numbers in the same unit")
     return numbers, next(iter(suffixes), "")

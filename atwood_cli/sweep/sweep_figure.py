@@ -11,7 +11,6 @@ from ..numbers.digits import is_infinite
 from ..output.figure import COLOURS, FAINT, INK, axis_words, check_file, page, typeset, write_beside
 from ..output.text import wrapped
 from ..solver.answers import Answers
-from ..solver.inverse import with_number
 from ..solver.quantities import QUANTITIES
 from ..solver.scene import Scene, SceneError
 from .changes import Change, changes
@@ -65,13 +64,13 @@ def _drawable(sweep: Sweep, names: Sequence[str]) -> list[str]:
 def _solve(along: Range, scene: Scene, digits: int | None) -> tuple[list[Change], dict[float, Answers]]:
     """Return the changes along a range, and the answers at its values; those of a list are by place."""
     if along.is_list:
-        scenes = (with_number(scene, along.name, point.exact) for point in along.points)
+        scenes = (scene.with_number(along.name, point.exact) for point in along.points)
         return [], {float(place): Answers(at_value) for place, at_value in enumerate(scenes)}
     corners = attrgetter("regime", "sign", "axle_holds")  # where one of these changes
     in_order = list(changes(scene, along, digits, what=corners))
     values = [*steps(*along.ends, CURVE_STEPS, along.log)]
     values += [x for change in in_order for x in (change.holds_at, change.differs_at)]
-    return in_order, {float(x): Answers(with_number(scene, along.name, x)) for x in sorted(values)}
+    return in_order, {float(x): Answers(scene.with_number(along.name, x)) for x in sorted(values)}
 
 
 def panels_of(sweep: Sweep, names: Sequence[str], digits: int | None = None) -> list[list[Curve]]:

@@ -200,7 +200,7 @@ def unit_factor(name: str, unit: str, column: str) -> Fraction:
     """Return the factor from the unit of a column to SI units, or to degrees. Raises Unreadable."""
     if not unit:
         return ONE
-    dimension = "force" if name == "axle" else parameter_of(name).dimension
+    dimension = parameter_of(name).dimension
     try:
         if dimension is None:
             raise Malformed(f"must hold plain numbers, without the {in_quotes(unit)}")

@@ -105,7 +105,7 @@ def expected(scene: Scene) -> dict[str, Any]:
         c = mass = zero
     f = zero
     if scene.axle is not None:
-        f = rational(scene.axle.number) / (one if scene.axle.unit == "N" else R)
+        f = rational(scene.axle)
     rests = 0 < (h - l) * g <= f  # the axle holds the pulley
     held = locked or rests
     known = held or c is not None
