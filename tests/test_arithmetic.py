@@ -1,4 +1,4 @@
-"""Enclosures enclose, rounding rounds, and nothing depends on the caller's decimal context."""
+"""Enclosures enclose, and rounding rounds."""
 
 from __future__ import annotations
 

@@ -3,22 +3,28 @@
 With `pytest --every-digit`, as .ci/run has it, four times as many scenes are tried.
 """
 
+import sys
 from collections import Counter
-from collections.abc import Mapping, Sequence
-from decimal import Decimal
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import fields
+from decimal import ROUND_UP, Context, Decimal, localcontext
 from fractions import Fraction
+from functools import lru_cache
 from math import inf
 from random import Random
 from typing import Any
 
+import polars as pl
 import pytest
 
+from atwood_cli import SceneError, fit, solve, solve_arrays, solve_table
 from atwood_cli.reading.inputs import read_scene
 from atwood_cli.solver.quantities import NAMES
 
 from .conftest import many
 from .tools import oracle
 from .tools.doors import DOUBLES, TEXTS, Door, of_solutions, solve_any, within_promise
+from .tools.regenerate import CASES, KEPT, essence
 from .tools.scenes import DANGERS, FAMILIES, ON_AN_AXLE, Given, as_doubles, scenes
 
 BOUNDS = ("friction_force_min", "friction_force_max")
@@ -92,3 +98,71 @@ def test_whole_numbers_have_one_answer_at_every_door() -> None:
     truths = [truth(given) for given in tried]
     for door in (*TEXTS.values(), *DOUBLES.values(), Door(of_solutions(1000), 1000, every=10)):
         check(door, tried, truths)
+
+
+# Whatever the caller's decimal context
+
+
+def read(solution: Any) -> list[Any]:
+    return [solution.to_dict(), str(solution), *(getattr(solution, one.name) for one in fields(solution))]
+
+
+def refused(given: Mapping[str, Any]) -> str:
+    with pytest.raises(SceneError) as caught:
+        solve(**{"m1": 1, "m2": 3, **given})
+    return str(caught.value)
+
+
+UNCERTAIN: dict[str, Any] = {"m1": "1.00(2)", "m2": "3±0.1", "mu": "0.3", "R": "5cm"}
+FALLS: Any = {
+    "m1": [0.10, 0.10, Decimal("0.1"), 0.1, 0.1],
+    "m2": [0.12, 0.13, 0.14, Decimal("0.15"), Fraction(4, 25)],
+    "t": ["2.05(2)", "1.7(1)", "1.45(2)", "1.34(2)", "1.24(2)"],
+}
+SCENES = pl.DataFrame({"m1 (g)": [Decimal("1.25"), Decimal("2.5")], "m2": [3, 4], "mu": ["0.3", "0.4"]})
+COLUMNS: Any = [Decimal(1), 2, 0.3, 1e-200], 3, [Decimal("10.5"), 10**300, 1e300, 0], 0.3
+PYTHON: dict[str, Callable[[], Any]] = {
+    "doubles": lambda: read(solve("1", "3", mu="0.3")),
+    "digits": lambda: read(
+        solve(Decimal("1.23456789012345678901234567"), "3.3e5", M="1e400", mu=0.3, digits=30)
+    ),
+    "limits": lambda: read(solve(1, 3, M="1e-500", mu="1e-500", axle="1e-500", wrap="1.5rad")),
+    "uncertain": lambda: read(solve(**UNCERTAIN, I=Decimal("1e-5"))),
+    "uncertain, to digits": lambda: read(solve(**UNCERTAIN, M=100, digits=40)),
+    "measured": lambda: read(solve("55.0(1)g", "60+-0.1g", a="0.380", R="5cm")),
+    "refused": lambda: [refused({"m1": Decimal(number)}) for number in ("sNaN", "inf", "1e999999")],
+    "certified": lambda: [column.tolist() for column in solve_arrays(*COLUMNS).values()],
+    "exact": lambda: [column.tolist() for column in solve_arrays(*COLUMNS, accuracy="exact").values()],
+    "table": lambda: solve_table(SCENES).rows(),
+    "fit": lambda: [*(made := fit(FALLS, drop="1.1(1)")), str(made)],
+}
+ROUGH: Any = {"prec": 1, "rounding": ROUND_UP, "Emin": 0, "Emax": 0, "clamp": 1}
+CALLERS = {
+    "traps all": Context(traps=[*Context().flags]),
+    "one digit": Context(**ROUGH, traps=[]),
+    "both": Context(**ROUGH, traps=[*Context().flags]),
+}
+
+
+def forget() -> None:
+    """Clear what is kept of earlier calls."""
+    ours = [module for name, module in sys.modules.items() if name.startswith("atwood_cli")]
+    for kept in (value for module in ours for value in vars(module).values()):
+        if isinstance(kept, type(lru_cache(read))):
+            kept.cache_clear()
+
+
+@pytest.mark.parametrize("caller", CALLERS)
+def test_the_decimal_context_of_the_caller_changes_nothing(caller: str) -> None:
+    """Who trapped a decimal made of a float had an exception."""
+    transcripts = [kept for kept in KEPT if kept.file in CASES and not kept.lacks][:: 800 // many(100)]
+    texts = {kept.text: lambda kept=kept: essence(kept.today()) for kept in transcripts}
+    for name, door in (PYTHON | texts).items():
+        wanted = essence(name) if name in texts else door()
+        forget()
+        with localcontext(CALLERS[caller]) as context:
+            context.clear_flags()
+            got = door()
+        assert repr(got) == repr(wanted), name
+        assert not any(context.flags.values()) or name in texts, name
+    forget()

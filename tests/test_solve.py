@@ -1,10 +1,8 @@
 """`solve` from Python: what is given decides the scene, by `cases/corners.md`, and what every solution does."""
 
 import pickle
-from contextlib import suppress
 from copy import copy, deepcopy
 from dataclasses import fields
-from decimal import ROUND_UP, Context, Decimal, localcontext
 from fractions import Fraction
 from pathlib import Path
 from runpy import run_path
@@ -12,7 +10,7 @@ from typing import Any
 
 import pytest
 
-from atwood_cli import SceneError, solve
+from atwood_cli import solve
 from atwood_cli.solver.machine import Machine
 
 from .tools.running import TOP, process
@@ -38,26 +36,6 @@ def test_what_is_given_decides_what_follows(corner: list[str]) -> None:
             wanted = value if name == "regime" else None if value == "None" else float(value)
             assert getattr(solution, one) == wanted, one
     assert note in " ".join(solution.notes)
-
-
-@pytest.mark.parametrize("trapped", [False, True])
-def test_the_decimal_context_of_the_caller_has_no_part(trapped: bool) -> None:
-    """A flag for comparing decimals with floats was set in it; who traps that had an exception."""
-
-    def results() -> list[Any]:
-        return [answer(given, digits) for given in (*decimals, *map(inputs, typed)) for digits in (None, 60)]
-
-    def answer(given: dict[str, Any], digits: int | None) -> Any:
-        with suppress(SceneError):
-            return solve(**{"m1": "1", "m2": "3", **given, "digits": digits}).to_dict()
-
-    decimals = [{"m1": Decimal(text), "M": Decimal("inf")} for text in ("1.0", "sNaN", "1e999999")]
-    typed = "mu=.3;m1=1.0(1) M=5(1) mu=.3 wrap=175(7);M=inf mu=9e8;M=1e-500 mu=1e-500 axle=1e-500".split(";")
-    typed += ["a=1.0(2) drop=1.0(1)", "m1=1e300±1e299 m2=3e300 M=10e300 mu=0.21(2)"]
-    apart = results()
-    with localcontext(Context(2, ROUND_UP, -3, 3, traps=[*Context().flags] if trapped else [])) as context:
-        assert results() == apart
-        assert not any(context.flags.values())
 
 
 # What every solution has

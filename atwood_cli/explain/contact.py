@@ -134,7 +134,7 @@ def _balance(answers: Answers, kind: Profile) -> dict[str, dict[str, Rounded]]:
         are. It is then 0 if `ZERO_DIGITS` digits of it, counted from those of its terms, are.
         """
         term, end = forces["friction"][axis], ends[axis]
-        round_ = rounding_to_place(Decimal(term).adjusted() - ZERO_DIGITS) if term and not end else None
+        round_ = rounding_to_place(Decimal(str(term)).adjusted() - ZERO_DIGITS) if term and not end else None
         rounded = answers.settle(lambda m: friction(m)[place] + normal(m)[place], round_)
         return rounded if rounded else end  # a 0 of the type that was asked for
 

@@ -9,6 +9,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..numbers.digits import ALL_DIGITS
 from ..numbers.text import in_quotes
 from ..solver.scene import INPUTS, Input, SceneError
 from ..tables.headings import (
@@ -161,7 +162,7 @@ def _as_columns(kind: Kind, runs: RowsOfRuns, count: int, words: Sequence[str]) 
         u_values,
         np.repeat(np.arange(len(used)), [*map(len, used)]),
         cells,
-        10.0 ** min(0, *(int(Decimal(str(x)).normalize().as_tuple().exponent) for x in values)),
+        10.0 ** min(0, *(int(ALL_DIGITS.normalize(Decimal(str(x))).as_tuple().exponent) for x in values)),
     )
 
 

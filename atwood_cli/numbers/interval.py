@@ -220,7 +220,7 @@ class Enclosures:
         if self.digits > 28:
             return _log1p(enclosures(self.digits // 2 + 2), y).lo
         if -DOUBLE_EXPONENT < y.adjusted() < DOUBLE_EXPONENT:
-            return Decimal(math.log1p(float(y)))
+            return Decimal.from_float(math.log1p(float(y)))
         return y if y < 1 else decimal_context(self.digits // 2 + 12, ROUND_HALF_EVEN).ln(y)
 
 

@@ -28,7 +28,6 @@ from ..numbers.digits import (
     to_double,
 )
 from ..numbers.interval import ZERO, decimal_context
-from ..numbers.lazy import lazy
 from .answers import TOO_SMALL, Answers
 from .inverse import found_inputs
 from .quantities import QUANTITIES, Undetermined
@@ -95,13 +94,20 @@ class UncertainAnswers(Answers):
     def __init__(self, scene: Scene, digits: int | None, uncertain: Mapping[str, Fraction]) -> None:
         super().__init__(scene, digits)
         self.uncertain = uncertain
-        self._here = End(Fraction(0), Answers(scene, DIGITS))
-        self._ends = {x: (self._end(x, -u), self._end(x, u)) for x, u in uncertain.items()}
+        self._ends: dict[int, dict[str, tuple[End, End]]] = {}
         self._spreads: dict[str, Spread] = {}
 
     @property
     def given(self) -> tuple[Any, ...]:
         return *super().given, self.uncertain
+
+    def _ends_at(self, n: int) -> dict[str, tuple[End, End]]:
+        """Return each input n standard uncertainties below and above, each solved once."""
+        if n not in self._ends:
+            self._ends[n] = {
+                x: (self._end(x, -n * u), self._end(x, n * u)) for x, u in self.uncertain.items()
+            }
+        return self._ends[n]
 
     def _end(self, x: str, step: Fraction) -> End:
         """Solve the scene with an input so much more, but not below 0; what is found may go below it."""
@@ -131,10 +137,10 @@ class UncertainAnswers(Answers):
         """Compute a quantity at all ends, once; None if it has no finite value in the scene."""
         if name in self._spreads:
             return self._spreads[name]
-        here = self._here.value(name).number
+        here = End(Fraction(0), self.rounded_to(DIGITS)).value(name).number
         if here is None or is_infinite(here):
             return None
-        ends = {x: [end.value(name) for end in pair] for x, pair in self._ends.items()}
+        ends = {x: [end.value(name) for end in pair] for x, pair in self._ends_at(1).items()}
         steps = {}
         with localcontext(CONTEXT):
             for x, values in ends.items():
@@ -171,11 +177,11 @@ class UncertainAnswers(Answers):
 
     # In sentences
 
-    @lazy
+    @property
     def _nearby_ends(self) -> list[tuple[str, str, End]]:
         """Each input one and two uncertainties off, the nearest ends first, and how far these are."""
-        steps = [(within, x, n * u) for n, within in WITHIN.items() for x, u in self.uncertain.items()]
-        return [(within, x, self._end(x, side * step)) for within, x, step in steps for side in (-1, 1)]
+        pairs = [(within, x, pair) for n, within in WITHIN.items() for x, pair in self._ends_at(n).items()]
+        return [(within, x, end) for within, x, pair in pairs for end in pair]
 
     def doubts(self) -> list[str]:
         """Say which of the `DOUBTFUL` decisions differ near the scene, and at which nearest end."""
@@ -205,7 +211,7 @@ class UncertainAnswers(Answers):
             for x, values in spread.ends.items():
                 missing = [i for i in (0, 1) if values[i].number is None]
                 if missing:
-                    place, why = self._at(x, self._ends[x][missing[0]]), values[missing[0]].reason
+                    place, why = self._at(x, self._ends_at(1)[x][missing[0]]), values[missing[0]].reason
                     reason = f"{place} {why}" if why == NO_SCENE else f"at {place}, {why}"
                     other = values[1 - missing[0]].number
                     groups.setdefault(reason, []).append(_one_sided(name, spread.here, other))
